@@ -1,0 +1,174 @@
+//! The Allan curve: what is left of the samples.
+
+use crate::{error::Error, math, octave::Accumulator};
+use heapless::Vec;
+
+/// How counts and sample numbers become rates and seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Scale {
+    rate_per_count: f64,
+    rate_hz: f64,
+}
+
+impl Scale {
+    /// A sensor of `rate_per_count` rate units (rad/s or deg/s: coefficients come out in the same)
+    /// per count, sampled at `rate_hz`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidScale`], [`Error::InvalidRate`] unless both are positive and finite.
+    pub fn new(rate_per_count: f64, rate_hz: f64) -> Result<Self, Error> {
+        let valid = |x: f64| x.is_finite() && x > 0.0;
+        if !valid(rate_per_count) {
+            return Err(Error::InvalidScale(rate_per_count));
+        }
+        if !valid(rate_hz) {
+            return Err(Error::InvalidRate(rate_hz));
+        }
+        Ok(Self {
+            rate_per_count,
+            rate_hz,
+        })
+    }
+
+    /// Rate units per count.
+    pub const fn rate_per_count(&self) -> f64 {
+        self.rate_per_count
+    }
+
+    /// Samples per second.
+    pub const fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+}
+
+/// One octave of an Allan curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Point {
+    /// Averaging factor: samples in a cluster, a power of two.
+    pub m: u32,
+    /// Averaging time τ = m τ₀, in seconds.
+    pub tau_s: f64,
+    /// Quarter-overlapping differences behind the variance.
+    pub differences: u64,
+    /// Allan variance σ²(τ), in rate units squared.
+    pub variance: f64,
+}
+
+impl Point {
+    /// Allan deviation σ(τ), in rate units.
+    pub fn deviation(&self) -> f64 {
+        math::sqrt(self.variance)
+    }
+}
+
+/// An Allan curve of up to `K` octaves: everything that the fit, the comparison and the diagnosis
+/// know of a record.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Curve<const K: usize> {
+    rate_hz: f64,
+    points: Vec<Point, K>,
+}
+
+impl<const K: usize> Curve<K> {
+    /// Differences that an octave needs to enter a curve, unless another number is asked for: with
+    /// fewer, the estimate's distribution is too far from any that a fit can weight.
+    pub const MIN_DIFFERENCES: u64 = 6;
+
+    /// A stored curve: averaging factor, number of differences and Allan variance of each octave,
+    /// shortest averaging time first.
+    ///
+    /// # Errors
+    /// [`Error::InvalidRate`], [`Error::InvalidPoint`], [`Error::TooManyOctaves`].
+    pub fn new(
+        rate_hz: f64,
+        octaves: impl IntoIterator<Item = (u32, u64, f64)>,
+    ) -> Result<Self, Error> {
+        Scale::new(1.0, rate_hz)?;
+        let mut points: Vec<Point, K> = Vec::new();
+        let mut last = 0;
+        for (m, differences, variance) in octaves {
+            let possible = m.is_power_of_two() && m <= 1 << 29 && m > last;
+            if !(possible && differences > 0 && variance.is_finite() && variance >= 0.0) {
+                return Err(Error::InvalidPoint { m });
+            }
+            last = m;
+            let point = Point {
+                m,
+                tau_s: f64::from(m) / rate_hz,
+                differences,
+                variance,
+            };
+            if points.push(point).is_err() {
+                return Err(Error::TooManyOctaves { capacity: K });
+            }
+        }
+        Ok(Self { rate_hz, points })
+    }
+
+    /// Samples per second.
+    pub const fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// Sample interval τ₀, in seconds.
+    pub fn interval_s(&self) -> f64 {
+        1.0 / self.rate_hz
+    }
+
+    /// The octaves, shortest averaging time first.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+}
+
+impl<const K: usize> Accumulator<K> {
+    /// The Allan curve as of now, of octaves with at least [`Curve::MIN_DIFFERENCES`].
+    pub fn curve(&self, scale: Scale) -> Curve<K> {
+        self.curve_of(scale, Curve::<K>::MIN_DIFFERENCES)
+    }
+
+    /// The Allan curve as of now, of octaves with at least `min_differences` (at least one).
+    pub fn curve_of(&self, scale: Scale, min_differences: u64) -> Curve<K> {
+        let mut points = Vec::new();
+        for octave in self.octaves() {
+            if octave.differences < min_differences.max(1) {
+                continue;
+            }
+            // σ² = ½ mean (D/m)², in counts² until scaled.
+            let cluster_scale = scale.rate_per_count / f64::from(octave.m);
+            let mean_square = octave.sum.to_f64() / octave.differences as f64;
+            let point = Point {
+                m: octave.m,
+                tau_s: f64::from(octave.m) / scale.rate_hz,
+                differences: octave.differences,
+                variance: 0.5 * mean_square * cluster_scale * cluster_scale,
+            };
+            // As many octaves as capacity: there is always room.
+            let _ = points.push(point);
+        }
+        Curve {
+            rate_hz: scale.rate_hz,
+            points,
+        }
+    }
+}
+
+impl<const K: usize> core::fmt::Display for Curve<K> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        writeln!(f, "{:>12} {:>12} {:>14} {:>12}", "m", "tau_s", "deviation", "differences")?;
+        for point in &self.points {
+            writeln!(
+                f,
+                "{:>12} {:>12.5} {:>14.6e} {:>12}",
+                point.m,
+                point.tau_s,
+                point.deviation(),
+                point.differences
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,80 @@
+//! What can be wrong with an input.
+
+/// Why a curve could not be made or fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error {
+    /// The sampling rate is not a positive, finite number of hertz.
+    InvalidRate(f64),
+    /// The rate per count is not a positive, finite number.
+    InvalidScale(f64),
+    /// A curve's point is impossible: `m` is not a power of two up to 2^29, not above the one
+    /// before it, without differences, or its variance is negative or not finite.
+    InvalidPoint {
+        /// The point's averaging factor.
+        m: u32,
+    },
+    /// More octaves than the curve has room for.
+    TooManyOctaves {
+        /// How many it has room for.
+        capacity: usize,
+    },
+    /// Fewer octaves with enough differences than a fit needs: record longer.
+    TooFewOctaves {
+        /// Octaves that the curve has.
+        found: usize,
+        /// Octaves that the fit needs.
+        needed: usize,
+    },
+    /// A variance of zero: the counts never changed, so there is no noise to characterise.
+    NoNoise {
+        /// The averaging factor of the first such octave.
+        m: u32,
+    },
+    /// More effects in a model than it has room for.
+    TooManyEffects {
+        /// How many it has room for.
+        capacity: usize,
+    },
+    /// The normal equations have no solution: the model's effects cannot be told apart, or a
+    /// column is not finite.
+    Singular,
+}
+
+impl core::fmt::Display for Error {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::InvalidRate(rate) => {
+                write!(f, "sampling rate {rate} Hz: pass a positive, finite number")
+            }
+            Self::InvalidScale(scale) => {
+                write!(f, "rate per count {scale}: pass a positive, finite number")
+            }
+            Self::InvalidPoint { m } => write!(
+                f,
+                "octave m = {m}: averaging factors must be ascending powers of two up to 2^29, \
+                 each with differences and a finite variance that is not negative"
+            ),
+            Self::TooManyOctaves { capacity } => {
+                write!(f, "more than {capacity} octaves: use a curve of larger capacity")
+            }
+            Self::TooFewOctaves { found, needed } => write!(
+                f,
+                "{found} octaves with enough differences, {needed} needed: record longer"
+            ),
+            Self::NoNoise { m } => write!(
+                f,
+                "no noise at all at m = {m}: the counts never change, check the sensor"
+            ),
+            Self::TooManyEffects { capacity } => {
+                write!(f, "more than {capacity} effects in one model: remove one")
+            }
+            Self::Singular => {
+                write!(f, "the model's effects cannot be told apart on this curve: remove one")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Error {}

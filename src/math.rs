@@ -2,3 +2,20 @@
 //! std's once anything in a build links std, and host and target would compute different numbers.
 
 pub(crate) use libm::{erfc, exp, log, sqrt};
+
+/// The natural logarithm of an integer above 0, for tables computed by the compiler.
+pub(crate) const fn log_of_integer(i: u32) -> f64 {
+    // i = 2^exponent · mantissa, with the mantissa in [1, 2): ln = 2 artanh((x − 1)/(x + 1)).
+    let exponent = i.ilog2();
+    let mantissa = i as f64 / (1_u64 << exponent) as f64;
+    let t = (mantissa - 1.0) / (mantissa + 1.0);
+    let t2 = t * t;
+    // t² ≤ 1/9: eighteen terms leave less than 1e-18.
+    let mut k = 37;
+    let mut sum = 0.0;
+    while k > 0 {
+        sum = sum * t2 + 1.0 / k as f64;
+        k -= 2;
+    }
+    exponent as f64 * core::f64::consts::LN_2 + 2.0 * t * sum
+}

@@ -1,0 +1,84 @@
+//! A coefficient, and what a record says of it.
+
+use crate::{effect::Effect, math};
+
+/// Two-sided 95 % of a normal distribution, in standard errors.
+const TWO_SIDED: f64 = 1.959_964;
+/// One-sided 95 %.
+const ONE_SIDED: f64 = 1.644_854;
+
+/// What a record says of a coefficient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum State {
+    /// Its 95 % interval excludes zero.
+    Measured,
+    /// Zero is within its interval: `upper` bounds it, one-sided, at 95 %.
+    UpperBound,
+    /// The record says nothing of it: other effects could take its place, or its bound is no better
+    /// than that it cannot exceed the whole curve.
+    NotObservable {
+        /// Length of a record, in seconds, that would measure it if it were at its bound; `None`
+        /// where no length up to 2^29 samples would.
+        after_s: Option<f64>,
+    },
+}
+
+/// The coefficient of one effect, in the curve's rate unit and seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Coefficient {
+    /// The effect's name, such as `angle_random_walk`.
+    pub name: &'static str,
+    /// The coefficient's symbol, such as `N`.
+    pub symbol: &'static str,
+    /// The unit is rate unit · s^(half_seconds/2).
+    pub half_seconds: i8,
+    /// Best value; zero where the square is negative, which only unconstrained methods return.
+    pub value: f64,
+    /// Lower end of the 95 % interval; zero unless measured.
+    pub lower: f64,
+    /// Upper end of the 95 % interval, or the one-sided 95 % bound; infinite if the effect cannot
+    /// be told from others.
+    pub upper: f64,
+    /// Whether it was measured.
+    pub state: State,
+    /// The squared coefficient, which is what the fit is linear in.
+    pub square: f64,
+    /// Standard error of the square; infinite as `upper`.
+    pub square_error: f64,
+}
+
+impl Coefficient {
+    /// A squared coefficient and its variance; `None` where the fit cannot tell the effect from
+    /// others.
+    pub(crate) fn new(effect: &dyn Effect, square: f64, variance: Option<f64>) -> Self {
+        let error = variance.map_or(f64::INFINITY, math::sqrt);
+        let root = |square: f64| {
+            if square > 0.0 {
+                math::sqrt(square)
+            } else {
+                0.0
+            }
+        };
+        let below = square - TWO_SIDED * error;
+        let (state, upper) = if below > 0.0 {
+            (State::Measured, square + TWO_SIDED * error)
+        } else if error.is_finite() {
+            (State::UpperBound, square.max(0.0) + ONE_SIDED * error)
+        } else {
+            (State::NotObservable { after_s: None }, f64::INFINITY)
+        };
+        Self {
+            name: effect.name(),
+            symbol: effect.symbol(),
+            half_seconds: effect.half_seconds(),
+            value: root(square),
+            lower: root(below),
+            upper: root(upper),
+            state,
+            square,
+            square_error: error,
+        }
+    }
+}

@@ -1,0 +1,34 @@
+use super::{Effect, Setting};
+
+/// Angle random walk, coefficient N in rate · √s: white rate noise of two-sided density N².
+///
+/// `G(n) = −τ₀ n/2`; `σ²(τ) = N²/τ` (IEEE Std 952-1997, eq. C.13).
+#[derive(Clone, Copy, Debug)]
+pub struct AngleRandomWalk;
+
+impl Effect for AngleRandomWalk {
+    fn name(&self) -> &'static str {
+        "angle_random_walk"
+    }
+
+    fn symbol(&self) -> &'static str {
+        "N"
+    }
+
+    fn half_seconds(&self) -> i8 {
+        1
+    }
+
+    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+        -0.5 * setting.interval_s * lag
+    }
+
+    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+        // Beyond a cluster the straight lines cancel exactly.
+        if x < m {
+            setting.interval_s * (x - m)
+        } else {
+            0.0
+        }
+    }
+}

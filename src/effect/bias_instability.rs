@@ -1,0 +1,84 @@
+use super::{Effect, Setting};
+use crate::lattice::{self, SecondDifferences};
+use crate::math;
+use core::f64::consts::PI;
+
+/// Bias instability, coefficient B in rate: flicker noise, of spectral density `B²/(2πf)`, averaged
+/// over each sample interval.
+///
+/// `G(n) = (nτ₀)² ln(nτ₀)/2π`; `σ² = (2 ln 2/π) B² = (0.664 B)²` at every τ (IEEE Std 952-1997,
+/// eq. C.17, for τ beyond its cut-off; Allan 1966 for the kernel of flicker frequency noise).
+///
+/// The kernel is scale-free: but for a constant, which cancels, its second differences are `m²`
+/// times a function of `x/m`. That function stands in a table, so that no logarithm is taken on a
+/// target.
+#[derive(Clone, Copy, Debug)]
+pub struct BiasInstability;
+
+impl Effect for BiasInstability {
+    fn name(&self) -> &'static str {
+        "bias_instability"
+    }
+
+    fn symbol(&self) -> &'static str {
+        "B"
+    }
+
+    fn half_seconds(&self) -> i8 {
+        0
+    }
+
+    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+        if lag == 0.0 {
+            return 0.0;
+        }
+        let t = lag * setting.interval_s;
+        t * t * math::log(t) / (2.0 * PI)
+    }
+
+    fn variance(&self, _: f64, _: &Setting) -> f64 {
+        2.0 * core::f64::consts::LN_2 / PI
+    }
+
+    fn add_second_differences(
+        &self,
+        m: f64,
+        weight: f64,
+        setting: &Setting,
+        sum: &mut SecondDifferences,
+    ) {
+        let tau_s = m * setting.interval_s;
+        sum.add_scaled(weight * tau_s * tau_s / (2.0 * PI), &SCALE_FREE);
+    }
+}
+
+/// `[(i+4)² ln(i+4) − 2 i² ln i + (i−4)² ln|i−4|]/16` at the lattice's positions `i = 4x/m`.
+static SCALE_FREE: [f64; lattice::LEN] = {
+    let mut table = [0.0; lattice::LEN];
+    let mut slot = 0;
+    while slot < lattice::LEN {
+        table[slot] = scale_free(lattice::position(slot));
+        slot += 1;
+    }
+    table
+};
+
+const fn scale_free(position: u32) -> f64 {
+    let i = position as f64;
+    if position < 64 {
+        (square_log(position + 4) - 2.0 * square_log(position) + square_log(position.abs_diff(4)))
+            / 16.0
+    } else {
+        // The same by its Taylor series: the three terms would cancel.
+        let i2 = i * i;
+        2.0 * math::log_of_integer(position) + 3.0 - 8.0 / (3.0 * i2) - 128.0 / (15.0 * i2 * i2)
+    }
+}
+
+const fn square_log(i: u32) -> f64 {
+    if i == 0 {
+        return 0.0;
+    }
+    let x = i as f64;
+    x * x * math::log_of_integer(i)
+}

@@ -1,0 +1,102 @@
+//! What an effect is, and the five of IEEE Std 952.
+//!
+//! Every physical effect is one even function, the generalised covariance `G(n)` of the angle at a
+//! lag of `n` samples: `−G″` is the autocovariance of the rate. Allan variances and the covariance
+//! of an Allan curve need second differences of `G` only, on both sides, which remove any
+//! polynomial up to the third degree: `G` exists for effects whose autocovariance does not.
+
+mod angle_random_walk;
+mod bias_instability;
+mod quantization;
+mod rate_ramp;
+mod rate_random_walk;
+
+pub use angle_random_walk::AngleRandomWalk;
+pub use bias_instability::BiasInstability;
+pub use quantization::Quantization;
+pub use rate_ramp::RateRamp;
+pub use rate_random_walk::RateRandomWalk;
+
+pub use crate::lattice::SecondDifferences;
+
+/// Where an effect is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Sample interval τ₀, in seconds.
+    pub interval_s: f64,
+}
+
+/// A physical effect that shows in an Allan curve.
+///
+/// The coefficient enters squared, as `β`: every function here is for a coefficient of one.
+pub trait Effect: Sync {
+    /// Its name in files and on the command line, such as `angle_random_walk`.
+    fn name(&self) -> &'static str;
+
+    /// The coefficient's customary symbol, such as `N`.
+    fn symbol(&self) -> &'static str;
+
+    /// Half the power of seconds in the coefficient's unit, which is rate unit · s^(half/2):
+    /// 1 for the angle random walk, rate · √s.
+    fn half_seconds(&self) -> i8;
+
+    /// The generalised covariance `G(n)`, in s² times the rate unit squared per coefficient
+    /// squared, for `lag = n ≥ 0` samples, up to a polynomial of the third degree.
+    fn kernel(&self, lag: f64, setting: &Setting) -> f64;
+
+    /// `G(x + m) − 2 G(x) + G(|x − m|)` for lags in samples, up to a straight line in `x`.
+    ///
+    /// For `x ≫ m` the terms cancel: an effect with a closed form should give it.
+    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+        let apart = if x < m { m - x } else { x - m };
+        self.kernel(x + m, setting) - 2.0 * self.kernel(x, setting) + self.kernel(apart, setting)
+    }
+
+    /// τ_j τ_k times the covariance of two differences of adjacent cluster means, of `m_j ≤ m_k`
+    /// samples, whose middles lie `offset ≥ 0` samples apart:
+    /// `Σ w_u w_v G(ℓ + v m_k − u m_j)` with `w = (1, −2, 1)`.
+    fn cross_difference(&self, m_j: f64, m_k: f64, offset: f64, setting: &Setting) -> f64 {
+        let apart = if offset < m_k {
+            m_k - offset
+        } else {
+            offset - m_k
+        };
+        self.second_difference(apart, m_j, setting)
+            - 2.0 * self.second_difference(offset, m_j, setting)
+            + self.second_difference(offset + m_k, m_j, setting)
+    }
+
+    /// Allan variance `σ²(mτ₀)`, in the rate unit squared per coefficient squared.
+    fn variance(&self, m: f64, setting: &Setting) -> f64 {
+        let tau_s = m * setting.interval_s;
+        let at_m = self.second_difference(m, m, setting);
+        (at_m - self.second_difference(0.0, m, setting)) / (tau_s * tau_s)
+    }
+
+    /// Adds `weight` times the second differences for clusters of `m` samples, at every position
+    /// of the lattice.
+    fn add_second_differences(
+        &self,
+        m: f64,
+        weight: f64,
+        setting: &Setting,
+        sum: &mut SecondDifferences,
+    ) {
+        sum.add(m, |x| weight * self.second_difference(x, m, setting));
+    }
+
+    /// Whether the effect is the same in every record, and not random: it then shifts the curve,
+    /// but scatters it only where random effects beat against it.
+    fn is_deterministic(&self) -> bool {
+        false
+    }
+}
+
+/// The five terms of IEEE Std 952-1997, annex C, in the order of their slopes.
+pub const IEEE_952: [&dyn Effect; 5] = [
+    &Quantization,
+    &AngleRandomWalk,
+    &BiasInstability,
+    &RateRandomWalk,
+    &RateRamp,
+];

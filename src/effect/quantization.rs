@@ -1,0 +1,39 @@
+use super::{Effect, Setting};
+use crate::lattice::SecondDifferences;
+
+/// Quantization noise, coefficient Q in rate · s (an angle): the angle is rounded, or jitters, by an
+/// amount that is independent from sample to sample.
+///
+/// `G(n) = 1` at `n = 0`, else 0; `σ²(τ) = 3Q²/τ²` (IEEE Std 952-1997, eq. C.16).
+#[derive(Clone, Copy, Debug)]
+pub struct Quantization;
+
+impl Effect for Quantization {
+    fn name(&self) -> &'static str {
+        "quantization"
+    }
+
+    fn symbol(&self) -> &'static str {
+        "Q"
+    }
+
+    fn half_seconds(&self) -> i8 {
+        2
+    }
+
+    fn kernel(&self, lag: f64, _: &Setting) -> f64 {
+        if lag == 0.0 { 1.0 } else { 0.0 }
+    }
+
+    fn add_second_differences(
+        &self,
+        _: f64,
+        weight: f64,
+        _: &Setting,
+        sum: &mut SecondDifferences,
+    ) {
+        // G(0) is met at x = 0, twice and negative, and at x = m.
+        sum.add_at(0, -2.0 * weight);
+        sum.add_at(4, weight);
+    }
+}

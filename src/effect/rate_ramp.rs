@@ -1,0 +1,43 @@
+use super::{Effect, Setting};
+
+/// Rate ramp, coefficient R in rate / s: the rate drifts steadily, the same in every difference.
+///
+/// `G(n) = τ₀⁴ n⁴/24`; `σ²(τ) = R²τ²/2` (IEEE Std 952-1997, eq. C.22).
+#[derive(Clone, Copy, Debug)]
+pub struct RateRamp;
+
+impl Effect for RateRamp {
+    fn name(&self) -> &'static str {
+        "rate_ramp"
+    }
+
+    fn symbol(&self) -> &'static str {
+        "R"
+    }
+
+    fn half_seconds(&self) -> i8 {
+        -2
+    }
+
+    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+        let t2 = setting.interval_s * setting.interval_s;
+        let n2 = lag * lag;
+        t2 * t2 * n2 * n2 / 24.0
+    }
+
+    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+        let t2 = setting.interval_s * setting.interval_s;
+        let m2 = m * m;
+        t2 * t2 * m2 * (0.5 * x * x + m2 / 12.0)
+    }
+
+    fn cross_difference(&self, m_j: f64, m_k: f64, _: f64, setting: &Setting) -> f64 {
+        // Every difference is Rτ: the product does not depend on where they lie.
+        let t2 = setting.interval_s * setting.interval_s;
+        t2 * t2 * m_j * m_j * m_k * m_k
+    }
+
+    fn is_deterministic(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,104 @@
+//! Second differences of a kernel at every lag that two octaves of a curve can meet.
+
+/// Positions up to this one, in quarters of a cluster, are kept one by one.
+const FINE: u32 = 16;
+const FINE_SLOTS: usize = FINE as usize + 1;
+/// Beyond, there are four positions an octave …
+const STEPS: u32 = 4;
+/// … for so many octaves.
+const COARSE_OCTAVES: u32 = 18;
+
+/// Slots of the lattice.
+pub(crate) const LEN: usize = FINE_SLOTS + (STEPS * COARSE_OCTAVES) as usize;
+
+/// The largest position.
+pub(crate) const END: u32 = FINE << COARSE_OCTAVES;
+
+/// The lag that a slot is for, in quarters of a cluster: 0, 1, … 16, 20, 24, 28, 32, 40, ….
+pub(crate) const fn position(slot: usize) -> u32 {
+    if slot < FINE_SLOTS {
+        return slot as u32;
+    }
+    let beyond = (slot - FINE_SLOTS) as u32 + 1;
+    let octave = beyond / STEPS;
+    let step = beyond % STEPS;
+    (FINE + FINE / STEPS * step) << octave
+}
+
+/// Second differences `G(x + m) − 2 G(x) + G(|x − m|)` for one averaging factor `m`, kept at
+/// lags `x` on a lattice that is fine near 0 and coarsens with the distance, as they do: their
+/// kinks lie within `m`.
+#[derive(Clone, Debug)]
+pub struct SecondDifferences {
+    values: [f64; LEN],
+    used: usize,
+    stride: u32,
+}
+
+impl SecondDifferences {
+    /// Nothing yet, for clusters of `m` samples and lags up to `end` quarters of a cluster.
+    pub(crate) fn zero(m: u32, end: u32) -> Self {
+        let used = (0..LEN).find(|&slot| position(slot) >= end);
+        Self {
+            values: [0.0; LEN],
+            used: used.map_or(LEN, |slot| slot + 1),
+            stride: stride(m),
+        }
+    }
+
+    /// Adds `f(x)` at every lag `x`, in samples, of clusters of `m` samples.
+    pub fn add(&mut self, m: f64, f: impl Fn(f64) -> f64) {
+        for (slot, value) in self.values.iter_mut().enumerate().take(self.used) {
+            let position = position(slot);
+            // Quarters of a cluster that lie between samples are never asked for.
+            if position.is_multiple_of(self.stride) {
+                *value += f(0.25 * m * f64::from(position));
+            }
+        }
+    }
+
+    /// Adds `weight` times a table of all positions.
+    pub(crate) fn add_scaled(&mut self, weight: f64, table: &[f64; LEN]) {
+        for (value, unit) in self.values.iter_mut().zip(table).take(self.used) {
+            *value += weight * unit;
+        }
+    }
+
+    /// Adds to one position up to 16 quarters of a cluster.
+    pub fn add_at(&mut self, position: u32, value: f64) {
+        if let Some(slot) = self.values.get_mut(position.min(FINE) as usize) {
+            *slot += value;
+        }
+    }
+
+    /// The second difference at a lag in quarters of a cluster, on a straight line between the
+    /// lattice's positions.
+    #[inline]
+    pub(crate) fn at(&self, position: u32) -> f64 {
+        if position <= FINE {
+            return self.values[position as usize];
+        }
+        let position = position.min(END - 1);
+        // The position's octave, and its step in it.
+        let octave = position.ilog2() - FINE.ilog2();
+        let width = (FINE / STEPS) << octave;
+        let step = (position - (FINE << octave)) / width;
+        let slot = FINE as usize + (STEPS * octave + step) as usize;
+        let rest = position & (width - 1);
+        let low = self.values[slot];
+        if rest == 0 {
+            return low;
+        }
+        low + (self.values[(slot + 1).min(LEN - 1)] - low) * (f64::from(rest) / f64::from(width))
+    }
+}
+
+/// Starts of differences advance by so many quarters of a cluster: one, where a quarter is a whole
+/// number of samples.
+pub(crate) const fn stride(m: u32) -> u32 {
+    match m {
+        1 => 4,
+        2 => 2,
+        _ => 1,
+    }
+}

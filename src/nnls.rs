@@ -1,0 +1,143 @@
+//! Least squares with coefficients that cannot be negative, from the normal equations.
+
+use crate::{error::Error, model::MAX_EFFECTS};
+use nalgebra::{Cholesky, SMatrix, SVector};
+
+/// Normal equations `H β = b` of up to [`MAX_EFFECTS`] coefficients.
+pub(crate) type Matrix = SMatrix<f64, MAX_EFFECTS, MAX_EFFECTS>;
+/// One number a coefficient.
+pub(crate) type Vector = SVector<f64, MAX_EFFECTS>;
+
+/// A pivot of the scaled equations below this is rounding, not information.
+const LEAST_PIVOT: f64 = 1e-10;
+
+/// Which coefficients are free; the others are held at zero.
+pub(crate) type Free = [bool; MAX_EFFECTS];
+
+/// The equations with every column scaled to one, so that coefficients of any magnitude share one
+/// tolerance.
+pub(crate) struct NormalEquations {
+    scaled: Matrix,
+    right: Vector,
+    scale: Vector,
+    count: usize,
+}
+
+impl NormalEquations {
+    /// `H` and `b` of the first `count` coefficients.
+    ///
+    /// # Errors
+    /// [`Error::Singular`] where a column is zero or not finite.
+    pub(crate) fn new(matrix: &Matrix, right: &Vector, count: usize) -> Result<Self, Error> {
+        let mut scale = Vector::zeros();
+        for i in 0..count {
+            let diagonal = matrix[(i, i)];
+            if !(diagonal.is_finite() && diagonal > 0.0) {
+                return Err(Error::Singular);
+            }
+            scale[i] = 1.0 / crate::math::sqrt(diagonal);
+        }
+        Ok(Self {
+            scaled: Matrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]),
+            right: right.component_mul(&scale),
+            scale,
+            count,
+        })
+    }
+
+    /// Factors the equations of the free coefficients; the others become the identity.
+    fn factor(&self, free: &Free) -> Option<Cholesky<f64, nalgebra::Const<MAX_EFFECTS>>> {
+        let factor = Cholesky::new(Matrix::from_fn(|i, j| match (i == j, free[i] && free[j]) {
+            (_, true) => self.scaled[(i, j)],
+            (true, false) => 1.0,
+            (false, false) => 0.0,
+        }))?;
+        let pivots = factor.l_dirty().diagonal();
+        pivots
+            .iter()
+            .all(|&pivot| pivot * pivot > LEAST_PIVOT)
+            .then_some(factor)
+    }
+
+    fn solve_scaled(&self, free: &Free) -> Option<Vector> {
+        let factor = self.factor(free)?;
+        Some(factor.solve(&Vector::from_fn(
+            |i, _| if free[i] { self.right[i] } else { 0.0 },
+        )))
+    }
+
+    /// The unconstrained solution.
+    ///
+    /// # Errors
+    /// [`Error::Singular`].
+    pub(crate) fn solve(&self) -> Result<Vector, Error> {
+        let all = core::array::from_fn(|i| i < self.count);
+        let solution = self.solve_scaled(&all).ok_or(Error::Singular)?;
+        Ok(solution.component_mul(&self.scale))
+    }
+
+    /// The solution with no negative coefficient, and which are above zero (Lawson & Hanson 1974,
+    /// ch. 23, on the normal equations).
+    pub(crate) fn solve_non_negative(&self) -> (Vector, Free) {
+        let mut free = [false; MAX_EFFECTS];
+        let mut refused = [false; MAX_EFFECTS];
+        let mut solution = Vector::zeros();
+        // Each round frees one coefficient; thrice their number is the customary limit.
+        for _ in 0..3 * MAX_EFFECTS {
+            let gradient = self.right - self.scaled * solution;
+            let candidate = (0..self.count)
+                .filter(|&i| !free[i] && !refused[i] && gradient[i] > 1e-12)
+                .max_by(|&a, &b| gradient[a].total_cmp(&gradient[b]));
+            let Some(entering) = candidate else { break };
+            free[entering] = true;
+            let Some(trial) = self
+                .solve_scaled(&free)
+                .filter(|trial| trial[entering] > 0.0)
+            else {
+                // Not to be told from those already free.
+                free[entering] = false;
+                refused[entering] = true;
+                continue;
+            };
+            solution = self.retreat(solution, trial, &mut free);
+            // A coefficient refused beside others may be welcome once they have changed.
+            refused = core::array::from_fn(|i| refused[i] && i == entering);
+        }
+        (solution.component_mul(&self.scale), free)
+    }
+
+    /// Goes from a solution towards one that may have negative coefficients, holding those that
+    /// reach zero, until none is negative.
+    fn retreat(&self, mut solution: Vector, mut trial: Vector, free: &mut Free) -> Vector {
+        for _ in 0..self.count {
+            let held = (0..self.count)
+                .filter(|&i| free[i] && trial[i] <= 0.0)
+                .map(|i| (i, solution[i] / (solution[i] - trial[i])))
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((leaving, fraction)) = held else {
+                break;
+            };
+            solution += (trial - solution) * fraction;
+            free[leaving] = false;
+            solution[leaving] = 0.0;
+            match self.solve_scaled(free) {
+                Some(next) => trial = next,
+                None => return solution,
+            }
+        }
+        trial
+    }
+
+    /// Covariance of the free coefficients; zero for the others. `None` if they cannot be told
+    /// apart.
+    pub(crate) fn covariance(&self, free: &Free) -> Option<Matrix> {
+        let inverse = self.factor(free)?.inverse();
+        Some(Matrix::from_fn(|i, j| {
+            if free[i] && free[j] {
+                inverse[(i, j)] * self.scale[i] * self.scale[j]
+            } else {
+                0.0
+            }
+        }))
+    }
+}

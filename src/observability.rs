@@ -1,0 +1,62 @@
+//! How long a record must be for an effect to show.
+
+use crate::{
+    effect::Setting,
+    model::Model,
+    nnls::{Free, Matrix, NormalEquations, Vector},
+};
+
+/// Longest record that is considered, in samples: the longest octave's.
+const LONGEST: f64 = (1_u64 << 30) as f64;
+
+/// Length in seconds, the present one doubled as often as needed, of a record in which effect `i`
+/// would be measured: with its square at `square`, and the others as `squares` has them, 1.96
+/// standard errors are less than the square. `None` if no length does it.
+///
+/// Standard errors come from independent octaves of `N/m − 1` clusters each, which is between
+/// what overlapping estimates gain and their correlation takes away.
+pub(crate) fn record_length_s(
+    i: usize,
+    square: f64,
+    squares: &Vector,
+    free: &Free,
+    model: &Model,
+    setting: &Setting,
+    samples: f64,
+) -> Option<f64> {
+    let mut assumed = *squares;
+    assumed[i] = square;
+    let mut with = *free;
+    with[i] = true;
+    let mut samples = 2.0 * samples;
+    while samples <= LONGEST {
+        let variance = equations(&assumed, model, setting, samples)?.covariance(&with);
+        if variance.is_some_and(|matrix| square * square > 1.96 * 1.96 * matrix[(i, i)]) {
+            return Some(samples * setting.interval_s);
+        }
+        samples *= 2.0;
+    }
+    None
+}
+
+fn equations(
+    squares: &Vector,
+    model: &Model,
+    setting: &Setting,
+    samples: f64,
+) -> Option<NormalEquations> {
+    let mut matrix = Matrix::zeros();
+    let mut m = 1.0;
+    while samples / m >= 4.0 {
+        let mut row = Vector::zeros();
+        for (share, effect) in row.iter_mut().zip(model.effects()) {
+            *share = effect.variance(m, setting);
+        }
+        let variance = row.dot(squares);
+        // Relative variance of a variance from so many clusters: 2/(N/m − 1).
+        let weight = 0.5 * (samples / m - 1.0) / (variance * variance);
+        matrix += row * row.transpose() * weight;
+        m *= 2.0;
+    }
+    NormalEquations::new(&matrix, &Vector::zeros(), model.effects().len()).ok()
+}

@@ -65,7 +65,10 @@ impl Coefficient {
         let (state, upper) = if below > 0.0 {
             (State::Measured, square + TWO_SIDED * error)
         } else if error.is_finite() {
-            (State::UpperBound, square.max(0.0) + ONE_SIDED * error)
+            (
+                State::UpperBound,
+                Self::one_sided_bound(square, error * error),
+            )
         } else {
             (State::NotObservable { after_s: None }, f64::INFINITY)
         };
@@ -80,5 +83,10 @@ impl Coefficient {
             square,
             square_error: error,
         }
+    }
+
+    /// One-sided 95 % bound of a square that cannot be negative.
+    pub(crate) fn one_sided_bound(square: f64, variance: f64) -> f64 {
+        square.max(0.0) + ONE_SIDED * math::sqrt(variance)
     }
 }

@@ -15,7 +15,7 @@
 //! full sum for the effects of [`IEEE_952`](crate::effect::IEEE_952).
 
 use crate::{
-    curve::Point,
+    curve::{Curve, Point},
     effect::Setting,
     lattice::{self, SecondDifferences},
     model::Model,
@@ -27,6 +27,20 @@ const NEAR: u32 = 8;
 
 /// The outward tail of the sum ends where two lags in turn add less than this share.
 const NEGLIGIBLE: f64 = 1e-4;
+
+/// The covariance of a curve's Allan variances, in rate units to the fourth, where a model's
+/// effects have the squared coefficients `squares`: what the fit weights with. Rows and columns
+/// beyond the curve's octaves are zero.
+pub fn curve_covariance<const K: usize>(
+    curve: &Curve<K>,
+    model: &Model,
+    squares: &[f64],
+) -> SMatrix<f64, K, K> {
+    let setting = Setting {
+        interval_s: curve.interval_s(),
+    };
+    covariance(curve.points(), model, squares, &setting)
+}
 
 /// The covariance of a curve's variances, in rate units to the fourth, where the effects have the
 /// squared coefficients `squares`. Rows and columns beyond the curve's octaves are zero.

@@ -19,6 +19,7 @@ mod square_sum;
 
 pub use chi_squared::chi_squared_tail;
 pub use coefficient::{Coefficient, State};
+pub use covariance::curve_covariance;
 pub use curve::{Curve, Point, Scale};
 pub use error::Error;
 pub use fit::{Fit, Method, Settings, fit};

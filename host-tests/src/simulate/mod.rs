@@ -1,0 +1,71 @@
+//! Simulated gyros: rates with noise of known coefficients.
+
+mod flicker;
+mod ieee_952;
+mod preset;
+
+pub use preset::Preset;
+
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// The generator behind every simulation: a seed names a record for good.
+pub type Random = Xoshiro256PlusPlus;
+
+/// Coefficients of the five IEEE-952 terms, in a rate unit of choice and seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Coefficients {
+    /// Quantization Q, rate · s.
+    pub quantization: f64,
+    /// Angle random walk N, rate · √s.
+    pub angle_random_walk: f64,
+    /// Bias instability B, rate.
+    pub bias_instability: f64,
+    /// Rate random walk K, rate / √s.
+    pub rate_random_walk: f64,
+    /// Rate ramp R, rate / s.
+    pub rate_ramp: f64,
+}
+
+/// Something that adds to the rate, sample by sample.
+pub trait Source: Send {
+    /// The rate that it adds to the next sample.
+    fn next(&mut self, random: &mut Random) -> f64;
+}
+
+/// An endless record of a gyro at rest: rates, averaged over each sample interval.
+pub struct Simulator {
+    random: Random,
+    sources: Vec<Box<dyn Source>>,
+}
+
+impl Simulator {
+    /// A gyro with these coefficients, sampled at `rate_hz`. Terms of coefficient zero cost nothing.
+    pub fn new(coefficients: Coefficients, rate_hz: f64, seed: u64) -> Self {
+        let mut random = Random::seed_from_u64(seed);
+        let interval_s = 1.0 / rate_hz;
+        let sources = ieee_952::sources(coefficients, interval_s, &mut random);
+        Self { random, sources }
+    }
+
+    /// Adds another source.
+    #[must_use]
+    pub fn with(mut self, source: Box<dyn Source>) -> Self {
+        self.sources.push(source);
+        self
+    }
+}
+
+impl Iterator for Simulator {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        let random = &mut self.random;
+        Some(
+            self.sources
+                .iter_mut()
+                .map(|source| source.next(random))
+                .sum(),
+        )
+    }
+}

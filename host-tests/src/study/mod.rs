@@ -1,0 +1,66 @@
+//! Statistics over thousands of simulated records: too long for tests, and what the figures in
+//! the README rest on.
+
+pub mod coefficients;
+pub mod theory;
+
+use crate::simulate::{Coefficients, Simulator};
+use allanite::{Accumulator, Curve, Scale};
+
+/// Octaves of every studied curve.
+pub const OCTAVES: usize = 24;
+
+/// The sample rate of every study, in Hz.
+pub const RATE_HZ: f64 = 100.0;
+
+/// The curve of a simulated record, its rates rounded to counts far below its noise.
+pub fn curve(coefficients: Coefficients, samples: usize, seed: u64) -> Curve<OCTAVES> {
+    record(
+        &mut Simulator::new(coefficients, RATE_HZ, seed),
+        coefficients,
+        samples,
+    )
+}
+
+/// The curve of the next `samples` of a simulator.
+pub fn record(
+    simulator: &mut Simulator,
+    coefficients: Coefficients,
+    samples: usize,
+) -> Curve<OCTAVES> {
+    let quantum = quantum(coefficients);
+    let mut accumulator = Accumulator::<OCTAVES>::new();
+    let mut counts = [0; 1024];
+    let mut left = samples;
+    while left > 0 {
+        let chunk = &mut counts[..left.min(1024)];
+        for (count, rate) in chunk.iter_mut().zip(&mut *simulator) {
+            // Saturates; a record of so wide a range would show it at once.
+            *count = (rate / quantum).round() as i32;
+        }
+        accumulator.push_slice(chunk);
+        left -= chunk.len();
+    }
+    let scale = Scale::new(quantum, RATE_HZ).expect("positive");
+    accumulator.curve(scale)
+}
+
+/// A 4096th of the standard deviation of neighbouring samples' differences.
+fn quantum(c: Coefficients) -> f64 {
+    let interval_s = 1.0 / RATE_HZ;
+    let white = c.angle_random_walk.powi(2) / interval_s;
+    let variance = white
+        + 3.0 * (c.quantization / interval_s).powi(2)
+        + c.bias_instability.powi(2)
+        + c.rate_random_walk.powi(2) * interval_s
+        + (c.rate_ramp * interval_s).powi(2);
+    variance.sqrt() / 4096.0
+}
+
+/// The value below which a share of the sorted numbers lies.
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let at = share * (sorted.len() - 1) as f64;
+    let (low, rest) = (at.floor() as usize, at.fract());
+    let high = (low + 1).min(sorted.len() - 1);
+    sorted[low] * (1.0 - rest) + sorted[high] * rest
+}

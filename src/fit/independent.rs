@@ -1,0 +1,68 @@
+//! Fits that take octaves for independent: the paper's, and the start of ours.
+
+use super::{Fit, Method, Problem, relative_accuracy, squared};
+use crate::{
+    chi_squared::chi_squared_tail,
+    coefficient::Coefficient,
+    curve::Point,
+    error::Error,
+    nnls::{Matrix, NormalEquations, Vector},
+};
+
+/// The normal equations of weighted, independent octaves.
+pub(super) fn equations<const K: usize>(
+    problem: &Problem<'_, K>,
+    weight: impl Fn(&Point) -> f64,
+) -> Result<NormalEquations, Error> {
+    let (mut matrix, mut right) = (Matrix::zeros(), Vector::zeros());
+    for (k, point) in problem.points.iter().enumerate() {
+        let row = problem.columns.row(k).transpose();
+        let w = weight(point);
+        matrix += row * row.transpose() * w;
+        right += row * (w * point.variance);
+    }
+    NormalEquations::new(&matrix, &right, problem.count())
+}
+
+/// The inverse square of an octave's standard error, `δσ̂²`.
+pub(super) fn by_relative_accuracy(point: &Point) -> f64 {
+    1.0 / squared(relative_accuracy(point) * point.variance)
+}
+
+/// An unconstrained fit.
+pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> Result<Fit, Error> {
+    let weight = |point: &Point| match method {
+        Method::Ordinary => 1.0,
+        Method::ClusterCount => 1.0 / squared(relative_accuracy(point)),
+        _ => by_relative_accuracy(point),
+    };
+    let equations = equations(problem, weight)?;
+    let squares = equations.solve()?;
+    let free = core::array::from_fn(|i| i < problem.count());
+    let mut covariance = equations.covariance(&free).ok_or(Error::Singular)?;
+    let residuals =
+        problem.points.iter().enumerate().map(|(k, point)| {
+            weight(point) * squared(point.variance - problem.variance(k, &squares))
+        });
+    let mut chi_squared: f64 = residuals.sum();
+    let degrees_of_freedom = problem.points.len() - problem.count();
+    if method != Method::RelativeAccuracy {
+        // No error model: the residuals themselves give the scale.
+        covariance *= chi_squared / degrees_of_freedom.max(1) as f64;
+        chi_squared = f64::NAN;
+    }
+    let effects = problem.model.effects().iter().enumerate();
+    let coefficients = effects
+        .map(|(i, effect)| Coefficient::new(*effect, squares[i], Some(covariance[(i, i)])))
+        .collect();
+    Ok(Fit {
+        method,
+        coefficients,
+        chi_squared,
+        degrees_of_freedom,
+        p_value: chi_squared_tail(chi_squared, degrees_of_freedom),
+        minus_two_log_likelihood: f64::NAN,
+        tolerance: 0.0,
+        shrinkage: 0.0,
+    })
+}

@@ -16,10 +16,11 @@
 
 use crate::{
     curve::{Curve, Point},
-    effect::Setting,
     lattice::{self, SecondDifferences},
-    model::Model,
+    math,
+    model::{MAX_EFFECTS, Model},
 };
+use heapless::Vec;
 use nalgebra::SMatrix;
 
 /// Lags kept one by one on either side of a kink, in quarters of the shorter cluster.
@@ -36,10 +37,7 @@ pub fn curve_covariance<const K: usize>(
     model: &Model,
     squares: &[f64],
 ) -> SMatrix<f64, K, K> {
-    let setting = Setting {
-        interval_s: curve.interval_s(),
-    };
-    covariance(curve.points(), model, squares, &setting)
+    covariance(curve.points(), model, squares, curve.interval_s())
 }
 
 /// The covariance of a curve's variances, in rate units to the fourth, where the effects have the
@@ -48,17 +46,23 @@ pub(crate) fn covariance<const K: usize>(
     points: &[Point],
     model: &Model,
     squares: &[f64],
-    setting: &Setting,
+    interval_s: f64,
 ) -> SMatrix<f64, K, K> {
     let mut matrix = SMatrix::zeros();
     let longest = points.last().map_or(1, |point| point.m);
+    let present = || {
+        let terms = model.terms().iter().zip(squares);
+        terms.filter(|&(_, &square)| square > 0.0)
+    };
     for (j, shorter) in points.iter().enumerate().take(K) {
         let reach = (u64::from(longest / shorter.m) * 32).min(u64::from(lattice::END)) as u32;
-        let mut differences = SecondDifferences::zero(shorter.m, reach);
         let m_j = f64::from(shorter.m);
-        for (effect, &square) in model.effects().iter().zip(squares) {
-            if square > 0.0 && !effect.is_deterministic() {
-                effect.add_second_differences(m_j, square, setting, &mut differences);
+        let mut random = SecondDifferences::zero(shorter.m, reach);
+        for (term, &square) in present() {
+            let setting = term.setting(interval_s);
+            if term.effect.response(m_j, &setting).is_none() {
+                term.effect
+                    .add_second_differences(m_j, square, &setting, &mut random);
             }
         }
         for (k, longer) in points.iter().enumerate().take(K).skip(j) {
@@ -67,22 +71,40 @@ pub(crate) fn covariance<const K: usize>(
             if pair.middle() >= lattice::END / 4 {
                 break;
             }
-            let deterministic = |lag: u32| {
-                let offset = 0.25 * m_j * f64::from(lag);
-                let effects = model.effects().iter().zip(squares);
-                effects
-                    .filter(|(effect, square)| effect.is_deterministic() && **square > 0.0)
-                    .map(|(effect, square)| {
-                        square * effect.cross_difference(m_j, f64::from(longer.m), offset, setting)
-                    })
-                    .sum()
-            };
-            let value = pair.covariance(&differences, deterministic);
+            let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
+            for (term, &square) in present() {
+                let setting = term.setting(interval_s);
+                let response = |m: u32| term.effect.response(f64::from(m), &setting);
+                if let (Some(short), Some(long)) = (response(shorter.m), response(longer.m)) {
+                    // As many as effects: there is always room.
+                    let _ = waves.push(Wave {
+                        product: square * short.amplitude * long.amplitude,
+                        phase: 0.25 * m_j * short.phase,
+                    });
+                }
+            }
+            let value = pair.covariance(&random, &waves);
             matrix[(j, k)] = value;
             matrix[(k, j)] = value;
         }
     }
     matrix
+}
+
+/// What a deterministic effect puts into the product of two differences: `product · cos(phase · ℓ)`
+/// at a lag of `ℓ` quarters of the shorter cluster.
+struct Wave {
+    product: f64,
+    phase: f64,
+}
+
+impl Wave {
+    fn at(&self, lag: u32) -> f64 {
+        if self.phase == 0.0 {
+            return self.product;
+        }
+        self.product * math::cos(self.phase * f64::from(lag))
+    }
 }
 
 /// Two octaves of a curve.
@@ -97,11 +119,7 @@ impl Pair<'_> {
         (self.longer.m / self.shorter.m).saturating_mul(4)
     }
 
-    fn covariance(
-        &self,
-        differences: &SecondDifferences,
-        deterministic: impl Fn(u32) -> f64,
-    ) -> f64 {
+    fn covariance(&self, differences: &SecondDifferences, waves: &[Wave]) -> f64 {
         let middle = self.middle();
         let stride = lattice::stride(self.shorter.m);
         let (mut sum, mut quiet) = (0.0, 0);
@@ -113,7 +131,8 @@ impl Pair<'_> {
                 + differences.at(lag + middle);
             // Half the steps to either side, in strides; both signs of the lag are in `pairs`.
             let weight = 0.5 * f64::from(step_before + step) * pairs;
-            let term = weight * random * (random + 2.0 * deterministic(lag));
+            let deterministic: f64 = waves.iter().map(|wave| wave.at(lag)).sum();
+            let term = weight * random * (random + 2.0 * deterministic);
             sum += term;
             quiet = if term.abs() <= NEGLIGIBLE * sum.abs() {
                 quiet + 1

@@ -23,6 +23,6 @@ pub use covariance::curve_covariance;
 pub use curve::{Curve, Point, Scale};
 pub use error::Error;
 pub use fit::{Fit, Method, Settings, fit};
-pub use model::{MAX_EFFECTS, Model};
+pub use model::{MAX_EFFECTS, Model, Term};
 pub use octave::{Accumulator, OctaveSum};
 pub use square_sum::SquareSum;

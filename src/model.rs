@@ -1,7 +1,7 @@
 //! A model: the effects that make up a curve.
 
 use crate::{
-    effect::{Effect, IEEE_952, Setting},
+    effect::{Effect, IEEE_952, MAX_PARAMETERS, Setting},
     error::Error,
 };
 use heapless::Vec;
@@ -9,51 +9,92 @@ use heapless::Vec;
 /// Effects that one model has room for.
 pub const MAX_EFFECTS: usize = 8;
 
+/// One effect of a model, with its shape.
+#[derive(Clone, Copy)]
+pub struct Term {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Its shape parameters, in the order in which it names them.
+    pub parameters: [f64; MAX_PARAMETERS],
+}
+
+impl Term {
+    /// An effect without shape parameters.
+    pub fn new(effect: &'static dyn Effect) -> Self {
+        Self {
+            effect,
+            parameters: [0.0; MAX_PARAMETERS],
+        }
+    }
+
+    /// Where it is evaluated for samples `interval_s` apart.
+    pub fn setting(&self, interval_s: f64) -> Setting {
+        Setting {
+            interval_s,
+            parameters: self.parameters,
+        }
+    }
+}
+
+impl core::fmt::Debug for Term {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{}{:?}", self.effect.name(), self.parameters)
+    }
+}
+
 /// A list of effects, each with a coefficient that a fit determines.
-#[derive(Clone)]
+#[derive(Clone, Debug, Default)]
 pub struct Model {
-    effects: Vec<&'static dyn Effect, MAX_EFFECTS>,
+    terms: Vec<Term, MAX_EFFECTS>,
 }
 
 impl Model {
     /// Quantization, angle random walk, bias instability, rate random walk and rate ramp.
     pub fn ieee_952() -> Self {
-        let mut effects = Vec::new();
-        // Five fit into eight.
-        let _ = effects.extend_from_slice(&IEEE_952);
-        Self { effects }
+        Self {
+            // Five fit into eight.
+            terms: IEEE_952.into_iter().map(Term::new).collect(),
+        }
     }
 
-    /// A model of these effects.
+    /// A model of these effects, without shape parameters.
     ///
     /// # Errors
     /// [`Error::TooManyEffects`] above [`MAX_EFFECTS`].
     pub fn new(effects: &[&'static dyn Effect]) -> Result<Self, Error> {
-        let too_many = Error::TooManyEffects {
+        let mut model = Self::default();
+        for effect in effects {
+            model.add(Term::new(*effect))?;
+        }
+        Ok(model)
+    }
+
+    /// Adds an effect.
+    ///
+    /// # Errors
+    /// [`Error::TooManyEffects`] above [`MAX_EFFECTS`].
+    pub fn add(&mut self, term: Term) -> Result<(), Error> {
+        self.terms.push(term).map_err(|_| Error::TooManyEffects {
             capacity: MAX_EFFECTS,
-        };
-        let effects = Vec::from_slice(effects).map_err(|_| too_many)?;
-        Ok(Self { effects })
+        })
     }
 
     /// The effects, in the order in which they were added.
-    pub fn effects(&self) -> &[&'static dyn Effect] {
-        &self.effects
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
     }
 
     /// Allan variance at an averaging factor, in rate units squared, for squared coefficients in
     /// the order of the effects.
-    pub fn variance(&self, squares: &[f64], m: u32, setting: &Setting) -> f64 {
-        let shares = self.effects.iter().zip(squares);
+    pub fn variance(&self, squares: &[f64], m: u32, interval_s: f64) -> f64 {
+        let shares = self.terms.iter().zip(squares);
         shares
-            .map(|(effect, square)| square * effect.variance(f64::from(m), setting))
+            .map(|(term, square)| {
+                square
+                    * term
+                        .effect
+                        .variance(f64::from(m), &term.setting(interval_s))
+            })
             .sum()
-    }
-}
-
-impl core::fmt::Debug for Model {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let names = self.effects.iter().map(|effect| effect.name());
-        f.debug_list().entries(names).finish()
     }
 }

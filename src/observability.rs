@@ -1,7 +1,6 @@
 //! How long a record must be for an effect to show.
 
 use crate::{
-    effect::Setting,
     model::Model,
     nnls::{Free, Matrix, NormalEquations, Vector},
 };
@@ -21,7 +20,7 @@ pub(crate) fn record_length_s(
     squares: &Vector,
     free: &Free,
     model: &Model,
-    setting: &Setting,
+    interval_s: f64,
     samples: f64,
 ) -> Option<f64> {
     let mut assumed = *squares;
@@ -30,9 +29,9 @@ pub(crate) fn record_length_s(
     with[i] = true;
     let mut samples = 2.0 * samples;
     while samples <= LONGEST {
-        let variance = equations(&assumed, model, setting, samples)?.covariance(&with);
+        let variance = equations(&assumed, model, interval_s, samples)?.covariance(&with);
         if variance.is_some_and(|matrix| square * square > 1.96 * 1.96 * matrix[(i, i)]) {
-            return Some(samples * setting.interval_s);
+            return Some(samples * interval_s);
         }
         samples *= 2.0;
     }
@@ -42,15 +41,15 @@ pub(crate) fn record_length_s(
 fn equations(
     squares: &Vector,
     model: &Model,
-    setting: &Setting,
+    interval_s: f64,
     samples: f64,
 ) -> Option<NormalEquations> {
     let mut matrix = Matrix::zeros();
     let mut m = 1.0;
     while samples / m >= 4.0 {
         let mut row = Vector::zeros();
-        for (share, effect) in row.iter_mut().zip(model.effects()) {
-            *share = effect.variance(m, setting);
+        for (share, term) in row.iter_mut().zip(model.terms()) {
+            *share = term.effect.variance(m, &term.setting(interval_s));
         }
         let variance = row.dot(squares);
         // Relative variance of a variance from so many clusters: 2/(N/m − 1).
@@ -58,5 +57,5 @@ fn equations(
         matrix += row * row.transpose() * weight;
         m *= 2.0;
     }
-    NormalEquations::new(&matrix, &Vector::zeros(), model.effects().len()).ok()
+    NormalEquations::new(&matrix, &Vector::zeros(), model.terms().len()).ok()
 }

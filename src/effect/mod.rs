@@ -19,11 +19,38 @@ pub use rate_random_walk::RateRandomWalk;
 
 pub use crate::lattice::SecondDifferences;
 
-/// Where an effect is evaluated.
+/// Shape parameters that an effect can have: a frequency and a quality are the most.
+pub const MAX_PARAMETERS: usize = 2;
+
+/// Where an effect is evaluated: the sampling, and the effect's own shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// Sample interval τ₀, in seconds.
     pub interval_s: f64,
+    /// The effect's shape parameters, in the order in which it names them; those that it does not
+    /// have are ignored.
+    pub parameters: [f64; MAX_PARAMETERS],
+}
+
+impl Setting {
+    /// For an effect without shape parameters.
+    pub const fn new(interval_s: f64) -> Self {
+        Self {
+            interval_s,
+            parameters: [0.0; MAX_PARAMETERS],
+        }
+    }
+}
+
+/// What a deterministic effect does to the differences of adjacent cluster means: for middles
+/// `y` samples apart, the mean product of two of them is
+/// `amplitude(m_j) · amplitude(m_k) · cos(phase · y)`, divided by τ_j τ_k.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// Root-mean-square of a difference, times τ.
+    pub amplitude: f64,
+    /// Phase from one sample to the next, in radians.
+    pub phase: f64,
 }
 
 /// A physical effect that shows in an Allan curve.
@@ -85,10 +112,11 @@ pub trait Effect: Sync {
         sum.add(m, |x| weight * self.second_difference(x, m, setting));
     }
 
-    /// Whether the effect is the same in every record, and not random: it then shifts the curve,
-    /// but scatters it only where random effects beat against it.
-    fn is_deterministic(&self) -> bool {
-        false
+    /// For an effect that is the same in every record, and not random: its response to clusters of
+    /// `m` samples. It shifts the curve, but scatters it only where random effects beat against it.
+    fn response(&self, m: f64, setting: &Setting) -> Option<Response> {
+        let _ = (m, setting);
+        None
     }
 }
 

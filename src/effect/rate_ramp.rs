@@ -1,4 +1,4 @@
-use super::{Effect, Setting};
+use super::{Effect, Response, Setting};
 
 /// Rate ramp, coefficient R in rate / s: the rate drifts steadily, the same in every difference.
 ///
@@ -31,13 +31,12 @@ impl Effect for RateRamp {
         t2 * t2 * m2 * (0.5 * x * x + m2 / 12.0)
     }
 
-    fn cross_difference(&self, m_j: f64, m_k: f64, _: f64, setting: &Setting) -> f64 {
-        // Every difference is Rτ: the product does not depend on where they lie.
-        let t2 = setting.interval_s * setting.interval_s;
-        t2 * t2 * m_j * m_j * m_k * m_k
-    }
-
-    fn is_deterministic(&self) -> bool {
-        true
+    fn response(&self, m: f64, setting: &Setting) -> Option<Response> {
+        // Every difference is Rτ, wherever it lies.
+        let tau_s = m * setting.interval_s;
+        Some(Response {
+            amplitude: tau_s * tau_s,
+            phase: 0.0,
+        })
     }
 }

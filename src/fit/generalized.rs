@@ -99,7 +99,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
             .equations
             .covariance(&with)
             .map(|matrix| matrix[(i, i)]);
-        let effect = self.problem.model.effects()[i];
+        let effect = self.problem.model.terms()[i].effect;
         let coefficient = Coefficient::new(effect, self.squares[i], variance);
         if coefficient.state != State::UpperBound {
             return coefficient;
@@ -116,7 +116,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
                 &self.squares,
                 &self.free,
                 problem.model,
-                &problem.setting,
+                problem.interval_s,
                 last.map_or(0.0, |point| clusters(point) * f64::from(point.m)),
             );
             State::NotObservable { after_s }
@@ -207,8 +207,12 @@ impl<const K: usize> Weights<K> {
         {
             return Err(Error::Singular);
         }
-        let mut matrix =
-            covariance::<K>(points, problem.model, squares.as_slice(), &problem.setting);
+        let mut matrix = covariance::<K>(
+            points,
+            problem.model,
+            squares.as_slice(),
+            problem.interval_s,
+        );
         for k in 0..K {
             for j in 0..K {
                 matrix[(j, k)] /= model[j] * model[k];

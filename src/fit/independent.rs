@@ -51,9 +51,9 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         covariance *= chi_squared / degrees_of_freedom.max(1) as f64;
         chi_squared = f64::NAN;
     }
-    let effects = problem.model.effects().iter().enumerate();
-    let coefficients = effects
-        .map(|(i, effect)| Coefficient::new(*effect, squares[i], Some(covariance[(i, i)])))
+    let terms = problem.model.terms().iter().enumerate();
+    let coefficients = terms
+        .map(|(i, term)| Coefficient::new(term.effect, squares[i], Some(covariance[(i, i)])))
         .collect();
     Ok(Fit {
         method,

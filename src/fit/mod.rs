@@ -6,7 +6,6 @@ mod independent;
 use crate::{
     coefficient::Coefficient,
     curve::{Curve, Point},
-    effect::Setting,
     error::Error,
     math,
     model::{MAX_EFFECTS, Model},
@@ -117,7 +116,7 @@ pub fn fit<const K: usize>(
     let points = curve.points();
     let needed = match settings.method {
         Method::Covariance => 2,
-        _ => model.effects().len(),
+        _ => model.terms().len(),
     };
     if points.len() < needed {
         return Err(Error::TooFewOctaves {
@@ -128,14 +127,11 @@ pub fn fit<const K: usize>(
     if let Some(point) = points.iter().find(|point| point.variance == 0.0) {
         return Err(Error::NoNoise { m: point.m });
     }
-    let setting = Setting {
-        interval_s: curve.interval_s(),
-    };
     let problem = Problem {
         points,
         model,
-        setting,
-        columns: columns::<K>(points, model, &setting),
+        interval_s: curve.interval_s(),
+        columns: columns::<K>(points, model, curve.interval_s()),
     };
     match settings.method {
         Method::Covariance => generalized::fit(&problem, settings.tolerance),
@@ -146,11 +142,12 @@ pub fn fit<const K: usize>(
 /// Allan variances of unit coefficients: a row an octave, a column an effect.
 type Columns<const K: usize> = SMatrix<f64, K, MAX_EFFECTS>;
 
-fn columns<const K: usize>(points: &[Point], model: &Model, setting: &Setting) -> Columns<K> {
+fn columns<const K: usize>(points: &[Point], model: &Model, interval_s: f64) -> Columns<K> {
     let mut columns = Columns::zeros();
-    for (i, effect) in model.effects().iter().enumerate() {
+    for (i, term) in model.terms().iter().enumerate() {
+        let setting = term.setting(interval_s);
         for (k, point) in points.iter().enumerate() {
-            columns[(k, i)] = effect.variance(f64::from(point.m), setting);
+            columns[(k, i)] = term.effect.variance(f64::from(point.m), &setting);
         }
     }
     columns
@@ -160,14 +157,14 @@ fn columns<const K: usize>(points: &[Point], model: &Model, setting: &Setting) -
 struct Problem<'a, const K: usize> {
     points: &'a [Point],
     model: &'a Model,
-    setting: Setting,
+    interval_s: f64,
     columns: Columns<K>,
 }
 
 impl<const K: usize> Problem<'_, K> {
     /// Number of coefficients.
     fn count(&self) -> usize {
-        self.model.effects().len()
+        self.model.terms().len()
     }
 
     /// The model's variance in octave `k`.

@@ -33,9 +33,6 @@ pub fn scatter(coefficients: Coefficients, samples: usize, records: u64) -> Vec<
     let squares = squares(coefficients);
     let covariance = curve_covariance::<OCTAVES>(&template, &model, &squares);
     let points = template.points();
-    let setting = allanite::effect::Setting {
-        interval_s: template.interval_s(),
-    };
     let n = records as f64;
     let mean = |k: usize| curves.iter().map(|c| c[k]).sum::<f64>() / n;
     let means: Vec<f64> = (0..points.len()).map(mean).collect();
@@ -56,7 +53,7 @@ pub fn scatter(coefficients: Coefficients, samples: usize, records: u64) -> Vec<
             });
             Octave {
                 m: points[k].m,
-                mean: means[k] / model.variance(&squares, points[k].m, &setting),
+                mean: means[k] / model.variance(&squares, points[k].m, template.interval_s()),
                 variance: simulated(k, k) / covariance[(k, k)],
                 correlations,
             }

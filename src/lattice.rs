@@ -1,5 +1,7 @@
 //! Second differences of a kernel at every lag that two octaves of a curve can meet.
 
+use nalgebra::Complex;
+
 /// Positions up to this one, in quarters of a cluster, are kept one by one.
 const FINE: u32 = 16;
 const FINE_SLOTS: usize = FINE as usize + 1;
@@ -23,6 +25,25 @@ pub(crate) const fn position(slot: usize) -> u32 {
     let octave = beyond / STEPS;
     let step = beyond % STEPS;
     (FINE + FINE / STEPS * step) << octave
+}
+
+/// Powers of `w` at every position, by multiplication.
+pub(crate) fn powers(w: Complex<f64>) -> [Complex<f64>; LEN] {
+    let mut powers = [Complex::new(1.0, 0.0); LEN];
+    for slot in 1..FINE_SLOTS {
+        powers[slot] = powers[slot - 1] * w;
+    }
+    for slot in FINE_SLOTS..LEN {
+        let steps = STEPS as usize;
+        powers[slot] = if slot < FINE_SLOTS + steps {
+            // 20, 24, 28, 32 are 16 + 4, 16 + 8, 16 + 12, 16 + 16.
+            powers[FINE as usize] * powers[steps * (slot - FINE as usize)]
+        } else {
+            // Twice the position an octave below.
+            powers[slot - steps] * powers[slot - steps]
+        };
+    }
+    powers
 }
 
 /// Second differences `G(x + m) − 2 G(x) + G(|x − m|)` for one averaging factor `m`, kept at
@@ -54,6 +75,13 @@ impl SecondDifferences {
             if position.is_multiple_of(self.stride) {
                 *value += f(0.25 * m * f64::from(position));
             }
+        }
+    }
+
+    /// Adds `f(slot)` in every slot.
+    pub(crate) fn add_slots(&mut self, f: impl Fn(usize) -> f64) {
+        for (slot, value) in self.values.iter_mut().enumerate().take(self.used) {
+            *value += f(slot);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Every transcendental function of the library, by name: a method such as `x.sqrt()` becomes
 //! std's once anything in a build links std, and host and target would compute different numbers.
 
-pub(crate) use libm::{cos, erfc, exp, log, sqrt};
+pub(crate) use libm::{ceil, cos, erfc, exp, expm1, floor, log, sin, sincos, sqrt};
 
 /// The natural logarithm of an integer above 0, for tables computed by the compiler.
 pub(crate) const fn log_of_integer(i: u32) -> f64 {

@@ -1,4 +1,4 @@
-use super::{Effect, Setting};
+use super::{Effect, Setting, Story};
 
 /// Angle random walk, coefficient N in rate · √s: white rate noise of two-sided density N².
 ///
@@ -17,6 +17,14 @@ impl Effect for AngleRandomWalk {
 
     fn half_seconds(&self) -> i8 {
         1
+    }
+
+    fn story(&self) -> Story {
+        Story {
+            what: "angle random walk: white noise of the rate",
+            origin: "thermo-mechanical noise of the proof mass, photon shot noise, the front end's amplifier",
+            check: "compare with the datasheet's noise density; does the sensor's power mode change it?",
+        }
     }
 
     fn kernel(&self, lag: f64, setting: &Setting) -> f64 {

@@ -1,4 +1,4 @@
-use super::{Effect, Setting};
+use super::{Effect, Setting, Story};
 use crate::lattice::{self, SecondDifferences};
 use crate::math;
 use core::f64::consts::PI;
@@ -26,6 +26,14 @@ impl Effect for BiasInstability {
 
     fn half_seconds(&self) -> i8 {
         0
+    }
+
+    fn story(&self) -> Story {
+        Story {
+            what: "bias instability: flicker noise of the rate",
+            origin: "1/f noise of the electronics, discharge in a laser gyro, surface charge in MEMS",
+            check: "compare with the datasheet; does chopping or another bias current change it?",
+        }
     }
 
     fn kernel(&self, lag: f64, setting: &Setting) -> f64 {

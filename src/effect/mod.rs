@@ -1,4 +1,4 @@
-//! What an effect is, and the five of IEEE Std 952.
+//! What an effect is, and the catalogue of those that a gyro can have.
 //!
 //! Every physical effect is one even function, the generalised covariance `G(n)` of the angle at a
 //! lag of `n` samples: `−G″` is the autocovariance of the rate. Allan variances and the covariance
@@ -7,15 +7,28 @@
 
 mod angle_random_walk;
 mod bias_instability;
+mod decimation_filter;
+mod gauss_markov;
+mod low_pass;
+mod pole;
 mod quantization;
+mod random_telegraph;
 mod rate_ramp;
 mod rate_random_walk;
+mod resonance;
+mod sinusoid;
 
 pub use angle_random_walk::AngleRandomWalk;
 pub use bias_instability::BiasInstability;
+pub use decimation_filter::DecimationFilter;
+pub use gauss_markov::GaussMarkov;
+pub use low_pass::LowPass;
 pub use quantization::Quantization;
+pub use random_telegraph::RandomTelegraph;
 pub use rate_ramp::RateRamp;
 pub use rate_random_walk::RateRandomWalk;
+pub use resonance::Resonance;
+pub use sinusoid::Sinusoid;
 
 pub use crate::lattice::SecondDifferences;
 
@@ -53,6 +66,48 @@ pub struct Response {
     pub phase: f64,
 }
 
+/// A shape parameter of an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Parameter {
+    /// Its name in files and on the command line, with its unit: `frequency_hz`.
+    pub name: &'static str,
+    /// Its unit, empty for a number.
+    pub unit: &'static str,
+}
+
+/// Where a search for a shape parameter looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// The lowest value, above zero.
+    pub low: f64,
+    /// The highest value.
+    pub high: f64,
+    /// Values tried for each factor of two.
+    pub steps_per_octave: f64,
+}
+
+/// What a curve spans.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Sample interval τ₀, in seconds.
+    pub interval_s: f64,
+    /// Averaging time of the longest octave, in seconds.
+    pub longest_tau_s: f64,
+}
+
+/// What to tell somebody whose gyro has an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Story {
+    /// What it is physically.
+    pub what: &'static str,
+    /// Where it usually comes from in a gyro.
+    pub origin: &'static str,
+    /// What to check on the bench.
+    pub check: &'static str,
+}
+
 /// A physical effect that shows in an Allan curve.
 ///
 /// The coefficient enters squared, as `β`: every function here is for a coefficient of one.
@@ -62,6 +117,45 @@ pub trait Effect: Sync {
 
     /// The coefficient's customary symbol, such as `N`.
     fn symbol(&self) -> &'static str;
+
+    /// What the coefficient is: `amplitude`, `rms`, or the effect's own name where that says it.
+    fn coefficient(&self) -> &'static str {
+        self.name()
+    }
+
+    /// What it is, where it comes from, what to check.
+    fn story(&self) -> Story;
+
+    /// The shape parameters, up to [`MAX_PARAMETERS`].
+    fn parameters(&self) -> &'static [Parameter] {
+        &[]
+    }
+
+    /// Where a search looks for a shape parameter on a curve of that span.
+    fn range(&self, parameter: usize, span: &Span) -> Range {
+        let _ = parameter;
+        Range {
+            low: span.interval_s,
+            high: span.longest_tau_s,
+            steps_per_octave: 2.0,
+        }
+    }
+
+    /// Whether a shape parameter takes whole numbers only.
+    fn is_whole(&self, parameter: usize) -> bool {
+        let _ = parameter;
+        false
+    }
+
+    /// The effect that this one takes the place of in a model.
+    fn replaces(&self) -> Option<&'static dyn Effect> {
+        None
+    }
+
+    /// An effect with the same Allan variance: only evidence beyond the curve tells the two apart.
+    fn twin(&self) -> Option<&'static dyn Effect> {
+        None
+    }
 
     /// Half the power of seconds in the coefficient's unit, which is rate unit · s^(half/2):
     /// 1 for the angle random walk, rate · √s.
@@ -100,6 +194,18 @@ pub trait Effect: Sync {
         (at_m - self.second_difference(0.0, m, setting)) / (tau_s * tau_s)
     }
 
+    /// Allan variances at ascending averaging factors: sooner, where one gives the next.
+    fn variances(
+        &self,
+        factors: &mut dyn Iterator<Item = f64>,
+        setting: &Setting,
+        each: &mut dyn FnMut(f64),
+    ) {
+        for m in factors {
+            each(self.variance(m, setting));
+        }
+    }
+
     /// Adds `weight` times the second differences for clusters of `m` samples, at every position
     /// of the lattice.
     fn add_second_differences(
@@ -127,4 +233,20 @@ pub const IEEE_952: [&dyn Effect; 5] = [
     &BiasInstability,
     &RateRandomWalk,
     &RateRamp,
+];
+
+/// Every effect that a diagnosis tries. An effect of one's own takes a file beside the others and a
+/// line here, or none in this crate: a diagnosis takes any list.
+pub const CATALOGUE: [&dyn Effect; 11] = [
+    &Quantization,
+    &AngleRandomWalk,
+    &BiasInstability,
+    &RateRandomWalk,
+    &RateRamp,
+    &GaussMarkov,
+    &Sinusoid,
+    &Resonance,
+    &LowPass,
+    &DecimationFilter,
+    &RandomTelegraph,
 ];

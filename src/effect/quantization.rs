@@ -1,4 +1,4 @@
-use super::{Effect, Setting};
+use super::{Effect, Setting, Story};
 use crate::lattice::SecondDifferences;
 
 /// Quantization noise, coefficient Q in rate · s (an angle): the angle is rounded, or jitters, by an
@@ -19,6 +19,14 @@ impl Effect for Quantization {
 
     fn half_seconds(&self) -> i8 {
         2
+    }
+
+    fn story(&self) -> Story {
+        Story {
+            what: "quantization noise: the angle is rounded, or its sampling instant jitters",
+            origin: "the resolution of an angle-integrating output, jitter of the sample clock, readout of a laser gyro's fringe count",
+            check: "does it change with the output's resolution or the clock? a rate-output gyro has little of it",
+        }
     }
 
     fn kernel(&self, lag: f64, _: &Setting) -> f64 {

@@ -1,4 +1,4 @@
-use super::{Effect, Response, Setting};
+use super::{Effect, Response, Setting, Story};
 
 /// Rate ramp, coefficient R in rate / s: the rate drifts steadily, the same in every difference.
 ///
@@ -17,6 +17,14 @@ impl Effect for RateRamp {
 
     fn half_seconds(&self) -> i8 {
         -2
+    }
+
+    fn story(&self) -> Story {
+        Story {
+            what: "rate ramp: the rate drifts steadily",
+            origin: "warming up after power-on, a steady temperature gradient, a slow turn of the mount",
+            check: "let the sensor warm up before recording; log temperature beside the rate",
+        }
     }
 
     fn kernel(&self, lag: f64, setting: &Setting) -> f64 {

@@ -1,4 +1,4 @@
-use super::{Effect, Setting};
+use super::{Effect, Setting, Story};
 
 /// Rate random walk, coefficient K in rate / √s: the rate is a walk, stepped once a sample.
 ///
@@ -18,6 +18,14 @@ impl Effect for RateRandomWalk {
 
     fn half_seconds(&self) -> i8 {
         -1
+    }
+
+    fn story(&self) -> Story {
+        Story {
+            what: "rate random walk: the rate itself wanders",
+            origin: "ageing, slow temperature drift, creep of the package's stress",
+            check: "log temperature beside the rate and record for longer",
+        }
     }
 
     fn kernel(&self, lag: f64, setting: &Setting) -> f64 {

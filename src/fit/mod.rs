@@ -145,10 +145,14 @@ type Columns<const K: usize> = SMatrix<f64, K, MAX_EFFECTS>;
 fn columns<const K: usize>(points: &[Point], model: &Model, interval_s: f64) -> Columns<K> {
     let mut columns = Columns::zeros();
     for (i, term) in model.terms().iter().enumerate() {
+        let mut k = 0;
+        let mut factors = points.iter().map(|point| f64::from(point.m));
         let setting = term.setting(interval_s);
-        for (k, point) in points.iter().enumerate() {
-            columns[(k, i)] = term.effect.variance(f64::from(point.m), &setting);
-        }
+        term.effect
+            .variances(&mut factors, &setting, &mut |variance| {
+                columns[(k, i)] = variance;
+                k += 1;
+            });
     }
     columns
 }

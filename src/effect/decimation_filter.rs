@@ -1,0 +1,150 @@
+use super::{AngleRandomWalk, Effect, Parameter, Range, Setting, Span, Story};
+use crate::math;
+
+/// Angle random walk behind a decimation filter of `stages` boxcars, each `width` long, coefficient
+/// N in rate · √s: takes the place of [`AngleRandomWalk`]. One stage is a moving average, two are a
+/// Bartlett (triangular) window.
+///
+/// The rate's autocovariance is the B-spline of order `2 · stages`, sampled:
+/// `r_i ∝ B(iτ₀/width)` with `τ₀ Σ r_i = N²`, and `G(n) = −½ τ₀² [n r₀ + 2 Σ_{i<n} (n−i) r_i]`.
+#[derive(Clone, Copy, Debug)]
+pub struct DecimationFilter;
+
+/// Widths up to so many samples: the sums over the autocovariance stay short.
+const WIDEST: f64 = 64.0;
+
+/// The autocovariance at a lag of `x` widths, up to a factor, and the lag from which it is zero.
+fn spline(x: f64, stages: f64) -> f64 {
+    if stages < 1.5 {
+        return (1.0 - x).max(0.0);
+    }
+    if x < 1.0 {
+        2.0 / 3.0 - x * x + 0.5 * x * x * x
+    } else if x < 2.0 {
+        let rest = 2.0 - x;
+        rest * rest * rest / 6.0
+    } else {
+        0.0
+    }
+}
+
+/// The sampled autocovariance, normalised.
+struct Filter {
+    per_sample: f64,
+    stages: f64,
+    /// Lags from which on it is zero.
+    support: f64,
+    /// 1/Σ r_i.
+    scale: f64,
+}
+
+impl Filter {
+    fn new(setting: &Setting) -> Self {
+        let [width_s, stages] = setting.parameters;
+        let width = (width_s / setting.interval_s).clamp(1e-3, WIDEST);
+        let mut filter = Self {
+            per_sample: 1.0 / width,
+            stages,
+            support: math::ceil(width * if stages < 1.5 { 1.0 } else { 2.0 }),
+            scale: 1.0,
+        };
+        let mut sum = filter.at(0.0);
+        let mut i = 1.0;
+        while i < filter.support {
+            sum += 2.0 * filter.at(i);
+            i += 1.0;
+        }
+        filter.scale = 1.0 / sum;
+        filter
+    }
+
+    fn at(&self, i: f64) -> f64 {
+        self.scale * spline(i * self.per_sample, self.stages)
+    }
+
+    /// `n r₀ + 2 Σ_{i<n} (n−i) r_i`.
+    fn sum(&self, n: f64) -> f64 {
+        let mut sum = n * self.at(0.0);
+        let mut i = 1.0;
+        while i < n.min(self.support) {
+            sum += 2.0 * (n - i) * self.at(i);
+            i += 1.0;
+        }
+        sum
+    }
+}
+
+impl Effect for DecimationFilter {
+    fn name(&self) -> &'static str {
+        "decimation_filter"
+    }
+
+    fn symbol(&self) -> &'static str {
+        "N"
+    }
+
+    fn coefficient(&self) -> &'static str {
+        "angle_random_walk"
+    }
+
+    fn half_seconds(&self) -> i8 {
+        1
+    }
+
+    fn story(&self) -> Story {
+        Story {
+            what: "a decimation filter: white noise is averaged over longer than a sample interval",
+            origin: "the sensor's own digital filter, a moving average or a Bartlett window, set to fewer hertz than the output rate carries",
+            check: "read the sensor's filter register and its group delay; open the filter and see the deficit at short averaging times go",
+        }
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[
+            Parameter {
+                name: "width_s",
+                unit: "s",
+            },
+            Parameter {
+                name: "stages",
+                unit: "",
+            },
+        ]
+    }
+
+    fn range(&self, parameter: usize, span: &Span) -> Range {
+        match parameter {
+            0 => Range {
+                low: 0.6 * span.interval_s,
+                high: (32.0 * span.interval_s).min(0.1 * span.longest_tau_s),
+                steps_per_octave: 4.0,
+            },
+            _ => Range {
+                low: 1.0,
+                high: 2.0,
+                steps_per_octave: 1.0,
+            },
+        }
+    }
+
+    fn is_whole(&self, parameter: usize) -> bool {
+        parameter == 1
+    }
+
+    fn replaces(&self) -> Option<&'static dyn Effect> {
+        Some(&AngleRandomWalk)
+    }
+
+    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+        -0.5 * setting.interval_s * Filter::new(setting).sum(lag)
+    }
+
+    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+        let filter = Filter::new(setting);
+        if x >= m + filter.support {
+            return 0.0;
+        }
+        let apart = if x < m { m - x } else { x - m };
+        -0.5 * setting.interval_s * (filter.sum(x + m) - 2.0 * filter.sum(x) + filter.sum(apart))
+    }
+}

@@ -1,0 +1,81 @@
+use super::{
+    Effect, GaussMarkov, Parameter, Range, SecondDifferences, Setting, Span, Story,
+    gauss_markov::{PARAMETERS, correlation_times},
+};
+
+/// Random telegraph noise, coefficient its rms in rate, correlation time T_c: the rate jumps
+/// between two levels, `2 rms` apart, on average every `2 T_c` (Machlup 1954).
+///
+/// Its autocovariance, and so its Allan variance, is that of [`GaussMarkov`] noise: only the
+/// kurtosis of the differences at `τ ≲ T_c` tells the two apart.
+#[derive(Clone, Copy, Debug)]
+pub struct RandomTelegraph;
+
+impl Effect for RandomTelegraph {
+    fn name(&self) -> &'static str {
+        "random_telegraph"
+    }
+
+    fn symbol(&self) -> &'static str {
+        "s"
+    }
+
+    fn coefficient(&self) -> &'static str {
+        "rms"
+    }
+
+    fn half_seconds(&self) -> i8 {
+        0
+    }
+
+    fn story(&self) -> Story {
+        Story {
+            what: "random telegraph noise: the rate jumps between two levels",
+            origin: "a single defect in the sense electronics that captures and releases charge (popcorn noise), a stick-slip contact in the package",
+            check: "plot the rate averaged over a fifth of the correlation time: are there two levels? exchange the amplifier or cool it",
+        }
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        PARAMETERS
+    }
+
+    fn range(&self, _: usize, span: &Span) -> Range {
+        correlation_times(span)
+    }
+
+    fn twin(&self) -> Option<&'static dyn Effect> {
+        Some(&GaussMarkov)
+    }
+
+    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+        GaussMarkov.kernel(lag, setting)
+    }
+
+    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+        GaussMarkov.second_difference(x, m, setting)
+    }
+
+    fn variance(&self, m: f64, setting: &Setting) -> f64 {
+        GaussMarkov.variance(m, setting)
+    }
+
+    fn variances(
+        &self,
+        factors: &mut dyn Iterator<Item = f64>,
+        setting: &Setting,
+        each: &mut dyn FnMut(f64),
+    ) {
+        GaussMarkov.variances(factors, setting, each);
+    }
+
+    fn add_second_differences(
+        &self,
+        m: f64,
+        weight: f64,
+        setting: &Setting,
+        sum: &mut SecondDifferences,
+    ) {
+        GaussMarkov.add_second_differences(m, weight, setting, sum);
+    }
+}

@@ -1,0 +1,125 @@
+//! What a command ends with when its input is bad: one line that says where, what and what to do.
+
+use std::{
+    fmt,
+    io::{self, ErrorKind},
+    path::{Path, PathBuf},
+};
+
+/// Why a command could not do its work.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// An input that cannot be used: printed as `FILE:ROW: what; remedy`.
+    #[error("{place}{what}; {remedy}")]
+    Input {
+        /// Where it was found.
+        place: Place,
+        /// What is wrong.
+        what: String,
+        /// What to do about it.
+        remedy: String,
+    },
+    /// Whoever read standard output has closed it: no reason to say anything.
+    #[error("standard output was closed")]
+    Closed,
+}
+
+/// A file, a row of it, or neither.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    file: Option<PathBuf>,
+    row: Option<u64>,
+}
+
+impl Place {
+    /// A file as a whole.
+    pub fn file(path: &Path) -> Self {
+        Self {
+            file: Some(path.to_owned()),
+            row: None,
+        }
+    }
+
+    /// A row of a file, counted from 1.
+    pub fn row(path: &Path, row: u64) -> Self {
+        Self {
+            file: Some(path.to_owned()),
+            row: Some(row),
+        }
+    }
+
+    /// The failure that lies here.
+    pub fn failure(self, what: impl fmt::Display, remedy: impl fmt::Display) -> Failure {
+        Failure::Input {
+            place: self,
+            what: one_line(&what.to_string()),
+            remedy: one_line(&remedy.to_string()),
+        }
+    }
+
+    /// The failure of a read, write or open here.
+    pub fn io(self, error: &io::Error) -> Failure {
+        let (what, remedy) = match error.kind() {
+            ErrorKind::NotFound => ("no such file".into(), "check the path"),
+            ErrorKind::PermissionDenied => {
+                ("permission denied".into(), "check the file's permissions")
+            }
+            ErrorKind::IsADirectory => ("is a directory".into(), "name a file in it"),
+            ErrorKind::UnexpectedEof => (
+                "the file ends in the middle".into(),
+                "copy or record it again",
+            ),
+            ErrorKind::StorageFull => ("no space left".into(), "make room or write elsewhere"),
+            _ => (error.to_string(), "check the file and the disk"),
+        };
+        self.failure(what, remedy)
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.file {
+            write!(f, "{}:", one_line(&file.to_string_lossy()))?;
+            if let Some(row) = self.row {
+                write!(f, "{row}:")?;
+            }
+            f.write_str(" ")?;
+        }
+        Ok(())
+    }
+}
+
+impl Failure {
+    /// A failure that lies in an option rather than in a file.
+    pub fn option(what: impl fmt::Display, remedy: impl fmt::Display) -> Self {
+        Place::default().failure(what, remedy)
+    }
+
+    /// A failure to print results.
+    pub fn standard_output(error: &io::Error) -> Self {
+        if error.kind() == ErrorKind::BrokenPipe {
+            Self::Closed
+        } else {
+            Self::option(
+                format!("standard output: {error}"),
+                "write to another place",
+            )
+        }
+    }
+}
+
+/// Text of an input as it may stand in a message: quoted, without control characters, short.
+pub fn quoted(text: &[u8]) -> String {
+    const LONGEST: usize = 40;
+    let text = String::from_utf8_lossy(text);
+    let mut shown: String = text.chars().take(LONGEST).collect();
+    if shown.len() < text.len() {
+        shown.push('…');
+    }
+    format!("{shown:?}")
+}
+
+/// The text without line breaks and other control characters.
+fn one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}

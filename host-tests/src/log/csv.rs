@@ -1,0 +1,311 @@
+//! Logs as text: values between commas, a row a sample.
+
+use super::{
+    AxisColumn, Ended, Metadata, Stop, Table, Visitor,
+    columns::{Columns, Look},
+    field::{Field, Text},
+    lines::Lines,
+    source::{self, Format},
+};
+use crate::failure::{Failure, Place, quoted};
+use csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
+use indicatif::ProgressBar;
+use std::{
+    io::{self, BufRead, Read},
+    path::{Path, PathBuf},
+};
+
+/// A line longer than this is not one of a log.
+const LONGEST_LINE: u64 = 1 << 16;
+
+/// Rows that tell what the columns look like.
+const LOOKS: usize = 100;
+
+/// A table of text, known by its first rows.
+pub(super) struct Csv {
+    path: PathBuf,
+    gzip: bool,
+    delimiter: u8,
+    metadata: Metadata,
+    columns: Columns,
+    /// The byte behind the header, or 0.
+    data_start: u64,
+}
+
+/// What stands above the first record, and how that record is cut.
+struct Preamble {
+    delimiter: u8,
+    metadata: Metadata,
+    /// The comment line right above the first record.
+    last_comment: Option<String>,
+}
+
+impl Csv {
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        let gzip = Format::of(path)? == Format::Csv { gzip: true };
+        let preamble = read_preamble(path, gzip)?;
+        let mut table = Self {
+            path: path.to_owned(),
+            gzip,
+            delimiter: preamble.delimiter,
+            metadata: preamble.metadata,
+            columns: Columns {
+                names: None,
+                looks: Vec::new(),
+            },
+            data_start: 0,
+        };
+
+        let (records, end) = table.first_records()?;
+        let Some(first) = records.first() else {
+            return Err(Place::file(path).failure("no rows", "record some samples"));
+        };
+        let kinds: Vec<Kind> = first.iter().map(Kind::of).collect();
+        if let Some(text) = kinds.iter().position(|&kind| kind == Kind::Text) {
+            if kinds.contains(&Kind::Number) {
+                return Err(table.row_at(begin(first)).failure(
+                    format!(
+                        "the first row mixes numbers and text such as {}",
+                        quoted(&first[text])
+                    ),
+                    "make it a header of names alone, or correct it",
+                ));
+            }
+            table.data_start = records.get(1).map_or(end, begin);
+            table.columns.names = Some(names(first));
+        } else if let Some(comment) = preamble.last_comment {
+            table.columns.names = table.names_in_comment(&comment, first.len());
+        }
+        let rows = &records[usize::from(table.data_start > 0)..];
+        table.columns.looks = (0..first.len()).map(|column| look(rows, column)).collect();
+        Ok(table)
+    }
+
+    /// The first records, and the byte behind them.
+    fn first_records(&self) -> Result<(Vec<ByteRecord>, u64), Failure> {
+        let text = source::open_text(&self.path, self.gzip, &ProgressBar::hidden())?;
+        let mut reader = self.builder().from_reader(text);
+        let mut records = Vec::new();
+        let mut record = ByteRecord::new();
+        while records.len() < LOOKS {
+            match reader.read_byte_record(&mut record) {
+                Ok(true) => records.push(record.clone()),
+                Ok(false) => break,
+                Err(error) => return Err(self.failure(error, &reader, 0)),
+            }
+        }
+        Ok((records, reader.position().byte()))
+    }
+
+    fn builder(&self) -> ReaderBuilder {
+        let mut builder = ReaderBuilder::new();
+        builder
+            .has_headers(false)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .delimiter(self.delimiter)
+            .buffer_capacity(1 << 16);
+        builder
+    }
+
+    /// The names of `# time,gx,gy,gz`, right above the first record and as wide as it.
+    fn names_in_comment(&self, comment: &str, width: usize) -> Option<Vec<String>> {
+        let mut reader = self.builder().comment(None).from_reader(comment.as_bytes());
+        let record = reader.byte_records().next()?.ok()?;
+        let all_text = record.iter().all(|field| Kind::of(field) == Kind::Text);
+        (width > 1 && record.len() == width && all_text && !comment.contains('='))
+            .then(|| names(&record))
+    }
+
+    fn row_at(&self, byte: u64) -> Place {
+        match source::row_at(&self.path, self.gzip, byte) {
+            Ok(row) => Place::row(&self.path, row),
+            Err(_) => Place::file(&self.path),
+        }
+    }
+
+    /// A failure of the reader that began at the given byte.
+    fn failure<R: Read>(&self, error: csv::Error, reader: &Reader<R>, start: u64) -> Failure {
+        let here = self.row_at(start + reader.position().byte());
+        match error.into_kind() {
+            ErrorKind::Io(error) => source::text_failure(here, self.gzip, &error),
+            kind => here.failure(format!("not a row of values ({kind:?})"), "correct the row"),
+        }
+    }
+
+    /// Shows the fields of one row to a visitor; true if it wants no more.
+    #[inline]
+    fn visit_row<'a, V: Visitor>(
+        &self,
+        axes: &[AxisColumn],
+        visitor: &mut V,
+        field: impl Fn(usize) -> &'a [u8],
+        byte: impl Fn() -> u64,
+    ) -> Result<bool, Failure> {
+        for (axis, column) in axes.iter().enumerate() {
+            match visitor.visit(axis, Text(field(column.column))) {
+                Ok(()) => {}
+                Err(Stop::NotCounts) => return Ok(true),
+                Err(Stop::Flaw(flaw)) => {
+                    let what = format!("axis {}: {}", column.axis, flaw.what);
+                    return Err(self.row_at(byte()).failure(what, flaw.remedy));
+                }
+            }
+        }
+        Ok(false)
+    }
+}
+
+impl Table for Csv {
+    fn metadata(&self) -> &Metadata {
+        &self.metadata
+    }
+
+    fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    fn pass<V: Visitor>(
+        &self,
+        axes: &[AxisColumn],
+        visitor: &mut V,
+        progress: &ProgressBar,
+    ) -> Result<Ended, Failure> {
+        let width = self.columns.looks.len();
+        let fail = |byte, error| source::text_failure(self.row_at(byte), self.gzip, &error);
+        let mut text = source::open_text(&self.path, self.gzip, progress)?;
+        io::copy(&mut text.by_ref().take(self.data_start), &mut io::sink())
+            .map_err(|error| fail(0, error))?;
+
+        let mut lines = Lines::new(text, self.data_start, self.delimiter, width);
+        while lines
+            .cut()
+            .map_err(|error| fail(lines.rest_offset(), error))?
+        {
+            let field = |column| lines.field(column);
+            if self.visit_row(axes, visitor, field, || lines.row_offset())? {
+                return Ok(Ended::NotCounts);
+            }
+        }
+
+        let start = lines.rest_offset();
+        let mut reader = self.builder().from_reader(lines.into_rest());
+        let mut record = ByteRecord::new();
+        loop {
+            match reader.read_byte_record(&mut record) {
+                Ok(true) => {}
+                Ok(false) => return Ok(Ended::AtTheLastRow),
+                Err(error) => return Err(self.failure(error, &reader, start)),
+            }
+            let byte = || start + begin(&record);
+            if record.len() != width {
+                return Err(self.row_at(byte()).failure(
+                    format!("{} where the first row has {width}", values(record.len())),
+                    "correct the row or cut the record there",
+                ));
+            }
+            if self.visit_row(axes, visitor, |column| &record[column], byte)? {
+                return Ok(Ended::NotCounts);
+            }
+        }
+    }
+}
+
+/// Reads down to the first record.
+fn read_preamble(path: &Path, gzip: bool) -> Result<Preamble, Failure> {
+    let mut text = source::open_text(path, gzip, &ProgressBar::hidden())?;
+    let mut metadata = Metadata::default();
+    let mut last_comment = None;
+    let mut line = Vec::new();
+    for row in 1.. {
+        line.clear();
+        let read = text
+            .by_ref()
+            .take(LONGEST_LINE)
+            .read_until(b'\n', &mut line);
+        let length =
+            read.map_err(|error| source::text_failure(Place::row(path, row), gzip, &error))?;
+        if length == 0 {
+            let what = if row == 1 {
+                "the file is empty"
+            } else {
+                "no rows"
+            };
+            return Err(Place::file(path).failure(what, "record some samples"));
+        }
+        if length as u64 == LONGEST_LINE {
+            return Err(Place::row(path, row).failure(
+                format!(
+                    "a line of {} KiB or more is not one of a log",
+                    LONGEST_LINE / 1024
+                ),
+                "check that the file is text",
+            ));
+        }
+        if let Some(comment) = line.strip_prefix(b"#") {
+            let comment = String::from_utf8_lossy(comment).trim().to_owned();
+            metadata.read_comment(row, &comment);
+            last_comment = Some(comment);
+        } else if !line.trim_ascii().is_empty() {
+            break;
+        }
+    }
+    let delimiter = [b';', b'\t']
+        .into_iter()
+        .find(|delimiter| line.contains(delimiter))
+        .unwrap_or(b',');
+    Ok(Preamble {
+        delimiter,
+        metadata,
+        last_comment,
+    })
+}
+
+/// What a field of the first row is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Number,
+    Empty,
+    Text,
+}
+
+impl Kind {
+    fn of(field: &[u8]) -> Self {
+        let field = field.trim_ascii();
+        if field.is_empty() {
+            Self::Empty
+        } else if fast_float2::parse::<f64, _>(field).is_ok() {
+            Self::Number
+        } else {
+            Self::Text
+        }
+    }
+}
+
+fn names(record: &ByteRecord) -> Vec<String> {
+    record
+        .iter()
+        .map(|name| String::from_utf8_lossy(name).trim().to_owned())
+        .collect()
+}
+
+fn look(rows: &[ByteRecord], column: usize) -> Look {
+    let number = |row: &ByteRecord| row.get(column).and_then(|field| Text(field).number().ok());
+    match rows.first().map(number) {
+        Some(None) => Look::Text,
+        _ => Look::of_numbers(&rows.iter().filter_map(number).collect::<Vec<_>>()),
+    }
+}
+
+/// The byte at which the reader began to look for the record.
+fn begin(record: &ByteRecord) -> u64 {
+    record.position().map_or(0, |position| position.byte())
+}
+
+fn values(count: usize) -> String {
+    if count == 1 {
+        "1 value".into()
+    } else {
+        format!("{count} values")
+    }
+}

@@ -1,0 +1,217 @@
+//! Rows without quotes, which are nearly all: cut at delimiters and line ends, and nothing else.
+
+use std::{
+    io::{self, Cursor, Read},
+    ops::Range,
+};
+
+/// Bytes in the buffer; a longer line is left to the general rules.
+const BUFFER: usize = 1 << 17;
+
+/// Cuts text into rows of a known number of fields for as long as that needs no rules for quotes,
+/// then hands over what is left. Empty lines and comments are passed over.
+pub(super) struct Lines<R> {
+    text: R,
+    delimiter: u8,
+    /// Bytes that end a field, or that only the general rules know what to do with.
+    special: [bool; 256],
+    buffer: Box<[u8]>,
+    /// Where in the text the buffer begins.
+    offset: u64,
+    /// Where in the buffer the bytes begin that have not been cut, and where they end.
+    uncut: Range<usize>,
+    /// Where in the buffer the last whole line ends.
+    whole: usize,
+    /// Where in the buffer the row begins.
+    row: usize,
+    fields: Box<[Range<usize>]>,
+}
+
+impl<R: Read> Lines<R> {
+    /// Text whose first byte has the given offset.
+    pub(super) fn new(text: R, offset: u64, delimiter: u8, width: usize) -> Self {
+        let mut special = [false; 256];
+        for byte in [delimiter, b'\n', b'\r', b'"'] {
+            special[usize::from(byte)] = true;
+        }
+        Self {
+            text,
+            delimiter,
+            special,
+            buffer: vec![0; BUFFER].into(),
+            offset,
+            uncut: 0..0,
+            whole: 0,
+            row: 0,
+            fields: vec![0..0; width].into(),
+        }
+    }
+
+    /// Cuts the next row; false when the general rules have to go on, as they do at the end.
+    pub(super) fn cut(&mut self) -> io::Result<bool> {
+        loop {
+            if self.uncut.start == self.whole && !self.refill()? {
+                return Ok(false);
+            }
+            let row = self.uncut.start;
+            if self.buffer[row] == b'#' {
+                // A whole line follows, so there is an end.
+                let rest = &self.buffer[row..self.whole];
+                let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(0);
+                self.uncut.start += length + 1;
+                continue;
+            }
+            match self.cut_fields(row) {
+                Some((0, end)) => self.uncut.start = end,
+                Some((fields, end)) if fields == self.fields.len() => {
+                    self.row = row;
+                    self.uncut.start = end;
+                    return Ok(true);
+                }
+                _ => return Ok(false),
+            }
+        }
+    }
+
+    /// The number of fields of the line, none if it is empty, and where the next line begins.
+    /// `None` for a line with quotes, or more fields than expected.
+    #[inline]
+    fn cut_fields(&mut self, row: usize) -> Option<(usize, usize)> {
+        let buffer = &self.buffer[..self.whole];
+        let mut start = row;
+        let mut i = row;
+        let mut count = 0;
+        loop {
+            while !self.special[usize::from(buffer[i])] {
+                i += 1;
+            }
+            let byte = buffer[i];
+            if byte == self.delimiter {
+                *self.fields.get_mut(count)? = start..i;
+                count += 1;
+                i += 1;
+                start = i;
+                continue;
+            }
+            let end = match byte {
+                b'\n' => i + 1,
+                b'\r' if buffer[i + 1] == b'\n' => i + 2,
+                _ => return None,
+            };
+            if count == 0 && start == i {
+                return Some((0, end));
+            }
+            *self.fields.get_mut(count)? = start..i;
+            return Some((count + 1, end));
+        }
+    }
+
+    /// Moves what is left to the front and reads until there is a whole line; false if none comes.
+    fn refill(&mut self) -> io::Result<bool> {
+        self.buffer.copy_within(self.uncut.clone(), 0);
+        self.offset += self.uncut.start as u64;
+        self.uncut = 0..self.uncut.len();
+        self.whole = 0;
+        while self.uncut.end < self.buffer.len() {
+            let read = match self.text.read(&mut self.buffer[self.uncut.end..]) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                read => read?,
+            };
+            if read == 0 {
+                return Ok(false);
+            }
+            let news = self.uncut.end..self.uncut.end + read;
+            self.uncut.end = news.end;
+            if let Some(last) = self.buffer[news.clone()]
+                .iter()
+                .rposition(|&byte| byte == b'\n')
+            {
+                self.whole = news.start + last + 1;
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// A field of the row.
+    #[inline]
+    pub(super) fn field(&self, column: usize) -> &[u8] {
+        &self.buffer[self.fields[column].clone()]
+    }
+
+    /// Where in the text the row begins.
+    pub(super) fn row_offset(&self) -> u64 {
+        self.offset + self.row as u64
+    }
+
+    /// Where in the text begins what has not been cut.
+    pub(super) fn rest_offset(&self) -> u64 {
+        self.offset + self.uncut.start as u64
+    }
+
+    /// What has not been cut.
+    pub(super) fn into_rest(self) -> impl Read {
+        Cursor::new(self.buffer[self.uncut.clone()].to_vec()).chain(self.text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rows that are cut, and the rest.
+    fn cut(text: &str) -> (Vec<Vec<String>>, String) {
+        let mut lines = Lines::new(text.as_bytes(), 0, b',', 2);
+        let mut rows = Vec::new();
+        while lines.cut().unwrap() {
+            let field = |column| String::from_utf8_lossy(lines.field(column)).into_owned();
+            rows.push(vec![field(0), field(1)]);
+            assert_eq!(
+                text.as_bytes()[lines.row_offset() as usize],
+                lines.field(0)[0]
+            );
+        }
+        let mut rest = String::new();
+        assert!(text.len() as u64 >= lines.rest_offset());
+        lines.into_rest().read_to_string(&mut rest).unwrap();
+        (rows, rest)
+    }
+
+    #[test]
+    fn plain_rows_are_cut_whatever_their_line_ends() {
+        let (rows, rest) = cut("1,2\r\n# 3,4\n\n\r\n5,6\n7,8");
+        assert_eq!(rows, [["1", "2"], ["5", "6"]]);
+        assert_eq!(
+            rest, "7,8",
+            "a line without end is the general rules' business"
+        );
+    }
+
+    #[test]
+    fn rows_that_are_not_plain_are_left_whole() {
+        for odd in ["\"1\",2\n3,4\n", "1\n3,4\n", "1,2,3\n3,4\n", "1,2\r3,4\n"] {
+            assert_eq!(cut(&format!("8,9\n{odd}")).1, odd);
+        }
+    }
+
+    #[test]
+    fn rows_are_whole_across_refills() {
+        let text: String = (0..50_000).map(|i| format!("{i},{}\n", 2 * i)).collect();
+        let (rows, rest) = cut(&text);
+        assert!(
+            rows.iter()
+                .enumerate()
+                .all(|(i, row)| row[0] == i.to_string())
+        );
+        assert_eq!((rows.len(), rest.as_str()), (50_000, ""));
+    }
+
+    #[test]
+    fn line_longer_than_the_buffer_is_left_whole() {
+        let odd = "1".repeat(BUFFER + 5) + ",2\n";
+        assert_eq!(
+            cut(&format!("8,9\n{odd}")),
+            (vec![vec!["8".into(), "9".into()]], odd)
+        );
+    }
+}

@@ -1,0 +1,253 @@
+//! Recorded logs, read as a stream: any length in the same few megabytes.
+//!
+//! A log is a table of numbers, one row a sample, by its extension:
+//!
+//! * `.csv`, `.csv.gz`: commas, semicolons or tabs; a header of names or none; comment lines begin
+//!   with `#`, and those at the top may say `rate_hz=…`, `scale=…` (rate units per count) and
+//!   `unit=deg/s` or `unit=rad/s`. Options win over comments.
+//! * `.npy`: one- or two-dimensional, rows are samples; integers of 1 to 8 bytes, floats of 4 or 8,
+//!   either byte order, either memory order.
+//!
+//! # Which columns are axes
+//!
+//! Those that [`Options::columns`] names. Otherwise, with a header, those named like a gyro's axes
+//! (`gx`, `gyro_y`, `angular_velocity.z` and the like). Where no name says so, all columns of
+//! numbers, but for those that by their name or by rising from row to row are times, indices or
+//! temperatures. Unless every column was an axis by name, a note tells what was taken and what was
+//! left out.
+//!
+//! # Counts
+//!
+//! Whole numbers within `i32` are counts as they are, whether written `17` or `17.0`. An axis with
+//! any other number becomes counts of a power of two, between 2^-30 and 2^-29 of its range, less a
+//! constant offset; this takes one more pass for the range. Nothing is skipped: a value that is not
+//! a finite number ends the reading with its row.
+
+mod accumulate;
+mod columns;
+mod csv;
+mod field;
+mod lines;
+mod metadata;
+mod npy;
+pub mod npy_header;
+mod quantum;
+mod source;
+
+use crate::{
+    failure::{Failure, Place},
+    unit::Unit,
+};
+use accumulate::Measured;
+use allanite::Accumulator;
+use columns::{AxisColumn, Columns};
+use field::{Field, Flaw};
+use indicatif::ProgressBar;
+use metadata::{Metadata, Settled};
+use source::Format;
+use std::path::Path;
+
+/// Octaves that the host accumulates: all that cannot overflow, for records of years.
+pub const OCTAVES: usize = 30;
+
+/// What a user may say about a log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Samples per second.
+    pub rate_hz: Option<f64>,
+    /// Rate units per count.
+    pub scale: Option<f64>,
+    /// The unit that the scaled counts have.
+    pub unit: Option<Unit>,
+    /// The axes, in this order; without, see [which columns are axes](self#which-columns-are-axes).
+    pub columns: Option<Vec<ColumnChoice>>,
+}
+
+/// A column to take: `column` or `axis=column`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ColumnChoice {
+    /// What the axis is to be called, if not what the column is.
+    pub axis: Option<String>,
+    /// The column's name in the header, or its number from 1.
+    pub column: String,
+}
+
+impl std::str::FromStr for ColumnChoice {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (axis, column) = match text.split_once('=') {
+            Some((axis, column)) => (Some(axis.trim().to_owned()), column.trim()),
+            None => (None, text.trim()),
+        };
+        if column.is_empty() || axis.as_deref() == Some("") {
+            return Err("write COLUMN or AXIS=COLUMN");
+        }
+        Ok(Self {
+            axis,
+            column: column.to_owned(),
+        })
+    }
+}
+
+/// A log, read to its end.
+#[derive(Clone, Debug)]
+pub struct Log {
+    /// Samples per second.
+    pub rate_hz: f64,
+    /// The unit of the rates.
+    pub unit: Unit,
+    /// The axes, in the order asked for, else in that of the columns.
+    pub axes: Vec<Axis>,
+    /// What was decided without being asked, one line each.
+    pub notes: Vec<String>,
+}
+
+/// One axis of a log.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// Its name.
+    pub name: String,
+    /// Rate units per count of the accumulator.
+    pub rate_per_count: f64,
+    /// All its samples.
+    pub accumulator: Accumulator<OCTAVES>,
+}
+
+/// Reads a log; `progress` follows the bytes of its file.
+///
+/// # Errors
+/// Of every kind of bad input, the file, the row and the remedy.
+pub fn read(path: &Path, options: &Options, progress: &ProgressBar) -> Result<Log, Failure> {
+    match Format::of(path)? {
+        Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, progress),
+        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, progress),
+    }
+}
+
+/// A log's file, known by its first rows and ready to be gone through.
+trait Table {
+    fn metadata(&self) -> &Metadata;
+    fn columns(&self) -> &Columns;
+
+    /// Shows every value of the given columns to a visitor; of each column in the order of rows.
+    fn pass<V: Visitor>(
+        &self,
+        axes: &[AxisColumn],
+        visitor: &mut V,
+        progress: &ProgressBar,
+    ) -> Result<Ended, Failure>;
+}
+
+/// What a pass over a table is made for.
+trait Visitor {
+    fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop>;
+}
+
+/// Why a visitor wants no more.
+enum Stop {
+    /// A value is not a count: come again and ask for numbers.
+    NotCounts,
+    /// A value is no finite number either.
+    Flaw(Flaw),
+}
+
+/// How a pass ended that found nothing wrong.
+enum Ended {
+    AtTheLastRow,
+    NotCounts,
+}
+
+fn read_table(
+    table: &impl Table,
+    path: &Path,
+    options: &Options,
+    progress: &ProgressBar,
+) -> Result<Log, Failure> {
+    let settled = table.metadata().settle(path, options)?;
+    let (columns, note) = match &options.columns {
+        Some(choices) => (table.columns().chosen(path, choices)?, None),
+        None => table.columns().guessed(path)?,
+    };
+    let measured = accumulate::measure(table, path, &columns, progress)?;
+    let mut notes: Vec<String> = note.into_iter().collect();
+    let axes = columns
+        .into_iter()
+        .zip(measured)
+        .map(|(column, measured)| settle_axis(path, column.axis, measured, settled, &mut notes))
+        .collect::<Result<_, _>>()?;
+    let unit = settled.unit.unwrap_or_else(|| {
+        let assumed = Unit::DegreesPerSecond;
+        notes.push(format!(
+            "no unit given: {assumed} assumed (say so with --unit)"
+        ));
+        assumed
+    });
+    Ok(Log {
+        rate_hz: settled.rate_hz,
+        unit,
+        axes,
+        notes,
+    })
+}
+
+/// An axis in its unit, if it is long enough and alive.
+fn settle_axis(
+    path: &Path,
+    name: String,
+    measured: Measured,
+    settled: Settled,
+    notes: &mut Vec<String>,
+) -> Result<Axis, Failure> {
+    let Measured {
+        accumulator,
+        quantum,
+        whole,
+    } = measured;
+    let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
+    // Two octaves with six differences each, the shorter one's neighbours less three.
+    const LEAST: u64 = 9;
+    if accumulator.samples() < LEAST {
+        return fail(
+            format!(
+                "{} samples, and two octaves need {LEAST}",
+                accumulator.samples()
+            ),
+            "record longer",
+        );
+    }
+    let Some(first) = accumulator
+        .octave(0)
+        .filter(|octave| octave.sum.to_f64() > 0.0)
+    else {
+        return fail(
+            format!("axis {name} never changes its value"),
+            "check the sensor, or choose other columns with --columns",
+        );
+    };
+    let mean_square = first.sum.to_f64() / first.differences as f64;
+    if !whole && mean_square < 100.0 {
+        notes.push(format!(
+            "axis {name}: a step of 2^-30 of its range is {:.2} of its noise; \
+             look for outliers that make the range so wide",
+            mean_square.sqrt().recip()
+        ));
+    }
+    if whole && settled.scale.is_none() {
+        notes.push(format!(
+            "axis {name}: whole numbers and no scale given: 1 per count assumed (say so with --scale)"
+        ));
+    }
+    let rate_per_count = settled.scale.unwrap_or(1.0) * quantum;
+    if !(rate_per_count.is_finite() && rate_per_count > 0.0) {
+        return fail(
+            format!("axis {name}: a scale of {rate_per_count} per count is beyond floats"),
+            "give another --scale",
+        );
+    }
+    Ok(Axis {
+        name,
+        rate_per_count,
+        accumulator,
+    })
+}

@@ -1,0 +1,248 @@
+//! Logs as NumPy arrays: rows are samples, columns are axes.
+
+use super::{
+    AxisColumn, Ended, Field, Metadata, Stop, Table, Visitor,
+    columns::{Columns, Look},
+    npy_header::{Header, Kind},
+    source,
+};
+use crate::failure::{Failure, Place};
+use indicatif::ProgressBar;
+use std::{
+    fs::File,
+    io::{ErrorKind, Read, Seek, SeekFrom},
+    path::{Path, PathBuf},
+};
+
+/// An array with more columns than this was meant the other way round.
+const MOST_COLUMNS: u64 = 64;
+
+/// Rows that tell what the columns look like.
+const LOOKS: u64 = 100;
+
+/// An array file, known by its header and its first rows.
+pub(super) struct Npy {
+    path: PathBuf,
+    header: Header,
+    rows: u64,
+    metadata: Metadata,
+    columns: Columns,
+}
+
+impl Npy {
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        let place = || Place::file(path);
+        let mut reader = source::open(path, &ProgressBar::hidden())?;
+        let header = read_header(path, &mut reader)?;
+        let (rows, width) = match header.shape[..] {
+            [rows] => (rows, 1),
+            [rows, width @ 1..=MOST_COLUMNS] => (rows, width),
+            [rows, width] => {
+                return Err(place().failure(
+                    format!("an array of {rows} rows and {width} columns"),
+                    "rows are samples: save its transpose",
+                ));
+            }
+            _ => {
+                return Err(place().failure(
+                    format!("an array of {} dimensions", header.shape.len()),
+                    "save one or two: rows are samples, columns are axes",
+                ));
+            }
+        };
+        if rows == 0 {
+            return Err(place().failure("no rows", "record some samples"));
+        }
+        let bytes = rows
+            .checked_mul(width)
+            .and_then(|n| n.checked_mul(header.size as u64));
+        if bytes.is_none_or(|bytes| bytes > i64::MAX as u64) {
+            return Err(place().failure(
+                format!("an array of {rows} rows cannot be"),
+                "save it again",
+            ));
+        }
+        let mut array = Self {
+            path: path.to_owned(),
+            header,
+            rows,
+            metadata: Metadata::default(),
+            columns: Columns {
+                names: None,
+                looks: Vec::new(),
+            },
+        };
+        array.columns.looks = if width == 1 {
+            vec![Look::Number]
+        } else {
+            array.looks(width)?
+        };
+        Ok(array)
+    }
+
+    /// The looks of the columns, from the first rows wherever they are stored.
+    fn looks(&self, width: u64) -> Result<Vec<Look>, Failure> {
+        let fail = |error| self.failure(None, &error);
+        let mut file = File::open(&self.path).map_err(fail)?;
+        read_header(&self.path, &mut file)?;
+        let start = file.stream_position().map_err(fail)?;
+        let mut looks = Vec::new();
+        for column in 0..width {
+            let mut numbers = Vec::new();
+            for row in 0..self.rows.min(LOOKS) {
+                let index = if self.header.fortran_order {
+                    column * self.rows + row
+                } else {
+                    row * width + column
+                };
+                let mut element = [0; 8];
+                let element = &mut element[..self.header.size];
+                // The pass meets a file that is too short again, and says where.
+                let offset = start.saturating_add(index * self.header.size as u64);
+                if file.seek(SeekFrom::Start(offset)).is_err() || file.read_exact(element).is_err()
+                {
+                    break;
+                }
+                numbers.extend(self.number(element));
+            }
+            looks.push(Look::of_numbers(&numbers));
+        }
+        Ok(looks)
+    }
+
+    fn number(&self, element: &[u8]) -> Option<f64> {
+        let mut number = None;
+        let keep = &mut Keep(&mut number);
+        visit_element(&self.header, element, 0, keep)
+            .is_ok()
+            .then_some(number)
+            .flatten()
+    }
+
+    fn failure(&self, row: Option<u64>, error: &std::io::Error) -> Failure {
+        let place = match row {
+            Some(row) => Place::row(&self.path, row + 1),
+            None => Place::file(&self.path),
+        };
+        if error.kind() == ErrorKind::UnexpectedEof {
+            let what = format!("the file ends before the {} rows of its header", self.rows);
+            return place.failure(what, "copy or save it again");
+        }
+        place.io(error)
+    }
+}
+
+impl Table for Npy {
+    fn metadata(&self) -> &Metadata {
+        &self.metadata
+    }
+
+    fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    fn pass<V: Visitor>(
+        &self,
+        axes: &[AxisColumn],
+        visitor: &mut V,
+        progress: &ProgressBar,
+    ) -> Result<Ended, Failure> {
+        let mut reader = source::open(&self.path, progress)?;
+        read_header(&self.path, &mut reader)?;
+        let width = self.columns.looks.len();
+        let axis_of: Vec<Option<usize>> = (0..width)
+            .map(|column| axes.iter().position(|axis| axis.column == column))
+            .collect();
+        // Runs of elements of one row, or in the other memory order of one column.
+        let (runs, length) = if self.header.fortran_order {
+            (width as u64, self.rows)
+        } else {
+            (self.rows, width as u64)
+        };
+        let mut element = [0; 8];
+        let element = &mut element[..self.header.size];
+        for run in 0..runs {
+            for i in 0..length {
+                let (row, column) = if self.header.fortran_order {
+                    (i, run)
+                } else {
+                    (run, i)
+                };
+                reader
+                    .read_exact(element)
+                    .map_err(|error| self.failure(Some(row), &error))?;
+                let Some(axis) = axis_of[column as usize] else {
+                    continue;
+                };
+                match visit_element(&self.header, element, axis, visitor) {
+                    Ok(()) => {}
+                    Err(Stop::NotCounts) => return Ok(Ended::NotCounts),
+                    Err(Stop::Flaw(flaw)) => {
+                        return Err(Place::row(&self.path, row + 1).failure(
+                            format!("axis {}: {}", axes[axis].axis, flaw.what),
+                            flaw.remedy,
+                        ));
+                    }
+                }
+            }
+        }
+        match reader.read(&mut [0]) {
+            Ok(0) => Ok(Ended::AtTheLastRow),
+            Ok(_) => Err(Place::file(&self.path).failure(
+                format!("more data behind the {} rows of its header", self.rows),
+                "save it again, one array a file",
+            )),
+            Err(error) => Err(self.failure(Some(self.rows), &error)),
+        }
+    }
+}
+
+fn read_header(path: &Path, reader: &mut impl Read) -> Result<Header, Failure> {
+    let place = || Place::file(path);
+    match Header::read(reader) {
+        Ok(Ok(header)) => Ok(header),
+        Ok(Err(what)) => Err(place().failure(
+            what,
+            "save plain numbers with numpy.save, such as a.astype('f8')",
+        )),
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            Err(place().failure("the file ends within its header", "copy or save it again"))
+        }
+        Err(error) => Err(place().io(&error)),
+    }
+}
+
+/// Shows one element, of one to eight bytes, to a visitor.
+#[inline]
+fn visit_element<V: Visitor>(
+    header: &Header,
+    element: &[u8],
+    axis: usize,
+    visitor: &mut V,
+) -> Result<(), Stop> {
+    // The element at the least significant end of eight bytes, most significant first.
+    let mut bytes = [0; 8];
+    let end = &mut bytes[8 - element.len()..];
+    end.copy_from_slice(element);
+    if !header.big_endian {
+        end.reverse();
+    }
+    let bits = u64::from_be_bytes(bytes);
+    let unused = 64 - 8 * element.len() as u32;
+    match (header.kind, element.len()) {
+        (Kind::Signed, _) => visitor.visit(axis, (bits << unused) as i64 >> unused),
+        (Kind::Unsigned, _) => visitor.visit(axis, bits),
+        (Kind::Float, 4) => visitor.visit(axis, f64::from(f32::from_bits(bits as u32))),
+        (Kind::Float, _) => visitor.visit(axis, f64::from_bits(bits)),
+    }
+}
+
+/// Keeps the number that it is shown.
+struct Keep<'a>(&'a mut Option<f64>);
+
+impl Visitor for Keep<'_> {
+    fn visit<F: Field>(&mut self, _axis: usize, value: F) -> Result<(), Stop> {
+        *self.0 = value.number().ok();
+        Ok(())
+    }
+}

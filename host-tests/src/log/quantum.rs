@@ -1,0 +1,130 @@
+//! From floats to counts: exact where the floats are whole numbers, else far below their noise.
+
+/// The range of one axis' values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    lowest: f64,
+    highest: f64,
+    /// Whether every value is a whole number within `i32`.
+    whole: bool,
+}
+
+impl Range {
+    /// Of no values.
+    pub(super) const EMPTY: Self = Self {
+        lowest: f64::INFINITY,
+        highest: f64::NEG_INFINITY,
+        whole: true,
+    };
+
+    /// Widens the range to a value.
+    #[inline]
+    pub(super) fn include(&mut self, value: f64) {
+        self.lowest = self.lowest.min(value);
+        self.highest = self.highest.max(value);
+        self.whole &= f64::from(value as i32) == value;
+    }
+}
+
+/// How one axis' floats become counts: `count = round(value / step) − origin`.
+///
+/// The step is a power of two between 2^-30 and 2^-29 of the range: division by it is exact, and
+/// so are the counts of values that are themselves multiples of it. The origin takes a constant
+/// offset away, which no Allan variance sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Quantum {
+    step: f64,
+    origin: f64,
+}
+
+impl Quantum {
+    /// Whole numbers: counts as they are.
+    pub(super) const WHOLE: Self = Self {
+        step: 1.0,
+        origin: 0.0,
+    };
+
+    /// The quantum of values within a range, or `None` where floats run out of it: a range beyond
+    /// 1e300, or one below 1e-290.
+    pub(super) fn of(range: Range) -> Option<Self> {
+        let width = range.highest - range.lowest;
+        if range.whole || width == 0.0 {
+            return Some(Self {
+                origin: if range.whole { 0.0 } else { range.lowest },
+                ..Self::WHOLE
+            });
+        }
+        if !(1e-290..=1e300).contains(&width) {
+            return None;
+        }
+        let exponent = width.log2().ceil() as i32 - 30;
+        let step = 2f64.powi(exponent);
+        let middle = 0.5 * range.lowest + 0.5 * range.highest;
+        let origin = (middle / step).round_ties_even();
+        origin.is_finite().then_some(Self { step, origin })
+    }
+
+    /// The value of one count.
+    pub(super) const fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// The count of a value within the range: at most 2^29 either way.
+    #[inline]
+    pub(super) fn count(&self, value: f64) -> i32 {
+        (value / self.step - self.origin).round_ties_even() as i32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quantum(values: &[f64]) -> Quantum {
+        let mut range = Range::EMPTY;
+        values.iter().for_each(|&value| range.include(value));
+        Quantum::of(range).unwrap()
+    }
+
+    #[test]
+    fn whole_numbers_are_counts_as_they_are() {
+        let values = [f64::from(i32::MIN), 0.0, 17.0, f64::from(i32::MAX)];
+        let quantum = quantum(&values);
+        assert_eq!(quantum, Quantum::WHOLE);
+        assert_eq!(
+            values.map(|value| quantum.count(value)),
+            [i32::MIN, 0, 17, i32::MAX]
+        );
+    }
+
+    #[test]
+    fn step_lies_between_2_to_minus_30_and_2_to_minus_29_of_the_range() {
+        for width in [1e-280, 3e-7, 0.5, 1.0, 1.000001, 77.7, 1e300] {
+            let relative = quantum(&[0.25 * width, 1.25 * width]).step() / width;
+            assert!((2f64.powi(-30)..=2f64.powi(-29)).contains(&(relative * (1.0 + 1e-15))));
+        }
+    }
+
+    #[test]
+    fn offset_of_a_million_times_the_range_costs_no_resolution() {
+        let values = [1e6 + 0.25, 1e6 + 0.5, 1e6 + 1.25];
+        let quantum = quantum(&values);
+        let counts = values.map(|value| quantum.count(value));
+        let rate = |i: usize, j: usize| f64::from(counts[i] - counts[j]) * quantum.step();
+        assert_eq!((rate(1, 0), rate(2, 1)), (0.25, 0.75));
+    }
+
+    #[test]
+    fn counts_stay_within_half_of_i32() {
+        let quantum = quantum(&[-0.7, 0.3]);
+        assert!(quantum.count(0.3).abs() <= 1 << 29 && quantum.count(-0.7).abs() <= 1 << 29);
+    }
+
+    #[test]
+    fn range_beyond_floats_has_no_quantum() {
+        let mut range = Range::EMPTY;
+        range.include(f64::MAX);
+        range.include(f64::MIN);
+        assert_eq!(Quantum::of(range), None);
+    }
+}

@@ -1,0 +1,124 @@
+//! Opening a log by its extension.
+
+use crate::failure::{Failure, Place};
+use flate2::bufread::MultiGzDecoder;
+use indicatif::ProgressBar;
+use std::{
+    fs::File,
+    io::{BufRead, BufReader, Read},
+    path::Path,
+};
+
+/// Bytes that a file is read by.
+const BUFFER: usize = 1 << 18;
+
+/// The kind of a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    /// A table of text.
+    Csv {
+        /// Whether it is compressed.
+        gzip: bool,
+    },
+    /// An array of numbers.
+    Npy,
+}
+
+impl Format {
+    /// The kind that a file's extension names.
+    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_lowercase();
+        if name.ends_with(".csv") {
+            Ok(Self::Csv { gzip: false })
+        } else if name.ends_with(".csv.gz") {
+            Ok(Self::Csv { gzip: true })
+        } else if name.ends_with(".npy") {
+            Ok(Self::Npy)
+        } else {
+            Err(Place::file(path).failure(
+                "the extension names no kind of log",
+                "give a .csv, .csv.gz or .npy file",
+            ))
+        }
+    }
+}
+
+/// A file from its beginning; `progress` follows the bytes that are read.
+pub(super) fn open(path: &Path, progress: &ProgressBar) -> Result<impl BufRead + use<>, Failure> {
+    let fail = |error| Place::file(path).io(&error);
+    let file = File::open(path).map_err(fail)?;
+    let metadata = file.metadata().map_err(fail)?;
+    if metadata.is_dir() {
+        return Err(Place::file(path).failure("is a directory", "name a file in it"));
+    }
+    progress.set_length(metadata.len());
+    progress.set_position(0);
+    Ok(BufReader::with_capacity(BUFFER, progress.wrap_read(file)))
+}
+
+/// The text of a file from its beginning, unpacked, without a byte order mark.
+pub(super) fn open_text(
+    path: &Path,
+    gzip: bool,
+    progress: &ProgressBar,
+) -> Result<Box<dyn BufRead>, Failure> {
+    let file = open(path, progress)?;
+    let mut text: Box<dyn BufRead> = if gzip {
+        Box::new(BufReader::with_capacity(BUFFER, MultiGzDecoder::new(file)))
+    } else {
+        Box::new(file)
+    };
+    let mark = b"\xEF\xBB\xBF";
+    let start = text
+        .fill_buf()
+        .map_err(|error| text_failure(Place::file(path), gzip, &error))?;
+    if start.starts_with(mark) {
+        text.consume(mark.len());
+    }
+    Ok(text)
+}
+
+/// A failure while reading text.
+pub(super) fn text_failure(place: Place, gzip: bool, error: &std::io::Error) -> Failure {
+    use std::io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
+    match error.kind() {
+        UnexpectedEof if gzip => place.failure(
+            "the gzip stream ends in the middle",
+            "copy or record the file again",
+        ),
+        InvalidData | InvalidInput if gzip => place.failure(
+            format!("not a gzip stream: {error}"),
+            "copy or pack the file again",
+        ),
+        _ => place.io(error),
+    }
+}
+
+/// The row, counted from 1, of the first record at or behind a byte of the text: rows that are
+/// empty or comments are passed over. Where the text ends or breaks off, the row of that.
+pub(super) fn row_at(path: &Path, gzip: bool, byte: u64) -> Result<u64, Failure> {
+    let mut text = open_text(path, gzip, &ProgressBar::hidden())?;
+    let mut row = 1;
+    let mut before = text.by_ref().take(byte);
+    while let Ok(chunk @ [_, ..]) = before.fill_buf() {
+        row += chunk.iter().filter(|&&byte| byte == b'\n').count() as u64;
+        let length = chunk.len();
+        before.consume(length);
+    }
+    while let Ok(Some(first)) = text.fill_buf().map(|chunk| chunk.first().copied()) {
+        match first {
+            b'#' if text.skip_until(b'\n').is_ok() => row += 1,
+            b'\r' => text.consume(1),
+            b'\n' => {
+                text.consume(1);
+                row += 1;
+            }
+            _ => break,
+        }
+    }
+    Ok(row)
+}

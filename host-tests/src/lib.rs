@@ -1,1 +1,9 @@
-//! x
+//! What surrounds the library on a host: simulator, logs and curve files, command line, studies.
+
+pub mod command;
+pub mod curve_file;
+pub mod failure;
+pub mod log;
+pub mod simulate;
+pub mod study;
+pub mod unit;

@@ -1,0 +1,15 @@
+//! The command line.
+
+use clap::Parser;
+use host_tests::{command::CommandLine, failure::Failure};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match CommandLine::parse().run() {
+        Ok(()) | Err(Failure::Closed) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("allanite: {failure}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Coefficients for people.
+
+use super::{
+    fit::{Fitted, MethodName},
+    units,
+};
+use crate::unit::Unit;
+use allanite::{Coefficient, Fit, State};
+use comfy_table::{CellAlignment, Table, presets::NOTHING};
+use std::io::{self, Write};
+
+/// Models with a smaller p-value are not adequate.
+const LEAST_P_VALUE: f64 = 0.01;
+
+/// Prints a table an axis.
+pub(super) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
+    for (i, fitted) in fitted.iter().enumerate() {
+        if i > 0 {
+            writeln!(output)?;
+        }
+        let axis = &fitted.axis;
+        let length_s = axis.samples as f64 / axis.rate_hz;
+        writeln!(
+            output,
+            "{}: {} samples at {} Hz ({}), {} octaves, method {}",
+            axis.axis,
+            axis.samples,
+            axis.rate_hz,
+            duration(length_s),
+            axis.octaves.len(),
+            fitted.method.name()
+        )?;
+        writeln!(output, "{}", table(&fitted.fit, axis.unit).trim_fmt())?;
+        for line in verdict(&fitted.fit, fitted.method) {
+            writeln!(output, "{line}")?;
+        }
+    }
+    Ok(())
+}
+
+fn table(fit: &Fit, unit: Unit) -> Table {
+    let mut table = Table::new();
+    table.load_style(NOTHING);
+    table.set_header([
+        "effect",
+        "",
+        "value",
+        "95 % interval",
+        "unit",
+        "customary",
+        "",
+        "state",
+    ]);
+    for coefficient in &fit.coefficients {
+        table.add_row(row(coefficient, unit));
+    }
+    for (i, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, 2));
+        if [2, 5].contains(&i) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
+    let (factor, customary) = units::customary(unit, coefficient.half_seconds).unwrap_or((1.0, ""));
+    let shown = |factor: f64| match coefficient.state {
+        State::Measured => number(factor * coefficient.value),
+        State::UpperBound => format!("< {}", number(factor * coefficient.upper)),
+        State::NotObservable { .. } => "–".into(),
+    };
+    let interval = match coefficient.state {
+        State::Measured => {
+            format!(
+                "{} … {}",
+                number(coefficient.lower),
+                number(coefficient.upper)
+            )
+        }
+        State::UpperBound => "0 inside".into(),
+        State::NotObservable { .. } => "–".into(),
+    };
+    let state = match coefficient.state {
+        State::Measured => "measured".into(),
+        State::UpperBound => "upper bound".into(),
+        State::NotObservable { after_s: None } => "not observable".into(),
+        State::NotObservable {
+            after_s: Some(after_s),
+        } => {
+            format!(
+                "not observable; a record of {} would show it",
+                duration(after_s)
+            )
+        }
+    };
+    [
+        coefficient.name.replace('_', " "),
+        coefficient.symbol.into(),
+        shown(1.0),
+        interval,
+        units::unit(unit, coefficient.half_seconds),
+        shown(factor),
+        customary.into(),
+        state,
+    ]
+}
+
+/// χ² and what it says, one line each.
+fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
+    if !fit.chi_squared.is_finite() {
+        return vec![
+            "This method has no error model, so no χ²: judge the model with --method covariance."
+                .into(),
+        ];
+    }
+    let mut first = format!(
+        "χ² {:.1}, {} degrees of freedom",
+        fit.chi_squared, fit.degrees_of_freedom
+    );
+    if fit.p_value.is_finite() {
+        first += &format!(", p = {}", probability(fit.p_value));
+    }
+    if fit.tolerance > 0.0 {
+        first += &format!(
+            ", a tolerance of {} % granted",
+            number(100.0 * fit.tolerance)
+        );
+    }
+    if fit.shrinkage > 0.0 {
+        first += &format!(
+            ", correlations shrunk by {} %",
+            number(100.0 * fit.shrinkage)
+        );
+    }
+    let judgement = if !fit.p_value.is_finite() {
+        "There are too few octaves to judge the five-term model: record longer."
+    } else if method == MethodName::RelativeAccuracy {
+        "This method takes octaves for independent: judge the model with --method covariance."
+    } else if fit.p_value >= LEAST_P_VALUE {
+        "The five-term model is adequate for this record."
+    } else {
+        "The five-term model is not adequate: something else is in this record, and the \
+         coefficients carry its mark."
+    };
+    vec![first, judgement.into()]
+}
+
+/// Four significant digits.
+fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !value.is_finite() {
+        return "∞".into();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if (-3..=4).contains(&exponent) {
+        format!("{value:.*}", (3 - exponent).max(0) as usize)
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+fn probability(p: f64) -> String {
+    if p >= 0.001 {
+        format!("{p:.3}")
+    } else if p > 0.0 {
+        format!("{p:.1e}")
+    } else {
+        "0".into()
+    }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.3} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.0} days", s / 86_400.0),
+    }
+}

@@ -1,0 +1,75 @@
+//! Logs and curves as inputs of commands.
+
+use super::progress;
+use crate::{
+    curve_file::{AxisCurve, CurveFile},
+    failure::{Failure, Place},
+    log::{self, ColumnChoice},
+    unit::Unit,
+};
+use clap::Args;
+use std::path::Path;
+
+/// What to know about a log.
+#[derive(Debug, Args)]
+pub(super) struct LogArguments {
+    /// Samples per second; else the log's own comment `# rate_hz=…`
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    rate: Option<f64>,
+    /// Rate units per count [default: the log's own comment `# scale=…`, else 1]
+    #[arg(long, value_name = "RATE_PER_COUNT", allow_negative_numbers = true)]
+    scale: Option<f64>,
+    /// Unit of the scaled values [default: the log's own comment `# unit=…`, else deg/s]
+    #[arg(long)]
+    unit: Option<Unit>,
+    /// Columns to take as axes, by name or by number from 1, such as `gyro_x,gyro_y` or `gx=2,gy=3`
+    /// [default: those named like a gyro's axes, else all numbers that are no time or temperature]
+    #[arg(long, value_delimiter = ',', value_name = "[AXIS=]COLUMN,…")]
+    columns: Option<Vec<ColumnChoice>>,
+}
+
+impl LogArguments {
+    fn options(&self) -> log::Options {
+        log::Options {
+            rate_hz: self.rate,
+            scale: self.scale,
+            unit: self.unit,
+            columns: self.columns.clone(),
+        }
+    }
+}
+
+/// Measures the curves of a log.
+pub(super) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
+    let bar = progress::reading(path);
+    let log = log::read(path, &arguments.options(), &bar);
+    bar.finish_and_clear();
+    let log = log?;
+    for note in &log.notes {
+        eprintln!("allanite: {}: {note}", path.display());
+    }
+    log.axes
+        .iter()
+        .map(|axis| AxisCurve::of(axis, log.rate_hz, log.unit))
+        .collect()
+}
+
+/// The curves of a log, or of a curve file by its extension `.json`.
+pub(super) fn read(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
+    if !is_curve(path) {
+        return measure(path, arguments);
+    }
+    if arguments.options() != log::Options::default() {
+        return Err(Place::file(path).failure(
+            "a curve knows its rate, scale, unit and axes",
+            "leave --rate, --scale, --unit and --columns to measure",
+        ));
+    }
+    Ok(CurveFile::read(path)?.axes)
+}
+
+/// Whether the extension is that of a curve file.
+pub(super) fn is_curve(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}

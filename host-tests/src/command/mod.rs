@@ -1,0 +1,51 @@
+//! The commands of `allanite`.
+
+mod fit;
+mod fit_json;
+mod fit_table;
+mod input;
+mod measure;
+mod output_file;
+mod progress;
+mod simulate;
+mod units;
+
+use crate::failure::Failure;
+use clap::{Parser, Subcommand};
+use std::io::{self, BufWriter, Write};
+
+/// Noise coefficients of gyros, from recorded logs or from curves.
+///
+/// Exit status: 0 when done; 2 for bad input, with one line on standard error that names the file,
+/// the row and the remedy.
+#[derive(Debug, Parser)]
+#[command(name = "allanite", version)]
+pub struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Simulate(simulate::Arguments),
+    Measure(measure::Arguments),
+    Fit(fit::Arguments),
+}
+
+impl CommandLine {
+    /// Runs the command; results go to standard output, everything else to standard error.
+    ///
+    /// # Errors
+    /// Of every kind of bad input.
+    pub fn run(&self) -> Result<(), Failure> {
+        let mut output = BufWriter::new(io::stdout().lock());
+        match &self.command {
+            Command::Simulate(arguments) => simulate::run(arguments, &mut output),
+            Command::Measure(arguments) => measure::run(arguments, &mut output),
+            Command::Fit(arguments) => fit::run(arguments, &mut output),
+        }?;
+        output
+            .flush()
+            .map_err(|error| Failure::standard_output(&error))
+    }
+}

@@ -1,0 +1,315 @@
+//! The file between `measure` and `fit`: what is left of a log, one curve an axis.
+//!
+//! JSON, exact: the sums of squares are integers, from which the variances follow. A file is
+//! checked whole before any number of it is used.
+
+use crate::{
+    failure::{Failure, Place, quoted},
+    log::{self, OCTAVES},
+    unit::Unit,
+};
+use allanite::{Curve, Scale};
+use serde::{Deserialize, Serialize};
+use std::{fs::File, io::Read, path::Path};
+
+/// The name of the format, in the file.
+pub const FORMAT: &str = "allanite-curve";
+
+/// The version of the format that is written and read.
+pub const VERSION: u32 = 1;
+
+/// Curves take a few kilobytes an axis; beyond this it is something else.
+const LARGEST: u64 = 1 << 24;
+
+/// Figures that follow from others agree to this.
+const TOLERANCE: f64 = 1e-9;
+
+/// The curves of a log's axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CurveFile {
+    format: String,
+    version: u32,
+    /// One curve an axis.
+    pub axes: Vec<AxisCurve>,
+}
+
+/// The curve of one axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AxisCurve {
+    /// The axis' name.
+    pub axis: String,
+    /// Samples per second.
+    pub rate_hz: f64,
+    /// The unit of the rate.
+    pub unit: Unit,
+    /// Rate units per count; for a log of floats, per quantum.
+    pub rate_per_count: f64,
+    /// Samples of the record.
+    pub samples: u64,
+    /// Ends of contiguous stretches within the record.
+    pub gaps: u64,
+    /// Where the record comes from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// The record's licence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub licence: Option<String>,
+    /// The octaves, shortest averaging time first.
+    pub octaves: Vec<Octave>,
+}
+
+/// One octave of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Octave {
+    /// Averaging factor, a power of two.
+    pub m: u32,
+    /// Averaging time, in seconds.
+    pub tau_s: f64,
+    /// Quarter-overlapping differences of adjacent clusters.
+    pub differences: u64,
+    /// The sum of their squares, in counts², exact.
+    pub sum: u128,
+    /// Allan variance, in rate units squared.
+    pub variance: f64,
+}
+
+impl CurveFile {
+    /// A file of these curves.
+    pub fn new(axes: Vec<AxisCurve>) -> Self {
+        Self {
+            format: FORMAT.into(),
+            version: VERSION,
+            axes,
+        }
+    }
+
+    /// The file's text.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        let mut text = serde_json::to_string_pretty(self)?;
+        text.push('\n');
+        Ok(text)
+    }
+
+    /// Reads a file and checks every figure of it.
+    ///
+    /// # Errors
+    /// With the file, the axis, the octave and the remedy.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let fail = |error| Place::file(path).io(&error);
+        let mut text = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(LARGEST + 1).read_to_end(&mut text))
+            .map_err(fail)?;
+        if text.len() as u64 > LARGEST {
+            return Err(Place::file(path).failure(
+                format!("more than {} MiB are not a curve", LARGEST >> 20),
+                "name the file that measure wrote",
+            ));
+        }
+        Self::parse(path, &text)
+    }
+
+    fn parse(path: &Path, text: &[u8]) -> Result<Self, Failure> {
+        /// What every version has.
+        #[derive(Deserialize)]
+        struct Head {
+            format: String,
+            version: u32,
+        }
+        let head: Head = serde_json::from_slice(text).map_err(|error| syntax(path, &error))?;
+        if head.format != FORMAT {
+            return Err(Place::file(path).failure(
+                format!(
+                    "the format is {}, not {FORMAT}",
+                    quoted(head.format.as_bytes())
+                ),
+                "name the file that measure wrote",
+            ));
+        }
+        if head.version != VERSION {
+            return Err(Place::file(path).failure(
+                format!(
+                    "version {} of the format, and this program reads {VERSION}",
+                    head.version
+                ),
+                "measure the log again",
+            ));
+        }
+        let file: Self = serde_json::from_slice(text).map_err(|error| syntax(path, &error))?;
+        file.check().map_err(|what| {
+            Place::file(path).failure(what, "restore the file or measure the log again")
+        })?;
+        Ok(file)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.axes.is_empty() {
+            return Err("no axes".into());
+        }
+        for (i, axis) in self.axes.iter().enumerate() {
+            let name = quoted(axis.axis.as_bytes());
+            if axis.axis.is_empty() {
+                return Err(format!("axis {} has no name", i + 1));
+            }
+            if self.axes[..i].iter().any(|other| other.axis == axis.axis) {
+                return Err(format!("two axes are named {name}"));
+            }
+            axis.check()
+                .map_err(|what| format!("axis {name}: {what}"))?;
+        }
+        Ok(())
+    }
+}
+
+impl AxisCurve {
+    /// The curve of one axis of a log.
+    ///
+    /// # Errors
+    /// When a sum exceeds 128 bits, which only full-scale input kept up for days can reach.
+    pub fn of(axis: &log::Axis, rate_hz: f64, unit: Unit) -> Result<Self, Failure> {
+        let fail = |what: String| {
+            Failure::option(
+                format!("axis {}: {what}", axis.name),
+                "check the scale and the sensor",
+            )
+        };
+        let scale =
+            Scale::new(axis.rate_per_count, rate_hz).map_err(|error| fail(error.to_string()))?;
+        let curve = axis.accumulator.curve(scale);
+        // The curve's octaves are the first ones of the accumulator, as differences only fall.
+        let octaves =
+            curve
+                .points()
+                .iter()
+                .zip(axis.accumulator.octaves())
+                .map(|(point, octave)| {
+                    let sum = octave.sum.to_u128();
+                    Ok(Octave {
+                        m: point.m,
+                        tau_s: point.tau_s,
+                        differences: point.differences,
+                        sum: sum
+                            .ok_or_else(|| fail(format!("m = {}: sum beyond 128 bits", point.m)))?,
+                        variance: point.variance,
+                    })
+                });
+        Ok(Self {
+            axis: axis.name.clone(),
+            rate_hz,
+            unit,
+            rate_per_count: axis.rate_per_count,
+            samples: axis.accumulator.samples(),
+            gaps: axis.accumulator.gaps(),
+            source: None,
+            licence: None,
+            octaves: octaves.collect::<Result<_, Failure>>()?,
+        })
+    }
+
+    /// The curve as the library knows it.
+    ///
+    /// # Errors
+    /// Of the library, for figures that reading a file would have refused.
+    pub fn curve(&self) -> Result<Curve<OCTAVES>, allanite::Error> {
+        let octaves = self.octaves.iter();
+        Curve::new(
+            self.rate_hz,
+            octaves.map(|octave| (octave.m, octave.differences, octave.variance)),
+        )
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let positive = |name: &str, value: f64| {
+            let valid = value.is_finite() && value > 0.0;
+            valid
+                .then_some(())
+                .ok_or_else(|| format!("{name} {value} is impossible"))
+        };
+        positive("rate_hz", self.rate_hz)?;
+        positive("rate_per_count", self.rate_per_count)?;
+        if self.octaves.len() < 2 {
+            return Err(format!(
+                "{} octaves, and a fit needs two",
+                self.octaves.len()
+            ));
+        }
+        let mut last = 0;
+        for octave in &self.octaves {
+            let here = |what: String| format!("octave m = {}: {what}", octave.m);
+            if octave.m <= last {
+                return Err(here("averaging factors must ascend".into()));
+            }
+            last = octave.m;
+            self.check_octave(octave).map_err(here)?;
+        }
+        Ok(())
+    }
+
+    fn check_octave(&self, octave: &Octave) -> Result<(), String> {
+        let m = f64::from(octave.m);
+        if !octave.m.is_power_of_two() || octave.m.ilog2() >= OCTAVES as u32 {
+            return Err("the averaging factor is not a power of two up to 2^29".into());
+        }
+        if !close(octave.tau_s, m / self.rate_hz) {
+            return Err(format!("tau_s {} is not m / rate_hz", octave.tau_s));
+        }
+        let possible = differences(self.samples, octave.m);
+        let least = Curve::<OCTAVES>::MIN_DIFFERENCES;
+        let right = match self.gaps {
+            0 => octave.differences == possible,
+            _ => octave.differences <= possible,
+        };
+        if !right || octave.differences < least {
+            return Err(format!(
+                "{} differences of {} samples are impossible",
+                octave.differences, self.samples
+            ));
+        }
+        let count = octave.differences as f64;
+        let sum = octave.sum as f64;
+        // A cluster of m counts differs from its neighbour by less than 2^32 m.
+        if sum > count * (m * 2f64.powi(32)).powi(2) {
+            return Err(format!(
+                "a sum of {} exceeds what counts can reach",
+                octave.sum
+            ));
+        }
+        let variance = 0.5 * sum / count * (self.rate_per_count / m).powi(2);
+        if !close(octave.variance, variance) {
+            return Err(format!(
+                "variance {} does not follow from the sum",
+                octave.variance
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Quarter-overlapping differences in a record without gaps.
+fn differences(samples: u64, m: u32) -> u64 {
+    let (blocks, first) = match m {
+        1 => (samples, 1),
+        2 => (samples, 3),
+        _ => (samples / u64::from(m / 4), 7),
+    };
+    blocks.saturating_sub(first)
+}
+
+fn close(value: f64, expected: f64) -> bool {
+    (value - expected).abs() <= TOLERANCE * expected
+}
+
+/// What the parser did not like, and in which line.
+fn syntax(path: &Path, error: &serde_json::Error) -> Failure {
+    let text = error.to_string();
+    let what = text
+        .rsplit_once(" at line ")
+        .map_or(text.as_str(), |(what, _)| what);
+    Place::row(path, error.line() as u64).failure(
+        format!("not a curve file: {what}"),
+        "name the file that measure wrote",
+    )
+}

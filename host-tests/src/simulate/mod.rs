@@ -1,9 +1,12 @@
 //! Simulated gyros: rates with noise of known coefficients.
 
+mod correlated;
 mod flicker;
+mod hidden;
 mod ieee_952;
 mod preset;
 
+pub use hidden::Hidden;
 pub use preset::Preset;
 
 use rand::SeedableRng;
@@ -48,11 +51,22 @@ impl Simulator {
         Self { random, sources }
     }
 
-    /// Adds another source.
-    #[must_use]
-    pub fn with(mut self, source: Box<dyn Source>) -> Self {
-        self.sources.push(source);
-        self
+    /// The same with hidden effects; one that replaces white noise takes the term's place.
+    pub fn with_hidden(
+        mut coefficients: Coefficients,
+        hidden: &[Hidden],
+        rate_hz: f64,
+        seed: u64,
+    ) -> Self {
+        if hidden.iter().any(Hidden::replaces_white_noise) {
+            coefficients.angle_random_walk = 0.0;
+        }
+        let mut simulator = Self::new(coefficients, rate_hz, seed);
+        for effect in hidden {
+            let source = effect.source(1.0 / rate_hz, &mut simulator.random);
+            simulator.sources.extend(source);
+        }
+        simulator
     }
 }
 

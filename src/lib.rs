@@ -4,8 +4,10 @@
 
 mod chi_squared;
 mod coefficient;
+mod comparison;
 mod covariance;
 mod curve;
+mod diagnosis;
 pub mod effect;
 mod error;
 mod fit;
@@ -15,14 +17,17 @@ mod model;
 mod nnls;
 mod observability;
 mod octave;
+mod search;
 mod square_sum;
 
 pub use chi_squared::chi_squared_tail;
 pub use coefficient::{Coefficient, State};
+pub use comparison::{ComparedOctave, Comparison, Stretch};
 pub use covariance::curve_covariance;
 pub use curve::{Curve, Point, Scale};
+pub use diagnosis::{Candidate, Diagnosis, MAX_CANDIDATES, Step, Verdict};
 pub use error::Error;
-pub use fit::{Fit, Method, Settings, fit};
+pub use fit::{Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};
 pub use model::{MAX_EFFECTS, Model, Term};
 pub use octave::{Accumulator, OctaveSum};
 pub use square_sum::SquareSum;

@@ -3,6 +3,11 @@
 
 pub(crate) use libm::{ceil, cos, erfc, exp, expm1, floor, log, sin, sincos, sqrt};
 
+/// The binary logarithm to a percent or so, for the number of steps of a search grid.
+pub(crate) fn log2_roughly(x: f64) -> f64 {
+    f64::from(micromath::F32(x as f32).log2().0)
+}
+
 /// The natural logarithm of an integer above 0, for tables computed by the compiler.
 pub(crate) const fn log_of_integer(i: u32) -> f64 {
     // i = 2^exponent · mantissa, with the mantissa in [1, 2): ln = 2 artanh((x − 1)/(x + 1)).

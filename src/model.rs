@@ -16,6 +16,9 @@ pub struct Term {
     pub effect: &'static dyn Effect,
     /// Its shape parameters, in the order in which it names them.
     pub parameters: [f64; MAX_PARAMETERS],
+    /// Whether the shape was found on the curve that the model is fitted to: it then costs degrees
+    /// of freedom, and widens the intervals of the coefficients.
+    pub fitted: bool,
 }
 
 impl Term {
@@ -24,7 +27,15 @@ impl Term {
         Self {
             effect,
             parameters: [0.0; MAX_PARAMETERS],
+            fitted: false,
         }
+    }
+
+    /// Indices of the shape parameters that were fitted.
+    pub(crate) fn fitted_parameters(&self) -> impl Iterator<Item = usize> + use<> {
+        let (effect, fitted) = (self.effect, self.fitted);
+        let all = 0..effect.parameters().len().min(MAX_PARAMETERS);
+        all.filter(move |&i| fitted && !effect.is_whole(i))
     }
 
     /// Where it is evaluated for samples `interval_s` apart.
@@ -77,6 +88,26 @@ impl Model {
         self.terms.push(term).map_err(|_| Error::TooManyEffects {
             capacity: MAX_EFFECTS,
         })
+    }
+
+    /// Without the effect of that name, if it has it.
+    #[must_use]
+    pub fn without(&self, name: &str) -> Self {
+        let rest = self.terms.iter().filter(|term| term.effect.name() != name);
+        Self {
+            terms: rest.copied().collect(),
+        }
+    }
+
+    /// The place of the effect of that name.
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.terms
+            .iter()
+            .position(|term| term.effect.name() == name)
+    }
+
+    pub(crate) fn terms_mut(&mut self) -> &mut [Term] {
+        &mut self.terms
     }
 
     /// The effects, in the order in which they were added.

@@ -1,34 +1,34 @@
 //! Least squares with coefficients that cannot be negative, from the normal equations.
 
 use crate::{error::Error, model::MAX_EFFECTS};
-use nalgebra::{Cholesky, SMatrix, SVector};
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
-/// Normal equations `H β = b` of up to [`MAX_EFFECTS`] coefficients.
-pub(crate) type Matrix = SMatrix<f64, MAX_EFFECTS, MAX_EFFECTS>;
-/// One number a coefficient.
-pub(crate) type Vector = SVector<f64, MAX_EFFECTS>;
+/// Normal equations `H β = b` of up to `P` unknowns.
+pub(crate) type Matrix<const P: usize = MAX_EFFECTS> = SMatrix<f64, P, P>;
+/// One number an unknown.
+pub(crate) type Vector<const P: usize = MAX_EFFECTS> = SVector<f64, P>;
 
 /// A pivot of the scaled equations below this is rounding, not information.
 const LEAST_PIVOT: f64 = 1e-10;
 
-/// Which coefficients are free; the others are held at zero.
-pub(crate) type Free = [bool; MAX_EFFECTS];
+/// Which unknowns are free; the others are held at zero.
+pub(crate) type Free<const P: usize = MAX_EFFECTS> = [bool; P];
 
 /// The equations with every column scaled to one, so that coefficients of any magnitude share one
 /// tolerance.
-pub(crate) struct NormalEquations {
-    scaled: Matrix,
-    right: Vector,
-    scale: Vector,
+pub(crate) struct NormalEquations<const P: usize = MAX_EFFECTS> {
+    scaled: Matrix<P>,
+    right: Vector<P>,
+    scale: Vector<P>,
     count: usize,
 }
 
-impl NormalEquations {
+impl<const P: usize> NormalEquations<P> {
     /// `H` and `b` of the first `count` coefficients.
     ///
     /// # Errors
     /// [`Error::Singular`] where a column is zero or not finite.
-    pub(crate) fn new(matrix: &Matrix, right: &Vector, count: usize) -> Result<Self, Error> {
+    pub(crate) fn new(matrix: &Matrix<P>, right: &Vector<P>, count: usize) -> Result<Self, Error> {
         let mut scale = Vector::zeros();
         for i in 0..count {
             let diagonal = matrix[(i, i)];
@@ -45,21 +45,24 @@ impl NormalEquations {
         })
     }
 
+    /// Number of unknowns.
+    pub(crate) const fn count(&self) -> usize {
+        self.count
+    }
+
     /// Factors the equations of the free coefficients; the others become the identity.
-    fn factor(&self, free: &Free) -> Option<Cholesky<f64, nalgebra::Const<MAX_EFFECTS>>> {
+    fn factor(&self, free: &Free<P>) -> Option<Cholesky<f64, Const<P>>> {
         let factor = Cholesky::new(Matrix::from_fn(|i, j| match (i == j, free[i] && free[j]) {
             (_, true) => self.scaled[(i, j)],
             (true, false) => 1.0,
             (false, false) => 0.0,
         }))?;
-        let pivots = factor.l_dirty().diagonal();
-        pivots
-            .iter()
-            .all(|&pivot| pivot * pivot > LEAST_PIVOT)
-            .then_some(factor)
+        let pivot = |i: usize| factor.l_dirty()[(i, i)];
+        let regular = (0..self.count).all(|i| pivot(i) * pivot(i) > LEAST_PIVOT);
+        regular.then_some(factor)
     }
 
-    fn solve_scaled(&self, free: &Free) -> Option<Vector> {
+    fn solve_scaled(&self, free: &Free<P>) -> Option<Vector<P>> {
         let factor = self.factor(free)?;
         Some(factor.solve(&Vector::from_fn(
             |i, _| if free[i] { self.right[i] } else { 0.0 },
@@ -70,7 +73,7 @@ impl NormalEquations {
     ///
     /// # Errors
     /// [`Error::Singular`].
-    pub(crate) fn solve(&self) -> Result<Vector, Error> {
+    pub(crate) fn solve(&self) -> Result<Vector<P>, Error> {
         let all = core::array::from_fn(|i| i < self.count);
         let solution = self.solve_scaled(&all).ok_or(Error::Singular)?;
         Ok(solution.component_mul(&self.scale))
@@ -78,12 +81,12 @@ impl NormalEquations {
 
     /// The solution with no negative coefficient, and which are above zero (Lawson & Hanson 1974,
     /// ch. 23, on the normal equations).
-    pub(crate) fn solve_non_negative(&self) -> (Vector, Free) {
-        let mut free = [false; MAX_EFFECTS];
-        let mut refused = [false; MAX_EFFECTS];
+    pub(crate) fn solve_non_negative(&self) -> (Vector<P>, Free<P>) {
+        let mut free = [false; P];
+        let mut refused = [false; P];
         let mut solution = Vector::zeros();
         // Each round frees one coefficient; thrice their number is the customary limit.
-        for _ in 0..3 * MAX_EFFECTS {
+        for _ in 0..3 * P {
             let gradient = self.right - self.scaled * solution;
             let candidate = (0..self.count)
                 .filter(|&i| !free[i] && !refused[i] && gradient[i] > 1e-12)
@@ -108,7 +111,12 @@ impl NormalEquations {
 
     /// Goes from a solution towards one that may have negative coefficients, holding those that
     /// reach zero, until none is negative.
-    fn retreat(&self, mut solution: Vector, mut trial: Vector, free: &mut Free) -> Vector {
+    fn retreat(
+        &self,
+        mut solution: Vector<P>,
+        mut trial: Vector<P>,
+        free: &mut Free<P>,
+    ) -> Vector<P> {
         for _ in 0..self.count {
             let held = (0..self.count)
                 .filter(|&i| free[i] && trial[i] <= 0.0)
@@ -130,7 +138,7 @@ impl NormalEquations {
 
     /// Covariance of the free coefficients; zero for the others. `None` if they cannot be told
     /// apart.
-    pub(crate) fn covariance(&self, free: &Free) -> Option<Matrix> {
+    pub(crate) fn covariance(&self, free: &Free<P>) -> Option<Matrix<P>> {
         let inverse = self.factor(free)?.inverse();
         Some(Matrix::from_fn(|i, j| {
             if free[i] && free[j] {

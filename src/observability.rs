@@ -44,10 +44,10 @@ fn equations(
     interval_s: f64,
     samples: f64,
 ) -> Option<NormalEquations> {
-    let mut matrix = Matrix::zeros();
+    let mut matrix: Matrix = Matrix::zeros();
     let mut m = 1.0;
     while samples / m >= 4.0 {
-        let mut row = Vector::zeros();
+        let mut row: Vector = Vector::zeros();
         for (share, term) in row.iter_mut().zip(model.terms()) {
             *share = term.effect.variance(m, &term.setting(interval_s));
         }

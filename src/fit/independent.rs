@@ -14,7 +14,7 @@ pub(super) fn equations<const K: usize>(
     problem: &Problem<'_, K>,
     weight: impl Fn(&Point) -> f64,
 ) -> Result<NormalEquations, Error> {
-    let (mut matrix, mut right) = (Matrix::zeros(), Vector::zeros());
+    let (mut matrix, mut right): (Matrix, Vector) = (Matrix::zeros(), Vector::zeros());
     for (k, point) in problem.points.iter().enumerate() {
         let row = problem.columns.row(k).transpose();
         let w = weight(point);
@@ -58,6 +58,7 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
     Ok(Fit {
         method,
         coefficients,
+        shape: heapless::Vec::new(),
         chi_squared,
         degrees_of_freedom,
         p_value: chi_squared_tail(chi_squared, degrees_of_freedom),

@@ -1,18 +1,22 @@
 //! From a curve to coefficients.
 
-mod generalized;
+pub(crate) mod generalized;
 mod independent;
+mod shape;
+pub(crate) mod weights;
+
+pub use shape::{MAX_SHAPE, ShapeEstimate};
 
 use crate::{
     coefficient::Coefficient,
     curve::{Curve, Point},
     error::Error,
     math,
-    model::{MAX_EFFECTS, Model},
+    model::{MAX_EFFECTS, Model, Term},
     nnls::Vector,
 };
 use heapless::Vec;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 /// How octaves are weighted, and whether squared coefficients may be negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,6 +66,8 @@ pub struct Fit {
     pub method: Method,
     /// One coefficient an effect, in the model's order.
     pub coefficients: Vec<Coefficient, MAX_EFFECTS>,
+    /// The shape parameters that were fitted.
+    pub shape: Vec<ShapeEstimate, MAX_SHAPE>,
     /// Squared residuals in units of their covariance. NaN for the methods without error model,
     /// `Ordinary` and `ClusterCount`; too large for `RelativeAccuracy`, which takes octaves for
     /// independent.
@@ -118,6 +124,18 @@ pub fn fit<const K: usize>(
         Method::Covariance => 2,
         _ => model.terms().len(),
     };
+    check(points, needed)?;
+    let problem = Problem::new(curve, model);
+    match settings.method {
+        Method::Covariance => {
+            generalized::solve(&problem, settings.tolerance).map(|solution| solution.fit())
+        }
+        method => independent::fit(&problem, method),
+    }
+}
+
+/// Whether octaves can be fitted.
+pub(crate) fn check(points: &[Point], needed: usize) -> Result<(), Error> {
     if points.len() < needed {
         return Err(Error::TooFewOctaves {
             found: points.len(),
@@ -127,52 +145,66 @@ pub fn fit<const K: usize>(
     if let Some(point) = points.iter().find(|point| point.variance == 0.0) {
         return Err(Error::NoNoise { m: point.m });
     }
-    let problem = Problem {
-        points,
-        model,
-        interval_s: curve.interval_s(),
-        columns: columns::<K>(points, model, curve.interval_s()),
-    };
-    match settings.method {
-        Method::Covariance => generalized::fit(&problem, settings.tolerance),
-        method => independent::fit(&problem, method),
-    }
+    Ok(())
 }
 
 /// Allan variances of unit coefficients: a row an octave, a column an effect.
 type Columns<const K: usize> = SMatrix<f64, K, MAX_EFFECTS>;
 
-fn columns<const K: usize>(points: &[Point], model: &Model, interval_s: f64) -> Columns<K> {
-    let mut columns = Columns::zeros();
-    for (i, term) in model.terms().iter().enumerate() {
-        let mut k = 0;
-        let mut factors = points.iter().map(|point| f64::from(point.m));
-        let setting = term.setting(interval_s);
-        term.effect
-            .variances(&mut factors, &setting, &mut |variance| {
-                columns[(k, i)] = variance;
-                k += 1;
-            });
-    }
-    columns
-}
-
 /// A curve, and what a model can make of it.
-struct Problem<'a, const K: usize> {
-    points: &'a [Point],
-    model: &'a Model,
-    interval_s: f64,
+pub(crate) struct Problem<'a, const K: usize> {
+    pub(crate) points: &'a [Point],
+    pub(crate) model: &'a Model,
+    pub(crate) interval_s: f64,
     columns: Columns<K>,
 }
 
-impl<const K: usize> Problem<'_, K> {
+impl<'a, const K: usize> Problem<'a, K> {
+    pub(crate) fn new(curve: &'a Curve<K>, model: &'a Model) -> Self {
+        let mut problem = Self {
+            points: curve.points(),
+            model,
+            interval_s: curve.interval_s(),
+            columns: Columns::zeros(),
+        };
+        for (i, term) in model.terms().iter().enumerate() {
+            problem.columns.set_column(i, &problem.column(term));
+        }
+        problem
+    }
+
+    /// The Allan variances of one effect, for a coefficient of one.
+    pub(crate) fn column(&self, term: &Term) -> SVector<f64, K> {
+        let mut column = SVector::<f64, K>::zeros();
+        let mut k = 0;
+        let mut factors = self.points.iter().map(|point| f64::from(point.m));
+        let setting = term.setting(self.interval_s);
+        term.effect
+            .variances(&mut factors, &setting, &mut |variance| {
+                if let Some(slot) = column.get_mut(k) {
+                    *slot = variance;
+                }
+                k += 1;
+            });
+        column
+    }
+
+    /// An effect's share of the model's variance in octave `k`; 0 beyond the model.
+    pub(crate) fn share(&self, k: usize, i: usize, squares: &Vector) -> f64 {
+        if i < self.count() {
+            self.columns[(k, i)] * squares[i] / self.variance(k, squares)
+        } else {
+            0.0
+        }
+    }
+
     /// Number of coefficients.
-    fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.model.terms().len()
     }
 
     /// The model's variance in octave `k`.
-    fn variance(&self, k: usize, squares: &Vector) -> f64 {
+    pub(crate) fn variance(&self, k: usize, squares: &Vector) -> f64 {
         (0..self.count())
             .map(|i| self.columns[(k, i)] * squares[i])
             .sum()

@@ -1,0 +1,248 @@
+//! Where a model and a measurement disagree.
+
+use crate::{
+    chi_squared::chi_squared_tail,
+    curve::Curve,
+    error::Error,
+    fit::{Fit, Problem, weights::Weights},
+    math,
+    model::{MAX_EFFECTS, Model},
+    nnls::Vector,
+};
+use heapless::Vec;
+
+/// A disagreement of an octave below so many standard errors is not one.
+const NOTICEABLE: f64 = 2.0;
+
+/// One octave of a measurement beside a model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ComparedOctave {
+    /// Averaging factor.
+    pub m: u32,
+    /// Averaging time, in seconds.
+    pub tau_s: f64,
+    /// Measured Allan variance, in rate units squared.
+    pub measured: f64,
+    /// The model's.
+    pub model: f64,
+    /// How far the measured variance lies above the model's, in percent of the model's.
+    pub percent: f64,
+    /// The same in standard errors, the model's tolerance among them.
+    pub z: f64,
+    /// Each effect's share of the model's variance, in the model's order.
+    pub shares: [f64; MAX_EFFECTS],
+}
+
+/// Neighbouring octaves that noticeably disagree, all to one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Stretch {
+    /// Whether the measurement lies above the model.
+    pub above: bool,
+    /// Its first octave's averaging time, in seconds.
+    pub from_s: f64,
+    /// Its last octave's averaging time, in seconds.
+    pub to_s: f64,
+}
+
+/// A measurement beside a model, octave by octave and as a whole.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Comparison<const K: usize> {
+    /// The octaves, shortest averaging time first.
+    pub octaves: Vec<ComparedOctave, K>,
+    /// Squared disagreement in units of the curve's covariance.
+    pub chi_squared: f64,
+    /// Octaves less what was fitted to them.
+    pub degrees_of_freedom: usize,
+    /// Probability of a larger χ² if the model is true.
+    pub p_value: f64,
+    /// Root-mean-square disagreement of the octaves, in percent.
+    pub rms_percent: f64,
+    /// Stretches of one sign, shortest averaging time first.
+    pub stretches: Vec<Stretch, K>,
+}
+
+impl<const K: usize> Comparison<K> {
+    /// The fit of a model beside the curve that it was fitted to.
+    ///
+    /// # Errors
+    /// As of [`fit`](crate::fit).
+    pub fn new(curve: &Curve<K>, model: &Model, fit: &Fit) -> Result<Self, Error> {
+        let unknowns = curve.points().len().saturating_sub(fit.degrees_of_freedom);
+        Self::with_unknowns(curve, model, fit, fit.tolerance, unknowns)
+    }
+
+    /// A fit beside a curve that it was not fitted to, such as of the other half of a record: no
+    /// degree of freedom is spent, and the model has its `tolerance`.
+    ///
+    /// # Errors
+    /// As of [`fit`](crate::fit).
+    pub fn held_out(
+        curve: &Curve<K>,
+        model: &Model,
+        fit: &Fit,
+        tolerance: f64,
+    ) -> Result<Self, Error> {
+        Self::with_unknowns(curve, model, fit, tolerance, 0)
+    }
+
+    fn with_unknowns(
+        curve: &Curve<K>,
+        model: &Model,
+        fit: &Fit,
+        tolerance: f64,
+        unknowns: usize,
+    ) -> Result<Self, Error> {
+        let problem = Problem::new(curve, model);
+        let squares = Vector::from(fit.squares());
+        let weights = Weights::new(&problem, &squares, tolerance)?;
+        Self::from_weights(&problem, &weights, &squares, unknowns)
+    }
+
+    pub(crate) fn from_weights(
+        problem: &Problem<'_, K>,
+        weights: &Weights<K>,
+        squares: &Vector,
+        unknowns: usize,
+    ) -> Result<Self, Error> {
+        let whitened = weights.whiten(problem, |_| 1.0)?;
+        let chi_squared = (whitened.curve - whitened.columns * squares).norm_squared();
+        let octaves: Vec<ComparedOctave, K> = problem
+            .points
+            .iter()
+            .enumerate()
+            .map(|(k, point)| {
+                let model = problem.variance(k, squares);
+                let relative = point.variance / model - 1.0;
+                ComparedOctave {
+                    m: point.m,
+                    tau_s: point.tau_s,
+                    measured: point.variance,
+                    model,
+                    percent: 100.0 * relative,
+                    z: relative * model / (weights.model[k] * weights.relative_error(k)),
+                    shares: core::array::from_fn(|i| problem.share(k, i, squares)),
+                }
+            })
+            .collect();
+        let squared: f64 = octaves
+            .iter()
+            .map(|octave| octave.percent * octave.percent)
+            .sum();
+        let degrees_of_freedom = octaves.len().saturating_sub(unknowns);
+        Ok(Self {
+            chi_squared,
+            degrees_of_freedom,
+            p_value: chi_squared_tail(chi_squared, degrees_of_freedom),
+            rms_percent: math::sqrt(squared / octaves.len().max(1) as f64),
+            stretches: stretches(&octaves),
+            octaves,
+        })
+    }
+
+    /// The octave that disagrees most, in standard errors; `None` for an empty curve.
+    pub fn worst(&self) -> Option<&ComparedOctave> {
+        let size = |octave: &&ComparedOctave| if octave.z < 0.0 { -octave.z } else { octave.z };
+        self.octaves
+            .iter()
+            .max_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+}
+
+fn stretches<const K: usize>(octaves: &Vec<ComparedOctave, K>) -> Vec<Stretch, K> {
+    let mut stretches: Vec<Stretch, K> = Vec::new();
+    let mut open = false;
+    for octave in octaves {
+        let above = octave.z > 0.0;
+        if !(octave.z > NOTICEABLE || octave.z < -NOTICEABLE) {
+            open = false;
+            continue;
+        }
+        match stretches.last_mut() {
+            Some(last) if open && last.above == above => last.to_s = octave.tau_s,
+            _ => {
+                // No more stretches than octaves.
+                let _ = stretches.push(Stretch {
+                    above,
+                    from_s: octave.tau_s,
+                    to_s: octave.tau_s,
+                });
+            }
+        }
+        open = true;
+    }
+    stretches
+}
+
+/// One sentence: the worst octave, then the stretches.
+impl<const K: usize> core::fmt::Display for Comparison<K> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Some(worst) = self.worst() else {
+            return write!(f, "no octaves to compare");
+        };
+        if self.stretches.is_empty() {
+            let (percent, z) = (worst.percent.abs(), worst.z.abs());
+            return write!(
+                f,
+                "no octave disagrees noticeably: the worst, at τ = {}, by {percent:.1} % ({z:.1} σ)",
+                Time(worst.tau_s)
+            );
+        }
+        write!(
+            f,
+            "measured is {:.0} % {} the model at τ = {} ({:.0} σ)",
+            worst.percent.abs(),
+            side(worst.percent > 0.0),
+            Time(worst.tau_s),
+            worst.z.abs()
+        )?;
+        for stretch in &self.stretches {
+            if stretch.from_s == stretch.to_s && stretch.from_s == worst.tau_s {
+                continue;
+            }
+            write!(f, "; {} it ", side(stretch.above))?;
+            let last = self.octaves.last().map_or(0.0, |octave| octave.tau_s);
+            let first = self.octaves.first().map_or(0.0, |octave| octave.tau_s);
+            if stretch.from_s == stretch.to_s {
+                write!(f, "at τ = {}", Time(stretch.from_s))?;
+            } else if stretch.to_s == last {
+                write!(f, "for τ ≥ {}", Time(stretch.from_s))?;
+            } else if stretch.from_s == first {
+                write!(f, "for τ ≤ {}", Time(stretch.to_s))?;
+            } else {
+                write!(
+                    f,
+                    "for τ from {} to {}",
+                    Time(stretch.from_s),
+                    Time(stretch.to_s)
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+const fn side(above: bool) -> &'static str {
+    if above { "above" } else { "below" }
+}
+
+/// A time in milliseconds or seconds, to three digits.
+pub(crate) struct Time(pub(crate) f64);
+
+impl core::fmt::Display for Time {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (value, unit) = if self.0 < 1.0 {
+            (self.0 * 1e3, "ms")
+        } else {
+            (self.0, "s")
+        };
+        let digits = match value {
+            v if v >= 100.0 => 0,
+            v if v >= 10.0 => 1,
+            _ => 2,
+        };
+        write!(f, "{value:.digits$} {unit}")
+    }
+}

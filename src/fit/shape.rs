@@ -1,0 +1,143 @@
+//! Uncertainty of fitted shapes, and what they add to that of the coefficients.
+
+use super::{Problem, weights::Weights};
+use crate::{
+    math,
+    model::{MAX_EFFECTS, Term},
+    nnls::{Free, Matrix, NormalEquations, Vector},
+};
+use heapless::Vec;
+use nalgebra::SVector;
+
+/// Fitted shape parameters that one model has room for.
+pub const MAX_SHAPE: usize = 4;
+
+const UNKNOWNS: usize = MAX_EFFECTS + MAX_SHAPE;
+
+/// Relative step of the numerical derivatives.
+const STEP: f64 = 0.01;
+
+/// A fitted shape parameter, with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ShapeEstimate {
+    /// Place of the effect in the model.
+    pub term: usize,
+    /// The parameter's name, such as `frequency_hz`.
+    pub name: &'static str,
+    /// Best value.
+    pub value: f64,
+    /// Lower end of the interval.
+    pub lower: f64,
+    /// Upper end of the interval.
+    pub upper: f64,
+}
+
+/// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
+/// linear around the solution.
+pub(super) struct ShapeEquations {
+    equations: NormalEquations<UNKNOWNS>,
+    parameters: Vec<(usize, usize, Term), MAX_SHAPE>,
+}
+
+impl ShapeEquations {
+    /// `None` for a model without fitted shapes, or where they cannot be told from the rest.
+    pub(super) fn new<const K: usize>(
+        problem: &Problem<'_, K>,
+        weights: &Weights<K>,
+        squares: &Vector,
+    ) -> Option<Self> {
+        let mut parameters = Vec::new();
+        for (i, term) in problem.model.terms().iter().enumerate() {
+            for j in term.fitted_parameters().filter(|_| squares[i] > 0.0) {
+                parameters.push((i, j, *term)).ok()?;
+            }
+        }
+        if parameters.is_empty() {
+            return None;
+        }
+        let whitened = weights.whiten(problem, |_| 1.0).ok()?;
+        let count = problem.count();
+        let mut derivatives: Vec<SVector<f64, K>, MAX_SHAPE> = Vec::new();
+        for &(i, j, term) in &parameters {
+            let column = |factor: f64| {
+                let mut term = term;
+                term.parameters[j] *= factor;
+                problem.column(&term)
+            };
+            let change = column(math::exp(STEP)) - column(math::exp(-STEP));
+            let mut derivative = change * (0.5 * squares[i] / STEP);
+            if !weights.whiten_column(&mut derivative, |_| 1.0) {
+                return None;
+            }
+            derivatives.push(derivative).ok()?;
+        }
+        // Coefficients first, the shapes behind them.
+        let at = |i: usize| -> Option<SVector<f64, K>> {
+            if i < count {
+                Some(whitened.columns.column(i).into_owned())
+            } else {
+                derivatives.get(i - count).copied()
+            }
+        };
+        let mut matrix = Matrix::<UNKNOWNS>::zeros();
+        let unknowns = count + parameters.len();
+        for a in 0..unknowns {
+            for b in 0..=a {
+                let product = at(a)?.dot(&at(b)?);
+                matrix[(a, b)] = product;
+                matrix[(b, a)] = product;
+            }
+        }
+        let equations =
+            NormalEquations::new(&matrix, &Vector::<UNKNOWNS>::zeros(), unknowns).ok()?;
+        // Shapes are looked up behind the coefficients.
+        Some(Self {
+            equations,
+            parameters,
+        })
+    }
+
+    fn with_shapes(&self, free: &Free, count: usize) -> Free<UNKNOWNS> {
+        core::array::from_fn(|i| {
+            if i < count {
+                free.get(i).copied().unwrap_or(false)
+            } else {
+                i < count + self.parameters.len()
+            }
+        })
+    }
+
+    fn count(&self) -> usize {
+        self.equations.count() - self.parameters.len()
+    }
+
+    /// Variance of a squared coefficient with the shapes free.
+    pub(super) fn variance(&self, i: usize, free: &Free) -> Option<f64> {
+        let free = self.with_shapes(free, self.count());
+        Some(self.equations.covariance(&free)?[(i, i)])
+    }
+
+    /// The fitted parameters with their intervals, which are even in the logarithm.
+    pub(super) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
+        let count = self.count();
+        let covariance = self.equations.covariance(&self.with_shapes(free, count));
+        let parameters = self.parameters.iter().enumerate();
+        parameters
+            .map(|(at, &(term, j, shape))| {
+                let value = shape.parameters[j];
+                let error = covariance.map_or(f64::INFINITY, |matrix| {
+                    math::sqrt(matrix[(count + at, count + at)])
+                });
+                let factor = math::exp(1.959_964 * error);
+                ShapeEstimate {
+                    term,
+                    name: shape.effect.parameters()[j].name,
+                    value,
+                    lower: value / factor,
+                    upper: value * factor,
+                }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,220 @@
+//! The shape of an effect that would explain a curve best.
+
+use crate::{
+    effect::{Effect, MAX_PARAMETERS, Range, Span},
+    error::Error,
+    fit::{Problem, weights::Weights},
+    math,
+    model::{MAX_EFFECTS, Term},
+    nnls::Vector,
+};
+use heapless::Vec;
+use nalgebra::SVector;
+
+/// Halvings of the step in a refinement: from half a grid step to a 256th.
+const HALVINGS: usize = 8;
+
+/// What a curve leaves to one more effect: the part that no coefficient of the others explains, in
+/// units in which octaves are independent.
+pub(crate) struct Remainder<'a, 'b, const K: usize> {
+    problem: &'a Problem<'b, K>,
+    weights: &'a Weights<K>,
+    /// Standard errors of the octaves are those of the measured curve instead of the model's.
+    scatter: SVector<f64, K>,
+    /// The others' columns, orthonormal.
+    basis: Vec<SVector<f64, K>, MAX_EFFECTS>,
+    residual: SVector<f64, K>,
+}
+
+impl<'a, 'b, const K: usize> Remainder<'a, 'b, K> {
+    /// What the active effects leave, those for which `excluded` holds taken out. With
+    /// `to_measured`, the covariance is rescaled to the measured curve: before an effect is found,
+    /// the model is too far off to say how much the octaves that it dominates scatter.
+    pub(crate) fn new(
+        problem: &'a Problem<'b, K>,
+        weights: &'a Weights<K>,
+        squares: &Vector,
+        excluded: impl Fn(usize) -> bool,
+        to_measured: bool,
+    ) -> Result<Self, Error> {
+        let scatter = SVector::<f64, K>::from_fn(|k, _| match problem.points.get(k) {
+            Some(point) if to_measured => point.variance / weights.model[k],
+            _ => 1.0,
+        });
+        let whitened = weights.whiten(problem, |k| scatter[k])?;
+        let mut basis: Vec<SVector<f64, K>, MAX_EFFECTS> = Vec::new();
+        for i in (0..problem.count()).filter(|&i| squares[i] > 0.0 && !excluded(i)) {
+            let mut column = whitened.columns.column(i).into_owned();
+            let before = column.norm_squared();
+            for other in &basis {
+                column -= other * other.dot(&column);
+            }
+            let norm = column.norm_squared();
+            if norm > 1e-10 * before {
+                // No more than effects.
+                let _ = basis.push(column / math::sqrt(norm));
+            }
+        }
+        let mut residual = whitened.curve;
+        for other in &basis {
+            residual -= other * other.dot(&residual);
+        }
+        Ok(Self {
+            problem,
+            weights,
+            scatter,
+            basis,
+            residual,
+        })
+    }
+
+    /// χ² of the best coefficient of one more effect, and that squared coefficient.
+    pub(crate) fn with(&self, term: &Term) -> (f64, f64) {
+        let without = self.residual.norm_squared();
+        let mut column = self.problem.column(term);
+        if !self.weights.whiten_column(&mut column, |k| self.scatter[k]) {
+            return (without, 0.0);
+        }
+        let before = column.norm_squared();
+        for other in &self.basis {
+            column -= other * other.dot(&column);
+        }
+        let norm = column.norm_squared();
+        let along = column.dot(&self.residual);
+        if norm > 1e-10 * before && along > 0.0 && norm.is_finite() {
+            (without - along * along / norm, along / norm)
+        } else {
+            (without, 0.0)
+        }
+    }
+
+    /// The best shape of an effect on its grid, refined.
+    pub(crate) fn search(&self, effect: &'static dyn Effect, span: &Span) -> Found {
+        let mut term = Term::new(effect);
+        term.fitted = !effect.parameters().is_empty();
+        let mut best = Found {
+            term,
+            chi_squared: f64::INFINITY,
+            square: 0.0,
+        };
+        let ranges: [Grid; MAX_PARAMETERS] = core::array::from_fn(|i| {
+            if i < effect.parameters().len() {
+                Grid::new(effect.range(i, span))
+            } else {
+                Grid::SINGLE
+            }
+        });
+        for first in 0..ranges[0].steps {
+            for second in 0..ranges[1].steps {
+                term.parameters = [ranges[0].at(first), ranges[1].at(second)];
+                best.improve(term, self.with(&term));
+            }
+        }
+        let steps = ranges.map(|grid| 0.5 * grid.log_step);
+        self.refine(best, steps, &ranges)
+    }
+
+    /// The best shape near one that is known, within 10 %.
+    pub(crate) fn refine_known(&self, term: Term, span: &Span) -> Found {
+        let (chi_squared, square) = self.with(&term);
+        let found = Found {
+            term,
+            chi_squared,
+            square,
+        };
+        let ranges = core::array::from_fn(|i| {
+            if i < term.effect.parameters().len() {
+                Grid::new(term.effect.range(i, span))
+            } else {
+                Grid::SINGLE
+            }
+        });
+        self.refine(found, [0.1; MAX_PARAMETERS], &ranges)
+    }
+
+    /// Goes downhill from a shape, one parameter after the other, in steps of the logarithm that
+    /// are halved whenever none helps.
+    fn refine(
+        &self,
+        start: Found,
+        mut steps: [f64; MAX_PARAMETERS],
+        ranges: &[Grid; MAX_PARAMETERS],
+    ) -> Found {
+        let mut best = start;
+        for _ in 0..HALVINGS {
+            for j in best.term.fitted_parameters() {
+                for sign in [1.0, -1.0] {
+                    let mut term = best.term;
+                    let value = term.parameters[j] * math::exp(sign * steps[j]);
+                    term.parameters[j] = value.clamp(ranges[j].low, ranges[j].high);
+                    if best.improve(term, self.with(&term)) {
+                        break;
+                    }
+                }
+                steps[j] *= 0.5;
+            }
+        }
+        best
+    }
+}
+
+/// A shape, and what it would make of the curve.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    pub(crate) term: Term,
+    pub(crate) chi_squared: f64,
+    pub(crate) square: f64,
+}
+
+impl Found {
+    fn improve(&mut self, term: Term, (chi_squared, square): (f64, f64)) -> bool {
+        let better = chi_squared < self.chi_squared;
+        if better {
+            *self = Self {
+                term,
+                chi_squared,
+                square,
+            };
+        }
+        better
+    }
+}
+
+/// Evenly spaced logarithms.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    low: f64,
+    high: f64,
+    log_step: f64,
+    steps: u32,
+}
+
+impl Grid {
+    /// For a parameter that an effect does not have.
+    const SINGLE: Self = Self {
+        low: 0.0,
+        high: 0.0,
+        log_step: 0.0,
+        steps: 1,
+    };
+
+    fn new(range: Range) -> Self {
+        let high = range.high.max(range.low);
+        let octaves = math::log2_roughly(high / range.low);
+        // A step more or less does not matter: the last is held at the upper end.
+        let steps = (octaves * range.steps_per_octave) as u32 + 2;
+        Self {
+            low: range.low,
+            high,
+            log_step: math::log(high / range.low) / f64::from(steps - 1),
+            steps,
+        }
+    }
+
+    fn at(&self, step: u32) -> f64 {
+        if step == 0 {
+            return self.low;
+        }
+        (self.low * math::exp(self.log_step * f64::from(step))).min(self.high)
+    }
+}

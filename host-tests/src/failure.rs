@@ -120,6 +120,6 @@ pub fn quoted(text: &[u8]) -> String {
 }
 
 /// The text without line breaks and other control characters.
-fn one_line(text: &str) -> String {
+pub fn one_line(text: &str) -> String {
     text.replace(char::is_control, " ")
 }

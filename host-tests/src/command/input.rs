@@ -3,7 +3,7 @@
 use super::progress;
 use crate::{
     curve_file::{AxisCurve, CurveFile},
-    failure::{Failure, Place},
+    failure::{Failure, Place, one_line},
     log::{self, ColumnChoice},
     unit::Unit,
 };
@@ -46,7 +46,7 @@ pub(super) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisC
     bar.finish_and_clear();
     let log = log?;
     for note in &log.notes {
-        eprintln!("allanite: {}: {note}", path.display());
+        eprintln!("allanite: {}{}", Place::file(path), one_line(note));
     }
     log.axes
         .iter()

@@ -62,8 +62,20 @@ pub(super) fn measure(
     let mut rounded = Rounded {
         batches: Batches::new(columns.len()),
         quanta,
+        steps: vec![Steps::default(); columns.len()],
     };
     table.pass(columns, &mut rounded, progress)?;
+    for (column, steps) in columns.iter().zip(&rounded.steps) {
+        if steps.lost > steps.all / 10 {
+            return Err(Place::file(path).failure(
+                format!(
+                    "axis {}: {} of {} steps between values are lost in 2^-30 of their range",
+                    column.axis, steps.lost, steps.all
+                ),
+                "remove the outliers that make the range so wide",
+            ));
+        }
+    }
     finish(path, rounded.batches, &rounded.quanta)
 }
 
@@ -173,13 +185,36 @@ impl Visitor for Ranges {
 struct Rounded {
     batches: Batches,
     quanta: Vec<Quantum>,
+    steps: Vec<Steps>,
+}
+
+/// Differences of neighbours in one axis.
+#[derive(Clone, Copy, Default)]
+struct Steps {
+    last: Option<(f64, i32)>,
+    all: u64,
+    /// Those that differ as numbers and not as counts.
+    lost: u64,
+}
+
+impl Steps {
+    #[inline]
+    fn step_to(&mut self, number: f64, count: i32) {
+        if let Some((last, last_count)) = self.last {
+            self.all += 1;
+            self.lost += u64::from(number != last && count == last_count);
+        }
+        self.last = Some((number, count));
+    }
 }
 
 impl Visitor for Rounded {
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
         let number = value.number().map_err(Stop::Flaw)?;
-        self.batches.push(axis, self.quanta[axis].count(number));
+        let count = self.quanta[axis].count(number);
+        self.steps[axis].step_to(number, count);
+        self.batches.push(axis, count);
         Ok(())
     }
 }

@@ -216,22 +216,14 @@ fn settle_axis(
             "record longer",
         );
     }
-    let Some(first) = accumulator
+    if accumulator
         .octave(0)
-        .filter(|octave| octave.sum.to_f64() > 0.0)
-    else {
+        .is_none_or(|octave| octave.sum.to_f64() == 0.0)
+    {
         return fail(
             format!("axis {name} never changes its value"),
             "check the sensor, or choose other columns with --columns",
         );
-    };
-    let mean_square = first.sum.to_f64() / first.differences as f64;
-    if !whole && mean_square < 100.0 {
-        notes.push(format!(
-            "axis {name}: a step of 2^-30 of its range is {:.2} of its noise; \
-             look for outliers that make the range so wide",
-            mean_square.sqrt().recip()
-        ));
     }
     if whole && settled.scale.is_none() {
         notes.push(format!(

@@ -1,0 +1,246 @@
+//! A curve file holds all that a fit needs, to the bit, and nothing impossible.
+
+use host_tests::{
+    curve_file::{AxisCurve, CurveFile, FORMAT, VERSION},
+    log::{Axis, OCTAVES},
+    unit::Unit,
+};
+use std::{fs, path::Path};
+use tempfile::TempDir;
+
+/// The curve of some counts, with a gap if wanted.
+fn curve(samples: u32, gap: bool) -> AxisCurve {
+    let mut accumulator = allanite::Accumulator::<OCTAVES>::new();
+    let mut state = 1u32;
+    for i in 0..samples {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        accumulator.push((state >> 8) as i32 - (1 << 23));
+        if gap && i == samples / 3 {
+            accumulator.gap();
+        }
+    }
+    let axis = Axis {
+        name: "gx".into(),
+        rate_per_count: 0.05,
+        accumulator,
+    };
+    AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
+}
+
+fn file() -> CurveFile {
+    let mut second = curve(100, true);
+    second.axis = "gy".into();
+    CurveFile::new(vec![curve(1000, false), second])
+}
+
+/// What reading the text ends with.
+fn read(text: &str) -> Result<CurveFile, String> {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("c.json");
+    fs::write(&path, text).unwrap();
+    CurveFile::read(&path).map_err(|failure| {
+        let line = failure.to_string();
+        assert!(!line.contains('\n') && line.contains("; "), "{line}");
+        line.replace(&format!("{}/", folder.path().display()), "")
+    })
+}
+
+#[test]
+fn file_reads_back_to_the_bit() {
+    let mut file = file();
+    file.axes[0].source = Some("a bench".into());
+    file.axes[0].licence = Some("CC0".into());
+    let text = file.to_json().unwrap();
+    assert!(text.contains(FORMAT) && text.contains(&format!("\"version\": {VERSION}")));
+    let back = read(&text).unwrap();
+    assert_eq!(back, file);
+    for (axis, same) in file.axes.iter().zip(&back.axes) {
+        assert_eq!(axis.curve().unwrap(), same.curve().unwrap());
+        assert_eq!(axis.curve().unwrap().points().len(), axis.octaves.len());
+    }
+}
+
+#[test]
+fn sums_beyond_64_bits_keep_every_digit() {
+    let mut accumulator = allanite::Accumulator::<OCTAVES>::new();
+    for i in 0..400u32 {
+        accumulator.push(if i / 8 % 2 == 0 { i32::MIN } else { i32::MAX });
+    }
+    let axis = Axis {
+        name: "gx".into(),
+        rate_per_count: 1e-9,
+        accumulator,
+    };
+    let file = CurveFile::new(vec![
+        AxisCurve::of(&axis, 8000.0, Unit::RadiansPerSecond).unwrap(),
+    ]);
+    assert!(
+        file.axes[0]
+            .octaves
+            .iter()
+            .any(|octave| octave.sum > u128::from(u64::MAX))
+    );
+    assert_eq!(read(&file.to_json().unwrap()).unwrap(), file);
+}
+
+#[test]
+fn impossible_figures_are_refused_with_axis_and_octave() {
+    type Change = fn(&mut CurveFile);
+    let cases: [(Change, &str); 19] = [
+        (|f| f.axes.clear(), "no axes"),
+        (
+            |f| f.axes[1].axis = "gx".into(),
+            "two axes are named \"gx\"",
+        ),
+        (|f| f.axes[1].axis.clear(), "axis 2 has no name"),
+        (
+            |f| f.axes[1].rate_hz = 0.0,
+            "axis \"gy\": rate_hz 0 is impossible",
+        ),
+        (
+            |f| f.axes[1].rate_hz = -1.0,
+            "axis \"gy\": rate_hz -1 is impossible",
+        ),
+        (
+            |f| f.axes[1].rate_per_count = -2.0,
+            "axis \"gy\": rate_per_count -2 is impossible",
+        ),
+        (
+            |f| f.axes[0].octaves.truncate(1),
+            "axis \"gx\": 1 octaves, and a fit needs two",
+        ),
+        (
+            |f| f.axes[0].octaves[1].m = 3,
+            "octave m = 3: the averaging factor is not a power of two",
+        ),
+        (
+            |f| f.axes[0].octaves[0].m = 0,
+            "octave m = 0: averaging factors must ascend",
+        ),
+        (
+            |f| f.axes[0].octaves[2].m = 2,
+            "octave m = 2: averaging factors must ascend",
+        ),
+        (
+            |f| f.axes[0].octaves[2].m = 1 << 30,
+            "octave m = 1073741824: the averaging factor is not",
+        ),
+        (
+            |f| f.axes[0].octaves[2].tau_s *= 1.001,
+            "octave m = 4: tau_s 0.04004",
+        ),
+        (
+            |f| f.axes[0].octaves[3].differences += 1,
+            "octave m = 8: 494 differences of 1000 samples are impossible",
+        ),
+        (
+            |f| f.axes[0].samples -= 1,
+            "octave m = 1: 999 differences of 999 samples are impossible",
+        ),
+        (
+            |f| f.axes[1].octaves[0].differences = 100,
+            "axis \"gy\": octave m = 1: 100 differences of 100 samples are impossible",
+        ),
+        (
+            |f| f.axes[1].octaves[0].differences = 5,
+            "5 differences of 100 samples are impossible",
+        ),
+        (
+            |f| f.axes[0].octaves[4].sum += f.axes[0].octaves[4].sum >> 20,
+            "does not follow from the sum",
+        ),
+        (
+            |f| f.axes[0].octaves[4].variance *= -1.0,
+            "does not follow from the sum",
+        ),
+        (
+            |f| f.axes[0].octaves[4].sum = u128::MAX,
+            "octave m = 16: a sum of 340282366920938463463374607431768211455 exceeds what counts",
+        ),
+    ];
+    assert!(read(&file().to_json().unwrap()).is_ok());
+    for (change, expected) in cases {
+        let mut file = file();
+        change(&mut file);
+        let line = read(&file.to_json().unwrap()).unwrap_err();
+        assert!(
+            line.starts_with("c.json: ") && line.contains(expected),
+            "{line}"
+        );
+        assert!(
+            line.ends_with("; restore the file or measure the log again"),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn text_that_is_no_curve_is_refused_with_its_line() {
+    let good = file().to_json().unwrap();
+    for (text, expected) in [
+        (String::new(), "c.json:1: not a curve file: EOF"),
+        (
+            "{}".into(),
+            "c.json:1: not a curve file: missing field `format`",
+        ),
+        ("[1, 2]".into(), "c.json:1: not a curve file"),
+        (
+            good.replace("\"version\": 1", "\"version\": 2"),
+            "c.json: version 2 of the format",
+        ),
+        (
+            good.replace(FORMAT, "another"),
+            "c.json: the format is \"another\"",
+        ),
+        (
+            good.replacen("100.0", "NaN", 1),
+            "c.json:7: not a curve file: expected value",
+        ),
+        (
+            good.replacen("100.0", "1e999", 1),
+            "c.json:7: not a curve file: number out of range",
+        ),
+        (
+            good.replacen("\"samples\": 1000", "\"samples\": -1", 1),
+            "c.json:10: not a curve file",
+        ),
+        (
+            good.replacen("deg/s", "furlong/s", 1),
+            "c.json:8: not a curve file: unknown variant",
+        ),
+        (
+            good.replacen("gaps", "holes", 1),
+            "c.json:11: not a curve file: unknown field `holes`",
+        ),
+        (
+            good.replacen("\"m\": 1,", "\"m\": 4294967297,", 1),
+            "c.json:14: not a curve file",
+        ),
+        (good[..good.len() / 2].into(), "not a curve file: EOF"),
+        (
+            format!("{good}{good}"),
+            "not a curve file: trailing characters",
+        ),
+    ] {
+        let line = read(&text).unwrap_err();
+        assert!(line.contains(expected), "{line}\nis not\n{expected}");
+    }
+}
+
+#[test]
+fn file_that_cannot_be_read_is_named() {
+    let line = CurveFile::read(Path::new("none.json"))
+        .unwrap_err()
+        .to_string();
+    assert_eq!(line, "none.json: no such file; check the path");
+    let folder = TempDir::new().unwrap();
+    let line = CurveFile::read(folder.path()).unwrap_err().to_string();
+    assert!(
+        line.ends_with(": is a directory; name a file in it"),
+        "{line}"
+    );
+    let huge = folder.path().join("huge.json");
+    fs::write(&huge, vec![b' '; (1 << 24) + 1]).unwrap();
+    let line = CurveFile::read(&huge).unwrap_err().to_string();
+    assert!(line.contains("more than 16 MiB are not a curve"), "{line}");
+}

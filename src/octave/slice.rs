@@ -1,0 +1,163 @@
+//! The bulk path: many counts at once, to the same state.
+
+use super::{Accumulator, FIRST, RING};
+
+/// Counts that are taken together.
+const BATCH: usize = 128;
+
+/// Levels above 0 that complete blocks within a batch.
+const DEPTH: usize = BATCH.trailing_zeros() as usize;
+
+/// Sample number from which on every level up to [`DEPTH`] has a full ring.
+const FULL: u32 = (RING * BATCH) as u32;
+
+/// Angles within a window of this span have second differences below 2^28 in magnitude, which 32
+/// bits hold, and squares of which a batch adds up to at most 2^63.
+const SPAN: u64 = 1 << 27;
+
+/// Angles less a common base: eight older ones, then those of the batch.
+type Offsets = [u32; RING + BATCH];
+
+impl<const OCTAVES: usize> Accumulator<OCTAVES> {
+    /// Adds counts: the state afterwards is that of pushing them one by one, sooner.
+    pub fn push_slice(&mut self, counts: &[i32]) {
+        let mut rest = counts;
+        while !rest.is_empty() {
+            let past = self.number as usize % BATCH;
+            let ready = past == 0 && self.number >= FULL && self.number < u32::MAX - FULL;
+            if ready
+                && let Some((batch, after)) = rest.split_first_chunk()
+                && self.push_batch(batch)
+            {
+                rest = after;
+            } else {
+                let (head, after) = rest.split_at(rest.len().min(BATCH - past));
+                for &count in head {
+                    self.push(count);
+                }
+                rest = after;
+            }
+        }
+    }
+
+    /// Adds a batch at a sample number that is a multiple of its length and at least [`FULL`],
+    /// unless its angles are too far apart for 32 bits: then it does nothing and returns `false`.
+    fn push_batch(&mut self, counts: &[i32; BATCH]) -> bool {
+        let n = self.number;
+        let base = self.angle.wrapping_sub(SPAN / 2);
+        let mut offsets = [0; RING + BATCH];
+        let mut bits = self.recall(0, n + 1, base, &mut offsets);
+        let mut distance = SPAN / 2;
+        for (offset, &count) in offsets[RING..].iter_mut().zip(counts) {
+            distance = distance.wrapping_add_signed(i64::from(count));
+            bits |= distance;
+            *offset = distance as u32;
+        }
+        if bits >= SPAN {
+            return false;
+        }
+
+        self.angle = base.wrapping_add(distance);
+        self.number = n + BATCH as u32;
+        self.short[0].add_low(squares::<1, BATCH>(&offsets));
+        self.short[1].add_low(squares::<2, BATCH>(&offsets));
+        if OCTAVES > FIRST {
+            self.levels[0].sum.add_low(squares::<4, BATCH>(&offsets));
+        }
+        self.store::<BATCH>(0, n + 1, base, &offsets);
+
+        // Level 1 and those above still wait for the boundary at n, the last of the older ones,
+        // and leave the batch's last to their next turn.
+        self.take::<{ BATCH >> 1 }>(1, n, base, &mut offsets, RING - 1);
+        self.take::<{ BATCH >> 2 }>(2, n, base, &mut offsets, RING);
+        self.take::<{ BATCH >> 3 }>(3, n, base, &mut offsets, RING);
+        self.take::<{ BATCH >> 4 }>(4, n, base, &mut offsets, RING);
+        for level in 5..=DEPTH {
+            if level + FIRST < OCTAVES {
+                let boundaries = offsets[RING..RING + (BATCH >> 4)].iter();
+                for (block, &offset) in (n >> level..).zip(boundaries.step_by(1 << (level - 4))) {
+                    self.levels[level].push(block, base.wrapping_add(u64::from(offset)));
+                }
+            }
+        }
+        self.complete_scheduled(self.number);
+        true
+    }
+
+    /// The level takes `COUNT` boundaries: every other one of those that the level below took.
+    #[inline(always)]
+    fn take<const COUNT: usize>(
+        &mut self,
+        level: usize,
+        n: u32,
+        base: u64,
+        offsets: &mut Offsets,
+        from: usize,
+    ) {
+        for j in 0..COUNT {
+            offsets[RING + j] = offsets[from + 2 * j];
+        }
+        if level + FIRST >= OCTAVES {
+            return;
+        }
+        let block = n >> level;
+        if self.recall(level, block, base, offsets) < SPAN {
+            self.levels[level].sum.add_low(squares::<4, COUNT>(offsets));
+            self.store::<COUNT>(level, block, base, offsets);
+        } else {
+            for (block, &offset) in (block..).zip(&offsets[RING..RING + COUNT]) {
+                self.levels[level].push(block, base.wrapping_add(u64::from(offset)));
+            }
+        }
+    }
+
+    /// Puts what the level's ring holds, the boundaries before `block`, in front of the offsets.
+    /// Returns the bits that any of their distances from the base has set.
+    #[inline(always)]
+    fn recall(&self, level: usize, block: u32, base: u64, offsets: &mut Offsets) -> u64 {
+        let mut bits = 0;
+        for (offset, b) in offsets[..RING].iter_mut().zip(block..) {
+            let distance = self.levels[level].ring[b as usize % RING].wrapping_sub(base);
+            bits |= distance;
+            *offset = distance as u32;
+        }
+        bits
+    }
+
+    /// Puts the last of `COUNT` new boundaries, of which `block` is the first, into the level's
+    /// ring.
+    #[inline(always)]
+    fn store<const COUNT: usize>(
+        &mut self,
+        level: usize,
+        block: u32,
+        base: u64,
+        offsets: &Offsets,
+    ) {
+        const { assert!(COUNT % RING == 0) };
+        for (b, &offset) in (block..).zip(&offsets[COUNT..COUNT + RING]) {
+            self.levels[level].ring[b as usize % RING] = base.wrapping_add(u64::from(offset));
+        }
+    }
+}
+
+/// Sum of squared second differences at distance `LAG`, of `COUNT` angles after the older ones.
+#[inline(always)]
+fn squares<const LAG: usize, const COUNT: usize>(offsets: &Offsets) -> u64 {
+    let mut magnitudes = [0; COUNT];
+    for (j, magnitude) in magnitudes.iter_mut().enumerate() {
+        let i = RING + j;
+        let middle = offsets[i - LAG];
+        let newest = offsets[i].wrapping_sub(middle);
+        let oldest = middle.wrapping_sub(offsets[i - 2 * LAG]);
+        *magnitude = (newest.wrapping_sub(oldest) as i32).unsigned_abs();
+    }
+    sum_of_squares(&magnitudes)
+}
+
+/// Not inlined: a compiler that knows the length unrolls the loop instead of vectorising it.
+#[inline(never)]
+fn sum_of_squares(magnitudes: &[u32]) -> u64 {
+    let square = |&magnitude: &u32| u64::from(magnitude) * u64::from(magnitude);
+    magnitudes.iter().map(square).sum()
+}

@@ -1,0 +1,259 @@
+//! Each term of the simulator against its own Allan variance, and seeds that name a record.
+
+use allanite::Model;
+use host_tests::{
+    simulate::{Coefficients, Preset, Simulator},
+    study::{self, RATE_HZ},
+};
+use rayon::prelude::*;
+
+/// Samples of every averaged record.
+const SAMPLES: usize = 1 << 13;
+
+const NONE: Coefficients = Coefficients {
+    quantization: 0.0,
+    angle_random_walk: 0.0,
+    bias_instability: 0.0,
+    rate_random_walk: 0.0,
+    rate_ramp: 0.0,
+};
+
+/// An octave's estimate, averaged over records, relative to the Allan variance.
+struct Average {
+    m: u32,
+    mean: f64,
+    standard_error: f64,
+}
+
+/// The model's five terms, squared.
+fn squares(c: Coefficients) -> [f64; 5] {
+    let terms = [
+        c.quantization,
+        c.angle_random_walk,
+        c.bias_instability,
+        c.rate_random_walk,
+        c.rate_ramp,
+    ];
+    terms.map(|x| x * x)
+}
+
+fn averages(coefficients: Coefficients, records: u64) -> Vec<Average> {
+    let model = Model::ieee_952();
+    let squares = squares(coefficients);
+    let curves: Vec<Vec<(u32, f64)>> = (0..records)
+        .into_par_iter()
+        .map(|seed| {
+            let curve = study::curve(coefficients, SAMPLES, seed);
+            let relative = curve.points().iter().map(|point| {
+                let variance = model.variance(&squares, point.m, curve.interval_s());
+                (point.m, point.variance / variance)
+            });
+            relative.collect()
+        })
+        .collect();
+    let n = records as f64;
+    (0..curves[0].len())
+        .map(|k| {
+            let ratios = curves.iter().map(|curve| curve[k].1);
+            let mean = ratios.clone().sum::<f64>() / n;
+            let squares: f64 = ratios.map(|ratio| (ratio - mean).powi(2)).sum();
+            let standard_error = (squares / (n * (n - 1.0))).sqrt();
+            Average {
+                m: curves[0][k].0,
+                mean,
+                standard_error,
+            }
+        })
+        .collect()
+}
+
+/// Every octave known to 0.3 % or better must be right to 1 %; there must be `octaves` of them. The
+/// longer ones must be right as far as they are known.
+fn assert_averages(coefficients: Coefficients, records: u64, octaves: usize) {
+    let averages = averages(coefficients, records);
+    let known = |average: &&Average| average.standard_error <= 0.003;
+    for Average {
+        m,
+        mean,
+        standard_error,
+    } in &averages
+    {
+        assert!(
+            (mean - 1.0).abs() < f64::max(0.01, 4.0 * standard_error),
+            "m = {m}: {mean:.4} ± {standard_error:.4} of the Allan variance"
+        );
+    }
+    let found = averages.iter().filter(known).count();
+    assert!(
+        found >= octaves,
+        "{found} octaves known to 0.3 %, not {octaves}"
+    );
+}
+
+#[test]
+fn quantization_has_its_allan_variance() {
+    assert_averages(
+        Coefficients {
+            quantization: 2e-4,
+            ..NONE
+        },
+        12_000,
+        8,
+    );
+}
+
+#[test]
+fn angle_random_walk_has_its_allan_variance() {
+    assert_averages(
+        Coefficients {
+            angle_random_walk: 5e-3,
+            ..NONE
+        },
+        12_000,
+        8,
+    );
+}
+
+#[test]
+fn bias_instability_has_its_allan_variance() {
+    assert_averages(
+        Coefficients {
+            bias_instability: 4e-3,
+            ..NONE
+        },
+        3_000,
+        6,
+    );
+}
+
+#[test]
+fn rate_random_walk_has_its_allan_variance() {
+    assert_averages(
+        Coefficients {
+            rate_random_walk: 3e-4,
+            ..NONE
+        },
+        12_000,
+        8,
+    );
+}
+
+#[test]
+fn rate_ramp_has_its_allan_variance() {
+    assert_averages(
+        Coefficients {
+            rate_ramp: 1e-5,
+            ..NONE
+        },
+        2,
+        11,
+    );
+}
+
+#[test]
+fn the_terms_of_a_gyro_add() {
+    let all = Coefficients {
+        rate_ramp: 2e-4,
+        ..Preset::Mems.coefficients()
+    };
+    assert_averages(all, 2_000, 5);
+}
+
+#[test]
+fn a_ramp_climbs_by_the_same_step_every_sample() {
+    let ramp = Coefficients {
+        rate_ramp: 0.5,
+        ..NONE
+    };
+    let rates: Vec<f64> = Simulator::new(ramp, 10.0, 0).take(5).collect();
+    for (i, rate) in rates.windows(2).enumerate() {
+        assert!((rate[1] - rate[0] - 0.05).abs() < 1e-15, "step {i}");
+    }
+    assert_eq!(Simulator::new(NONE, 10.0, 0).take(3).sum::<f64>(), 0.0);
+}
+
+/// The first samples of a preset's record.
+fn first(preset: Preset, seed: u64) -> [f64; 4] {
+    let mut simulator = Simulator::new(preset.coefficients(), RATE_HZ, seed);
+    std::array::from_fn(|_| simulator.next().expect("endless"))
+}
+
+#[test]
+fn a_seed_names_a_record() {
+    for preset in Preset::ALL {
+        let bits = |seed| first(preset, seed).map(f64::to_bits);
+        assert_eq!(bits(7), bits(7));
+        assert_ne!(bits(7), bits(8));
+    }
+}
+
+/// What takes nothing from the host but arithmetic: the same bits everywhere.
+#[test]
+fn a_seed_names_a_record_for_good() {
+    let bits = |coefficients| -> Vec<u64> {
+        let rates = Simulator::new(coefficients, 1.0, 1).take(3);
+        rates.map(f64::to_bits).collect()
+    };
+    let quantization = Coefficients {
+        quantization: 1.0,
+        ..NONE
+    };
+    assert_eq!(
+        bits(quantization),
+        [
+            0xbfc0_70a7_33f2_b7f0,
+            0xc005_0d2c_4d69_4e48,
+            0x4002_f26a_e07c_510e
+        ]
+    );
+    let angle_random_walk = Coefficients {
+        angle_random_walk: 1.0,
+        ..NONE
+    };
+    assert_eq!(
+        bits(angle_random_walk),
+        [
+            0x3feb_0209_616c_0cff,
+            0x3fe6_e5df_946f_5f03,
+            0xbffe_a768_d09a_ed0f
+        ]
+    );
+    let rate_random_walk = Coefficients {
+        rate_random_walk: 1.0,
+        ..NONE
+    };
+    assert_eq!(
+        bits(rate_random_walk),
+        [
+            0x3feb_0209_616c_0cff,
+            0x3ff8_f3f4_7aed_b601,
+            0xbfd6_cdd1_56b4_dc38
+        ]
+    );
+}
+
+/// Flicker noise takes exponentials from the host, which may differ in the last bit.
+#[test]
+fn presets_keep_their_records() {
+    for (preset, expected) in [
+        (
+            Preset::Tactical,
+            [-0.022_765_553_787_178_053, -0.012_509_007_647_572_555],
+        ),
+        (
+            Preset::Fog,
+            [-0.003_883_679_302_391_271_4, -0.002_277_124_879_055_117],
+        ),
+        (
+            Preset::Mems,
+            [-0.063_335_012_139_028_8, -0.033_862_081_197_821_77],
+        ),
+    ] {
+        for (found, expected) in first(preset, 1).into_iter().zip(expected) {
+            assert!(
+                (found / expected - 1.0).abs() < 1e-12,
+                "{preset:?}: {found}"
+            );
+        }
+    }
+}

@@ -9,6 +9,7 @@ use crate::{
     fit::{
         Fit, Problem, check,
         generalized::{ROUNDS, Solution, solve},
+        weights::Weights,
     },
     model::{MAX_EFFECTS, Model, Term},
     nnls::Vector,
@@ -259,6 +260,13 @@ impl Diagnosis {
             let problem = Problem::new(curve, &extended);
             let solution = Solution::converge(&problem, squares, self.tolerance, ROUNDS)?;
             squares = solution.squares;
+            if let Some(confused) = solution.confused() {
+                let mut held = extended.clone();
+                held.terms_mut()[confused].held = true;
+                squares[confused] = 0.0;
+                extended = polish(&problem, &solution.weights, &squares, &held, span)?;
+                continue;
+            }
             let now = solution.minus_two_log_likelihood();
             if now < score {
                 let at = extended.terms().len() - 1;
@@ -284,15 +292,14 @@ impl Diagnosis {
             } else {
                 break;
             }
-            let polished = polish(&problem, &solution, &extended, span)?;
-            extended = polished;
+            extended = polish(&problem, &solution.weights, &squares, &extended, span)?;
         }
         Ok(best)
     }
 }
 
 /// Rounds of fitting and polishing the shapes of a candidate.
-const POLISHES: usize = 3;
+const POLISHES: usize = 4;
 /// A gain of `−2 ln L` that ends the rounds.
 const SETTLED: f64 = 0.05;
 
@@ -306,23 +313,18 @@ struct Better {
 /// The best shape of every fitted effect, each with the others as they are.
 fn polish<const K: usize>(
     problem: &Problem<'_, K>,
-    solution: &Solution<'_, '_, K>,
+    weights: &Weights<K>,
+    squares: &Vector,
     model: &Model,
     span: &Span,
 ) -> Result<Model, Error> {
     let mut polished = model.clone();
     for at in 0..MAX_EFFECTS.min(model.terms().len()) {
         let term = model.terms()[at];
-        if !term.fitted || solution.squares[at] <= 0.0 {
+        if !term.fitted || squares[at] <= 0.0 {
             continue;
         }
-        let remainder = Remainder::new(
-            problem,
-            &solution.weights,
-            &solution.squares,
-            |i| i == at,
-            false,
-        )?;
+        let remainder = Remainder::new(problem, weights, squares, |i| i == at, false)?;
         let found = remainder.refine_known(term, span);
         polished.terms_mut()[at] = found.term;
     }

@@ -19,6 +19,9 @@ pub struct Term {
     /// Whether the shape was found on the curve that the model is fitted to: it then costs degrees
     /// of freedom, and widens the intervals of the coefficients.
     pub fitted: bool,
+    /// Whether the coefficient is held at zero: a fitted shape could take its place, so that the
+    /// curve does not tell the two apart.
+    pub held: bool,
 }
 
 impl Term {
@@ -28,6 +31,7 @@ impl Term {
             effect,
             parameters: [0.0; MAX_PARAMETERS],
             fitted: false,
+            held: false,
         }
     }
 

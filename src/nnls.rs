@@ -80,8 +80,8 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     /// The solution with no negative coefficient, and which are above zero (Lawson & Hanson 1974,
-    /// ch. 23, on the normal equations).
-    pub(crate) fn solve_non_negative(&self) -> (Vector<P>, Free<P>) {
+    /// ch. 23, on the normal equations). Those for which `held` is true stay at zero.
+    pub(crate) fn solve_non_negative(&self, held: &Free<P>) -> (Vector<P>, Free<P>) {
         let mut free = [false; P];
         let mut refused = [false; P];
         let mut solution = Vector::zeros();
@@ -89,7 +89,7 @@ impl<const P: usize> NormalEquations<P> {
         for _ in 0..3 * P {
             let gradient = self.right - self.scaled * solution;
             let candidate = (0..self.count)
-                .filter(|&i| !free[i] && !refused[i] && gradient[i] > 1e-12)
+                .filter(|&i| !free[i] && !refused[i] && !held[i] && gradient[i] > 1e-12)
                 .max_by(|&a, &b| gradient[a].total_cmp(&gradient[b]));
             let Some(entering) = candidate else { break };
             free[entering] = true;

@@ -19,6 +19,8 @@ const CONVERGED: f64 = 1e-3;
 /// Below this p-value the curve's scatter does not explain the misfit, and the model is granted
 /// its tolerance.
 const UNEXPLAINED: f64 = 0.05;
+/// A shape parameter with a larger standard error of its logarithm is not determined.
+const UNDETERMINED: f64 = 0.3;
 /// Rounds of a bound and the covariance that it implies.
 const BOUND_ROUNDS: usize = 3;
 
@@ -28,7 +30,7 @@ pub(crate) fn solve<'a, 'b, const K: usize>(
     tolerance: f64,
 ) -> Result<Solution<'a, 'b, K>, Error> {
     let start = independent::equations(problem, independent::by_relative_accuracy)?;
-    let (start, _) = start.solve_non_negative();
+    let (start, _) = start.solve_non_negative(&problem.held());
     let mut solution = Solution::converge(problem, start, 0.0, ROUNDS)?;
     if solution.p_value() < UNEXPLAINED && tolerance > 0.0 {
         solution = Solution::converge(problem, solution.squares, tolerance, ROUNDS)?;
@@ -60,7 +62,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
             let weights = Weights::new(problem, &squares, tolerance)?;
             let whitened = weights.whiten(problem, |_| 1.0)?;
             let equations = whitened.equations(problem.count())?;
-            let (next, free) = equations.solve_non_negative();
+            let (next, free) = equations.solve_non_negative(&problem.held());
             let change = largest_change(problem, &squares, &next);
             squares = next;
             if change < CONVERGED || round >= rounds {
@@ -95,6 +97,27 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         self.chi_squared + self.weights.log_determinant
     }
 
+    /// An active effect that a fitted shape could take the place of: held at zero, it leaves the
+    /// shape determined.
+    pub(crate) fn confused(&self) -> Option<usize> {
+        let shape = ShapeEquations::new(self.problem, &self.weights, &self.squares)?;
+        let before = shape.worst_error(&self.free);
+        if before < UNDETERMINED {
+            return None;
+        }
+        let terms = self.problem.model.terms().iter().enumerate();
+        terms
+            .filter(|&(i, term)| self.free[i] && term.effect.parameters().is_empty())
+            .map(|(i, _)| {
+                let mut without = self.free;
+                without[i] = false;
+                (i, shape.worst_error(&without))
+            })
+            .filter(|&(_, error)| 3.0 * error < before)
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(i, _)| i)
+    }
+
     pub(crate) fn fit(&self) -> Fit {
         let count = self.problem.count();
         let shape = ShapeEquations::new(self.problem, &self.weights, &self.squares);
@@ -114,6 +137,10 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     }
 
     fn coefficient(&self, i: usize, shape: Option<&ShapeEquations>) -> Coefficient {
+        let term = &self.problem.model.terms()[i];
+        if term.held {
+            return Coefficient::new(term.effect, 0.0, None);
+        }
         let mut with = self.free;
         with[i] = true;
         let linear = || {
@@ -125,7 +152,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
             Some(shape) => shape.variance(i, &with).or_else(linear),
             None => linear(),
         };
-        let effect = self.problem.model.terms()[i].effect;
+        let effect = term.effect;
         let coefficient = Coefficient::new(effect, self.squares[i], variance);
         if coefficient.state != State::UpperBound {
             return coefficient;
@@ -166,7 +193,8 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
                 .whiten(self.problem, scatter)
                 .and_then(|whitened| {
                     let equations = whitened.equations(self.problem.count())?;
-                    let (squares, mut free) = equations.solve_non_negative();
+                    let held = self.problem.held();
+                    let (squares, mut free) = equations.solve_non_negative(&held);
                     free[i] = true;
                     let covariance = equations.covariance(&free).ok_or(Error::Singular)?;
                     Ok(Coefficient::one_sided_bound(squares[i], covariance[(i, i)]))

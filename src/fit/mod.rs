@@ -13,7 +13,7 @@ use crate::{
     error::Error,
     math,
     model::{MAX_EFFECTS, Model, Term},
-    nnls::Vector,
+    nnls::{Free, Vector},
 };
 use heapless::Vec;
 use nalgebra::{SMatrix, SVector};
@@ -196,6 +196,11 @@ impl<'a, const K: usize> Problem<'a, K> {
         } else {
             0.0
         }
+    }
+
+    /// Which coefficients are held at zero.
+    pub(crate) fn held(&self) -> Free {
+        core::array::from_fn(|i| self.model.terms().get(i).is_some_and(|term| term.held))
     }
 
     /// Number of coefficients.

@@ -118,6 +118,16 @@ impl ShapeEquations {
         Some(self.equations.covariance(&free)?[(i, i)])
     }
 
+    /// Largest standard error of a shape's logarithm, infinite where the curve does not tell it.
+    pub(super) fn worst_error(&self, free: &Free) -> f64 {
+        let count = self.count();
+        let Some(covariance) = self.equations.covariance(&self.with_shapes(free, count)) else {
+            return f64::INFINITY;
+        };
+        let errors = (0..self.parameters.len()).map(|at| covariance[(count + at, count + at)]);
+        math::sqrt(errors.fold(0.0, f64::max))
+    }
+
     /// The fitted parameters with their intervals, which are even in the logarithm.
     pub(super) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
         let count = self.count();

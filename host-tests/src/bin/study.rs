@@ -4,7 +4,11 @@ use allanite::Settings;
 use clap::{Parser, Subcommand};
 use host_tests::{
     simulate::{Coefficients, Preset},
-    study::{coefficients, theory},
+    study::{
+        coefficients,
+        hidden_effect::{CASES, Strength, false_alarms, hide, study},
+        theory,
+    },
 };
 
 #[derive(Parser)]
@@ -22,6 +26,15 @@ enum Study {
         #[arg(long, default_value_t = 3000)]
         records: u64,
     },
+    /// Is a hidden effect found, named, measured; is nothing claimed where nothing is hidden
+    HiddenEffect {
+        /// Records a case
+        #[arg(long, default_value_t = 100)]
+        records: u64,
+        /// Records a preset with nothing hidden
+        #[arg(long, default_value_t = 1000)]
+        clean: u64,
+    },
     /// Errors of the coefficients and coverage of their intervals, for every method
     Coefficients {
         /// Records a method
@@ -36,6 +49,7 @@ enum Study {
 fn main() {
     match Arguments::parse().study {
         Study::Theory { records } => theory(records),
+        Study::HiddenEffect { records, clean } => hidden(records, clean),
         Study::Coefficients { records, tolerance } => accuracies(records, tolerance),
     }
 }
@@ -134,5 +148,82 @@ fn accuracies(records: u64, tolerance: f64) {
                 100.0 * a.measured
             );
         }
+    }
+}
+
+fn hidden(records: u64, clean: u64) {
+    println!("records of 2^16 samples at 100 Hz; errors in %, coverage of 95 % intervals in %");
+    println!(
+        "{:<8} {:<18} {:<12} {:<8} {:>6} {:>8} | {:>5} {:>5} {:>5} {:>5} | {:>6} {:>5} {:>6} {:>5} {:>6} {:>5} | {:>13} {:>13} {:>5}",
+        "preset",
+        "effect",
+        "shape",
+        "strength",
+        "χ²",
+        "p",
+        "right",
+        "amb.",
+        "wrong",
+        "miss",
+        "par.",
+        "cov.",
+        "par.",
+        "cov.",
+        "coeff.",
+        "cov.",
+        "rms",
+        "held out",
+        "falls"
+    );
+    for preset in Preset::ALL {
+        for (name, parameters) in CASES {
+            for strength in Strength::ALL {
+                let Some(hidden) = hide(name, parameters, preset, strength) else {
+                    continue;
+                };
+                let t = study(preset, &hidden, records);
+                let percent = |count: usize| 100.0 * count as f64 / t.records as f64;
+                print!(
+                    "{:<8} {:<18} {:<12} {:<8} {:>6.0} {:>8.0e} | {:>5.0} {:>5.0} {:>5.0} {:>5.0} |",
+                    format!("{preset:?}").to_lowercase(),
+                    name,
+                    format!("{:.4} {}", hidden.parameters[0], hidden.parameters[1]),
+                    format!("{strength:?}").to_lowercase(),
+                    t.median.0,
+                    t.median.1,
+                    percent(t.right),
+                    percent(t.ambiguous),
+                    percent(t.wrong),
+                    percent(t.missed)
+                );
+                for j in 0..2 {
+                    match (t.parameter_error.get(j), t.parameter_coverage.get(j)) {
+                        (Some(error), Some(coverage)) if !error.is_nan() => {
+                            print!(" {:>6.1} {:>5.0}", 100.0 * error, 100.0 * coverage);
+                        }
+                        _ => print!(" {:>6} {:>5}", "", ""),
+                    }
+                }
+                println!(
+                    " {:>6.1} {:>5.0} | {:>5.1} → {:>5.1} {:>5.1} → {:>5.1} {:>5.0}",
+                    100.0 * t.coefficient_error,
+                    100.0 * t.coefficient_coverage,
+                    t.rms[0].0,
+                    t.rms[0].1,
+                    t.rms[1].0,
+                    t.rms[1].1,
+                    100.0 * t.held_out_falls
+                );
+            }
+        }
+    }
+    println!("\nnothing hidden, {clean} records a preset: an effect is claimed in");
+    for preset in Preset::ALL {
+        let (share, names) = false_alarms(preset, clean);
+        println!(
+            "{:<8} {:.1} % {names:?}",
+            format!("{preset:?}").to_lowercase(),
+            100.0 * share
+        );
     }
 }

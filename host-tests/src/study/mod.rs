@@ -2,6 +2,7 @@
 //! the README rest on.
 
 pub mod coefficients;
+pub mod hidden_effect;
 pub mod theory;
 
 use crate::simulate::{Coefficients, Simulator};

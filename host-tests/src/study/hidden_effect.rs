@@ -1,0 +1,308 @@
+//! Is a hidden effect found, and named?
+
+use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
+use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
+use allanite::{
+    Comparison, Curve, Diagnosis, Fit, Model, Settings, Step, Term, Verdict,
+    effect::{CATALOGUE, Effect, MAX_PARAMETERS},
+    fit,
+};
+use rayon::prelude::*;
+
+/// Samples of a studied record: 11 minutes.
+pub const SAMPLES: usize = 1 << 16;
+
+/// How strong a hidden effect is: the χ² that the five terms alone have on its expected curve,
+/// less their degrees of freedom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Strength {
+    /// A median p-value of 1e-6 or less.
+    Moderate,
+    /// A five-term χ² of 300 and more.
+    Strong,
+}
+
+impl Strength {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Moderate, Self::Strong];
+
+    fn noncentrality(self) -> f64 {
+        match self {
+            Self::Moderate => 45.0,
+            Self::Strong => 400.0,
+        }
+    }
+}
+
+/// The effects and shapes that are hidden.
+pub const CASES: [(&str, [f64; MAX_PARAMETERS]); 8] = [
+    ("sinusoid", [0.3, 0.0]),
+    ("sinusoid", [7.7, 0.0]),
+    ("gauss_markov", [0.5, 0.0]),
+    ("gauss_markov", [5.0, 0.0]),
+    ("resonance", [3.0, 3.0]),
+    ("low_pass", [f64::NAN, 0.0]),
+    ("decimation_filter", [f64::NAN, 1.0]),
+    ("decimation_filter", [f64::NAN, 2.0]),
+];
+
+/// The effect of a case, as strong as asked for: its amplitude, or for an effect that replaces white
+/// noise its first shape parameter, is what makes the five-term χ² so large. `None` where no size
+/// does, such as a filter on a gyro without white noise.
+pub fn hide(
+    name: &str,
+    parameters: [f64; MAX_PARAMETERS],
+    preset: Preset,
+    strength: Strength,
+) -> Option<Hidden> {
+    let base = preset.coefficients();
+    let template = Hidden::new(name, parameters, base.angle_random_walk)?;
+    let at = |size: f64| {
+        let mut hidden = template;
+        if hidden.replaces_white_noise() {
+            hidden.parameters[0] = size;
+        } else {
+            hidden.coefficient = size;
+        }
+        hidden
+    };
+    let (mut low, mut high) = if template.replaces_white_noise() {
+        (0.1 / RATE_HZ, 30.0 / RATE_HZ)
+    } else {
+        (1e-3 * base.angle_random_walk, 1e3 * base.angle_random_walk)
+    };
+    let target = strength.noncentrality();
+    if expected_chi_squared(&at(high), base) < target {
+        return None;
+    }
+    for _ in 0..30 {
+        let middle = (low * high).sqrt();
+        if expected_chi_squared(&at(middle), base) < target {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(at(high))
+}
+
+/// χ² of the five terms on the curve that a hidden effect has on average.
+fn expected_chi_squared(hidden: &Hidden, base: Coefficients) -> f64 {
+    let model = Model::ieee_952();
+    let mut squares = squares(base);
+    if hidden.replaces_white_noise() {
+        squares[1] = 0.0;
+    }
+    let term = Term {
+        parameters: hidden.parameters,
+        ..Term::new(hidden.effect)
+    };
+    let setting = term.setting(1.0 / RATE_HZ);
+    let octaves = (0..OCTAVES as u32).map(|k| 1_u32 << k).map_while(|m| {
+        let differences =
+            (SAMPLES.checked_sub(2 * m as usize)? / (m as usize / 4).max(1)) as u64 + 1;
+        let effect = hidden.effect.variance(f64::from(m), &setting) * hidden.coefficient.powi(2);
+        let variance = model.variance(&squares, m, 1.0 / RATE_HZ) + effect;
+        (differences >= 6).then_some((m, differences, variance))
+    });
+    let curve = Curve::<OCTAVES>::new(RATE_HZ, octaves).expect("a model's curve");
+    fit(&curve, &model, Settings::default()).map_or(0.0, |fit| fit.chi_squared)
+}
+
+/// What a diagnosis made of one record.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// χ² and p of the five terms.
+    pub first: (f64, f64),
+    /// The effects that were added, with their shapes and coefficients.
+    pub added: Vec<(Term, Vec<&'static str>)>,
+    /// The last model's fit.
+    pub fit: Fit,
+    /// The last model.
+    pub model: Model,
+    /// Root-mean-square misfit before and after, in percent: in the record, and on a second one.
+    pub rms: [(f64, f64); 2],
+    /// χ² before and after on the second record.
+    pub held_out: (f64, f64),
+    /// How it ended.
+    pub verdict: Option<Verdict>,
+}
+
+/// Diagnoses a simulated record, and judges the result on a second record of the same gyro.
+pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64) -> Outcome {
+    let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
+    let curve = record(&mut simulator, base, samples);
+    let other = record(&mut simulator, base, samples);
+    let mut steps: Vec<Step<OCTAVES>> = Vec::new();
+    let verdict = Diagnosis::default()
+        .run(&curve, &Model::ieee_952(), &CATALOGUE, |step| {
+            steps.push(step.clone())
+        })
+        .ok();
+    let (first, last) = (&steps[0], &steps[steps.len() - 1]);
+    let on_other = |step: &Step<OCTAVES>| {
+        let tolerance = Settings::default().tolerance;
+        let comparison = Comparison::held_out(&other, &step.model, &step.fit, tolerance);
+        comparison.map_or((f64::NAN, f64::NAN), |c| (c.rms_percent, c.chi_squared))
+    };
+    let (before, after) = (on_other(first), on_other(last));
+    Outcome {
+        first: (first.fit.chi_squared, first.fit.p_value),
+        added: steps
+            .iter()
+            .filter_map(|step| Some((step.added?, step.ambiguous.to_vec())))
+            .collect(),
+        fit: last.fit.clone(),
+        model: last.model.clone(),
+        rms: [
+            (first.comparison.rms_percent, last.comparison.rms_percent),
+            (before.0, after.0),
+        ],
+        held_out: (before.1, after.1),
+        verdict,
+    }
+}
+
+/// Counts over the records of one case.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// Records.
+    pub records: usize,
+    /// The five-term fit's median χ² and p.
+    pub median: (f64, f64),
+    /// Named right, alone.
+    pub right: usize,
+    /// Named right, among others about as good.
+    pub ambiguous: usize,
+    /// Only others named.
+    pub wrong: usize,
+    /// Nothing named.
+    pub missed: usize,
+    /// Median relative error of each shape parameter.
+    pub parameter_error: Vec<f64>,
+    /// Share of their intervals that hold the truth.
+    pub parameter_coverage: Vec<f64>,
+    /// Median relative error of the coefficient.
+    pub coefficient_error: f64,
+    /// Share of its intervals that hold the truth.
+    pub coefficient_coverage: f64,
+    /// Median rms misfit before and after: in the record, and on a second one.
+    pub rms: [(f64, f64); 2],
+    /// Share of records whose misfit on a second one falls, of those in which it was named right.
+    pub held_out_falls: f64,
+}
+
+/// Diagnoses `records` records with a hidden effect.
+pub fn study(preset: Preset, hidden: &Hidden, records: u64) -> Tally {
+    let base = preset.coefficients();
+    let outcomes: Vec<Outcome> = (0..records)
+        .into_par_iter()
+        .map(|seed| diagnose(base, &[*hidden], SAMPLES, seed))
+        .collect();
+    tally(&outcomes, hidden)
+}
+
+fn tally(outcomes: &[Outcome], hidden: &Hidden) -> Tally {
+    let name = hidden.effect.name();
+    let mut tally = Tally {
+        records: outcomes.len(),
+        median: (
+            median(outcomes.iter().map(|o| o.first.0)),
+            median(outcomes.iter().map(|o| o.first.1)),
+        ),
+        rms: [0, 1].map(|i| {
+            (
+                median(outcomes.iter().map(|o| o.rms[i].0)),
+                median(outcomes.iter().map(|o| o.rms[i].1)),
+            )
+        }),
+        ..Tally::default()
+    };
+    let mut found = Vec::new();
+    for outcome in outcomes {
+        let added = outcome.added.iter();
+        let exact = added
+            .clone()
+            .find(|(term, _)| same(term.effect, hidden.effect));
+        let named = added.clone().any(|(_, others)| others.contains(&name));
+        match exact {
+            Some((_, others)) if others.is_empty() => tally.right += 1,
+            Some(_) => tally.ambiguous += 1,
+            None if named => tally.ambiguous += 1,
+            None if outcome.added.is_empty() => tally.missed += 1,
+            None => tally.wrong += 1,
+        }
+        if exact.is_some() {
+            found.push(outcome);
+        }
+    }
+    let falls = found.iter().filter(|o| o.held_out.1 < o.held_out.0).count();
+    tally.held_out_falls = falls as f64 / found.len().max(1) as f64;
+    let coefficients = || {
+        found.iter().filter_map(|o| {
+            let at = o.model.position(name)?;
+            Some(o.fit.coefficients[at])
+        })
+    };
+    tally.coefficient_error =
+        median(coefficients().map(|c| (c.value / hidden.coefficient - 1.0).abs()));
+    tally.coefficient_coverage =
+        share(coefficients().map(|c| (c.lower..=c.upper).contains(&hidden.coefficient)));
+    for (j, parameter) in hidden.effect.parameters().iter().enumerate() {
+        let truth = hidden.parameters[j];
+        let estimates = || {
+            found.iter().filter_map(|o| {
+                let at = o.model.position(name)?;
+                o.fit
+                    .shape
+                    .iter()
+                    .find(|s| s.term == at && s.name == parameter.name)
+                    .copied()
+            })
+        };
+        tally
+            .parameter_error
+            .push(median(estimates().map(|s| (s.value / truth - 1.0).abs())));
+        tally.parameter_coverage.push(share(
+            estimates().map(|s| (s.lower..=s.upper).contains(&truth)),
+        ));
+    }
+    tally
+}
+
+fn same(a: &dyn Effect, b: &dyn Effect) -> bool {
+    a.name() == b.name()
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    values.sort_by(f64::total_cmp);
+    quantile(&values, 0.5)
+}
+
+fn share(values: impl Iterator<Item = bool>) -> f64 {
+    let values: Vec<bool> = values.collect();
+    values.iter().filter(|&&value| value).count() as f64 / values.len().max(1) as f64
+}
+
+/// The share of records without any hidden effect in which one is claimed.
+pub fn false_alarms(preset: Preset, records: u64) -> (f64, Vec<(&'static str, usize)>) {
+    let claims: Vec<&'static str> = (0..records)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let outcome = diagnose(preset.coefficients(), &[], SAMPLES, seed);
+            outcome.added.first().map(|(term, _)| term.effect.name())
+        })
+        .collect();
+    let mut counts: Vec<(&'static str, usize)> = Vec::new();
+    for name in &claims {
+        match counts.iter_mut().find(|(other, _)| other == name) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((name, 1)),
+        }
+    }
+    (claims.len() as f64 / records as f64, counts)
+}

@@ -228,6 +228,23 @@ fn text_that_is_no_curve_is_refused_with_its_line() {
 }
 
 #[test]
+fn curves_of_real_gyros_are_whole_and_name_their_source() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    for (name, samples, rate_hz) in [
+        ("adis16405.json", 1_000_000, 100.0),
+        ("mpu6050.json", 64_906, 99.32),
+    ] {
+        let file = CurveFile::read(&data.join(name)).unwrap();
+        let names: Vec<_> = file.axes.iter().map(|axis| axis.axis.as_str()).collect();
+        assert_eq!(names, ["gx", "gy", "gz"]);
+        for axis in &file.axes {
+            assert_eq!((axis.samples, axis.rate_hz), (samples, rate_hz));
+            assert!(axis.source.is_some() && axis.licence.is_some());
+        }
+    }
+}
+
+#[test]
 fn file_that_cannot_be_read_is_named() {
     let line = CurveFile::read(Path::new("none.json"))
         .unwrap_err()

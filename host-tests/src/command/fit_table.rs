@@ -2,6 +2,7 @@
 
 use super::{
     fit::{Fitted, MethodName},
+    number::{duration, number, probability},
     units,
 };
 use crate::unit::Unit;
@@ -119,12 +120,12 @@ fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
         fit.chi_squared, fit.degrees_of_freedom
     );
     if fit.p_value.is_finite() {
-        first += &format!(", p = {}", probability(fit.p_value));
+        first += &format!(", p {}", probability(fit.p_value));
     }
     if fit.tolerance > 0.0 {
         first += &format!(
             ", a tolerance of {} % granted",
-            number(100.0 * fit.tolerance)
+            100.0 * fit.tolerance
         );
     }
     if fit.shrinkage > 0.0 {
@@ -144,39 +145,4 @@ fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
          coefficients carry its mark."
     };
     vec![first, judgement.into()]
-}
-
-/// Four significant digits.
-fn number(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    if !value.is_finite() {
-        return "∞".into();
-    }
-    let exponent = value.abs().log10().floor() as i32;
-    if (-3..=4).contains(&exponent) {
-        format!("{value:.*}", (3 - exponent).max(0) as usize)
-    } else {
-        format!("{value:.3e}")
-    }
-}
-
-fn probability(p: f64) -> String {
-    if p >= 0.001 {
-        format!("{p:.3}")
-    } else if p > 0.0 {
-        format!("{p:.1e}")
-    } else {
-        "0".into()
-    }
-}
-
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{s:.3} s"),
-        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
-        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
-        s => format!("{:.0} days", s / 86_400.0),
-    }
 }

@@ -2,6 +2,7 @@
 
 use super::{
     input::{self, LogArguments},
+    number::number,
     output_file::OutputFile,
 };
 use crate::{
@@ -71,11 +72,11 @@ fn summarize(curves: &[AxisCurve], output: &mut impl Write) -> io::Result<()> {
         if let (Some(shortest), Some(lowest)) = (shortest, lowest) {
             write!(
                 output,
-                "; deviation {:.4e} {unit} at {} s, lowest {:.4e} {unit} at {} s",
-                shortest.variance.sqrt(),
-                shortest.tau_s,
-                lowest.variance.sqrt(),
-                lowest.tau_s,
+                "; deviation {} {unit} at {} s, lowest {} {unit} at {} s",
+                number(shortest.variance.sqrt()),
+                number(shortest.tau_s),
+                number(lowest.variance.sqrt()),
+                number(lowest.tau_s),
                 unit = curve.unit,
             )?;
         }

@@ -5,6 +5,7 @@ mod fit_json;
 mod fit_table;
 mod input;
 mod measure;
+mod number;
 mod output_file;
 mod progress;
 mod simulate;

@@ -123,10 +123,7 @@ fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
         first += &format!(", p {}", probability(fit.p_value));
     }
     if fit.tolerance > 0.0 {
-        first += &format!(
-            ", a tolerance of {} % granted",
-            100.0 * fit.tolerance
-        );
+        first += &format!(", a tolerance of {} % granted", 100.0 * fit.tolerance);
     }
     if fit.shrinkage > 0.0 {
         first += &format!(

@@ -18,6 +18,8 @@ mod nnls;
 mod observability;
 mod octave;
 mod search;
+pub mod self_test;
+pub mod simulated;
 mod square_sum;
 
 pub use chi_squared::chi_squared_tail;

@@ -8,13 +8,21 @@ use std::{
 /// Bytes in the buffer; a longer line is left to the general rules.
 const BUFFER: usize = 1 << 17;
 
+/// Bytes that are looked at together.
+const WORD: usize = size_of::<u64>();
+
+/// A one in each byte of a word.
+const ONES: u64 = u64::MAX / 255;
+
 /// Cuts text into rows of a known number of fields for as long as that needs no rules for quotes,
 /// then hands over what is left. Empty lines and comments are passed over.
 pub(super) struct Lines<R> {
     text: R,
     delimiter: u8,
-    /// Bytes that end a field, or that only the general rules know what to do with.
-    special: [bool; 256],
+    /// Bytes that end a field, or that only the general rules know what to do with; each eight
+    /// times over.
+    special: [u64; 4],
+    /// With one word more than is ever read into it, so that a word begins at every byte read.
     buffer: Box<[u8]>,
     /// Where in the text the buffer begins.
     offset: u64,
@@ -30,15 +38,11 @@ pub(super) struct Lines<R> {
 impl<R: Read> Lines<R> {
     /// Text whose first byte has the given offset.
     pub(super) fn new(text: R, offset: u64, delimiter: u8, width: usize) -> Self {
-        let mut special = [false; 256];
-        for byte in [delimiter, b'\n', b'\r', b'"'] {
-            special[usize::from(byte)] = true;
-        }
         Self {
             text,
             delimiter,
-            special,
-            buffer: vec![0; BUFFER].into(),
+            special: [delimiter, b'\n', b'\r', b'"'].map(|byte| u64::from(byte) * ONES),
+            buffer: vec![0; BUFFER + WORD].into(),
             offset,
             uncut: 0..0,
             whole: 0,
@@ -77,15 +81,12 @@ impl<R: Read> Lines<R> {
     /// `None` for a line with quotes, or more fields than expected.
     #[inline]
     fn cut_fields(&mut self, row: usize) -> Option<(usize, usize)> {
-        let buffer = &self.buffer[..self.whole];
         let mut start = row;
         let mut i = row;
         let mut count = 0;
         loop {
-            while !self.special[usize::from(buffer[i])] {
-                i += 1;
-            }
-            let byte = buffer[i];
+            i = self.special_from(i)?;
+            let byte = self.buffer[i];
             if byte == self.delimiter {
                 *self.fields.get_mut(count)? = start..i;
                 count += 1;
@@ -95,7 +96,7 @@ impl<R: Read> Lines<R> {
             }
             let end = match byte {
                 b'\n' => i + 1,
-                b'\r' if buffer[i + 1] == b'\n' => i + 2,
+                b'\r' if self.buffer[i + 1] == b'\n' => i + 2,
                 _ => return None,
             };
             if count == 0 && start == i {
@@ -106,14 +107,33 @@ impl<R: Read> Lines<R> {
         }
     }
 
+    /// The first special byte at or behind `i`, found eight bytes at a time.
+    #[inline(always)]
+    fn special_from(&self, mut i: usize) -> Option<usize> {
+        loop {
+            let word = u64::from_le_bytes(*self.buffer.get(i..)?.first_chunk::<WORD>()?);
+            let mut found = 0;
+            for special in self.special {
+                // The lowest bit that is set marks the first byte that is equal; what a borrow
+                // marks besides lies above it.
+                let differs = word ^ special;
+                found |= differs.wrapping_sub(ONES) & !differs & (ONES << 7);
+            }
+            if found != 0 {
+                return Some(i + found.trailing_zeros() as usize / 8);
+            }
+            i += WORD;
+        }
+    }
+
     /// Moves what is left to the front and reads until there is a whole line; false if none comes.
     fn refill(&mut self) -> io::Result<bool> {
         self.buffer.copy_within(self.uncut.clone(), 0);
         self.offset += self.uncut.start as u64;
         self.uncut = 0..self.uncut.len();
         self.whole = 0;
-        while self.uncut.end < self.buffer.len() {
-            let read = match self.text.read(&mut self.buffer[self.uncut.end..]) {
+        while self.uncut.end < BUFFER {
+            let read = match self.text.read(&mut self.buffer[self.uncut.end..BUFFER]) {
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
                 read => read?,
             };

@@ -52,7 +52,7 @@ fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
 fn the_test_set_is_the_published_one() {
     let counts = test_set();
     let fractions = counts.iter().map(|&n| f64::from(n) / MODULUS as f64);
-    // Maximum, minimum, mean and standard deviation as of NIST SP 1065, table 31.
+    // Maximum, minimum, mean and standard deviation as of NIST SP 1065, section 12.4.
     assert_close(
         fractions.clone().fold(0.0, f64::max),
         9.957_453e-1,
@@ -76,7 +76,7 @@ fn the_test_set_is_the_published_one() {
     );
 }
 
-/// NIST SP 1065, table 31, at averaging factors 1, 10 and 100.
+/// NIST SP 1065, section 12.4, at averaging factors 1, 10 and 100.
 #[test]
 fn the_direct_computation_gives_the_published_deviations() {
     let overlapping = [(1, 2.922_319e-1), (10, 9.159_953e-2), (100, 3.241_343e-2)];

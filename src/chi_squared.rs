@@ -24,23 +24,30 @@ pub fn chi_squared_tail(x: f64, degrees_of_freedom: usize) -> f64 {
         return 0.0;
     }
     let half = 0.5 * x;
+    // Half of the exponential comes last, so that no term is lost that the sum can lift again.
+    let decay = math::exp(-0.5 * half);
     // Terms x^r e^(−x/2) / (r!! …): whole powers of x/2 for even degrees, half ones for odd.
     let odd = degrees_of_freedom % 2 == 1;
-    let mut tail = if odd {
+    let mut sum = 0.0;
+    let mut term = if odd {
+        2.0 * math::sqrt(half / PI) * decay
+    } else {
+        decay
+    };
+    let mut divisor = if odd { 1.5 } else { 1.0 };
+    for _ in 0..degrees_of_freedom / 2 {
+        sum += term;
+        term *= half / divisor;
+        divisor += 1.0;
+    }
+    let first = if odd {
         math::erfc(math::sqrt(half))
     } else {
         0.0
     };
-    let mut term = if odd {
-        2.0 * math::sqrt(half / PI) * math::exp(-half)
-    } else {
-        math::exp(-half)
-    };
-    let mut divisor = if odd { 1.5 } else { 1.0 };
-    for _ in 0..degrees_of_freedom / 2 {
-        tail += term;
-        term *= half / divisor;
-        divisor += 1.0;
+    // Beyond all doubles, where the terms may be too.
+    if decay == 0.0 {
+        return 0.0;
     }
-    tail.min(1.0)
+    (first + sum * decay).min(1.0)
 }

@@ -158,7 +158,11 @@ impl<const K: usize> Accumulator<K> {
 
 impl<const K: usize> core::fmt::Display for Curve<K> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        writeln!(f, "{:>12} {:>12} {:>14} {:>12}", "m", "tau_s", "deviation", "differences")?;
+        writeln!(
+            f,
+            "{:>12} {:>12} {:>14} {:>12}",
+            "m", "tau_s", "deviation", "differences"
+        )?;
         for point in &self.points {
             writeln!(
                 f,

@@ -13,7 +13,7 @@ use crate::{
     },
     model::{MAX_EFFECTS, Model, Term},
     nnls::Vector,
-    search::{Found, Remainder},
+    search::{Found, Search},
 };
 use heapless::Vec;
 
@@ -218,15 +218,13 @@ impl Diagnosis {
             if present && effect.parameters().is_empty() {
                 continue;
             }
-            let excluded = replaced.flatten();
-            let remainder = Remainder::new(
-                &problem,
-                &solution.weights,
-                &solution.squares,
-                |i| Some(i) == excluded,
-                true,
-            )?;
-            let best = remainder.search(effect, span);
+            let place = replaced.flatten().unwrap_or(problem.count());
+            let weights = &solution.weights;
+            let Ok(search) = Search::new(&problem, weights, &solution.squares, place, true) else {
+                // No place left in the model.
+                continue;
+            };
+            let best = search.search(effect, span);
             if best.square > 0.0 {
                 let _ = found.push(best);
             }
@@ -324,8 +322,8 @@ fn polish<const K: usize>(
         if !term.fitted || squares[at] <= 0.0 {
             continue;
         }
-        let remainder = Remainder::new(problem, weights, squares, |i| i == at, false)?;
-        let found = remainder.refine_known(term, span);
+        let search = Search::new(problem, weights, squares, at, false)?;
+        let found = search.refine_known(term, span);
         polished.terms_mut()[at] = found.term;
     }
     Ok(polished)

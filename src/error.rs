@@ -57,7 +57,10 @@ impl core::fmt::Display for Error {
                  each with differences and a finite variance that is not negative"
             ),
             Self::TooManyOctaves { capacity } => {
-                write!(f, "more than {capacity} octaves: use a curve of larger capacity")
+                write!(
+                    f,
+                    "more than {capacity} octaves: use a curve of larger capacity"
+                )
             }
             Self::TooFewOctaves { found, needed } => write!(
                 f,
@@ -71,7 +74,10 @@ impl core::fmt::Display for Error {
                 write!(f, "more than {capacity} effects in one model: remove one")
             }
             Self::Singular => {
-                write!(f, "the model's effects cannot be told apart on this curve: remove one")
+                write!(
+                    f,
+                    "the model's effects cannot be told apart on this curve: remove one"
+                )
             }
         }
     }

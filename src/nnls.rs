@@ -69,6 +69,12 @@ impl<const P: usize> NormalEquations<P> {
         )))
     }
 
+    /// How far a solution lowers the sum of squared residuals.
+    pub(crate) fn explained(&self, solution: &Vector<P>) -> f64 {
+        let scaled = solution.component_div(&self.scale.map(|x| if x > 0.0 { x } else { 1.0 }));
+        scaled.dot(&(self.right * 2.0 - self.scaled * scaled))
+    }
+
     /// The unconstrained solution.
     ///
     /// # Errors
@@ -82,9 +88,30 @@ impl<const P: usize> NormalEquations<P> {
     /// The solution with no negative coefficient, and which are above zero (Lawson & Hanson 1974,
     /// ch. 23, on the normal equations). Those for which `held` is true stay at zero.
     pub(crate) fn solve_non_negative(&self, held: &Free<P>) -> (Vector<P>, Free<P>) {
-        let mut free = [false; P];
+        self.improve(Vector::zeros(), [false; P], held)
+    }
+
+    /// The same, sooner where those above zero are guessed right.
+    pub(crate) fn solve_non_negative_near(
+        &self,
+        guess: &Free<P>,
+        held: &Free<P>,
+    ) -> (Vector<P>, Free<P>) {
+        match self.solve_scaled(guess) {
+            Some(trial) if (0..self.count).all(|i| !guess[i] || trial[i] > 0.0) => {
+                self.improve(trial, *guess, held)
+            }
+            _ => self.solve_non_negative(held),
+        }
+    }
+
+    fn improve(
+        &self,
+        mut solution: Vector<P>,
+        mut free: Free<P>,
+        held: &Free<P>,
+    ) -> (Vector<P>, Free<P>) {
         let mut refused = [false; P];
-        let mut solution = Vector::zeros();
         // Each round frees one coefficient; thrice their number is the customary limit.
         for _ in 0..3 * P {
             let gradient = self.right - self.scaled * solution;

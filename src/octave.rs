@@ -178,7 +178,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     fn push_early(&mut self, before: u64, two_before: u64) {
         let angle = self.angle;
         let n = self.number as usize;
-        let four_before = self.levels[0].ring[n % RING ^ 4];
+        let four_before = self.levels[0].ring[(n % RING) ^ 4];
         if n >= 2 {
             self.short[0].add_square(second_difference(angle, before, two_before));
         }

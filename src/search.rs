@@ -3,89 +3,92 @@
 use crate::{
     effect::{Effect, MAX_PARAMETERS, Range, Span},
     error::Error,
-    fit::{Problem, weights::Weights},
+    fit::{
+        Problem,
+        weights::{Weights, Whitened},
+    },
     math,
     model::{MAX_EFFECTS, Term},
-    nnls::Vector,
+    nnls::{Free, Matrix, NormalEquations, Vector},
 };
-use heapless::Vec;
 use nalgebra::SVector;
 
 /// Halvings of the step in a refinement: from half a grid step to a 256th.
 const HALVINGS: usize = 8;
 
-/// What a curve leaves to one more effect: the part that no coefficient of the others explains, in
-/// units in which octaves are independent.
-pub(crate) struct Remainder<'a, 'b, const K: usize> {
+/// The fit of a curve with one effect of any shape among others whose shapes are known, in units in
+/// which octaves are independent.
+pub(crate) struct Search<'a, 'b, const K: usize> {
     problem: &'a Problem<'b, K>,
     weights: &'a Weights<K>,
     /// Standard errors of the octaves are those of the measured curve instead of the model's.
     scatter: SVector<f64, K>,
-    /// The others' columns, orthonormal.
-    basis: Vec<SVector<f64, K>, MAX_EFFECTS>,
-    residual: SVector<f64, K>,
+    whitened: Whitened<K>,
+    /// The normal equations of the others, and the effect's place in them.
+    matrix: Matrix,
+    right: Vector,
+    place: usize,
+    free: Free,
+    held: Free,
 }
 
-impl<'a, 'b, const K: usize> Remainder<'a, 'b, K> {
-    /// What the active effects leave, those for which `excluded` holds taken out. With
-    /// `to_measured`, the covariance is rescaled to the measured curve: before an effect is found,
-    /// the model is too far off to say how much the octaves that it dominates scatter.
+impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
+    /// For an effect at `place`: that of the effect it replaces, or the first behind the others. The
+    /// effects above zero are guessed to be those for which `squares` are. With `to_measured`, the
+    /// covariance is rescaled to the measured curve: before an effect is found, the model is too far
+    /// off to say how much the octaves that it dominates scatter.
     pub(crate) fn new(
         problem: &'a Problem<'b, K>,
         weights: &'a Weights<K>,
         squares: &Vector,
-        excluded: impl Fn(usize) -> bool,
+        place: usize,
         to_measured: bool,
     ) -> Result<Self, Error> {
+        if place >= MAX_EFFECTS {
+            return Err(Error::TooManyEffects {
+                capacity: MAX_EFFECTS,
+            });
+        }
         let scatter = SVector::<f64, K>::from_fn(|k, _| match problem.points.get(k) {
             Some(point) if to_measured => point.variance / weights.model[k],
             _ => 1.0,
         });
         let whitened = weights.whiten(problem, |k| scatter[k])?;
-        let mut basis: Vec<SVector<f64, K>, MAX_EFFECTS> = Vec::new();
-        for i in (0..problem.count()).filter(|&i| squares[i] > 0.0 && !excluded(i)) {
-            let mut column = whitened.columns.column(i).into_owned();
-            let before = column.norm_squared();
-            for other in &basis {
-                column -= other * other.dot(&column);
-            }
-            let norm = column.norm_squared();
-            if norm > 1e-10 * before {
-                // No more than effects.
-                let _ = basis.push(column / math::sqrt(norm));
-            }
-        }
-        let mut residual = whitened.curve;
-        for other in &basis {
-            residual -= other * other.dot(&residual);
-        }
+        let mut held = problem.held();
+        held[place] = false;
         Ok(Self {
             problem,
             weights,
             scatter,
-            basis,
-            residual,
+            matrix: whitened.columns.tr_mul(&whitened.columns),
+            right: whitened.columns.tr_mul(&whitened.curve),
+            whitened,
+            place,
+            free: core::array::from_fn(|i| i == place || (squares[i] > 0.0 && !held[i])),
+            held,
         })
     }
 
-    /// χ² of the best coefficient of one more effect, and that squared coefficient.
+    /// χ² with the effect in a shape, and the effect's squared coefficient.
     pub(crate) fn with(&self, term: &Term) -> (f64, f64) {
-        let without = self.residual.norm_squared();
+        let without = (f64::INFINITY, 0.0);
         let mut column = self.problem.column(term);
         if !self.weights.whiten_column(&mut column, |k| self.scatter[k]) {
-            return (without, 0.0);
+            return without;
         }
-        let before = column.norm_squared();
-        for other in &self.basis {
-            column -= other * other.dot(&column);
-        }
-        let norm = column.norm_squared();
-        let along = column.dot(&self.residual);
-        if norm > 1e-10 * before && along > 0.0 && norm.is_finite() {
-            (without - along * along / norm, along / norm)
-        } else {
-            (without, 0.0)
-        }
+        let (mut matrix, mut right) = (self.matrix, self.right);
+        let products = self.whitened.columns.tr_mul(&column);
+        matrix.set_row(self.place, &products.transpose());
+        matrix.set_column(self.place, &products);
+        matrix[(self.place, self.place)] = column.norm_squared();
+        right[self.place] = column.dot(&self.whitened.curve);
+        let count = self.problem.count().max(self.place + 1);
+        let Ok(equations) = NormalEquations::new(&matrix, &right, count) else {
+            return without;
+        };
+        let (squares, _) = equations.solve_non_negative_near(&self.free, &self.held);
+        let chi_squared = self.whitened.curve.norm_squared() - equations.explained(&squares);
+        (chi_squared, squares[self.place])
     }
 
     /// The best shape of an effect on its grid, refined.

@@ -145,7 +145,7 @@ impl Pole {
         let variance = u128::from(deviation) * u128::from(deviation);
         Self {
             state: random.normal(deviation),
-            step: (2 * variance >> relaxation).isqrt() as i64,
+            step: ((2 * variance) >> relaxation).isqrt() as i64,
         }
     }
 

@@ -1,12 +1,16 @@
 use super::{AngleRandomWalk, Effect, Parameter, Range, Setting, Span, Story};
 use crate::math;
 
-/// Angle random walk behind a decimation filter of `stages` boxcars, each `width` long, coefficient
-/// N in rate · √s: takes the place of [`AngleRandomWalk`]. One stage is a moving average, two are a
-/// Bartlett (triangular) window.
+/// Angle random walk behind a decimation filter of `stages` boxcars, coefficient N in rate · √s:
+/// takes the place of [`AngleRandomWalk`]. One stage is a moving average, two are a Bartlett
+/// (triangular) window.
 ///
-/// The rate's autocovariance is the B-spline of order `2 · stages`, sampled:
-/// `r_i ∝ B(iτ₀/width)` with `τ₀ Σ r_i = N²`, and `G(n) = −½ τ₀² [n r₀ + 2 Σ_{i<n} (n−i) r_i]`.
+/// `width` is that of the one boxcar that spreads a pulse as far: each of the stages is
+/// `w = width/√stages` long. Where a filter reaches over few samples, this much can be told, and not
+/// the stages.
+///
+/// The rate's autocovariance is the B-spline of order `2 · stages`, sampled: `r_i ∝ B(iτ₀/w)` with
+/// `τ₀ Σ r_i = N²`, and `G(n) = −½ τ₀² [n r₀ + 2 Σ_{i<n} (n−i) r_i]`.
 #[derive(Clone, Copy, Debug)]
 pub struct DecimationFilter;
 
@@ -41,7 +45,8 @@ struct Filter {
 impl Filter {
     fn new(setting: &Setting) -> Self {
         let [width_s, stages] = setting.parameters;
-        let width = (width_s / setting.interval_s).clamp(1e-3, WIDEST);
+        let width = width_s / (setting.interval_s * math::sqrt(stages.max(1.0)));
+        let width = width.clamp(1e-3, WIDEST);
         let mut filter = Self {
             per_sample: 1.0 / width,
             stages,

@@ -134,7 +134,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         base: u64,
         offsets: &Offsets,
     ) {
-        const { assert!(COUNT % RING == 0) };
+        const { assert!(COUNT.is_multiple_of(RING)) };
         for (b, &offset) in (block..).zip(&offsets[COUNT..COUNT + RING]) {
             self.levels[level].ring[b as usize % RING] = base.wrapping_add(u64::from(offset));
         }

@@ -34,6 +34,12 @@ enum Study {
         /// Records a preset with nothing hidden
         #[arg(long, default_value_t = 1000)]
         clean: u64,
+        /// Only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
+        /// Only this effect
+        #[arg(long)]
+        effect: Option<String>,
     },
     /// Errors of the coefficients and coverage of their intervals, for every method
     Coefficients {
@@ -49,7 +55,12 @@ enum Study {
 fn main() {
     match Arguments::parse().study {
         Study::Theory { records } => theory(records),
-        Study::HiddenEffect { records, clean } => hidden(records, clean),
+        Study::HiddenEffect {
+            records,
+            clean,
+            preset,
+            effect,
+        } => hidden(records, clean, preset, effect.as_deref()),
         Study::Coefficients { records, tolerance } => accuracies(records, tolerance),
     }
 }
@@ -151,7 +162,12 @@ fn accuracies(records: u64, tolerance: f64) {
     }
 }
 
-fn hidden(records: u64, clean: u64) {
+fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) {
+    let presets = || {
+        Preset::ALL
+            .into_iter()
+            .filter(|&preset| only.is_none_or(|only| only == preset))
+    };
     println!("records of 2^16 samples at 100 Hz; errors in %, coverage of 95 % intervals in %");
     println!(
         "{:<8} {:<18} {:<12} {:<8} {:>6} {:>8} | {:>5} {:>5} {:>5} {:>5} | {:>6} {:>5} {:>6} {:>5} {:>6} {:>5} | {:>13} {:>13} {:>5}",
@@ -175,8 +191,11 @@ fn hidden(records: u64, clean: u64) {
         "held out",
         "falls"
     );
-    for preset in Preset::ALL {
-        for (name, parameters) in CASES {
+    for preset in presets() {
+        for (name, parameters) in CASES
+            .into_iter()
+            .filter(|(name, _)| effect.is_none_or(|e| e == *name))
+        {
             for strength in Strength::ALL {
                 let Some(hidden) = hide(name, parameters, preset, strength) else {
                     continue;
@@ -218,7 +237,7 @@ fn hidden(records: u64, clean: u64) {
         }
     }
     println!("\nnothing hidden, {clean} records a preset: an effect is claimed in");
-    for preset in Preset::ALL {
+    for preset in presets() {
         let (share, names) = false_alarms(preset, clean);
         println!(
             "{:<8} {:.1} % {names:?}",

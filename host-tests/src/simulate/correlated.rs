@@ -114,6 +114,19 @@ impl Filtered {
         // Narrow filters need finer steps than wide ones.
         let oversampling = ((32.0 / width).ceil() as usize).clamp(4, 32);
         let length = ((width * oversampling as f64).round() as usize).max(1);
+        // The density at frequency zero is N² for the samples, aliases included.
+        let pulse = (0..stages).fold(vec![1.0], |pulse, _| smoothed(&pulse, length));
+        let folded: f64 = (0..oversampling)
+            .map(|phase| {
+                pulse
+                    .iter()
+                    .skip(phase)
+                    .step_by(oversampling)
+                    .sum::<f64>()
+                    .powi(2)
+            })
+            .sum();
+        let gain = 1.0 / (folded * oversampling as f64).sqrt();
         let boxcar = || Boxcar {
             ring: vec![0.0; length],
             at: 0,
@@ -122,13 +135,24 @@ impl Filtered {
         let mut filtered = Self {
             stages: (0..stages).map(|_| boxcar()).collect(),
             oversampling,
-            deviation: angle_random_walk / (interval_s / oversampling as f64).sqrt(),
+            deviation: gain * angle_random_walk / (interval_s / oversampling as f64).sqrt(),
         };
         for _ in 0..stages * length / oversampling + 1 {
             filtered.next(random);
         }
         filtered
     }
+}
+
+/// A pulse behind a boxcar.
+fn smoothed(pulse: &[f64], length: usize) -> Vec<f64> {
+    let mut smooth = vec![0.0; pulse.len() + length - 1];
+    for (at, value) in pulse.iter().enumerate() {
+        for slot in &mut smooth[at..at + length] {
+            *slot += value / length as f64;
+        }
+    }
+    smooth
 }
 
 impl Source for Filtered {

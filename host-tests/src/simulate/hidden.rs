@@ -45,7 +45,8 @@ impl Hidden {
             }
             "decimation_filter" => {
                 let stages = if second < 1.5 { 1 } else { 2 };
-                Box::new(Filtered::new(c, first, stages, interval_s, random))
+                let length_s = first / (stages as f64).sqrt();
+                Box::new(Filtered::new(c, length_s, stages, interval_s, random))
             }
             "sinusoid" => Box::new(Sinusoid::new(c, first, interval_s, random)),
             "random_telegraph" => Box::new(Telegraph::new(c, first, interval_s, random)),

@@ -38,8 +38,8 @@ impl Strength {
 pub const CASES: [(&str, [f64; MAX_PARAMETERS]); 8] = [
     ("sinusoid", [0.3, 0.0]),
     ("sinusoid", [7.7, 0.0]),
-    ("gauss_markov", [0.5, 0.0]),
-    ("gauss_markov", [5.0, 0.0]),
+    ("gauss_markov", [0.1, 0.0]),
+    ("gauss_markov", [1.0, 0.0]),
     ("resonance", [3.0, 3.0]),
     ("low_pass", [f64::NAN, 0.0]),
     ("decimation_filter", [f64::NAN, 1.0]),

@@ -473,6 +473,11 @@ fn bad_text_is_refused_with_its_row() {
              tell them apart by number, such as --columns gx=1,gy=2",
         ),
         (
+            format!("{good}1,\"2,3\n{}", good.repeat(5000)),
+            "bad.csv:51: a row of more than 1024 KiB is not one of a log; \
+             look for a quote that is never closed",
+        ),
+        (
             "x".repeat(1 << 17),
             "bad.csv:1: a line of 64 KiB or more is not one of a log; check that the file is text",
         ),

@@ -5,13 +5,14 @@ use super::{
     columns::{Columns, Look},
     field::{Field, Text},
     lines::Lines,
+    records::{LONGEST_ROW, Records},
     source::{self, Format},
 };
 use crate::failure::{Failure, Place, quoted};
-use csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
+use csv::ByteRecord;
 use indicatif::ProgressBar;
 use std::{
-    io::{self, BufRead, Read},
+    io::{self, BufRead, ErrorKind, Read},
     path::{Path, PathBuf},
 };
 
@@ -56,14 +57,14 @@ impl Csv {
             data_start: 0,
         };
 
-        let (records, end) = table.first_records()?;
-        let Some(first) = records.first() else {
+        let records = table.first_records()?;
+        let Some((first, end)) = records.first() else {
             return Err(Place::file(path).failure("no rows", "record some samples"));
         };
         let kinds: Vec<Kind> = first.iter().map(Kind::of).collect();
         if let Some(text) = kinds.iter().position(|&kind| kind == Kind::Text) {
             if kinds.contains(&Kind::Number) {
-                return Err(table.row_at(begin(first)).failure(
+                return Err(table.row_at(0).failure(
                     format!(
                         "the first row mixes numbers and text such as {}",
                         quoted(&first[text])
@@ -71,8 +72,8 @@ impl Csv {
                     "make it a header of names alone, or correct it",
                 ));
             }
-            table.data_start = records.get(1).map_or(end, begin);
-            table.columns.names = Some(names(first));
+            table.data_start = *end;
+            table.columns.names = Some(names_of(first));
         } else if let Some(comment) = preamble.last_comment {
             table.columns.names = table.names_in_comment(&comment, first.len());
         }
@@ -81,40 +82,27 @@ impl Csv {
         Ok(table)
     }
 
-    /// The first records, and the byte behind them.
-    fn first_records(&self) -> Result<(Vec<ByteRecord>, u64), Failure> {
+    /// The first records, and where in the text each of them ends.
+    fn first_records(&self) -> Result<Vec<(ByteRecord, u64)>, Failure> {
         let text = source::open_text(&self.path, self.gzip, &ProgressBar::hidden())?;
-        let mut reader = self.builder().from_reader(text);
+        let mut reader = Records::new(text, 0, self.delimiter);
         let mut records = Vec::new();
-        let mut record = ByteRecord::new();
         while records.len() < LOOKS {
-            match reader.read_byte_record(&mut record) {
-                Ok(true) => records.push(record.clone()),
-                Ok(false) => break,
-                Err(error) => return Err(self.failure(error, &reader, 0)),
+            if !reader.read().map_err(|error| self.failure(error))? {
+                break;
             }
+            records.push((reader.row().clone(), reader.rest_offset()));
         }
-        Ok((records, reader.position().byte()))
-    }
-
-    fn builder(&self) -> ReaderBuilder {
-        let mut builder = ReaderBuilder::new();
-        builder
-            .has_headers(false)
-            .flexible(true)
-            .comment(Some(b'#'))
-            .delimiter(self.delimiter)
-            .buffer_capacity(1 << 16);
-        builder
+        Ok(records)
     }
 
     /// The names of `# time,gx,gy,gz`, right above the first record and as wide as it.
     fn names_in_comment(&self, comment: &str, width: usize) -> Option<Vec<String>> {
-        let mut reader = self.builder().comment(None).from_reader(comment.as_bytes());
-        let record = reader.byte_records().next()?.ok()?;
-        let all_text = record.iter().all(|field| Kind::of(field) == Kind::Text);
-        (width > 1 && record.len() == width && all_text && !comment.contains('='))
-            .then(|| names(&record))
+        let mut reader = Records::new(comment.as_bytes(), 0, self.delimiter);
+        let names = reader.read().ok()?.then(|| reader.row())?;
+        let all_text = names.iter().all(|field| Kind::of(field) == Kind::Text);
+        (width > 1 && names.len() == width && all_text && !comment.contains('='))
+            .then(|| names_of(names))
     }
 
     fn row_at(&self, byte: u64) -> Place {
@@ -124,13 +112,19 @@ impl Csv {
         }
     }
 
-    /// A failure of the reader that began at the given byte.
-    fn failure<R: Read>(&self, error: csv::Error, reader: &Reader<R>, start: u64) -> Failure {
-        let here = self.row_at(start + reader.position().byte());
-        match error.into_kind() {
-            ErrorKind::Io(error) => source::text_failure(here, self.gzip, &error),
-            kind => here.failure(format!("not a row of values ({kind:?})"), "correct the row"),
+    /// A failure to read what begins at the given byte.
+    fn failure(&self, (byte, error): (u64, io::Error)) -> Failure {
+        let here = self.row_at(byte);
+        if error.kind() == ErrorKind::FileTooLarge {
+            return here.failure(
+                format!(
+                    "a row of more than {} KiB is not one of a log",
+                    LONGEST_ROW / 1024
+                ),
+                "look for a quote that is never closed",
+            );
         }
+        source::text_failure(here, self.gzip, &error)
     }
 
     /// Shows the fields of one row to a visitor; true if it wants no more.
@@ -172,15 +166,14 @@ impl Table for Csv {
         progress: &ProgressBar,
     ) -> Result<Ended, Failure> {
         let width = self.columns.looks.len();
-        let fail = |byte, error| source::text_failure(self.row_at(byte), self.gzip, &error);
         let mut text = source::open_text(&self.path, self.gzip, progress)?;
         io::copy(&mut text.by_ref().take(self.data_start), &mut io::sink())
-            .map_err(|error| fail(0, error))?;
+            .map_err(|error| self.failure((0, error)))?;
 
         let mut lines = Lines::new(text, self.data_start, self.delimiter, width);
         while lines
             .cut()
-            .map_err(|error| fail(lines.rest_offset(), error))?
+            .map_err(|error| self.failure((lines.rest_offset(), error)))?
         {
             let field = |column| lines.field(column);
             if self.visit_row(axes, visitor, field, || lines.row_offset())? {
@@ -189,25 +182,21 @@ impl Table for Csv {
         }
 
         let start = lines.rest_offset();
-        let mut reader = self.builder().from_reader(lines.into_rest());
-        let mut record = ByteRecord::new();
-        loop {
-            match reader.read_byte_record(&mut record) {
-                Ok(true) => {}
-                Ok(false) => return Ok(Ended::AtTheLastRow),
-                Err(error) => return Err(self.failure(error, &reader, start)),
-            }
-            let byte = || start + begin(&record);
-            if record.len() != width {
-                return Err(self.row_at(byte()).failure(
-                    format!("{} where the first row has {width}", values(record.len())),
+        let mut records = Records::new(lines.into_rest(), start, self.delimiter);
+        while records.read().map_err(|error| self.failure(error))? {
+            let row = records.row();
+            if row.len() != width {
+                return Err(self.row_at(records.row_offset()).failure(
+                    format!("{} where the first row has {width}", values(row.len())),
                     "correct the row or cut the record there",
                 ));
             }
-            if self.visit_row(axes, visitor, |column| &record[column], byte)? {
+            let byte = || records.row_offset();
+            if self.visit_row(axes, visitor, |column| &row[column], byte)? {
                 return Ok(Ended::NotCounts);
             }
         }
+        Ok(Ended::AtTheLastRow)
     }
 }
 
@@ -282,24 +271,19 @@ impl Kind {
     }
 }
 
-fn names(record: &ByteRecord) -> Vec<String> {
+fn names_of(record: &ByteRecord) -> Vec<String> {
     record
         .iter()
         .map(|name| String::from_utf8_lossy(name).trim().to_owned())
         .collect()
 }
 
-fn look(rows: &[ByteRecord], column: usize) -> Look {
-    let number = |row: &ByteRecord| row.get(column).and_then(|field| Text(field).number().ok());
+fn look(rows: &[(ByteRecord, u64)], column: usize) -> Look {
+    let number = |(row, _): &(ByteRecord, u64)| Text(row.get(column)?).number().ok();
     match rows.first().map(number) {
         Some(None) => Look::Text,
         _ => Look::of_numbers(&rows.iter().filter_map(number).collect::<Vec<_>>()),
     }
-}
-
-/// The byte at which the reader began to look for the record.
-fn begin(record: &ByteRecord) -> u64 {
-    record.position().map_or(0, |position| position.byte())
 }
 
 fn values(count: usize) -> String {

@@ -32,6 +32,7 @@ mod metadata;
 mod npy;
 pub mod npy_header;
 mod quantum;
+mod records;
 mod source;
 
 use crate::{

@@ -40,8 +40,8 @@ impl Default for Diagnosis {
     fn default() -> Self {
         Self {
             tolerance: 0.01,
-            adequate_p: 0.01,
-            threshold: 6.0,
+            adequate_p: 0.05,
+            threshold: 8.0,
             ambiguity: 6.0,
             max_effects: 3,
         }
@@ -118,7 +118,7 @@ impl Diagnosis {
                     Some(squares) => Solution::converge(&problem, squares, self.tolerance, ROUNDS)?,
                     None => solve(&problem, self.tolerance)?,
                 };
-                let mut step = self.step(&model, &problem, &solution)?;
+                let mut step = self.step(&model, &problem, &solution, &span(curve))?;
                 let adequate = solution.p_value() >= self.adequate_p;
                 if !adequate && added < self.max_effects {
                     next = self.look(curve, &model, &solution, effects, &mut step)?;
@@ -144,8 +144,18 @@ impl Diagnosis {
         model: &Model,
         problem: &Problem<'_, K>,
         solution: &Solution<'_, '_, K>,
+        span: &Span,
     ) -> Result<Step<K>, Error> {
-        let fit = solution.fit();
+        let mut fit = solution.fit();
+        for shape in &mut fit.shape {
+            let term = model.terms()[shape.term];
+            let mut parameters = term.fitted_parameters();
+            if let (Some(j), None) = (parameters.next(), parameters.next()) {
+                let (weights, squares) = (&solution.weights, &solution.squares);
+                let search = Search::new(problem, weights, squares, shape.term, false)?.released();
+                (shape.lower, shape.upper) = search.joint_interval(term, j, span);
+            }
+        }
         let unknowns = problem.points.len().saturating_sub(fit.degrees_of_freedom);
         let comparison =
             Comparison::from_weights(problem, &solution.weights, &solution.squares, unknowns)?;

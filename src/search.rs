@@ -13,6 +13,8 @@ use crate::{
 };
 use nalgebra::SVector;
 
+/// The 95 % quantile of χ² with one degree of freedom.
+const RISE: f64 = 3.841_459;
 /// Halvings of the step in a refinement: from half a grid step to a 256th.
 const HALVINGS: usize = 8;
 
@@ -69,6 +71,12 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
         })
     }
 
+    /// With the effects that are held at zero free as well.
+    pub(crate) fn released(mut self) -> Self {
+        self.held = [false; MAX_EFFECTS];
+        self
+    }
+
     /// χ² with the effect in a shape, and the effect's squared coefficient.
     pub(crate) fn with(&self, term: &Term) -> (f64, f64) {
         let without = (f64::INFINITY, 0.0);
@@ -100,13 +108,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
             chi_squared: f64::INFINITY,
             square: 0.0,
         };
-        let ranges: [Grid; MAX_PARAMETERS] = core::array::from_fn(|i| {
-            if i < effect.parameters().len() {
-                Grid::new(effect.range(i, span))
-            } else {
-                Grid::SINGLE
-            }
-        });
+        let ranges: [Grid; MAX_PARAMETERS] = core::array::from_fn(|i| Grid::of(effect, i, span));
         for first in 0..ranges[0].steps {
             for second in 0..ranges[1].steps {
                 term.parameters = [ranges[0].at(first), ranges[1].at(second)];
@@ -125,14 +127,75 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
             chi_squared,
             square,
         };
-        let ranges = core::array::from_fn(|i| {
-            if i < term.effect.parameters().len() {
-                Grid::new(term.effect.range(i, span))
-            } else {
-                Grid::SINGLE
-            }
-        });
+        let ranges = core::array::from_fn(|i| Grid::of(term.effect, i, span));
         self.refine(found, [0.1; MAX_PARAMETERS], &ranges)
+    }
+
+    /// [`interval`](Self::interval) around a known shape, joined with those of the other values of a
+    /// whole-numbered parameter that explain the curve as well.
+    pub(crate) fn joint_interval(&self, term: Term, j: usize, span: &Span) -> (f64, f64) {
+        let (chi_squared, square) = self.with(&term);
+        let known = Found {
+            term,
+            chi_squared,
+            square,
+        };
+        let (mut lower, mut upper) = self.interval(&known, j, span);
+        let parameters = 0..term.effect.parameters().len().min(MAX_PARAMETERS);
+        for whole in parameters.filter(|&i| term.effect.is_whole(i)) {
+            let grid = Grid::of(term.effect, whole, span);
+            for step in 0..grid.steps {
+                let mut other = term;
+                other.parameters[whole] = grid.at(step);
+                let found = self.refine_known(other, span);
+                if found.chi_squared < chi_squared + RISE {
+                    let interval = self.interval(&found, j, span);
+                    lower = interval.0.min(lower);
+                    upper = interval.1.max(upper);
+                }
+            }
+        }
+        (lower, upper)
+    }
+
+    /// The interval of an effect's only fitted parameter in which χ² stays within that of 95 % of the
+    /// least, all coefficients free: also where another effect could take the shape's place.
+    pub(crate) fn interval(&self, best: &Found, j: usize, span: &Span) -> (f64, f64) {
+        let grid = Grid::of(best.term.effect, j, span);
+        let value = best.term.parameters[j];
+        let rise = |factor: f64| {
+            let mut term = best.term;
+            term.parameters[j] = value * factor;
+            self.with(&term).0 - best.chi_squared
+        };
+        let end = |direction: f64| {
+            // Doubling steps of the logarithm until outside, then halving.
+            let (mut inside, mut step) = (0.0, 0.005);
+            loop {
+                let at = inside + step;
+                let reached = value * math::exp(direction * at);
+                if !(grid.low..=grid.high).contains(&reached) {
+                    return if direction < 0.0 {
+                        grid.low.min(value)
+                    } else {
+                        grid.high.max(value)
+                    };
+                }
+                if rise(math::exp(direction * at)) > RISE {
+                    break;
+                }
+                inside = at;
+                step *= 2.0;
+            }
+            for _ in 0..6 {
+                step *= 0.5;
+                if rise(math::exp(direction * (inside + step))) <= RISE {
+                    inside += step;
+                }
+            }
+            value * math::exp(direction * inside)
+        };
+        (end(-1.0), end(1.0))
     }
 
     /// Goes downhill from a shape, one parameter after the other, in steps of the logarithm that
@@ -183,11 +246,12 @@ impl Found {
     }
 }
 
-/// Evenly spaced logarithms.
+/// Evenly spaced logarithms, or whole numbers.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
     low: f64,
     high: f64,
+    /// Zero for whole numbers.
     log_step: f64,
     steps: u32,
 }
@@ -200,6 +264,23 @@ impl Grid {
         log_step: 0.0,
         steps: 1,
     };
+
+    /// Of a parameter; a single step for one that the effect does not have.
+    fn of(effect: &dyn Effect, parameter: usize, span: &Span) -> Self {
+        if parameter >= effect.parameters().len() {
+            return Self::SINGLE;
+        }
+        let range = effect.range(parameter, span);
+        if effect.is_whole(parameter) {
+            return Self {
+                low: range.low,
+                high: range.high,
+                log_step: 0.0,
+                steps: (range.high - range.low) as u32 + 1,
+            };
+        }
+        Self::new(range)
+    }
 
     fn new(range: Range) -> Self {
         let high = range.high.max(range.low);
@@ -214,9 +295,13 @@ impl Grid {
         }
     }
 
+    /// The value after so many steps.
     fn at(&self, step: u32) -> f64 {
         if step == 0 {
             return self.low;
+        }
+        if self.log_step == 0.0 {
+            return self.low + f64::from(step);
         }
         (self.low * math::exp(self.log_step * f64::from(step))).min(self.high)
     }

@@ -28,7 +28,7 @@ impl Strength {
 
     fn noncentrality(self) -> f64 {
         match self {
-            Self::Moderate => 45.0,
+            Self::Moderate => 50.0,
             Self::Strong => 400.0,
         }
     }

@@ -3,7 +3,9 @@
 pub mod command;
 pub mod curve_file;
 pub mod failure;
+pub mod firmware;
 pub mod log;
 pub mod simulate;
 pub mod study;
 pub mod unit;
+pub mod xtask;

@@ -1,0 +1,15 @@
+//! Chores of the project: `cargo xtask --help`.
+
+use clap::Parser;
+use host_tests::xtask::CommandLine;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match CommandLine::parse().run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! An image run in QEMU, and what it logged.
+
+use super::{Image, REMEDY};
+use anyhow::{Context as _, Result, bail};
+use defmt_decoder::{DecodeError, Table};
+use std::{
+    io::Read,
+    process::{Command, ExitStatus, Stdio},
+    thread,
+    time::Duration,
+};
+use wait_timeout::ChildExt as _;
+
+/// The emulator.
+pub const QEMU: &str = "qemu-system-arm";
+
+/// The images take seconds; one that hangs is ended.
+const LIMIT: Duration = Duration::from_secs(600);
+
+/// What came of running an image.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// What it logged, a line a message.
+    pub lines: Vec<String>,
+    /// How it ended.
+    pub status: ExitStatus,
+}
+
+/// Runs an image on the Cortex-M4F of the board MPS2 AN386. An instruction takes 1 ns there.
+///
+/// # Errors
+/// If QEMU does not start, the image does not end, or its log cannot be decoded.
+pub fn run(image: &Image) -> Result<Run> {
+    let mut child = Command::new(QEMU)
+        .args(["-machine", "mps2-an386", "-cpu", "cortex-m4"])
+        .args(["-icount", "shift=0", "-nographic", "-monitor", "none"])
+        .args(["-serial", "null"])
+        .args(["-semihosting-config", "enable=on,target=native"])
+        .arg("-kernel")
+        .arg(&image.path)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn()
+        .with_context(|| format!("{QEMU} did not start: {REMEDY}"))?;
+    let mut stdout = child.stdout.take().context("no output to read")?;
+    let reader = thread::spawn(move || {
+        let mut log = Vec::new();
+        stdout.read_to_end(&mut log).map(|_| log)
+    });
+    let Some(status) = child.wait_timeout(LIMIT)? else {
+        child.kill()?;
+        child.wait()?;
+        bail!(
+            "{} did not end in {} s",
+            image.path.display(),
+            LIMIT.as_secs()
+        );
+    };
+    let log = match reader.join() {
+        Ok(log) => log?,
+        Err(_) => bail!("reading the output of {QEMU} failed"),
+    };
+    let lines = decode(&image.elf, &log).with_context(|| {
+        let path = image.path.display();
+        format!("decoding the log of {path}, which ended with {status}")
+    })?;
+    Ok(Run { lines, status })
+}
+
+/// The messages of a defmt log, each with its level.
+fn decode(elf: &[u8], log: &[u8]) -> Result<Vec<String>> {
+    let table = Table::parse(elf)?.context("the image logs nothing by defmt")?;
+    let mut decoder = table.new_stream_decoder();
+    decoder.received(log);
+    let mut lines = Vec::new();
+    loop {
+        match decoder.decode() {
+            Ok(frame) => {
+                let message = frame.display_message();
+                lines.push(match frame.level() {
+                    Some(level) => format!("{} {message}", level.as_str()),
+                    None => message.to_string(),
+                });
+            }
+            Err(DecodeError::UnexpectedEof) => return Ok(lines),
+            Err(DecodeError::Malformed) => bail!("a message is malformed"),
+        }
+    }
+}

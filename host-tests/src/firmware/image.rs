@@ -1,0 +1,74 @@
+//! One image, built.
+
+use super::{REMEDY, TARGET, Toolchain, toolchain::target_directory};
+use anyhow::{Context as _, Result, bail, ensure};
+use object::{Object as _, ObjectSection as _, SectionKind};
+use std::path::PathBuf;
+
+/// A linked image.
+#[derive(Clone, Debug)]
+pub struct Image {
+    /// Where it lies.
+    pub path: PathBuf,
+    /// The file itself.
+    pub elf: Vec<u8>,
+}
+
+impl Image {
+    /// Builds the binary `name` of the library's package.
+    ///
+    /// # Errors
+    /// If no compiler for the target is found, the build fails, or its result holds no code.
+    pub fn build(name: &str) -> Result<Self> {
+        let toolchain = Toolchain::find()
+            .with_context(|| format!("no compiler for {TARGET} is installed: {REMEDY}"))?;
+        let mut command = toolchain.cargo("build");
+        command
+            .args(["--quiet", "--package", "allanite", "--bin", name])
+            .args(["--features", "firmware", "--profile", "firmware"]);
+        let status = command
+            .status()
+            .with_context(|| format!("cargo did not start: {REMEDY}"))?;
+        if !status.success() {
+            bail!("building the image {name} failed ({status}): {REMEDY}");
+        }
+        let path = target_directory().join(TARGET).join("firmware").join(name);
+        let elf = std::fs::read(&path).with_context(|| format!("reading {}", path.display()))?;
+        let image = Self { path, elf };
+        // Flags that replaced the linker script's leave an image without code.
+        ensure!(
+            image.code_bytes()? > 1024,
+            "the image {name} holds no code: unset RUSTFLAGS and the like"
+        );
+        Ok(image)
+    }
+
+    /// Bytes of its sections of instructions.
+    fn code_bytes(&self) -> Result<u64> {
+        self.sum(|kind| kind == SectionKind::Text)
+    }
+
+    /// Bytes that the image takes of flash: instructions, constants and initial values, with the
+    /// vector table and the start-up code.
+    ///
+    /// # Errors
+    /// If the file is no ELF file.
+    pub fn flash_bytes(&self) -> Result<u64> {
+        self.sum(|kind| {
+            matches!(
+                kind,
+                SectionKind::Text
+                    | SectionKind::ReadOnlyData
+                    | SectionKind::ReadOnlyString
+                    | SectionKind::Data
+            )
+        })
+    }
+
+    fn sum(&self, counts: impl Fn(SectionKind) -> bool) -> Result<u64> {
+        let file = object::File::parse(&*self.elf)
+            .with_context(|| format!("reading {}", self.path.display()))?;
+        let sections = file.sections().filter(|section| counts(section.kind()));
+        Ok(sections.map(|section| section.size()).sum())
+    }
+}

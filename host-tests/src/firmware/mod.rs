@@ -1,0 +1,29 @@
+//! The images of `src/bin`, built for a Cortex-M4F and run in QEMU.
+
+pub mod emulator;
+pub mod image;
+pub mod toolchain;
+
+pub use emulator::{Run, run};
+pub use image::Image;
+pub use toolchain::Toolchain;
+
+/// What the images are built for.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// What every failure to build or run an image ends with.
+pub const REMEDY: &str = "`cargo xtask setup` installs what is missing";
+
+/// The folder of the workspace.
+pub fn workspace() -> &'static std::path::Path {
+    let here = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here)
+}
+
+/// The cargo that runs this program, or the one on the path.
+pub fn cargo() -> std::process::Command {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = std::process::Command::new(cargo);
+    command.current_dir(workspace());
+    command
+}

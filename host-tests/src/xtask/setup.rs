@@ -1,0 +1,123 @@
+//! What this machine lacks to build and run the images. Says what it does, asks nothing.
+
+use super::step::run as run_command;
+use crate::firmware::{TARGET, Toolchain, emulator::QEMU};
+use anyhow::{Context as _, Result, bail};
+use std::process::{Command, Stdio};
+
+/// Debian's newer compiler, its library sources and its lints.
+const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clippy"];
+/// Its linker, where rustup brings none.
+const DEBIAN_LINKER: &str = "lld";
+const DEBIAN_QEMU: &str = "qemu-system-arm";
+
+pub(super) fn run() -> Result<()> {
+    compiler()?;
+    emulator()
+}
+
+fn compiler() -> Result<()> {
+    match Toolchain::find() {
+        Some(toolchain) if toolchain.has_clippy() => {
+            println!("compiler for {TARGET}: {}", name(&toolchain));
+            return Ok(());
+        }
+        Some(_) => {}
+        None => {
+            println!("compiler for {TARGET}: missing, asking rustup for it");
+            let mut rustup = Command::new("rustup");
+            match run_command(rustup.args(["target", "add", TARGET])) {
+                Ok(()) if Toolchain::find().is_some() => return Ok(()),
+                Ok(()) => println!("rustup added it to another toolchain than the one in use"),
+                Err(error) => println!("{error:#}"),
+            }
+        }
+    }
+    let packages = DEBIAN_COMPILER.join(" ");
+    println!("compiler for {TARGET}: installing Debian's packages {packages}");
+    let installed = apt_get(&DEBIAN_COMPILER).and_then(|()| {
+        if Toolchain::find().is_some() {
+            return Ok(());
+        }
+        println!("linker: installing Debian's package {DEBIAN_LINKER}");
+        apt_get(&[DEBIAN_LINKER])
+    });
+    let by_hand = format!(
+        "install it by hand: `rustup target add {TARGET}`, or Debian's packages {packages} {DEBIAN_LINKER}"
+    );
+    installed.with_context(|| format!("no compiler for {TARGET}; {by_hand}"))?;
+    match Toolchain::find() {
+        Some(_) => Ok(()),
+        None => bail!("no compiler for {TARGET} that is new enough; {by_hand}"),
+    }
+}
+
+fn name(toolchain: &Toolchain) -> &'static str {
+    match toolchain {
+        Toolchain::Installed => "there, with the toolchain in use",
+        Toolchain::Debian { .. } => "there, Debian's with its library sources",
+    }
+}
+
+fn emulator() -> Result<()> {
+    if starts(QEMU) {
+        println!("{QEMU}: there");
+        return Ok(());
+    }
+    println!("{QEMU}: installing Debian's package {DEBIAN_QEMU}");
+    let by_hand = || format!("no {QEMU}; install QEMU for Arm by hand");
+    apt_get(&[DEBIAN_QEMU]).with_context(by_hand)?;
+    if starts(QEMU) {
+        Ok(())
+    } else {
+        bail!(by_hand())
+    }
+}
+
+fn starts(program: &str) -> bool {
+    let mut command = Command::new(program);
+    command
+        .arg("--version")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
+}
+
+/// Installs packages, as root or through sudo without a password.
+fn apt_get(packages: &[&str]) -> Result<()> {
+    if !starts("apt-get") {
+        bail!("this machine has no apt-get");
+    }
+    let prefix: &[&str] = if is_root() {
+        &[]
+    } else if starts("sudo") {
+        &["sudo", "--non-interactive"]
+    } else {
+        bail!("apt-get wants root, and there is no sudo");
+    };
+    let command = |arguments: &[&str]| {
+        let words = [
+            prefix,
+            &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"],
+            arguments,
+        ];
+        let words = words.concat();
+        let mut command = Command::new(words[0]);
+        command.args(&words[1..]).stdin(Stdio::null());
+        command
+    };
+    run_command(&mut command(&["--quiet", "--quiet", "update"]))?;
+    let install = [
+        "--quiet",
+        "--quiet",
+        "install",
+        "--yes",
+        "--no-install-recommends",
+    ];
+    run_command(&mut command(&[&install, packages].concat()))
+}
+
+fn is_root() -> bool {
+    let user = Command::new("id").arg("-u").output();
+    user.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+}

@@ -1,0 +1,46 @@
+//! Everything that must hold before a change lands.
+
+use super::{setup, step::step};
+use crate::firmware::{REMEDY, Toolchain, cargo};
+use anyhow::{Context as _, Result};
+
+pub(super) fn run() -> Result<()> {
+    println!("== set-up");
+    setup::run()?;
+    let toolchain = Toolchain::find().with_context(|| format!("no compiler: {REMEDY}"))?;
+
+    step("format", cargo().args(["fmt", "--all", "--", "--check"]))?;
+    step(
+        "lints, on the host",
+        cargo()
+            .args(["clippy", "--workspace", "--all-targets", "--all-features"])
+            .args(["--", "-D", "warnings"]),
+    )?;
+    step(
+        "lints, on the target",
+        toolchain
+            .cargo("clippy")
+            .args(["--package", "allanite", "--lib", "--bins", "--all-features"])
+            .args(["--", "-D", "warnings"]),
+    )?;
+    step(
+        "documentation",
+        cargo()
+            .args(["doc", "--workspace", "--no-deps", "--all-features"])
+            .env("RUSTDOCFLAGS", "-D warnings"),
+    )?;
+    step(
+        "the library with every feature, on the host",
+        cargo().args(["test", "--package", "allanite", "--all-features"]),
+    )?;
+    step(
+        "the image on a Cortex-M4F, in QEMU",
+        cargo().args(["test", "--package", "host-tests", "--test", "firmware"]),
+    )?;
+    step(
+        "tests on the host, examples in the documentation",
+        cargo().args(["test", "--workspace"]),
+    )?;
+    println!("\nall passed");
+    Ok(())
+}

@@ -11,6 +11,7 @@ use crate::{
         generalized::{ROUNDS, Solution, solve},
         weights::Weights,
     },
+    kurtosis::Kurtosis,
     model::{MAX_EFFECTS, Model, Term},
     nnls::Vector,
     search::{Found, Search},
@@ -91,16 +92,31 @@ pub enum Verdict {
 }
 
 impl Diagnosis {
-    /// Looks for what a model lacks, in a list of effects such as
-    /// [`CATALOGUE`](crate::effect::CATALOGUE): fits, compares, tries every effect, adds the best,
-    /// and again, until the model is adequate or nothing helps. Every step is handed to `report`,
-    /// the last one included.
+    /// As [`run_with`](Self::run_with), with no evidence beyond the curve.
     ///
     /// # Errors
     /// As of [`fit`](crate::fit).
     pub fn run<const K: usize>(
         &self,
         curve: &Curve<K>,
+        model: &Model,
+        effects: &[&'static dyn Effect],
+        report: impl FnMut(&Step<K>),
+    ) -> Result<Verdict, Error> {
+        self.run_with(curve, None, model, effects, report)
+    }
+
+    /// Looks for what a model lacks, in a list of effects such as
+    /// [`CATALOGUE`](crate::effect::CATALOGUE): fits, compares, tries every effect, adds the best,
+    /// and again, until the model is adequate or nothing helps. Every step is handed to `report`,
+    /// the last one included. The kurtosis tells effects apart that the curve does not.
+    ///
+    /// # Errors
+    /// As of [`fit`](crate::fit).
+    pub fn run_with<const K: usize>(
+        &self,
+        curve: &Curve<K>,
+        kurtosis: Option<&Kurtosis<K>>,
         model: &Model,
         effects: &[&'static dyn Effect],
         mut report: impl FnMut(&Step<K>),
@@ -122,6 +138,9 @@ impl Diagnosis {
                 let adequate = solution.p_value() >= self.adequate_p;
                 if !adequate && added < self.max_effects {
                     next = self.look(curve, &model, &solution, effects, &mut step)?;
+                    if let Some(better) = &mut next {
+                        tell_twins(curve, kurtosis, effects, better, &mut step);
+                    }
                 }
                 report(&step);
                 match (added, adequate) {
@@ -337,6 +356,44 @@ fn polish<const K: usize>(
         polished.terms_mut()[at] = found.term;
     }
     Ok(polished)
+}
+
+/// An effect that shares its Allan variance with another: names the one that the kurtosis speaks
+/// for, or both.
+fn tell_twins<const K: usize>(
+    curve: &Curve<K>,
+    kurtosis: Option<&Kurtosis<K>>,
+    effects: &[&'static dyn Effect],
+    better: &mut Better,
+    step: &mut Step<K>,
+) {
+    let Some(added) = &mut step.added else { return };
+    let is_twin = |effect: &&&'static dyn Effect| {
+        effect
+            .twin()
+            .is_some_and(|twin| twin.name() == added.effect.name())
+    };
+    let Some(&twin) = effects.iter().find(is_twin) else {
+        return;
+    };
+    let at = better.model.terms().len() - 1;
+    let problem = Problem::new(curve, &better.model);
+    let share = |k: usize| problem.share(k, at, &better.squares);
+    let correlation_time_s = added.parameters[0];
+    match kurtosis.map(|kurtosis| kurtosis.jumps(curve, correlation_time_s, share)) {
+        Some(Some(true)) => {
+            added.effect = twin;
+            better.model.terms_mut()[at].effect = twin;
+            if let Some(first) = step.candidates.first_mut() {
+                first.term.effect = twin;
+            }
+        }
+        Some(Some(false)) => {}
+        _ => {
+            // As many names as candidates fit; the twin is one of the first.
+            let _ = step.ambiguous.push(twin.name());
+        }
+    }
 }
 
 fn span<const K: usize>(curve: &Curve<K>) -> Span {

@@ -45,7 +45,7 @@ impl SquareSum {
             let middle = self.middle + (sum_high << 1 | sum_low >> 63) + (low >> 63);
             self.low = low & DIGIT;
             self.middle = middle & DIGIT;
-            self.high += (middle >> 63) as u32;
+            self.high = self.high.wrapping_add((middle >> 63) as u32);
         }
     }
 
@@ -66,7 +66,7 @@ impl SquareSum {
         self.low = low & DIGIT;
         let middle = self.middle + 1;
         self.middle = middle & DIGIT;
-        self.high += (middle >> 63) as u32;
+        self.high = self.high.wrapping_add((middle >> 63) as u32);
     }
 
     /// Adds another sum of squares.
@@ -75,7 +75,11 @@ impl SquareSum {
         let middle = self.middle + other.middle + (low >> 63);
         self.low = low & DIGIT;
         self.middle = middle & DIGIT;
-        self.high += other.high + (middle >> 63) as u32;
+        // Merged without end, a sum wraps before the counter of samples is believed.
+        self.high = self
+            .high
+            .wrapping_add(other.high)
+            .wrapping_add((middle >> 63) as u32);
     }
 
     /// The sum in three limbs of 64 bits, least significant first.

@@ -3,7 +3,7 @@
 use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
 use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
 use allanite::{
-    Comparison, Curve, Diagnosis, Fit, Model, Settings, Step, Term, Verdict,
+    Comparison, Curve, Diagnosis, Fit, FourthMoments, Model, Settings, Step, Term, Verdict,
     effect::{CATALOGUE, Effect, MAX_PARAMETERS},
     fit,
 };
@@ -35,7 +35,7 @@ impl Strength {
 }
 
 /// The effects and shapes that are hidden.
-pub const CASES: [(&str, [f64; MAX_PARAMETERS]); 8] = [
+pub const CASES: [(&str, [f64; MAX_PARAMETERS]); 10] = [
     ("sinusoid", [0.3, 0.0]),
     ("sinusoid", [7.7, 0.0]),
     ("gauss_markov", [0.1, 0.0]),
@@ -44,6 +44,8 @@ pub const CASES: [(&str, [f64; MAX_PARAMETERS]); 8] = [
     ("low_pass", [f64::NAN, 0.0]),
     ("decimation_filter", [f64::NAN, 1.0]),
     ("decimation_filter", [f64::NAN, 2.0]),
+    ("random_telegraph", [0.1, 0.0]),
+    ("random_telegraph", [1.0, 0.0]),
 ];
 
 /// The effect of a case, as strong as asked for: its amplitude, or for an effect that replaces white
@@ -131,13 +133,23 @@ pub struct Outcome {
 /// Diagnoses a simulated record, and judges the result on a second record of the same gyro.
 pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64) -> Outcome {
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
-    let curve = record(&mut simulator, base, samples);
-    let other = record(&mut simulator, base, samples);
+    let mut moments = FourthMoments::<OCTAVES>::new();
+    let curve = record(&mut simulator, base, samples, |counts| {
+        moments.push_slice(counts)
+    });
+    let other = record(&mut simulator, base, samples, |_| ());
+    let kurtosis = moments.kurtosis();
     let mut steps: Vec<Step<OCTAVES>> = Vec::new();
     let verdict = Diagnosis::default()
-        .run(&curve, &Model::ieee_952(), &CATALOGUE, |step| {
-            steps.push(step.clone())
-        })
+        .run_with(
+            &curve,
+            Some(&kurtosis),
+            &Model::ieee_952(),
+            &CATALOGUE,
+            |step| {
+                steps.push(step.clone());
+            },
+        )
         .ok();
     let (first, last) = (&steps[0], &steps[steps.len() - 1]);
     let on_other = |step: &Step<OCTAVES>| {

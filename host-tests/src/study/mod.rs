@@ -16,18 +16,16 @@ pub const RATE_HZ: f64 = 100.0;
 
 /// The curve of a simulated record, its rates rounded to counts far below its noise.
 pub fn curve(coefficients: Coefficients, samples: usize, seed: u64) -> Curve<OCTAVES> {
-    record(
-        &mut Simulator::new(coefficients, RATE_HZ, seed),
-        coefficients,
-        samples,
-    )
+    let mut simulator = Simulator::new(coefficients, RATE_HZ, seed);
+    record(&mut simulator, coefficients, samples, |_| ())
 }
 
-/// The curve of the next `samples` of a simulator.
+/// The curve of the next `samples` of a simulator; `watch` sees the counts as well.
 pub fn record(
     simulator: &mut Simulator,
     coefficients: Coefficients,
     samples: usize,
+    mut watch: impl FnMut(&[i32]),
 ) -> Curve<OCTAVES> {
     let quantum = quantum(coefficients);
     let mut accumulator = Accumulator::<OCTAVES>::new();
@@ -40,6 +38,7 @@ pub fn record(
             *count = (rate / quantum).round() as i32;
         }
         accumulator.push_slice(chunk);
+        watch(chunk);
         left -= chunk.len();
     }
     let scale = Scale::new(quantum, RATE_HZ).expect("positive");

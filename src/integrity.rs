@@ -1,0 +1,605 @@
+//! Whether a record is one of a gyro at rest: stuck, railed, spiked, moved, or missing samples.
+
+mod limits;
+mod reason;
+mod watch;
+
+pub use limits::{InvalidLimit, Limits};
+pub use reason::Reason;
+
+use watch::{Fate, Rule, Watch};
+
+/// How many samples a cluster has whose mean shows motion: 0.64 s and 10 s at 100 Hz, 8 ms and
+/// 0.13 s at 8 kHz.
+const CLUSTERS: [u16; 2] = [64, 1024];
+
+/// Changes of value after which the mean run is known well enough to judge a run by it.
+const KNOWN: u32 = 16;
+
+/// Watches the counts beside an [`Accumulator`](crate::Accumulator), in fixed memory and integers
+/// only, and tells whether the Allan curve can mean what it says.
+///
+/// An Allan variance assumes a gyro at rest whose noise goes on as it began. It averages whatever
+/// it is given: one corrupt word on the bus raises every octave as white noise would, a hand on the
+/// bench looks like a random walk, a sensor that hangs looks quiet. None of this can be seen in the
+/// curve any more; here it is counted before it is averaged.
+///
+/// # The statistics
+///
+/// *Repeats.* A quiet gyro behind a coarse converter repeats values, so no fixed length of a run
+/// is suspicious. The record itself tells its mean run, the number of samples over the number of
+/// changes. Runs of independent noise are geometric, and one longer than `r` times the mean has a
+/// probability below `e^−r`: at 41 not one in 10⁹ samples, in 10⁹ records. The default of 128
+/// leaves room for a level that drifts between the middle of a quantum, where runs are long, and
+/// its edge, where they are short: it holds for a noise of 0.2 counts rms or more. Below that,
+/// quantisation is no longer a noise that adds, and `Stuck` is the right word for the curve. So it
+/// is where fewer than one sample in a thousand changes at all.
+///
+/// *Rails.* A converter that clips returns its extreme value. A hit counts if it is a rail and the
+/// record's extreme too: a value beyond proves that the rail is none of this sensor.
+///
+/// *Spikes.* A sample further from the last ordinary one than 20 times the mean absolute difference
+/// of neighbours, back within three samples. The scale follows the record over some 64 samples;
+/// each difference enters it with at most four times what is usual, so that a spike of any size
+/// raises it by 5 %. For white noise the limit lies at 16 standard deviations of a difference,
+/// which is beyond any number of samples. A spike adds the same share to every octave that white
+/// noise rules; where their squares make up 5 % of ΣD² at `m = 1`, angle random walk comes out
+/// 2.5 % too high, and the record is invalid. In 2^16 samples one spike of 40 standard
+/// deviations does that. Rarer or smaller ones are counted.
+///
+/// *Motion.* The same statistic of the means of 64 and of 1024 samples, spikes left out: a cluster
+/// further from the last ordinary one than 64 times what neighbours usually differ by, until it is
+/// back or for 64 clusters. Because the scale is that of the record's own clusters, whatever goes
+/// on all the time is part of it: flicker, random walk, ramps, a sinusoid, noise with memory. What
+/// is left is what happens a few times and dwarfs the rest. For a consumer gyro of 0.005 °/√s at
+/// 100 Hz the limit lies at 0.5 °/s, for a tactical one at 0.2 °/s, and no hand is that steady.
+/// Telegraph noise whose jumps exceed the limit and are rare is taken for motion; it would have to
+/// be five times the white noise of a sample. Motion counts from 5 % of ΣD² of the clusters on.
+///
+/// *Missing samples.* As told by [`missing`](Self::missing): no more than one in ten.
+///
+/// While it learns a scale (64 differences; 16 of clusters) nothing is judged; then the largest
+/// difference so far is.
+///
+/// # Cost
+///
+/// Integers only: about 100 instructions a sample on a Cortex-M4F by count of operations, once in
+/// 64 samples as much again, no division. The state, with limits, is below 512 bytes.
+///
+/// # Example
+///
+/// ```
+/// use allanite::{Integrity, Reason};
+///
+/// let mut integrity = Integrity::default();
+/// for n in 0..10_000_i32 {
+///     let noise = (n.wrapping_mul(1_103_515_245) >> 16) % 50;
+///     integrity.push(if n == 5000 { 30_000 } else { noise });
+/// }
+/// assert_eq!(integrity.tally().spikes, 1);
+/// assert!(matches!(integrity.verdict(), Some(Reason::Spiked { .. })));
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Integrity {
+    limits: Limits,
+    state: State,
+}
+
+/// What is odd about a sample, for a caller that wants to leave it out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Observation {
+    /// It prolongs a run of equal values that is implausibly long.
+    pub stuck: bool,
+    /// It lies at a rail.
+    pub railed: bool,
+    /// It lies far from the last ordinary sample: a spike, or the beginning of a step.
+    pub outlying: bool,
+    /// The last full cluster lay far from the last ordinary one: known up to 64 samples late, by
+    /// the longer clusters up to 1024.
+    pub moving: bool,
+}
+
+impl Observation {
+    /// Whether anything is odd.
+    pub const fn is_odd(self) -> bool {
+        self.stuck || self.railed || self.outlying || self.moving
+    }
+}
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Tally {
+    /// Samples seen.
+    pub samples: u64,
+    /// Samples lost.
+    pub missing: u64,
+    /// Samples that equal the one before.
+    pub repeats: u64,
+    /// Samples in the longest run of equal values.
+    pub longest_run: u32,
+    /// Runs that were implausibly long by what was known when they happened.
+    pub stuck_runs: u64,
+    /// Samples in these runs.
+    pub stuck_samples: u64,
+    /// Samples at a rail.
+    pub rail_hits: u64,
+    /// Excursions of one to three samples far beyond the noise.
+    pub spikes: u64,
+    /// Jumps of the same size that did not come back.
+    pub steps: u64,
+    /// Stretches in which clusters lay far from those before.
+    pub motions: u64,
+}
+
+/// Everything but the configuration.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct State {
+    samples: u64,
+    missing: u64,
+    repeats: u64,
+    changes: u64,
+    runs: Runs,
+    rails: Rails,
+    neighbours: Watch,
+    spikes: u64,
+    steps: u64,
+    /// Σ D² of the spikes.
+    spike_squares: u128,
+    /// Of the excursion that goes on.
+    pending_squares: u128,
+    clusters: [Cluster; CLUSTERS.len()],
+}
+
+/// Runs of equal values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Runs {
+    /// Samples of the present run; 0 after a gap.
+    present: u32,
+    value: i32,
+    longest: u32,
+    /// Samples in runs that have ended, and how many these are; both halved before they overflow.
+    ended_samples: u32,
+    ended: u32,
+    stuck: u64,
+    stuck_samples: u64,
+}
+
+/// Hits of the record's extremes where they are rails.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Rails {
+    lowest: i32,
+    highest: i32,
+    lowest_hits: u64,
+    highest_hits: u64,
+}
+
+/// Clusters of one length.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Cluster {
+    sum: i64,
+    /// Samples in the sum.
+    filled: u16,
+    watch: Watch,
+    /// Σ D² where the rate had left its level.
+    squares: u128,
+    motions: u64,
+}
+
+impl Integrity {
+    /// Watches with these limits.
+    ///
+    /// # Errors
+    /// Where a limit is outside the range that its field documents.
+    pub const fn new(limits: Limits) -> Result<Self, InvalidLimit> {
+        match limits.check() {
+            Ok(()) => Ok(Self {
+                limits,
+                state: State::NEW,
+            }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The limits.
+    pub const fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// Adds one count and says what is odd about it.
+    #[inline]
+    pub fn push(&mut self, count: i32) -> Observation {
+        let (limits, state) = (&self.limits, &mut self.state);
+        state.samples = state.samples.saturating_add(1);
+        let repeated = state.runs.present > 0 && state.runs.value == count;
+        if repeated {
+            state.repeats = state.repeats.saturating_add(1);
+        } else if state.runs.present > 0 {
+            state.changes = state.changes.saturating_add(1);
+        }
+        let stuck = state.runs.push(count, limits.run_factor);
+        let railed = state.rails.push(count, &limits.rails);
+        let (outlying, ordinary) = state.push_neighbour(count, limits.spike_factor);
+        if let Some(count) = ordinary {
+            state.push_clusters(count, limits.motion_factor);
+        }
+        Observation {
+            stuck,
+            railed,
+            outlying,
+            moving: state.clusters.iter().any(|c| c.watch.is_outside()),
+        }
+    }
+
+    /// This many samples were lost at this place: counts them, and is a [`gap`](Self::gap).
+    pub fn missing(&mut self, samples: u64) {
+        if samples > 0 {
+            self.state.missing = self.state.missing.saturating_add(samples);
+            self.gap();
+        }
+    }
+
+    /// The samples that follow do not adjoin those before: no run, difference or cluster will span
+    /// this moment. What was counted and learnt stays.
+    pub fn gap(&mut self) {
+        self.state.gap();
+    }
+
+    /// Adds another record of the same sensor, as if a gap lay between the two. It is judged by the
+    /// limits of this one.
+    pub fn merge(&mut self, other: &Self) {
+        self.state.merge(&other.state);
+    }
+
+    /// Forgets everything but the limits.
+    pub fn reset(&mut self) {
+        self.state = State::NEW;
+    }
+
+    /// What was counted so far.
+    pub fn tally(&self) -> Tally {
+        let state = &self.state;
+        let motions = state.clusters.iter().map(|c| c.motions).max();
+        Tally {
+            samples: state.samples,
+            missing: state.missing,
+            repeats: state.repeats,
+            longest_run: state.runs.longest,
+            stuck_runs: state.runs.stuck,
+            stuck_samples: state.runs.stuck_samples,
+            rail_hits: state.rails.hits(),
+            spikes: state.spikes,
+            steps: state.steps,
+            motions: motions.unwrap_or(0),
+        }
+    }
+
+    /// Why the Allan curve of this record cannot mean what it says; `None` where it can. Of
+    /// several reasons the one that may have caused the others: rails, stuck values, spikes,
+    /// motion, missing samples.
+    pub fn verdict(&self) -> Option<Reason> {
+        let (limits, state) = (&self.limits, &self.state);
+        let samples = state.samples;
+        let hits = state.rails.hits();
+        if exceeds(hits.into(), samples.into(), limits.rail_per_mille) {
+            return Some(Reason::Railed { hits, samples });
+        }
+        if let Some(reason) = self.stuck() {
+            return Some(reason);
+        }
+        let total = state.neighbours.total();
+        if exceeds(state.spike_squares, total, limits.spike_per_mille) {
+            return Some(Reason::Spiked {
+                spikes: state.spikes,
+                percent: percent(state.spike_squares, total),
+            });
+        }
+        for (cluster, length) in state.clusters.iter().zip(CLUSTERS) {
+            let total = cluster.watch.total();
+            if exceeds(cluster.squares, total, limits.motion_per_mille) {
+                return Some(Reason::Moved {
+                    motions: cluster.motions,
+                    cluster: length,
+                    percent: percent(cluster.squares, total),
+                });
+            }
+        }
+        let (missing, sent) = (state.missing, samples.saturating_add(state.missing));
+        exceeds(missing.into(), sent.into(), limits.missing_per_mille)
+            .then_some(Reason::Missing { missing, sent })
+    }
+
+    /// By the mean run of the whole record, which a run that happened early did not know.
+    fn stuck(&self) -> Option<Reason> {
+        let (limits, state) = (&self.limits, &self.state);
+        let (samples, runs) = (state.samples, &state.runs);
+        let pairs = state.repeats.saturating_add(state.changes);
+        let changes = u128::from(state.changes) * 1000;
+        let frozen = pairs >= 1000 && changes < u128::from(pairs) * limits.change_per_mille as u128;
+        let stuck = runs.stuck_samples.max(runs.longest.into());
+        let beyond = runs.is_longest_implausible(limits.run_factor)
+            && exceeds(stuck.into(), samples.into(), limits.stuck_per_mille);
+        (frozen || beyond).then_some(Reason::Stuck {
+            longest_run: runs.longest,
+            changes: state.changes,
+            samples,
+        })
+    }
+}
+
+impl Default for Integrity {
+    /// With the default limits.
+    fn default() -> Self {
+        Self {
+            limits: Limits::DEFAULT,
+            state: State::NEW,
+        }
+    }
+}
+
+impl State {
+    const NEW: Self = Self {
+        samples: 0,
+        missing: 0,
+        repeats: 0,
+        changes: 0,
+        runs: Runs {
+            present: 0,
+            value: 0,
+            longest: 0,
+            ended_samples: 0,
+            ended: 0,
+            stuck: 0,
+            stuck_samples: 0,
+        },
+        rails: Rails {
+            lowest: i32::MAX,
+            highest: i32::MIN,
+            lowest_hits: 0,
+            highest_hits: 0,
+        },
+        neighbours: Watch::NEW,
+        spikes: 0,
+        steps: 0,
+        spike_squares: 0,
+        pending_squares: 0,
+        clusters: [Cluster::NEW, Cluster::NEW],
+    };
+
+    /// Whether the count is far from the last ordinary one, and what clusters take in its place,
+    /// once the scale is known.
+    #[inline(always)]
+    fn push_neighbour(&mut self, count: i32, factor: u16) -> (bool, Option<i32>) {
+        let (fate, square) = self
+            .neighbours
+            .push(count.into(), &Rule::neighbours(factor));
+        match fate {
+            Fate::Learning => return (false, None),
+            Fate::Learnt { outlier: 0 } => {}
+            Fate::Learnt { outlier } => self.add_spike(outlier),
+            Fate::Start | Fate::Ordinary => {}
+            Fate::Out { .. } => {
+                self.pending_squares = self.pending_squares.saturating_add(square);
+                return (true, Some(self.neighbours.reference() as i32));
+            }
+            Fate::Back => {
+                let squares = self.pending_squares.saturating_add(square);
+                self.add_spike(squares);
+            }
+            Fate::Accepted => {
+                self.steps = self.steps.saturating_add(1);
+                self.pending_squares = 0;
+                return (true, Some(count));
+            }
+        }
+        (false, Some(count))
+    }
+
+    fn add_spike(&mut self, squares: u128) {
+        self.spikes = self.spikes.saturating_add(1);
+        self.spike_squares = self.spike_squares.saturating_add(squares);
+        self.pending_squares = 0;
+    }
+
+    /// At most one length is judged at a sample, the shorter at the end of its cluster, the longer
+    /// at the sample after.
+    #[inline(always)]
+    fn push_clusters(&mut self, count: i32, factor: u16) {
+        let [short, long] = &mut self.clusters;
+        if long.filled == CLUSTERS[1] {
+            long.judge(factor, CLUSTERS[1]);
+        }
+        short.sum += i64::from(count);
+        short.filled += 1;
+        if short.filled == CLUSTERS[0] {
+            long.sum += short.sum;
+            long.filled += CLUSTERS[0];
+            short.judge(factor, CLUSTERS[0]);
+        }
+    }
+
+    fn gap(&mut self) {
+        self.runs.present = 0;
+        self.neighbours.gap();
+        self.pending_squares = 0;
+        for cluster in &mut self.clusters {
+            cluster.sum = 0;
+            cluster.filled = 0;
+            cluster.watch.gap();
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.gap();
+        let add = |sum: &mut u64, other: u64| *sum = sum.saturating_add(other);
+        add(&mut self.samples, other.samples);
+        add(&mut self.missing, other.missing);
+        add(&mut self.repeats, other.repeats);
+        add(&mut self.changes, other.changes);
+        add(&mut self.spikes, other.spikes);
+        add(&mut self.steps, other.steps);
+        self.spike_squares = self.spike_squares.saturating_add(other.spike_squares);
+        self.runs.merge(&other.runs);
+        self.rails.merge(&other.rails);
+        self.neighbours.merge(&other.neighbours);
+        for (cluster, other) in self.clusters.iter_mut().zip(&other.clusters) {
+            cluster.watch.merge(&other.watch);
+            cluster.squares = cluster.squares.saturating_add(other.squares);
+            add(&mut cluster.motions, other.motions);
+        }
+    }
+}
+
+impl Runs {
+    /// Whether the present run is implausibly long.
+    #[inline(always)]
+    fn push(&mut self, count: i32, factor: u16) -> bool {
+        if self.present == 0 || self.value != count {
+            self.end();
+            self.value = count;
+            self.present = 1;
+            self.longest = self.longest.max(1);
+            return false;
+        }
+        self.present = self.present.saturating_add(1);
+        self.longest = self.longest.max(self.present);
+        let stuck = self.is_implausible(self.present, self.ended_samples, factor);
+        if stuck {
+            // The first time with all samples of the run so far.
+            let before = self.is_implausible(self.present - 1, self.ended_samples, factor);
+            let new = if before { 1 } else { self.present };
+            self.stuck = self.stuck.saturating_add(u64::from(!before));
+            self.stuck_samples = self.stuck_samples.saturating_add(new.into());
+        }
+        stuck
+    }
+
+    /// A value has followed that is not the run's.
+    #[inline(always)]
+    fn end(&mut self) {
+        if self.present > 0 {
+            self.add_ended(self.present, 1);
+        }
+    }
+
+    fn add_ended(&mut self, samples: u32, runs: u32) {
+        // The mean is kept, what is older than 2^31 samples fades.
+        let sum = u64::from(self.ended_samples) + u64::from(samples);
+        let fade = sum.checked_ilog2().unwrap_or(0).saturating_sub(30);
+        self.ended_samples = (sum >> fade) as u32;
+        self.ended = ((u64::from(self.ended) + u64::from(runs)) >> fade) as u32;
+    }
+
+    /// Whether a run is longer than `factor` times the mean one.
+    #[inline(always)]
+    fn is_implausible(&self, run: u32, ended_samples: u32, factor: u16) -> bool {
+        self.ended >= KNOWN
+            && u64::from(run) * u64::from(self.ended) > u64::from(ended_samples) * u64::from(factor)
+    }
+
+    fn is_longest_implausible(&self, factor: u16) -> bool {
+        // Without itself, if it has ended.
+        let others = if self.longest == self.present {
+            self.ended_samples
+        } else {
+            self.ended_samples.saturating_sub(self.longest)
+        };
+        self.is_implausible(self.longest, others, factor)
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.longest = self.longest.max(other.longest);
+        self.add_ended(other.ended_samples, other.ended);
+        self.stuck = self.stuck.saturating_add(other.stuck);
+        self.stuck_samples = self.stuck_samples.saturating_add(other.stuck_samples);
+    }
+}
+
+impl Rails {
+    /// Whether the count is a rail and the record's extreme.
+    #[inline(always)]
+    fn push(&mut self, count: i32, rails: &[i32; 4]) -> bool {
+        if count > self.lowest && count < self.highest {
+            return false;
+        }
+        let hit = rails.contains(&count);
+        if count < self.lowest {
+            (self.lowest, self.lowest_hits) = (count, 0);
+        }
+        if count > self.highest {
+            (self.highest, self.highest_hits) = (count, 0);
+        }
+        if hit && count == self.lowest {
+            self.lowest_hits = self.lowest_hits.saturating_add(1);
+        }
+        if hit && count == self.highest {
+            self.highest_hits = self.highest_hits.saturating_add(1);
+        }
+        hit
+    }
+
+    fn hits(&self) -> u64 {
+        if self.lowest == self.highest {
+            self.lowest_hits
+        } else {
+            self.lowest_hits.saturating_add(self.highest_hits)
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        if other.lowest < self.lowest {
+            (self.lowest, self.lowest_hits) = (other.lowest, other.lowest_hits);
+        } else if other.lowest == self.lowest {
+            self.lowest_hits = self.lowest_hits.saturating_add(other.lowest_hits);
+        }
+        if other.highest > self.highest {
+            (self.highest, self.highest_hits) = (other.highest, other.highest_hits);
+        } else if other.highest == self.highest {
+            self.highest_hits = self.highest_hits.saturating_add(other.highest_hits);
+        }
+    }
+}
+
+impl Cluster {
+    const NEW: Self = Self {
+        sum: 0,
+        filled: 0,
+        watch: Watch::NEW,
+        squares: 0,
+        motions: 0,
+    };
+
+    /// The cluster is full.
+    #[inline(never)]
+    fn judge(&mut self, factor: u16, length: u16) {
+        let rule = Rule::clusters(factor, length);
+        let (fate, square) = self.watch.push(self.sum, &rule);
+        self.sum = 0;
+        self.filled = 0;
+        let (squares, motions) = match fate {
+            Fate::Start | Fate::Learning | Fate::Ordinary => (0, 0),
+            Fate::Learnt { outlier } => (outlier, u64::from(outlier > 0)),
+            Fate::Out { first } => (square, u64::from(first)),
+            Fate::Back | Fate::Accepted => (square, 0),
+        };
+        self.squares = self.squares.saturating_add(squares);
+        self.motions = self.motions.saturating_add(motions);
+    }
+}
+
+/// Whether a part is more than so many thousandths of the whole.
+fn exceeds(part: u128, whole: u128, per_mille: u16) -> bool {
+    part.saturating_mul(1000) > whole.saturating_mul(per_mille.into())
+}
+
+/// A part of a whole in per cent, rounded down.
+fn percent(part: u128, whole: u128) -> u8 {
+    let percent = part.saturating_mul(100) / whole.max(1);
+    percent.min(100) as u8
+}

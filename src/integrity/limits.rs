@@ -1,0 +1,114 @@
+//! From when on a record is not to be believed.
+
+/// Limits of [`Integrity`](crate::Integrity). Shares are in thousandths, `0 … 1000`: 0 allows none,
+/// 1000 any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Limits {
+    /// The values at which the sensor clips, by default those of `i16` and `i32`. One of 14 bits
+    /// has `[-8192, 8191, i32::MIN, i32::MAX]`.
+    pub rails: [i32; 4],
+    /// Share of samples at a rail. Default 1.
+    pub rail_per_mille: u16,
+    /// A run of equal values is implausible from so many times the record's mean run on,
+    /// `8 … 1024`. Default 128.
+    pub run_factor: u16,
+    /// Share of samples in such runs. Default 1.
+    pub stuck_per_mille: u16,
+    /// Least share of samples that differ from the one before, judged from 1000 samples on.
+    /// Default 1.
+    pub change_per_mille: u16,
+    /// A sample is outlying from so many times the mean absolute difference of neighbours on,
+    /// `8 … 1024`. Default 20.
+    pub spike_factor: u16,
+    /// Share of ΣD² at `m = 1` that spikes may have. Default 50.
+    pub spike_per_mille: u16,
+    /// A cluster of samples has moved from so many times the mean absolute difference of
+    /// neighbouring clusters on, `8 … 1024`. Default 64.
+    pub motion_factor: u16,
+    /// Share of ΣD² of the clusters that motion may have. Default 50.
+    pub motion_per_mille: u16,
+    /// Share of samples that may be missing. Default 100.
+    pub missing_per_mille: u16,
+}
+
+impl Limits {
+    pub(super) const DEFAULT: Self = Self {
+        rails: [i16::MIN as i32, i16::MAX as i32, i32::MIN, i32::MAX],
+        rail_per_mille: 1,
+        run_factor: 128,
+        stuck_per_mille: 1,
+        change_per_mille: 1,
+        spike_factor: 20,
+        spike_per_mille: 50,
+        motion_factor: 64,
+        motion_per_mille: 50,
+        missing_per_mille: 100,
+    };
+
+    pub(super) const fn check(&self) -> Result<(), InvalidLimit> {
+        let ranges = [
+            ("rail_per_mille", self.rail_per_mille, SHARE),
+            ("run_factor", self.run_factor, FACTOR),
+            ("stuck_per_mille", self.stuck_per_mille, SHARE),
+            ("change_per_mille", self.change_per_mille, SHARE),
+            ("spike_factor", self.spike_factor, FACTOR),
+            ("spike_per_mille", self.spike_per_mille, SHARE),
+            ("motion_factor", self.motion_factor, FACTOR),
+            ("motion_per_mille", self.motion_per_mille, SHARE),
+            ("missing_per_mille", self.missing_per_mille, SHARE),
+        ];
+        let mut i = 0;
+        while i < ranges.len() {
+            let (name, value, (least, most)) = ranges[i];
+            if value < least || value > most {
+                return Err(InvalidLimit {
+                    name,
+                    value,
+                    least,
+                    most,
+                });
+            }
+            i += 1;
+        }
+        Ok(())
+    }
+}
+
+const SHARE: (u16, u16) = (0, 1000);
+/// Less would find ordinary noise odd; more would overflow.
+const FACTOR: (u16, u16) = (8, 1024);
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// A limit that no record could be judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct InvalidLimit {
+    /// The field of [`Limits`].
+    pub name: &'static str,
+    /// Its value.
+    pub value: u16,
+    /// The least that it may be.
+    pub least: u16,
+    /// The most that it may be.
+    pub most: u16,
+}
+
+impl core::fmt::Display for InvalidLimit {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self {
+            name,
+            value,
+            least,
+            most,
+        } = self;
+        write!(f, "{name} = {value}: choose {least} to {most}")
+    }
+}
+
+impl core::error::Error for InvalidLimit {}

@@ -21,6 +21,8 @@ const BATCH: usize = 1 << 13;
 /// One axis, measured in counts.
 pub(super) struct Measured {
     pub(super) accumulator: Accumulator<OCTAVES>,
+    /// What lies behind the part that was asked for.
+    pub(super) rest: Accumulator<OCTAVES>,
     /// What one count is, in numbers of the log.
     pub(super) quantum: f64,
     /// Whether the log's numbers are the counts.
@@ -28,14 +30,16 @@ pub(super) struct Measured {
 }
 
 /// Accumulates the given columns. Counts take one pass; at the first value that is none, the
-/// reading starts again, once for the range and once for the counts.
+/// reading starts again, once for the range and once for the counts. Rows behind the `first` are
+/// accumulated apart.
 pub(super) fn measure(
     table: &impl Table,
     path: &Path,
     columns: &[AxisColumn],
+    first: u64,
     progress: &ProgressBar,
 ) -> Result<Vec<Measured>, Failure> {
-    let mut counts = Counts(Batches::new(columns.len()));
+    let mut counts = Counts(Batches::new(columns.len(), first));
     if let Ended::AtTheLastRow = table.pass(columns, &mut counts, progress)? {
         let whole = vec![Quantum::WHOLE; columns.len()];
         return finish(path, counts.0, &whole);
@@ -60,7 +64,7 @@ pub(super) fn measure(
         .collect::<Result<Vec<_>, _>>()?;
 
     let mut rounded = Rounded {
-        batches: Batches::new(columns.len()),
+        batches: Batches::new(columns.len(), first),
         quanta,
         steps: vec![Steps::default(); columns.len()],
     };
@@ -80,20 +84,21 @@ pub(super) fn measure(
 }
 
 fn finish(path: &Path, batches: Batches, quanta: &[Quantum]) -> Result<Vec<Measured>, Failure> {
-    let accumulators = batches.finish();
-    if accumulators
-        .iter()
-        .any(|accumulator| accumulator.samples() == 0)
-    {
+    let parts = batches.finish();
+    if parts.iter().any(|[first, _]| first.samples() == 0) {
         return Err(Place::file(path).failure("no rows", "record some samples"));
     }
-    let measured = |(accumulator, quantum): (_, &Quantum)| Measured {
+    let measured = |([accumulator, rest], quantum): (Parts, &Quantum)| Measured {
         accumulator,
+        rest,
         quantum: quantum.step(),
         whole: *quantum == Quantum::WHOLE,
     };
-    Ok(accumulators.into_iter().zip(quanta).map(measured).collect())
+    Ok(parts.into_iter().zip(quanta).map(measured).collect())
 }
+
+/// The first samples of an axis, and the rest.
+type Parts = [Accumulator<OCTAVES>; 2];
 
 /// Counts of every axis on their way into the accumulators, which run in a thread of their own:
 /// accumulating takes about as long as cutting and parsing text.
@@ -103,22 +108,26 @@ struct Batches {
     full: SyncSender<(usize, Vec<i32>)>,
     /// Batches that have been accumulated, to be filled again.
     empty: Receiver<Vec<i32>>,
-    thread: JoinHandle<Vec<Accumulator<OCTAVES>>>,
+    thread: JoinHandle<Vec<Parts>>,
 }
 
 impl Batches {
-    fn new(axes: usize) -> Self {
+    fn new(axes: usize, first: u64) -> Self {
         let (full, incoming) = sync_channel::<(usize, Vec<i32>)>(2 * axes);
         let (outgoing, empty) = channel();
         let thread = thread::spawn(move || {
-            let mut accumulators = vec![Accumulator::new(); axes];
+            let mut parts: Vec<Parts> = vec![[const { Accumulator::new() }; 2]; axes];
             for (axis, mut batch) in incoming {
-                accumulators[axis].push_slice(&batch);
+                let [start, rest] = &mut parts[axis];
+                let room = usize::try_from(first - start.samples()).unwrap_or(usize::MAX);
+                let (of_start, of_rest) = batch.split_at(room.min(batch.len()));
+                start.push_slice(of_start);
+                rest.push_slice(of_rest);
                 batch.clear();
                 // Nobody fills batches any more once the last ones are on their way.
                 let _ = outgoing.send(batch);
             }
-            accumulators
+            parts
         });
         Self {
             open: vec![Vec::with_capacity(BATCH); axes],
@@ -148,7 +157,7 @@ impl Batches {
         let _ = self.full.send((axis, batch));
     }
 
-    fn finish(mut self) -> Vec<Accumulator<OCTAVES>> {
+    fn finish(mut self) -> Vec<Parts> {
         for axis in 0..self.open.len() {
             self.send(axis);
         }

@@ -39,12 +39,11 @@ use crate::{
     failure::{Failure, Place},
     unit::Unit,
 };
-use accumulate::Measured;
 use allanite::Accumulator;
 use columns::{AxisColumn, Columns};
 use field::{Field, Flaw};
 use indicatif::ProgressBar;
-use metadata::{Metadata, Settled};
+use metadata::Metadata;
 use source::Format;
 use std::path::Path;
 
@@ -120,9 +119,41 @@ pub struct Axis {
 /// # Errors
 /// Of every kind of bad input, the file, the row and the remedy.
 pub fn read(path: &Path, options: &Options, progress: &ProgressBar) -> Result<Log, Failure> {
+    read_parts(path, options, None, progress).map(|(log, _)| log)
+}
+
+/// Reads a log whose last `share` is kept apart: as two logs. It is read twice, first for its
+/// length.
+///
+/// # Errors
+/// As of [`read`], for both parts.
+pub fn read_in_two(
+    path: &Path,
+    options: &Options,
+    share: f64,
+    progress: &ProgressBar,
+) -> Result<(Log, Log), Failure> {
+    let whole = read(path, options, progress)?;
+    let samples = whole.axes.iter().map(|axis| axis.accumulator.samples());
+    let first = samples.max().unwrap_or(0) as f64 * (1.0 - share);
+    let (log, rest) = read_parts(path, options, Some(first.round() as u64), progress)?;
+    let rest = Log {
+        axes: rest,
+        ..log.clone()
+    };
+    Ok((log, rest))
+}
+
+/// The first rows of a log, and the axes of the rest; all rows, and no axes.
+fn read_parts(
+    path: &Path,
+    options: &Options,
+    first: Option<u64>,
+    progress: &ProgressBar,
+) -> Result<(Log, Vec<Axis>), Failure> {
     match Format::of(path)? {
-        Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, progress),
-        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, progress),
+        Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, first, progress),
+        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, first, progress),
     }
 }
 
@@ -163,20 +194,42 @@ fn read_table(
     table: &impl Table,
     path: &Path,
     options: &Options,
+    first: Option<u64>,
     progress: &ProgressBar,
-) -> Result<Log, Failure> {
+) -> Result<(Log, Vec<Axis>), Failure> {
     let settled = table.metadata().settle(path, options)?;
     let (columns, note) = match &options.columns {
         Some(choices) => (table.columns().chosen(path, choices)?, None),
         None => table.columns().guessed(path)?,
     };
-    let measured = accumulate::measure(table, path, &columns, progress)?;
+    let rows = first.unwrap_or(u64::MAX);
+    let measured = accumulate::measure(table, path, &columns, rows, progress)?;
     let mut notes: Vec<String> = note.into_iter().collect();
-    let axes = columns
-        .into_iter()
-        .zip(measured)
-        .map(|(column, measured)| settle_axis(path, column.axis, measured, settled, &mut notes))
-        .collect::<Result<_, _>>()?;
+    let mut axes = Vec::new();
+    let mut rest = Vec::new();
+    for (column, measured) in columns.into_iter().zip(measured) {
+        let axis = Axis {
+            name: column.axis,
+            rate_per_count: settled.scale.unwrap_or(1.0) * measured.quantum,
+            accumulator: measured.accumulator,
+        };
+        if first.is_some() {
+            let behind = Axis {
+                accumulator: measured.rest,
+                ..axis.clone()
+            };
+            check_axis(path, &behind)?;
+            rest.push(behind);
+        }
+        check_axis(path, &axis)?;
+        if measured.whole && settled.scale.is_none() {
+            notes.push(format!(
+                "axis {}: whole numbers and no scale given: 1 per count assumed (say so with --scale)",
+                axis.name
+            ));
+        }
+        axes.push(axis);
+    }
     let unit = settled.unit.unwrap_or_else(|| {
         let assumed = Unit::DegreesPerSecond;
         notes.push(format!(
@@ -184,28 +237,23 @@ fn read_table(
         ));
         assumed
     });
-    Ok(Log {
+    let log = Log {
         rate_hz: settled.rate_hz,
         unit,
         axes,
         notes,
-    })
+    };
+    Ok((log, rest))
 }
 
-/// An axis in its unit, if it is long enough and alive.
-fn settle_axis(
-    path: &Path,
-    name: String,
-    measured: Measured,
-    settled: Settled,
-    notes: &mut Vec<String>,
-) -> Result<Axis, Failure> {
-    let Measured {
-        accumulator,
-        quantum,
-        whole,
-    } = measured;
+/// Whether an axis is long enough and alive.
+fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
     let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
+    let Axis {
+        name,
+        rate_per_count,
+        accumulator,
+    } = axis;
     // Two octaves with six differences each, the shorter one's neighbours less three.
     const LEAST: u64 = 9;
     if accumulator.samples() < LEAST {
@@ -226,21 +274,11 @@ fn settle_axis(
             "check the sensor, or choose other columns with --columns",
         );
     }
-    if whole && settled.scale.is_none() {
-        notes.push(format!(
-            "axis {name}: whole numbers and no scale given: 1 per count assumed (say so with --scale)"
-        ));
-    }
-    let rate_per_count = settled.scale.unwrap_or(1.0) * quantum;
-    if !(rate_per_count.is_finite() && rate_per_count > 0.0) {
+    if !(rate_per_count.is_finite() && *rate_per_count > 0.0) {
         return fail(
             format!("axis {name}: a scale of {rate_per_count} per count is beyond floats"),
             "give another --scale",
         );
     }
-    Ok(Axis {
-        name,
-        rate_per_count,
-        accumulator,
-    })
+    Ok(())
 }

@@ -5,6 +5,7 @@ pub mod curve_file;
 pub mod failure;
 pub mod firmware;
 pub mod log;
+pub mod plot;
 pub mod simulate;
 pub mod study;
 pub mod unit;

@@ -4,11 +4,7 @@ use super::{
     fit_json, fit_table,
     input::{self, LogArguments},
 };
-use crate::{
-    curve_file::AxisCurve,
-    failure::{Failure, Place},
-    log::OCTAVES,
-};
+use crate::{curve_file::AxisCurve, failure::Failure, log::OCTAVES};
 use allanite::{Curve, Fit, Method, Model, Settings};
 use clap::{Args, ValueEnum};
 use std::{io::Write, path::PathBuf};
@@ -89,7 +85,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
                 method: arguments.method,
                 fit,
             }),
-            Err(error) => Err(failure(arguments, &axis.axis, error)),
+            Err(error) => Err(input::library_failure(&arguments.input, &axis.axis, error)),
         }
     };
     let axes = input::read(&arguments.input, &arguments.about_log)?;
@@ -103,11 +99,4 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         fit_table::print(&fitted, output)
     };
     printed.map_err(|error| Failure::standard_output(&error))
-}
-
-/// The library's errors read `what: remedy`.
-fn failure(arguments: &Arguments, axis: &str, error: allanite::Error) -> Failure {
-    let text = error.to_string();
-    let (what, remedy) = text.rsplit_once(": ").unwrap_or((&text, "record longer"));
-    Place::file(&arguments.input).failure(format!("axis {axis}: {what}"), remedy)
 }

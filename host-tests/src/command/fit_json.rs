@@ -34,7 +34,7 @@ struct Octave {
 
 /// A coefficient in the log's unit; infinite ends of an interval are `null`.
 #[derive(Serialize)]
-struct Term {
+pub(super) struct Term {
     effect: &'static str,
     symbol: &'static str,
     value: f64,
@@ -87,7 +87,8 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
     }
 }
 
-fn term(coefficient: &Coefficient, unit: Unit) -> Term {
+/// One coefficient.
+pub(super) fn term(coefficient: &Coefficient, unit: Unit) -> Term {
     Term {
         effect: coefficient.name,
         symbol: coefficient.symbol,

@@ -39,7 +39,8 @@ pub(super) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
     Ok(())
 }
 
-fn table(fit: &Fit, unit: Unit) -> Table {
+/// The coefficients of a fit.
+pub(super) fn table(fit: &Fit, unit: Unit) -> Table {
     let mut table = Table::new();
     table.load_style(NOTHING);
     table.set_header([

@@ -4,7 +4,7 @@ use super::progress;
 use crate::{
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place, one_line},
-    log::{self, ColumnChoice},
+    log::{self, ColumnChoice, Log},
     unit::Unit,
 };
 use clap::Args;
@@ -45,9 +45,31 @@ pub(super) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisC
     let log = log::read(path, &arguments.options(), &bar);
     bar.finish_and_clear();
     let log = log?;
+    note(path, &log);
+    curves(&log)
+}
+
+/// Measures the curves of a log's first part and those of the rest, which is this share of it.
+pub(super) fn measure_in_two(
+    path: &Path,
+    arguments: &LogArguments,
+    share: f64,
+) -> Result<(Vec<AxisCurve>, Vec<AxisCurve>), Failure> {
+    let bar = progress::reading(path);
+    let logs = log::read_in_two(path, &arguments.options(), share, &bar);
+    bar.finish_and_clear();
+    let (first, rest) = logs?;
+    note(path, &first);
+    Ok((curves(&first)?, curves(&rest)?))
+}
+
+fn note(path: &Path, log: &Log) {
     for note in &log.notes {
         eprintln!("allanite: {}{}", Place::file(path), one_line(note));
     }
+}
+
+fn curves(log: &Log) -> Result<Vec<AxisCurve>, Failure> {
     log.axes
         .iter()
         .map(|axis| AxisCurve::of(axis, log.rate_hz, log.unit))
@@ -72,4 +94,11 @@ pub(super) fn read(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurv
 pub(super) fn is_curve(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
+/// What the library has against an axis; its errors read `what: remedy`.
+pub(super) fn library_failure(path: &Path, axis: &str, error: allanite::Error) -> Failure {
+    let text = error.to_string();
+    let (what, remedy) = text.rsplit_once(": ").unwrap_or((&text, "record longer"));
+    Place::file(path).failure(format!("axis {axis}: {what}"), remedy)
 }

@@ -1,15 +1,25 @@
 //! The commands of `allanite`.
 
+mod compare;
+mod compare_json;
+mod compare_text;
+mod compared_model;
+mod diagnose;
+mod diagnose_json;
+mod diagnose_text;
+mod effect_argument;
 mod fit;
 mod fit_json;
 mod fit_table;
 mod input;
 mod measure;
+mod model_json;
 mod number;
 mod output_file;
 mod progress;
 mod simulate;
 mod units;
+mod words;
 
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
@@ -31,6 +41,8 @@ enum Command {
     Simulate(simulate::Arguments),
     Measure(measure::Arguments),
     Fit(fit::Arguments),
+    Compare(compare::Arguments),
+    Diagnose(diagnose::Arguments),
 }
 
 impl CommandLine {
@@ -44,6 +56,8 @@ impl CommandLine {
             Command::Simulate(arguments) => simulate::run(arguments, &mut output),
             Command::Measure(arguments) => measure::run(arguments, &mut output),
             Command::Fit(arguments) => fit::run(arguments, &mut output),
+            Command::Compare(arguments) => compare::run(arguments, &mut output),
+            Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
         }?;
         output
             .flush()

@@ -1,0 +1,142 @@
+//! `compare`: where a model fails, octave by octave.
+
+use super::{
+    compare_json, compare_text,
+    compared_model::ModelArguments,
+    input::{self, LogArguments},
+};
+use crate::{
+    curve_file::AxisCurve,
+    failure::{Failure, Place},
+    log::OCTAVES,
+};
+use allanite::{Comparison, Curve, Error, Fit, Model, Settings};
+use clap::Args;
+use std::{io::Write, path::PathBuf};
+
+/// Compare a model with a record octave by octave: the five IEEE-952 terms, and what is added
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
+    input: PathBuf,
+    #[command(flatten)]
+    model: ModelArguments,
+    /// Fit the model to the first part of a log, and compare it with the last, this share of it
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    hold_out: Option<f64>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    about_log: LogArguments,
+}
+
+/// One axis, the model that was fitted to it, and where that fails.
+pub(super) struct Compared {
+    pub(super) axis: AxisCurve,
+    pub(super) model: Model,
+    pub(super) fit: Fit,
+    /// With what was fitted; with what was held out, where something was.
+    pub(super) comparison: Comparison<OCTAVES>,
+    pub(super) held_out: Option<HeldOut>,
+}
+
+/// The part of a record that no coefficient was fitted to.
+pub(super) struct HeldOut {
+    pub(super) axis: AxisCurve,
+    /// Rms misfit, in percent, in the part that was fitted.
+    pub(super) fitted_rms_percent: f64,
+}
+
+impl Compared {
+    fn new(axis: AxisCurve, model: &Model, held_out: Option<AxisCurve>) -> Result<Self, Error> {
+        let settings = Settings::default();
+        let curve = axis.curve()?;
+        let fit = allanite::fit(&curve, model, settings)?;
+        let fitted = Comparison::new(&curve, model, &fit)?;
+        let (comparison, held_out) = match held_out {
+            None => (fitted, None),
+            Some(axis) => {
+                let tolerance = settings.tolerance;
+                let comparison = Comparison::held_out(&axis.curve()?, model, &fit, tolerance)?;
+                let held_out = HeldOut {
+                    axis,
+                    fitted_rms_percent: fitted.rms_percent,
+                };
+                (comparison, Some(held_out))
+            }
+        };
+        Ok(Self {
+            axis,
+            model: model.clone(),
+            fit,
+            comparison,
+            held_out,
+        })
+    }
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
+    let model = arguments.model.model()?;
+    let (fitted, held_out) = read(arguments)?;
+    let mut held_out = held_out.into_iter();
+    let mut compared = Vec::new();
+    for axis in fitted {
+        let name = axis.axis.clone();
+        let fail = |error| input::library_failure(&arguments.input, &name, error);
+        let curve = axis.curve().map_err(fail)?;
+        check_visible(&model, &curve)?;
+        compared.push(Compared::new(axis, &model, held_out.next()).map_err(fail)?);
+    }
+    let printed = if arguments.json {
+        compare_json::print(&compared, output)
+    } else {
+        compare_text::print(&compared, output)
+    };
+    printed.map_err(|error| Failure::standard_output(&error))
+}
+
+/// The curves to fit, and those to compare with where a part is held out.
+fn read(arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisCurve>), Failure> {
+    let Some(share) = arguments.hold_out else {
+        let axes = input::read(&arguments.input, &arguments.about_log)?;
+        return Ok((axes, Vec::new()));
+    };
+    if !(share > 0.0 && share < 1.0) {
+        return Err(Failure::option(
+            format!("--hold-out {share} is impossible"),
+            "give a share between 0 and 1, such as 0.5",
+        ));
+    }
+    if input::is_curve(&arguments.input) {
+        return Err(Place::file(&arguments.input).failure(
+            "a curve cannot be divided into a part to fit and one to hold out",
+            "give the log, or leave --hold-out",
+        ));
+    }
+    input::measure_in_two(&arguments.input, &arguments.about_log, share)
+}
+
+/// An effect that shows in no octave, such as an oscillation at a multiple of the sample rate,
+/// cannot be fitted.
+fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
+    for term in model.terms() {
+        let setting = term.setting(curve.interval_s());
+        let variance = |m: u32| term.effect.variance(f64::from(m), &setting);
+        let visible = |variance: f64| variance.is_finite() && variance > 0.0;
+        let mut octaves = curve.points().iter().map(|point| variance(point.m));
+        let finite = octaves.clone().all(f64::is_finite);
+        if !(finite && octaves.any(visible)) {
+            return Err(Failure::option(
+                format!(
+                    "--with {}: nothing of it shows at {} Hz",
+                    term.effect.name(),
+                    curve.rate_hz()
+                ),
+                "give another shape",
+            ));
+        }
+    }
+    Ok(())
+}

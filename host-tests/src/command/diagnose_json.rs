@@ -1,0 +1,99 @@
+//! A diagnosis for programs.
+
+use super::{
+    diagnose::{Diagnosed, ambiguous},
+    fit_json,
+    model_json::{self, Effect, Worst},
+};
+use crate::{log::OCTAVES, unit::Unit};
+use allanite::{Candidate as Tried, Step as Taken, Verdict};
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::io::{self, Write};
+
+#[derive(Serialize)]
+struct Document<'a> {
+    axes: Vec<Axis<'a>>,
+}
+
+#[derive(Serialize)]
+struct Axis<'a> {
+    axis: &'a str,
+    steps: Vec<Step>,
+    verdict: &'static str,
+    missing: Vec<&'static str>,
+    ambiguous: Vec<&'static str>,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Step {
+    effects: Vec<Effect>,
+    coefficients: Vec<fit_json::Term>,
+    chi2: f64,
+    dof: usize,
+    p_value: f64,
+    rms_percent: f64,
+    worst: Option<Worst>,
+    candidates: Vec<Candidate>,
+    added: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct Candidate {
+    effect: &'static str,
+    parameters: Map<String, Value>,
+    chi2: f64,
+    improvement: f64,
+}
+
+/// Prints the diagnoses as one JSON document.
+pub(super) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
+    let document = Document {
+        axes: diagnosed.iter().map(axis).collect(),
+    };
+    serde_json::to_writer(&mut *output, &document)?;
+    writeln!(output)
+}
+
+fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
+    let unit = diagnosed.axis.unit;
+    let mut names: Vec<&'static str> = diagnosed.steps.iter().flat_map(ambiguous).collect();
+    names.sort_unstable();
+    names.dedup();
+    Axis {
+        axis: &diagnosed.axis.axis,
+        steps: diagnosed.steps.iter().map(|one| step(one, unit)).collect(),
+        verdict: match diagnosed.verdict {
+            Verdict::Adequate => "adequate",
+            Verdict::Improved => "improved",
+            Verdict::Unexplained => "unexplained",
+        },
+        missing: diagnosed.added().map(|term| term.effect.name()).collect(),
+        ambiguous: names,
+        notes: diagnosed.notes(),
+    }
+}
+
+fn step(step: &Taken<OCTAVES>, unit: Unit) -> Step {
+    Step {
+        effects: model_json::effects(&step.model, &step.fit),
+        coefficients: model_json::coefficients(&step.fit, unit),
+        chi2: step.fit.chi_squared,
+        dof: step.fit.degrees_of_freedom,
+        p_value: step.fit.p_value,
+        rms_percent: step.comparison.rms_percent,
+        worst: model_json::worst(&step.comparison),
+        candidates: step.candidates.iter().map(candidate).collect(),
+        added: step.added.map(|term| term.effect.name()),
+    }
+}
+
+fn candidate(tried: &Tried) -> Candidate {
+    Candidate {
+        effect: tried.term.effect.name(),
+        parameters: model_json::parameters(&tried.term, tried.coefficient.value),
+        chi2: tried.chi_squared,
+        improvement: tried.improvement,
+    }
+}

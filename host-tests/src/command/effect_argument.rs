@@ -1,0 +1,217 @@
+//! Effects as the command line writes them: `EFFECT[:parameter=value,…]`.
+
+use crate::failure::{Failure, quoted};
+use allanite::effect::{CATALOGUE, Effect, MAX_PARAMETERS, Span};
+
+/// An option's effect: its name, and values that wait to be asked for.
+#[derive(Clone, Debug)]
+pub(super) struct EffectArgument<'a> {
+    option: &'static str,
+    pub(super) name: &'a str,
+    values: Vec<(&'a str, f64)>,
+    /// Names that were asked for.
+    known: Vec<&'static str>,
+}
+
+impl<'a> EffectArgument<'a> {
+    /// Splits the text of an option such as `--with`.
+    pub(super) fn parse(option: &'static str, text: &'a str) -> Result<Self, Failure> {
+        let (name, list) = text.split_once(':').unwrap_or((text, ""));
+        let mut values: Vec<(&str, f64)> = Vec::new();
+        for pair in list.split(',').filter(|pair| !pair.trim().is_empty()) {
+            let (parameter, value) = pair.split_once('=').ok_or_else(|| {
+                Failure::option(
+                    format!("{option} {name}: {} has no value", quoted(pair.as_bytes())),
+                    "write EFFECT:parameter=value,…",
+                )
+            })?;
+            let (parameter, value) = (parameter.trim(), value.trim());
+            let number = value.parse::<f64>().ok().filter(|value| value.is_finite());
+            let Some(number) = number else {
+                return Err(Failure::option(
+                    format!(
+                        "{option} {name}: {parameter}={} is not a finite number",
+                        quoted(value.as_bytes())
+                    ),
+                    "give a number, such as 0.3",
+                ));
+            };
+            if values.iter().any(|(other, _)| *other == parameter) {
+                return Err(Failure::option(
+                    format!("{option} {name}: {parameter} is given twice"),
+                    "give it once",
+                ));
+            }
+            values.push((parameter, number));
+        }
+        Ok(Self {
+            option,
+            name: name.trim(),
+            values,
+            known: Vec::new(),
+        })
+    }
+
+    /// The failure of this option.
+    pub(super) fn failure(&self, what: impl std::fmt::Display, remedy: &str) -> Failure {
+        Failure::option(format!("{} {}: {what}", self.option, self.name), remedy)
+    }
+
+    /// The effect of the catalogue that has the name.
+    pub(super) fn effect(&self) -> Result<&'static dyn Effect, Failure> {
+        let mut catalogue = CATALOGUE.into_iter();
+        catalogue
+            .find(|effect| effect.name() == self.name)
+            .ok_or_else(|| {
+                let names = CATALOGUE.map(Effect::name).join(", ");
+                Failure::option(
+                    format!(
+                        "{} {}: no such effect",
+                        self.option,
+                        quoted(self.name.as_bytes())
+                    ),
+                    format!("choose from {names}"),
+                )
+            })
+    }
+
+    /// The value of that name, if there is one.
+    pub(super) fn take(&mut self, name: &'static str) -> Option<f64> {
+        self.known.push(name);
+        let at = self.values.iter().position(|(other, _)| *other == name)?;
+        Some(self.values.swap_remove(at).1)
+    }
+
+    /// The value of that name, if there is one, which cannot be but positive.
+    pub(super) fn take_positive(&mut self, name: &'static str) -> Result<Option<f64>, Failure> {
+        match self.take(name) {
+            Some(value) if value <= 0.0 => Err(self.failure(
+                format!("{name}={value} is impossible"),
+                "give a number above 0",
+            )),
+            value => Ok(value),
+        }
+    }
+
+    /// The positive value of that name, which must not be missing.
+    pub(super) fn require(&mut self, name: &'static str) -> Result<f64, Failure> {
+        let value = self.take_positive(name)?;
+        value.ok_or_else(|| {
+            let remedy = format!("write {}:{name}=VALUE", self.name);
+            self.failure(format!("{name} is missing"), &remedy)
+        })
+    }
+
+    /// The shape parameters of an effect; whole-numbered ones are 1 unless given.
+    pub(super) fn shape(
+        &mut self,
+        effect: &'static dyn Effect,
+    ) -> Result<[f64; MAX_PARAMETERS], Failure> {
+        /// Ranges of whole numbers depend on nothing.
+        const ANY: Span = Span {
+            interval_s: 1.0,
+            longest_tau_s: 1.0,
+        };
+        let mut shape = [0.0; MAX_PARAMETERS];
+        for (i, parameter) in effect.parameters().iter().enumerate() {
+            shape[i] = if effect.is_whole(i) {
+                let value = self.take(parameter.name).unwrap_or(1.0);
+                let range = effect.range(i, &ANY);
+                if value.fract() != 0.0 || !(range.low..=range.high).contains(&value) {
+                    let remedy = format!("give a whole number, {} to {}", range.low, range.high);
+                    let what = format!("{}={value} is impossible", parameter.name);
+                    return Err(self.failure(what, &remedy));
+                }
+                value
+            } else {
+                self.require(parameter.name)?
+            };
+        }
+        Ok(shape)
+    }
+
+    /// Refuses values that nobody asked for.
+    pub(super) fn finish(self) -> Result<(), Failure> {
+        let Some((name, _)) = self.values.first() else {
+            return Ok(());
+        };
+        let what = format!("there is no parameter {}", quoted(name.as_bytes()));
+        let remedy = if self.known.is_empty() {
+            "give none".into()
+        } else {
+            format!("choose from {}", self.known.join(", "))
+        };
+        Err(self.failure(what, &remedy))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use allanite::effect::DecimationFilter;
+
+    fn shape(text: &str) -> Result<[f64; 2], String> {
+        let mut argument =
+            EffectArgument::parse("--with", text).map_err(|error| error.to_string())?;
+        let effect = argument.effect().map_err(|error| error.to_string())?;
+        let shape = argument.shape(effect).map_err(|error| error.to_string())?;
+        argument
+            .finish()
+            .map(|()| shape)
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn shape_is_read_by_name_in_any_order() {
+        assert_eq!(
+            shape("decimation_filter:stages=2,width_s=0.014"),
+            Ok([0.014, 2.0])
+        );
+        assert_eq!(shape("decimation_filter:width_s=0.02"), Ok([0.02, 1.0]));
+        assert_eq!(shape("rate_ramp"), Ok([0.0, 0.0]));
+        assert_eq!(DecimationFilter.parameters()[0].name, "width_s");
+    }
+
+    #[test]
+    fn whatever_is_wrong_is_said_with_a_remedy() {
+        for (text, message) in [
+            (
+                "sinusiod:frequency_hz=1",
+                "\"sinusiod\": no such effect; choose from quantization",
+            ),
+            (
+                "sinusoid",
+                "frequency_hz is missing; write sinusoid:frequency_hz=VALUE",
+            ),
+            ("sinusoid:frequency_hz", "\"frequency_hz\" has no value"),
+            (
+                "sinusoid:frequency_hz=fast",
+                "frequency_hz=\"fast\" is not a finite number",
+            ),
+            (
+                "sinusoid:frequency_hz=0",
+                "frequency_hz=0 is impossible; give a number above 0",
+            ),
+            (
+                "sinusoid:frequency_hz=1,quality=2",
+                "there is no parameter \"quality\"; choose from frequency_hz",
+            ),
+            (
+                "sinusoid:frequency_hz=1,frequency_hz=2",
+                "frequency_hz is given twice",
+            ),
+            (
+                "decimation_filter:width_s=1,stages=1.5",
+                "stages=1.5 is impossible; give a whole number, 1 to 2",
+            ),
+            (
+                "rate_ramp:slope=1",
+                "there is no parameter \"slope\"; give none",
+            ),
+        ] {
+            let refused = shape(text).unwrap_err();
+            assert!(refused.contains(message), "{text}: {refused}");
+            assert!(refused.starts_with("--with "), "{refused}");
+        }
+    }
+}

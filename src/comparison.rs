@@ -107,8 +107,7 @@ impl<const K: usize> Comparison<K> {
         squares: &Vector,
         unknowns: usize,
     ) -> Result<Self, Error> {
-        let whitened = weights.whiten(problem, |_| 1.0)?;
-        let chi_squared = (whitened.curve - whitened.columns * squares).norm_squared();
+        let chi_squared = weights.whiten(problem, |_| 1.0).chi_squared(squares);
         let octaves: Vec<ComparedOctave, K> = problem
             .points
             .iter()

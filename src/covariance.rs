@@ -23,8 +23,12 @@ use crate::{
 use heapless::Vec;
 use nalgebra::SMatrix;
 
-/// Lags kept one by one on either side of a kink, in quarters of the shorter cluster.
+/// Kinks lie within a cluster, four quarters, of 0 and of the middle: lags up to here are taken one by
+/// one, in quarters of the shorter cluster …
+const KINK: u32 = 6;
+/// … up to here by two, and beyond in steps of the distance's power of two, halved so often.
 const NEAR: u32 = 8;
+const COARSENESS: u32 = 1;
 
 /// The outward tail of the sum ends where two lags in turn add less than this share.
 const NEGLIGIBLE: f64 = 1e-4;
@@ -37,18 +41,28 @@ pub fn curve_covariance<const K: usize>(
     model: &Model,
     squares: &[f64],
 ) -> SMatrix<f64, K, K> {
-    covariance(curve.points(), model, squares, curve.interval_s())
+    let mut matrix = SMatrix::<f64, K, K>::zeros();
+    covariance(
+        curve.points(),
+        model,
+        squares,
+        curve.interval_s(),
+        &mut matrix,
+    );
+    matrix.fill_upper_triangle_with_lower_triangle();
+    matrix
 }
 
 /// The covariance of a curve's variances, in rate units to the fourth, where the effects have the
-/// squared coefficients `squares`. Rows and columns beyond the curve's octaves are zero.
+/// squared coefficients `squares`, into the lower triangle.
+#[inline(never)]
 pub(crate) fn covariance<const K: usize>(
     points: &[Point],
     model: &Model,
     squares: &[f64],
     interval_s: f64,
-) -> SMatrix<f64, K, K> {
-    let mut matrix = SMatrix::zeros();
+    matrix: &mut SMatrix<f64, K, K>,
+) {
     let longest = points.last().map_or(1, |point| point.m);
     let present = || {
         let terms = model.terms().iter().zip(squares);
@@ -69,7 +83,8 @@ pub(crate) fn covariance<const K: usize>(
             let pair = Pair { shorter, longer };
             // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
             if pair.middle() >= lattice::END / 4 {
-                break;
+                matrix[(k, j)] = 0.0;
+                continue;
             }
             let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
             for (term, &square) in present() {
@@ -83,12 +98,9 @@ pub(crate) fn covariance<const K: usize>(
                     });
                 }
             }
-            let value = pair.covariance(&random, &waves);
-            matrix[(j, k)] = value;
-            matrix[(k, j)] = value;
+            matrix[(k, j)] = pair.covariance(&random, &waves);
         }
     }
-    matrix
 }
 
 /// What a deterministic effect puts into the product of two differences: `product · cos(phase · ℓ)`
@@ -122,81 +134,111 @@ impl Pair<'_> {
     fn covariance(&self, differences: &SecondDifferences, waves: &[Wave]) -> f64 {
         let middle = self.middle();
         let stride = lattice::stride(self.shorter.m);
+        let starts = Starts::new(self.shorter, self.longer);
         let (mut sum, mut quiet) = (0.0, 0);
         let (mut lag, mut step_before) = (0, 0);
         loop {
             let step = step_after(lag, middle, stride);
-            let pairs = self.pairs(lag);
-            let random = differences.at(lag.abs_diff(middle)) - 2.0 * differences.at(lag)
-                + differences.at(lag + middle);
-            // Half the steps to either side, in strides; both signs of the lag are in `pairs`.
-            let weight = 0.5 * f64::from(step_before + step) * pairs;
-            let deterministic: f64 = waves.iter().map(|wave| wave.at(lag)).sum();
-            let term = weight * random * (random + 2.0 * deterministic);
-            sum += term;
-            quiet = if term.abs() <= NEGLIGIBLE * sum.abs() {
-                quiet + 1
+            let pairs = starts.pairs(lag);
+            let here = differences.at(lag);
+            let random =
+                differences.at(lag.abs_diff(middle)) - (here + here) + differences.at(lag + middle);
+            if random != 0.0 {
+                // Half the steps to either side, in strides; both signs of the lag are in `pairs`.
+                let weight = f64::from(step_before + step) * pairs as f64;
+                let mut factor = random;
+                for wave in waves {
+                    factor += 2.0 * wave.at(lag);
+                }
+                let term = weight * (random * factor);
+                sum += term;
+                quiet = if term.abs() > NEGLIGIBLE * sum.abs() {
+                    0
+                } else {
+                    quiet + 1
+                };
             } else {
-                0
-            };
+                quiet += 1;
+            }
             lag += step;
             step_before = step;
             let far = lag > middle + NEAR && quiet >= 2;
-            if far || pairs == 0.0 || lag >= lattice::END / 2 {
+            if far || pairs == 0 || lag >= lattice::END / 2 {
                 break;
             }
         }
         let tau = self.shorter.tau_s * self.longer.tau_s;
         let counts = self.shorter.differences as f64 * self.longer.differences as f64;
-        0.5 * sum / (f64::from(stride) * counts * tau * tau)
+        0.25 * sum / (f64::from(stride) * counts * tau * tau)
+    }
+}
+
+/// Where the differences of two octaves start.
+struct Starts {
+    /// Samples between the starts of the longer, as a power of two.
+    advance_bits: u32,
+    /// Quarters of the shorter cluster to samples: a power of two, and two less.
+    quarter_bits: u32,
+    /// Room on either side of the shorter difference inside the longer, in samples.
+    inside: u64,
+    /// The last start of the shorter.
+    last: u64,
+    /// Starts of the longer.
+    count: u64,
+}
+
+impl Starts {
+    fn new(shorter: &Point, longer: &Point) -> Self {
+        Self {
+            advance_bits: advance(longer.m).ilog2(),
+            quarter_bits: shorter.m.ilog2(),
+            inside: u64::from(longer.m - shorter.m),
+            last: shorter.differences.saturating_sub(1) << advance(shorter.m).ilog2(),
+            count: longer.differences,
+        }
     }
 
-    /// How many pairs of starts have their differences' middles so far apart, either way round.
-    fn pairs(&self, lag: u32) -> f64 {
-        let (m_j, m_k) = (u64::from(self.shorter.m), u64::from(self.longer.m));
-        let (h_j, h_k) = (advance(m_j), advance(m_k));
-        let (n_j, n_k) = (self.shorter.differences, self.longer.differences);
-        let distance = u64::from(lag) * m_j / 4;
+    /// How many pairs of starts have their differences' middles `lag` quarters of the shorter
+    /// cluster apart, either way round.
+    fn pairs(&self, lag: u32) -> u64 {
+        let distance = (u64::from(lag) << self.quarter_bits) >> 2;
         // Starts of the longer difference, less those whose partner would lie before the record …
-        let before = distance.saturating_sub(m_k - m_j).div_ceil(h_k).min(n_k);
+        let outside = distance.saturating_sub(self.inside);
+        let before = (outside + (1 << self.advance_bits) - 1) >> self.advance_bits;
         // … or after its end.
-        let last = n_j.saturating_sub(1).saturating_mul(h_j);
-        let after = match last.checked_sub(distance + (m_k - m_j)) {
-            Some(room) => (room / h_k + 1).min(n_k),
+        let after = match self.last.checked_sub(distance + self.inside) {
+            Some(room) => (room >> self.advance_bits) + 1,
             None => 0,
         };
-        (n_k - before + after) as f64
+        self.count.saturating_sub(before) + after.min(self.count)
     }
 }
 
 /// Samples from one start to the next.
-fn advance(m: u64) -> u64 {
+fn advance(m: u32) -> u32 {
     (m / 4).max(1)
 }
 
-/// The next lag of the sum: by strides near 0 and near the middle, then by half the distance's
-/// power of two.
+/// The next lag of the sum: by quarters of a cluster near 0 and near the middle, where the kinks
+/// are, then by two, then by the distance's power of two.
 fn step_after(lag: u32, middle: u32, stride: u32) -> u32 {
-    let away = |distance: u32| {
-        if distance < NEAR {
-            stride
-        } else {
-            1 << (distance.ilog2() - 1)
-        }
+    let away = |distance: u32| match distance {
+        0..KINK => stride,
+        KINK..NEAR => stride.max(2),
+        _ => 1 << (distance.ilog2() - COARSENESS),
     };
-    if middle <= 2 * NEAR && lag < middle {
-        return stride;
-    }
+    let towards = |distance: u32| match distance {
+        0..=KINK => stride,
+        _ if distance <= NEAR => stride.max(2),
+        _ => 1 << ((distance - 1).ilog2() - COARSENESS),
+    };
     if lag >= middle {
-        return away(lag - middle);
-    }
-    if lag < middle / 2 {
-        return away(lag);
-    }
-    let towards = middle - lag;
-    if towards <= NEAR {
+        away(lag - middle)
+    } else if middle <= 2 * NEAR {
         stride
+    } else if lag < middle / 2 {
+        away(lag)
     } else {
-        1 << ((towards - 1).ilog2() - 1)
+        towards(middle - lag)
     }
 }

@@ -6,11 +6,7 @@ use crate::{
     curve::Curve,
     effect::{Effect, Span},
     error::Error,
-    fit::{
-        Fit, Problem, check,
-        generalized::{ROUNDS, Solution, solve},
-        weights::Weights,
-    },
+    fit::{Fit, Problem, check, generalized::Solution, weights::Weights},
     kurtosis::Kurtosis,
     model::{MAX_EFFECTS, Model, Term},
     nnls::Vector,
@@ -129,11 +125,12 @@ impl Diagnosis {
             let mut next = None;
             let verdict = {
                 let problem = Problem::new(curve, &model);
-                let solution = match start {
+                let mut solution = Solution::new(&problem);
+                match start {
                     // Once the tolerance was granted it stays: steps are compared with each other.
-                    Some(squares) => Solution::converge(&problem, squares, self.tolerance, ROUNDS)?,
-                    None => solve(&problem, self.tolerance)?,
-                };
+                    Some(squares) => solution.converge(squares, self.tolerance)?,
+                    None => solution.solve(self.tolerance)?,
+                }
                 let mut step = self.step(&model, &problem, &solution, &span(curve))?;
                 let adequate = solution.p_value() >= self.adequate_p;
                 if !adequate && added < self.max_effects {
@@ -285,7 +282,8 @@ impl Diagnosis {
         let mut best = None;
         for _ in 0..POLISHES {
             let problem = Problem::new(curve, &extended);
-            let solution = Solution::converge(&problem, squares, self.tolerance, ROUNDS)?;
+            let mut solution = Solution::new(&problem);
+            solution.converge(squares, self.tolerance)?;
             squares = solution.squares;
             if let Some(confused) = solution.confused() {
                 let mut held = extended.clone();

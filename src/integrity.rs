@@ -48,13 +48,15 @@ const KNOWN: u32 = 16;
 /// deviations does that. Rarer or smaller ones are counted.
 ///
 /// *Motion.* The same statistic of the means of 64 and of 1024 samples, spikes left out: a cluster
-/// further from the last ordinary one than 64 times what neighbours usually differ by, until it is
-/// back or for 64 clusters. Because the scale is that of the record's own clusters, whatever goes
+/// further from the last ordinary one than 64 times what neighbours usually differ by (or would, at
+/// 64 samples, if all noise were white), until it is back or for 64 clusters. Jumps beyond the
+/// limit of spikes that do not come back count too, as motion of clusters of one. Because the scale is that of the record's own clusters, whatever goes
 /// on all the time is part of it: flicker, random walk, ramps, a sinusoid, noise with memory. What
 /// is left is what happens a few times and dwarfs the rest. For a consumer gyro of 0.005 °/√s at
 /// 100 Hz the limit lies at 0.5 °/s, for a tactical one at 0.2 °/s, and no hand is that steady.
-/// Telegraph noise whose jumps exceed the limit and are rare is taken for motion; it would have to
-/// be five times the white noise of a sample. Motion counts from 5 % of ΣD² of the clusters on.
+/// Telegraph noise whose jumps exceed the limit and are rare is taken for motion; its rms would have
+/// to be five times that of the white noise of a sample. Motion counts from 5 % of ΣD² of the
+/// clusters on.
 ///
 /// *Missing samples.* As told by [`missing`](Self::missing): no more than one in ten.
 ///
@@ -147,8 +149,9 @@ struct State {
     neighbours: Watch,
     spikes: u64,
     steps: u64,
-    /// Σ D² of the spikes.
+    /// Σ D² of the spikes and of the steps.
     spike_squares: u128,
+    step_squares: u128,
     /// Of the excursion that goes on.
     pending_squares: u128,
     clusters: [Cluster; CLUSTERS.len()],
@@ -281,8 +284,8 @@ impl Integrity {
     }
 
     /// Why the Allan curve of this record cannot mean what it says; `None` where it can. Of
-    /// several reasons the one that may have caused the others: rails, stuck values, spikes,
-    /// motion, missing samples.
+    /// several reasons the one that may have caused the others: rails, stuck values, motion,
+    /// spikes, missing samples.
     pub fn verdict(&self) -> Option<Reason> {
         let (limits, state) = (&self.limits, &self.state);
         let samples = state.samples;
@@ -293,22 +296,24 @@ impl Integrity {
         if let Some(reason) = self.stuck() {
             return Some(reason);
         }
+        let steps = (1, state.steps, state.step_squares, &state.neighbours);
+        let clusters = state.clusters.iter().zip(CLUSTERS);
+        let clusters = clusters.map(|(c, length)| (length, c.motions, c.squares, &c.watch));
+        for (cluster, motions, squares, watch) in clusters.chain([steps]) {
+            if exceeds(squares, watch.total(), limits.motion_per_mille) {
+                return Some(Reason::Moved {
+                    motions,
+                    cluster,
+                    percent: percent(squares, watch.total()),
+                });
+            }
+        }
         let total = state.neighbours.total();
         if exceeds(state.spike_squares, total, limits.spike_per_mille) {
             return Some(Reason::Spiked {
                 spikes: state.spikes,
                 percent: percent(state.spike_squares, total),
             });
-        }
-        for (cluster, length) in state.clusters.iter().zip(CLUSTERS) {
-            let total = cluster.watch.total();
-            if exceeds(cluster.squares, total, limits.motion_per_mille) {
-                return Some(Reason::Moved {
-                    motions: cluster.motions,
-                    cluster: length,
-                    percent: percent(cluster.squares, total),
-                });
-            }
         }
         let (missing, sent) = (state.missing, samples.saturating_add(state.missing));
         exceeds(missing.into(), sent.into(), limits.missing_per_mille)
@@ -368,6 +373,7 @@ impl State {
         spikes: 0,
         steps: 0,
         spike_squares: 0,
+        step_squares: 0,
         pending_squares: 0,
         clusters: [Cluster::NEW, Cluster::NEW],
     };
@@ -393,6 +399,8 @@ impl State {
                 self.add_spike(squares);
             }
             Fate::Accepted => {
+                let squares = self.pending_squares.saturating_add(square);
+                self.step_squares = self.step_squares.saturating_add(squares);
                 self.steps = self.steps.saturating_add(1);
                 self.pending_squares = 0;
                 return (true, Some(count));
@@ -413,14 +421,14 @@ impl State {
     fn push_clusters(&mut self, count: i32, factor: u16) {
         let [short, long] = &mut self.clusters;
         if long.filled == CLUSTERS[1] {
-            long.judge(factor, CLUSTERS[1]);
+            long.judge(&Rule::clusters(factor, CLUSTERS[1], &self.neighbours));
         }
         short.sum += i64::from(count);
         short.filled += 1;
         if short.filled == CLUSTERS[0] {
             long.sum += short.sum;
             long.filled += CLUSTERS[0];
-            short.judge(factor, CLUSTERS[0]);
+            short.judge(&Rule::clusters(factor, CLUSTERS[0], &self.neighbours));
         }
     }
 
@@ -445,6 +453,7 @@ impl State {
         add(&mut self.spikes, other.spikes);
         add(&mut self.steps, other.steps);
         self.spike_squares = self.spike_squares.saturating_add(other.spike_squares);
+        self.step_squares = self.step_squares.saturating_add(other.step_squares);
         self.runs.merge(&other.runs);
         self.rails.merge(&other.rails);
         self.neighbours.merge(&other.neighbours);
@@ -577,9 +586,8 @@ impl Cluster {
 
     /// The cluster is full.
     #[inline(never)]
-    fn judge(&mut self, factor: u16, length: u16) {
-        let rule = Rule::clusters(factor, length);
-        let (fate, square) = self.watch.push(self.sum, &rule);
+    fn judge(&mut self, rule: &Rule) {
+        let (fate, square) = self.watch.push(self.sum, rule);
         self.sum = 0;
         self.filled = 0;
         let (squares, motions) = match fate {

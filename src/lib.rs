@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod chi_squared;
+mod cholesky;
 mod coefficient;
 mod comparison;
 mod covariance;

@@ -24,6 +24,16 @@ pub(crate) struct NormalEquations<const P: usize = MAX_EFFECTS> {
 }
 
 impl<const P: usize> NormalEquations<P> {
+    /// Of no unknowns.
+    pub(crate) fn empty() -> Self {
+        Self {
+            scaled: Matrix::zeros(),
+            right: Vector::zeros(),
+            scale: Vector::zeros(),
+            count: 0,
+        }
+    }
+
     /// `H` and `b` of the first `count` coefficients.
     ///
     /// # Errors

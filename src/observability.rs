@@ -54,7 +54,12 @@ fn equations(
         let variance = row.dot(squares);
         // Relative variance of a variance from so many clusters: 2/(N/m − 1).
         let weight = 0.5 * (samples / m - 1.0) / (variance * variance);
-        matrix += row * row.transpose() * weight;
+        for i in 0..model.terms().len() {
+            for j in 0..=i {
+                matrix[(i, j)] += weight * row[i] * row[j];
+                matrix[(j, i)] = matrix[(i, j)];
+            }
+        }
         m *= 2.0;
     }
     NormalEquations::new(&matrix, &Vector::zeros(), model.terms().len()).ok()

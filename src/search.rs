@@ -55,15 +55,16 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
             Some(point) if to_measured => point.variance / weights.model[k],
             _ => 1.0,
         });
-        let whitened = weights.whiten(problem, |k| scatter[k])?;
+        let whitened = weights.whiten(problem, |k| scatter[k]);
+        let (matrix, right) = whitened.products();
         let mut held = problem.held();
         held[place] = false;
         Ok(Self {
             problem,
             weights,
             scatter,
-            matrix: whitened.columns.tr_mul(&whitened.columns),
-            right: whitened.columns.tr_mul(&whitened.curve),
+            matrix,
+            right,
             whitened,
             place,
             free: core::array::from_fn(|i| i == place || (squares[i] > 0.0 && !held[i])),
@@ -81,13 +82,15 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     pub(crate) fn with(&self, term: &Term) -> (f64, f64) {
         let without = (f64::INFINITY, 0.0);
         let mut column = self.problem.column(term);
-        if !self.weights.whiten_column(&mut column, |k| self.scatter[k]) {
-            return without;
-        }
+        let n = self.problem.points.len();
+        self.weights
+            .whiten_column(n, &mut column, |k| self.scatter[k]);
         let (mut matrix, mut right) = (self.matrix, self.right);
-        let products = self.whitened.columns.tr_mul(&column);
-        matrix.set_row(self.place, &products.transpose());
-        matrix.set_column(self.place, &products);
+        for (i, other) in self.whitened.columns.iter().enumerate() {
+            let product = other.dot(&column);
+            matrix[(i, self.place)] = product;
+            matrix[(self.place, i)] = product;
+        }
         matrix[(self.place, self.place)] = column.norm_squared();
         right[self.place] = column.dot(&self.whitened.curve);
         let count = self.problem.count().max(self.place + 1);

@@ -1,7 +1,10 @@
 //! Generalised least squares: octaves weighted by the covariance of the curve.
 
 use super::{
-    Fit, Method, Problem, clusters, independent, shape::ShapeEquations, squared, weights::Weights,
+    Fit, Method, Problem, clusters, independent,
+    shape::ShapeEquations,
+    squared,
+    weights::{Weights, Whitened},
 };
 use crate::{
     chi_squared::chi_squared_tail,
@@ -15,7 +18,7 @@ use nalgebra::SVector;
 
 /// Rounds of covariance and solution; two to four bring the model to within 0.1 %, hardly ever more
 /// than eight.
-pub(crate) const ROUNDS: usize = 8;
+const ROUNDS: usize = 8;
 /// A change of the model that ends the rounds.
 const CONVERGED: f64 = 1e-3;
 /// Below this p-value the curve's scatter does not explain the misfit, and the model is granted
@@ -24,21 +27,7 @@ const UNEXPLAINED: f64 = 0.05;
 /// A shape parameter with a larger standard error of its logarithm is not determined.
 const UNDETERMINED: f64 = 0.3;
 /// Rounds of a bound and the covariance that it implies.
-const BOUND_ROUNDS: usize = 3;
-
-/// The solution, with the model's tolerance where the curve needs it.
-pub(crate) fn solve<'a, 'b, const K: usize>(
-    problem: &'a Problem<'b, K>,
-    tolerance: f64,
-) -> Result<Solution<'a, 'b, K>, Error> {
-    let start = independent::equations(problem, independent::by_relative_accuracy)?;
-    let (start, _) = start.solve_non_negative(&problem.held());
-    let mut solution = Solution::converge(problem, start, 0.0, ROUNDS)?;
-    if solution.p_value() < UNEXPLAINED && tolerance > 0.0 {
-        solution = Solution::converge(problem, solution.squares, tolerance, ROUNDS)?;
-    }
-    Ok(solution)
-}
+const BOUND_ROUNDS: usize = 2;
 
 /// Squared coefficients, and the covariance that they were found with.
 pub(crate) struct Solution<'a, 'b, const K: usize> {
@@ -51,37 +40,55 @@ pub(crate) struct Solution<'a, 'b, const K: usize> {
 }
 
 impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
-    /// Alternates covariance and solution, for at most so many rounds.
-    pub(crate) fn converge(
-        problem: &'a Problem<'b, K>,
-        start: Vector,
-        tolerance: f64,
-        rounds: usize,
-    ) -> Result<Self, Error> {
+    /// None yet.
+    pub(crate) fn new(problem: &'a Problem<'b, K>) -> Self {
+        Self {
+            problem,
+            weights: Weights::empty(),
+            equations: NormalEquations::empty(),
+            squares: Vector::zeros(),
+            free: Free::default(),
+            chi_squared: f64::NAN,
+        }
+    }
+
+    /// Finds it, with the model's tolerance where the curve needs it.
+    pub(crate) fn solve(&mut self, tolerance: f64) -> Result<(), Error> {
+        let problem = self.problem;
+        let start = independent::equations(problem, independent::by_relative_accuracy)?;
+        let (start, _) = start.solve_non_negative(&problem.held());
+        self.converge(start, 0.0)?;
+        if self.p_value() < UNEXPLAINED && tolerance > 0.0 {
+            self.converge(self.squares, tolerance)?;
+        }
+        Ok(())
+    }
+
+    /// Alternates covariance and solution.
+    #[inline(never)]
+    pub(crate) fn converge(&mut self, start: Vector, tolerance: f64) -> Result<(), Error> {
+        let problem = self.problem;
+        let mut whitened = Whitened::empty();
         // The squares that the covariance is taken at approach those that it gives.
         let mut assumed = start;
         let mut last: Option<SVector<f64, K>> = None;
         let mut step: f64 = 1.0;
         let mut round = 1;
         loop {
-            let weights = Weights::new(problem, &assumed, tolerance)?;
-            let whitened = weights.whiten(problem, |_| 1.0)?;
-            let equations = whitened.equations(problem.count())?;
-            let (squares, free) = equations.solve_non_negative(&problem.held());
-            let change = SVector::<f64, K>::from_fn(|k, _| match problem.points.get(k) {
-                Some(_) => problem.variance(k, &squares) / weights.model[k] - 1.0,
-                None => 0.0,
+            self.weights.set(problem, &assumed, tolerance)?;
+            self.weights.whiten_into(problem, |_| 1.0, &mut whitened);
+            self.equations = whitened.equations()?;
+            (self.squares, self.free) = self.equations.solve_non_negative(&problem.held());
+            let change = SVector::<f64, K>::from_fn(|k, _| {
+                if k < problem.points.len() {
+                    problem.variance(k, &self.squares) / self.weights.model[k] - 1.0
+                } else {
+                    0.0
+                }
             });
-            if change.amax() < CONVERGED || round >= rounds {
-                let residual = whitened.curve - whitened.columns * squares;
-                return Ok(Self {
-                    problem,
-                    weights,
-                    equations,
-                    squares,
-                    free,
-                    chi_squared: residual.norm_squared(),
-                });
+            if change.amax() < CONVERGED || round >= ROUNDS {
+                self.chi_squared = whitened.chi_squared(&self.squares);
+                return Ok(());
             }
             if let Some(last) = last {
                 // Rounds that swing to and fro, or creep, have a ratio: go where it leads (Aitken).
@@ -89,7 +96,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
                 step = (step / (1.0 - ratio.min(0.5))).clamp(0.3, 2.0);
             }
             last = Some(change);
-            assumed = (assumed + (squares - assumed) * step).map(|square| square.max(0.0));
+            assumed = (assumed + (self.squares - assumed) * step).map(|square| square.max(0.0));
             round += 1;
         }
     }
@@ -198,25 +205,22 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     /// The one-sided 95 % bound of a square, with the covariance that the model would have at that
     /// bound: where an effect may add to an octave, it may also scatter it.
     fn bound(&self, i: usize, first: f64) -> f64 {
+        let problem = self.problem;
+        let mut whitened = Whitened::empty();
         let mut bound = first;
         for _ in 0..BOUND_ROUNDS {
-            let scatter =
-                |k: usize| 1.0 + bound * self.problem.columns[(k, i)] / self.weights.model[k];
-            let next = self
-                .weights
-                .whiten(self.problem, scatter)
-                .and_then(|whitened| {
-                    let equations = whitened.equations(self.problem.count())?;
-                    let held = self.problem.held();
-                    let (squares, mut free) = equations.solve_non_negative(&held);
-                    free[i] = true;
-                    let covariance = equations.covariance(&free).ok_or(Error::Singular)?;
-                    Ok(Coefficient::one_sided_bound(squares[i], covariance[(i, i)]))
-                });
-            match next {
-                Ok(next) => bound = next,
-                Err(_) => break,
-            }
+            let scatter = |k: usize| 1.0 + bound * problem.columns[i][k] / self.weights.model[k];
+            self.weights.whiten_into(problem, scatter, &mut whitened);
+            let Ok(equations) = whitened.equations() else {
+                break;
+            };
+            let (squares, mut free) =
+                equations.solve_non_negative_near(&self.free, &problem.held());
+            free[i] = true;
+            let Some(covariance) = equations.covariance(&free) else {
+                break;
+            };
+            bound = Coefficient::one_sided_bound(squares[i], covariance[(i, i)]);
         }
         bound
     }
@@ -226,6 +230,6 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         let octaves = 0..self.problem.points.len();
         octaves
             .into_iter()
-            .all(|k| bound * self.problem.columns[(k, i)] < self.weights.model[k])
+            .all(|k| bound * self.problem.columns[i][k] < self.weights.model[k])
     }
 }

@@ -15,11 +15,17 @@ pub(super) fn equations<const K: usize>(
     weight: impl Fn(&Point) -> f64,
 ) -> Result<NormalEquations, Error> {
     let (mut matrix, mut right): (Matrix, Vector) = (Matrix::zeros(), Vector::zeros());
+    let count = problem.count();
     for (k, point) in problem.points.iter().enumerate() {
-        let row = problem.columns.row(k).transpose();
         let w = weight(point);
-        matrix += row * row.transpose() * w;
-        right += row * (w * point.variance);
+        for i in 0..count {
+            let weighted = w * problem.columns[i][k];
+            for j in 0..=i {
+                matrix[(i, j)] += weighted * problem.columns[j][k];
+                matrix[(j, i)] = matrix[(i, j)];
+            }
+            right[i] += weighted * point.variance;
+        }
     }
     NormalEquations::new(&matrix, &right, problem.count())
 }

@@ -15,8 +15,9 @@ use crate::{
     model::{MAX_EFFECTS, Model, Term},
     nnls::{Free, Vector},
 };
+use generalized::Solution;
 use heapless::Vec;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// How octaves are weighted, and whether squared coefficients may be negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -128,7 +129,9 @@ pub fn fit<const K: usize>(
     let problem = Problem::new(curve, model);
     match settings.method {
         Method::Covariance => {
-            generalized::solve(&problem, settings.tolerance).map(|solution| solution.fit())
+            let mut solution = Solution::new(&problem);
+            solution.solve(settings.tolerance)?;
+            Ok(solution.fit())
         }
         method => independent::fit(&problem, method),
     }
@@ -148,15 +151,13 @@ pub(crate) fn check(points: &[Point], needed: usize) -> Result<(), Error> {
     Ok(())
 }
 
-/// Allan variances of unit coefficients: a row an octave, a column an effect.
-type Columns<const K: usize> = SMatrix<f64, K, MAX_EFFECTS>;
-
 /// A curve, and what a model can make of it.
 pub(crate) struct Problem<'a, const K: usize> {
     pub(crate) points: &'a [Point],
     pub(crate) model: &'a Model,
     pub(crate) interval_s: f64,
-    columns: Columns<K>,
+    /// Allan variances of unit coefficients, of each effect.
+    columns: Vec<SVector<f64, K>, MAX_EFFECTS>,
 }
 
 impl<'a, const K: usize> Problem<'a, K> {
@@ -165,10 +166,11 @@ impl<'a, const K: usize> Problem<'a, K> {
             points: curve.points(),
             model,
             interval_s: curve.interval_s(),
-            columns: Columns::zeros(),
+            columns: Vec::new(),
         };
-        for (i, term) in model.terms().iter().enumerate() {
-            problem.columns.set_column(i, &problem.column(term));
+        for term in model.terms() {
+            // As many columns as effects.
+            let _ = problem.columns.push(problem.column(term));
         }
         problem
     }
@@ -192,7 +194,7 @@ impl<'a, const K: usize> Problem<'a, K> {
     /// An effect's share of the model's variance in octave `k`; 0 beyond the model.
     pub(crate) fn share(&self, k: usize, i: usize, squares: &Vector) -> f64 {
         if i < self.count() {
-            self.columns[(k, i)] * squares[i] / self.variance(k, squares)
+            self.columns[i][k] * squares[i] / self.variance(k, squares)
         } else {
             0.0
         }
@@ -211,7 +213,7 @@ impl<'a, const K: usize> Problem<'a, K> {
     /// The model's variance in octave `k`.
     pub(crate) fn variance(&self, k: usize, squares: &Vector) -> f64 {
         (0..self.count())
-            .map(|i| self.columns[(k, i)] * squares[i])
+            .map(|i| self.columns[i][k] * squares[i])
             .sum()
     }
 }

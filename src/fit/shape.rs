@@ -56,7 +56,7 @@ impl ShapeEquations {
         if parameters.is_empty() {
             return None;
         }
-        let whitened = weights.whiten(problem, |_| 1.0).ok()?;
+        let whitened = weights.whiten(problem, |_| 1.0);
         let count = problem.count();
         let mut derivatives: Vec<SVector<f64, K>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &parameters {
@@ -67,15 +67,13 @@ impl ShapeEquations {
             };
             let change = column(math::exp(STEP)) - column(math::exp(-STEP));
             let mut derivative = change * (0.5 * squares[i] / STEP);
-            if !weights.whiten_column(&mut derivative, |_| 1.0) {
-                return None;
-            }
+            weights.whiten_column(problem.points.len(), &mut derivative, |_| 1.0);
             derivatives.push(derivative).ok()?;
         }
         // Coefficients first, the shapes behind them.
         let at = |i: usize| -> Option<SVector<f64, K>> {
             if i < count {
-                Some(whitened.columns.column(i).into_owned())
+                whitened.columns.get(i).copied()
             } else {
                 derivatives.get(i - count).copied()
             }

@@ -1,19 +1,25 @@
 //! The covariance of a curve, factored: the units in which octaves are independent.
 
-use super::{Columns, Problem, squared};
+use super::{Problem, squared};
 use crate::{
+    cholesky,
     covariance::covariance,
     error::Error,
     math,
-    nnls::{NormalEquations, Vector},
+    model::MAX_EFFECTS,
+    nnls::{Matrix, NormalEquations, Vector},
 };
-use nalgebra::{Cholesky, Const, SMatrix, SVector};
+use heapless::Vec;
+use nalgebra::{SMatrix, SVector};
+
+/// How much of the correlations a covariance keeps, tried in turn until it is positive definite.
+const SHRINKAGES: [f64; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
 
 /// The covariance of a curve relative to a model, factored.
 pub(crate) struct Weights<const K: usize> {
     /// The model's variances.
     pub(crate) model: SVector<f64, K>,
-    factor: Cholesky<f64, Const<K>>,
+    factor: SMatrix<f64, K, K>,
     /// Of the covariance in rate units.
     pub(crate) log_determinant: f64,
     pub(crate) tolerance: f64,
@@ -21,61 +27,83 @@ pub(crate) struct Weights<const K: usize> {
 }
 
 impl<const K: usize> Weights<K> {
+    /// Not yet of any model.
+    pub(crate) fn empty() -> Self {
+        Self {
+            model: SVector::zeros(),
+            factor: SMatrix::zeros(),
+            log_determinant: 0.0,
+            tolerance: 0.0,
+            shrinkage: 0.0,
+        }
+    }
+
     pub(crate) fn new(
         problem: &Problem<'_, K>,
         squares: &Vector,
         tolerance: f64,
     ) -> Result<Self, Error> {
-        let points = problem.points;
-        let model = SVector::<f64, K>::from_fn(|k, _| {
-            if k < points.len() {
-                problem.variance(k, squares)
-            } else {
-                1.0
+        let mut weights = Self::empty();
+        weights.set(problem, squares, tolerance)?;
+        Ok(weights)
+    }
+
+    /// Takes the covariance of a model with these squared coefficients.
+    #[inline(never)]
+    pub(crate) fn set(
+        &mut self,
+        problem: &Problem<'_, K>,
+        squares: &Vector,
+        tolerance: f64,
+    ) -> Result<(), Error> {
+        let n = problem.points.len().min(K);
+        for k in 0..n {
+            let variance = problem.variance(k, squares);
+            if !(variance.is_finite() && variance > 0.0) {
+                return Err(Error::Singular);
             }
-        });
-        if !model
-            .iter()
-            .all(|&variance| variance.is_finite() && variance > 0.0)
-        {
-            return Err(Error::Singular);
+            self.model[k] = variance;
         }
-        let mut matrix = covariance::<K>(
-            points,
-            problem.model,
-            squares.as_slice(),
-            problem.interval_s,
-        );
-        for k in 0..K {
-            for j in 0..K {
-                matrix[(j, k)] /= model[j] * model[k];
+        self.tolerance = tolerance;
+        for shrinkage in SHRINKAGES {
+            self.shrinkage = shrinkage;
+            covariance(
+                problem.points,
+                problem.model,
+                squares.as_slice(),
+                problem.interval_s,
+                &mut self.factor,
+            );
+            self.make_relative(n, tolerance, 1.0 - shrinkage);
+            if cholesky::factor(&mut self.factor, n) {
+                self.log_determinant = (0..n)
+                    .map(|k| 2.0 * math::log(self.model[k] / self.factor[(k, k)]))
+                    .sum();
+                return Ok(());
             }
-            // Octaves that the curve does not have become the identity.
-            matrix[(k, k)] += if k < points.len() {
-                squared(tolerance)
-            } else {
-                1.0
-            };
         }
-        let (factor, shrinkage) = factor_positive(matrix)?;
-        let lower = factor.l_dirty();
-        let log_determinant = (0..points.len())
-            .map(|k| 2.0 * math::log(lower[(k, k)] * model[k]))
-            .sum();
-        Ok(Self {
-            model,
-            factor,
-            log_determinant,
-            tolerance,
-            shrinkage,
-        })
+        Err(Error::Singular)
+    }
+
+    fn make_relative(&mut self, n: usize, tolerance: f64, keep: f64) {
+        let mut reciprocal = self.model;
+        for k in 0..n {
+            reciprocal[k] = 1.0 / self.model[k];
+        }
+        for k in 0..n {
+            for j in 0..k {
+                self.factor[(k, j)] *= reciprocal[j] * reciprocal[k] * keep;
+            }
+            let own = self.factor[(k, k)] * squared(reciprocal[k]);
+            self.factor[(k, k)] = own + squared(tolerance);
+        }
     }
 
     /// Standard error of octave `k`, relative to the model's variance.
     pub(crate) fn relative_error(&self, k: usize) -> f64 {
-        let row = self.factor.l_dirty().row(k);
-        let square: f64 = row.iter().take(k + 1).map(|&x| x * x).sum();
-        math::sqrt(square)
+        let row = (0..k).map(|j| squared(self.factor[(k, j)]));
+        let diagonal = 1.0 / self.factor[(k, k)];
+        math::sqrt(row.sum::<f64>() + squared(diagonal))
     }
 
     /// Curve and columns in units in which octaves are independent and have a variance of one,
@@ -84,64 +112,99 @@ impl<const K: usize> Weights<K> {
         &self,
         problem: &Problem<'_, K>,
         scatter: impl Fn(usize) -> f64,
-    ) -> Result<Whitened<K>, Error> {
-        let mut columns = problem.columns;
-        let mut curve = SVector::<f64, K>::zeros();
-        for (k, point) in problem.points.iter().enumerate() {
-            let unit = 1.0 / (self.model[k] * scatter(k));
-            curve[k] = point.variance * unit;
-            for i in 0..problem.count() {
-                columns[(k, i)] *= unit;
+    ) -> Whitened<K> {
+        let mut whitened = Whitened::empty();
+        self.whiten_into(problem, scatter, &mut whitened);
+        whitened
+    }
+
+    /// The same, where there is room for it already.
+    #[inline(never)]
+    pub(crate) fn whiten_into(
+        &self,
+        problem: &Problem<'_, K>,
+        scatter: impl Fn(usize) -> f64,
+        whitened: &mut Whitened<K>,
+    ) {
+        let unit = SVector::<f64, K>::from_fn(|k, _| {
+            if k < problem.points.len() {
+                1.0 / (self.model[k] * scatter(k))
+            } else {
+                0.0
             }
+        });
+        whitened.columns.clear();
+        for i in 0..problem.count() {
+            // As many columns as effects.
+            let _ = whitened
+                .columns
+                .push(problem.columns[i].component_mul(&unit));
         }
-        let lower = self.factor.l_dirty();
-        let solved = lower.solve_lower_triangular_mut(&mut columns)
-            && lower.solve_lower_triangular_mut(&mut curve);
-        if solved {
-            Ok(Whitened { columns, curve })
-        } else {
-            Err(Error::Singular)
+        for (k, point) in problem.points.iter().enumerate().take(K) {
+            whitened.curve[k] = point.variance * unit[k];
         }
+        let n = problem.points.len();
+        for column in whitened.columns.iter_mut() {
+            cholesky::forward(&self.factor, n, column);
+        }
+        cholesky::forward(&self.factor, n, &mut whitened.curve);
     }
 
     /// One more column in the same units.
     pub(crate) fn whiten_column(
         &self,
+        n: usize,
         column: &mut SVector<f64, K>,
         scatter: impl Fn(usize) -> f64,
-    ) -> bool {
-        for k in 0..K {
+    ) {
+        for k in 0..n.min(K) {
             column[k] /= self.model[k] * scatter(k);
         }
-        self.factor.l_dirty().solve_lower_triangular_mut(column)
+        cholesky::forward(&self.factor, n, column);
     }
 }
 
-/// Curve and columns in units in which octaves are independent.
+/// Curve and columns in units in which octaves are independent. Octaves that the curve does not have
+/// are zero.
 pub(crate) struct Whitened<const K: usize> {
-    pub(crate) columns: Columns<K>,
+    pub(crate) columns: Vec<SVector<f64, K>, MAX_EFFECTS>,
     pub(crate) curve: SVector<f64, K>,
 }
 
 impl<const K: usize> Whitened<K> {
-    pub(crate) fn equations(&self, count: usize) -> Result<NormalEquations, Error> {
-        let matrix = self.columns.tr_mul(&self.columns);
-        let right = self.columns.tr_mul(&self.curve);
-        NormalEquations::new(&matrix, &right, count)
-    }
-}
-
-/// Cholesky factor of a covariance, its correlations shrunk by as little as makes it positive
-/// definite, and by how much that was.
-fn factor_positive<const K: usize>(
-    matrix: SMatrix<f64, K, K>,
-) -> Result<(Cholesky<f64, Const<K>>, f64), Error> {
-    for shrinkage in [0.0, 0.01, 0.03, 0.1, 0.3] {
-        let keep = 1.0 - shrinkage;
-        let shrunk = SMatrix::from_fn(|j, k| matrix[(j, k)] * if j == k { 1.0 } else { keep });
-        if let Some(factor) = Cholesky::new(shrunk) {
-            return Ok((factor, shrinkage));
+    pub(crate) fn empty() -> Self {
+        Self {
+            columns: Vec::new(),
+            curve: SVector::zeros(),
         }
     }
-    Err(Error::Singular)
+
+    /// `A'A` and `A'y`.
+    pub(crate) fn products(&self) -> (Matrix, Vector) {
+        let (mut matrix, mut right) = (Matrix::zeros(), Vector::zeros());
+        for (i, column) in self.columns.iter().enumerate() {
+            for (j, other) in self.columns.iter().enumerate().take(i + 1) {
+                let product = column.dot(other);
+                matrix[(i, j)] = product;
+                matrix[(j, i)] = product;
+            }
+            right[i] = column.dot(&self.curve);
+        }
+        (matrix, right)
+    }
+
+    #[inline(never)]
+    pub(crate) fn equations(&self) -> Result<NormalEquations, Error> {
+        let (matrix, right) = self.products();
+        NormalEquations::new(&matrix, &right, self.columns.len())
+    }
+
+    /// χ² of a solution.
+    pub(crate) fn chi_squared(&self, squares: &Vector) -> f64 {
+        let mut residual = self.curve;
+        for (column, &square) in self.columns.iter().zip(squares.iter()) {
+            residual.axpy(-square, column, 1.0);
+        }
+        residual.norm_squared()
+    }
 }

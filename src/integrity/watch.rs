@@ -30,6 +30,8 @@ pub(super) struct Rule {
     block: u32,
     /// What quantisation may hide of the scale, in 1/256.
     floor: u64,
+    /// The scale that is assumed at least, in 1/256.
+    least: u64,
     factor: u16,
     /// Values after which an excursion is the new level.
     patience: u8,
@@ -69,16 +71,20 @@ impl Rule {
         Self {
             block: 4,
             floor: 1 << (FRACTION - 1),
+            least: 0,
             factor,
             patience: 3,
         }
     }
 
-    /// A sixteenth of a count in the mean, so that a quiet level may change by some quanta.
-    pub(super) const fn clusters(factor: u16, length: u16) -> Self {
+    /// A sixteenth of a count in the mean, so that a quiet level may change by some quanta; and an
+    /// eighth of what single samples differ by, what white noise leaves in clusters of 64, so that
+    /// no drift becomes motion because long clusters see it well.
+    pub(super) const fn clusters(factor: u16, length: u16, neighbours: &Watch) -> Self {
         Self {
             block: 2,
             floor: (length as u64) << (FRACTION - 4),
+            least: (length as u64 >> 3) * neighbours.scale,
             factor,
             patience: 64,
         }
@@ -119,7 +125,7 @@ impl Watch {
             self.reference = value;
             return (self.learn(difference, rule), square);
         }
-        let usual = self.scale + rule.floor;
+        let usual = self.scale.max(rule.least) + rule.floor;
         let far = value.abs_diff(self.reference) << FRACTION > usual * u64::from(rule.factor);
         let new = (difference << FRACTION).min(usual * CUT);
         self.scale = self.scale - (self.scale >> SPAN) + (new >> SPAN);
@@ -161,7 +167,7 @@ impl Watch {
         if self.is_learning(rule) {
             return Fate::Learning;
         }
-        let usual = self.scale + rule.floor;
+        let usual = self.scale.max(rule.least) + rule.floor;
         let outlying = self.largest << FRACTION > usual * u64::from(rule.factor);
         Fate::Learnt {
             outlier: if outlying { square(self.largest) } else { 0 },

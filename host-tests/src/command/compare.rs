@@ -118,16 +118,18 @@ fn read(arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisCurve>), Failu
     input::measure_in_two(&arguments.input, &arguments.about_log, share)
 }
 
+/// Less than this share of a coefficient's square, in every octave, is rounding.
+const LEAST_VARIANCE: f64 = 1e-15;
+
 /// An effect that shows in no octave, such as an oscillation at a multiple of the sample rate,
 /// cannot be fitted.
 fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
     for term in model.terms() {
         let setting = term.setting(curve.interval_s());
         let variance = |m: u32| term.effect.variance(f64::from(m), &setting);
-        let visible = |variance: f64| variance.is_finite() && variance > 0.0;
         let mut octaves = curve.points().iter().map(|point| variance(point.m));
         let finite = octaves.clone().all(f64::is_finite);
-        if !(finite && octaves.any(visible)) {
+        if !(finite && octaves.any(|variance| variance > LEAST_VARIANCE)) {
             return Err(Failure::option(
                 format!(
                     "--with {}: nothing of it shows at {} Hz",

@@ -11,6 +11,7 @@ mod effect_argument;
 mod fit;
 mod fit_json;
 mod fit_table;
+mod hidden_effects;
 mod input;
 mod measure;
 mod model_json;

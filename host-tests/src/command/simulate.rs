@@ -1,6 +1,10 @@
 //! `simulate`: the log of a gyro with known coefficients.
 
-use super::{output_file::OutputFile, progress};
+use super::{
+    hidden_effects::{HiddenArguments, HiddenEffects},
+    output_file::OutputFile,
+    progress,
+};
 use crate::{
     failure::{Failure, Place},
     log::npy_header::{Header, Kind},
@@ -16,6 +20,9 @@ use std::{
 
 /// Names of axes, as many as a gyro has.
 const AXES: [&str; 3] = ["gx", "gy", "gz"];
+
+/// The name of the temperature's column.
+const TEMPERATURE: &str = "temp_C";
 
 /// Simulate the log of a gyro at rest
 #[derive(Debug, Args)]
@@ -41,6 +48,8 @@ pub(super) struct Arguments {
     /// Rate ramp R, in UNIT/s
     #[arg(long, value_name = "R", allow_negative_numbers = true)]
     rate_ramp: Option<f64>,
+    #[command(flatten)]
+    hidden: HiddenArguments,
     /// Samples per second
     #[arg(
         long,
@@ -107,6 +116,12 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
             "name the output .csv, .csv.gz or .npy",
         ));
     }
+    if name.ends_with(".npy") && record.effects.thermal.is_some() {
+        return Err(Place::file(path).failure(
+            "columns of an array have no names, and a temperature must not be taken for an axis",
+            "name the output .csv or .csv.gz",
+        ));
+    }
     let mut file = BufWriter::with_capacity(1 << 16, OutputFile::create(path)?);
     let failure = |error: &io::Error| record.failure(error, || Place::file(path).io(error));
     write(&record, &mut file).map_err(|error| failure(&error))?;
@@ -118,6 +133,9 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
 /// A record to be simulated.
 struct Record {
     coefficients: Coefficients,
+    effects: HiddenEffects,
+    /// The effects as they were asked for.
+    effects_text: String,
     rate_hz: f64,
     samples: u64,
     seed: u64,
@@ -156,8 +174,13 @@ impl Record {
                 "give a length of at least one sample, such as 600 or 10min",
             ));
         }
+        let coefficients = coefficients(arguments)?;
+        let effects = arguments.hidden.effects(coefficients)?;
+        let texts = arguments.hidden.texts();
         Ok(Self {
-            coefficients: coefficients(arguments)?,
+            coefficients,
+            effects,
+            effects_text: texts.map(|text| format!(" effect={text}")).collect(),
             rate_hz: arguments.rate,
             samples: samples as u64,
             seed: arguments.seed,
@@ -173,20 +196,25 @@ impl Record {
         const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
         let axis = |axis: u64| {
             let seed = self.seed.wrapping_add(axis.wrapping_mul(GOLDEN));
-            Simulator::new(self.coefficients, self.rate_hz, seed)
+            Simulator::with_hidden(self.coefficients, &self.effects.hidden, self.rate_hz, seed)
         };
         (0..self.axes as u64).map(axis).collect()
     }
 
-    /// Hands every sample to `write`, in the order of a table.
-    fn each(&self, mut write: impl FnMut(usize, f64) -> io::Result<()>) -> io::Result<()> {
+    /// Hands every row to `write`: the rates of the axes, and the temperature if there is one.
+    fn each(&self, mut write: impl FnMut(&[f64], Option<f64>) -> io::Result<()>) -> io::Result<()> {
         const STRIDE: u64 = 1 << 16;
         let bar = progress::simulating(self.samples);
         let mut simulators = self.simulators();
+        let mut rates = vec![0.0; self.axes];
         for sample in 0..self.samples {
-            for (axis, simulator) in simulators.iter_mut().enumerate() {
-                write(axis, simulator.next().unwrap_or_default())?;
+            let time_s = sample as f64 / self.rate_hz;
+            let thermal = self.effects.thermal.map_or(0.0, |one| one.rate_at(time_s));
+            for (rate, simulator) in rates.iter_mut().zip(&mut simulators) {
+                *rate = simulator.next().unwrap_or_default() + thermal;
             }
+            let celsius = self.effects.thermal.map(|one| one.celsius_at(time_s));
+            write(&rates, celsius)?;
             if sample % STRIDE == 0 {
                 bar.set_position(sample);
             }
@@ -197,14 +225,25 @@ impl Record {
 
     fn write_csv(&self, output: &mut impl Write) -> io::Result<()> {
         self.write_comment(output)?;
-        writeln!(output, "{}", AXES[..self.axes].join(","))?;
+        let temperature = self.effects.thermal.map(|_| TEMPERATURE);
+        let names = AXES[..self.axes].iter().copied().chain(temperature);
+        writeln!(output, "{}", names.collect::<Vec<_>>().join(","))?;
         let mut float = ryu::Buffer::new();
-        self.each(|axis, rate| {
-            match self.scale {
-                Some(scale) => write!(output, "{}", count(rate, scale)?)?,
-                None => output.write_all(float.format(rate).as_bytes())?,
+        self.each(|rates, celsius| {
+            for (axis, &rate) in rates.iter().enumerate() {
+                if axis > 0 {
+                    output.write_all(b",")?;
+                }
+                match self.scale {
+                    Some(scale) => write!(output, "{}", count(rate, scale)?)?,
+                    None => output.write_all(float.format(rate).as_bytes())?,
+                }
             }
-            output.write_all(if axis + 1 == self.axes { b"\n" } else { b"," })
+            if let Some(celsius) = celsius {
+                output.write_all(b",")?;
+                output.write_all(float.format(celsius).as_bytes())?;
+            }
+            output.write_all(b"\n")
         })
     }
 
@@ -218,13 +257,14 @@ impl Record {
         writeln!(
             output,
             " seed={} quantization={} angle_random_walk={} bias_instability={} \
-             rate_random_walk={} rate_ramp={}",
+             rate_random_walk={} rate_ramp={}{}",
             self.seed,
             c.quantization,
             c.angle_random_walk,
             c.bias_instability,
             c.rate_random_walk,
-            c.rate_ramp
+            c.rate_ramp,
+            self.effects_text
         )
     }
 
@@ -245,9 +285,11 @@ impl Record {
             },
         }
         .write(output)?;
-        self.each(|_, rate| match self.scale {
-            Some(scale) => output.write_all(&count(rate, scale)?.to_le_bytes()),
-            None => output.write_all(&rate.to_le_bytes()),
+        self.each(|rates, _| {
+            rates.iter().try_for_each(|&rate| match self.scale {
+                Some(scale) => output.write_all(&count(rate, scale)?.to_le_bytes()),
+                None => output.write_all(&rate.to_le_bytes()),
+            })
         })
     }
 
@@ -314,7 +356,7 @@ fn coefficients(arguments: &Arguments) -> Result<Coefficients, Failure> {
             &mut coefficients.rate_ramp,
         ),
     ];
-    let mut anything = preset.is_some();
+    let mut anything = preset.is_some() || !arguments.hidden.is_empty();
     for (option, value, coefficient) in own {
         let Some(value) = value else { continue };
         if !(value.is_finite() && value >= 0.0) {

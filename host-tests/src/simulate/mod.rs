@@ -5,9 +5,11 @@ mod flicker;
 mod hidden;
 mod ieee_952;
 mod preset;
+mod thermal;
 
 pub use hidden::Hidden;
 pub use preset::Preset;
+pub use thermal::{Course, Thermal};
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;

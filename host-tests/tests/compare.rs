@@ -1,0 +1,181 @@
+//! `compare`: models with and without effects, beside what they were fitted to or not.
+
+mod common;
+
+use common::{ADIS16405, json, output, refusal};
+use serde_json::Value;
+use std::path::Path;
+use tempfile::TempDir;
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+/// A log with a sinusoid, 2^16 samples at 100 Hz.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let effect = "sinusoid:frequency_hz=7.7,amplitude=0.03";
+    let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", "2"];
+    let more = ["--effect", effect, "--output", "log.csv"];
+    output(folder.path(), &[&simulate[..], &more].concat());
+    folder
+}
+
+#[test]
+fn missing_effect_shows_in_the_octaves_and_goes_when_it_is_added() {
+    let folder = folder();
+    let without = json(folder.path(), &["compare", "log.csv"]);
+    let with = "sinusoid:frequency_hz=7.7";
+    let with = json(folder.path(), &["compare", "log.csv", "--with", with]);
+    let (without, with) = (&without["axes"][0], &with["axes"][0]);
+    assert!(number(&without["chi2"]) > 300.0);
+    assert!(number(&without["p_value"]) < 1e-6);
+    assert!(number(&with["chi2"]) < 30.0);
+    assert!(number(&with["rms_percent"]) < number(&without["rms_percent"]));
+    let worst = &without["worst"];
+    assert!((0.02..0.2).contains(&number(&worst["tau_s"])), "{worst}");
+    assert!(!without["stretches"].as_array().unwrap().is_empty());
+    let effects = with["effects"].as_array().unwrap();
+    let amplitude = number(&effects[5]["parameters"]["amplitude"]);
+    assert!((amplitude / 0.03 - 1.0).abs() < 0.03, "{amplitude}");
+    for octave in with["octaves"].as_array().unwrap() {
+        let shares = octave["shares"].as_object().unwrap();
+        let sum: f64 = shares.values().map(number).sum();
+        assert!((sum - 1.0).abs() < 1e-9 && shares.len() == 6);
+        let percent =
+            100.0 * ((number(&octave["measured"]) / number(&octave["model"])).powi(2) - 1.0);
+        assert!((percent - number(&octave["percent"])).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn effect_takes_the_place_of_what_it_replaces() {
+    let filter = "decimation_filter:width_s=0.0143,stages=2";
+    let arguments = [
+        "compare",
+        ADIS16405,
+        "--with",
+        filter,
+        "--without",
+        "rate_ramp",
+    ];
+    let document = json(Path::new("."), &arguments);
+    for axis in document["axes"].as_array().unwrap() {
+        let names: Vec<&str> = axis["effects"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|effect| effect["name"].as_str().unwrap())
+            .collect();
+        let expected = [
+            "quantization",
+            "bias_instability",
+            "rate_random_walk",
+            "decimation_filter",
+        ];
+        assert_eq!(names, expected);
+    }
+    assert!(number(&document["axes"][0]["chi2"]) < 30.0);
+}
+
+#[test]
+fn held_out_part_judges_a_fit_to_the_other() {
+    let folder = folder();
+    let arguments = ["compare", "log.csv", "--hold-out", "0.25"];
+    let document = json(folder.path(), &arguments);
+    let axis = &document["axes"][0];
+    let held_out = &axis["held_out"];
+    assert_eq!(held_out["samples"], 16_384);
+    assert_eq!(held_out["fitted"]["samples"], 49_152);
+    // No degree of freedom is spent on what no coefficient was fitted to.
+    assert_eq!(axis["dof"], axis["octaves"].as_array().unwrap().len());
+    assert!(number(&axis["p_value"]) < 1e-3);
+    let with = ["--with", "sinusoid:frequency_hz=7.7"];
+    let better = json(folder.path(), &[&arguments[..], &with].concat());
+    let better = &better["axes"][0];
+    assert!(number(&better["chi2"]) < 0.3 * number(&axis["chi2"]));
+    assert!(number(&better["p_value"]) > 1e-3);
+    let text = output(folder.path(), &arguments);
+    assert!(text.contains("held out"), "{text}");
+}
+
+#[test]
+fn words_are_those_of_the_figures() {
+    let text = output(Path::new("."), &["compare", ADIS16405]);
+    let document = json(Path::new("."), &["compare", ADIS16405]);
+    for axis in document["axes"].as_array().unwrap() {
+        let name = axis["axis"].as_str().unwrap();
+        let words = axis["words"].as_str().unwrap();
+        assert!(text.contains(&format!("\n{name}: {words}\n")), "{words}");
+        let worst = &axis["worst"];
+        let percent = format!("measured is {:.0} % ", number(&worst["percent"]).abs());
+        assert!(words.starts_with(&percent), "{words}");
+        let sigmas = format!("({:.0} σ)", number(&worst["z"]).abs());
+        assert!(words.contains(&sigmas), "{words}");
+        let sum = format!(
+            "{name}: χ² {:.1}, {} degrees of freedom",
+            number(&axis["chi2"]),
+            axis["dof"]
+        );
+        assert!(text.contains(&sum), "{sum}");
+    }
+}
+
+#[test]
+fn impossible_questions_are_refused() {
+    let folder = folder();
+    for (arguments, message) in [
+        (
+            &["--with", "sinusiod"][..],
+            "no such effect; choose from quantization, ",
+        ),
+        (&["--with", "sinusoid"], "frequency_hz is missing"),
+        (
+            &["--with", "sinusoid:frequency_hz=0"],
+            "frequency_hz=0 is impossible",
+        ),
+        (
+            &["--with", "sinusoid:frequency_hz=1,amplitude=1"],
+            "amplitude is fitted, not given",
+        ),
+        (
+            &["--with", "sinusoid:frequency_hz=100"],
+            "nothing of it shows at 100 Hz",
+        ),
+        (
+            &["--with", "resonance:frequency_hz=1"],
+            "quality is missing",
+        ),
+        (&["--with", "rate_ramp"], "is in the model already"),
+        (
+            &["--without", "sinusoid"],
+            "not in the model; choose from quantization, ",
+        ),
+        (&["--hold-out", "1"], "--hold-out 1 is impossible"),
+        (&["--hold-out", "-0.5"], "--hold-out -0.5 is impossible"),
+        (
+            &["--hold-out", "0.99999"],
+            "1 samples, and two octaves need 9",
+        ),
+    ] {
+        let arguments = [&["compare", "log.csv"], arguments].concat();
+        let refused = refusal(folder.path(), &arguments);
+        assert!(refused.contains(message), "{arguments:?}: {refused}");
+    }
+    let refused = refusal(folder.path(), &["compare", ADIS16405, "--hold-out", "0.5"]);
+    assert!(refused.contains("a curve cannot be divided"), "{refused}");
+    let without = [
+        "quantization",
+        "angle_random_walk",
+        "bias_instability",
+        "rate_random_walk",
+        "rate_ramp",
+    ]
+    .map(|name| ["--without", name])
+    .concat();
+    let refused = refusal(
+        folder.path(),
+        &[&["compare", "log.csv"], &without[..]].concat(),
+    );
+    assert!(refused.contains("no effects are left"), "{refused}");
+}

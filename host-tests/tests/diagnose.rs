@@ -1,0 +1,297 @@
+//! `diagnose`: hidden effects are named, real gyros explained, and words say what the figures say.
+
+mod common;
+
+use common::{ADIS16405, json, output, refusal};
+use serde_json::Value;
+use std::path::Path;
+use tempfile::TempDir;
+
+const MPU6050: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/mpu6050.json");
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+fn names(value: &Value) -> Vec<&str> {
+    let list = value.as_array().unwrap();
+    list.iter().map(|name| name.as_str().unwrap()).collect()
+}
+
+fn steps(axis: &Value) -> (&Value, &Value) {
+    let steps = axis["steps"].as_array().unwrap();
+    (&steps[0], &steps[steps.len() - 1])
+}
+
+/// The parameters of an effect in a step.
+fn parameters<'a>(step: &'a Value, name: &str) -> Option<&'a Value> {
+    let effects = step["effects"].as_array().unwrap();
+    let effect = effects.iter().find(|effect| effect["name"] == name)?;
+    Some(&effect["parameters"])
+}
+
+/// A consumer gyro's log of 2^16 samples at 100 Hz, with effects hidden in it.
+fn hide(folder: &Path, seed: &str, effects: &[&str]) {
+    let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", seed];
+    let mut arguments = [&simulate[..], &["--output", "log.csv"]].concat();
+    for effect in effects {
+        arguments.extend(["--effect", effect]);
+    }
+    output(folder, &arguments);
+}
+
+#[test]
+fn hidden_effect_is_named_with_its_shape_and_size() {
+    let folder = TempDir::new().unwrap();
+    for (effect, strong) in [
+        ("sinusoid:frequency_hz=7.7,amplitude=0.02", true),
+        ("gauss_markov:correlation_time_s=1,rms=0.04", true),
+        ("resonance:frequency_hz=3,quality=3,rms=0.02", true),
+        ("low_pass:time_constant_s=0.02", false),
+        ("decimation_filter:width_s=0.03,stages=2", true),
+        ("random_telegraph:correlation_time_s=1,rms=0.03", false),
+    ] {
+        hide(folder.path(), "11", &[effect]);
+        let document = json(folder.path(), &["diagnose", "log.csv"]);
+        let axis = &document["axes"][0];
+        let (first, last) = steps(axis);
+        let (name, shape) = effect.split_once(':').unwrap();
+        let missing = names(&axis["missing"]);
+        let ambiguous = names(&axis["ambiguous"]);
+        assert!(
+            missing.contains(&name) || ambiguous.contains(&name),
+            "{name}: {missing:?}, {ambiguous:?}"
+        );
+        assert!(
+            number(&last["chi2"]) < 0.5 * number(&first["chi2"]),
+            "{name}"
+        );
+        assert_eq!(first["added"].as_str(), Some(missing[0]));
+        assert_eq!(axis["verdict"], "improved");
+        let Some(found) = parameters(last, name).filter(|_| strong) else {
+            assert!(!strong, "{name}: {missing:?}");
+            continue;
+        };
+        for pair in shape.split(',') {
+            let (parameter, truth) = pair.split_once('=').unwrap();
+            let (found, truth) = (number(&found[parameter]), truth.parse::<f64>().unwrap());
+            // Where a filter reaches over few samples, its stages cannot be told.
+            assert!(
+                parameter == "stages" || (found / truth - 1.0).abs() < 0.25,
+                "{name}: {parameter} {found} instead of {truth}"
+            );
+        }
+    }
+}
+
+#[test]
+fn nothing_hidden_is_nothing_found() {
+    let folder = TempDir::new().unwrap();
+    hide(folder.path(), "3", &[]);
+    let document = json(folder.path(), &["diagnose", "log.csv"]);
+    let axis = &document["axes"][0];
+    assert_eq!(axis["verdict"], "adequate");
+    assert_eq!(axis["steps"].as_array().unwrap().len(), 1);
+    assert!(names(&axis["missing"]).is_empty() && names(&axis["ambiguous"]).is_empty());
+    assert!(axis["steps"][0]["added"].is_null());
+    let text = output(folder.path(), &["diagnose", "log.csv"]);
+    assert!(text.contains("gx: the five terms are adequate"), "{text}");
+}
+
+#[test]
+fn no_more_effects_are_added_than_asked_for() {
+    let folder = TempDir::new().unwrap();
+    hide(
+        folder.path(),
+        "11",
+        &["sinusoid:frequency_hz=7.7,amplitude=0.02"],
+    );
+    let document = json(
+        folder.path(),
+        &["diagnose", "log.csv", "--max-effects", "0"],
+    );
+    assert_eq!(document["axes"][0]["verdict"], "unexplained");
+    let document = json(
+        folder.path(),
+        &["diagnose", ADIS16405, "--max-effects", "1"],
+    );
+    for axis in document["axes"].as_array().unwrap() {
+        assert_eq!(names(&axis["missing"]).len(), 1);
+    }
+}
+
+#[test]
+fn filter_of_a_real_gyro_is_found_and_an_oscillation_on_one_axis() {
+    let document = json(Path::new("."), &["diagnose", ADIS16405]);
+    for axis in document["axes"].as_array().unwrap() {
+        let name = axis["axis"].as_str().unwrap();
+        let (first, last) = steps(axis);
+        let found = [names(&axis["missing"]), names(&axis["ambiguous"])].concat();
+        assert!(found.contains(&"decimation_filter"), "{name}: {found:?}");
+        assert!(
+            number(&first["chi2"]) >= 50.0 * number(&last["chi2"]),
+            "{name}"
+        );
+        if name == "gz" {
+            let line = ["sinusoid", "resonance"]
+                .into_iter()
+                .find_map(|effect| parameters(last, effect));
+            let frequency_hz = number(&line.unwrap()["frequency_hz"]);
+            assert!((19.0..=20.2).contains(&frequency_hz), "{frequency_hz}");
+        } else {
+            assert!(number(&last["p_value"]) >= 0.001, "{name}");
+        }
+    }
+}
+
+#[test]
+fn second_real_gyro_is_adequate_on_two_axes_and_has_a_line_on_the_third() {
+    let document = json(Path::new("."), &["diagnose", MPU6050]);
+    let axes = document["axes"].as_array().unwrap();
+    assert_eq!(axes[0]["verdict"], "adequate");
+    assert_eq!(axes[1]["verdict"], "adequate");
+    let (_, last) = steps(&axes[2]);
+    let frequency_hz = number(&parameters(last, "sinusoid").unwrap()["frequency_hz"]);
+    assert!((29.5..32.0).contains(&frequency_hz), "{frequency_hz}");
+    let notes = axes[2]["notes"].to_string();
+    assert!(notes.contains("alias"), "{notes}");
+}
+
+#[test]
+fn json_has_the_documented_fields_and_no_others() {
+    let document = json(Path::new("."), &["diagnose", ADIS16405]);
+    let keys = |value: &Value| {
+        let mut keys: Vec<String> = value.as_object().unwrap().keys().cloned().collect();
+        keys.sort();
+        keys.join(" ")
+    };
+    assert_eq!(keys(&document), "axes");
+    let axis = &document["axes"][2];
+    assert_eq!(keys(axis), "ambiguous axis missing notes steps verdict");
+    let step = &axis["steps"][0];
+    assert_eq!(
+        keys(step),
+        "added candidates chi2 coefficients dof effects p_value rms_percent worst"
+    );
+    assert_eq!(keys(&step["worst"]), "percent tau_s z");
+    assert_eq!(keys(&step["effects"][0]), "name parameters");
+    assert_eq!(
+        keys(&step["candidates"][0]),
+        "chi2 effect improvement parameters"
+    );
+    assert_eq!(
+        keys(&step["coefficients"][0]),
+        "effect lower state symbol unit upper value"
+    );
+    let line = parameters(&axis["steps"][1], "sinusoid").unwrap();
+    assert_eq!(keys(line), "amplitude frequency_hz");
+}
+
+#[test]
+fn words_say_what_the_figures_say() {
+    let document = json(Path::new("."), &["diagnose", ADIS16405]);
+    let text = output(Path::new("."), &["diagnose", ADIS16405]);
+    for axis in document["axes"].as_array().unwrap() {
+        let steps = axis["steps"].as_array().unwrap();
+        for (number_of_step, pair) in steps.windows(2).enumerate() {
+            let added = pair[0]["added"].as_str().unwrap().replace('_', " ");
+            let line = format!(
+                "{}. + {added}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p",
+                number_of_step + 1,
+                number(&pair[0]["chi2"]),
+                number(&pair[1]["chi2"]),
+                number(&pair[0]["rms_percent"]),
+                number(&pair[1]["rms_percent"])
+            );
+            assert!(text.contains(&line), "{line}");
+        }
+        for note in names(&axis["notes"]) {
+            assert!(text.contains(note), "{note}");
+        }
+        let name = axis["axis"].as_str().unwrap();
+        assert!(
+            text.contains(&format!("\n{name}: the five terms lack ")),
+            "{name}"
+        );
+    }
+    for words in [
+        "what it is:",
+        "where it comes from:",
+        "what to check:",
+        "instead of",
+    ] {
+        assert!(text.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn temperature_of_a_thermal_record_is_no_axis() {
+    let folder = TempDir::new().unwrap();
+    for (course, at_the_end) in [("time_s=600", 31.64), ("period_s=1200", 25.0)] {
+        let effect = format!("thermal:slope=0.01,kelvin=10,{course}");
+        hide(folder.path(), "5", &[&effect]);
+        let log = std::fs::read_to_string(folder.path().join("log.csv")).unwrap();
+        let rows: Vec<&str> = log.lines().collect();
+        assert!(rows[0].starts_with("# ") && rows[0].ends_with(&format!("effect={effect}")));
+        assert_eq!(rows[1], "gx,temp_C");
+        let last = rows.last().unwrap().split(',').nth(1).unwrap();
+        let last: f64 = last.parse().unwrap();
+        assert!((last - at_the_end).abs() < 3.0, "{course}: {last}");
+        let document = json(folder.path(), &["diagnose", "log.csv"]);
+        let axes = document["axes"].as_array().unwrap();
+        assert_eq!(axes.len(), 1);
+        assert_eq!(axes[0]["axis"], "gx");
+    }
+}
+
+#[test]
+fn effects_that_cannot_be_hidden_are_refused() {
+    let folder = TempDir::new().unwrap();
+    for (effect, message) in [
+        (
+            "sinusiod:frequency_hz=1,amplitude=1",
+            "no such effect; choose from gauss_markov, ",
+        ),
+        (
+            "rate_ramp:rate_ramp=1",
+            "is one of the five terms; give --rate-ramp",
+        ),
+        ("sinusoid:frequency_hz=1", "amplitude is missing"),
+        ("gauss_markov:rms=1", "correlation_time_s is missing"),
+        (
+            "gauss_markov:rms=1,correlation_time_s=-1",
+            "correlation_time_s=-1 is impossible",
+        ),
+        (
+            "low_pass:time_constant_s=0",
+            "time_constant_s=0 is impossible",
+        ),
+        (
+            "low_pass:time_constant_s=1,rms=1",
+            "there is no parameter \"rms\"",
+        ),
+        ("thermal:kelvin=5,time_s=1", "slope is missing"),
+        ("thermal:slope=1,kelvin=5", "a temperature has one course"),
+        (
+            "thermal:slope=1,kelvin=5,time_s=1,period_s=1",
+            "a temperature has one course",
+        ),
+    ] {
+        let refused = refusal(folder.path(), &["simulate", "mems", "--effect", effect]);
+        assert!(refused.contains(message), "{effect}: {refused}");
+    }
+    let two = ["low_pass:time_constant_s=1", "decimation_filter:width_s=1"];
+    let arguments = ["simulate", "mems", "--effect", two[0], "--effect", two[1]];
+    let refused = refusal(folder.path(), &arguments);
+    assert!(refused.contains("two filters"), "{refused}");
+    let thermal = "thermal:slope=1,kelvin=5,time_s=1";
+    let array = [
+        "simulate", "mems", "--effect", thermal, "--output", "log.npy",
+    ];
+    let refused = refusal(folder.path(), &array);
+    assert!(
+        refused.contains("columns of an array have no names"),
+        "{refused}"
+    );
+    assert!(!folder.path().join("log.npy").exists());
+}

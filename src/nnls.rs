@@ -61,6 +61,7 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     /// Factors the equations of the free coefficients; the others become the identity.
+    #[inline(never)]
     fn factor(&self, free: &Free<P>) -> Option<Cholesky<f64, Const<P>>> {
         let factor = Cholesky::new(Matrix::from_fn(|i, j| match (i == j, free[i] && free[j]) {
             (_, true) => self.scaled[(i, j)],
@@ -72,6 +73,7 @@ impl<const P: usize> NormalEquations<P> {
         regular.then_some(factor)
     }
 
+    #[inline(never)]
     fn solve_scaled(&self, free: &Free<P>) -> Option<Vector<P>> {
         let factor = self.factor(free)?;
         Some(factor.solve(&Vector::from_fn(
@@ -115,6 +117,7 @@ impl<const P: usize> NormalEquations<P> {
         }
     }
 
+    #[inline(never)]
     fn improve(
         &self,
         mut solution: Vector<P>,
@@ -171,6 +174,15 @@ impl<const P: usize> NormalEquations<P> {
             }
         }
         trial
+    }
+
+    /// Variance of one of the free coefficients. `None` if they cannot be told apart.
+    #[inline(never)]
+    pub(crate) fn variance(&self, i: usize, free: &Free<P>) -> Option<f64> {
+        let mut unit = Vector::<P>::zeros();
+        unit[i] = 1.0;
+        let column = self.factor(free)?.solve(&unit);
+        Some(column[i] * self.scale[i] * self.scale[i])
     }
 
     /// Covariance of the free coefficients; zero for the others. `None` if they cannot be told

@@ -14,6 +14,7 @@ const LONGEST: f64 = (1_u64 << 30) as f64;
 ///
 /// Standard errors come from independent octaves of `N/m − 1` clusters each, which is between
 /// what overlapping estimates gain and their correlation takes away.
+#[inline(never)]
 pub(crate) fn record_length_s(
     i: usize,
     square: f64,
@@ -27,40 +28,38 @@ pub(crate) fn record_length_s(
     assumed[i] = square;
     let mut with = *free;
     with[i] = true;
-    let mut samples = 2.0 * samples;
+    let count = model.terms().len();
+    // The equations are `samples · Σ q/2m − Σ q/2`, q being an octave's share: each doubling adds one.
+    let (mut growing, mut fixed): (Matrix, Matrix) = (Matrix::zeros(), Matrix::zeros());
+    let (mut m, mut samples) = (1.0, 2.0 * samples);
     while samples <= LONGEST {
-        let variance = equations(&assumed, model, interval_s, samples)?.covariance(&with);
-        if variance.is_some_and(|matrix| square * square > 1.96 * 1.96 * matrix[(i, i)]) {
+        while samples / m >= 4.0 {
+            let mut row: Vector = Vector::zeros();
+            for (share, term) in row.iter_mut().zip(model.terms()) {
+                *share = term.effect.variance(m, &term.setting(interval_s));
+            }
+            let variance = row.dot(&assumed);
+            // Relative variance of a variance from N/m clusters: 2/(N/m − 1).
+            let weight = 0.5 / (variance * variance);
+            for a in 0..count {
+                for b in 0..=a {
+                    let share = weight * row[a] * row[b];
+                    growing[(a, b)] += share / m;
+                    fixed[(a, b)] += share;
+                }
+            }
+            m *= 2.0;
+        }
+        let matrix = Matrix::from_fn(|a, b| {
+            let (a, b) = if a < b { (b, a) } else { (a, b) };
+            samples * growing[(a, b)] - fixed[(a, b)]
+        });
+        let equations = NormalEquations::new(&matrix, &Vector::zeros(), count).ok()?;
+        let variance = equations.variance(i, &with);
+        if variance.is_some_and(|variance| square * square > 1.96 * 1.96 * variance) {
             return Some(samples * interval_s);
         }
         samples *= 2.0;
     }
     None
-}
-
-fn equations(
-    squares: &Vector,
-    model: &Model,
-    interval_s: f64,
-    samples: f64,
-) -> Option<NormalEquations> {
-    let mut matrix: Matrix = Matrix::zeros();
-    let mut m = 1.0;
-    while samples / m >= 4.0 {
-        let mut row: Vector = Vector::zeros();
-        for (share, term) in row.iter_mut().zip(model.terms()) {
-            *share = term.effect.variance(m, &term.setting(interval_s));
-        }
-        let variance = row.dot(squares);
-        // Relative variance of a variance from so many clusters: 2/(N/m − 1).
-        let weight = 0.5 * (samples / m - 1.0) / (variance * variance);
-        for i in 0..model.terms().len() {
-            for j in 0..=i {
-                matrix[(i, j)] += weight * row[i] * row[j];
-                matrix[(j, i)] = matrix[(i, j)];
-            }
-        }
-        m *= 2.0;
-    }
-    NormalEquations::new(&matrix, &Vector::zeros(), model.terms().len()).ok()
 }

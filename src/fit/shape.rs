@@ -42,6 +42,7 @@ pub(super) struct ShapeEquations {
 
 impl ShapeEquations {
     /// `None` for a model without fitted shapes, or where they cannot be told from the rest.
+    #[inline(never)]
     pub(super) fn new<const K: usize>(
         problem: &Problem<'_, K>,
         weights: &Weights<K>,
@@ -113,7 +114,7 @@ impl ShapeEquations {
     /// Variance of a squared coefficient with the shapes free.
     pub(super) fn variance(&self, i: usize, free: &Free) -> Option<f64> {
         let free = self.with_shapes(free, self.count());
-        Some(self.equations.covariance(&free)?[(i, i)])
+        self.equations.variance(i, &free)
     }
 
     /// Largest standard error of a shape's logarithm, infinite where the curve does not tell it.

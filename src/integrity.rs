@@ -39,34 +39,37 @@ const KNOWN: u32 = 16;
 /// record's extreme too: a value beyond proves that the rail is none of this sensor.
 ///
 /// *Spikes.* A sample further from the last ordinary one than 20 times the mean absolute difference
-/// of neighbours, back within three samples. The scale follows the record over some 64 samples;
-/// each difference enters it with at most four times what is usual, so that a spike of any size
-/// raises it by 5 %. For white noise the limit lies at 16 standard deviations of a difference,
+/// of neighbours, back within three samples. The scale follows the record over some 256 samples;
+/// each difference enters it with at most twice what is usual, so that a spike of any size
+/// raises it by 1 %. For white noise the limit lies at 16 standard deviations of a difference,
 /// which is beyond any number of samples. A spike adds the same share to every octave that white
 /// noise rules; where their squares make up 5 % of ΣD² at `m = 1`, angle random walk comes out
-/// 2.5 % too high, and the record is invalid. In 2^16 samples one spike of 40 standard
+/// 2.5 % too high, and the record is invalid. In 2^16 samples one spike of 42 standard
 /// deviations does that. Rarer or smaller ones are counted.
 ///
 /// *Motion.* The same statistic of the means of 64 and of 1024 samples, spikes left out: a cluster
-/// further from the last ordinary one than 64 times what neighbours usually differ by (or would, at
-/// 64 samples, if all noise were white), until it is back or for 64 clusters. Jumps beyond the
+/// further from the last ordinary one than 64 times what neighbours usually differ by (those of
+/// 64 samples, where those of 1024 differ less), until it is back or for 64 clusters. Jumps beyond the
 /// limit of spikes that do not come back count too, as motion of clusters of one. Because the scale is that of the record's own clusters, whatever goes
 /// on all the time is part of it: flicker, random walk, ramps, a sinusoid, noise with memory. What
 /// is left is what happens a few times and dwarfs the rest. For a consumer gyro of 0.005 °/√s at
 /// 100 Hz the limit lies at 0.5 °/s, for a tactical one at 0.2 °/s, and no hand is that steady.
 /// Telegraph noise whose jumps exceed the limit and are rare is taken for motion; its rms would have
-/// to be five times that of the white noise of a sample. Motion counts from 5 % of ΣD² of the
+/// to be three to five times that of the white noise of a sample. Motion counts from 5 % of ΣD² of the
 /// clusters on.
 ///
 /// *Missing samples.* As told by [`missing`](Self::missing): no more than one in ten.
+///
+/// What is not seen: motion that sets in as gradually as the scale follows, about a factor of two in
+/// a hundred clusters; a shake of zero mean that lasts while the scale is learnt.
 ///
 /// While it learns a scale (64 differences; 16 of clusters) nothing is judged; then the largest
 /// difference so far is.
 ///
 /// # Cost
 ///
-/// Integers only: about 100 instructions a sample on a Cortex-M4F by count of operations, once in
-/// 64 samples as much again, no division. The state, with limits, is below 512 bytes.
+/// Integers only, no division: a handful of comparisons, additions and multiplications a sample, once
+/// in 64 samples those of a cluster besides. The state, with limits, takes 496 bytes.
 ///
 /// # Example
 ///
@@ -228,9 +231,14 @@ impl Integrity {
         }
         let stuck = state.runs.push(count, limits.run_factor);
         let railed = state.rails.push(count, &limits.rails);
-        let (outlying, ordinary) = state.push_neighbour(count, limits.spike_factor);
-        if let Some(count) = ordinary {
-            state.push_clusters(count, limits.motion_factor);
+        let mut outlying = false;
+        // What is stuck says nothing of the noise.
+        if !stuck {
+            let ordinary;
+            (outlying, ordinary) = state.push_neighbour(count, limits.spike_factor);
+            if let Some(count) = ordinary {
+                state.push_clusters(count, limits.motion_factor);
+            }
         }
         Observation {
             stuck,
@@ -326,7 +334,8 @@ impl Integrity {
         let (samples, runs) = (state.samples, &state.runs);
         let pairs = state.repeats.saturating_add(state.changes);
         let changes = u128::from(state.changes) * 1000;
-        let frozen = pairs >= 1000 && changes < u128::from(pairs) * limits.change_per_mille as u128;
+        let frozen =
+            pairs >= 1000 && changes < u128::from(pairs) * u128::from(limits.change_per_mille);
         let stuck = runs.stuck_samples.max(runs.longest.into());
         let beyond = runs.is_longest_implausible(limits.run_factor)
             && exceeds(stuck.into(), samples.into(), limits.stuck_per_mille);
@@ -420,15 +429,17 @@ impl State {
     #[inline(always)]
     fn push_clusters(&mut self, count: i32, factor: u16) {
         let [short, long] = &mut self.clusters;
-        if long.filled == CLUSTERS[1] {
-            long.judge(&Rule::clusters(factor, CLUSTERS[1], &self.neighbours));
+        let [short_length, long_length] = CLUSTERS;
+        if long.filled == long_length {
+            let rule = Rule::clusters(factor, long_length);
+            long.judge(&rule.with_least(&short.watch, long_length / short_length));
         }
         short.sum += i64::from(count);
         short.filled += 1;
-        if short.filled == CLUSTERS[0] {
+        if short.filled == short_length {
             long.sum += short.sum;
-            long.filled += CLUSTERS[0];
-            short.judge(&Rule::clusters(factor, CLUSTERS[0], &self.neighbours));
+            long.filled += short_length;
+            short.judge(&Rule::clusters(factor, short_length));
         }
     }
 

@@ -11,7 +11,7 @@ pub struct Limits {
     /// Share of samples at a rail. Default 1.
     pub rail_per_mille: u16,
     /// A run of equal values is implausible from so many times the record's mean run on,
-    /// `8 … 1024`. Default 128.
+    /// `8 … 256`. Default 128.
     pub run_factor: u16,
     /// Share of samples in such runs. Default 1.
     pub stuck_per_mille: u16,
@@ -19,12 +19,12 @@ pub struct Limits {
     /// Default 1.
     pub change_per_mille: u16,
     /// A sample is outlying from so many times the mean absolute difference of neighbours on,
-    /// `8 … 1024`. Default 20.
+    /// `8 … 256`. Default 20.
     pub spike_factor: u16,
     /// Share of ΣD² at `m = 1` that spikes may have. Default 50.
     pub spike_per_mille: u16,
     /// A cluster of samples has moved from so many times the mean absolute difference of
-    /// neighbouring clusters on, `8 … 1024`. Default 64.
+    /// neighbouring clusters on, `8 … 256`. Default 64.
     pub motion_factor: u16,
     /// Share of ΣD² of the clusters that motion may have. Default 50.
     pub motion_per_mille: u16,
@@ -76,8 +76,8 @@ impl Limits {
 }
 
 const SHARE: (u16, u16) = (0, 1000);
-/// Less would find ordinary noise odd; more would overflow.
-const FACTOR: (u16, u16) = (8, 1024);
+/// Less would find ordinary noise odd, more would find nothing.
+const FACTOR: (u16, u16) = (8, 256);
 
 impl Default for Limits {
     fn default() -> Self {

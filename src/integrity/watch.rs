@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Watch {
-    /// Running mean of absolute differences, each cut at [`CUT`] times the mean, in 1/256. While it
+    /// Running mean of absolute differences, each cut at [`CUT`] times the mean, in 2^−12. While it
     /// is learnt, the least of the blocks' means.
     scale: u64,
     /// Σ of absolute differences in the present block, while the scale is learnt.
@@ -28,9 +28,11 @@ pub(super) struct Watch {
 pub(super) struct Rule {
     /// Binary logarithm of the differences in a block; four blocks are learnt from.
     block: u32,
-    /// What quantisation may hide of the scale, in 1/256.
+    /// Binary logarithm of the differences that the running mean spans.
+    span: u32,
+    /// What quantisation may hide of the scale, in 2^−12.
     floor: u64,
-    /// The scale that is assumed at least, in 1/256.
+    /// The scale that is assumed at least, in 2^−12.
     least: u64,
     factor: u16,
     /// Values after which an excursion is the new level.
@@ -57,19 +59,18 @@ pub(super) enum Fate {
 }
 
 /// Fraction bits of a scale.
-const FRACTION: u32 = 8;
+const FRACTION: u32 = 12;
 /// Blocks learnt from. The quietest counts, so that a disturbance may last for all but one.
 const BLOCKS: u8 = 4;
-/// Binary logarithm of the differences that the running mean spans.
-const SPAN: u32 = 6;
 /// No difference counts for more than so many times the usual.
-const CUT: u64 = 4;
+const CUT: u64 = 2;
 
 impl Rule {
     /// Half a count of quantisation: noise may hide for a while in the middle of a quantum.
     pub(super) const fn neighbours(factor: u16) -> Self {
         Self {
             block: 4,
+            span: 8,
             floor: 1 << (FRACTION - 1),
             least: 0,
             factor,
@@ -77,16 +78,23 @@ impl Rule {
         }
     }
 
-    /// A sixteenth of a count in the mean, so that a quiet level may change by some quanta; and an
-    /// eighth of what single samples differ by, what white noise leaves in clusters of 64, so that
-    /// no drift becomes motion because long clusters see it well.
-    pub(super) const fn clusters(factor: u16, length: u16, neighbours: &Watch) -> Self {
+    /// A sixteenth of a count in the mean, so that a quiet level may change by some quanta.
+    pub(super) const fn clusters(factor: u16, length: u16) -> Self {
         Self {
             block: 2,
+            span: 7,
             floor: (length as u64) << (FRACTION - 4),
-            least: (length as u64 >> 3) * neighbours.scale,
+            least: 0,
             factor,
             patience: 64,
+        }
+    }
+
+    /// The same, and no mean is expected to be steadier than that of clusters `times` shorter.
+    pub(super) const fn with_least(self, shorter: &Watch, times: u16) -> Self {
+        Self {
+            least: shorter.scale.saturating_mul(times as u64),
+            ..self
         }
     }
 }
@@ -125,10 +133,11 @@ impl Watch {
             self.reference = value;
             return (self.learn(difference, rule), square);
         }
-        let usual = self.scale.max(rule.least) + rule.floor;
-        let far = value.abs_diff(self.reference) << FRACTION > usual * u64::from(rule.factor);
-        let new = (difference << FRACTION).min(usual * CUT);
-        self.scale = self.scale - (self.scale >> SPAN) + (new >> SPAN);
+        let usual = self.usual(rule);
+        let far =
+            value.abs_diff(self.reference) << FRACTION > usual.saturating_mul(rule.factor.into());
+        let new = (difference << FRACTION).min(usual.saturating_mul(CUT));
+        self.scale = self.scale - (self.scale >> rule.span) + (new >> rule.span);
         (self.judge(value, far, rule.patience), square)
     }
 
@@ -150,6 +159,10 @@ impl Watch {
         fate
     }
 
+    fn usual(&self, rule: &Rule) -> u64 {
+        self.scale.max(rule.least).saturating_add(rule.floor)
+    }
+
     fn is_learning(&self, rule: &Rule) -> bool {
         self.learnt < BLOCKS << rule.block
     }
@@ -167,8 +180,10 @@ impl Watch {
         if self.is_learning(rule) {
             return Fate::Learning;
         }
-        let usual = self.scale.max(rule.least) + rule.floor;
-        let outlying = self.largest << FRACTION > usual * u64::from(rule.factor);
+        // The least of four means of four differences lies at two thirds of the mean.
+        self.scale += self.scale / 2;
+        let usual = self.usual(rule);
+        let outlying = self.largest << FRACTION > usual.saturating_mul(rule.factor.into());
         Fate::Learnt {
             outlier: if outlying { square(self.largest) } else { 0 },
         }

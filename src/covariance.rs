@@ -26,9 +26,10 @@ use nalgebra::SMatrix;
 /// Kinks lie within a cluster, four quarters, of 0 and of the middle: lags up to here are taken one by
 /// one, in quarters of the shorter cluster …
 const KINK: u32 = 6;
-/// … up to here by two, and beyond in steps of the distance's power of two, halved so often.
+/// … up to here by two, and beyond in steps of the distance's power of two …
 const NEAR: u32 = 8;
-const COARSENESS: u32 = 1;
+/// … or of half of that between octaves less far apart than this.
+const FAR: u32 = 256;
 
 /// The outward tail of the sum ends where two lags in turn add less than this share.
 const NEGLIGIBLE: f64 = 1e-4;
@@ -93,7 +94,7 @@ pub(crate) fn covariance<const K: usize>(
                 if let (Some(short), Some(long)) = (response(shorter.m), response(longer.m)) {
                     // As many as effects: there is always room.
                     let _ = waves.push(Wave {
-                        product: square * short.amplitude * long.amplitude,
+                        product: 2.0 * square * short.amplitude * long.amplitude,
                         phase: 0.25 * m_j * short.phase,
                     });
                 }
@@ -103,7 +104,7 @@ pub(crate) fn covariance<const K: usize>(
     }
 }
 
-/// What a deterministic effect puts into the product of two differences: `product · cos(phase · ℓ)`
+/// Twice what a deterministic effect puts into the product of two differences: `product · cos(phase · ℓ)`
 /// at a lag of `ℓ` quarters of the shorter cluster.
 struct Wave {
     product: f64,
@@ -145,18 +146,15 @@ impl Pair<'_> {
                 differences.at(lag.abs_diff(middle)) - (here + here) + differences.at(lag + middle);
             if random != 0.0 {
                 // Half the steps to either side, in strides; both signs of the lag are in `pairs`.
-                let weight = f64::from(step_before + step) * pairs as f64;
+                let weight = u64::from(step_before + step).saturating_mul(pairs) as f64;
                 let mut factor = random;
                 for wave in waves {
-                    factor += 2.0 * wave.at(lag);
+                    factor += wave.at(lag);
                 }
                 let term = weight * (random * factor);
                 sum += term;
-                quiet = if term.abs() > NEGLIGIBLE * sum.abs() {
-                    0
-                } else {
-                    quiet + 1
-                };
+                let counts = lag <= middle + NEAR || term.abs() > NEGLIGIBLE * sum.abs();
+                quiet = if counts { 0 } else { quiet + 1 };
             } else {
                 quiet += 1;
             }
@@ -222,15 +220,17 @@ fn advance(m: u32) -> u32 {
 /// The next lag of the sum: by quarters of a cluster near 0 and near the middle, where the kinks
 /// are, then by two, then by the distance's power of two.
 fn step_after(lag: u32, middle: u32, stride: u32) -> u32 {
+    // Far apart, octaves are correlated too little for half steps to matter.
+    let halvings = if middle < FAR { 1 } else { 0 };
     let away = |distance: u32| match distance {
         0..KINK => stride,
         KINK..NEAR => stride.max(2),
-        _ => 1 << (distance.ilog2() - COARSENESS),
+        _ => 1 << (distance.ilog2() - halvings),
     };
     let towards = |distance: u32| match distance {
         0..=KINK => stride,
         _ if distance <= NEAR => stride.max(2),
-        _ => 1 << ((distance - 1).ilog2() - COARSENESS),
+        _ => 1 << ((distance - 1).ilog2() - halvings),
     };
     if lag >= middle {
         away(lag - middle)

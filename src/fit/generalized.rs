@@ -20,7 +20,7 @@ use nalgebra::SVector;
 /// than eight.
 const ROUNDS: usize = 8;
 /// A change of the model that ends the rounds.
-const CONVERGED: f64 = 2e-3;
+const CONVERGED: f64 = 3e-3;
 /// Below this p-value the curve's scatter does not explain the misfit, and the model is granted
 /// its tolerance.
 const UNEXPLAINED: f64 = 0.05;

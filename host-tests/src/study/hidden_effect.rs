@@ -135,7 +135,7 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
     let mut moments = FourthMoments::<OCTAVES>::new();
     let curve = record(&mut simulator, base, samples, |counts| {
-        moments.push_slice(counts)
+        moments.push_slice(counts);
     });
     let other = record(&mut simulator, base, samples, |_| ());
     let kurtosis = moments.kurtosis();

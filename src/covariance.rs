@@ -13,10 +13,13 @@
 //! The sum runs over every lag near 0 and near `m_k`, where `c` has its kinks, and by the
 //! trapezoidal rule over lags in steps that grow with the distance from both: within 1 % of the
 //! full sum for the effects of [`IEEE_952`](crate::effect::IEEE_952).
+//!
+//! It is taken in single precision, of numbers in units of the octave's own variance: weights need no
+//! more than six digits, and a core whose arithmetic is in single precision spends half as long.
 
 use crate::{
     curve::{Curve, Point},
-    lattice::{self, SecondDifferences},
+    lattice::{self, Rounded, SecondDifferences},
     math,
     model::{MAX_EFFECTS, Model},
 };
@@ -32,7 +35,7 @@ const NEAR: u32 = 8;
 const FAR: u32 = 256;
 
 /// The outward tail of the sum ends where two lags in turn add less than this share.
-const NEGLIGIBLE: f64 = 1e-4;
+const NEGLIGIBLE: f32 = 1e-4;
 
 /// The covariance of a curve's Allan variances, in rate units to the fourth, where a model's
 /// effects have the squared coefficients `squares`: what the fit weights with. Rows and columns
@@ -80,6 +83,8 @@ pub(crate) fn covariance<const K: usize>(
                     .add_second_differences(m_j, square, &setting, &mut random);
             }
         }
+        let random = random.rounded();
+        let per_unit = 2.0 / random.unit();
         for (k, longer) in points.iter().enumerate().take(K).skip(j) {
             let pair = Pair { shorter, longer };
             // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
@@ -94,7 +99,7 @@ pub(crate) fn covariance<const K: usize>(
                 if let (Some(short), Some(long)) = (response(shorter.m), response(longer.m)) {
                     // As many as effects: there is always room.
                     let _ = waves.push(Wave {
-                        product: 2.0 * square * short.amplitude * long.amplitude,
+                        product: (per_unit * square * short.amplitude * long.amplitude) as f32,
                         phase: 0.25 * m_j * short.phase,
                     });
                 }
@@ -107,16 +112,16 @@ pub(crate) fn covariance<const K: usize>(
 /// Twice what a deterministic effect puts into the product of two differences: `product · cos(phase · ℓ)`
 /// at a lag of `ℓ` quarters of the shorter cluster.
 struct Wave {
-    product: f64,
+    product: f32,
     phase: f64,
 }
 
 impl Wave {
-    fn at(&self, lag: u32) -> f64 {
+    fn at(&self, lag: u32) -> f32 {
         if self.phase == 0.0 {
             return self.product;
         }
-        self.product * math::cos(self.phase * f64::from(lag))
+        self.product * math::cos(self.phase * f64::from(lag)) as f32
     }
 }
 
@@ -132,11 +137,11 @@ impl Pair<'_> {
         (self.longer.m / self.shorter.m).saturating_mul(4)
     }
 
-    fn covariance(&self, differences: &SecondDifferences, waves: &[Wave]) -> f64 {
+    fn covariance(&self, differences: &Rounded, waves: &[Wave]) -> f64 {
         let middle = self.middle();
         let stride = lattice::stride(self.shorter.m);
         let starts = Starts::new(self.shorter, self.longer);
-        let (mut sum, mut quiet) = (0.0, 0);
+        let (mut sum, mut quiet) = (0.0_f32, 0);
         let (mut lag, mut step_before) = (0, 0);
         loop {
             let step = step_after(lag, middle, stride);
@@ -146,7 +151,7 @@ impl Pair<'_> {
                 differences.at(lag.abs_diff(middle)) - (here + here) + differences.at(lag + middle);
             if random != 0.0 {
                 // Half the steps to either side, in strides; both signs of the lag are in `pairs`.
-                let weight = u64::from(step_before + step).saturating_mul(pairs) as f64;
+                let weight = u64::from(step_before + step).saturating_mul(pairs) as f32;
                 let mut factor = random;
                 for wave in waves {
                     factor += wave.at(lag);
@@ -167,7 +172,8 @@ impl Pair<'_> {
         }
         let tau = self.shorter.tau_s * self.longer.tau_s;
         let counts = self.shorter.differences as f64 * self.longer.differences as f64;
-        0.25 * sum / (f64::from(stride) * counts * tau * tau)
+        let unit = differences.unit();
+        0.25 * f64::from(sum) * (unit * unit) / (f64::from(stride) * counts * tau * tau)
     }
 }
 

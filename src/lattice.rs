@@ -99,10 +99,34 @@ impl SecondDifferences {
         }
     }
 
+    /// In units of τ² times the Allan variance, in single precision.
+    pub(crate) fn rounded(&self) -> Rounded {
+        let unit = self.values[4] - self.values[0];
+        let unit = if unit > 0.0 { unit } else { 1.0 };
+        let reciprocal = 1.0 / unit;
+        Rounded {
+            values: self.values.map(|value| (value * reciprocal) as f32),
+            unit,
+        }
+    }
+}
+
+/// Second differences in units of their octave's variance.
+pub(crate) struct Rounded {
+    values: [f32; LEN],
+    unit: f64,
+}
+
+impl Rounded {
+    /// τ² times the octave's Allan variance.
+    pub(crate) fn unit(&self) -> f64 {
+        self.unit
+    }
+
     /// The second difference at a lag in quarters of a cluster, on a straight line between the
     /// lattice's positions.
     #[inline]
-    pub(crate) fn at(&self, position: u32) -> f64 {
+    pub(crate) fn at(&self, position: u32) -> f32 {
         if position <= FINE {
             return self.values[position as usize];
         }
@@ -118,8 +142,8 @@ impl SecondDifferences {
             return low;
         }
         // 2^-width_bits by its bits: a division costs ten multiplications in software.
-        let reciprocal = f64::from_bits(u64::from(1023 - width_bits) << 52);
-        low + (self.values[(slot + 1).min(LEN - 1)] - low) * (f64::from(rest) * reciprocal)
+        let reciprocal = f32::from_bits((127 - width_bits) << 23);
+        low + (self.values[(slot + 1).min(LEN - 1)] - low) * (rest as f32 * reciprocal)
     }
 }
 

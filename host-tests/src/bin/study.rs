@@ -1,4 +1,4 @@
-//! The studies behind the README's figures: `cargo xtask study NAME`.
+//! The studies behind the README's figures: `cargo run --release -p host-tests --bin study -- NAME`.
 
 use allanite::Settings;
 use clap::{Parser, Subcommand};

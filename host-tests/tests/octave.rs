@@ -507,7 +507,6 @@ fn full_scale_square_waves_overflow_no_octave() {
 }
 
 #[test]
-#[ignore = "2^30 samples take ten seconds or more: cargo test -p host-tests --test octave -- --ignored"]
 fn the_largest_difference_there_is_fits_the_longest_octave() {
     let wave = SquareWave {
         half_period: 1 << 29,

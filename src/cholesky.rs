@@ -1,46 +1,87 @@
-//! Cholesky factor of a curve's covariance, in place.
+//! Cholesky factors of a curve's covariance and of the normal equations, in place.
 //!
 //! nalgebra's own takes and returns matrices by value: three copies of 3 KiB on the stack of a
-//! microcontroller for 20 octaves. It serves for the small normal equations.
+//! microcontroller for 20 octaves. Sums are of double precision whatever the factor is kept in.
 
 use crate::math;
 use nalgebra::{SMatrix, SVector};
 
+/// What a factor's elements are kept in.
+pub(crate) trait Element: Copy {
+    fn new(value: f64) -> Self;
+    fn value(self) -> f64;
+}
+
+impl Element for f64 {
+    fn new(value: f64) -> Self {
+        value
+    }
+
+    fn value(self) -> f64 {
+        self
+    }
+}
+
+impl Element for f32 {
+    fn new(value: f64) -> Self {
+        value as f32
+    }
+
+    fn value(self) -> f64 {
+        f64::from(self)
+    }
+}
+
 /// Replaces the lower triangle of the first `n` rows by its Cholesky factor, with the reciprocals of
 /// the diagonal on the diagonal. `false` if the matrix is not positive definite.
-pub(crate) fn factor<const K: usize>(matrix: &mut SMatrix<f64, K, K>, n: usize) -> bool {
+pub(crate) fn factor<E: Element, const K: usize>(matrix: &mut SMatrix<E, K, K>, n: usize) -> bool {
     for j in 0..n.min(K) {
-        let mut pivot = matrix[(j, j)];
+        let mut pivot = matrix[(j, j)].value();
         for k in 0..j {
-            pivot -= matrix[(j, k)] * matrix[(j, k)];
+            pivot -= matrix[(j, k)].value() * matrix[(j, k)].value();
         }
         if !(pivot > 0.0 && pivot.is_finite()) {
             return false;
         }
         let reciprocal = 1.0 / math::sqrt(pivot);
-        matrix[(j, j)] = reciprocal;
+        matrix[(j, j)] = E::new(reciprocal);
         for i in j + 1..n.min(K) {
-            let mut value = matrix[(i, j)];
+            let mut value = matrix[(i, j)].value();
             for k in 0..j {
-                value -= matrix[(i, k)] * matrix[(j, k)];
+                value -= matrix[(i, k)].value() * matrix[(j, k)].value();
             }
-            matrix[(i, j)] = value * reciprocal;
+            matrix[(i, j)] = E::new(value * reciprocal);
         }
     }
     true
 }
 
 /// Solves `L x = b` in place, for the factor `L` of [`factor`].
-pub(crate) fn forward<const K: usize>(
-    factor: &SMatrix<f64, K, K>,
+pub(crate) fn forward<E: Element, const K: usize>(
+    factor: &SMatrix<E, K, K>,
     n: usize,
     x: &mut SVector<f64, K>,
 ) {
     for i in 0..n.min(K) {
         let mut value = x[i];
         for k in 0..i {
-            value -= factor[(i, k)] * x[k];
+            value -= factor[(i, k)].value() * x[k];
         }
-        x[i] = value * factor[(i, i)];
+        x[i] = value * factor[(i, i)].value();
+    }
+}
+
+/// Solves `L'x = b` in place.
+pub(crate) fn backward<E: Element, const K: usize>(
+    factor: &SMatrix<E, K, K>,
+    n: usize,
+    x: &mut SVector<f64, K>,
+) {
+    for i in (0..n.min(K)).rev() {
+        let mut value = x[i];
+        for k in i + 1..n.min(K) {
+            value -= factor[(k, i)].value() * x[k];
+        }
+        x[i] = value * factor[(i, i)].value();
     }
 }

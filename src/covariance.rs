@@ -46,33 +46,30 @@ pub fn curve_covariance<const K: usize>(
     squares: &[f64],
 ) -> SMatrix<f64, K, K> {
     let mut matrix = SMatrix::<f64, K, K>::zeros();
-    covariance(
-        curve.points(),
-        model,
-        squares,
-        curve.interval_s(),
-        &mut matrix,
-    );
-    matrix.fill_upper_triangle_with_lower_triangle();
+    let (points, interval_s) = (curve.points(), curve.interval_s());
+    covariance(points, model, squares, interval_s, &mut |k, j, value| {
+        matrix[(k, j)] = value;
+        matrix[(j, k)] = value;
+    });
     matrix
 }
 
 /// The covariance of a curve's variances, in rate units to the fourth, where the effects have the
-/// squared coefficients `squares`, into the lower triangle.
+/// squared coefficients `squares`: `each(k, j, covariance)` for the lower triangle, `j ≤ k`.
 #[inline(never)]
-pub(crate) fn covariance<const K: usize>(
+pub(crate) fn covariance(
     points: &[Point],
     model: &Model,
     squares: &[f64],
     interval_s: f64,
-    matrix: &mut SMatrix<f64, K, K>,
+    each: &mut dyn FnMut(usize, usize, f64),
 ) {
     let longest = points.last().map_or(1, |point| point.m);
     let present = || {
         let terms = model.terms().iter().zip(squares);
         terms.filter(|&(_, &square)| square > 0.0)
     };
-    for (j, shorter) in points.iter().enumerate().take(K) {
+    for (j, shorter) in points.iter().enumerate() {
         let reach = (u64::from(longest / shorter.m) * 32).min(u64::from(lattice::END)) as u32;
         let m_j = f64::from(shorter.m);
         let mut random = SecondDifferences::zero(shorter.m, reach);
@@ -85,11 +82,11 @@ pub(crate) fn covariance<const K: usize>(
         }
         let random = random.rounded();
         let per_unit = 2.0 / random.unit();
-        for (k, longer) in points.iter().enumerate().take(K).skip(j) {
+        for (k, longer) in points.iter().enumerate().skip(j) {
             let pair = Pair { shorter, longer };
             // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
             if pair.middle() >= lattice::END / 4 {
-                matrix[(k, j)] = 0.0;
+                each(k, j, 0.0);
                 continue;
             }
             let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
@@ -104,7 +101,7 @@ pub(crate) fn covariance<const K: usize>(
                     });
                 }
             }
-            matrix[(k, j)] = pair.covariance(&random, &waves);
+            each(k, j, pair.covariance(&random, &waves));
         }
     }
 }

@@ -168,7 +168,8 @@ impl Diagnosis {
             let mut parameters = term.fitted_parameters();
             if let (Some(j), None) = (parameters.next(), parameters.next()) {
                 let (weights, squares) = (&solution.weights, &solution.squares);
-                let search = Search::new(problem, weights, squares, shape.term, false)?.released();
+                let mut search =
+                    Search::new(problem, weights, squares, shape.term, false)?.released();
                 (shape.lower, shape.upper) = search.joint_interval(term, j, span);
             }
         }
@@ -246,7 +247,8 @@ impl Diagnosis {
             }
             let place = replaced.flatten().unwrap_or(problem.count());
             let weights = &solution.weights;
-            let Ok(search) = Search::new(&problem, weights, &solution.squares, place, true) else {
+            let Ok(mut search) = Search::new(&problem, weights, &solution.squares, place, true)
+            else {
                 // No place left in the model.
                 continue;
             };
@@ -349,7 +351,7 @@ fn polish<const K: usize>(
         if !term.fitted || squares[at] <= 0.0 {
             continue;
         }
-        let search = Search::new(problem, weights, squares, at, false)?;
+        let mut search = Search::new(problem, weights, squares, at, false)?;
         let found = search.refine_known(term, span);
         polished.terms_mut()[at] = found.term;
     }

@@ -1,7 +1,7 @@
 //! Least squares with coefficients that cannot be negative, from the normal equations.
 
-use crate::{error::Error, model::MAX_EFFECTS};
-use nalgebra::{Cholesky, Const, SMatrix, SVector};
+use crate::{cholesky, error::Error, math, model::MAX_EFFECTS};
+use nalgebra::{SMatrix, SVector};
 
 /// Normal equations `H β = b` of up to `P` unknowns.
 pub(crate) type Matrix<const P: usize = MAX_EFFECTS> = SMatrix<f64, P, P>;
@@ -34,25 +34,55 @@ impl<const P: usize> NormalEquations<P> {
         }
     }
 
-    /// `H` and `b` of the first `count` coefficients.
+    /// Takes the first `count` unknowns' `H`, of which `entry(i, j)` gives the lower triangle, and `b`.
     ///
     /// # Errors
     /// [`Error::Singular`] where a column is zero or not finite.
-    pub(crate) fn new(matrix: &Matrix<P>, right: &Vector<P>, count: usize) -> Result<Self, Error> {
-        let mut scale = Vector::zeros();
-        for i in 0..count {
-            let diagonal = matrix[(i, i)];
+    pub(crate) fn set(
+        &mut self,
+        count: usize,
+        entry: impl Fn(usize, usize) -> f64,
+        right: impl Fn(usize) -> f64,
+    ) -> Result<(), Error> {
+        self.count = count.min(P);
+        for i in 0..self.count {
+            let diagonal = entry(i, i);
             if !(diagonal.is_finite() && diagonal > 0.0) {
                 return Err(Error::Singular);
             }
-            scale[i] = 1.0 / crate::math::sqrt(diagonal);
+            self.scale[i] = 1.0 / math::sqrt(diagonal);
+            self.right[i] = right(i) * self.scale[i];
+            for j in 0..=i {
+                let scaled = entry(i, j) * self.scale[i] * self.scale[j];
+                self.scaled[(i, j)] = scaled;
+                self.scaled[(j, i)] = scaled;
+            }
         }
-        Ok(Self {
-            scaled: Matrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]),
-            right: right.component_mul(&scale),
-            scale,
-            count,
-        })
+        Ok(())
+    }
+
+    /// Exchanges one unknown for another: `entry(j)` of `H` with the others and itself, and its `b`.
+    ///
+    /// # Errors
+    /// [`Error::Singular`] where its column is zero or not finite.
+    pub(crate) fn exchange(
+        &mut self,
+        place: usize,
+        entry: impl Fn(usize) -> f64,
+        right: f64,
+    ) -> Result<(), Error> {
+        let diagonal = entry(place);
+        if !(diagonal.is_finite() && diagonal > 0.0) {
+            return Err(Error::Singular);
+        }
+        self.scale[place] = 1.0 / math::sqrt(diagonal);
+        self.right[place] = right * self.scale[place];
+        for j in 0..self.count {
+            let scaled = entry(j) * self.scale[place] * self.scale[j];
+            self.scaled[(place, j)] = scaled;
+            self.scaled[(j, place)] = scaled;
+        }
+        Ok(())
     }
 
     /// Number of unknowns.
@@ -60,25 +90,43 @@ impl<const P: usize> NormalEquations<P> {
         self.count
     }
 
-    /// Factors the equations of the free coefficients; the others become the identity.
+    /// Factors the equations of the free unknowns; the others become the identity.
     #[inline(never)]
-    fn factor(&self, free: &Free<P>) -> Option<Cholesky<f64, Const<P>>> {
-        let factor = Cholesky::new(Matrix::from_fn(|i, j| match (i == j, free[i] && free[j]) {
-            (_, true) => self.scaled[(i, j)],
-            (true, false) => 1.0,
-            (false, false) => 0.0,
-        }))?;
-        let pivot = |i: usize| factor.l_dirty()[(i, i)];
-        let regular = (0..self.count).all(|i| pivot(i) * pivot(i) > LEAST_PIVOT);
-        regular.then_some(factor)
+    fn factor(&self, free: &Free<P>, factor: &mut Matrix<P>) -> bool {
+        for i in 0..self.count {
+            for j in 0..=i {
+                factor[(i, j)] = match (i == j, free[i] && free[j]) {
+                    (_, true) => self.scaled[(i, j)],
+                    (true, false) => 1.0,
+                    (false, false) => 0.0,
+                };
+            }
+        }
+        // The diagonal holds reciprocals.
+        cholesky::factor(factor, self.count)
+            && (0..self.count).all(|i| factor[(i, i)] * factor[(i, i)] * LEAST_PIVOT < 1.0)
     }
 
+    /// Solves the scaled equations of the free unknowns for any right side.
     #[inline(never)]
+    fn solve_for(&self, free: &Free<P>, x: &mut Vector<P>) -> bool {
+        let mut factor = Matrix::zeros();
+        let regular = self.factor(free, &mut factor);
+        if regular {
+            cholesky::forward(&factor, self.count, x);
+            cholesky::backward(&factor, self.count, x);
+        }
+        regular
+    }
+
     fn solve_scaled(&self, free: &Free<P>) -> Option<Vector<P>> {
-        let factor = self.factor(free)?;
-        Some(factor.solve(&Vector::from_fn(
-            |i, _| if free[i] { self.right[i] } else { 0.0 },
-        )))
+        let mut solution = self.right;
+        for i in 0..self.count {
+            if !free[i] {
+                solution[i] = 0.0;
+            }
+        }
+        self.solve_for(free, &mut solution).then_some(solution)
     }
 
     /// How far a solution lowers the sum of squared residuals.
@@ -176,25 +224,11 @@ impl<const P: usize> NormalEquations<P> {
         trial
     }
 
-    /// Variance of one of the free coefficients. `None` if they cannot be told apart.
-    #[inline(never)]
+    /// Variance of one of the free unknowns. `None` if they cannot be told apart.
     pub(crate) fn variance(&self, i: usize, free: &Free<P>) -> Option<f64> {
         let mut unit = Vector::<P>::zeros();
         unit[i] = 1.0;
-        let column = self.factor(free)?.solve(&unit);
-        Some(column[i] * self.scale[i] * self.scale[i])
-    }
-
-    /// Covariance of the free coefficients; zero for the others. `None` if they cannot be told
-    /// apart.
-    pub(crate) fn covariance(&self, free: &Free<P>) -> Option<Matrix<P>> {
-        let inverse = self.factor(free)?.inverse();
-        Some(Matrix::from_fn(|i, j| {
-            if free[i] && free[j] {
-                inverse[(i, j)] * self.scale[i] * self.scale[j]
-            } else {
-                0.0
-            }
-        }))
+        let regular = self.solve_for(free, &mut unit);
+        regular.then(|| unit[i] * self.scale[i] * self.scale[i])
     }
 }

@@ -29,6 +29,7 @@ pub(crate) fn record_length_s(
     let mut with = *free;
     with[i] = true;
     let count = model.terms().len();
+    let mut equations = NormalEquations::empty();
     // The equations are `samples · Σ q/2m − Σ q/2`, q being an octave's share: each doubling adds one.
     let (mut growing, mut fixed): (Matrix, Matrix) = (Matrix::zeros(), Matrix::zeros());
     let (mut m, mut samples) = (1.0, 2.0 * samples);
@@ -50,11 +51,13 @@ pub(crate) fn record_length_s(
             }
             m *= 2.0;
         }
-        let matrix = Matrix::from_fn(|a, b| {
-            let (a, b) = if a < b { (b, a) } else { (a, b) };
-            samples * growing[(a, b)] - fixed[(a, b)]
-        });
-        let equations = NormalEquations::new(&matrix, &Vector::zeros(), count).ok()?;
+        equations
+            .set(
+                count,
+                |a, b| samples * growing[(a, b)] - fixed[(a, b)],
+                |_| 0.0,
+            )
+            .ok()?;
         let variance = equations.variance(i, &with);
         if variance.is_some_and(|variance| square * square > 1.96 * 1.96 * variance) {
             return Some(samples * interval_s);

@@ -9,7 +9,7 @@ use crate::{
     },
     math,
     model::{MAX_EFFECTS, Term},
-    nnls::{Free, Matrix, NormalEquations, Vector},
+    nnls::{Free, NormalEquations, Vector},
 };
 use nalgebra::SVector;
 
@@ -26,9 +26,9 @@ pub(crate) struct Search<'a, 'b, const K: usize> {
     /// Standard errors of the octaves are those of the measured curve instead of the model's.
     scatter: SVector<f64, K>,
     whitened: Whitened<K>,
-    /// The normal equations of the others, and the effect's place in them.
-    matrix: Matrix,
-    right: Vector,
+    /// Those of the others, and of the shape that was tried last.
+    equations: NormalEquations,
+    /// The effect's place among the others.
     place: usize,
     free: Free,
     held: Free,
@@ -56,15 +56,23 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
             _ => 1.0,
         });
         let whitened = weights.whiten(problem, |k| scatter[k]);
-        let (matrix, right) = whitened.products();
+        let mut equations = NormalEquations::empty();
+        let columns = &whitened.columns;
+        equations.set(
+            columns.len().max(place + 1),
+            |i, j| match (i == place || j == place, i == j) {
+                (false, _) => columns[i].dot(&columns[j]),
+                (true, same) => f64::from(u8::from(same)),
+            },
+            |i| columns.get(i).map_or(0.0, |x| x.dot(&whitened.curve)),
+        )?;
         let mut held = problem.held();
         held[place] = false;
         Ok(Self {
             problem,
+            equations,
             weights,
             scatter,
-            matrix,
-            right,
             whitened,
             place,
             free: core::array::from_fn(|i| i == place || (squares[i] > 0.0 && !held[i])),
@@ -79,31 +87,32 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     }
 
     /// χ² with the effect in a shape, and the effect's squared coefficient.
-    pub(crate) fn with(&self, term: &Term) -> (f64, f64) {
+    pub(crate) fn with(&mut self, term: &Term) -> (f64, f64) {
         let without = (f64::INFINITY, 0.0);
         let mut column = self.problem.column(term);
         let n = self.problem.points.len();
         self.weights
             .whiten_column(n, &mut column, |k| self.scatter[k]);
-        let (mut matrix, mut right) = (self.matrix, self.right);
-        for (i, other) in self.whitened.columns.iter().enumerate() {
-            let product = other.dot(&column);
-            matrix[(i, self.place)] = product;
-            matrix[(self.place, i)] = product;
-        }
-        matrix[(self.place, self.place)] = column.norm_squared();
-        right[self.place] = column.dot(&self.whitened.curve);
-        let count = self.problem.count().max(self.place + 1);
-        let Ok(equations) = NormalEquations::new(&matrix, &right, count) else {
+        let others = &self.whitened.columns;
+        let exchanged = self.equations.exchange(
+            self.place,
+            |i| match others.get(i) {
+                Some(other) if i != self.place => other.dot(&column),
+                _ => column.norm_squared(),
+            },
+            column.dot(&self.whitened.curve),
+        );
+        if exchanged.is_err() {
             return without;
-        };
+        }
+        let equations = &self.equations;
         let (squares, _) = equations.solve_non_negative_near(&self.free, &self.held);
         let chi_squared = self.whitened.curve.norm_squared() - equations.explained(&squares);
         (chi_squared, squares[self.place])
     }
 
     /// The best shape of an effect on its grid, refined.
-    pub(crate) fn search(&self, effect: &'static dyn Effect, span: &Span) -> Found {
+    pub(crate) fn search(&mut self, effect: &'static dyn Effect, span: &Span) -> Found {
         let mut term = Term::new(effect);
         term.fitted = !effect.parameters().is_empty();
         let mut best = Found {
@@ -123,7 +132,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     }
 
     /// The best shape near one that is known, within 10 %.
-    pub(crate) fn refine_known(&self, term: Term, span: &Span) -> Found {
+    pub(crate) fn refine_known(&mut self, term: Term, span: &Span) -> Found {
         let (chi_squared, square) = self.with(&term);
         let found = Found {
             term,
@@ -136,7 +145,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
 
     /// [`interval`](Self::interval) around a known shape, joined with those of the other values of a
     /// whole-numbered parameter that explain the curve as well.
-    pub(crate) fn joint_interval(&self, term: Term, j: usize, span: &Span) -> (f64, f64) {
+    pub(crate) fn joint_interval(&mut self, term: Term, j: usize, span: &Span) -> (f64, f64) {
         let (chi_squared, square) = self.with(&term);
         let known = Found {
             term,
@@ -163,15 +172,15 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
 
     /// The interval of an effect's only fitted parameter in which χ² stays within that of 95 % of the
     /// least, all coefficients free: also where another effect could take the shape's place.
-    pub(crate) fn interval(&self, best: &Found, j: usize, span: &Span) -> (f64, f64) {
+    pub(crate) fn interval(&mut self, best: &Found, j: usize, span: &Span) -> (f64, f64) {
         let grid = Grid::of(best.term.effect, j, span);
         let value = best.term.parameters[j];
-        let rise = |factor: f64| {
+        let mut rise = |factor: f64| {
             let mut term = best.term;
             term.parameters[j] = value * factor;
             self.with(&term).0 - best.chi_squared
         };
-        let end = |direction: f64| {
+        let mut end = |direction: f64| {
             // Doubling steps of the logarithm until outside, then halving.
             let (mut inside, mut step) = (0.0, 0.005);
             loop {
@@ -204,7 +213,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     /// Goes downhill from a shape, one parameter after the other, in steps of the logarithm that
     /// are halved whenever none helps.
     fn refine(
-        &self,
+        &mut self,
         start: Found,
         mut steps: [f64; MAX_PARAMETERS],
         ranges: &[Grid; MAX_PARAMETERS],

@@ -55,8 +55,9 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     /// Finds it, with the model's tolerance where the curve needs it.
     pub(crate) fn solve(&mut self, tolerance: f64) -> Result<(), Error> {
         let problem = self.problem;
-        let start = independent::equations(problem, independent::by_relative_accuracy)?;
-        let (start, _) = start.solve_non_negative(&problem.held());
+        let weight = independent::by_relative_accuracy;
+        independent::equations(problem, weight, &mut self.equations)?;
+        let (start, _) = self.equations.solve_non_negative(&problem.held());
         self.converge(start, 0.0)?;
         if self.p_value() < UNEXPLAINED && tolerance > 0.0 {
             self.converge(self.squares, tolerance)?;
@@ -77,7 +78,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         loop {
             self.weights.set(problem, &assumed, tolerance)?;
             self.weights.whiten_into(problem, |_| 1.0, &mut whitened);
-            self.equations = whitened.equations()?;
+            whitened.equations(&mut self.equations)?;
             (self.squares, self.free) = self.equations.solve_non_negative(&problem.held());
             let change = SVector::<f64, K>::from_fn(|k, _| {
                 if k < problem.points.len() {
@@ -218,13 +219,14 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     fn bound(&self, i: usize, first: f64) -> f64 {
         let problem = self.problem;
         let mut whitened = Whitened::empty();
+        let mut equations = NormalEquations::empty();
         let mut bound = first;
         for _ in 0..BOUND_ROUNDS {
             let scatter = |k: usize| 1.0 + bound * problem.columns[i][k] / self.weights.model[k];
             self.weights.whiten_into(problem, scatter, &mut whitened);
-            let Ok(equations) = whitened.equations() else {
+            if whitened.equations(&mut equations).is_err() {
                 break;
-            };
+            }
             let (squares, mut free) =
                 equations.solve_non_negative_near(&self.free, &problem.held());
             free[i] = true;

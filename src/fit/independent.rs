@@ -2,32 +2,28 @@
 
 use super::{Fit, Method, Problem, relative_accuracy, squared};
 use crate::{
-    chi_squared::chi_squared_tail,
-    coefficient::Coefficient,
-    curve::Point,
-    error::Error,
-    nnls::{Matrix, NormalEquations, Vector},
+    chi_squared::chi_squared_tail, coefficient::Coefficient, curve::Point, error::Error,
+    nnls::NormalEquations,
 };
 
 /// The normal equations of weighted, independent octaves.
 pub(super) fn equations<const K: usize>(
     problem: &Problem<'_, K>,
     weight: impl Fn(&Point) -> f64,
-) -> Result<NormalEquations, Error> {
-    let (mut matrix, mut right): (Matrix, Vector) = (Matrix::zeros(), Vector::zeros());
-    let count = problem.count();
-    for (k, point) in problem.points.iter().enumerate() {
-        let w = weight(point);
-        for i in 0..count {
-            let weighted = w * problem.columns[i][k];
-            for j in 0..=i {
-                matrix[(i, j)] += weighted * problem.columns[j][k];
-                matrix[(j, i)] = matrix[(i, j)];
-            }
-            right[i] += weighted * point.variance;
-        }
-    }
-    NormalEquations::new(&matrix, &right, problem.count())
+    equations: &mut NormalEquations,
+) -> Result<(), Error> {
+    let (points, columns) = (problem.points, &problem.columns);
+    let product = |i: usize, other: &dyn Fn(usize) -> f64| -> f64 {
+        let octaves = points.iter().enumerate();
+        octaves
+            .map(|(k, point)| weight(point) * columns[i][k] * other(k))
+            .sum()
+    };
+    equations.set(
+        problem.count(),
+        |i, j| product(i, &|k| columns[j][k]),
+        |i| product(i, &|k| points[k].variance),
+    )
 }
 
 /// The inverse square of an octave's standard error, `δσ̂²`.
@@ -42,25 +38,32 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         Method::ClusterCount => 1.0 / squared(relative_accuracy(point)),
         _ => by_relative_accuracy(point),
     };
-    let equations = equations(problem, weight)?;
+    let mut equations = NormalEquations::empty();
+    self::equations(problem, weight, &mut equations)?;
     let squares = equations.solve()?;
     let free = core::array::from_fn(|i| i < problem.count());
-    let mut covariance = equations.covariance(&free).ok_or(Error::Singular)?;
     let residuals =
         problem.points.iter().enumerate().map(|(k, point)| {
             weight(point) * squared(point.variance - problem.variance(k, &squares))
         });
     let mut chi_squared: f64 = residuals.sum();
     let degrees_of_freedom = problem.points.len() - problem.count();
+    let mut scale = 1.0;
     if method != Method::RelativeAccuracy {
         // No error model: the residuals themselves give the scale.
-        covariance *= chi_squared / degrees_of_freedom.max(1) as f64;
+        scale = chi_squared / degrees_of_freedom.max(1) as f64;
         chi_squared = f64::NAN;
     }
-    let terms = problem.model.terms().iter().enumerate();
-    let coefficients = terms
-        .map(|(i, term)| Coefficient::new(term.effect, squares[i], Some(covariance[(i, i)])))
-        .collect();
+    let mut coefficients = heapless::Vec::new();
+    for (i, term) in problem.model.terms().iter().enumerate() {
+        let variance = equations.variance(i, &free).ok_or(Error::Singular)?;
+        // As many as effects.
+        let _ = coefficients.push(Coefficient::new(
+            term.effect,
+            squares[i],
+            Some(scale * variance),
+        ));
+    }
     Ok(Fit {
         method,
         coefficients,

@@ -4,7 +4,7 @@ use super::{Problem, weights::Weights};
 use crate::{
     math,
     model::{MAX_EFFECTS, Term},
-    nnls::{Free, Matrix, NormalEquations, Vector},
+    nnls::{Free, NormalEquations, Vector},
 };
 use heapless::Vec;
 use nalgebra::SVector;
@@ -72,24 +72,15 @@ impl ShapeEquations {
             derivatives.push(derivative).ok()?;
         }
         // Coefficients first, the shapes behind them.
-        let at = |i: usize| -> Option<SVector<f64, K>> {
-            if i < count {
-                whitened.columns.get(i).copied()
-            } else {
-                derivatives.get(i - count).copied()
-            }
+        let at = |i: usize| match i.checked_sub(count) {
+            None => &whitened.columns[i],
+            Some(shape) => &derivatives[shape],
         };
-        let mut matrix = Matrix::<UNKNOWNS>::zeros();
         let unknowns = count + parameters.len();
-        for a in 0..unknowns {
-            for b in 0..=a {
-                let product = at(a)?.dot(&at(b)?);
-                matrix[(a, b)] = product;
-                matrix[(b, a)] = product;
-            }
-        }
-        let equations =
-            NormalEquations::new(&matrix, &Vector::<UNKNOWNS>::zeros(), unknowns).ok()?;
+        let mut equations = NormalEquations::empty();
+        equations
+            .set(unknowns, |a, b| at(a).dot(at(b)), |_| 0.0)
+            .ok()?;
         // Shapes are looked up behind the coefficients.
         Some(Self {
             equations,
@@ -120,24 +111,23 @@ impl ShapeEquations {
     /// Largest standard error of a shape's logarithm, infinite where the curve does not tell it.
     pub(super) fn worst_error(&self, free: &Free) -> f64 {
         let count = self.count();
-        let Some(covariance) = self.equations.covariance(&self.with_shapes(free, count)) else {
-            return f64::INFINITY;
-        };
-        let errors = (0..self.parameters.len()).map(|at| covariance[(count + at, count + at)]);
-        math::sqrt(errors.fold(0.0, f64::max))
+        let free = self.with_shapes(free, count);
+        let variance = |at: usize| self.equations.variance(count + at, &free);
+        (0..self.parameters.len())
+            .map(|at| variance(at).map_or(f64::INFINITY, math::sqrt))
+            .fold(0.0, f64::max)
     }
 
     /// The fitted parameters with their intervals, which are even in the logarithm.
     pub(super) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
         let count = self.count();
-        let covariance = self.equations.covariance(&self.with_shapes(free, count));
+        let free = self.with_shapes(free, count);
         let parameters = self.parameters.iter().enumerate();
         parameters
             .map(|(at, &(term, j, shape))| {
                 let value = shape.parameters[j];
-                let error = covariance.map_or(f64::INFINITY, |matrix| {
-                    math::sqrt(matrix[(count + at, count + at)])
-                });
+                let variance = self.equations.variance(count + at, &free);
+                let error = variance.map_or(f64::INFINITY, math::sqrt);
                 let factor = math::exp(1.959_964 * error);
                 ShapeEstimate {
                     term,

@@ -7,7 +7,7 @@ use crate::{
     error::Error,
     math,
     model::MAX_EFFECTS,
-    nnls::{Matrix, NormalEquations, Vector},
+    nnls::{NormalEquations, Vector},
 };
 use heapless::Vec;
 use nalgebra::{SMatrix, SVector};
@@ -19,7 +19,8 @@ const SHRINKAGES: [f64; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
 pub(crate) struct Weights<const K: usize> {
     /// The model's variances.
     pub(crate) model: SVector<f64, K>,
-    factor: SMatrix<f64, K, K>,
+    /// Of the covariance relative to them; single precision is that of the covariance.
+    factor: SMatrix<f32, K, K>,
     /// Of the covariance in rate units.
     pub(crate) log_determinant: f64,
     pub(crate) tolerance: f64,
@@ -67,17 +68,10 @@ impl<const K: usize> Weights<K> {
         self.tolerance = tolerance;
         for shrinkage in SHRINKAGES {
             self.shrinkage = shrinkage;
-            covariance(
-                problem.points,
-                problem.model,
-                squares.as_slice(),
-                problem.interval_s,
-                &mut self.factor,
-            );
-            self.make_relative(n, tolerance, 1.0 - shrinkage);
+            self.take_relative(problem, squares, 1.0 - shrinkage);
             if cholesky::factor(&mut self.factor, n) {
                 self.log_determinant = (0..n)
-                    .map(|k| 2.0 * math::log(self.model[k] / self.factor[(k, k)]))
+                    .map(|k| 2.0 * math::log(self.model[k] / f64::from(self.factor[(k, k)])))
                     .sum();
                 return Ok(());
             }
@@ -85,24 +79,34 @@ impl<const K: usize> Weights<K> {
         Err(Error::Singular)
     }
 
-    fn make_relative(&mut self, n: usize, tolerance: f64, keep: f64) {
+    /// The covariance relative to the model, of which correlations keep a share.
+    fn take_relative(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: f64) {
         let mut reciprocal = self.model;
-        for k in 0..n {
+        for k in 0..problem.points.len().min(K) {
             reciprocal[k] = 1.0 / self.model[k];
         }
-        for k in 0..n {
-            for j in 0..k {
-                self.factor[(k, j)] *= reciprocal[j] * reciprocal[k] * keep;
-            }
-            let own = self.factor[(k, k)] * squared(reciprocal[k]);
-            self.factor[(k, k)] = own + squared(tolerance);
-        }
+        let (factor, tolerance) = (&mut self.factor, self.tolerance);
+        covariance(
+            problem.points,
+            problem.model,
+            squares.as_slice(),
+            problem.interval_s,
+            &mut |k, j, covariance| {
+                let relative = covariance * reciprocal[j] * reciprocal[k];
+                factor[(k, j)] = if j == k {
+                    relative + squared(tolerance)
+                } else {
+                    relative * keep
+                } as f32;
+            },
+        );
     }
 
     /// Standard error of octave `k`, relative to the model's variance.
     pub(crate) fn relative_error(&self, k: usize) -> f64 {
-        let row = (0..k).map(|j| squared(self.factor[(k, j)]));
-        let diagonal = 1.0 / self.factor[(k, k)];
+        let element = |j: usize| f64::from(self.factor[(k, j)]);
+        let row = (0..k).map(|j| squared(element(j)));
+        let diagonal = 1.0 / element(k);
         math::sqrt(row.sum::<f64>() + squared(diagonal))
     }
 
@@ -179,24 +183,15 @@ impl<const K: usize> Whitened<K> {
         }
     }
 
-    /// `A'A` and `A'y`.
-    pub(crate) fn products(&self) -> (Matrix, Vector) {
-        let (mut matrix, mut right) = (Matrix::zeros(), Vector::zeros());
-        for (i, column) in self.columns.iter().enumerate() {
-            for (j, other) in self.columns.iter().enumerate().take(i + 1) {
-                let product = column.dot(other);
-                matrix[(i, j)] = product;
-                matrix[(j, i)] = product;
-            }
-            right[i] = column.dot(&self.curve);
-        }
-        (matrix, right)
-    }
-
+    /// The normal equations `A'A β = A'y`.
     #[inline(never)]
-    pub(crate) fn equations(&self) -> Result<NormalEquations, Error> {
-        let (matrix, right) = self.products();
-        NormalEquations::new(&matrix, &right, self.columns.len())
+    pub(crate) fn equations(&self, equations: &mut NormalEquations) -> Result<(), Error> {
+        let columns = &self.columns;
+        equations.set(
+            columns.len(),
+            |i, j| columns[i].dot(&columns[j]),
+            |i| columns[i].dot(&self.curve),
+        )
     }
 
     /// χ² of a solution.

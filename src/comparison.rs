@@ -97,48 +97,57 @@ impl<const K: usize> Comparison<K> {
     ) -> Result<Self, Error> {
         let problem = Problem::new(curve, model);
         let squares = Vector::from(fit.squares());
-        let weights = Weights::new(&problem, &squares, tolerance)?;
-        Self::from_weights(&problem, &weights, &squares, unknowns)
+        let mut weights = Weights::empty();
+        weights.set(&problem, &squares, tolerance)?;
+        let mut comparison = Self::empty();
+        comparison.set(&problem, &weights, &squares, unknowns);
+        Ok(comparison)
     }
 
-    pub(crate) fn from_weights(
+    /// Of nothing yet.
+    pub(crate) const fn empty() -> Self {
+        Self {
+            octaves: Vec::new(),
+            chi_squared: f64::NAN,
+            degrees_of_freedom: 0,
+            p_value: f64::NAN,
+            rms_percent: f64::NAN,
+            stretches: Vec::new(),
+        }
+    }
+
+    /// Compares in place.
+    #[inline(never)]
+    pub(crate) fn set(
+        &mut self,
         problem: &Problem<'_, K>,
         weights: &Weights<K>,
         squares: &Vector,
         unknowns: usize,
-    ) -> Result<Self, Error> {
-        let chi_squared = weights.whiten(problem, |_| 1.0).chi_squared(squares);
-        let octaves: Vec<ComparedOctave, K> = problem
-            .points
-            .iter()
-            .enumerate()
-            .map(|(k, point)| {
-                let model = problem.variance(k, squares);
-                let relative = point.variance / model - 1.0;
-                ComparedOctave {
-                    m: point.m,
-                    tau_s: point.tau_s,
-                    measured: point.variance,
-                    model,
-                    percent: 100.0 * relative,
-                    z: relative * model / (weights.model[k] * weights.relative_error(k)),
-                    shares: core::array::from_fn(|i| problem.share(k, i, squares)),
-                }
-            })
-            .collect();
-        let squared: f64 = octaves
-            .iter()
-            .map(|octave| octave.percent * octave.percent)
-            .sum();
-        let degrees_of_freedom = octaves.len().saturating_sub(unknowns);
-        Ok(Self {
-            chi_squared,
-            degrees_of_freedom,
-            p_value: chi_squared_tail(chi_squared, degrees_of_freedom),
-            rms_percent: math::sqrt(squared / octaves.len().max(1) as f64),
-            stretches: stretches(&octaves),
-            octaves,
-        })
+    ) {
+        self.octaves.clear();
+        let mut sum_of_squares = 0.0;
+        for (k, point) in problem.points.iter().enumerate() {
+            let model = problem.variance(k, squares);
+            let relative = point.variance / model - 1.0;
+            let percent = 100.0 * relative;
+            sum_of_squares += percent * percent;
+            // As many as the curve has.
+            let _ = self.octaves.push(ComparedOctave {
+                m: point.m,
+                tau_s: point.tau_s,
+                measured: point.variance,
+                model,
+                percent,
+                z: relative * model / (weights.model[k] * weights.relative_error(k)),
+                shares: core::array::from_fn(|i| problem.share(k, i, squares)),
+            });
+        }
+        self.chi_squared = weights.chi_squared(problem, squares);
+        self.degrees_of_freedom = self.octaves.len().saturating_sub(unknowns);
+        self.p_value = chi_squared_tail(self.chi_squared, self.degrees_of_freedom);
+        self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as f64);
+        mark_stretches(&self.octaves, &mut self.stretches);
     }
 
     /// The octave that disagrees most, in standard errors; `None` for an empty curve.
@@ -150,8 +159,8 @@ impl<const K: usize> Comparison<K> {
     }
 }
 
-fn stretches<const K: usize>(octaves: &Vec<ComparedOctave, K>) -> Vec<Stretch, K> {
-    let mut stretches: Vec<Stretch, K> = Vec::new();
+fn mark_stretches<const K: usize>(octaves: &[ComparedOctave], stretches: &mut Vec<Stretch, K>) {
+    stretches.clear();
     let mut open = false;
     for octave in octaves {
         let above = octave.z > 0.0;
@@ -172,7 +181,6 @@ fn stretches<const K: usize>(octaves: &Vec<ComparedOctave, K>) -> Vec<Stretch, K
         }
         open = true;
     }
-    stretches
 }
 
 /// One sentence: the worst octave, then the stretches.

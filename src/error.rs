@@ -37,6 +37,13 @@ pub enum Error {
         /// How many it has room for.
         capacity: usize,
     },
+    /// A covariate's sums are of other samples or gaps than the gyro's.
+    Misaligned {
+        /// Differences in an octave of the gyro.
+        gyro: u64,
+        /// Differences in the same octave of the covariate.
+        covariate: u64,
+    },
     /// The normal equations have no solution: the model's effects cannot be told apart, or a
     /// column is not finite.
     Singular,
@@ -73,6 +80,11 @@ impl core::fmt::Display for Error {
             Self::TooManyEffects { capacity } => {
                 write!(f, "more than {capacity} effects in one model: remove one")
             }
+            Self::Misaligned { gyro, covariate } => write!(
+                f,
+                "{covariate} differences of a covariate beside {gyro} of the gyro: push both, and \
+                 their gaps, together"
+            ),
             Self::Singular => {
                 write!(
                     f,

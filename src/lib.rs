@@ -7,6 +7,7 @@ mod cholesky;
 mod coefficient;
 mod comparison;
 mod covariance;
+mod cross_sums;
 mod curve;
 mod diagnosis;
 pub mod effect;
@@ -29,8 +30,11 @@ pub use chi_squared::chi_squared_tail;
 pub use coefficient::{Coefficient, State};
 pub use comparison::{ComparedOctave, Comparison, Stretch};
 pub use covariance::curve_covariance;
+pub use cross_sums::{CrossCurve, CrossPoint, CrossSums};
 pub use curve::{Curve, Point, Scale};
-pub use diagnosis::{Candidate, Diagnosis, MAX_CANDIDATES, Step, Verdict};
+pub use diagnosis::{
+    Addition, Candidate, Diagnosis, Evidence, Follows, MAX_CANDIDATES, Step, Verdict,
+};
 pub use error::Error;
 pub use fit::{Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};
 pub use integrity::{Integrity, InvalidLimit, Limits, Observation, Reason, Tally};

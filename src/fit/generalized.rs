@@ -9,10 +9,12 @@ use super::{
 use crate::{
     chi_squared::chi_squared_tail,
     coefficient::{Coefficient, State},
+    effect::Span,
     error::Error,
     math,
     nnls::{Free, NormalEquations, Vector},
     observability::record_length_s,
+    search::Search,
 };
 use nalgebra::SVector;
 
@@ -88,7 +90,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
                 }
             });
             if change.amax() < CONVERGED || round >= ROUNDS {
-                self.chi_squared = whitened.chi_squared(&self.squares);
+                self.chi_squared = self.weights.chi_squared(problem, &self.squares);
                 return Ok(());
             }
             if let Some(last) = last {
@@ -140,35 +142,61 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
             .map(|(i, _)| i)
     }
 
-    pub(crate) fn fit(&self) -> Fit {
+    /// The coefficients and what they are worth, in place.
+    pub(crate) fn report(&self, fit: &mut Fit) {
         if self.problem.model.terms().iter().any(|term| term.fitted) {
-            self.fit_with_shape()
+            self.report_with_shape(fit);
         } else {
-            self.fit_of(None)
+            self.report_of(None, fit);
         }
     }
 
     // Apart, so that a model without shapes does not need the stack for them.
     #[inline(never)]
-    fn fit_with_shape(&self) -> Fit {
+    fn report_with_shape(&self, fit: &mut Fit) {
         let shape = ShapeEquations::new(self.problem, &self.weights, &self.squares);
-        self.fit_of(shape.as_ref())
+        self.report_of(shape.as_ref(), fit);
     }
 
     #[inline(never)]
-    fn fit_of(&self, shape: Option<&ShapeEquations>) -> Fit {
-        let count = self.problem.count();
-        Fit {
-            method: Method::Covariance,
-            coefficients: (0..count).map(|i| self.coefficient(i, shape)).collect(),
-            shape: shape.map_or(heapless::Vec::new(), |shape| shape.estimates(&self.free)),
-            chi_squared: self.chi_squared,
-            degrees_of_freedom: self.degrees_of_freedom(),
-            p_value: self.p_value(),
-            minus_two_log_likelihood: self.minus_two_log_likelihood(),
-            tolerance: self.weights.tolerance,
-            shrinkage: self.weights.shrinkage,
+    fn report_of(&self, shape: Option<&ShapeEquations>, fit: &mut Fit) {
+        fit.method = Method::Covariance;
+        fit.coefficients.clear();
+        for i in 0..self.problem.count() {
+            // As many as effects.
+            let _ = fit.coefficients.push(self.coefficient(i, shape));
         }
+        fit.shape = shape.map_or(heapless::Vec::new(), |shape| shape.estimates(&self.free));
+        fit.chi_squared = self.chi_squared;
+        fit.degrees_of_freedom = self.degrees_of_freedom();
+        fit.p_value = self.p_value();
+        fit.minus_two_log_likelihood = self.minus_two_log_likelihood();
+        fit.tolerance = self.weights.tolerance;
+        fit.shrinkage = self.weights.shrinkage;
+    }
+
+    /// One effect's coefficient.
+    #[inline(never)]
+    pub(crate) fn coefficient_of(&self, i: usize) -> Coefficient {
+        let shape = ShapeEquations::new(self.problem, &self.weights, &self.squares);
+        self.coefficient(i, shape.as_ref())
+    }
+
+    /// Replaces the interval of a shape that is its effect's only one by that of its profile.
+    #[inline(never)]
+    pub(crate) fn bound_shapes(&self, fit: &mut Fit, span: &Span) -> Result<(), Error> {
+        let problem = self.problem;
+        for shape in &mut fit.shape {
+            let term = problem.model.terms()[shape.term];
+            let mut parameters = term.fitted_parameters();
+            if let (Some(j), None) = (parameters.next(), parameters.next()) {
+                let mut search =
+                    Search::new(problem, &self.weights, &self.squares, shape.term, false)?
+                        .released();
+                (shape.lower, shape.upper) = search.joint_interval(term, j, span);
+            }
+        }
+        Ok(())
     }
 
     #[inline(never)]

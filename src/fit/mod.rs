@@ -87,6 +87,21 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// Of nothing yet, by `Covariance`.
+    pub(crate) const fn empty() -> Self {
+        Self {
+            method: Method::Covariance,
+            coefficients: Vec::new(),
+            shape: Vec::new(),
+            chi_squared: f64::NAN,
+            degrees_of_freedom: 0,
+            p_value: f64::NAN,
+            minus_two_log_likelihood: f64::NAN,
+            tolerance: 0.0,
+            shrinkage: 0.0,
+        }
+    }
+
     /// The squared coefficients, for [`Model::variance`].
     pub fn squares(&self) -> [f64; MAX_EFFECTS] {
         let mut squares = [0.0; MAX_EFFECTS];
@@ -131,7 +146,9 @@ pub fn fit<const K: usize>(
         Method::Covariance => {
             let mut solution = Solution::new(&problem);
             solution.solve(settings.tolerance)?;
-            Ok(solution.fit())
+            let mut fit = Fit::empty();
+            solution.report(&mut fit);
+            Ok(fit)
         }
         method => independent::fit(&problem, method),
     }
@@ -219,7 +236,7 @@ impl<'a, const K: usize> Problem<'a, K> {
 }
 
 /// Clusters `N/m` in the record, from an octave's number of differences as of a contiguous one.
-fn clusters(point: &Point) -> f64 {
+pub(crate) fn clusters(point: &Point) -> f64 {
     let m = f64::from(point.m);
     (point.differences - 1) as f64 * (0.25 * m).max(1.0) / m + 2.0
 }

@@ -39,16 +39,6 @@ impl<const K: usize> Weights<K> {
         }
     }
 
-    pub(crate) fn new(
-        problem: &Problem<'_, K>,
-        squares: &Vector,
-        tolerance: f64,
-    ) -> Result<Self, Error> {
-        let mut weights = Self::empty();
-        weights.set(problem, squares, tolerance)?;
-        Ok(weights)
-    }
-
     /// Takes the covariance of a model with these squared coefficients.
     #[inline(never)]
     pub(crate) fn set(
@@ -108,6 +98,16 @@ impl<const K: usize> Weights<K> {
         let row = (0..k).map(|j| squared(element(j)));
         let diagonal = 1.0 / element(k);
         math::sqrt(row.sum::<f64>() + squared(diagonal))
+    }
+
+    /// χ² of the curve beside the model with these squared coefficients.
+    pub(crate) fn chi_squared(&self, problem: &Problem<'_, K>, squares: &Vector) -> f64 {
+        let mut residual = SVector::<f64, K>::zeros();
+        for (k, point) in problem.points.iter().enumerate().take(K) {
+            residual[k] = point.variance - problem.variance(k, squares);
+        }
+        self.whiten_column(problem.points.len(), &mut residual, |_| 1.0);
+        residual.norm_squared()
     }
 
     /// Curve and columns in units in which octaves are independent and have a variance of one,
@@ -192,14 +192,5 @@ impl<const K: usize> Whitened<K> {
             |i, j| columns[i].dot(&columns[j]),
             |i| columns[i].dot(&self.curve),
         )
-    }
-
-    /// χ² of a solution.
-    pub(crate) fn chi_squared(&self, squares: &Vector) -> f64 {
-        let mut residual = self.curve;
-        for (column, &square) in self.columns.iter().zip(squares.iter()) {
-            residual.axpy(-square, column, 1.0);
-        }
-        residual.norm_squared()
     }
 }

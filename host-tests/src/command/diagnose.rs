@@ -5,8 +5,15 @@ use super::{
     input::{self, LogArguments},
     words,
 };
-use crate::{curve_file::AxisCurve, failure::Failure, log::OCTAVES};
-use allanite::{Diagnosis, Model, Step, Term, Verdict, effect::CATALOGUE};
+use crate::{
+    curve_file::AxisCurve,
+    failure::Failure,
+    log::{CovariateChoice, Evidence, OCTAVES},
+};
+use allanite::{
+    Addition, Diagnosis, Follows, Model, Step, Term, Verdict,
+    effect::{CATALOGUE, covariate},
+};
 use clap::Args;
 use std::{io::Write, path::PathBuf};
 
@@ -18,6 +25,10 @@ pub(super) struct Arguments {
     /// Most effects to add [default: 3]
     #[arg(long, value_name = "N")]
     max_effects: Option<usize>,
+    /// Columns of the log that the rate may follow, or their rates of change, such as
+    /// `temp_C,rate(temp_C)`
+    #[arg(long, value_delimiter = ',', value_name = "COLUMN,…")]
+    covariates: Vec<CovariateChoice>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -33,18 +44,31 @@ pub(super) struct Diagnosed {
     pub(super) verdict: Verdict,
     /// Models of lower p-value are not adequate.
     pub(super) adequate_p: f64,
+    /// Names of the covariates.
+    covariates: Vec<String>,
 }
 
 impl Diagnosed {
-    fn new(axis: AxisCurve, max_effects: Option<usize>) -> Result<Self, allanite::Error> {
+    fn new(
+        axis: AxisCurve,
+        evidence: Evidence,
+        max_effects: Option<usize>,
+    ) -> Result<Self, allanite::Error> {
         let default = Diagnosis::default();
         let diagnosis = Diagnosis {
             max_effects: max_effects.unwrap_or(default.max_effects),
             ..default
         };
+        let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
+        let evidence = allanite::Evidence {
+            kurtosis: Some(&evidence.kurtosis),
+            covariates: &cross,
+            invalid: evidence.invalid,
+        };
         let mut steps = Vec::new();
         let curve = axis.curve()?;
-        let verdict = diagnosis.run(&curve, &Model::ieee_952(), &CATALOGUE, |step| {
+        let model = Model::ieee_952();
+        let verdict = diagnosis.run(&curve, &evidence, &model, &CATALOGUE, |step| {
             steps.push(step.clone());
         })?;
         Ok(Self {
@@ -52,6 +76,7 @@ impl Diagnosed {
             steps,
             verdict,
             adequate_p: diagnosis.adequate_p,
+            covariates,
         })
     }
 
@@ -60,9 +85,23 @@ impl Diagnosed {
         self.steps.first().zip(self.steps.last())
     }
 
-    /// The effects that were added.
-    pub(super) fn added(&self) -> impl Iterator<Item = &Term> {
-        self.steps.iter().filter_map(|step| step.added.as_ref())
+    /// The effects that were added, without covariates.
+    fn added(&self) -> impl Iterator<Item = &Term> {
+        self.steps.iter().filter_map(|step| match &step.added {
+            Some(Addition::Effect(term)) => Some(term),
+            _ => None,
+        })
+    }
+
+    /// Names of all that was added.
+    pub(super) fn missing(&self) -> impl Iterator<Item = &'static str> {
+        let added = self.steps.iter().filter_map(|step| step.added.as_ref());
+        added.map(added_name)
+    }
+
+    /// The covariate that the rate follows, by name.
+    pub(super) fn covariate(&self, follows: &Follows) -> &str {
+        &self.covariates[follows.covariate]
     }
 
     /// What is worth knowing beside the figures, one line each.
@@ -74,17 +113,20 @@ impl Diagnosed {
         if !first.fit.p_value.is_finite() {
             notes.push("there are too few octaves to judge the model: record longer".into());
         }
+        if let Verdict::Invalid(reason) = self.verdict {
+            notes.push(reason.to_string());
+        }
         for step in &self.steps {
             let others = ambiguous(step);
-            if let (Some(added), false) = (step.added, others.is_empty()) {
+            if let (Some(added), false) = (&step.added, others.is_empty()) {
                 notes.push(format!(
                     "{} is ambiguous: {} explains this curve as well",
-                    words::plain(added.effect.name()),
+                    words::plain(added_name(added)),
                     words::list(others)
                 ));
             }
         }
-        if self.added().count() > 0 {
+        if self.missing().count() > 0 {
             notes.extend(words::damage(first, last, self.axis.unit));
         }
         // The shapes as the last model has them: earlier ones were polished since.
@@ -97,10 +139,18 @@ impl Diagnosed {
     }
 }
 
+/// What was added, by its name in files.
+pub(super) fn added_name(added: &Addition) -> &'static str {
+    match added {
+        Addition::Effect(term) => term.effect.name(),
+        Addition::Covariate(_) => covariate::NAME,
+    }
+}
+
 /// Effects that explain a step's curve about as well as the one that was added; with each of them
 /// those of the same Allan variance, which no curve tells from it.
 pub(super) fn ambiguous(step: &Step<OCTAVES>) -> Vec<&'static str> {
-    let Some(added) = step.added else {
+    let Some(Addition::Effect(added)) = step.added else {
         return Vec::new();
     };
     let mut names: Vec<&'static str> = Vec::new();
@@ -116,12 +166,17 @@ pub(super) fn ambiguous(step: &Step<OCTAVES>) -> Vec<&'static str> {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let diagnose = |axis: AxisCurve| {
+    let diagnose = |(axis, evidence): (AxisCurve, Evidence)| {
         let name = axis.axis.clone();
-        Diagnosed::new(axis, arguments.max_effects)
+        Diagnosed::new(axis, evidence, arguments.max_effects)
             .map_err(|error| input::library_failure(&arguments.input, &name, error))
     };
-    let diagnosed = input::read(&arguments.input, &arguments.about_log)?
+    let axes = input::read_with_evidence(
+        &arguments.input,
+        &arguments.about_log,
+        &arguments.covariates,
+    )?;
+    let diagnosed = axes
         .into_iter()
         .map(diagnose)
         .collect::<Result<Vec<_>, _>>()?;

@@ -1,7 +1,7 @@
 //! A diagnosis for programs.
 
 use super::{
-    diagnose::{Diagnosed, ambiguous},
+    diagnose::{Diagnosed, added_name, ambiguous},
     fit_json,
     model_json::{self, Effect, Worst},
 };
@@ -63,21 +63,32 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
     names.dedup();
     Axis {
         axis: &diagnosed.axis.axis,
-        steps: diagnosed.steps.iter().map(|one| step(one, unit)).collect(),
+        steps: diagnosed
+            .steps
+            .iter()
+            .map(|one| step(one, diagnosed, unit))
+            .collect(),
         verdict: match diagnosed.verdict {
             Verdict::Adequate => "adequate",
             Verdict::Improved => "improved",
             Verdict::Unexplained => "unexplained",
+            Verdict::Invalid(_) => "invalid",
         },
-        missing: diagnosed.added().map(|term| term.effect.name()).collect(),
+        missing: diagnosed.missing().collect(),
         ambiguous: names,
         notes: diagnosed.notes(),
     }
 }
 
-fn step(step: &Taken<OCTAVES>, unit: Unit) -> Step {
+fn step(step: &Taken<OCTAVES>, diagnosed: &Diagnosed, unit: Unit) -> Step {
+    let follows = step.follows.as_ref();
+    let covariate =
+        follows.map(|follows| model_json::covariate(follows, diagnosed.covariate(follows)));
     Step {
-        effects: model_json::effects(&step.model, &step.fit),
+        effects: covariate
+            .into_iter()
+            .chain(model_json::effects(&step.model, &step.fit))
+            .collect(),
         coefficients: model_json::coefficients(&step.fit, unit),
         chi2: step.fit.chi_squared,
         dof: step.fit.degrees_of_freedom,
@@ -85,7 +96,7 @@ fn step(step: &Taken<OCTAVES>, unit: Unit) -> Step {
         rms_percent: step.comparison.rms_percent,
         worst: model_json::worst(&step.comparison),
         candidates: step.candidates.iter().map(candidate).collect(),
-        added: step.added.map(|term| term.effect.name()),
+        added: step.added.as_ref().map(added_name),
     }
 }
 

@@ -3,11 +3,14 @@
 use super::{
     diagnose::{Diagnosed, ambiguous},
     fit_table,
-    number::probability,
+    number::{self, probability},
     words,
 };
 use crate::{log::OCTAVES, plot::Plot, unit::Unit};
-use allanite::{Candidate, Step, Term, Verdict};
+use allanite::{
+    Addition, Candidate, Follows, Step, Term, Verdict,
+    effect::{Story, covariate},
+};
 use std::io::{self, Write};
 
 /// Prints the way of every axis, from the five terms to the model that the diagnosis ends with.
@@ -38,8 +41,15 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     )?;
     writeln!(output, "  {}", first.comparison)?;
     for (number, pair) in diagnosed.steps.windows(2).enumerate() {
-        if let ([before, after], Some(added)) = (pair, pair[0].added) {
-            print_step(number + 1, before, after, &added, axis.unit, output)?;
+        let [before, after] = pair else { continue };
+        match &before.added {
+            Some(Addition::Effect(added)) => {
+                print_step(number + 1, before, after, added, axis.unit, output)?;
+            }
+            Some(Addition::Covariate(follows)) => {
+                print_covariate(number + 1, diagnosed, before, after, follows, output)?;
+            }
+            None => {}
         }
     }
     if last.added.is_none() && !last.candidates.is_empty() {
@@ -75,6 +85,61 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     writeln!(output, "{}: {}", axis.axis, verdict(diagnosed, first, last))
 }
 
+/// One line “error before → after”.
+fn print_fall(
+    number: usize,
+    name: &str,
+    before: &Step<OCTAVES>,
+    after: &Step<OCTAVES>,
+    output: &mut impl Write,
+) -> io::Result<()> {
+    writeln!(
+        output,
+        "\n{number}. + {name}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p {}",
+        before.fit.chi_squared,
+        after.fit.chi_squared,
+        before.comparison.rms_percent,
+        after.comparison.rms_percent,
+        shown_p(after.fit.p_value)
+    )
+}
+
+fn print_story(story: &Story, output: &mut impl Write) -> io::Result<()> {
+    writeln!(output, "  what it is:           {}", story.what)?;
+    writeln!(output, "  where it comes from:  {}", story.origin)?;
+    writeln!(output, "  what to check:        {}", story.check)
+}
+
+/// What the rate follows.
+fn print_covariate(
+    number: usize,
+    diagnosed: &Diagnosed,
+    before: &Step<OCTAVES>,
+    after: &Step<OCTAVES>,
+    follows: &Follows,
+    output: &mut impl Write,
+) -> io::Result<()> {
+    let channel = diagnosed.covariate(follows);
+    let name = format!("{} {channel}", words::plain(covariate::NAME));
+    print_fall(number, &name, before, after, output)?;
+    let (slope, (lower, upper)) = (follows.slope, follows.slope.interval());
+    writeln!(
+        output,
+        "  slope {} {} per unit of {channel} ({} … {}), 95 % interval; {:.1} standard errors",
+        number::number(slope.value),
+        diagnosed.axis.unit,
+        number::number(lower),
+        number::number(upper),
+        slope.z()
+    )?;
+    print_story(&covariate::STORY, output)?;
+    writeln!(
+        output,
+        "  in the curve:         what follows {channel} is taken off, here and below"
+    )?;
+    writeln!(output, "  now {}", after.comparison)
+}
+
 /// One line “error before → after”, then what was added and why.
 fn print_step(
     number: usize,
@@ -85,16 +150,7 @@ fn print_step(
     output: &mut impl Write,
 ) -> io::Result<()> {
     let effect = added.effect;
-    writeln!(
-        output,
-        "\n{number}. + {}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p {}",
-        words::plain(effect.name()),
-        before.fit.chi_squared,
-        after.fit.chi_squared,
-        before.comparison.rms_percent,
-        after.comparison.rms_percent,
-        shown_p(after.fit.p_value)
-    )?;
+    print_fall(number, &words::plain(effect.name()), before, after, output)?;
     let at = after.model.position(effect.name());
     let fitted = at.and_then(|at| {
         let term = after.model.terms().get(at)?;
@@ -108,10 +164,7 @@ fn print_step(
         found += &words::coefficient(effect, coefficient, unit);
         writeln!(output, "  {found}, 95 % intervals")?;
     }
-    let story = effect.story();
-    writeln!(output, "  what it is:           {}", story.what)?;
-    writeln!(output, "  where it comes from:  {}", story.origin)?;
-    writeln!(output, "  what to check:        {}", story.check)?;
+    print_story(&effect.story(), output)?;
     if let Some(replaced) = effect.replaces() {
         let name = words::plain(replaced.name());
         writeln!(output, "  in the model:         takes the place of {name}")?;
@@ -160,6 +213,9 @@ fn shown_p(p: f64) -> String {
 fn verdict(diagnosed: &Diagnosed, first: &Step<OCTAVES>, last: &Step<OCTAVES>) -> String {
     let p = shown_p(last.fit.p_value);
     match diagnosed.verdict {
+        Verdict::Invalid(_) => "the record is invalid: its curve cannot mean what it says, and no \
+                                effect was looked for."
+            .into(),
         Verdict::Adequate => format!("the five terms are adequate (p {p}): no effect is missing."),
         Verdict::Unexplained if !last.fit.p_value.is_finite() => {
             "there are too few octaves to judge the five terms: record longer.".into()
@@ -168,7 +224,7 @@ fn verdict(diagnosed: &Diagnosed, first: &Step<OCTAVES>, last: &Step<OCTAVES>) -
             "the five terms are not adequate (p {p}), and no effect in the catalogue explains it."
         ),
         Verdict::Improved => {
-            let names = diagnosed.added().map(|term| term.effect.name());
+            let names = diagnosed.missing();
             let ambiguous = diagnosed
                 .steps
                 .iter()

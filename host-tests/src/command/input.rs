@@ -4,7 +4,7 @@ use super::progress;
 use crate::{
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place, one_line},
-    log::{self, ColumnChoice, Log},
+    log::{self, ColumnChoice, CovariateChoice, Evidence, Log},
     unit::Unit,
 };
 use clap::Args;
@@ -47,6 +47,33 @@ pub(super) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisC
     let log = log?;
     note(path, &log);
     curves(&log)
+}
+
+/// The curves of a log with all that it tells beside them, or those of a curve file, which tells no
+/// more.
+pub(super) fn read_with_evidence(
+    path: &Path,
+    arguments: &LogArguments,
+    covariates: &[CovariateChoice],
+) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
+    if is_curve(path) {
+        if !covariates.is_empty() {
+            return Err(Place::file(path).failure(
+                "a curve knows no covariates",
+                "give the log, or leave --covariates",
+            ));
+        }
+        let axes = read(path, arguments)?.into_iter();
+        return Ok(axes.map(|axis| (axis, Evidence::default())).collect());
+    }
+    let bar = progress::reading(path);
+    let log = log::read_with_evidence(path, &arguments.options(), covariates, &bar);
+    bar.finish_and_clear();
+    let log = log?;
+    note(path, &log);
+    let evidence = log.axes.iter().map(|axis| axis.evidence.clone());
+    let evidence = evidence.map(Option::unwrap_or_default).collect::<Vec<_>>();
+    Ok(curves(&log)?.into_iter().zip(evidence).collect())
 }
 
 /// Measures the curves of a log's first part and those of the rest, which is this share of it.

@@ -2,7 +2,7 @@
 
 use super::{fit_json, words};
 use crate::{log::OCTAVES, unit::Unit};
-use allanite::{ComparedOctave, Comparison, Fit, Model, Term};
+use allanite::{ComparedOctave, Comparison, Fit, Follows, Model, Term, effect::covariate};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -11,6 +11,27 @@ use serde_json::{Map, Value};
 pub(super) struct Effect {
     name: &'static str,
     parameters: Map<String, Value>,
+    /// Of a covariate: its column.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    channel: Option<String>,
+}
+
+/// A covariate that the rate follows: its slope, and the slope's 95 % interval.
+pub(super) fn covariate(follows: &Follows, channel: &str) -> Effect {
+    let (lower, upper) = follows.slope.interval();
+    let numbers = [
+        ("slope", follows.slope.value),
+        ("slope_lower", lower),
+        ("slope_upper", upper),
+    ];
+    Effect {
+        name: covariate::NAME,
+        parameters: numbers
+            .map(|(name, x)| (name.into(), x.into()))
+            .into_iter()
+            .collect(),
+        channel: Some(channel.to_owned()),
+    }
 }
 
 /// The octave that disagrees most.
@@ -36,6 +57,7 @@ pub(super) fn effects(model: &Model, fit: &Fit) -> Vec<Effect> {
         .map(|(term, coefficient)| Effect {
             name: term.effect.name(),
             parameters: parameters(term, coefficient.value),
+            channel: None,
         })
         .collect()
 }

@@ -1,45 +1,32 @@
 //! The passes over a log: into counts, and where that cannot be, through the range into counts.
 
 use super::{
-    AxisColumn, Ended, Field, OCTAVES, Stop, Table, Visitor,
+    AxisColumn, Ended, Field, Stop, Table, Visitor,
     quantum::{Quantum, Range},
+    worker::{Batches, Plan, Sums},
 };
 use crate::failure::{Failure, Place};
-use allanite::Accumulator;
 use indicatif::ProgressBar;
-use std::{
-    mem::replace,
-    panic::resume_unwind,
-    path::Path,
-    sync::mpsc::{Receiver, SyncSender, channel, sync_channel},
-    thread::{self, JoinHandle},
-};
+use std::path::Path;
 
-/// Counts of an axis that are collected before they are accumulated as a slice.
-const BATCH: usize = 1 << 13;
-
-/// One axis, measured in counts.
+/// Columns, measured in counts.
 pub(super) struct Measured {
-    pub(super) accumulator: Accumulator<OCTAVES>,
-    /// What lies behind the part that was asked for.
-    pub(super) rest: Accumulator<OCTAVES>,
-    /// What one count is, in numbers of the log.
-    pub(super) quantum: f64,
-    /// Whether the log's numbers are the counts.
-    pub(super) whole: bool,
+    /// Of each axis, with its quantum.
+    pub(super) axes: Vec<(Sums, Quantum)>,
+    /// Of each covariate.
+    pub(super) covariates: Vec<Quantum>,
 }
 
 /// Accumulates the given columns. Counts take one pass; at the first value that is none, the
-/// reading starts again, once for the range and once for the counts. Rows behind the `first` are
-/// accumulated apart.
+/// reading starts again, once for the range and once for the counts.
 pub(super) fn measure(
     table: &impl Table,
     path: &Path,
     columns: &[AxisColumn],
-    first: u64,
+    plan: &Plan,
     progress: &ProgressBar,
-) -> Result<Vec<Measured>, Failure> {
-    let mut counts = Counts(Batches::new(columns.len(), first));
+) -> Result<Measured, Failure> {
+    let mut counts = Counts(Batches::new(plan.clone()));
     if let Ended::AtTheLastRow = table.pass(columns, &mut counts, progress)? {
         let whole = vec![Quantum::WHOLE; columns.len()];
         return finish(path, counts.0, &whole);
@@ -64,7 +51,7 @@ pub(super) fn measure(
         .collect::<Result<Vec<_>, _>>()?;
 
     let mut rounded = Rounded {
-        batches: Batches::new(columns.len(), first),
+        batches: Batches::new(plan.clone()),
         quanta,
         steps: vec![Steps::default(); columns.len()],
     };
@@ -83,89 +70,16 @@ pub(super) fn measure(
     finish(path, rounded.batches, &rounded.quanta)
 }
 
-fn finish(path: &Path, batches: Batches, quanta: &[Quantum]) -> Result<Vec<Measured>, Failure> {
-    let parts = batches.finish();
-    if parts.iter().any(|[first, _]| first.samples() == 0) {
+fn finish(path: &Path, batches: Batches, quanta: &[Quantum]) -> Result<Measured, Failure> {
+    let sums = batches.finish();
+    if sums.iter().any(|axis| axis.accumulator.samples() == 0) {
         return Err(Place::file(path).failure("no rows", "record some samples"));
     }
-    let measured = |([accumulator, rest], quantum): (Parts, &Quantum)| Measured {
-        accumulator,
-        rest,
-        quantum: quantum.step(),
-        whole: *quantum == Quantum::WHOLE,
-    };
-    Ok(parts.into_iter().zip(quanta).map(measured).collect())
-}
-
-/// The first samples of an axis, and the rest.
-type Parts = [Accumulator<OCTAVES>; 2];
-
-/// Counts of every axis on their way into the accumulators, which run in a thread of their own:
-/// accumulating takes about as long as cutting and parsing text.
-struct Batches {
-    /// The batch of each axis that is being filled.
-    open: Vec<Vec<i32>>,
-    full: SyncSender<(usize, Vec<i32>)>,
-    /// Batches that have been accumulated, to be filled again.
-    empty: Receiver<Vec<i32>>,
-    thread: JoinHandle<Vec<Parts>>,
-}
-
-impl Batches {
-    fn new(axes: usize, first: u64) -> Self {
-        let (full, incoming) = sync_channel::<(usize, Vec<i32>)>(2 * axes);
-        let (outgoing, empty) = channel();
-        let thread = thread::spawn(move || {
-            let mut parts: Vec<Parts> = vec![[const { Accumulator::new() }; 2]; axes];
-            for (axis, mut batch) in incoming {
-                let [start, rest] = &mut parts[axis];
-                let room = usize::try_from(first - start.samples()).unwrap_or(usize::MAX);
-                let (of_start, of_rest) = batch.split_at(room.min(batch.len()));
-                start.push_slice(of_start);
-                rest.push_slice(of_rest);
-                batch.clear();
-                // Nobody fills batches any more once the last ones are on their way.
-                let _ = outgoing.send(batch);
-            }
-            parts
-        });
-        Self {
-            open: vec![Vec::with_capacity(BATCH); axes],
-            full,
-            empty,
-            thread,
-        }
-    }
-
-    #[inline]
-    fn push(&mut self, axis: usize, count: i32) {
-        let batch = &mut self.open[axis];
-        batch.push(count);
-        if batch.len() >= BATCH {
-            self.send(axis);
-        }
-    }
-
-    #[cold]
-    fn send(&mut self, axis: usize) {
-        let next = self
-            .empty
-            .try_recv()
-            .unwrap_or_else(|_| Vec::with_capacity(BATCH));
-        let batch = replace(&mut self.open[axis], next);
-        // Fails if the thread has panicked only, which `finish` passes on.
-        let _ = self.full.send((axis, batch));
-    }
-
-    fn finish(mut self) -> Vec<Parts> {
-        for axis in 0..self.open.len() {
-            self.send(axis);
-        }
-        drop(self.full);
-        self.thread
-            .join()
-            .unwrap_or_else(|panic| resume_unwind(panic))
-    }
+    let (axes, covariates) = quanta.split_at(sums.len());
+    Ok(Measured {
+        axes: sums.into_iter().zip(axes.iter().copied()).collect(),
+        covariates: covariates.to_vec(),
+    })
 }
 
 /// The pass for logs of counts, given up at the first value that is none.

@@ -1,6 +1,6 @@
 //! Which columns of a log are gyro axes.
 
-use super::ColumnChoice;
+use super::{ColumnChoice, CovariateChoice};
 use crate::failure::{Failure, Place, quoted};
 use std::path::Path;
 
@@ -78,6 +78,39 @@ impl Columns {
             axes.push(AxisColumn { axis, column });
         }
         Ok(axes)
+    }
+
+    /// The columns of the covariates, none of which is an axis.
+    pub(super) fn covariates(
+        &self,
+        path: &Path,
+        choices: &[CovariateChoice],
+        axes: &[AxisColumn],
+    ) -> Result<Vec<AxisColumn>, Failure> {
+        let one = |(i, choice): (usize, &CovariateChoice)| {
+            let column = self.find(path, &choice.column)?;
+            let fail = |what: &str, remedy: &str| {
+                let name = quoted(choice.to_string().as_bytes());
+                Err(Failure::option(
+                    format!("--covariates {name} {what}"),
+                    remedy,
+                ))
+            };
+            if axes.iter().any(|axis| axis.column == column) {
+                return fail(
+                    "is an axis",
+                    "name a column that is none, or give --columns",
+                );
+            }
+            if choices[..i].contains(choice) {
+                return fail("is named twice", "name every covariate once");
+            }
+            Ok(AxisColumn {
+                axis: choice.to_string(),
+                column,
+            })
+        };
+        choices.iter().enumerate().map(one).collect()
     }
 
     /// The columns that look like a gyro's, and a note on the choice where it is not obvious: with

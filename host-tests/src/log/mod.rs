@@ -25,6 +25,7 @@
 
 mod accumulate;
 mod columns;
+mod covariate;
 mod csv;
 mod field;
 mod lines;
@@ -34,13 +35,15 @@ pub mod npy_header;
 mod quantum;
 mod records;
 mod source;
+mod worker;
 
 use crate::{
     failure::{Failure, Place},
     unit::Unit,
 };
-use allanite::Accumulator;
+use allanite::{Accumulator, CrossCurve, Kurtosis, Reason, Scale};
 use columns::{AxisColumn, Columns};
+pub use covariate::CovariateChoice;
 use field::{Field, Flaw};
 use indicatif::ProgressBar;
 use metadata::Metadata;
@@ -112,6 +115,19 @@ pub struct Axis {
     pub rate_per_count: f64,
     /// All its samples.
     pub accumulator: Accumulator<OCTAVES>,
+    /// What was watched beside them, if it was asked for.
+    pub evidence: Option<Evidence>,
+}
+
+/// What a log tells of an axis beside its curve.
+#[derive(Clone, Debug, Default)]
+pub struct Evidence {
+    /// Whether differences are Gaussian.
+    pub kurtosis: Kurtosis<OCTAVES>,
+    /// Names of the covariates, and what the axis shares with each.
+    pub covariates: Vec<(String, CrossCurve<OCTAVES>)>,
+    /// Why the curve cannot mean what it says.
+    pub invalid: Option<Reason>,
 }
 
 /// Reads a log; `progress` follows the bytes of its file.
@@ -119,7 +135,21 @@ pub struct Axis {
 /// # Errors
 /// Of every kind of bad input, the file, the row and the remedy.
 pub fn read(path: &Path, options: &Options, progress: &ProgressBar) -> Result<Log, Failure> {
-    read_parts(path, options, None, progress).map(|(log, _)| log)
+    read_parts(path, options, None, None, progress).map(|(log, _)| log)
+}
+
+/// Reads a log, and beside the curves kurtosis, integrity and what the axes share with covariates.
+///
+/// # Errors
+/// As of [`read`], and where a covariate is no column or an axis.
+pub fn read_with_evidence(
+    path: &Path,
+    options: &Options,
+    covariates: &[CovariateChoice],
+    progress: &ProgressBar,
+) -> Result<Log, Failure> {
+    let (log, _) = read_parts(path, options, None, Some(covariates), progress)?;
+    Ok(log)
 }
 
 /// Reads a log whose last `share` is kept apart: as two logs. It is read twice, first for its
@@ -136,7 +166,7 @@ pub fn read_in_two(
     let whole = read(path, options, progress)?;
     let samples = whole.axes.iter().map(|axis| axis.accumulator.samples());
     let first = samples.max().unwrap_or(0) as f64 * (1.0 - share);
-    let (log, rest) = read_parts(path, options, Some(first.round() as u64), progress)?;
+    let (log, rest) = read_parts(path, options, Some(first.round() as u64), None, progress)?;
     let rest = Log {
         axes: rest,
         ..log.clone()
@@ -149,11 +179,13 @@ fn read_parts(
     path: &Path,
     options: &Options,
     first: Option<u64>,
+    watch: Option<&[CovariateChoice]>,
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
+    let parts = (first, watch);
     match Format::of(path)? {
-        Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, first, progress),
-        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, first, progress),
+        Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, parts, progress),
+        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
     }
 }
 
@@ -194,35 +226,51 @@ fn read_table(
     table: &impl Table,
     path: &Path,
     options: &Options,
-    first: Option<u64>,
+    (first, watch): (Option<u64>, Option<&[CovariateChoice]>),
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let settled = table.metadata().settle(path, options)?;
-    let (columns, note) = match &options.columns {
+    let (axis_columns, note) = match &options.columns {
         Some(choices) => (table.columns().chosen(path, choices)?, None),
         None => table.columns().guessed(path)?,
     };
-    let rows = first.unwrap_or(u64::MAX);
-    let measured = accumulate::measure(table, path, &columns, rows, progress)?;
+    let covariates = watch.unwrap_or_default();
+    let mut columns = axis_columns.clone();
+    columns.extend(
+        table
+            .columns()
+            .covariates(path, covariates, &axis_columns)?,
+    );
+    let plan = worker::Plan {
+        axes: axis_columns.len(),
+        first: first.unwrap_or(u64::MAX),
+        watch: watch.map(<[_]>::to_vec),
+    };
+    let measured = accumulate::measure(table, path, &columns, &plan, progress)?;
     let mut notes: Vec<String> = note.into_iter().collect();
     let mut axes = Vec::new();
     let mut rest = Vec::new();
-    for (column, measured) in columns.into_iter().zip(measured) {
-        let axis = Axis {
+    for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
+        let mut axis = Axis {
             name: column.axis,
-            rate_per_count: settled.scale.unwrap_or(1.0) * measured.quantum,
-            accumulator: measured.accumulator,
+            rate_per_count: settled.scale.unwrap_or(1.0) * quantum.step(),
+            accumulator: sums.accumulator,
+            evidence: None,
         };
         if first.is_some() {
             let behind = Axis {
-                accumulator: measured.rest,
+                accumulator: sums.rest,
                 ..axis.clone()
             };
             check_axis(path, &behind)?;
             rest.push(behind);
         }
         check_axis(path, &axis)?;
-        if measured.whole && settled.scale.is_none() {
+        if let Some(watched) = sums.watched {
+            let named = covariates.iter().zip(&measured.covariates);
+            axis.evidence = Some(evidence(path, &axis, *watched, named, settled.rate_hz)?);
+        }
+        if quantum == quantum::Quantum::WHOLE && settled.scale.is_none() {
             notes.push(format!(
                 "axis {}: whole numbers and no scale given: 1 per count assumed (say so with --scale)",
                 axis.name
@@ -246,6 +294,32 @@ fn read_table(
     Ok((log, rest))
 }
 
+/// What was watched, in units.
+fn evidence<'a>(
+    path: &Path,
+    axis: &Axis,
+    watched: worker::Watched,
+    covariates: impl Iterator<Item = (&'a CovariateChoice, &'a quantum::Quantum)>,
+    rate_hz: f64,
+) -> Result<Evidence, Failure> {
+    let fail = |error: allanite::Error| {
+        Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
+    };
+    let scale = Scale::new(axis.rate_per_count, rate_hz).map_err(fail)?;
+    let mut shared = Vec::new();
+    for ((choice, quantum), cross) in covariates.zip(&watched.cross) {
+        // A rate of change is counted in quanta a sample.
+        let per_count = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
+        let curve = cross.curve(&axis.accumulator, scale, per_count);
+        shared.push((choice.to_string(), curve.map_err(fail)?));
+    }
+    Ok(Evidence {
+        kurtosis: watched.moments.kurtosis(),
+        covariates: shared,
+        invalid: watched.integrity.verdict(),
+    })
+}
+
 /// Whether an axis is long enough and alive.
 fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
     let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
@@ -253,6 +327,7 @@ fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
         name,
         rate_per_count,
         accumulator,
+        ..
     } = axis;
     // Two octaves with six differences each, the shorter one's neighbours less three.
     const LEAST: u64 = 9;

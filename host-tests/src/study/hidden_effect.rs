@@ -3,7 +3,8 @@
 use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
 use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
 use allanite::{
-    Comparison, Curve, Diagnosis, Fit, FourthMoments, Model, Settings, Step, Term, Verdict,
+    Addition, Comparison, Curve, Diagnosis, Evidence, Fit, FourthMoments, Model, Settings, Step,
+    Term, Verdict,
     effect::{CATALOGUE, Effect, MAX_PARAMETERS},
     fit,
 };
@@ -141,9 +142,12 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
     let kurtosis = moments.kurtosis();
     let mut steps: Vec<Step<OCTAVES>> = Vec::new();
     let verdict = Diagnosis::default()
-        .run_with(
+        .run(
             &curve,
-            Some(&kurtosis),
+            &Evidence {
+                kurtosis: Some(&kurtosis),
+                ..Evidence::NONE
+            },
             &Model::ieee_952(),
             &CATALOGUE,
             |step| {
@@ -162,7 +166,10 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
         first: (first.fit.chi_squared, first.fit.p_value),
         added: steps
             .iter()
-            .filter_map(|step| Some((step.added?, step.ambiguous.to_vec())))
+            .filter_map(|step| match step.added {
+                Some(Addition::Effect(term)) => Some((term, step.ambiguous.to_vec())),
+                _ => None,
+            })
             .collect(),
         fit: last.fit.clone(),
         model: last.model.clone(),

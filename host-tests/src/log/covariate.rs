@@ -1,0 +1,84 @@
+//! Columns that a gyro may follow.
+
+use std::str::FromStr;
+
+/// A column sampled alongside, or its rate of change: `temp_C`, `rate(temp_C)`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CovariateChoice {
+    /// The column's name in the header, or its number from 1.
+    pub column: String,
+    /// Whether its rate of change is meant.
+    pub rate: bool,
+}
+
+impl FromStr for CovariateChoice {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let text = text.trim();
+        let inner = text.strip_prefix("rate(");
+        let (column, rate) = match inner.and_then(|inner| inner.strip_suffix(')')) {
+            Some(column) => (column.trim(), true),
+            None => (text, false),
+        };
+        if column.is_empty() {
+            return Err("write COLUMN or rate(COLUMN)");
+        }
+        Ok(Self {
+            column: column.to_owned(),
+            rate,
+        })
+    }
+}
+
+impl std::fmt::Display for CovariateChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.rate {
+            write!(f, "rate({})", self.column)
+        } else {
+            f.write_str(&self.column)
+        }
+    }
+}
+
+/// The counts of a covariate, from those of its column.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Derived {
+    rate: bool,
+    previous: Option<i32>,
+}
+
+impl Derived {
+    pub(super) fn new(choice: &CovariateChoice) -> Self {
+        Self {
+            rate: choice.rate,
+            previous: None,
+        }
+    }
+
+    pub(super) fn next(&mut self, count: i32) -> i32 {
+        if !self.rate {
+            return count;
+        }
+        let previous = self.previous.replace(count).unwrap_or(count);
+        count.saturating_sub(previous)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_and_their_rates_are_told_apart() {
+        let choice: CovariateChoice = " rate( temp_C )".parse().unwrap();
+        assert_eq!(
+            (choice.column.as_str(), choice.rate, choice.to_string()),
+            ("temp_C", true, "rate(temp_C)".into())
+        );
+        assert!("rate()".parse::<CovariateChoice>().is_err());
+        let mut derived = Derived::new(&choice);
+        let rates = [5, 7, 4, 4].map(|count| derived.next(count));
+        assert_eq!(rates, [0, 2, -3, 0]);
+    }
+}

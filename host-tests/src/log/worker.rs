@@ -1,0 +1,197 @@
+//! The thread that accumulates, while another cuts and parses text.
+
+use super::{CovariateChoice, OCTAVES, covariate::Derived};
+use allanite::{Accumulator, CrossSums, FourthMoments, Integrity};
+use std::{
+    collections::VecDeque,
+    mem::replace,
+    panic::resume_unwind,
+    sync::mpsc::{Receiver, SyncSender, channel, sync_channel},
+    thread::{self, JoinHandle},
+};
+
+/// Counts of a column that are collected before they are accumulated as a slice.
+const BATCH: usize = 1 << 13;
+
+/// What becomes of one axis.
+pub(super) struct Sums {
+    pub(super) accumulator: Accumulator<OCTAVES>,
+    /// What lies behind the part that was asked for.
+    pub(super) rest: Accumulator<OCTAVES>,
+    pub(super) watched: Option<Box<Watched>>,
+}
+
+/// What is kept beside the curve.
+pub(super) struct Watched {
+    pub(super) moments: FourthMoments<OCTAVES>,
+    pub(super) integrity: Integrity,
+    /// With each covariate.
+    pub(super) cross: Vec<CrossSums<OCTAVES>>,
+}
+
+/// What to make of the columns: axes, and behind them covariates.
+#[derive(Clone)]
+pub(super) struct Plan {
+    pub(super) axes: usize,
+    /// The axes' samples behind these are accumulated apart.
+    pub(super) first: u64,
+    /// Whether to keep more than the curve, and which covariates.
+    pub(super) watch: Option<Vec<CovariateChoice>>,
+}
+
+impl Plan {
+    fn covariates(&self) -> &[CovariateChoice] {
+        self.watch.as_deref().unwrap_or_default()
+    }
+
+    fn columns(&self) -> usize {
+        self.axes + self.covariates().len()
+    }
+
+    fn sums(&self) -> Sums {
+        let watched = || Watched {
+            moments: FourthMoments::new(),
+            integrity: Integrity::default(),
+            cross: vec![CrossSums::new(); self.covariates().len()],
+        };
+        Sums {
+            accumulator: Accumulator::new(),
+            rest: Accumulator::new(),
+            watched: self.watch.is_some().then(|| Box::new(watched())),
+        }
+    }
+}
+
+/// Counts of every column on their way into the accumulators: accumulating takes about as long as
+/// cutting and parsing text.
+pub(super) struct Batches {
+    /// The batch of each column that is being filled.
+    open: Vec<Vec<i32>>,
+    full: SyncSender<(usize, Vec<i32>)>,
+    /// Batches that have been accumulated, to be filled again.
+    empty: Receiver<Vec<i32>>,
+    thread: JoinHandle<Vec<Sums>>,
+}
+
+impl Batches {
+    pub(super) fn new(plan: Plan) -> Self {
+        let columns = plan.columns();
+        let (full, incoming) = sync_channel::<(usize, Vec<i32>)>(2 * columns);
+        let (outgoing, empty) = channel();
+        let thread = thread::spawn(move || {
+            let mut worker = Worker::new(plan);
+            for (column, batch) in incoming {
+                worker.take(column, batch, |mut batch| {
+                    batch.clear();
+                    // Nobody fills batches any more once the last ones are on their way.
+                    let _ = outgoing.send(batch);
+                });
+            }
+            worker.sums
+        });
+        Self {
+            open: vec![Vec::with_capacity(BATCH); columns],
+            full,
+            empty,
+            thread,
+        }
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, column: usize, count: i32) {
+        let batch = &mut self.open[column];
+        batch.push(count);
+        if batch.len() >= BATCH {
+            self.send(column);
+        }
+    }
+
+    #[cold]
+    fn send(&mut self, column: usize) {
+        let next = self
+            .empty
+            .try_recv()
+            .unwrap_or_else(|_| Vec::with_capacity(BATCH));
+        let batch = replace(&mut self.open[column], next);
+        // Fails if the thread has panicked only, which `finish` passes on.
+        let _ = self.full.send((column, batch));
+    }
+
+    pub(super) fn finish(mut self) -> Vec<Sums> {
+        for column in 0..self.open.len() {
+            self.send(column);
+        }
+        drop(self.full);
+        self.thread
+            .join()
+            .unwrap_or_else(|panic| resume_unwind(panic))
+    }
+}
+
+struct Worker {
+    plan: Plan,
+    sums: Vec<Sums>,
+    derived: Vec<Derived>,
+    /// With covariates, batches wait for those of the same rows of the other columns.
+    waiting: Vec<VecDeque<Vec<i32>>>,
+}
+
+impl Worker {
+    fn new(plan: Plan) -> Self {
+        Self {
+            sums: (0..plan.axes).map(|_| plan.sums()).collect(),
+            derived: plan.covariates().iter().map(Derived::new).collect(),
+            waiting: vec![VecDeque::new(); plan.columns()],
+            plan,
+        }
+    }
+
+    fn take(&mut self, column: usize, batch: Vec<i32>, mut done: impl FnMut(Vec<i32>)) {
+        if self.derived.is_empty() {
+            self.accumulate(column, &batch);
+            return done(batch);
+        }
+        self.waiting[column].push_back(batch);
+        let complete = self.waiting.iter().all(|column| !column.is_empty());
+        if !complete {
+            return;
+        }
+        let mut rows: Vec<Vec<i32>> = self
+            .waiting
+            .iter_mut()
+            .filter_map(VecDeque::pop_front)
+            .collect();
+        let (axes, covariates) = rows.split_at_mut(self.plan.axes);
+        for (derived, counts) in self.derived.iter_mut().zip(covariates.iter_mut()) {
+            for count in counts {
+                *count = derived.next(*count);
+            }
+        }
+        for (axis, counts) in axes.iter().enumerate() {
+            self.accumulate(axis, counts);
+            let watched = self.sums[axis].watched.iter_mut();
+            let cross = watched.flat_map(|watched| &mut watched.cross);
+            for (cross, covariate) in cross.zip(covariates.iter()) {
+                for (&count, &covariate) in counts.iter().zip(covariate) {
+                    cross.push(count, covariate);
+                }
+            }
+        }
+        rows.into_iter().for_each(done);
+    }
+
+    fn accumulate(&mut self, axis: usize, counts: &[i32]) {
+        let sums = &mut self.sums[axis];
+        let room = self.plan.first - sums.accumulator.samples();
+        let room = usize::try_from(room).unwrap_or(usize::MAX);
+        let (of_start, of_rest) = counts.split_at(room.min(counts.len()));
+        sums.accumulator.push_slice(of_start);
+        sums.rest.push_slice(of_rest);
+        if let Some(watched) = &mut sums.watched {
+            watched.moments.push_slice(of_start);
+            for &count in of_start {
+                watched.integrity.push(count);
+            }
+        }
+    }
+}

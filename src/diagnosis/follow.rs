@@ -1,0 +1,68 @@
+//! Whether the rate follows a covariate.
+
+use super::{Addition, Diagnosis, Evidence, Follows, Standing, Step};
+use crate::{
+    cross_sums::CrossCurve,
+    curve::Curve,
+    effect::covariate::Slope,
+    error::Error,
+    fit::{Problem, generalized::Solution},
+    model::Model,
+};
+
+/// Rounds of a slope and the noise that is left of the curve without what follows the covariate: as
+/// long as that is in the curve, the noise seems larger, and the slope less sure.
+const ROUNDS: usize = 3;
+
+impl Diagnosis {
+    /// The covariate of the surest slope, if that is sure enough.
+    pub(super) fn follow<const K: usize>(
+        &self,
+        curve: &Curve<K>,
+        evidence: &Evidence<'_, K>,
+        step: &Step<K>,
+        standing: &Standing,
+    ) -> Result<Option<Addition>, Error> {
+        let mut best: Option<Follows> = None;
+        for (covariate, cross) in evidence.covariates.iter().enumerate() {
+            let Some(slope) = self.slope(curve, cross, &step.model, standing)? else {
+                continue;
+            };
+            let z = |slope: Slope| slope.z() * slope.z();
+            if best.is_none_or(|best| z(slope) > z(best.slope)) {
+                best = Some(Follows { covariate, slope });
+            }
+        }
+        let sure = |follows: &Follows| {
+            let z = follows.slope.z();
+            z * z > self.covariate_z * self.covariate_z
+        };
+        Ok(best.filter(sure).map(Addition::Covariate))
+    }
+
+    #[inline(never)]
+    fn slope<const K: usize>(
+        &self,
+        curve: &Curve<K>,
+        cross: &CrossCurve<K>,
+        model: &Model,
+        standing: &Standing,
+    ) -> Result<Option<Slope>, Error> {
+        let mut squares = standing.squares;
+        let mut slope = None;
+        for _ in 0..ROUNDS {
+            let corrected = match slope {
+                None => None,
+                Some(Slope { value, .. }) => Some(cross.corrected(curve, value)),
+            };
+            let problem = Problem::new(corrected.as_ref().unwrap_or(curve), model);
+            if corrected.is_some() {
+                let mut solution = Solution::new(&problem);
+                solution.converge(squares, self.tolerance)?;
+                squares = solution.squares;
+            }
+            slope = Slope::of(cross, curve.points(), |k| problem.variance(k, &squares));
+        }
+        Ok(slope)
+    }
+}

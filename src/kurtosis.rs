@@ -52,7 +52,7 @@ impl Octave {
         let difference = angle
             .wrapping_sub(middle)
             .wrapping_sub(middle.wrapping_sub(oldest)) as i64;
-        // Differences beyond 2^31 saturate, and so do the sums: no gyro at rest has them.
+        // Differences beyond 2^31 saturate, and so do the sums: no gyro of 16 bits has them at rest.
         let magnitude = difference.unsigned_abs().min(1 << 31);
         let square = u128::from(magnitude * magnitude);
         self.differences = self.differences.saturating_add(1);
@@ -117,11 +117,13 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
         }
     }
 
-    /// Excess kurtosis of every octave with at least 30 differences that are not all zero.
+    /// Excess kurtosis of every octave with at least 30 differences that are not all zero, and whose
+    /// fourth powers fit into 128 bits: give it counts no finer than a hundredth of the noise.
     pub fn kurtosis(&self) -> Kurtosis<OCTAVES> {
         let mut points = Vec::new();
         for (k, octave) in self.octaves.iter().enumerate() {
-            if octave.differences < 30 || octave.squares == 0 {
+            let saturated = octave.fourth == u128::MAX;
+            if octave.differences < 30 || octave.squares == 0 || saturated {
                 continue;
             }
             let n = octave.differences as f64;

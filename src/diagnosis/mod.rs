@@ -341,10 +341,13 @@ fn scan<const K: usize>(
             .iter()
             .position(|other| other.chi_squared > best.chi_squared)
             .unwrap_or(found.len());
+        if at == MAX_CANDIDATES {
+            continue;
+        }
         if found.is_full() {
             found.pop();
         }
-        // Refused where it is worse than all of a full list.
+        // There is room now.
         let _ = found.insert(at, best);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     AxisColumn, Ended, Field, Stop, Table, Visitor,
-    quantum::{Quantum, Range},
+    quantum::{self, Quantum, Range},
     worker::{Batches, Plan, Sums},
 };
 use crate::failure::{Failure, Place};
@@ -51,7 +51,10 @@ pub(super) fn measure(
         .collect::<Result<Vec<_>, _>>()?;
 
     let mut rounded = Rounded {
-        batches: Batches::new(plan.clone()),
+        batches: Batches::new(Plan {
+            fineness: quantum::FINENESS,
+            ..plan.clone()
+        }),
         quanta,
         steps: vec![Steps::default(); columns.len()],
     };

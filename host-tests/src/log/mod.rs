@@ -245,6 +245,7 @@ fn read_table(
         axes: axis_columns.len(),
         first: first.unwrap_or(u64::MAX),
         watch: watch.map(<[_]>::to_vec),
+        fineness: 0,
     };
     let measured = accumulate::measure(table, path, &columns, &plan, progress)?;
     let mut notes: Vec<String> = note.into_iter().collect();

@@ -37,6 +37,8 @@ pub(super) struct Plan {
     pub(super) first: u64,
     /// Whether to keep more than the curve, and which covariates.
     pub(super) watch: Option<Vec<CovariateChoice>>,
+    /// How much finer counts are than fourth powers have room for, in bits.
+    pub(super) fineness: u32,
 }
 
 impl Plan {
@@ -188,8 +190,8 @@ impl Worker {
         sums.accumulator.push_slice(of_start);
         sums.rest.push_slice(of_rest);
         if let Some(watched) = &mut sums.watched {
-            watched.moments.push_slice(of_start);
             for &count in of_start {
+                watched.moments.push(count >> self.plan.fineness);
                 watched.integrity.push(count);
             }
         }

@@ -31,7 +31,7 @@ pub struct ComparedOctave {
     /// The same in standard errors, the model's tolerance among them.
     pub z: f64,
     /// Each effect's share of the model's variance, in the model's order.
-    pub shares: [f64; MAX_EFFECTS],
+    pub shares: [f32; MAX_EFFECTS],
 }
 
 /// Neighbouring octaves that noticeably disagree, all to one side.
@@ -140,7 +140,7 @@ impl<const K: usize> Comparison<K> {
                 model,
                 percent,
                 z: relative * model / (weights.model[k] * weights.relative_error(k)),
-                shares: core::array::from_fn(|i| problem.share(k, i, squares)),
+                shares: core::array::from_fn(|i| problem.share(k, i, squares) as f32),
             });
         }
         self.chi_squared = weights.chi_squared(problem, squares);

@@ -24,7 +24,7 @@ use crate::{
     model::{MAX_EFFECTS, Model},
 };
 use heapless::Vec;
-use nalgebra::SMatrix;
+use nalgebra::{Complex, SMatrix};
 
 /// Kinks lie within a cluster, four quarters, of 0 and of the middle: lags up to here are taken one by
 /// one, in quarters of the shorter cluster …
@@ -82,6 +82,7 @@ pub(crate) fn covariance(
         }
         let random = random.rounded();
         let per_unit = 2.0 / random.unit();
+        let mut turns = Vec::<Turn, TABLES>::new();
         for (k, longer) in points.iter().enumerate().skip(j) {
             let pair = Pair { shorter, longer };
             // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
@@ -94,14 +95,17 @@ pub(crate) fn covariance(
                 let setting = term.setting(interval_s);
                 let response = |m: u32| term.effect.response(f64::from(m), &setting);
                 if let (Some(short), Some(long)) = (response(shorter.m), response(longer.m)) {
+                    let phase = 0.25 * m_j * short.phase;
                     // As many as effects: there is always room.
                     let _ = waves.push(Wave {
                         product: (per_unit * square * short.amplitude * long.amplitude) as f32,
-                        phase: 0.25 * m_j * short.phase,
+                        phase,
+                        turn: Turn::of(phase, &mut turns),
+                        now: Complex::new(1.0, 0.0),
                     });
                 }
             }
-            each(k, j, pair.covariance(&random, &waves));
+            each(k, j, pair.covariance(&random, &turns, &mut waves));
         }
     }
 }
@@ -111,14 +115,56 @@ pub(crate) fn covariance(
 struct Wave {
     product: f32,
     phase: f64,
+    turn: Option<usize>,
+    /// `e^(i · phase · ℓ)`.
+    now: Complex<f32>,
 }
 
 impl Wave {
-    fn at(&self, lag: u32) -> f32 {
+    fn value(&self) -> f32 {
+        self.product * self.now.re
+    }
+
+    /// Goes from one lag to another, a power of two further.
+    fn advance(&mut self, lag: u32, step: u32, turns: &[Turn]) {
         if self.phase == 0.0 {
-            return self.product;
+            return;
         }
-        self.product * math::cos(self.phase * f64::from(lag)) as f32
+        let turn = self
+            .turn
+            .and_then(|turn| turns.get(turn)?.steps.get(step.ilog2() as usize));
+        self.now = match turn {
+            Some(turn) => self.now * turn,
+            None => Complex::new(math::cos(self.phase * f64::from(lag + step)) as f32, 0.0),
+        };
+    }
+}
+
+/// Oscillations of a model whose turns are tabled; those beyond take a cosine a lag.
+const TABLES: usize = 3;
+
+/// `e^(i · phase · 2^k)`, by squaring: a lattice of cosines for one exponential.
+struct Turn {
+    phase: f64,
+    steps: [Complex<f32>; (lattice::END / 2).ilog2() as usize],
+}
+
+impl Turn {
+    /// The place of a phase's turns among those that are known, or where they come to be. `None` where
+    /// there is no room.
+    fn of(phase: f64, known: &mut Vec<Self, TABLES>) -> Option<usize> {
+        if let Some(at) = known.iter().position(|turn| turn.phase == phase) {
+            return Some(at);
+        }
+        let (sine, cosine) = math::sincos(phase);
+        let mut turn = Complex::new(cosine, sine);
+        let steps = core::array::from_fn(|_| {
+            let here = Complex::new(turn.re as f32, turn.im as f32);
+            turn *= turn;
+            here
+        });
+        known.push(Self { phase, steps }).ok()?;
+        Some(known.len() - 1)
     }
 }
 
@@ -134,7 +180,7 @@ impl Pair<'_> {
         (self.longer.m / self.shorter.m).saturating_mul(4)
     }
 
-    fn covariance(&self, differences: &Rounded, waves: &[Wave]) -> f64 {
+    fn covariance(&self, differences: &Rounded, turns: &[Turn], waves: &mut [Wave]) -> f64 {
         let middle = self.middle();
         let stride = lattice::stride(self.shorter.m);
         let starts = Starts::new(self.shorter, self.longer);
@@ -150,8 +196,8 @@ impl Pair<'_> {
                 // Half the steps to either side, in strides; both signs of the lag are in `pairs`.
                 let weight = u64::from(step_before + step).saturating_mul(pairs) as f32;
                 let mut factor = random;
-                for wave in waves {
-                    factor += wave.at(lag);
+                for wave in &*waves {
+                    factor += wave.value();
                 }
                 let term = weight * (random * factor);
                 sum += term;
@@ -159,6 +205,9 @@ impl Pair<'_> {
                 quiet = if counts { 0 } else { quiet + 1 };
             } else {
                 quiet += 1;
+            }
+            for wave in &mut *waves {
+                wave.advance(lag, step, turns);
             }
             lag += step;
             step_before = step;

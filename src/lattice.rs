@@ -27,23 +27,45 @@ pub(crate) const fn position(slot: usize) -> u32 {
     (FINE + FINE / STEPS * step) << octave
 }
 
-/// Powers of `w` at every position, by multiplication.
-pub(crate) fn powers(w: Complex<f64>) -> [Complex<f64>; LEN] {
-    let mut powers = [Complex::new(1.0, 0.0); LEN];
-    for slot in 1..FINE_SLOTS {
-        powers[slot] = powers[slot - 1] * w;
+/// Powers of `w` at every position, by multiplication, slot after slot.
+pub(crate) struct Powers {
+    fine: [Complex<f64>; FINE_SLOTS],
+    /// Those of the last slots, slot `s` at `s % STEPS`.
+    last: [Complex<f64>; STEPS as usize],
+}
+
+impl Powers {
+    pub(crate) fn new(w: Complex<f64>) -> Self {
+        let mut fine = [Complex::new(1.0, 0.0); FINE_SLOTS];
+        for slot in 1..FINE_SLOTS {
+            fine[slot] = fine[slot - 1] * w;
+        }
+        Self {
+            fine,
+            last: [Complex::new(1.0, 0.0); STEPS as usize],
+        }
     }
-    for slot in FINE_SLOTS..LEN {
+
+    /// At a position of up to 16.
+    pub(crate) fn near(&self, position: usize) -> Complex<f64> {
+        self.fine[position]
+    }
+
+    /// In the next slot: slots are asked for in their order.
+    pub(crate) fn next(&mut self, slot: usize) -> Complex<f64> {
         let steps = STEPS as usize;
-        powers[slot] = if slot < FINE_SLOTS + steps {
+        let power = if slot < FINE_SLOTS {
+            self.fine[slot]
+        } else if slot < FINE_SLOTS + steps {
             // 20, 24, 28, 32 are 16 + 4, 16 + 8, 16 + 12, 16 + 16.
-            powers[FINE as usize] * powers[steps * (slot - FINE as usize)]
+            self.fine[FINE as usize] * self.fine[steps * (slot - FINE as usize)]
         } else {
             // Twice the position an octave below.
-            powers[slot - steps] * powers[slot - steps]
+            self.last[slot % steps] * self.last[slot % steps]
         };
+        self.last[slot % steps] = power;
+        power
     }
-    powers
 }
 
 /// Second differences `G(x + m) − 2 G(x) + G(|x − m|)` for one averaging factor `m`, kept at
@@ -78,8 +100,8 @@ impl SecondDifferences {
         }
     }
 
-    /// Adds `f(slot)` in every slot.
-    pub(crate) fn add_slots(&mut self, f: impl Fn(usize) -> f64) {
+    /// Adds `f(slot)` in every slot, one after the other.
+    pub(crate) fn add_slots(&mut self, mut f: impl FnMut(usize) -> f64) {
         for (slot, value) in self.values.iter_mut().enumerate().take(self.used) {
             *value += f(slot);
         }

@@ -120,19 +120,31 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     fn solve_scaled(&self, free: &Free<P>) -> Option<Vector<P>> {
-        let mut solution = self.right;
-        for i in 0..self.count {
-            if !free[i] {
-                solution[i] = 0.0;
-            }
+        // Beyond the count there may be something of an earlier use.
+        let mut solution = Vector::zeros();
+        for i in (0..self.count).filter(|&i| free[i]) {
+            solution[i] = self.right[i];
         }
         self.solve_for(free, &mut solution).then_some(solution)
+    }
+
+    /// `b − H β` of a scaled solution.
+    fn gradient(&self, scaled: &Vector<P>) -> Vector<P> {
+        let mut gradient = Vector::zeros();
+        for i in 0..self.count {
+            let row = (0..self.count).map(|j| self.scaled[(i, j)] * scaled[j]);
+            gradient[i] = self.right[i] - row.sum::<f64>();
+        }
+        gradient
     }
 
     /// How far a solution lowers the sum of squared residuals.
     pub(crate) fn explained(&self, solution: &Vector<P>) -> f64 {
         let scaled = solution.component_div(&self.scale.map(|x| if x > 0.0 { x } else { 1.0 }));
-        scaled.dot(&(self.right * 2.0 - self.scaled * scaled))
+        let rest = self.gradient(&scaled);
+        (0..self.count)
+            .map(|i| scaled[i] * (self.right[i] + rest[i]))
+            .sum()
     }
 
     /// The unconstrained solution.
@@ -175,7 +187,7 @@ impl<const P: usize> NormalEquations<P> {
         let mut refused = [false; P];
         // Each round frees one coefficient; thrice their number is the customary limit.
         for _ in 0..3 * P {
-            let gradient = self.right - self.scaled * solution;
+            let gradient = self.gradient(&solution);
             let candidate = (0..self.count)
                 .filter(|&i| !free[i] && !refused[i] && !held[i] && gradient[i] > 1e-12)
                 .max_by(|&a, &b| gradient[a].total_cmp(&gradient[b]));

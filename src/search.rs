@@ -11,7 +11,6 @@ use crate::{
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
 };
-use nalgebra::SVector;
 
 /// The 95 % quantile of χ² with one degree of freedom.
 const RISE: f64 = 3.841_459;
@@ -24,7 +23,7 @@ pub(crate) struct Search<'a, 'b, const K: usize> {
     problem: &'a Problem<'b, K>,
     weights: &'a Weights<K>,
     /// Standard errors of the octaves are those of the measured curve instead of the model's.
-    scatter: SVector<f64, K>,
+    to_measured: bool,
     whitened: Whitened<K>,
     /// Those of the others, and of the shape that was tried last.
     equations: NormalEquations,
@@ -35,64 +34,73 @@ pub(crate) struct Search<'a, 'b, const K: usize> {
 }
 
 impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
-    /// For an effect at `place`: that of the effect it replaces, or the first behind the others. The
-    /// effects above zero are guessed to be those for which `squares` are. With `to_measured`, the
-    /// covariance is rescaled to the measured curve: before an effect is found, the model is too far
-    /// off to say how much the octaves that it dominates scatter.
+    /// With no effect chosen. With `to_measured`, the covariance is rescaled to the measured curve:
+    /// before an effect is found, the model is too far off to say how much the octaves that it
+    /// dominates scatter.
+    #[inline(always)]
     pub(crate) fn new(
         problem: &'a Problem<'b, K>,
         weights: &'a Weights<K>,
-        squares: &Vector,
-        place: usize,
         to_measured: bool,
-    ) -> Result<Self, Error> {
+    ) -> Self {
+        Self {
+            problem,
+            weights,
+            to_measured,
+            whitened: Whitened::empty(),
+            equations: NormalEquations::empty(),
+            place: 0,
+            free: Free::default(),
+            held: Free::default(),
+        }
+    }
+
+    /// Chooses an effect by its `place`: that of the effect it replaces, or the first behind the
+    /// others. The effects above zero are guessed to be those for which `squares` are.
+    ///
+    /// # Errors
+    /// [`Error::TooManyEffects`] without such a place, [`Error::Singular`].
+    #[inline(never)]
+    pub(crate) fn at(&mut self, place: usize, squares: &Vector) -> Result<(), Error> {
         if place >= MAX_EFFECTS {
             return Err(Error::TooManyEffects {
                 capacity: MAX_EFFECTS,
             });
         }
-        let scatter = SVector::<f64, K>::from_fn(|k, _| match problem.points.get(k) {
-            Some(point) if to_measured => point.variance / weights.model[k],
-            _ => 1.0,
-        });
-        let whitened = weights.whiten(problem, |k| scatter[k]);
-        let mut equations = NormalEquations::empty();
-        let columns = &whitened.columns;
-        equations.set(
+        let (problem, weights, to_measured) = (self.problem, self.weights, self.to_measured);
+        if self.whitened.columns.is_empty() {
+            let scatter = |k| scatter(problem, weights, to_measured, k);
+            weights.whiten_into(problem, scatter, &mut self.whitened);
+        }
+        let Whitened { columns, curve } = &self.whitened;
+        self.equations.set(
             columns.len().max(place + 1),
             |i, j| match (i == place || j == place, i == j) {
                 (false, _) => columns[i].dot(&columns[j]),
                 (true, same) => f64::from(u8::from(same)),
             },
-            |i| columns.get(i).map_or(0.0, |x| x.dot(&whitened.curve)),
+            |i| columns.get(i).map_or(0.0, |column| column.dot(curve)),
         )?;
-        let mut held = problem.held();
-        held[place] = false;
-        Ok(Self {
-            problem,
-            equations,
-            weights,
-            scatter,
-            whitened,
-            place,
-            free: core::array::from_fn(|i| i == place || (squares[i] > 0.0 && !held[i])),
-            held,
-        })
+        self.place = place;
+        self.held = self.problem.held();
+        self.held[place] = false;
+        self.free = core::array::from_fn(|i| i == place || (squares[i] > 0.0 && !self.held[i]));
+        Ok(())
     }
 
     /// With the effects that are held at zero free as well.
-    pub(crate) fn released(mut self) -> Self {
+    pub(crate) fn release(&mut self) {
         self.held = [false; MAX_EFFECTS];
-        self
     }
 
-    /// χ² with the effect in a shape, and the effect's squared coefficient.
-    pub(crate) fn with(&mut self, term: &Term) -> (f64, f64) {
-        let without = (f64::INFINITY, 0.0);
+    /// χ² with the effect in a shape, and the squared coefficients.
+    #[inline(never)]
+    fn with(&mut self, term: &Term) -> (f64, Vector) {
+        let without = (f64::INFINITY, Vector::zeros());
         let mut column = self.problem.column(term);
         let n = self.problem.points.len();
-        self.weights
-            .whiten_column(n, &mut column, |k| self.scatter[k]);
+        let scatter = |k| scatter(self.problem, self.weights, self.to_measured, k);
+        self.weights.whiten_column(n, &mut column, scatter);
         let others = &self.whitened.columns;
         let exchanged = self.equations.exchange(
             self.place,
@@ -108,17 +116,18 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
         let equations = &self.equations;
         let (squares, _) = equations.solve_non_negative_near(&self.free, &self.held);
         let chi_squared = self.whitened.curve.norm_squared() - equations.explained(&squares);
-        (chi_squared, squares[self.place])
+        (chi_squared, squares)
     }
 
     /// The best shape of an effect on its grid, refined.
+    #[inline(never)]
     pub(crate) fn search(&mut self, effect: &'static dyn Effect, span: &Span) -> Found {
         let mut term = Term::new(effect);
         term.fitted = !effect.parameters().is_empty();
         let mut best = Found {
             term,
             chi_squared: f64::INFINITY,
-            square: 0.0,
+            squares: Vector::zeros(),
         };
         let ranges: [Grid; MAX_PARAMETERS] = core::array::from_fn(|i| Grid::of(effect, i, span));
         for first in 0..ranges[0].steps {
@@ -132,12 +141,13 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     }
 
     /// The best shape near one that is known, within 10 %.
+    #[inline(never)]
     pub(crate) fn refine_known(&mut self, term: Term, span: &Span) -> Found {
-        let (chi_squared, square) = self.with(&term);
+        let (chi_squared, squares) = self.with(&term);
         let found = Found {
             term,
             chi_squared,
-            square,
+            squares,
         };
         let ranges = core::array::from_fn(|i| Grid::of(term.effect, i, span));
         self.refine(found, [0.1; MAX_PARAMETERS], &ranges)
@@ -145,12 +155,13 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
 
     /// [`interval`](Self::interval) around a known shape, joined with those of the other values of a
     /// whole-numbered parameter that explain the curve as well.
+    #[inline(never)]
     pub(crate) fn joint_interval(&mut self, term: Term, j: usize, span: &Span) -> (f64, f64) {
-        let (chi_squared, square) = self.with(&term);
+        let (chi_squared, squares) = self.with(&term);
         let known = Found {
             term,
             chi_squared,
-            square,
+            squares,
         };
         let (mut lower, mut upper) = self.interval(&known, j, span);
         let parameters = 0..term.effect.parameters().len().min(MAX_PARAMETERS);
@@ -172,6 +183,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
 
     /// The interval of an effect's only fitted parameter in which χ² stays within that of 95 % of the
     /// least, all coefficients free: also where another effect could take the shape's place.
+    #[inline(never)]
     pub(crate) fn interval(&mut self, best: &Found, j: usize, span: &Span) -> (f64, f64) {
         let grid = Grid::of(best.term.effect, j, span);
         let value = best.term.parameters[j];
@@ -212,6 +224,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
 
     /// Goes downhill from a shape, one parameter after the other, in steps of the logarithm that
     /// are halved whenever none helps.
+    #[inline(never)]
     fn refine(
         &mut self,
         start: Found,
@@ -236,22 +249,36 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     }
 }
 
+/// How much more than the model says octave `k` scatters.
+fn scatter<const K: usize>(
+    problem: &Problem<'_, K>,
+    weights: &Weights<K>,
+    to_measured: bool,
+    k: usize,
+) -> f64 {
+    match problem.points.get(k) {
+        Some(point) if to_measured => point.variance / weights.model[k],
+        _ => 1.0,
+    }
+}
+
 /// A shape, and what it would make of the curve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
     pub(crate) term: Term,
     pub(crate) chi_squared: f64,
-    pub(crate) square: f64,
+    /// The effect's at its place in the search.
+    pub(crate) squares: Vector,
 }
 
 impl Found {
-    fn improve(&mut self, term: Term, (chi_squared, square): (f64, f64)) -> bool {
+    fn improve(&mut self, term: Term, (chi_squared, squares): (f64, Vector)) -> bool {
         let better = chi_squared < self.chi_squared;
         if better {
             *self = Self {
                 term,
                 chi_squared,
-                square,
+                squares,
             };
         }
         better

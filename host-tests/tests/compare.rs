@@ -41,7 +41,7 @@ fn missing_effect_shows_in_the_octaves_and_goes_when_it_is_added() {
     for octave in with["octaves"].as_array().unwrap() {
         let shares = octave["shares"].as_object().unwrap();
         let sum: f64 = shares.values().map(number).sum();
-        assert!((sum - 1.0).abs() < 1e-9 && shares.len() == 6);
+        assert!((sum - 1.0).abs() < 1e-6 && shares.len() == 6);
         let percent =
             100.0 * ((number(&octave["measured"]) / number(&octave["model"])).powi(2) - 1.0);
         assert!((percent - number(&octave["percent"])).abs() < 1e-6);

@@ -6,7 +6,10 @@ use crate::{
     curve::Curve,
     effect::covariate::Slope,
     error::Error,
-    fit::{Problem, generalized::Solution},
+    fit::{
+        Problem,
+        generalized::{Rounds, Solution},
+    },
     model::Model,
 };
 
@@ -58,7 +61,7 @@ impl Diagnosis {
             let problem = Problem::new(corrected.as_ref().unwrap_or(curve), model);
             if corrected.is_some() {
                 let mut solution = Solution::new(&problem);
-                solution.converge(squares, self.tolerance)?;
+                solution.converge(squares, self.tolerance, Rounds::All)?;
                 squares = solution.squares;
             }
             slope = Slope::of(cross, curve.points(), |k| problem.variance(k, &squares));

@@ -11,7 +11,10 @@ use crate::{
     curve::Curve,
     effect::{Effect, Span, covariate::Slope},
     error::Error,
-    fit::{Fit, Problem, check, generalized::Solution},
+    fit::{
+        Fit, Problem, check,
+        generalized::{Rounds, Solution},
+    },
     integrity::Reason,
     kurtosis::Kurtosis,
     model::{Model, Term},
@@ -243,7 +246,7 @@ impl Diagnosis {
         let mut solution = Solution::new(&problem);
         match start {
             // Once the tolerance was granted it stays: steps are compared with each other.
-            Some(squares) => solution.converge(squares, self.tolerance)?,
+            Some(squares) => solution.converge(squares, self.tolerance, Rounds::All)?,
             None => solution.solve(self.tolerance)?,
         }
         let standing = Standing {
@@ -274,12 +277,18 @@ impl Diagnosis {
         step: &mut Step<K>,
     ) -> Option<Better> {
         let mut best: Option<Better> = None;
+        let mut least = f64::INFINITY;
         for found in found {
-            let mut better = Better::new(&step.model, standing, found).ok()?;
-            // An effect that cannot be fitted is no candidate.
-            let Ok(Some(candidate)) = better.fit(curve, standing.score, self.tolerance) else {
+            let Ok(mut better) = Better::new(&step.model, found) else {
                 continue;
             };
+            // An effect that cannot be fitted is no candidate.
+            let Ok(Some((score, mut candidate))) = better.fit(curve, self.tolerance, least) else {
+                continue;
+            };
+            least = least.min(score);
+            let parameters = 1 + candidate.term.fitted_parameters().count();
+            candidate.improvement = standing.score - score - 2.0 * parameters as f64;
             let at = step
                 .candidates
                 .iter()
@@ -308,6 +317,7 @@ impl Diagnosis {
 
 /// The best shape of every effect, with the covariance of the model so far: the best few of them, best
 /// first.
+#[inline(never)]
 fn scan<const K: usize>(
     problem: &Problem<'_, K>,
     solution: &Solution<'_, '_, K>,
@@ -316,6 +326,7 @@ fn scan<const K: usize>(
     found: &mut Scan,
 ) {
     let model = problem.model;
+    let mut search = Search::new(problem, &solution.weights, true);
     for &effect in effects {
         let present = model.position(effect.name()).is_some();
         let replaced = effect.replaces().map(|other| model.position(other.name()));
@@ -327,14 +338,12 @@ fn scan<const K: usize>(
             continue;
         }
         let place = replaced.flatten().unwrap_or(problem.count());
-        let Ok(mut search) =
-            Search::new(problem, &solution.weights, &solution.squares, place, true)
-        else {
+        if search.at(place, &solution.squares).is_err() {
             // No place left in the model.
             continue;
-        };
+        }
         let best = search.search(effect, span);
-        if best.square <= 0.0 {
+        if best.squares[place] <= 0.0 {
             continue;
         }
         let at = found

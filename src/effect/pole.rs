@@ -101,8 +101,8 @@ impl Pole {
     /// multiplication along the lattice.
     pub(super) fn add_second_differences(&self, m: f64, weight: f64, sum: &mut SecondDifferences) {
         let quarter = power(self.decay, self.cycles, 0.25 * m);
-        let powers = lattice::powers(quarter);
-        let cluster = powers[4];
+        let mut powers = lattice::Powers::new(quarter);
+        let cluster = powers.near(4);
         let gone = self.decay * m > GONE;
         let beyond = if gone {
             Complex::new(0.0, 0.0)
@@ -111,9 +111,9 @@ impl Pole {
             ONE / cluster - 2.0 + cluster
         };
         sum.add_slots(|slot| {
-            let (own, position) = (powers[slot], lattice::position(slot));
+            let (own, position) = (powers.next(slot), lattice::position(slot));
             let value = if position < 4 {
-                let near = powers[4 + slot] - own * 2.0 + powers[4 - slot];
+                let near = powers.near(4 + slot) - own * 2.0 + powers.near(4 - slot);
                 -self.long * m * (1.0 - 0.25 * f64::from(position)) - (self.factor * near).re
             } else if gone && position == 4 {
                 -self.factor.re

@@ -21,6 +21,8 @@ use nalgebra::SVector;
 /// Rounds of covariance and solution; two to four bring the model to within 0.1 %, hardly ever more
 /// than eight.
 const ROUNDS: usize = 8;
+/// A p-value that no further round makes plausible.
+const HOPELESS: f64 = 1e-6;
 /// A change of the model that ends the rounds.
 const CONVERGED: f64 = 3e-3;
 /// Below this p-value the curve's scatter does not explain the misfit, and the model is granted
@@ -30,6 +32,17 @@ const UNEXPLAINED: f64 = 0.05;
 const UNDETERMINED: f64 = 0.3;
 /// Rounds of a bound and the covariance that it implies.
 const BOUND_ROUNDS: usize = 2;
+
+/// How long to alternate covariance and solution.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Rounds {
+    /// Once: for a caller that comes again.
+    One,
+    /// Until they agree, or the first says that no tolerance-free fit explains the curve.
+    Promising,
+    /// Until they agree.
+    All,
+}
 
 /// Squared coefficients, and the covariance that they were found with.
 pub(crate) struct Solution<'a, 'b, const K: usize> {
@@ -60,16 +73,30 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         let weight = independent::by_relative_accuracy;
         independent::equations(problem, weight, &mut self.equations)?;
         let (start, _) = self.equations.solve_non_negative(&problem.held());
-        self.converge(start, 0.0)?;
-        if self.p_value() < UNEXPLAINED && tolerance > 0.0 {
-            self.converge(self.squares, tolerance)?;
+        let granted = tolerance > 0.0;
+        self.converge(
+            start,
+            0.0,
+            if granted {
+                Rounds::Promising
+            } else {
+                Rounds::All
+            },
+        )?;
+        if self.p_value() < UNEXPLAINED && granted {
+            self.converge(self.squares, tolerance, Rounds::All)?;
         }
         Ok(())
     }
 
     /// Alternates covariance and solution.
     #[inline(never)]
-    pub(crate) fn converge(&mut self, start: Vector, tolerance: f64) -> Result<(), Error> {
+    pub(crate) fn converge(
+        &mut self,
+        start: Vector,
+        tolerance: f64,
+        rounds: Rounds,
+    ) -> Result<(), Error> {
         let problem = self.problem;
         let mut whitened = Whitened::empty();
         // The squares that the covariance is taken at approach those that it gives.
@@ -89,7 +116,16 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
                     0.0
                 }
             });
-            if change.amax() < CONVERGED || round >= ROUNDS {
+            let last_round = change.amax() < CONVERGED
+                || match rounds {
+                    Rounds::One => true,
+                    Rounds::Promising if round == 1 => {
+                        self.chi_squared = self.weights.chi_squared(problem, &self.squares);
+                        self.p_value() < HOPELESS
+                    }
+                    _ => round >= ROUNDS,
+                };
+            if last_round {
                 self.chi_squared = self.weights.chi_squared(problem, &self.squares);
                 return Ok(());
             }
@@ -123,8 +159,12 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
 
     /// An active effect that a fitted shape could take the place of: held at zero, it leaves the
     /// shape determined.
+    #[inline(never)]
     pub(crate) fn confused(&self) -> Option<usize> {
-        let shape = ShapeEquations::new(self.problem, &self.weights, &self.squares)?;
+        let mut shape = ShapeEquations::empty();
+        if !shape.set(self.problem, &self.weights, &self.squares) {
+            return None;
+        }
         let before = shape.worst_error(&self.free);
         if before < UNDETERMINED {
             return None;
@@ -154,8 +194,9 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     // Apart, so that a model without shapes does not need the stack for them.
     #[inline(never)]
     fn report_with_shape(&self, fit: &mut Fit) {
-        let shape = ShapeEquations::new(self.problem, &self.weights, &self.squares);
-        self.report_of(shape.as_ref(), fit);
+        let mut shape = ShapeEquations::empty();
+        let told = shape.set(self.problem, &self.weights, &self.squares);
+        self.report_of(told.then_some(&shape), fit);
     }
 
     #[inline(never)]
@@ -178,21 +219,25 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     /// One effect's coefficient.
     #[inline(never)]
     pub(crate) fn coefficient_of(&self, i: usize) -> Coefficient {
-        let shape = ShapeEquations::new(self.problem, &self.weights, &self.squares);
-        self.coefficient(i, shape.as_ref())
+        let mut shape = ShapeEquations::empty();
+        let told = shape.set(self.problem, &self.weights, &self.squares);
+        self.coefficient(i, told.then_some(&shape))
     }
 
     /// Replaces the interval of a shape that is its effect's only one by that of its profile.
     #[inline(never)]
     pub(crate) fn bound_shapes(&self, fit: &mut Fit, span: &Span) -> Result<(), Error> {
+        if fit.shape.is_empty() {
+            return Ok(());
+        }
         let problem = self.problem;
+        let mut search = Search::new(problem, &self.weights, false);
         for shape in &mut fit.shape {
             let term = problem.model.terms()[shape.term];
             let mut parameters = term.fitted_parameters();
             if let (Some(j), None) = (parameters.next(), parameters.next()) {
-                let mut search =
-                    Search::new(problem, &self.weights, &self.squares, shape.term, false)?
-                        .released();
+                search.at(shape.term, &self.squares)?;
+                search.release();
                 (shape.lower, shape.upper) = search.joint_interval(term, j, span);
             }
         }

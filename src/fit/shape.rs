@@ -1,6 +1,9 @@
 //! Uncertainty of fitted shapes, and what they add to that of the coefficients.
 
-use super::{Problem, weights::Weights};
+use super::{
+    Problem,
+    weights::{Weights, Whitened},
+};
 use crate::{
     math,
     model::{MAX_EFFECTS, Term},
@@ -41,26 +44,39 @@ pub(super) struct ShapeEquations {
 }
 
 impl ShapeEquations {
-    /// `None` for a model without fitted shapes, or where they cannot be told from the rest.
+    /// Of no model yet.
+    pub(super) fn empty() -> Self {
+        Self {
+            equations: NormalEquations::empty(),
+            parameters: Vec::new(),
+        }
+    }
+
+    /// Takes a solution. `false` for a model without fitted shapes, or where they cannot be told from
+    /// the rest.
     #[inline(never)]
-    pub(super) fn new<const K: usize>(
+    pub(super) fn set<const K: usize>(
+        &mut self,
         problem: &Problem<'_, K>,
         weights: &Weights<K>,
         squares: &Vector,
-    ) -> Option<Self> {
-        let mut parameters = Vec::new();
+    ) -> bool {
+        self.parameters.clear();
         for (i, term) in problem.model.terms().iter().enumerate() {
             for j in term.fitted_parameters().filter(|_| squares[i] > 0.0) {
-                parameters.push((i, j, *term)).ok()?;
+                if self.parameters.push((i, j, *term)).is_err() {
+                    return false;
+                }
             }
         }
-        if parameters.is_empty() {
-            return None;
+        if self.parameters.is_empty() {
+            return false;
         }
-        let whitened = weights.whiten(problem, |_| 1.0);
+        let mut whitened = Whitened::empty();
+        weights.whiten_into(problem, |_| 1.0, &mut whitened);
         let count = problem.count();
         let mut derivatives: Vec<SVector<f64, K>, MAX_SHAPE> = Vec::new();
-        for &(i, j, term) in &parameters {
+        for &(i, j, term) in &self.parameters {
             let column = |factor: f64| {
                 let mut term = term;
                 term.parameters[j] *= factor;
@@ -69,23 +85,19 @@ impl ShapeEquations {
             let change = column(math::exp(STEP)) - column(math::exp(-STEP));
             let mut derivative = change * (0.5 * squares[i] / STEP);
             weights.whiten_column(problem.points.len(), &mut derivative, |_| 1.0);
-            derivatives.push(derivative).ok()?;
+            // As many as parameters.
+            let _ = derivatives.push(derivative);
         }
         // Coefficients first, the shapes behind them.
         let at = |i: usize| match i.checked_sub(count) {
             None => &whitened.columns[i],
             Some(shape) => &derivatives[shape],
         };
-        let unknowns = count + parameters.len();
-        let mut equations = NormalEquations::empty();
-        equations
-            .set(unknowns, |a, b| at(a).dot(at(b)), |_| 0.0)
-            .ok()?;
-        // Shapes are looked up behind the coefficients.
-        Some(Self {
-            equations,
-            parameters,
-        })
+        let unknowns = count + self.parameters.len();
+        let set = self
+            .equations
+            .set(unknowns, |a, b| at(a).dot(at(b)), |_| 0.0);
+        set.is_ok()
     }
 
     fn with_shapes(&self, free: &Free, count: usize) -> Free<UNKNOWNS> {

@@ -112,17 +112,6 @@ impl<const K: usize> Weights<K> {
 
     /// Curve and columns in units in which octaves are independent and have a variance of one,
     /// with the standard error of octave `k` enlarged by `scatter(k)`.
-    pub(crate) fn whiten(
-        &self,
-        problem: &Problem<'_, K>,
-        scatter: impl Fn(usize) -> f64,
-    ) -> Whitened<K> {
-        let mut whitened = Whitened::empty();
-        self.whiten_into(problem, scatter, &mut whitened);
-        whitened
-    }
-
-    /// The same, where there is room for it already.
     #[inline(never)]
     pub(crate) fn whiten_into(
         &self,

@@ -12,7 +12,7 @@ use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
 /// A share below this is not worth a number.
-const LEAST_SHARE: f64 = 0.005;
+const LEAST_SHARE: f32 = 0.005;
 
 /// Prints a table and a plot an axis.
 pub(super) fn print(compared: &[Compared], output: &mut impl Write) -> io::Result<()> {

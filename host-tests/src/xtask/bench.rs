@@ -7,7 +7,7 @@ use comfy_table::{Table, presets};
 use serde_json::{Map, Value, json};
 
 /// A figure, its unit and what it counts.
-const FIGURES: [(&str, &str, &str); 12] = [
+const FIGURES: [(&str, &str, &str); 14] = [
     (
         "instructions_per_sample",
         "instructions",
@@ -54,6 +54,12 @@ const FIGURES: [(&str, &str, &str); 12] = [
         "covariance fit of 20 octaves, five effects",
     ),
     ("stack_bytes_fit_20", "bytes", "the same"),
+    (
+        "instructions_diagnosis_20",
+        "instructions",
+        "diagnosis of 20 octaves with a hidden sinusoid",
+    ),
+    ("stack_bytes_diagnosis_20", "bytes", "the same"),
     (
         "ns_per_sample_slice",
         "ns",

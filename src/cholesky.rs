@@ -1,7 +1,7 @@
 //! Cholesky factors of a curve's covariance and of the normal equations, in place.
 //!
 //! nalgebra's own takes and returns matrices by value: three copies of 3 KiB on the stack of a
-//! microcontroller for 20 octaves. Sums are of double precision whatever the factor is kept in.
+//! microcontroller for 20 octaves. A factor is found in double precision, whatever it is kept in.
 
 use crate::math;
 use nalgebra::{SMatrix, SVector};
@@ -68,6 +68,21 @@ pub(crate) fn forward<E: Element, const K: usize>(
             value -= factor[(i, k)].value() * x[k];
         }
         x[i] = value * factor[(i, i)].value();
+    }
+}
+
+/// [`forward`] in single precision.
+pub(crate) fn forward_single<const K: usize>(
+    factor: &SMatrix<f32, K, K>,
+    n: usize,
+    x: &mut SVector<f32, K>,
+) {
+    for i in 0..n.min(K) {
+        let mut value = x[i];
+        for k in 0..i {
+            value -= factor[(i, k)] * x[k];
+        }
+        x[i] = value * factor[(i, i)];
     }
 }
 

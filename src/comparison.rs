@@ -60,8 +60,6 @@ pub struct Comparison<const K: usize> {
     pub p_value: f64,
     /// Root-mean-square disagreement of the octaves, in percent.
     pub rms_percent: f64,
-    /// Stretches of one sign, shortest averaging time first.
-    pub stretches: Vec<Stretch, K>,
 }
 
 impl<const K: usize> Comparison<K> {
@@ -112,7 +110,6 @@ impl<const K: usize> Comparison<K> {
             degrees_of_freedom: 0,
             p_value: f64::NAN,
             rms_percent: f64::NAN,
-            stretches: Vec::new(),
         }
     }
 
@@ -147,7 +144,23 @@ impl<const K: usize> Comparison<K> {
         self.degrees_of_freedom = self.octaves.len().saturating_sub(unknowns);
         self.p_value = chi_squared_tail(self.chi_squared, self.degrees_of_freedom);
         self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as f64);
-        mark_stretches(&self.octaves, &mut self.stretches);
+    }
+
+    /// Stretches of octaves that noticeably disagree to one side, shortest averaging time first.
+    pub fn stretches(&self) -> impl Iterator<Item = Stretch> + '_ {
+        let noticeable = |octave: &ComparedOctave| octave.z > NOTICEABLE || octave.z < -NOTICEABLE;
+        let alike = move |a: &ComparedOctave, b: &ComparedOctave| {
+            noticeable(a) == noticeable(b) && (a.z > 0.0) == (b.z > 0.0)
+        };
+        let runs = self.octaves.chunk_by(alike);
+        runs.filter_map(move |run| {
+            let (first, last) = (run.first()?, run.last()?);
+            noticeable(first).then_some(Stretch {
+                above: first.z > 0.0,
+                from_s: first.tau_s,
+                to_s: last.tau_s,
+            })
+        })
     }
 
     /// The octave that disagrees most, in standard errors; `None` for an empty curve.
@@ -159,37 +172,13 @@ impl<const K: usize> Comparison<K> {
     }
 }
 
-fn mark_stretches<const K: usize>(octaves: &[ComparedOctave], stretches: &mut Vec<Stretch, K>) {
-    stretches.clear();
-    let mut open = false;
-    for octave in octaves {
-        let above = octave.z > 0.0;
-        if !(octave.z > NOTICEABLE || octave.z < -NOTICEABLE) {
-            open = false;
-            continue;
-        }
-        match stretches.last_mut() {
-            Some(last) if open && last.above == above => last.to_s = octave.tau_s,
-            _ => {
-                // No more stretches than octaves.
-                let _ = stretches.push(Stretch {
-                    above,
-                    from_s: octave.tau_s,
-                    to_s: octave.tau_s,
-                });
-            }
-        }
-        open = true;
-    }
-}
-
 /// One sentence: the worst octave, then the stretches.
 impl<const K: usize> core::fmt::Display for Comparison<K> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Some(worst) = self.worst() else {
             return write!(f, "no octaves to compare");
         };
-        if self.stretches.is_empty() {
+        if self.stretches().next().is_none() {
             let (percent, z) = (worst.percent.abs(), worst.z.abs());
             return write!(
                 f,
@@ -205,7 +194,7 @@ impl<const K: usize> core::fmt::Display for Comparison<K> {
             Time(worst.tau_s),
             worst.z.abs()
         )?;
-        for stretch in &self.stretches {
+        for stretch in self.stretches() {
             if stretch.from_s == stretch.to_s && stretch.from_s == worst.tau_s {
                 continue;
             }

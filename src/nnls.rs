@@ -147,6 +147,12 @@ impl<const P: usize> NormalEquations<P> {
             .sum()
     }
 
+    /// The solution with these unknowns free, whatever its signs. `None` if they cannot be told apart.
+    pub(crate) fn solve_free(&self, free: &Free<P>) -> Option<Vector<P>> {
+        let solution = self.solve_scaled(free)?;
+        Some(solution.component_mul(&self.scale))
+    }
+
     /// The unconstrained solution.
     ///
     /// # Errors

@@ -97,10 +97,12 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     #[inline(never)]
     fn with(&mut self, term: &Term) -> (f64, Vector) {
         let without = (f64::INFINITY, Vector::zeros());
-        let mut column = self.problem.column(term);
-        let n = self.problem.points.len();
+        let unit = self.problem.column(term);
         let scatter = |k| scatter(self.problem, self.weights, self.to_measured, k);
-        self.weights.whiten_column(n, &mut column, scatter);
+        let (column, size) = self
+            .weights
+            .whiten_trial(self.problem, scatter, |k| unit[k]);
+        let column = column.map(|x| f64::from(x) * size);
         let others = &self.whitened.columns;
         let exchanged = self.equations.exchange(
             self.place,

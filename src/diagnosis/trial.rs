@@ -8,11 +8,14 @@ use crate::{
     fit::{
         Problem,
         generalized::{Rounds, Solution},
+        shape::{MAX_SHAPE, ShapeEquations},
     },
-    model::{MAX_EFFECTS, Model},
+    math,
+    model::Model,
     nnls::Vector,
-    search::{Found, Search},
+    search::Found,
 };
+use heapless::Vec;
 
 /// Rounds of fitting and polishing the shapes of a candidate.
 const ROUNDS: usize = 10;
@@ -22,6 +25,14 @@ const SETTLED: f64 = 0.3;
 const HOPELESS: f64 = 60.0;
 /// … where a round makes up for less than this share of it.
 const CATCHING_UP: f64 = 0.1;
+
+/// The longest step of a shape's logarithm.
+const STRIDE: f64 = 0.2;
+/// Times that a step is halved because it led too far.
+const HALVINGS: u32 = 4;
+
+/// Changes of the logarithms of fitted shapes, by effect and parameter.
+type Steps = Vec<(usize, usize, f64), MAX_SHAPE>;
 
 /// A model with one more effect, and its squared coefficients.
 #[derive(Clone, Debug)]
@@ -49,8 +60,8 @@ impl Better {
         Ok(better)
     }
 
-    /// Fits the model with its own covariance, polishing the shapes in turn, until its score settles
-    /// or lags behind the `best` so far without catching up. `None` where a
+    /// Fits the model with its own covariance, and its shapes by the method of Gauss and Newton, until
+    /// the score settles or lags behind the `best` so far without catching up. `None` where a
     /// coefficient has to be held at zero in every round.
     #[inline(never)]
     pub(super) fn fit<const K: usize>(
@@ -60,79 +71,103 @@ impl Better {
         best: f64,
     ) -> Result<Option<(f64, Candidate)>, Error> {
         let span = span(curve);
-        let mut last: Option<(f64, Candidate)> = None;
+        let mut trial = self.clone();
+        let mut kept: Option<(f64, Candidate)> = None;
+        let mut before = f64::INFINITY;
+        let mut steps = Steps::new();
+        let mut halvings = 0;
         for _ in 0..ROUNDS {
-            let rounds = if last.is_none() {
-                Rounds::All
-            } else {
-                Rounds::One
-            };
-            let Some(now) = self.round(curve, tolerance, &span, rounds)? else {
+            let mut next = Steps::new();
+            let Some(now) = trial.round(curve, tolerance, &mut next)? else {
+                // Another model, with scores of its own.
+                before = f64::INFINITY;
                 continue;
             };
-            let before = last.map_or(f64::INFINITY, |(score, _)| score);
             let (gain, lag) = (before - now.0, now.0 - best);
-            last = Some(now);
-            let settled = gain < SETTLED && gain > -SETTLED;
-            if settled || (lag > HOPELESS && gain < CATCHING_UP * lag) {
-                break;
+            if kept.is_none_or(|(score, _)| now.0 < score) {
+                kept = Some(now);
+                self.clone_from(&trial);
+            }
+            if gain > -SETTLED {
+                if gain < SETTLED || (lag > HOPELESS && gain < CATCHING_UP * lag) {
+                    break;
+                }
+                before = now.0;
+                steps = next;
+                trial.go(&steps, 1.0, &span);
+            } else {
+                // Too far: half the way back.
+                halvings += 1;
+                if halvings > HALVINGS {
+                    break;
+                }
+                for step in &mut steps {
+                    step.2 *= 0.5;
+                }
+                trial.go(&steps, -1.0, &span);
             }
         }
-        Ok(last)
+        Ok(kept)
     }
 
-    /// One round: the score, and the candidate without its improvement. `None` if a coefficient has to
-    /// be held at zero first.
+    /// Changes shapes.
+    fn go(&mut self, steps: &Steps, sign: f64, span: &Span) {
+        for &(i, j, step) in steps {
+            let term = &mut self.model.terms_mut()[i];
+            let range = term.effect.range(j, span);
+            let changed = term.parameters[j] * math::exp(sign * step);
+            term.parameters[j] = changed.clamp(range.low, range.high.max(range.low));
+        }
+    }
+
+    /// One round: the score, the candidate without its improvement, and how the shapes ought to change.
+    /// `None` if a coefficient has to be held at zero first.
     #[inline(never)]
     fn round<const K: usize>(
         &mut self,
         curve: &Curve<K>,
         tolerance: f64,
-        span: &Span,
-        rounds: Rounds,
+        steps: &mut Steps,
     ) -> Result<Option<(f64, Candidate)>, Error> {
-        let model = self.model.clone();
-        let problem = Problem::new(curve, &model);
+        let problem = Problem::new(curve, &self.model);
         let mut solution = Solution::new(&problem);
-        solution.converge(self.squares, tolerance, rounds)?;
+        solution.converge(self.squares, tolerance, Rounds::One)?;
         self.squares = solution.squares;
-        let confused = solution.confused();
-        if let Some(confused) = confused {
-            self.model.terms_mut()[confused].held = true;
-            self.squares[confused] = 0.0;
+        match judge(&problem, &solution, steps) {
+            Ok(candidate) => Ok(Some((solution.minus_two_log_likelihood(), candidate))),
+            Err(confused) => {
+                self.model.terms_mut()[confused].held = true;
+                self.squares[confused] = 0.0;
+                Ok(None)
+            }
         }
-        polish(&mut self.model, &problem, &solution, &self.squares, span)?;
-        if confused.is_some() {
-            return Ok(None);
-        }
-        let at = model.terms().len() - 1;
-        let candidate = Candidate {
-            term: model.terms()[at],
-            coefficient: solution.coefficient_of(at),
-            chi_squared: solution.chi_squared,
-            improvement: 0.0,
-        };
-        Ok(Some((solution.minus_two_log_likelihood(), candidate)))
     }
 }
 
-/// The best shape of every fitted effect, each with the others as they were fitted.
+/// The candidate as it was fitted and how the shapes ought to change, or the effect that has to be held
+/// at zero for them to be determined.
 #[inline(never)]
-fn polish<const K: usize>(
-    model: &mut Model,
+fn judge<const K: usize>(
     problem: &Problem<'_, K>,
     solution: &Solution<'_, '_, K>,
-    squares: &Vector,
-    span: &Span,
-) -> Result<(), Error> {
-    let mut search = Search::new(problem, &solution.weights, false);
-    for at in 0..MAX_EFFECTS.min(model.terms().len()) {
-        let term = model.terms()[at];
-        if !term.fitted || squares[at] <= 0.0 {
-            continue;
+    steps: &mut Steps,
+) -> Result<Candidate, usize> {
+    let mut shape = ShapeEquations::empty();
+    let told = shape.set(problem, &solution.weights, &solution.squares);
+    if told {
+        if let Some(confused) = solution.confused(&shape) {
+            return Err(confused);
         }
-        search.at(at, squares)?;
-        model.terms_mut()[at] = search.refine_known(term, span).term;
+        shape.steps(&solution.free, |i, j, step| {
+            // As many as fitted shapes.
+            let _ = steps.push((i, j, step.clamp(-STRIDE, STRIDE)));
+        });
     }
-    Ok(())
+    let at = problem.count() - 1;
+    Ok(Candidate {
+        term: problem.model.terms()[at],
+        coefficient: solution.coefficient(at, told.then_some(&shape)),
+        chi_squared: solution.chi_squared,
+        improvement: 0.0,
+    })
 }

@@ -1,4 +1,4 @@
-use super::{AngleRandomWalk, Effect, Parameter, Range, Setting, Span, Story};
+use super::{AngleRandomWalk, Effect, Parameter, Range, SecondDifferences, Setting, Span, Story};
 use crate::math;
 
 /// Angle random walk behind a decimation filter of `stages` boxcars, coefficient N in rate · √s:
@@ -40,6 +40,8 @@ struct Filter {
     support: f64,
     /// 1/Σ r_i.
     scale: f64,
+    /// 2 Σ_{i>0} i r_i.
+    moment: f64,
 }
 
 impl Filter {
@@ -52,14 +54,18 @@ impl Filter {
             stages,
             support: math::ceil(width * if stages < 1.5 { 1.0 } else { 2.0 }),
             scale: 1.0,
+            moment: 0.0,
         };
-        let mut sum = filter.at(0.0);
+        let (mut sum, mut moment) = (filter.at(0.0), 0.0);
         let mut i = 1.0;
         while i < filter.support {
-            sum += 2.0 * filter.at(i);
+            let here = 2.0 * filter.at(i);
+            sum += here;
+            moment += i * here;
             i += 1.0;
         }
         filter.scale = 1.0 / sum;
+        filter.moment = moment * filter.scale;
         filter
     }
 
@@ -69,13 +75,25 @@ impl Filter {
 
     /// `n r₀ + 2 Σ_{i<n} (n−i) r_i`.
     fn sum(&self, n: f64) -> f64 {
+        if n >= self.support {
+            return n - self.moment;
+        }
         let mut sum = n * self.at(0.0);
         let mut i = 1.0;
-        while i < n.min(self.support) {
+        while i < n {
             sum += 2.0 * (n - i) * self.at(i);
             i += 1.0;
         }
         sum
+    }
+
+    /// A second difference of the sums.
+    fn second_difference(&self, x: f64, m: f64) -> f64 {
+        if x >= m + self.support {
+            return 0.0;
+        }
+        let apart = if x < m { m - x } else { x - m };
+        self.sum(x + m) - 2.0 * self.sum(x) + self.sum(apart)
     }
 }
 
@@ -145,11 +163,38 @@ impl Effect for DecimationFilter {
     }
 
     fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+        -0.5 * setting.interval_s * Filter::new(setting).second_difference(x, m)
+    }
+
+    fn variances(
+        &self,
+        factors: &mut dyn Iterator<Item = f64>,
+        setting: &Setting,
+        each: &mut dyn FnMut(f64),
+    ) {
         let filter = Filter::new(setting);
-        if x >= m + filter.support {
-            return 0.0;
+        let mut last: Option<(f64, f64)> = None;
+        for m in factors {
+            let own = match last {
+                Some((before, sum)) if before == m => sum,
+                _ => filter.sum(m),
+            };
+            let double = filter.sum(2.0 * m);
+            last = Some((2.0 * m, double));
+            // 3 G(0) − 4 G(m) + G(2m), over τ².
+            each(0.5 * (4.0 * own - double) / (m * m * setting.interval_s));
         }
-        let apart = if x < m { m - x } else { x - m };
-        -0.5 * setting.interval_s * (filter.sum(x + m) - 2.0 * filter.sum(x) + filter.sum(apart))
+    }
+
+    fn add_second_differences(
+        &self,
+        m: f64,
+        weight: f64,
+        setting: &Setting,
+        sum: &mut SecondDifferences,
+    ) {
+        let filter = Filter::new(setting);
+        let weight = -0.5 * setting.interval_s * weight;
+        sum.add(m, |x| weight * filter.second_difference(x, m));
     }
 }

@@ -57,7 +57,11 @@ impl Effect for Resonance {
 
     fn range(&self, parameter: usize, span: &Span) -> Range {
         match parameter {
-            0 => super::sinusoid::frequencies(span),
+            // Broader than a line, and its sides are smooth.
+            0 => Range {
+                steps_per_octave: 3.0,
+                ..super::sinusoid::frequencies(span)
+            },
             _ => Range {
                 low: 1.0,
                 high: 32.0,

@@ -67,6 +67,26 @@ impl Effect for Sinusoid {
         squared(kernel_root(m, setting) / m)
     }
 
+    fn variances(
+        &self,
+        factors: &mut dyn Iterator<Item = f64>,
+        setting: &Setting,
+        each: &mut dyn FnMut(f64),
+    ) {
+        let cycles = setting.parameters[0] * setting.interval_s;
+        let per_sample = 1.0 / sine_of_turns(cycles);
+        let mut last: Option<(f64, f64)> = None;
+        for m in factors {
+            // sin²2x = 4 sin²x (1 − sin²x) from octave to octave, each of which doubles an error of 1e-16.
+            let square = match last {
+                Some((before, square)) if m == 2.0 * before => 4.0 * square * (1.0 - square),
+                _ => squared(sine_of_turns(cycles * m)),
+            };
+            last = Some((m, square));
+            each(squared(square * per_sample / m));
+        }
+    }
+
     fn response(&self, m: f64, setting: &Setting) -> Option<Response> {
         // The mean product of two sines is half the product of their amplitudes.
         let half = core::f64::consts::SQRT_2;

@@ -159,12 +159,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
 
     /// An active effect that a fitted shape could take the place of: held at zero, it leaves the
     /// shape determined.
-    #[inline(never)]
-    pub(crate) fn confused(&self) -> Option<usize> {
-        let mut shape = ShapeEquations::empty();
-        if !shape.set(self.problem, &self.weights, &self.squares) {
-            return None;
-        }
+    pub(crate) fn confused(&self, shape: &ShapeEquations) -> Option<usize> {
         let before = shape.worst_error(&self.free);
         if before < UNDETERMINED {
             return None;
@@ -216,14 +211,6 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         fit.shrinkage = self.weights.shrinkage;
     }
 
-    /// One effect's coefficient.
-    #[inline(never)]
-    pub(crate) fn coefficient_of(&self, i: usize) -> Coefficient {
-        let mut shape = ShapeEquations::empty();
-        let told = shape.set(self.problem, &self.weights, &self.squares);
-        self.coefficient(i, told.then_some(&shape))
-    }
-
     /// Replaces the interval of a shape that is its effect's only one by that of its profile.
     #[inline(never)]
     pub(crate) fn bound_shapes(&self, fit: &mut Fit, span: &Span) -> Result<(), Error> {
@@ -244,8 +231,9 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         Ok(())
     }
 
+    /// One effect's coefficient.
     #[inline(never)]
-    fn coefficient(&self, i: usize, shape: Option<&ShapeEquations>) -> Coefficient {
+    pub(crate) fn coefficient(&self, i: usize, shape: Option<&ShapeEquations>) -> Coefficient {
         let term = &self.problem.model.terms()[i];
         if term.held {
             return Coefficient::new(term.effect, 0.0, None);

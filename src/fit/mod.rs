@@ -2,7 +2,7 @@
 
 pub(crate) mod generalized;
 mod independent;
-mod shape;
+pub(crate) mod shape;
 pub(crate) mod weights;
 
 pub use shape::{MAX_SHAPE, ShapeEstimate};

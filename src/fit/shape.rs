@@ -38,14 +38,14 @@ pub struct ShapeEstimate {
 
 /// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
 /// linear around the solution.
-pub(super) struct ShapeEquations {
+pub(crate) struct ShapeEquations {
     equations: NormalEquations<UNKNOWNS>,
     parameters: Vec<(usize, usize, Term), MAX_SHAPE>,
 }
 
 impl ShapeEquations {
     /// Of no model yet.
-    pub(super) fn empty() -> Self {
+    pub(crate) fn empty() -> Self {
         Self {
             equations: NormalEquations::empty(),
             parameters: Vec::new(),
@@ -55,7 +55,7 @@ impl ShapeEquations {
     /// Takes a solution. `false` for a model without fitted shapes, or where they cannot be told from
     /// the rest.
     #[inline(never)]
-    pub(super) fn set<const K: usize>(
+    pub(crate) fn set<const K: usize>(
         &mut self,
         problem: &Problem<'_, K>,
         weights: &Weights<K>,
@@ -83,8 +83,8 @@ impl ShapeEquations {
                 problem.column(&term)
             };
             let change = column(math::exp(STEP)) - column(math::exp(-STEP));
-            let mut derivative = change * (0.5 * squares[i] / STEP);
-            weights.whiten_column(problem.points.len(), &mut derivative, |_| 1.0);
+            let scale = 0.5 * squares[i] / STEP;
+            let derivative = weights.whiten(problem, |_| 1.0, |k| scale * change[k]);
             // As many as parameters.
             let _ = derivatives.push(derivative);
         }
@@ -94,9 +94,11 @@ impl ShapeEquations {
             Some(shape) => &derivatives[shape],
         };
         let unknowns = count + self.parameters.len();
+        let residual = |k: usize| problem.points[k].variance - problem.variance(k, squares);
+        let residual = weights.whiten(problem, |_| 1.0, residual);
         let set = self
             .equations
-            .set(unknowns, |a, b| at(a).dot(at(b)), |_| 0.0);
+            .set(unknowns, |a, b| at(a).dot(at(b)), |a| at(a).dot(&residual));
         set.is_ok()
     }
 
@@ -114,14 +116,27 @@ impl ShapeEquations {
         self.equations.count() - self.parameters.len()
     }
 
+    /// The step of Gauss and Newton: by how much the logarithms of the shapes ought to change for the
+    /// least χ², all of the free coefficients following; `each(effect, parameter, change)`.
+    pub(crate) fn steps(&self, free: &Free, mut each: impl FnMut(usize, usize, f64)) {
+        let count = self.count();
+        let free = self.with_shapes(free, count);
+        let Some(steps) = self.equations.solve_free(&free) else {
+            return;
+        };
+        for (at, &(i, j, _)) in self.parameters.iter().enumerate() {
+            each(i, j, steps[count + at]);
+        }
+    }
+
     /// Variance of a squared coefficient with the shapes free.
-    pub(super) fn variance(&self, i: usize, free: &Free) -> Option<f64> {
+    pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<f64> {
         let free = self.with_shapes(free, self.count());
         self.equations.variance(i, &free)
     }
 
     /// Largest standard error of a shape's logarithm, infinite where the curve does not tell it.
-    pub(super) fn worst_error(&self, free: &Free) -> f64 {
+    pub(crate) fn worst_error(&self, free: &Free) -> f64 {
         let count = self.count();
         let free = self.with_shapes(free, count);
         let variance = |at: usize| self.equations.variance(count + at, &free);
@@ -131,7 +146,7 @@ impl ShapeEquations {
     }
 
     /// The fitted parameters with their intervals, which are even in the logarithm.
-    pub(super) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
+    pub(crate) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
         let count = self.count();
         let free = self.with_shapes(free, count);
         let parameters = self.parameters.iter().enumerate();

@@ -102,12 +102,8 @@ impl<const K: usize> Weights<K> {
 
     /// χ² of the curve beside the model with these squared coefficients.
     pub(crate) fn chi_squared(&self, problem: &Problem<'_, K>, squares: &Vector) -> f64 {
-        let mut residual = SVector::<f64, K>::zeros();
-        for (k, point) in problem.points.iter().enumerate().take(K) {
-            residual[k] = point.variance - problem.variance(k, squares);
-        }
-        self.whiten_column(problem.points.len(), &mut residual, |_| 1.0);
-        residual.norm_squared()
+        let residual = |k: usize| problem.points[k].variance - problem.variance(k, squares);
+        self.whiten(problem, |_| 1.0, residual).norm_squared()
     }
 
     /// Curve and columns in units in which octaves are independent and have a variance of one,
@@ -119,41 +115,50 @@ impl<const K: usize> Weights<K> {
         scatter: impl Fn(usize) -> f64,
         whitened: &mut Whitened<K>,
     ) {
-        let unit = SVector::<f64, K>::from_fn(|k, _| {
-            if k < problem.points.len() {
-                1.0 / (self.model[k] * scatter(k))
-            } else {
-                0.0
-            }
-        });
         whitened.columns.clear();
-        for i in 0..problem.count() {
+        for column in &problem.columns {
             // As many columns as effects.
             let _ = whitened
                 .columns
-                .push(problem.columns[i].component_mul(&unit));
+                .push(self.whiten(problem, &scatter, |k| column[k]));
         }
-        for (k, point) in problem.points.iter().enumerate().take(K) {
-            whitened.curve[k] = point.variance * unit[k];
-        }
-        let n = problem.points.len();
-        for column in whitened.columns.iter_mut() {
-            cholesky::forward(&self.factor, n, column);
-        }
-        cholesky::forward(&self.factor, n, &mut whitened.curve);
+        whitened.curve = self.whiten(problem, &scatter, |k| problem.points[k].variance);
     }
 
-    /// One more column in the same units.
-    pub(crate) fn whiten_column(
+    /// One more column of variances in the same units.
+    pub(crate) fn whiten(
         &self,
-        n: usize,
-        column: &mut SVector<f64, K>,
+        problem: &Problem<'_, K>,
         scatter: impl Fn(usize) -> f64,
-    ) {
-        for k in 0..n.min(K) {
-            column[k] /= self.model[k] * scatter(k);
+        variance: impl Fn(usize) -> f64,
+    ) -> SVector<f64, K> {
+        let mut column = SVector::zeros();
+        let n = problem.points.len().min(K);
+        for k in 0..n {
+            column[k] = variance(k) / (self.model[k] * scatter(k));
         }
-        cholesky::forward(&self.factor, n, column);
+        cholesky::forward(&self.factor, n, &mut column);
+        column
+    }
+
+    /// The same in single precision, for a shape on trial: a core that has it in hardware spends a tenth
+    /// of the time, and with a tolerance granted, numbers are below some hundred standard errors. In
+    /// units of its largest number, which is returned too.
+    pub(crate) fn whiten_trial(
+        &self,
+        problem: &Problem<'_, K>,
+        scatter: impl Fn(usize) -> f64,
+        variance: impl Fn(usize) -> f64,
+    ) -> (SVector<f32, K>, f64) {
+        let n = problem.points.len().min(K);
+        let relative = |k: usize| variance(k) / (self.model[k] * scatter(k));
+        let unit = (0..n).map(relative).fold(0.0, f64::max);
+        let mut column = SVector::<f32, K>::zeros();
+        for k in 0..n {
+            column[k] = (relative(k) / unit) as f32;
+        }
+        cholesky::forward_single(&self.factor, n, &mut column);
+        (column, unit)
     }
 }
 

@@ -113,7 +113,7 @@ fn axis(compared: &Compared) -> Axis<'_> {
         p_value: comparison.p_value,
         rms_percent: comparison.rms_percent,
         worst: model_json::worst(comparison),
-        stretches: comparison.stretches.iter().map(stretch).collect(),
+        stretches: comparison.stretches().map(stretch).collect(),
         words: comparison.to_string(),
         held_out,
     }
@@ -135,7 +135,7 @@ fn octave(octave: &ComparedOctave, model: &Model) -> Octave {
     }
 }
 
-fn stretch(side: &Side) -> Stretch {
+fn stretch(side: Side) -> Stretch {
     Stretch {
         side: if side.above { "above" } else { "below" },
         from_s: side.from_s,

@@ -19,9 +19,10 @@
 
 use crate::{
     curve::{Curve, Point},
+    effect::Response,
     lattice::{self, Rounded, SecondDifferences},
     math,
-    model::{MAX_EFFECTS, Model},
+    model::{MAX_EFFECTS, Model, Term},
 };
 use heapless::Vec;
 use nalgebra::{Complex, SMatrix};
@@ -83,6 +84,13 @@ pub(crate) fn covariance(
         let random = random.rounded();
         let per_unit = 2.0 / random.unit();
         let mut turns = Vec::<Turn, TABLES>::new();
+        let mut deterministic = Vec::<(&Term, f64, Response), MAX_EFFECTS>::new();
+        for (term, &square) in present() {
+            if let Some(short) = term.effect.response(m_j, &term.setting(interval_s)) {
+                // As many as effects.
+                let _ = deterministic.push((term, per_unit * square * short.amplitude, short));
+            }
+        }
         for (k, longer) in points.iter().enumerate().skip(j) {
             let pair = Pair { shorter, longer };
             // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
@@ -91,14 +99,13 @@ pub(crate) fn covariance(
                 continue;
             }
             let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
-            for (term, &square) in present() {
+            for (term, size, short) in &deterministic {
                 let setting = term.setting(interval_s);
-                let response = |m: u32| term.effect.response(f64::from(m), &setting);
-                if let (Some(short), Some(long)) = (response(shorter.m), response(longer.m)) {
+                if let Some(long) = term.effect.response(f64::from(longer.m), &setting) {
                     let phase = 0.25 * m_j * short.phase;
                     // As many as effects: there is always room.
                     let _ = waves.push(Wave {
-                        product: (per_unit * square * short.amplitude * long.amplitude) as f32,
+                        product: (size * long.amplitude) as f32,
                         phase,
                         turn: Turn::of(phase, &mut turns),
                         now: Complex::new(1.0, 0.0),

@@ -91,9 +91,30 @@ impl SecondDifferences {
 
     /// Adds `f(x)` at every lag `x`, in samples, of clusters of `m` samples.
     pub fn add(&mut self, m: f64, f: impl Fn(f64) -> f64) {
+        self.add_below(m, f64::INFINITY, f);
+    }
+
+    /// The same for an effect whose second differences vanish from the lag `end` on.
+    pub fn add_below(&mut self, m: f64, end: f64, f: impl Fn(f64) -> f64) {
         for (slot, value) in self.values.iter_mut().enumerate().take(self.used) {
             let position = position(slot);
             // Quarters of a cluster that lie between samples are never asked for.
+            if !position.is_multiple_of(self.stride) {
+                continue;
+            }
+            let lag = 0.25 * m * f64::from(position);
+            if lag >= end {
+                break;
+            }
+            *value += f(lag);
+        }
+    }
+
+    /// The same at lags of a cluster and more.
+    pub(crate) fn add_from(&mut self, m: f64, f: impl Fn(f64) -> f64) {
+        let slots = self.values.iter_mut().enumerate();
+        for (slot, value) in slots.take(self.used).skip(STEPS as usize) {
+            let position = position(slot);
             if position.is_multiple_of(self.stride) {
                 *value += f(0.25 * m * f64::from(position));
             }

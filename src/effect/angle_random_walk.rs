@@ -1,4 +1,4 @@
-use super::{Effect, Setting, Story};
+use super::{Effect, SecondDifferences, Setting, Story};
 
 /// Angle random walk, coefficient N in rate · √s: white rate noise of two-sided density N².
 ///
@@ -38,5 +38,14 @@ impl Effect for AngleRandomWalk {
         } else {
             0.0
         }
+    }
+    fn add_second_differences(
+        &self,
+        m: f64,
+        weight: f64,
+        setting: &Setting,
+        sum: &mut SecondDifferences,
+    ) {
+        sum.add_below(m, m, |x| weight * self.second_difference(x, m, setting));
     }
 }

@@ -195,6 +195,8 @@ impl Effect for DecimationFilter {
     ) {
         let filter = Filter::new(setting);
         let weight = -0.5 * setting.interval_s * weight;
-        sum.add(m, |x| weight * filter.second_difference(x, m));
+        sum.add_below(m, m + filter.support, |x| {
+            weight * filter.second_difference(x, m)
+        });
     }
 }

@@ -1,4 +1,4 @@
-use super::{Effect, Setting, Story};
+use super::{Effect, SecondDifferences, Setting, Story};
 
 /// Rate random walk, coefficient K in rate / √s: the rate is a walk, stepped once a sample.
 ///
@@ -42,5 +42,17 @@ impl Effect for RateRandomWalk {
             0.5 * x * m * m
         };
         t * t * t * cubic
+    }
+    fn add_second_differences(
+        &self,
+        m: f64,
+        weight: f64,
+        setting: &Setting,
+        sum: &mut SecondDifferences,
+    ) {
+        sum.add_below(m, m, |x| weight * self.second_difference(x, m, setting));
+        let t = setting.interval_s;
+        let slope = 0.5 * weight * t * t * t * m * m;
+        sum.add_from(m, |x| slope * x);
     }
 }

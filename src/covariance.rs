@@ -19,11 +19,11 @@
 
 use crate::{
     curve::{Curve, Point},
-    effect::Response,
     lattice::{self, Rounded, SecondDifferences},
     math,
     model::{MAX_EFFECTS, Model, Term},
 };
+use core::f64::consts::PI;
 use heapless::Vec;
 use nalgebra::{Complex, SMatrix};
 
@@ -84,11 +84,19 @@ pub(crate) fn covariance(
         let random = random.rounded();
         let per_unit = 2.0 / random.unit();
         let mut turns = Vec::<Turn, TABLES>::new();
-        let mut deterministic = Vec::<(&Term, f64, Response), MAX_EFFECTS>::new();
+        let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
         for (term, &square) in present() {
             if let Some(short) = term.effect.response(m_j, &term.setting(interval_s)) {
-                // As many as effects.
-                let _ = deterministic.push((term, per_unit * square * short.amplitude, short));
+                let phase = 0.25 * m_j * short.phase;
+                // As many as effects: there is always room.
+                let _ = waves.push(Wave {
+                    term,
+                    size: per_unit * square * short.amplitude,
+                    product: 0.0,
+                    phase,
+                    turn: Turn::of(phase, &mut turns),
+                    now: START,
+                });
             }
         }
         for (k, longer) in points.iter().enumerate().skip(j) {
@@ -98,19 +106,11 @@ pub(crate) fn covariance(
                 each(k, j, 0.0);
                 continue;
             }
-            let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
-            for (term, size, short) in &deterministic {
-                let setting = term.setting(interval_s);
-                if let Some(long) = term.effect.response(f64::from(longer.m), &setting) {
-                    let phase = 0.25 * m_j * short.phase;
-                    // As many as effects: there is always room.
-                    let _ = waves.push(Wave {
-                        product: (size * long.amplitude) as f32,
-                        phase,
-                        turn: Turn::of(phase, &mut turns),
-                        now: Complex::new(1.0, 0.0),
-                    });
-                }
+            for wave in &mut waves {
+                let setting = wave.term.setting(interval_s);
+                let long = wave.term.effect.response(f64::from(longer.m), &setting);
+                wave.product = long.map_or(0.0, |long| (wave.size * long.amplitude) as f32);
+                wave.now = START;
             }
             each(k, j, pair.covariance(&random, &turns, &mut waves));
         }
@@ -119,7 +119,10 @@ pub(crate) fn covariance(
 
 /// Twice what a deterministic effect puts into the product of two differences: `product · cos(phase · ℓ)`
 /// at a lag of `ℓ` quarters of the shorter cluster.
-struct Wave {
+struct Wave<'a> {
+    term: &'a Term,
+    /// All of the product but what the longer octave brings.
+    size: f64,
     product: f32,
     phase: f64,
     turn: Option<usize>,
@@ -127,7 +130,7 @@ struct Wave {
     now: Complex<f32>,
 }
 
-impl Wave {
+impl Wave<'_> {
     fn value(&self) -> f32 {
         self.product * self.now.re
     }
@@ -142,13 +145,18 @@ impl Wave {
             .and_then(|turn| turns.get(turn)?.steps.get(step.ilog2() as usize));
         self.now = match turn {
             Some(turn) => self.now * turn,
-            None => Complex::new(math::cos(self.phase * f64::from(lag + step)) as f32, 0.0),
+            None => {
+                let turns = self.phase / (2.0 * PI) * f64::from(lag + step);
+                Complex::new(math::sincos_of_turns(turns).1 as f32, 0.0)
+            }
         };
     }
 }
 
+const START: Complex<f32> = Complex::new(1.0, 0.0);
+
 /// Oscillations of a model whose turns are tabled; those beyond take a cosine a lag.
-const TABLES: usize = 3;
+const TABLES: usize = 2;
 
 /// `e^(i · phase · 2^k)`, by squaring: a lattice of cosines for one exponential.
 struct Turn {
@@ -163,7 +171,7 @@ impl Turn {
         if let Some(at) = known.iter().position(|turn| turn.phase == phase) {
             return Some(at);
         }
-        let (sine, cosine) = math::sincos(phase);
+        let (sine, cosine) = math::sincos_of_turns(phase / (2.0 * PI));
         let mut turn = Complex::new(cosine, sine);
         let steps = core::array::from_fn(|_| {
             let here = Complex::new(turn.re as f32, turn.im as f32);
@@ -187,7 +195,7 @@ impl Pair<'_> {
         (self.longer.m / self.shorter.m).saturating_mul(4)
     }
 
-    fn covariance(&self, differences: &Rounded, turns: &[Turn], waves: &mut [Wave]) -> f64 {
+    fn covariance(&self, differences: &Rounded, turns: &[Turn], waves: &mut [Wave<'_>]) -> f64 {
         let middle = self.middle();
         let stride = lattice::stride(self.shorter.m);
         let starts = Starts::new(self.shorter, self.longer);

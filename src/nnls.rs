@@ -34,26 +34,28 @@ impl<const P: usize> NormalEquations<P> {
         }
     }
 
-    /// Takes the first `count` unknowns' `H`, of which `entry(i, j)` gives the lower triangle, and `b`.
+    /// Takes the first `count` unknowns' `H` and `b`: `row(i, own)` fills `H_ij` for `j ≤ i` and returns
+    /// `b_i`.
     ///
     /// # Errors
     /// [`Error::Singular`] where a column is zero or not finite.
     pub(crate) fn set(
         &mut self,
         count: usize,
-        entry: impl Fn(usize, usize) -> f64,
-        right: impl Fn(usize) -> f64,
+        row: impl Fn(usize, &mut Vector<P>) -> f64,
     ) -> Result<(), Error> {
         self.count = count.min(P);
+        let mut own = Vector::zeros();
         for i in 0..self.count {
-            let diagonal = entry(i, i);
+            let right = row(i, &mut own);
+            let diagonal = own[i];
             if !(diagonal.is_finite() && diagonal > 0.0) {
                 return Err(Error::Singular);
             }
             self.scale[i] = 1.0 / math::sqrt(diagonal);
-            self.right[i] = right(i) * self.scale[i];
+            self.right[i] = right * self.scale[i];
             for j in 0..=i {
-                let scaled = entry(i, j) * self.scale[i] * self.scale[j];
+                let scaled = own[j] * self.scale[i] * self.scale[j];
                 self.scaled[(i, j)] = scaled;
                 self.scaled[(j, i)] = scaled;
             }

@@ -51,13 +51,13 @@ pub(crate) fn record_length_s(
             }
             m *= 2.0;
         }
-        equations
-            .set(
-                count,
-                |a, b| samples * growing[(a, b)] - fixed[(a, b)],
-                |_| 0.0,
-            )
-            .ok()?;
+        let set = equations.set(count, |a, row| {
+            for b in 0..=a {
+                row[b] = samples * growing[(a, b)] - fixed[(a, b)];
+            }
+            0.0
+        });
+        set.ok()?;
         let variance = equations.variance(i, &with);
         if variance.is_some_and(|variance| square * square > 1.96 * 1.96 * variance) {
             return Some(samples * interval_s);

@@ -14,8 +14,8 @@ use crate::{
 
 /// The 95 % quantile of χ² with one degree of freedom.
 const RISE: f64 = 3.841_459;
-/// Halvings of the step in a refinement: from half a grid step to a 256th.
-const HALVINGS: usize = 8;
+/// Halvings of the step in a refinement: from half a grid step to a 32nd.
+const HALVINGS: usize = 5;
 
 /// The fit of a curve with one effect of any shape among others whose shapes are known, in units in
 /// which octaves are independent.
@@ -73,14 +73,15 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
             weights.whiten_into(problem, scatter, &mut self.whitened);
         }
         let Whitened { columns, curve } = &self.whitened;
-        self.equations.set(
-            columns.len().max(place + 1),
-            |i, j| match (i == place || j == place, i == j) {
-                (false, _) => columns[i].dot(&columns[j]),
-                (true, same) => f64::from(u8::from(same)),
-            },
-            |i| columns.get(i).map_or(0.0, |column| column.dot(curve)),
-        )?;
+        self.equations.set(columns.len().max(place + 1), |i, row| {
+            for j in 0..=i {
+                row[j] = match (i == place || j == place, i == j) {
+                    (false, _) => columns[i].dot(&columns[j]),
+                    (true, same) => f64::from(u8::from(same)),
+                };
+            }
+            columns.get(i).map_or(0.0, |column| column.dot(curve))
+        })?;
         self.place = place;
         self.held = self.problem.held();
         self.held[place] = false;

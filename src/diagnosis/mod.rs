@@ -200,13 +200,13 @@ impl Diagnosis {
                 step.added = self.follow(curve, evidence, &step, &standing)?;
             }
             if room && step.added.is_none() && !standing.adequate {
-                better = self.try_all(curve, &standing, &found, &mut step);
+                self.try_all(curve, &standing, &found, &mut step, &mut better);
                 if let Some(better) = &mut better {
                     twins::tell(curve, evidence.kurtosis, effects, better, &mut step);
                 }
             }
             report(&step);
-            match (step.added, better) {
+            match (step.added, &better) {
                 (Some(Addition::Covariate(follows)), _) => {
                     let cross = &evidence.covariates[follows.covariate];
                     let rest = cross.corrected(curve, follows.slope.value);
@@ -214,7 +214,7 @@ impl Diagnosis {
                     corrected = Some(rest);
                 }
                 (Some(Addition::Effect(_)), Some(better)) => {
-                    step.model = better.model;
+                    step.model.clone_from(&better.model);
                     start = Some(better.squares);
                 }
                 _ => {
@@ -266,8 +266,8 @@ impl Diagnosis {
         Ok(standing)
     }
 
-    /// Fits the shapes that a scan found: candidates and decision go into the step, the better model
-    /// is returned.
+    /// Fits the shapes that a scan found: candidates and decision go into the step, the model with the
+    /// one that is added into `best`.
     #[inline(never)]
     fn try_all<const K: usize>(
         &self,
@@ -275,15 +275,22 @@ impl Diagnosis {
         standing: &Standing,
         found: &Scan,
         step: &mut Step<K>,
-    ) -> Option<Better> {
-        let mut best: Option<Better> = None;
+        best: &mut Option<Better>,
+    ) {
         let mut least = f64::INFINITY;
         for found in found {
             let Ok(mut better) = Better::new(&step.model, found) else {
                 continue;
             };
             // An effect that cannot be fitted is no candidate.
-            let Ok(Some((score, mut candidate))) = better.fit(curve, self.tolerance, least) else {
+            let mut candidate = Candidate {
+                term: found.term,
+                coefficient: Coefficient::new(found.term.effect, 0.0, None),
+                chi_squared: f64::NAN,
+                improvement: 0.0,
+            };
+            let fitted = better.fit(curve, self.tolerance, least, &mut candidate);
+            let Ok(Some(score)) = fitted else {
                 continue;
             };
             least = least.min(score);
@@ -295,15 +302,18 @@ impl Diagnosis {
                 .position(|other| other.improvement < candidate.improvement)
                 .unwrap_or(step.candidates.len());
             if at == 0 {
-                best = Some(better);
+                *best = Some(better);
             }
             // As many candidates as shapes.
             let _ = step.candidates.insert(at, candidate);
         }
-        let (first, others) = step.candidates.split_first()?;
-        if first.improvement < self.threshold {
-            return None;
-        }
+        let (first, others) = match step.candidates.split_first() {
+            Some((first, others)) if first.improvement >= self.threshold => (first, others),
+            _ => {
+                *best = None;
+                return;
+            }
+        };
         step.added = Some(Addition::Effect(first.term));
         for candidate in others {
             if candidate.improvement > first.improvement - self.ambiguity {
@@ -311,7 +321,6 @@ impl Diagnosis {
                 let _ = step.ambiguous.push(candidate.term.effect.name());
             }
         }
-        best
     }
 }
 

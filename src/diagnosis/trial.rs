@@ -20,11 +20,11 @@ use heapless::Vec;
 /// Rounds of fitting and polishing the shapes of a candidate.
 const ROUNDS: usize = 10;
 /// A change of `−2 ln L` that ends the rounds.
-const SETTLED: f64 = 0.3;
+const SETTLED: f64 = 0.5;
 /// A lag of `−2 ln L` behind the best candidate that ends them too …
 const HOPELESS: f64 = 60.0;
 /// … where a round makes up for less than this share of it.
-const CATCHING_UP: f64 = 0.1;
+const CATCHING_UP: f64 = 0.25;
 
 /// The longest step of a shape's logarithm.
 const STRIDE: f64 = 0.2;
@@ -69,30 +69,36 @@ impl Better {
         curve: &Curve<K>,
         tolerance: f64,
         best: f64,
-    ) -> Result<Option<(f64, Candidate)>, Error> {
+        candidate: &mut Candidate,
+    ) -> Result<Option<f64>, Error> {
         let span = span(curve);
         let mut trial = self.clone();
-        let mut kept: Option<(f64, Candidate)> = None;
+        let mut tried = *candidate;
+        let mut kept: Option<f64> = None;
         let mut before = f64::INFINITY;
         let mut steps = Steps::new();
         let mut halvings = 0;
         for _ in 0..ROUNDS {
             let mut next = Steps::new();
-            let Some(now) = trial.round(curve, tolerance, &mut next)? else {
+            let Some(now) = trial.round(curve, tolerance, &mut next, &mut tried)? else {
                 // Another model, with scores of its own.
                 before = f64::INFINITY;
                 continue;
             };
-            let (gain, lag) = (before - now.0, now.0 - best);
-            if kept.is_none_or(|(score, _)| now.0 < score) {
+            let (gain, lag) = (before - now, now - best);
+            if kept.is_none_or(|score| now < score) {
                 kept = Some(now);
+                *candidate = tried;
                 self.clone_from(&trial);
             }
             if gain > -SETTLED {
                 if gain < SETTLED || (lag > HOPELESS && gain < CATCHING_UP * lag) {
+                    if kept == Some(now) {
+                        self.go(&next, 1.0, &span);
+                    }
                     break;
                 }
-                before = now.0;
+                before = now;
                 steps = next;
                 trial.go(&steps, 1.0, &span);
             } else {
@@ -128,14 +134,15 @@ impl Better {
         curve: &Curve<K>,
         tolerance: f64,
         steps: &mut Steps,
-    ) -> Result<Option<(f64, Candidate)>, Error> {
+        candidate: &mut Candidate,
+    ) -> Result<Option<f64>, Error> {
         let problem = Problem::new(curve, &self.model);
         let mut solution = Solution::new(&problem);
         solution.converge(self.squares, tolerance, Rounds::One)?;
         self.squares = solution.squares;
-        match judge(&problem, &solution, steps) {
-            Ok(candidate) => Ok(Some((solution.minus_two_log_likelihood(), candidate))),
-            Err(confused) => {
+        match judge(&problem, &solution, steps, candidate) {
+            None => Ok(Some(solution.minus_two_log_likelihood())),
+            Some(confused) => {
                 self.model.terms_mut()[confused].held = true;
                 self.squares[confused] = 0.0;
                 Ok(None)
@@ -151,12 +158,13 @@ fn judge<const K: usize>(
     problem: &Problem<'_, K>,
     solution: &Solution<'_, '_, K>,
     steps: &mut Steps,
-) -> Result<Candidate, usize> {
+    candidate: &mut Candidate,
+) -> Option<usize> {
     let mut shape = ShapeEquations::empty();
     let told = shape.set(problem, &solution.weights, &solution.squares);
     if told {
         if let Some(confused) = solution.confused(&shape) {
-            return Err(confused);
+            return Some(confused);
         }
         shape.steps(&solution.free, |i, j, step| {
             // As many as fitted shapes.
@@ -164,10 +172,8 @@ fn judge<const K: usize>(
         });
     }
     let at = problem.count() - 1;
-    Ok(Candidate {
-        term: problem.model.terms()[at],
-        coefficient: solution.coefficient(at, told.then_some(&shape)),
-        chi_squared: solution.chi_squared,
-        improvement: 0.0,
-    })
+    candidate.term = problem.model.terms()[at];
+    candidate.coefficient = solution.coefficient(at, told.then_some(&shape));
+    candidate.chi_squared = solution.chi_squared;
+    None
 }

@@ -2,7 +2,6 @@
 
 use super::SecondDifferences;
 use crate::{lattice, math};
-use core::f64::consts::PI;
 use nalgebra::Complex;
 
 /// Decays of a cluster beyond this leave nothing of what lies past it.
@@ -36,7 +35,7 @@ impl Pole {
         let cycles = frequency_hz * interval_s;
         let z = power(decay, cycles, 1.0);
         // 1 − z without cancellation where the pole is slow.
-        let sine = math::sin(PI * cycles);
+        let (sine, _) = math::sincos_of_turns(0.5 * cycles);
         let rest = Complex::new(
             -math::expm1(-decay) + 2.0 * math::exp(-decay) * sine * sine,
             -z.im,
@@ -131,7 +130,6 @@ fn power(decay: f64, cycles: f64, n: f64) -> Complex<f64> {
     if cycles == 0.0 {
         return Complex::new(size, 0.0);
     }
-    let turns = cycles * n;
-    let (sine, cosine) = math::sincos(2.0 * PI * (turns - math::floor(turns)));
+    let (sine, cosine) = math::sincos_of_turns(cycles * n);
     Complex::new(size * cosine, size * sine)
 }

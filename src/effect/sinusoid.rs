@@ -12,7 +12,7 @@ pub struct Sinusoid;
 
 /// `sin(π x)` of a number of half turns, however large.
 fn sine_of_turns(x: f64) -> f64 {
-    math::sin(PI * (x - 2.0 * math::floor(0.5 * x)))
+    math::sincos_of_turns(0.5 * x).0
 }
 
 /// `sin²(πfτ₀n)/sin(πfτ₀)`.

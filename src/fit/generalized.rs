@@ -1,10 +1,7 @@
 //! Generalised least squares: octaves weighted by the covariance of the curve.
 
 use super::{
-    Fit, Method, Problem, clusters, independent,
-    shape::ShapeEquations,
-    squared,
-    weights::{Weights, Whitened},
+    Fit, Method, Problem, clusters, independent, shape::ShapeEquations, squared, weights::Weights,
 };
 use crate::{
     chi_squared::chi_squared_tail,
@@ -98,7 +95,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         rounds: Rounds,
     ) -> Result<(), Error> {
         let problem = self.problem;
-        let mut whitened = Whitened::empty();
+        let curve = |k: usize| problem.points[k].variance;
         // The squares that the covariance is taken at approach those that it gives.
         let mut assumed = start;
         let mut last: Option<SVector<f64, K>> = None;
@@ -106,8 +103,8 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         let mut round = 1;
         loop {
             self.weights.set(problem, &assumed, tolerance)?;
-            self.weights.whiten_into(problem, |_| 1.0, &mut whitened);
-            whitened.equations(&mut self.equations)?;
+            let (weights, equations) = (&self.weights, &mut self.equations);
+            weights.equations(problem, |_| 1.0, &[], curve, equations)?;
             (self.squares, self.free) = self.equations.solve_non_negative(&problem.held());
             let change = SVector::<f64, K>::from_fn(|k, _| {
                 if k < problem.points.len() {
@@ -279,13 +276,14 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     #[inline(never)]
     fn bound(&self, i: usize, first: f64) -> f64 {
         let problem = self.problem;
-        let mut whitened = Whitened::empty();
+        let curve = |k: usize| problem.points[k].variance;
         let mut equations = NormalEquations::empty();
         let mut bound = first;
         for _ in 0..BOUND_ROUNDS {
-            let scatter = |k: usize| 1.0 + bound * problem.columns[i][k] / self.weights.model[k];
-            self.weights.whiten_into(problem, scatter, &mut whitened);
-            if whitened.equations(&mut equations).is_err() {
+            let scatter = |k: usize| 1.0 + bound * problem.unit(i, k) / self.weights.model[k];
+            let weights = &self.weights;
+            let set = weights.equations(problem, scatter, &[], curve, &mut equations);
+            if set.is_err() {
                 break;
             }
             let (squares, mut free) =
@@ -304,6 +302,6 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         let octaves = 0..self.problem.points.len();
         octaves
             .into_iter()
-            .all(|k| bound * self.problem.columns[i][k] < self.weights.model[k])
+            .all(|k| bound * self.problem.unit(i, k) < self.weights.model[k])
     }
 }

@@ -12,18 +12,18 @@ pub(super) fn equations<const K: usize>(
     weight: impl Fn(&Point) -> f64,
     equations: &mut NormalEquations,
 ) -> Result<(), Error> {
-    let (points, columns) = (problem.points, &problem.columns);
-    let product = |i: usize, other: &dyn Fn(usize) -> f64| -> f64 {
-        let octaves = points.iter().enumerate();
+    let sum = |i: usize, other: &dyn Fn(usize, &Point) -> f64| -> f64 {
+        let octaves = problem.points.iter().enumerate();
         octaves
-            .map(|(k, point)| weight(point) * columns[i][k] * other(k))
+            .map(|(k, point)| weight(point) * problem.unit(i, k) * other(k, point))
             .sum()
     };
-    equations.set(
-        problem.count(),
-        |i, j| product(i, &|k| columns[j][k]),
-        |i| product(i, &|k| points[k].variance),
-    )
+    equations.set(problem.count(), |i, row| {
+        for j in 0..=i {
+            row[j] = sum(i, &|k, _| problem.unit(j, k));
+        }
+        sum(i, &|_, point| point.variance)
+    })
 }
 
 /// The inverse square of an octave's standard error, `δσ̂²`.

@@ -173,8 +173,9 @@ pub(crate) struct Problem<'a, const K: usize> {
     pub(crate) points: &'a [Point],
     pub(crate) model: &'a Model,
     pub(crate) interval_s: f64,
-    /// Allan variances of unit coefficients, of each effect.
-    columns: Vec<SVector<f64, K>, MAX_EFFECTS>,
+    /// Allan variances of unit coefficients, of each effect: single precision is far below what any
+    /// record tells of them.
+    columns: Vec<SVector<f32, K>, MAX_EFFECTS>,
 }
 
 impl<'a, const K: usize> Problem<'a, K> {
@@ -187,7 +188,9 @@ impl<'a, const K: usize> Problem<'a, K> {
         };
         for term in model.terms() {
             // As many columns as effects.
-            let _ = problem.columns.push(problem.column(term));
+            let _ = problem
+                .columns
+                .push(problem.column(term).map(|variance| variance as f32));
         }
         problem
     }
@@ -208,10 +211,15 @@ impl<'a, const K: usize> Problem<'a, K> {
         column
     }
 
+    /// Variance of an effect in octave `k`, for a coefficient of one.
+    pub(crate) fn unit(&self, i: usize, k: usize) -> f64 {
+        f64::from(self.columns[i][k])
+    }
+
     /// An effect's share of the model's variance in octave `k`; 0 beyond the model.
     pub(crate) fn share(&self, k: usize, i: usize, squares: &Vector) -> f64 {
         if i < self.count() {
-            self.columns[i][k] * squares[i] / self.variance(k, squares)
+            self.unit(i, k) * squares[i] / self.variance(k, squares)
         } else {
             0.0
         }
@@ -230,7 +238,7 @@ impl<'a, const K: usize> Problem<'a, K> {
     /// The model's variance in octave `k`.
     pub(crate) fn variance(&self, k: usize, squares: &Vector) -> f64 {
         (0..self.count())
-            .map(|i| self.columns[i][k] * squares[i])
+            .map(|i| self.unit(i, k) * squares[i])
             .sum()
     }
 }

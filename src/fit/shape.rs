@@ -1,9 +1,6 @@
 //! Uncertainty of fitted shapes, and what they add to that of the coefficients.
 
-use super::{
-    Problem,
-    weights::{Weights, Whitened},
-};
+use super::{Problem, weights::Weights};
 use crate::{
     math,
     model::{MAX_EFFECTS, Term},
@@ -72,9 +69,7 @@ impl ShapeEquations {
         if self.parameters.is_empty() {
             return false;
         }
-        let mut whitened = Whitened::empty();
-        weights.whiten_into(problem, |_| 1.0, &mut whitened);
-        let count = problem.count();
+        // Coefficients first, the shapes behind them.
         let mut derivatives: Vec<SVector<f64, K>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
             let column = |factor: f64| {
@@ -84,21 +79,12 @@ impl ShapeEquations {
             };
             let change = column(math::exp(STEP)) - column(math::exp(-STEP));
             let scale = 0.5 * squares[i] / STEP;
-            let derivative = weights.whiten(problem, |_| 1.0, |k| scale * change[k]);
             // As many as parameters.
-            let _ = derivatives.push(derivative);
+            let _ = derivatives.push(change * scale);
         }
-        // Coefficients first, the shapes behind them.
-        let at = |i: usize| match i.checked_sub(count) {
-            None => &whitened.columns[i],
-            Some(shape) => &derivatives[shape],
-        };
-        let unknowns = count + self.parameters.len();
         let residual = |k: usize| problem.points[k].variance - problem.variance(k, squares);
-        let residual = weights.whiten(problem, |_| 1.0, residual);
-        let set = self
-            .equations
-            .set(unknowns, |a, b| at(a).dot(at(b)), |a| at(a).dot(&residual));
+        let (none, equations) = (|_: usize| 1.0, &mut self.equations);
+        let set = weights.equations(problem, none, &derivatives, residual, equations);
         set.is_ok()
     }
 

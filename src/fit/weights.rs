@@ -106,6 +106,38 @@ impl<const K: usize> Weights<K> {
         self.whiten(problem, |_| 1.0, residual).norm_squared()
     }
 
+    /// The normal equations `A'C⁻¹A β = A'C⁻¹y`, one column at a time, with the standard error of octave
+    /// `k` enlarged by `scatter(k)`. Behind the model's own columns there may be `more`.
+    #[inline(never)]
+    pub(crate) fn equations<const P: usize>(
+        &self,
+        problem: &Problem<'_, K>,
+        scatter: impl Fn(usize) -> f64,
+        more: &[SVector<f64, K>],
+        right: impl Fn(usize) -> f64,
+        equations: &mut NormalEquations<P>,
+    ) -> Result<(), Error> {
+        let n = problem.points.len().min(K);
+        let count = problem.count();
+        let unit = |i: usize, k: usize| match i.checked_sub(count) {
+            None => problem.unit(i, k),
+            Some(at) => more[at][k],
+        };
+        let per_error = |k: usize| 1.0 / (self.model[k] * scatter(k));
+        equations.set(count + more.len(), |i, row| {
+            // C⁻¹ of this column, in units of the errors squared.
+            let mut column = self.whiten(problem, &scatter, |k| unit(i, k));
+            cholesky::backward(&self.factor, n, &mut column);
+            for k in 0..n {
+                column[k] *= per_error(k);
+            }
+            for j in 0..=i {
+                row[j] = (0..n).map(|k| column[k] * unit(j, k)).sum();
+            }
+            (0..n).map(|k| column[k] * right(k)).sum()
+        })
+    }
+
     /// Curve and columns in units in which octaves are independent and have a variance of one,
     /// with the standard error of octave `k` enlarged by `scatter(k)`.
     #[inline(never)]
@@ -120,7 +152,7 @@ impl<const K: usize> Weights<K> {
             // As many columns as effects.
             let _ = whitened
                 .columns
-                .push(self.whiten(problem, &scatter, |k| column[k]));
+                .push(self.whiten(problem, &scatter, |k| f64::from(column[k])));
         }
         whitened.curve = self.whiten(problem, &scatter, |k| problem.points[k].variance);
     }
@@ -175,16 +207,5 @@ impl<const K: usize> Whitened<K> {
             columns: Vec::new(),
             curve: SVector::zeros(),
         }
-    }
-
-    /// The normal equations `A'A β = A'y`.
-    #[inline(never)]
-    pub(crate) fn equations(&self, equations: &mut NormalEquations) -> Result<(), Error> {
-        let columns = &self.columns;
-        equations.set(
-            columns.len(),
-            |i, j| columns[i].dot(&columns[j]),
-            |i| columns[i].dot(&self.curve),
-        )
     }
 }

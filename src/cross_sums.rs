@@ -2,6 +2,7 @@
 
 use crate::{
     curve::{Curve, Scale},
+    effect::covariate::Slope,
     error::Error,
     octave::Accumulator,
 };
@@ -143,17 +144,16 @@ impl<const K: usize> CrossCurve<K> {
         &self.points
     }
 
-    /// The gyro's curve without what follows the covariate: `σ²_g − 2α C_gx + α² σ²_x`.
-    pub fn corrected(&self, curve: &Curve<K>, slope: f64) -> Curve<K> {
+    /// The gyro's curve without what follows the covariate, `σ²_g − 2α C_gx + α² σ²_x`. The slope's own
+    /// error ε takes some of the noise away with it, on average `ε² σ²_x`, which is put back.
+    pub fn corrected(&self, curve: &Curve<K>, slope: &Slope) -> Curve<K> {
+        let Slope { value, error } = *slope;
         curve.with_variances(|k, variance| match self.points.get(k) {
             Some(cross) => {
-                let rest = variance - slope * (2.0 * cross.covariance - slope * cross.variance);
+                let follows = value * (2.0 * cross.covariance - value * cross.variance);
                 // A mean square, but for rounding.
-                if rest > 0.0 {
-                    rest
-                } else {
-                    variance * f64::EPSILON
-                }
+                let rest = (variance - follows).max(variance * f64::EPSILON);
+                rest + error * error * cross.variance
             }
             None => variance,
         })

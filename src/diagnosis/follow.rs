@@ -15,7 +15,7 @@ use crate::{
 
 /// Rounds of a slope and the noise that is left of the curve without what follows the covariate: as
 /// long as that is in the curve, the noise seems larger, and the slope less sure.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 5;
 
 impl Diagnosis {
     /// The covariate of the surest slope, if that is sure enough.
@@ -52,12 +52,9 @@ impl Diagnosis {
         standing: &Standing,
     ) -> Result<Option<Slope>, Error> {
         let mut squares = standing.squares;
-        let mut slope = None;
+        let mut slope: Option<Slope> = None;
         for _ in 0..ROUNDS {
-            let corrected = match slope {
-                None => None,
-                Some(Slope { value, .. }) => Some(cross.corrected(curve, value)),
-            };
+            let corrected = slope.map(|slope| cross.corrected(curve, &slope));
             let problem = Problem::new(corrected.as_ref().unwrap_or(curve), model);
             if corrected.is_some() {
                 let mut solution = Solution::new(&problem);

@@ -196,7 +196,7 @@ impl Diagnosis {
             step.candidates.clear();
             step.ambiguous.clear();
             let mut better = None;
-            if room && added == 0 && step.follows.is_none() {
+            if room && step.follows.is_none() {
                 step.added = self.follow(curve, evidence, &step, &standing)?;
             }
             if room && step.added.is_none() && !standing.adequate {
@@ -209,7 +209,7 @@ impl Diagnosis {
             match (step.added, &better) {
                 (Some(Addition::Covariate(follows)), _) => {
                     let cross = &evidence.covariates[follows.covariate];
-                    let rest = cross.corrected(curve, follows.slope.value);
+                    let rest = cross.corrected(curve, &follows.slope);
                     step.follows = Some(follows);
                     corrected = Some(rest);
                 }

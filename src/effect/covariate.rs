@@ -4,13 +4,15 @@
 //! curve's shapes is claimed. The slope comes from the octave sums as
 //!
 //! ```text
-//! α̂ = Σ_k (n/m_k) C_gx,k / σ²_k  /  Σ_k (n/m_k) σ²_x,k / σ²_k,      Var α̂ = 2 / Σ_k (n/m_k) σ²_x,k / σ²_k
+//! α̂ = Σ_k (n/m_k) C_gx,k / σ²_k  /  Σ_k (n/m_k) σ²_x,k / σ²_k,      Var α̂ = c / Σ_k (n/m_k) σ²_x,k / σ²_k
 //! ```
 //!
-//! with `C_gx` and `σ²_x` of the [`CrossCurve`], `σ²` of the noise, `n/m` clusters in an octave: `n/2m`
-//! second differences of adjacent clusters, as many as the Haar wavelets of that length, of which each
-//! knows `α` to `σ_k/σ_x,k` (independent, as wavelets of noise nearly are: Percival & Walden 2000,
-//! ch. 9).
+//! with `C_gx` and `σ²_x` of the [`CrossCurve`], `σ²` of the noise, `n/m` clusters in an octave. An
+//! octave sees the density of the covariate through `|H(f)|² = 2 sin⁴(πfτ)/(πfτ)²`, and all octaves
+//! together weight it with `W(f) = Σ_k (n/m_k) |H_k(f)|²/σ²_k`, so that `c` is `W` times the noise's
+//! density: 2 for white noise, whose `Σ|H|²` is 2, and `π²/(6 ln² 2) = 3.42` for flicker noise, from
+//! `∫ sin⁴u/u⁴ du = π/3` over `(2 ln 2/π) B²`. What a gyro may follow is slow, so that flicker's is
+//! taken: on the cautious side above white noise.
 
 use super::Story;
 use crate::{cross_sums::CrossCurve, curve::Point, fit::clusters, math};
@@ -26,6 +28,9 @@ pub const STORY: Story = Story {
     check: "hold the covariate steady and see the curve fall to what is left of it; or subtract \
             slope times covariate from the rate",
 };
+
+/// Variance of a slope times the information that the octaves sum up.
+const CAUTION: f64 = 3.42;
 
 /// How a rate follows a covariate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +59,7 @@ impl Slope {
         }
         (information > 0.0 && information.is_finite()).then(|| Self {
             value: product / information,
-            error: math::sqrt(2.0 / information),
+            error: math::sqrt(CAUTION / information),
         })
     }
 

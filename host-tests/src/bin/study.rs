@@ -1,4 +1,4 @@
-//! The studies behind the README's figures: `cargo run --release -p host-tests --bin study -- NAME`.
+//! The studies behind the README's figures: `cargo xtask study NAME`.
 
 use allanite::Settings;
 use clap::{Parser, Subcommand};
@@ -6,8 +6,8 @@ use host_tests::{
     simulate::{Coefficients, Preset},
     study::{
         coefficients,
-        hidden_effect::{CASES, Strength, false_alarms, hide, study},
-        theory,
+        hidden_effect::{CASES, Strength, both_found, false_alarms, hide, study},
+        theory, thermal,
     },
 };
 
@@ -41,6 +41,12 @@ enum Study {
         #[arg(long)]
         effect: Option<String>,
     },
+    /// Is a temperature found that the rate follows, with its slope; is none blamed that it does not
+    Thermal {
+        /// Records a case
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+    },
     /// Errors of the coefficients and coverage of their intervals, for every method
     Coefficients {
         /// Records a method
@@ -61,6 +67,7 @@ fn main() {
             preset,
             effect,
         } => hidden(records, clean, preset, effect.as_deref()),
+        Study::Thermal { records } => temperatures(records),
         Study::Coefficients { records, tolerance } => accuracies(records, tolerance),
     }
 }
@@ -236,6 +243,20 @@ fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) 
             }
         }
     }
+    if effect.is_none() {
+        println!(
+            "\ntwo strong effects at once, a sinusoid and a filter of two stages: both found in"
+        );
+        for preset in presets() {
+            if let Some(share) = both_found(preset, records) {
+                println!(
+                    "{:<8} {:.0} %",
+                    format!("{preset:?}").to_lowercase(),
+                    100.0 * share
+                );
+            }
+        }
+    }
     println!("\nnothing hidden, {clean} records a preset: an effect is claimed in");
     for preset in presets() {
         let (share, names) = false_alarms(preset, clean);
@@ -244,5 +265,38 @@ fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) 
             format!("{preset:?}").to_lowercase(),
             100.0 * share
         );
+    }
+}
+
+fn temperatures(records: u64) {
+    println!("mems at 20 Hz, {records} records of 2^16 samples, 0.01 deg/s per kelvin");
+    println!(
+        "{:<20} {:>6} {:>12} {:>9} {:>9} {:>11} {:>17} {:>13}",
+        "course",
+        "found",
+        "mean slope",
+        "coverage",
+        "scatter",
+        "error",
+        "over the bound",
+        "wrongly blamed"
+    );
+    for (name, course, kelvin, bound) in thermal::CASES {
+        let t = thermal::study(course, kelvin, records);
+        println!(
+            "{name:<20} {:>4.1} % {:>10.3}   {:>7.1} % {:>9.5} {:>11.5} {:>17.2} {:>11.2} %",
+            100.0 * t.found,
+            t.mean,
+            100.0 * t.coverage,
+            t.deviation,
+            t.error,
+            t.error / bound,
+            100.0 * t.blamed
+        );
+    }
+    println!("\nwith strong Gauss–Markov noise (T_c 1 s) and ten times the slope: both found in");
+    for (name, course, kelvin, _) in thermal::CASES {
+        let share = thermal::with_gauss_markov(course, kelvin, records.min(200));
+        println!("{name:<20} {:.1} %", 100.0 * share);
     }
 }

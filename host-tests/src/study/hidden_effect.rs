@@ -325,3 +325,26 @@ pub fn false_alarms(preset: Preset, records: u64) -> (f64, Vec<(&'static str, us
     }
     (claims.len() as f64 / records as f64, counts)
 }
+
+/// Share of records in which both of two strong hidden effects are found.
+pub fn both_found(preset: Preset, records: u64) -> Option<f64> {
+    let base = preset.coefficients();
+    let one = hide("sinusoid", [7.7, 0.0], preset, Strength::Strong)?;
+    let other = hide(
+        "decimation_filter",
+        [f64::NAN, 2.0],
+        preset,
+        Strength::Strong,
+    )?;
+    let both = |&seed: &u64| {
+        let outcome = diagnose(base, &[one, other], SAMPLES, seed);
+        let named = |hidden: &Hidden| {
+            let name = hidden.effect.name();
+            let mut added = outcome.added.iter();
+            added.any(|(term, others)| term.effect.name() == name || others.contains(&name))
+        };
+        named(&one) && named(&other)
+    };
+    let count = (0..records).into_par_iter().filter(both).count();
+    Some(count as f64 / records as f64)
+}

@@ -4,6 +4,7 @@
 pub mod coefficients;
 pub mod hidden_effect;
 pub mod theory;
+pub mod thermal;
 
 use crate::simulate::{Coefficients, Simulator};
 use allanite::{Accumulator, Curve, Scale};
@@ -27,7 +28,7 @@ pub fn record(
     samples: usize,
     mut watch: impl FnMut(&[i32]),
 ) -> Curve<OCTAVES> {
-    let quantum = quantum(coefficients);
+    let quantum = quantum(coefficients, RATE_HZ);
     let mut accumulator = Accumulator::<OCTAVES>::new();
     let mut counts = [0; 1024];
     let mut left = samples;
@@ -46,8 +47,8 @@ pub fn record(
 }
 
 /// A 4096th of the standard deviation of neighbouring samples' differences.
-fn quantum(c: Coefficients) -> f64 {
-    let interval_s = 1.0 / RATE_HZ;
+fn quantum(c: Coefficients, rate_hz: f64) -> f64 {
+    let interval_s = 1.0 / rate_hz;
     let white = c.angle_random_walk.powi(2) / interval_s;
     let variance = white
         + 3.0 * (c.quantization / interval_s).powi(2)

@@ -5,6 +5,7 @@ mod setup;
 mod step;
 mod test;
 
+use crate::firmware::cargo;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
@@ -22,6 +23,12 @@ enum Task {
     Setup,
     /// Set up, then check and test everything.
     Test,
+    /// Run a study behind the README's figures: theory, coefficients, hidden-effect, thermal.
+    Study {
+        /// The study and its options; `--help` lists them.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]
+        arguments: Vec<String>,
+    },
     /// Measure instructions, memory and time. QEMU counts instructions, not cycles.
     Bench {
         /// Print JSON instead of a table.
@@ -39,6 +46,12 @@ impl CommandLine {
         match self.task {
             Task::Setup => setup::run(),
             Task::Test => test::run(),
+            Task::Study { arguments } => {
+                let mut study = cargo();
+                study.args(["run", "--quiet", "--release", "--package", "host-tests"]);
+                study.args(["--bin", "study", "--"]).args(arguments);
+                step::step("the study", &mut study)
+            }
             Task::Bench { json } => bench::run(json),
         }
     }

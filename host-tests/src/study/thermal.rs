@@ -1,0 +1,148 @@
+//! Is a temperature found that the rate follows, and none blamed that it does not?
+
+use super::{OCTAVES, quantum};
+use crate::simulate::{Coefficients, Course, Hidden, Preset, Simulator, Thermal};
+use allanite::{
+    Accumulator, Addition, CrossSums, Diagnosis, Evidence, Model, Scale, effect::CATALOGUE,
+};
+use rayon::prelude::*;
+
+/// The sample rate of these records, in Hz: 55 minutes of 2^16 samples.
+pub const RATE_HZ: f64 = 20.0;
+/// Samples of a record.
+pub const SAMPLES: usize = 1 << 16;
+/// Rate units per kelvin.
+pub const SLOPE: f64 = 0.01;
+/// Kelvin of a count of temperature.
+const KELVIN: f64 = 1e-3;
+
+/// A temperature's course, its name, its size in kelvin, and the standard error that generalised
+/// least squares on the full record of "mems" could reach, in deg/s per kelvin.
+pub const CASES: [(&str, Course, f64, f64); 2] = [
+    (
+        "10 K warm-up, 600 s",
+        Course::WarmUp { time_s: 600.0 },
+        10.0,
+        0.00171,
+    ),
+    (
+        "±5 K cycle, 20 min",
+        Course::Cycle { period_s: 1200.0 },
+        5.0,
+        0.00040,
+    ),
+];
+
+/// What a diagnosis said of one record.
+pub struct Outcome {
+    /// The slope and its error, where the temperature was found.
+    pub slope: Option<(f64, f64)>,
+    /// Effects that were named beside it.
+    pub named: Vec<&'static str>,
+}
+
+/// Diagnoses a record of a gyro that follows a temperature with `slope`, zero for not at all.
+pub fn diagnose(
+    base: Coefficients,
+    hidden: &[Hidden],
+    course: Course,
+    kelvin: f64,
+    slope: f64,
+    seed: u64,
+) -> Outcome {
+    let thermal = Thermal {
+        slope,
+        kelvin,
+        course,
+    };
+    let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
+    let unit = quantum(base, RATE_HZ);
+    let mut gyro = Accumulator::<OCTAVES>::new();
+    let mut cross = CrossSums::<OCTAVES>::new();
+    for n in 0..SAMPLES {
+        let time_s = n as f64 / RATE_HZ;
+        let rate = simulator.next().unwrap_or_default() + thermal.rate_at(time_s);
+        let count = (rate / unit).round() as i32;
+        let celsius = (thermal.celsius_at(time_s) / KELVIN).round() as i32;
+        gyro.push(count);
+        cross.push(count, celsius);
+    }
+    let scale = Scale::new(unit, RATE_HZ).expect("positive");
+    let covariates = [cross.curve(&gyro, scale, KELVIN).expect("pushed together")];
+    let evidence = Evidence {
+        covariates: &covariates,
+        ..Evidence::NONE
+    };
+    let mut outcome = Outcome {
+        slope: None,
+        named: Vec::new(),
+    };
+    let model = Model::ieee_952();
+    let curve = gyro.curve(scale);
+    let report =
+        Diagnosis::default().run(&curve, &evidence, &model, &CATALOGUE, |step| {
+            match &step.added {
+                Some(Addition::Covariate(follows)) => {
+                    outcome.slope = Some((follows.slope.value, follows.slope.error));
+                }
+                Some(Addition::Effect(term)) => {
+                    outcome.named.push(term.effect.name());
+                    outcome.named.extend(step.ambiguous.iter());
+                }
+                None => {}
+            }
+        });
+    report.expect("a curve to diagnose");
+    outcome
+}
+
+/// Counts over the records of one course.
+#[derive(Clone, Copy, Debug)]
+pub struct Tally {
+    /// Standard deviation of the slopes.
+    pub deviation: f64,
+    /// Share of records in which the temperature is found.
+    pub found: f64,
+    /// Mean of the slopes, over the true one.
+    pub mean: f64,
+    /// Share of 95 % intervals that hold the true slope.
+    pub coverage: f64,
+    /// Mean standard error that is claimed.
+    pub error: f64,
+    /// Share of records in which a temperature that the gyro does not follow is blamed.
+    pub blamed: f64,
+}
+
+/// Studies one course on "mems".
+pub fn study(course: Course, kelvin: f64, records: u64) -> Tally {
+    let base = Preset::Mems.coefficients();
+    let slopes = |slope: f64| -> Vec<(f64, f64)> {
+        let one = |seed| diagnose(base, &[], course, kelvin, slope, seed).slope;
+        (0..records).into_par_iter().filter_map(one).collect()
+    };
+    let (found, blamed) = (slopes(SLOPE), slopes(0.0));
+    let n = found.len().max(1) as f64;
+    let inside = |&&(value, error): &&(f64, f64)| (value - SLOPE).abs() <= 1.959_964 * error;
+    let mean = found.iter().map(|one| one.0).sum::<f64>() / n;
+    let squares = found.iter().map(|one| (one.0 - mean).powi(2));
+    Tally {
+        deviation: (squares.sum::<f64>() / n).sqrt(),
+        found: found.len() as f64 / records as f64,
+        mean: mean / SLOPE,
+        coverage: found.iter().filter(inside).count() as f64 / n,
+        error: found.iter().map(|one| one.1).sum::<f64>() / n,
+        blamed: blamed.len() as f64 / records as f64,
+    }
+}
+
+/// Share of records of "mems" in which both a temperature and strong Gauss–Markov noise are found.
+pub fn with_gauss_markov(course: Course, kelvin: f64, records: u64) -> f64 {
+    let base = Preset::Mems.coefficients();
+    let hidden = Hidden::new("gauss_markov", [1.0, 0.0], 0.05).expect("in the catalogue");
+    let both = |&seed: &u64| {
+        let outcome = diagnose(base, &[hidden], course, kelvin, 10.0 * SLOPE, seed);
+        outcome.slope.is_some() && outcome.named.contains(&"gauss_markov")
+    };
+    let count = (0..records).into_par_iter().filter(both).count();
+    count as f64 / records as f64
+}

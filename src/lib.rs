@@ -9,6 +9,7 @@ mod comparison;
 mod covariance;
 mod cross_sums;
 mod curve;
+pub mod demonstration;
 mod diagnosis;
 pub mod effect;
 mod error;

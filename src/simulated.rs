@@ -1,7 +1,12 @@
 //! A simulated gyro in integers alone: the same counts on every machine.
 
+mod disturbance;
+
+pub use disturbance::Disturbance;
+
 use crate::{curve::Scale, math};
 use core::f64::consts::{LN_2, PI};
+use disturbance::Source;
 
 /// Fraction bits of every amplitude.
 const FRACTION: u32 = 24;
@@ -78,6 +83,7 @@ pub struct SimulatedGyro {
     amplitudes: Amplitudes,
     random: Random,
     poles: [Pole; POLES],
+    source: Source,
     walk: i64,
     ramp: i64,
     /// Angle that has not been given out yet, of magnitude below a count and the jitter.
@@ -88,6 +94,11 @@ impl SimulatedGyro {
     /// A gyro whose flicker noise has gone on for ever, and whose random walk and ramp start at
     /// zero.
     pub fn new(amplitudes: Amplitudes, seed: u64) -> Self {
+        Self::disturbed(amplitudes, None, seed)
+    }
+
+    /// The same with something that the five terms lack.
+    pub fn disturbed(amplitudes: Amplitudes, disturbance: Option<Disturbance>, seed: u64) -> Self {
         let mut random = Random::new(seed);
         let mut relaxation = 0;
         let poles = [(); POLES].map(|()| {
@@ -95,10 +106,12 @@ impl SimulatedGyro {
             relaxation += 1;
             pole
         });
+        let source = Source::new(disturbance, &mut random);
         Self {
             amplitudes,
             random,
             poles,
+            source,
             walk: 0,
             ramp: 0,
             rest: 0,
@@ -125,7 +138,9 @@ impl Iterator for SimulatedGyro {
             flicker += pole.next(relaxation, signs & 1 == 1);
             signs >>= 1;
         }
-        let angle = self.rest + self.random.normal(white) + flicker + self.walk + self.ramp;
+        let white = self.random.normal(white);
+        let white = self.source.next(white, &mut self.random);
+        let angle = self.rest + white + flicker + self.walk + self.ramp;
         let count = rounded(angle + self.random.normal(quantization), FRACTION);
         self.rest = angle - (count << FRACTION);
         // A walk or ramp that leaves 32 bits clips, as a sensor does.

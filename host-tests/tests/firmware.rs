@@ -1,7 +1,7 @@
 //! The image on a Cortex-M4F and the same computation here agree to the bit.
 
-use allanite::self_test::SelfTest;
-use host_tests::firmware::{Image, run};
+use allanite::{Addition, Step, Verdict, demonstration, self_test::SelfTest};
+use host_tests::firmware::{Image, run, run_with};
 
 /// The words that are bits of a number: those after each decimal one.
 fn bits(line: &str, names: &[&str]) -> Vec<u64> {
@@ -67,4 +67,99 @@ fn image_and_host_agree_to_the_bit() {
         expected.map(f64::to_bits),
         "{fit}"
     );
+}
+
+/// The lines that the image logs of a step, with the bits of every number.
+fn logged<const K: usize>(step: &Step<K>) -> Vec<String> {
+    let mut lines = Vec::new();
+    for octave in &step.comparison.octaves {
+        lines.push(format!("octave {} {:x}", octave.m, octave.z.to_bits()));
+    }
+    lines.push(format!("comparison {}", step.comparison));
+    let numbers = [
+        step.fit.chi_squared,
+        step.fit.p_value,
+        step.comparison.rms_percent,
+    ];
+    let [chi_squared, p_value, rms] = numbers.map(f64::to_bits);
+    let freedom = step.fit.degrees_of_freedom;
+    lines.push(format!("fit {freedom} {chi_squared:x} {p_value:x} {rms:x}"));
+    for one in &step.fit.coefficients {
+        lines.push(format!(
+            "coefficient {} {:x}",
+            one.name,
+            one.value.to_bits()
+        ));
+    }
+    for one in &step.candidates {
+        let name = one.term.effect.name();
+        lines.push(format!("candidate {name} {:x}", one.improvement.to_bits()));
+    }
+    for name in &step.ambiguous {
+        lines.push(format!("ambiguous {name}"));
+    }
+    if let Some(Addition::Effect(term)) = &step.added {
+        let name = term.effect.name();
+        lines.push(format!("added {name} {:x}", term.parameters[0].to_bits()));
+    }
+    lines
+}
+
+/// A line of the image with names and decimals taken out: what [`logged`] writes.
+fn condensed(line: &str) -> String {
+    let words: Vec<&str> = line.split(' ').collect();
+    match words[..] {
+        ["octave", _, m, .., bits] => format!("octave {m} {bits}"),
+        [
+            "fit",
+            _,
+            freedom,
+            _,
+            _,
+            chi_squared,
+            _,
+            _,
+            p_value,
+            _,
+            _,
+            rms,
+        ] => {
+            format!("fit {freedom} {chi_squared} {p_value} {rms}")
+        }
+        ["comparison", ..] | ["ambiguous", _] => line.to_owned(),
+        [kind, name, .., bits] => format!("{kind} {name} {bits}"),
+        _ => line.to_owned(),
+    }
+}
+
+#[test]
+fn image_finds_hidden_effects_as_the_host_does_to_the_bit() {
+    let image = Image::build("hidden_effect").unwrap_or_else(|error| panic!("{error:#}"));
+    for (name, disturbance) in demonstration::HIDDEN {
+        let run = run_with(&image, &[name]).unwrap_or_else(|error| panic!("{error:#}"));
+        println!("{}", run.lines.join("\n"));
+        assert!(run.status.success(), "the image ended with {}", run.status);
+
+        let (mut here, mut errors, mut found) = (Vec::new(), Vec::new(), Vec::new());
+        let verdict = demonstration::diagnose(Some(disturbance), |step| {
+            here.extend(logged(step));
+            errors.push(step.fit.chi_squared);
+            if let Some(Addition::Effect(term)) = &step.added {
+                found.push(term.effect.name());
+                found.extend(&step.ambiguous);
+            }
+        });
+        assert_eq!(verdict, Ok(Verdict::Improved), "{name}");
+        assert!(found.contains(&name), "{name}: {found:?}");
+        let (first, last) = (errors[0], errors[errors.len() - 1]);
+        assert!(last < 0.3 * first, "{name}: {errors:?}");
+
+        let there = run
+            .lines
+            .iter()
+            .filter_map(|line| line.strip_prefix("info "));
+        let there: Vec<String> = there.map(condensed).collect();
+        assert_eq!(there[..there.len() - 1], here, "{name}");
+        assert_eq!(there[there.len() - 1], "verdict Improved");
+    }
 }

@@ -31,11 +31,23 @@ pub struct Run {
 /// # Errors
 /// If QEMU does not start, the image does not end, or its log cannot be decoded.
 pub fn run(image: &Image) -> Result<Run> {
+    run_with(image, &[])
+}
+
+/// The same, with arguments for the image.
+///
+/// # Errors
+/// As of [`run`].
+pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
+    let mut semihosting = String::from("enable=on,target=native,arg=image");
+    for argument in arguments {
+        semihosting += &format!(",arg={argument}");
+    }
     let mut child = Command::new(QEMU)
         .args(["-machine", "mps2-an386", "-cpu", "cortex-m4"])
         .args(["-icount", "shift=0", "-nographic", "-monitor", "none"])
         .args(["-serial", "null"])
-        .args(["-semihosting-config", "enable=on,target=native"])
+        .args(["-semihosting-config", &semihosting])
         .arg("-kernel")
         .arg(&image.path)
         .stdin(Stdio::null())

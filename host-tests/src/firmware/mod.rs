@@ -4,7 +4,7 @@ pub mod emulator;
 pub mod image;
 pub mod toolchain;
 
-pub use emulator::{Run, run};
+pub use emulator::{Run, run, run_with};
 pub use image::Image;
 pub use toolchain::Toolchain;
 

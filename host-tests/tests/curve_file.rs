@@ -23,6 +23,7 @@ fn curve(samples: u32, gap: bool) -> AxisCurve {
         name: "gx".into(),
         rate_per_count: 0.05,
         accumulator,
+        evidence: None,
     };
     AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
 }
@@ -70,6 +71,7 @@ fn sums_beyond_64_bits_keep_every_digit() {
         name: "gx".into(),
         rate_per_count: 1e-9,
         accumulator,
+        evidence: None,
     };
     let file = CurveFile::new(vec![
         AxisCurve::of(&axis, 8000.0, Unit::RadiansPerSecond).unwrap(),

@@ -34,7 +34,8 @@ pub use covariance::curve_covariance;
 pub use cross_sums::{CrossCurve, CrossPoint, CrossSums};
 pub use curve::{Curve, Point, Scale};
 pub use diagnosis::{
-    Addition, Candidate, Diagnosis, Evidence, Follows, MAX_CANDIDATES, Step, Verdict,
+    Addition, Candidate, Diagnosis, Evidence, Follows, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap,
+    Verdict,
 };
 pub use error::Error;
 pub use fit::{Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};

@@ -35,6 +35,14 @@ impl Term {
         }
     }
 
+    /// An effect whose shape, if it has one, is to be fitted.
+    pub(crate) fn fitted(effect: &'static dyn Effect) -> Self {
+        Self {
+            fitted: !effect.parameters().is_empty(),
+            ..Self::new(effect)
+        }
+    }
+
     /// Indices of the shape parameters that were fitted.
     pub(crate) fn fitted_parameters(&self) -> impl Iterator<Item = usize> + use<> {
         let (effect, fitted) = (self.effect, self.fitted);
@@ -90,6 +98,16 @@ impl Model {
     /// [`Error::TooManyEffects`] above [`MAX_EFFECTS`].
     pub fn add(&mut self, term: Term) -> Result<(), Error> {
         self.terms.push(term).map_err(|_| Error::TooManyEffects {
+            capacity: MAX_EFFECTS,
+        })
+    }
+
+    /// Puts an effect back that has no shape: one of the five at its usual place.
+    pub(crate) fn restore(&mut self, effect: &'static dyn Effect) -> Result<(), Error> {
+        let usual = IEEE_952.iter().position(|e| e.name() == effect.name());
+        let place = usual.unwrap_or(MAX_EFFECTS).min(self.terms.len());
+        let restored = self.terms.insert(place, Term::new(effect));
+        restored.map_err(|_| Error::TooManyEffects {
             capacity: MAX_EFFECTS,
         })
     }

@@ -125,8 +125,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     /// The best shape of an effect on its grid, refined.
     #[inline(never)]
     pub(crate) fn search(&mut self, effect: &'static dyn Effect, span: &Span) -> Found {
-        let mut term = Term::new(effect);
-        term.fitted = !effect.parameters().is_empty();
+        let mut term = Term::fitted(effect);
         let mut best = Found {
             term,
             chi_squared: f64::INFINITY,

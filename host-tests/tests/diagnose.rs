@@ -194,7 +194,12 @@ fn words_say_what_the_figures_say() {
     for axis in document["axes"].as_array().unwrap() {
         let steps = axis["steps"].as_array().unwrap();
         for (number_of_step, pair) in steps.windows(2).enumerate() {
-            let added = pair[0]["added"].as_str().unwrap().replace('_', " ");
+            let mut added = pair[0]["added"].as_str().unwrap().to_owned();
+            if let Some(swap) = pair[0]["candidates"][0]["swap"].as_object() {
+                let [taken, dropped] = ["taken", "dropped"].map(|key| swap[key].as_str().unwrap());
+                added += &format!(", {taken} instead of {dropped}");
+            }
+            let added = added.replace('_', " ");
             let line = format!(
                 "{}. + {added}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p",
                 number_of_step + 1,

@@ -95,6 +95,10 @@ fn logged<const K: usize>(step: &Step<K>) -> Vec<String> {
         let name = one.term.effect.name();
         lines.push(format!("candidate {name} {:x}", one.improvement.to_bits()));
     }
+    if let Some(swap) = step.swap() {
+        let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| effect.name());
+        lines.push(format!("{taken} instead of {dropped}"));
+    }
     for name in &step.ambiguous {
         lines.push(format!("ambiguous {name}"));
     }
@@ -126,7 +130,7 @@ fn condensed(line: &str) -> String {
         ] => {
             format!("fit {freedom} {chi_squared} {p_value} {rms}")
         }
-        ["comparison", ..] | ["ambiguous", _] => line.to_owned(),
+        ["comparison", ..] | ["ambiguous", _] | [_, "instead", ..] => line.to_owned(),
         [kind, name, .., bits] => format!("{kind} {name} {bits}"),
         _ => line.to_owned(),
     }

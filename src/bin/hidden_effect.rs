@@ -77,6 +77,10 @@ mod image {
                 candidate.improvement.to_bits()
             );
         }
+        if let Some(swap) = step.swap() {
+            let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| effect.name());
+            defmt::info!("{=str} instead of {=str}", taken, dropped);
+        }
         for name in &step.ambiguous {
             defmt::info!("ambiguous {=str}", name);
         }

@@ -1,6 +1,7 @@
 //! Which effect is missing.
 
 mod follow;
+mod revise;
 mod trial;
 mod twins;
 
@@ -22,10 +23,14 @@ use crate::{
     search::{Found, Search},
 };
 use heapless::Vec;
+use revise::Preferred;
 use trial::Better;
 
 /// Candidates that a step fits in full and reports.
 pub const MAX_CANDIDATES: usize = 4;
+
+/// Names that a step calls ambiguous: two of every other candidate, and a twin.
+pub const MAX_AMBIGUOUS: usize = 2 * MAX_CANDIDATES - 1;
 
 /// How to look for missing effects.
 #[derive(Clone, Copy, Debug)]
@@ -84,12 +89,59 @@ impl<const K: usize> Evidence<'_, K> {
 pub struct Candidate {
     /// The effect with its best shape.
     pub term: Term,
+    /// What else changes where it is added.
+    pub swap: Option<Swap>,
     /// Its coefficient.
     pub coefficient: Coefficient,
     /// χ² of the model with it.
     pub chi_squared: f64,
-    /// How far it lowers `−2 ln L`, less two for each of its parameters.
+    /// How far it lowers `−2 ln L`, less two for each parameter that it brings.
     pub improvement: f64,
+}
+
+impl Candidate {
+    /// Parameters that it brings: a coefficient and shapes.
+    fn cost(&self) -> f64 {
+        let swap = self
+            .swap
+            .map_or(0.0, |swap| cost(swap.taken) - cost(swap.dropped));
+        cost(self.term.effect) + swap
+    }
+
+    /// Whether both swap, and bring the same pair.
+    fn brings_the_same(&self, other: &Self) -> bool {
+        let pair = |one: &Self| {
+            one.swap
+                .map(|swap| (one.term.effect.name(), swap.taken.name()))
+        };
+        let (Some(one), Some((first, second))) = (pair(self), pair(other)) else {
+            return false;
+        };
+        one == (first, second) || one == (second, first)
+    }
+
+    /// The effects by which its model differs from those of other candidates, if `dropped` gives way to
+    /// some of them.
+    fn brings(&self, dropped: Option<&'static str>) -> [Option<&'static str>; 2] {
+        let beside = self.swap.map(|swap| swap.taken.name());
+        [Some(self.term.effect.name()), beside.or(dropped)]
+    }
+}
+
+/// An effect that was added before and gives way to another when a further one is added: alone, it
+/// had taken the part of both.
+#[derive(Clone, Copy)]
+pub struct Swap {
+    /// The one that gives way.
+    pub dropped: &'static dyn Effect,
+    /// The one in its place.
+    pub taken: &'static dyn Effect,
+}
+
+impl core::fmt::Debug for Swap {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{} → {}", self.dropped.name(), self.taken.name())
+    }
 }
 
 /// A covariate that the rate follows.
@@ -100,6 +152,11 @@ pub struct Follows {
     pub covariate: usize,
     /// How.
     pub slope: Slope,
+}
+
+/// Parameters of an effect whose shape is fitted.
+fn cost(effect: &'static dyn Effect) -> f64 {
+    (1 + Term::fitted(effect).fitted_parameters().count()) as f64
 }
 
 /// What a step adds to the model.
@@ -127,7 +184,17 @@ pub struct Step<const K: usize> {
     /// What was added.
     pub added: Option<Addition>,
     /// Candidates that explain the curve about as well as the one that was added.
-    pub ambiguous: Vec<&'static str, MAX_CANDIDATES>,
+    pub ambiguous: Vec<&'static str, MAX_AMBIGUOUS>,
+}
+
+impl<const K: usize> Step<K> {
+    /// What else changes with the effect that is added.
+    pub fn swap(&self) -> Option<Swap> {
+        match self.added {
+            Some(Addition::Effect(_)) => self.candidates.first()?.swap,
+            _ => None,
+        }
+    }
 }
 
 /// How a diagnosis ended.
@@ -186,12 +253,13 @@ impl Diagnosis {
             ambiguous: Vec::new(),
         };
         let (mut start, mut added) = (None, 0);
+        let mut preferred: Option<Preferred> = None;
         loop {
             let curve = corrected.as_ref().unwrap_or(curve);
             let room = added < self.max_effects && evidence.invalid.is_none();
             let mut found = Scan::new();
             let effects = if room { effects } else { &[] };
-            let standing = self.examine(curve, start, effects, &mut step, &mut found)?;
+            let standing = self.report(curve, start, effects, &mut step, &mut found)?;
             step.added = None;
             step.candidates.clear();
             step.ambiguous.clear();
@@ -200,8 +268,12 @@ impl Diagnosis {
                 step.added = self.follow(curve, evidence, &step, &standing)?;
             }
             if room && step.added.is_none() && !standing.adequate {
-                self.try_all(curve, &standing, &found, &mut step, &mut better);
-                if let Some(better) = &mut better {
+                self.try_all(curve, &standing, &found, None, &mut step, &mut better);
+                if let Some(preferred) = &preferred {
+                    self.revise(curve, &standing, preferred, effects, &mut step, &mut better);
+                }
+                self.choose(&mut step);
+                if let (Some(better), Some(_)) = (&mut better, &step.added) {
                     twins::tell(curve, evidence.kurtosis, effects, better, &mut step);
                 }
             }
@@ -214,6 +286,7 @@ impl Diagnosis {
                     corrected = Some(rest);
                 }
                 (Some(Addition::Effect(_)), Some(better)) => {
+                    preferred = Preferred::of(&step.candidates, self.threshold);
                     step.model.clone_from(&better.model);
                     start = Some(better.squares);
                 }
@@ -234,7 +307,7 @@ impl Diagnosis {
     /// effect.
     // What it takes of the stack is free again for the trials.
     #[inline(never)]
-    fn examine<const K: usize>(
+    fn report<const K: usize>(
         &self,
         curve: &Curve<K>,
         start: Option<Vector>,
@@ -266,62 +339,105 @@ impl Diagnosis {
         Ok(standing)
     }
 
-    /// Fits the shapes that a scan found: candidates and decision go into the step, the model with the
-    /// one that is added into `best`.
+    /// Fits the shapes that a scan found: the best few become candidates of the step, the model with
+    /// the very best goes into `best`. The scan was made of the step's model, or of one with a swap.
     #[inline(never)]
     fn try_all<const K: usize>(
         &self,
         curve: &Curve<K>,
         standing: &Standing,
         found: &Scan,
+        swapped: Option<(&Model, Swap)>,
         step: &mut Step<K>,
         best: &mut Option<Better>,
     ) {
-        let mut least = f64::INFINITY;
+        let known = |step: &Step<K>, candidate: &Candidate| {
+            let mut others = step.candidates.iter();
+            others.any(|other| other.brings_the_same(candidate))
+        };
+        let gained = step
+            .candidates
+            .first()
+            .map_or(0.0, |first| first.improvement);
+        let mut least = standing.score - gained;
         for found in found {
-            let Ok(mut better) = Better::new(&step.model, found) else {
+            let model = swapped.map_or(&step.model, |(model, _)| model);
+            let Ok(mut better) = Better::new(model, found) else {
                 continue;
             };
             // An effect that cannot be fitted is no candidate.
             let mut candidate = Candidate {
                 term: found.term,
+                swap: swapped.map(|(_, swap)| swap),
                 coefficient: Coefficient::new(found.term.effect, 0.0, None),
                 chi_squared: f64::NAN,
                 improvement: 0.0,
             };
+            if known(step, &candidate) {
+                continue;
+            }
             let fitted = better.fit(curve, self.tolerance, least, &mut candidate);
             let Ok(Some(score)) = fitted else {
                 continue;
             };
             least = least.min(score);
-            let parameters = 1 + candidate.term.fitted_parameters().count();
-            candidate.improvement = standing.score - score - 2.0 * parameters as f64;
+            candidate.improvement = standing.score - score - 2.0 * candidate.cost();
             let at = step
                 .candidates
                 .iter()
                 .position(|other| other.improvement < candidate.improvement)
                 .unwrap_or(step.candidates.len());
+            if at == MAX_CANDIDATES {
+                continue;
+            }
             if at == 0 {
                 *best = Some(better);
             }
-            // As many candidates as shapes.
+            if step.candidates.is_full() {
+                step.candidates.pop();
+            }
+            // There is room now.
             let _ = step.candidates.insert(at, candidate);
         }
-        let (first, others) = match step.candidates.split_first() {
-            Some((first, others)) if first.improvement >= self.threshold => (first, others),
-            _ => {
-                *best = None;
-                return;
-            }
+    }
+
+    /// Adds the best candidate if it is worth its parameters, and names those that are about as good.
+    fn choose<const K: usize>(&self, step: &mut Step<K>) {
+        let Some((first, others)) = step.candidates.split_first() else {
+            return;
         };
+        if first.improvement < self.threshold {
+            return;
+        }
         step.added = Some(Addition::Effect(first.term));
-        for candidate in others {
-            if candidate.improvement > first.improvement - self.ambiguity {
-                // As many names as candidates.
-                let _ = step.ambiguous.push(candidate.term.effect.name());
+        let dropped = first.swap.map(|swap| swap.dropped.name());
+        let chosen = first.brings(dropped);
+        let close = |other: &&Candidate| other.improvement > first.improvement - self.ambiguity;
+        for other in others.iter().filter(close) {
+            for name in other.brings(dropped).into_iter().flatten() {
+                if !chosen.contains(&Some(name)) && !step.ambiguous.contains(&name) {
+                    // As many names as candidates bring.
+                    let _ = step.ambiguous.push(name);
+                }
             }
         }
     }
+}
+
+/// The shapes of effects that do best beside a model that has not been fitted yet.
+#[inline(never)]
+fn scan_beside<const K: usize>(
+    curve: &Curve<K>,
+    model: &Model,
+    tolerance: f64,
+    effects: &[&'static dyn Effect],
+    found: &mut Scan,
+) -> Result<(), Error> {
+    let problem = Problem::new(curve, model);
+    let mut solution = Solution::new(&problem);
+    solution.solve(tolerance)?;
+    scan(&problem, &solution, effects, &span(curve), found);
+    Ok(())
 }
 
 /// The best shape of every effect, with the covariance of the model so far: the best few of them, best

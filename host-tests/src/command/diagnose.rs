@@ -85,18 +85,39 @@ impl Diagnosed {
         self.steps.first().zip(self.steps.last())
     }
 
-    /// The effects that were added, without covariates.
+    /// The effects that were added and kept, without covariates, as the last model has them.
     fn added(&self) -> impl Iterator<Item = &Term> {
-        self.steps.iter().filter_map(|step| match &step.added {
-            Some(Addition::Effect(term)) => Some(term),
-            _ => None,
+        let (asked, last) = self.ends().unzip();
+        let terms = last.map_or(&[][..], |last| last.model.terms());
+        terms.iter().filter(move |term| {
+            let asked = asked.map(|asked| asked.model.position(term.effect.name()));
+            asked.flatten().is_none()
         })
     }
 
-    /// Names of all that was added.
+    /// Names of all that was added and kept.
     pub(super) fn missing(&self) -> impl Iterator<Item = &'static str> {
-        let added = self.steps.iter().filter_map(|step| step.added.as_ref());
-        added.map(added_name)
+        let follows = self.steps.last().and_then(|last| last.follows);
+        let covariate = follows.map(|_| covariate::NAME);
+        covariate
+            .into_iter()
+            .chain(self.added().map(|term| term.effect.name()))
+    }
+
+    /// What every step added, with the effects that explain its curve about as well: without steps whose
+    /// addition was dropped later.
+    pub(super) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
+        let swaps = self.steps.iter().skip(1).map(|next| next.swap().is_some());
+        let kept = self
+            .steps
+            .iter()
+            .zip(swaps)
+            .filter(|&(_, dropped)| !dropped);
+        kept.filter_map(|(step, _)| {
+            let others = ambiguous(step);
+            let added = step.added.as_ref().filter(|_| !others.is_empty())?;
+            Some((added_name(added), others))
+        })
     }
 
     /// The covariate that the rate follows, by name.
@@ -116,25 +137,20 @@ impl Diagnosed {
         if let Verdict::Invalid(reason) = self.verdict {
             notes.push(reason.to_string());
         }
-        for step in &self.steps {
-            let others = ambiguous(step);
-            if let (Some(added), false) = (&step.added, others.is_empty()) {
-                notes.push(format!(
-                    "{} is ambiguous: {} explains this curve as well",
-                    words::plain(added_name(added)),
-                    words::list(others)
-                ));
-            }
+        for (added, others) in self.ambiguous() {
+            notes.push(format!(
+                "{} is ambiguous: {} explains this curve as well",
+                words::plain(added),
+                words::list(others)
+            ));
         }
         if self.missing().count() > 0 {
             notes.extend(words::damage(first, last, self.axis.unit));
         }
-        // The shapes as the last model has them: earlier ones were polished since.
-        let final_terms = self.added().filter_map(|added| {
-            let at = last.model.position(added.effect.name())?;
-            last.model.terms().get(at)
-        });
-        notes.extend(final_terms.filter_map(|term| words::alias(term, self.axis.rate_hz)));
+        let aliases = self
+            .added()
+            .filter_map(|term| words::alias(term, self.axis.rate_hz));
+        notes.extend(aliases);
         notes
     }
 }

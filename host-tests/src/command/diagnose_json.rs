@@ -1,7 +1,7 @@
 //! A diagnosis for programs.
 
 use super::{
-    diagnose::{Diagnosed, added_name, ambiguous},
+    diagnose::{Diagnosed, added_name},
     fit_json,
     model_json::{self, Effect, Worst},
 };
@@ -45,6 +45,15 @@ struct Candidate {
     parameters: Map<String, Value>,
     chi2: f64,
     improvement: f64,
+    /// What else changes if it is added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    swap: Option<Swap>,
+}
+
+#[derive(Serialize)]
+struct Swap {
+    dropped: &'static str,
+    taken: &'static str,
 }
 
 /// Prints the diagnoses as one JSON document.
@@ -58,7 +67,10 @@ pub(super) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Res
 
 fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
     let unit = diagnosed.axis.unit;
-    let mut names: Vec<&'static str> = diagnosed.steps.iter().flat_map(ambiguous).collect();
+    let mut names: Vec<_> = diagnosed
+        .ambiguous()
+        .flat_map(|(_, others)| others)
+        .collect();
     names.sort_unstable();
     names.dedup();
     Axis {
@@ -106,5 +118,9 @@ fn candidate(tried: &Tried) -> Candidate {
         parameters: model_json::parameters(&tried.term, tried.coefficient.value),
         chi2: tried.chi_squared,
         improvement: tried.improvement,
+        swap: tried.swap.map(|swap| Swap {
+            dropped: swap.dropped.name(),
+            taken: swap.taken.name(),
+        }),
     }
 }

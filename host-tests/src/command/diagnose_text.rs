@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{log::OCTAVES, plot::Plot, unit::Unit};
 use allanite::{
-    Addition, Candidate, Follows, Step, Term, Verdict,
+    Addition, Candidate, Follows, Step, Swap, Term, Verdict,
     effect::{Story, covariate},
 };
 use std::io::{self, Write};
@@ -150,7 +150,8 @@ fn print_step(
     output: &mut impl Write,
 ) -> io::Result<()> {
     let effect = added.effect;
-    print_fall(number, &words::plain(effect.name()), before, after, output)?;
+    let name = words::plain(effect.name()) + &instead(before.swap());
+    print_fall(number, &name, before, after, output)?;
     let at = after.model.position(effect.name());
     let fitted = at.and_then(|at| {
         let term = after.model.terms().get(at)?;
@@ -182,17 +183,26 @@ fn print_step(
     writeln!(output, "  now {}", after.comparison)
 }
 
+/// What else changes with an addition: `, sinusoid instead of resonance`.
+fn instead(swap: Option<Swap>) -> String {
+    swap.map_or(String::new(), |swap| {
+        let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| words::plain(effect.name()));
+        format!(", {taken} instead of {dropped}")
+    })
+}
+
 fn print_candidates(step: &Step<OCTAVES>, output: &mut impl Write) -> io::Result<()> {
     let line = |candidate: &Candidate| {
         let shape = words::shape(&candidate.term, None);
         let name = words::plain(candidate.term.effect.name());
+        let instead = instead(candidate.swap);
         let shape = if shape.is_empty() {
             String::new()
         } else {
             format!(" ({shape})")
         };
         format!(
-            "χ² {:>8.1}, improvement {:>8.1}: {name}{shape}",
+            "χ² {:>8.1}, improvement {:>8.1}: {name}{shape}{instead}",
             candidate.chi_squared, candidate.improvement
         )
     };
@@ -225,11 +235,7 @@ fn verdict(diagnosed: &Diagnosed, first: &Step<OCTAVES>, last: &Step<OCTAVES>) -
         ),
         Verdict::Improved => {
             let names = diagnosed.missing();
-            let ambiguous = diagnosed
-                .steps
-                .iter()
-                .any(|step| !ambiguous(step).is_empty());
-            let alike = if ambiguous {
+            let alike = if diagnosed.ambiguous().next().is_some() {
                 " (or what is ambiguous with it)"
             } else {
                 ""

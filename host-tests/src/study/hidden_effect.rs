@@ -164,13 +164,7 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
     let (before, after) = (on_other(first), on_other(last));
     Outcome {
         first: (first.fit.chi_squared, first.fit.p_value),
-        added: steps
-            .iter()
-            .filter_map(|step| match step.added {
-                Some(Addition::Effect(term)) => Some((term, step.ambiguous.to_vec())),
-                _ => None,
-            })
-            .collect(),
+        added: added(&steps),
         fit: last.fit.clone(),
         model: last.model.clone(),
         rms: [
@@ -180,6 +174,22 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
         held_out: (before.1, after.1),
         verdict,
     }
+}
+
+/// What the steps added and kept.
+fn added(steps: &[Step<OCTAVES>]) -> Vec<(Term, Vec<&'static str>)> {
+    let mut added = Vec::new();
+    for step in steps {
+        if let Some(swap) = step.swap() {
+            // The last addition gives way.
+            added.pop();
+            added.push((Term::new(swap.taken), Vec::new()));
+        }
+        if let Some(Addition::Effect(term)) = step.added {
+            added.push((term, step.ambiguous.to_vec()));
+        }
+    }
+    added
 }
 
 /// Counts over the records of one case.

@@ -1,0 +1,98 @@
+//! Second thoughts on an effect that was added alone: where two are missing, a third of a free enough
+//! shape may have taken the part of both. Those two are as simple as it is, or simpler.
+
+use super::{
+    Candidate, Diagnosis, MAX_CANDIDATES, Scan, Standing, Step, Swap, cost, scan_beside,
+    trial::Better,
+};
+use crate::{
+    curve::Curve,
+    effect::{Effect, MAX_PARAMETERS},
+    error::Error,
+    model::{Model, Term},
+};
+use heapless::Vec;
+
+/// Shapes of a scan that are fitted in full beside a runner-up.
+const TRIED: usize = 2;
+
+/// An effect that was added, and those that it was preferred to.
+#[derive(Clone)]
+pub(super) struct Preferred {
+    added: &'static dyn Effect,
+    /// Starting points need no more than single precision.
+    others: Vec<(&'static dyn Effect, [f32; MAX_PARAMETERS]), { MAX_CANDIDATES - 1 }>,
+}
+
+impl Preferred {
+    /// The first of the candidates to the others, as far as these would have been accepted and are no
+    /// freer in shape.
+    pub(super) fn of(candidates: &[Candidate], threshold: f64) -> Option<Self> {
+        let (first, others) = candidates.split_first()?;
+        let accepted = others.iter().filter(|other| {
+            is_as_simple(other.term.effect, first.term.effect) && other.improvement >= threshold
+        });
+        let start =
+            |other: &Candidate| (other.term.effect, other.term.parameters.map(|x| x as f32));
+        Some(Self {
+            added: first.term.effect,
+            others: accepted.map(start).collect(),
+        })
+    }
+
+    /// The model with another effect instead of the one that was added.
+    fn instead(&self, model: &Model, other: usize) -> Result<Model, Error> {
+        let (effect, parameters) = self.others[other];
+        let mut base = model.without(self.added.name());
+        if let Some(replaced) = self.added.replaces() {
+            base.restore(replaced)?;
+        }
+        if let Some(replaced) = effect.replaces() {
+            base = base.without(replaced.name());
+        }
+        base.add(Term {
+            parameters: parameters.map(f64::from),
+            ..Term::fitted(effect)
+        })?;
+        Ok(base)
+    }
+}
+
+fn is_as_simple(effect: &'static dyn Effect, as_what: &'static dyn Effect) -> bool {
+    cost(effect) <= cost(as_what)
+}
+
+impl Diagnosis {
+    /// Where even the effect that was added last leaves the curve unexplained: tries the effects beside
+    /// each of those that it was preferred to.
+    pub(super) fn revise<const K: usize>(
+        &self,
+        curve: &Curve<K>,
+        standing: &Standing,
+        preferred: &Preferred,
+        effects: &[&'static dyn Effect],
+        step: &mut Step<K>,
+        best: &mut Option<Better>,
+    ) {
+        for other in 0..preferred.others.len() {
+            // A model that cannot be fitted has no candidates.
+            let Ok(base) = preferred.instead(&step.model, other) else {
+                continue;
+            };
+            let mut found = Scan::new();
+            if scan_beside(curve, &base, self.tolerance, effects, &mut found).is_err() {
+                continue;
+            }
+            found.retain(|found| {
+                let effect = found.term.effect;
+                effect.name() != preferred.added.name() && is_as_simple(effect, preferred.added)
+            });
+            found.truncate(TRIED);
+            let swap = Swap {
+                dropped: preferred.added,
+                taken: preferred.others[other].0,
+            };
+            self.try_all(curve, standing, &found, Some((&base, swap)), step, best);
+        }
+    }
+}

@@ -29,8 +29,8 @@ use trial::Better;
 /// Candidates that a step fits in full and reports.
 pub const MAX_CANDIDATES: usize = 4;
 
-/// Names that a step calls ambiguous: two of every other candidate, and a twin.
-pub const MAX_AMBIGUOUS: usize = 2 * MAX_CANDIDATES - 1;
+/// Names that a step calls ambiguous: two of every other candidate, and twins of two.
+pub const MAX_AMBIGUOUS: usize = 2 * MAX_CANDIDATES;
 
 /// How to look for missing effects.
 #[derive(Clone, Copy, Debug)]

@@ -13,15 +13,22 @@ pub(super) fn tell<const K: usize>(
     better: &mut Better,
     step: &mut Step<K>,
 ) {
+    // Behind a name comes its twin: nobody has told them apart.
+    let mut at = 0;
+    while let Some(name) = step.ambiguous.get(at) {
+        at += 1;
+        let twin = effects.iter().find(|effect| is_twin(**effect, name));
+        if let Some(twin) = twin {
+            // As many names as candidates bring, with their twins.
+            let _ = step.ambiguous.insert(at, twin.name());
+            at += 1;
+        }
+    }
     let Some(Addition::Effect(added)) = &mut step.added else {
         return;
     };
-    let is_twin = |effect: &&&'static dyn Effect| {
-        effect
-            .twin()
-            .is_some_and(|twin| twin.name() == added.effect.name())
-    };
-    let Some(&twin) = effects.iter().find(is_twin) else {
+    let name = added.effect.name();
+    let Some(&twin) = effects.iter().find(|effect| is_twin(**effect, name)) else {
         return;
     };
     let at = better.model.terms().len() - 1;
@@ -38,8 +45,11 @@ pub(super) fn tell<const K: usize>(
         }
         Some(Some(false)) => {}
         _ => {
-            // As many names as candidates fit; the twin is one of the first.
             let _ = step.ambiguous.push(twin.name());
         }
     }
+}
+
+fn is_twin(effect: &dyn Effect, name: &str) -> bool {
+    effect.twin().is_some_and(|twin| twin.name() == name)
 }

@@ -106,7 +106,7 @@ impl Diagnosed {
 
     /// What every step added, with the effects that explain its curve about as well: without steps whose
     /// addition was dropped later.
-    pub(super) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
+    pub(super) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
         let swaps = self.steps.iter().skip(1).map(|next| next.swap().is_some());
         let kept = self
             .steps
@@ -114,7 +114,7 @@ impl Diagnosed {
             .zip(swaps)
             .filter(|&(_, dropped)| !dropped);
         kept.filter_map(|(step, _)| {
-            let others = ambiguous(step);
+            let others = step.ambiguous.as_slice();
             let added = step.added.as_ref().filter(|_| !others.is_empty())?;
             Some((added_name(added), others))
         })
@@ -141,7 +141,7 @@ impl Diagnosed {
             notes.push(format!(
                 "{} is ambiguous: {} explains this curve as well",
                 words::plain(added),
-                words::list(others)
+                words::list(others.iter().copied())
             ));
         }
         if self.missing().count() > 0 {
@@ -161,23 +161,6 @@ pub(super) fn added_name(added: &Addition) -> &'static str {
         Addition::Effect(term) => term.effect.name(),
         Addition::Covariate(_) => covariate::NAME,
     }
-}
-
-/// Effects that explain a step's curve about as well as the one that was added; with each of them
-/// those of the same Allan variance, which no curve tells from it.
-pub(super) fn ambiguous(step: &Step<OCTAVES>) -> Vec<&'static str> {
-    let Some(Addition::Effect(added)) = step.added else {
-        return Vec::new();
-    };
-    let mut names: Vec<&'static str> = Vec::new();
-    for name in step.ambiguous.iter().copied() {
-        for other in [name].into_iter().chain(words::twins(name)) {
-            if other != added.effect.name() && !names.contains(&other) {
-                names.push(other);
-            }
-        }
-    }
-    names
 }
 
 /// Runs the command.

@@ -67,9 +67,9 @@ pub(super) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Res
 
 fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
     let unit = diagnosed.axis.unit;
-    let mut names: Vec<_> = diagnosed
+    let mut names: Vec<&'static str> = diagnosed
         .ambiguous()
-        .flat_map(|(_, others)| others)
+        .flat_map(|(_, others)| others.iter().copied())
         .collect();
     names.sort_unstable();
     names.dedup();

@@ -1,7 +1,7 @@
 //! A diagnosis for people.
 
 use super::{
-    diagnose::{Diagnosed, ambiguous},
+    diagnose::Diagnosed,
     fit_table,
     number::{self, probability},
     words,
@@ -172,9 +172,8 @@ fn print_step(
     }
     writeln!(output, "  candidates, best first:")?;
     print_candidates(before, output)?;
-    let others = ambiguous(before);
-    if !others.is_empty() {
-        let others = words::list(others);
+    if !before.ambiguous.is_empty() {
+        let others = words::list(before.ambiguous.iter().copied());
         writeln!(
             output,
             "  ambiguous: {others} cannot be told from it on this curve"

@@ -7,7 +7,7 @@ use super::{
 use crate::{log::OCTAVES, unit::Unit};
 use allanite::{
     Coefficient, Fit, State, Step, Term,
-    effect::{CATALOGUE, Effect, MAX_PARAMETERS},
+    effect::{Effect, MAX_PARAMETERS},
 };
 
 /// A name as people write it.
@@ -106,21 +106,6 @@ pub(super) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static
         named.extend(coefficient.map(|value| (name, value)));
     }
     named
-}
-
-/// Effects with the same Allan variance.
-pub(super) fn twins(name: &str) -> impl Iterator<Item = &'static str> {
-    let twin = move |effect: &'static dyn Effect| {
-        let other = effect.twin()?.name();
-        if other == name {
-            Some(effect.name())
-        } else if effect.name() == name {
-            Some(other)
-        } else {
-            None
-        }
-    };
-    CATALOGUE.into_iter().filter_map(twin)
 }
 
 /// What a frequency may be instead of itself.

@@ -26,12 +26,18 @@ pub struct ComparedOctave {
     pub measured: f64,
     /// The model's.
     pub model: f64,
-    /// How far the measured variance lies above the model's, in percent of the model's.
-    pub percent: f64,
-    /// The same in standard errors, the model's tolerance among them.
+    /// How far the measured variance lies above the model's in standard errors, the model's tolerance
+    /// among them.
     pub z: f64,
     /// Each effect's share of the model's variance, in the model's order.
     pub shares: [f32; MAX_EFFECTS],
+}
+
+impl ComparedOctave {
+    /// How far the measured variance lies above the model's, in percent of the model's.
+    pub fn percent(&self) -> f64 {
+        100.0 * (self.measured / self.model - 1.0)
+    }
 }
 
 /// Neighbouring octaves that noticeably disagree, all to one side.
@@ -126,19 +132,17 @@ impl<const K: usize> Comparison<K> {
         let mut sum_of_squares = 0.0;
         for (k, point) in problem.points.iter().enumerate() {
             let model = problem.variance(k, squares);
-            let relative = point.variance / model - 1.0;
-            let percent = 100.0 * relative;
-            sum_of_squares += percent * percent;
-            // As many as the curve has.
-            let _ = self.octaves.push(ComparedOctave {
+            let octave = ComparedOctave {
                 m: point.m,
                 tau_s: point.tau_s,
                 measured: point.variance,
                 model,
-                percent,
-                z: relative * model / (weights.model[k] * weights.relative_error(k)),
+                z: (point.variance - model) / (weights.model[k] * weights.relative_error(k)),
                 shares: core::array::from_fn(|i| problem.share(k, i, squares) as f32),
-            });
+            };
+            sum_of_squares += octave.percent() * octave.percent();
+            // As many as the curve has.
+            let _ = self.octaves.push(octave);
         }
         self.chi_squared = weights.chi_squared(problem, squares);
         self.degrees_of_freedom = self.octaves.len().saturating_sub(unknowns);
@@ -179,7 +183,7 @@ impl<const K: usize> core::fmt::Display for Comparison<K> {
             return write!(f, "no octaves to compare");
         };
         if self.stretches().next().is_none() {
-            let (percent, z) = (worst.percent.abs(), worst.z.abs());
+            let (percent, z) = (worst.percent().abs(), worst.z.abs());
             return write!(
                 f,
                 "no octave disagrees noticeably: the worst, at τ = {}, by {percent:.1} % ({z:.1} σ)",
@@ -189,8 +193,8 @@ impl<const K: usize> core::fmt::Display for Comparison<K> {
         write!(
             f,
             "measured is {:.0} % {} the model at τ = {} ({:.0} σ)",
-            worst.percent.abs(),
-            side(worst.percent > 0.0),
+            worst.percent().abs(),
+            side(worst.z > 0.0),
             Time(worst.tau_s),
             worst.z.abs()
         )?;

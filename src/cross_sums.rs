@@ -144,11 +144,12 @@ impl<const K: usize> CrossCurve<K> {
         &self.points
     }
 
-    /// The gyro's curve without what follows the covariate, `σ²_g − 2α C_gx + α² σ²_x`. The slope's own
+    /// Takes what follows the covariate off the gyro's curve, `σ²_g − 2α C_gx + α² σ²_x`. The slope's own
     /// error ε takes some of the noise away with it, on average `ε² σ²_x`, which is put back.
-    pub fn corrected(&self, curve: &Curve<K>, slope: &Slope) -> Curve<K> {
+    #[inline(never)]
+    pub fn correct(&self, curve: &mut Curve<K>, slope: &Slope) {
         let Slope { value, error } = *slope;
-        curve.with_variances(|k, variance| match self.points.get(k) {
+        curve.change_variances(|k, variance| match self.points.get(k) {
             Some(cross) => {
                 let follows = value * (2.0 * cross.covariance - value * cross.variance);
                 // A mean square, but for rounding.
@@ -156,6 +157,6 @@ impl<const K: usize> CrossCurve<K> {
                 rest + error * error * cross.variance
             }
             None => variance,
-        })
+        });
     }
 }

@@ -108,13 +108,11 @@ impl<const K: usize> Curve<K> {
         Ok(Self { rate_hz, points })
     }
 
-    /// The same octaves with other variances, which must be finite and not negative.
-    pub(crate) fn with_variances(&self, variance: impl Fn(usize, f64) -> f64) -> Self {
-        let mut other = self.clone();
-        for (k, point) in other.points.iter_mut().enumerate() {
+    /// Other variances in place, which must be finite and not negative.
+    pub(crate) fn change_variances(&mut self, variance: impl Fn(usize, f64) -> f64) {
+        for (k, point) in self.points.iter_mut().enumerate() {
             point.variance = variance(k, point.variance);
         }
-        other
     }
 
     /// Samples per second.

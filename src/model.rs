@@ -121,6 +121,14 @@ impl Model {
         }
     }
 
+    /// Takes the effect of that name out; of two, the later one. Gives back its place.
+    pub(crate) fn remove(&mut self, name: &str) -> Option<usize> {
+        let mut terms = self.terms.iter();
+        let place = terms.rposition(|term| term.effect.name() == name)?;
+        self.terms.remove(place);
+        Some(place)
+    }
+
     /// The place of the effect of that name.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.terms

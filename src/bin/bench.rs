@@ -65,12 +65,13 @@ mod image {
         defmt::info!("stack_bytes_fit_20 {=usize}", stack);
 
         let start = SYST::get_current();
-        let found = diagnose(black_box(&hidden)) == Ok(Verdict::Improved);
+        let model = Model::ieee_952();
+        let found = diagnose(black_box(&hidden), &model) == Ok(Verdict::Improved);
         defmt::info!(
             "instructions_diagnosis_20 {=u32}",
             ticks_since(start) * LONG
         );
-        let stack = crate::stack::used_by(|| diagnose(black_box(&hidden)).is_ok() == found);
+        let stack = crate::stack::used_by(|| diagnose(black_box(&hidden), &model).is_ok() == found);
         defmt::info!("stack_bytes_diagnosis_20 {=usize}", stack);
         semihosting::process::exit(i32::from(!(fitted && found)))
     }
@@ -190,9 +191,9 @@ mod image {
     }
 
     #[inline(never)]
-    fn diagnose(curve: &Curve<20>) -> Result<Verdict, allanite::Error> {
-        let (diagnosis, model) = (Diagnosis::default(), Model::ieee_952());
-        diagnosis.run(curve, &Evidence::NONE, &model, &CATALOGUE, |step| {
+    fn diagnose(curve: &Curve<20>, model: &Model) -> Result<Verdict, allanite::Error> {
+        let evidence = Evidence::NONE;
+        Diagnosis::default().run(curve, &evidence, model, &CATALOGUE, |step| {
             black_box(step);
         })
     }

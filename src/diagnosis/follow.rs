@@ -1,6 +1,6 @@
 //! Whether the rate follows a covariate.
 
-use super::{Addition, Diagnosis, Evidence, Follows, Standing, Step};
+use super::{Addition, Diagnosis, Evidence, Follows, standing::Standing};
 use crate::{
     cross_sums::CrossCurve,
     curve::Curve,
@@ -11,6 +11,7 @@ use crate::{
         generalized::{Rounds, Solution},
     },
     model::Model,
+    nnls::Vector,
 };
 
 /// Rounds of a slope and the noise that is left of the curve without what follows the covariate: as
@@ -23,12 +24,12 @@ impl Diagnosis {
         &self,
         curve: &Curve<K>,
         evidence: &Evidence<'_, K>,
-        step: &Step<K>,
-        standing: &Standing,
+        standing: &Standing<K>,
     ) -> Result<Option<Addition>, Error> {
+        let model = &standing.step.model;
         let mut best: Option<Follows> = None;
         for (covariate, cross) in evidence.covariates.iter().enumerate() {
-            let Some(slope) = self.slope(curve, cross, &step.model, standing)? else {
+            let Some(slope) = self.slope(curve, cross, model, &standing.squares)? else {
                 continue;
             };
             let z = |slope: Slope| slope.z() * slope.z();
@@ -49,12 +50,16 @@ impl Diagnosis {
         curve: &Curve<K>,
         cross: &CrossCurve<K>,
         model: &Model,
-        standing: &Standing,
+        squares: &Vector,
     ) -> Result<Option<Slope>, Error> {
-        let mut squares = standing.squares;
+        let mut squares = *squares;
         let mut slope: Option<Slope> = None;
         for _ in 0..ROUNDS {
-            let corrected = slope.map(|slope| cross.corrected(curve, &slope));
+            let corrected = slope.map(|slope| {
+                let mut corrected = curve.clone();
+                cross.correct(&mut corrected, &slope);
+                corrected
+            });
             let problem = Problem::new(corrected.as_ref().unwrap_or(curve), model);
             if corrected.is_some() {
                 let mut solution = Solution::new(&problem);

@@ -2,8 +2,7 @@
 //! shape may have taken the part of both. Those two are as simple as it is, or simpler.
 
 use super::{
-    Candidate, Diagnosis, MAX_CANDIDATES, Scan, Standing, Step, Swap, cost, scan_beside,
-    trial::Better,
+    Candidate, Diagnosis, MAX_CANDIDATES, Swap, scan::scan_beside, standing::Standing, step::cost,
 };
 use crate::{
     curve::Curve,
@@ -41,20 +40,21 @@ impl Preferred {
     }
 
     /// The model with another effect instead of the one that was added.
-    fn instead(&self, model: &Model, other: usize) -> Result<Model, Error> {
+    #[inline(never)]
+    fn instead(&self, model: &Model, other: usize, base: &mut Model) -> Result<(), Error> {
         let (effect, parameters) = self.others[other];
-        let mut base = model.without(self.added.name());
+        base.clone_from(model);
+        base.remove(self.added.name());
         if let Some(replaced) = self.added.replaces() {
             base.restore(replaced)?;
         }
         if let Some(replaced) = effect.replaces() {
-            base = base.without(replaced.name());
+            base.remove(replaced.name());
         }
         base.add(Term {
             parameters: parameters.map(f64::from),
             ..Term::fitted(effect)
-        })?;
-        Ok(base)
+        })
     }
 }
 
@@ -65,22 +65,26 @@ fn is_as_simple(effect: &'static dyn Effect, as_what: &'static dyn Effect) -> bo
 impl Diagnosis {
     /// Where even the effect that was added last leaves the curve unexplained: tries the effects beside
     /// each of those that it was preferred to.
+    #[inline(never)]
     pub(super) fn revise<const K: usize>(
         &self,
         curve: &Curve<K>,
-        standing: &Standing,
-        preferred: &Preferred,
         effects: &[&'static dyn Effect],
-        step: &mut Step<K>,
-        best: &mut Option<Better>,
+        standing: &mut Standing<K>,
     ) {
+        let Some(preferred) = standing.preferred.take() else {
+            return;
+        };
         for other in 0..preferred.others.len() {
             // A model that cannot be fitted has no candidates.
-            let Ok(base) = preferred.instead(&step.model, other) else {
+            let Standing {
+                step, base, found, ..
+            } = &mut *standing;
+            if preferred.instead(&step.model, other, base).is_err() {
                 continue;
-            };
-            let mut found = Scan::new();
-            if scan_beside(curve, &base, self.tolerance, effects, &mut found).is_err() {
+            }
+            found.clear();
+            if scan_beside(curve, base, self.tolerance, effects, found).is_err() {
                 continue;
             }
             found.retain(|found| {
@@ -92,7 +96,7 @@ impl Diagnosis {
                 dropped: preferred.added,
                 taken: preferred.others[other].0,
             };
-            self.try_all(curve, standing, &found, Some((&base, swap)), step, best);
+            self.try_all(curve, Some(swap), standing);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A model with one more effect, fitted in full.
 
-use super::{Candidate, span};
+use super::{Candidate, scan::span};
 use crate::{
     curve::Curve,
     effect::Span,
@@ -31,8 +31,8 @@ const STRIDE: f64 = 0.2;
 /// Times that a step is halved because it led too far.
 const HALVINGS: u32 = 4;
 
-/// Changes of the logarithms of fitted shapes, by effect and parameter.
-type Steps = Vec<(usize, usize, f64), MAX_SHAPE>;
+/// Changes of the logarithms of fitted shapes, by effect and parameter, in little room.
+type Steps = Vec<(u8, u8, f32), MAX_SHAPE>;
 
 /// A model with one more effect, and its squared coefficients.
 #[derive(Clone, Debug)]
@@ -42,22 +42,26 @@ pub(super) struct Better {
 }
 
 impl Better {
-    /// With an effect as a scan found it: at the place of what it replaces, or behind the others.
-    pub(super) fn new(model: &Model, found: &Found) -> Result<Self, Error> {
-        let replaced = found.term.effect.replaces().map(|effect| effect.name());
-        let place = replaced.and_then(|name| model.position(name));
-        let mut better = Self {
-            model: model.without(replaced.unwrap_or("")),
+    /// Of no effects yet.
+    pub(super) fn empty() -> Self {
+        Self {
+            model: Model::default(),
             squares: Vector::zeros(),
-        };
-        for (i, term) in better.model.terms().iter().enumerate() {
-            let at = model.position(term.effect.name()).unwrap_or(i);
-            better.squares[i] = found.squares[at];
         }
-        let last = better.model.terms().len();
-        better.model.add(found.term)?;
-        better.squares[last] = found.squares[place.unwrap_or(last)];
-        Ok(better)
+    }
+
+    /// Becomes a model with an effect as a scan found it: in the place of what it replaces, or behind the
+    /// others.
+    pub(super) fn begin(&mut self, model: &Model, found: &Found) -> Result<(), Error> {
+        self.model.clone_from(model);
+        self.squares = found.squares;
+        let replaced = found.term.effect.replaces();
+        if let Some(place) = replaced.and_then(|effect| self.model.remove(effect.name())) {
+            for i in place + 1..model.terms().len() {
+                self.squares.swap_rows(i - 1, i);
+            }
+        }
+        self.model.add(found.term)
     }
 
     /// Fits the model with its own covariance, and its shapes by the method of Gauss and Newton, until
@@ -119,7 +123,8 @@ impl Better {
     /// Changes shapes.
     fn go(&mut self, steps: &Steps, sign: f64, span: &Span) {
         for &(i, j, step) in steps {
-            let term = &mut self.model.terms_mut()[i];
+            let (j, step) = (usize::from(j), f64::from(step));
+            let term = &mut self.model.terms_mut()[usize::from(i)];
             let range = term.effect.range(j, span);
             let changed = term.parameters[j] * math::exp(sign * step);
             term.parameters[j] = changed.clamp(range.low, range.high.max(range.low));
@@ -168,12 +173,12 @@ fn judge<const K: usize>(
         }
         shape.steps(&solution.free, |i, j, step| {
             // As many as fitted shapes.
-            let _ = steps.push((i, j, step.clamp(-STRIDE, STRIDE)));
+            let _ = steps.push((i as u8, j as u8, step.clamp(-STRIDE, STRIDE) as f32));
         });
     }
     let at = problem.count() - 1;
     candidate.term = problem.model.terms()[at];
-    candidate.coefficient = solution.coefficient(at, told.then_some(&shape));
+    candidate.coefficient = math::sqrt(solution.squares[at].max(0.0));
     candidate.chi_squared = solution.chi_squared;
     None
 }

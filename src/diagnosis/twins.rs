@@ -1,6 +1,6 @@
 //! Effects that share their Allan variance.
 
-use super::{Addition, Step, trial::Better};
+use super::{Addition, standing::Standing};
 use crate::{curve::Curve, effect::Effect, fit::Problem, kurtosis::Kurtosis};
 
 /// Of an effect that shares its Allan variance with another, names the one that the kurtosis speaks
@@ -10,9 +10,11 @@ pub(super) fn tell<const K: usize>(
     curve: &Curve<K>,
     kurtosis: Option<&Kurtosis<K>>,
     effects: &[&'static dyn Effect],
-    better: &mut Better,
-    step: &mut Step<K>,
+    standing: &mut Standing<K>,
 ) {
+    let Standing {
+        step, best: better, ..
+    } = standing;
     // Behind a name comes its twin: nobody has told them apart.
     let mut at = 0;
     while let Some(name) = step.ambiguous.get(at) {

@@ -70,7 +70,7 @@ impl ShapeEquations {
             return false;
         }
         // Coefficients first, the shapes behind them.
-        let mut derivatives: Vec<SVector<f64, K>, MAX_SHAPE> = Vec::new();
+        let mut derivatives: Vec<SVector<f32, K>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
             let column = |factor: f64| {
                 let mut term = term;
@@ -80,7 +80,7 @@ impl ShapeEquations {
             let change = column(math::exp(STEP)) - column(math::exp(-STEP));
             let scale = 0.5 * squares[i] / STEP;
             // As many as parameters.
-            let _ = derivatives.push(change * scale);
+            let _ = derivatives.push(change.map(|change| (change * scale) as f32));
         }
         let residual = |k: usize| problem.points[k].variance - problem.variance(k, squares);
         let (none, equations) = (|_: usize| 1.0, &mut self.equations);

@@ -113,7 +113,7 @@ impl<const K: usize> Weights<K> {
         &self,
         problem: &Problem<'_, K>,
         scatter: impl Fn(usize) -> f64,
-        more: &[SVector<f64, K>],
+        more: &[SVector<f32, K>],
         right: impl Fn(usize) -> f64,
         equations: &mut NormalEquations<P>,
     ) -> Result<(), Error> {
@@ -121,7 +121,7 @@ impl<const K: usize> Weights<K> {
         let count = problem.count();
         let unit = |i: usize, k: usize| match i.checked_sub(count) {
             None => problem.unit(i, k),
-            Some(at) => more[at][k],
+            Some(at) => f64::from(more[at][k]),
         };
         let per_error = |k: usize| 1.0 / (self.model[k] * scatter(k));
         equations.set(count + more.len(), |i, row| {

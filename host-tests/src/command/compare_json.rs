@@ -126,7 +126,7 @@ fn octave(octave: &ComparedOctave, model: &Model) -> Octave {
         tau_s: octave.tau_s,
         measured: octave.measured.sqrt(),
         model: octave.model.sqrt(),
-        percent: octave.percent,
+        percent: octave.percent(),
         z: octave.z,
         shares: names
             .zip(octave.shares)

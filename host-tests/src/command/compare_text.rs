@@ -95,7 +95,7 @@ fn octaves(compared: &Compared) -> Table {
             duration(octave.tau_s),
             format!("{} {unit}", number(octave.measured.sqrt())),
             format!("{} {unit}", number(octave.model.sqrt())),
-            format!("{:+.1} %", octave.percent),
+            format!("{:+.1} %", octave.percent()),
             format!("{:+.1}", octave.z),
         ];
         let share = |&(i, _): &(usize, &str)| match octave.shares.get(i) {

@@ -115,7 +115,7 @@ fn step(step: &Taken<OCTAVES>, diagnosed: &Diagnosed, unit: Unit) -> Step {
 fn candidate(tried: &Tried) -> Candidate {
     Candidate {
         effect: tried.term.effect.name(),
-        parameters: model_json::parameters(&tried.term, tried.coefficient.value),
+        parameters: model_json::parameters(&tried.term, tried.coefficient),
         chi2: tried.chi_squared,
         improvement: tried.improvement,
         swap: tried.swap.map(|swap| Swap {

@@ -73,7 +73,7 @@ pub(super) fn worst(comparison: &Comparison<OCTAVES>) -> Option<Worst> {
     let worst = |octave: &ComparedOctave| Worst {
         tau_s: octave.tau_s,
         z: octave.z,
-        percent: octave.percent,
+        percent: octave.percent(),
     };
     comparison.worst().map(worst)
 }

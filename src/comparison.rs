@@ -75,7 +75,13 @@ impl<const K: usize> Comparison<K> {
     /// As of [`fit`](crate::fit).
     pub fn new(curve: &Curve<K>, model: &Model, fit: &Fit) -> Result<Self, Error> {
         let unknowns = curve.points().len().saturating_sub(fit.degrees_of_freedom);
-        Self::with_unknowns(curve, model, fit, fit.tolerance, unknowns)
+        let mut comparison = Self::with_unknowns(curve, model, fit, fit.tolerance, unknowns)?;
+        if !fit.chi_squared.is_nan() {
+            // The covariance that a fit ends with is a little off that of its result.
+            comparison.chi_squared = fit.chi_squared;
+            comparison.p_value = fit.p_value;
+        }
+        Ok(comparison)
     }
 
     /// A fit beside a curve that it was not fitted to, such as of the other half of a record: no

@@ -233,7 +233,13 @@ fn verdict(diagnosed: &Diagnosed, first: &Step<OCTAVES>, last: &Step<OCTAVES>) -
             "the five terms are not adequate (p {p}), and no effect in the catalogue explains it."
         ),
         Verdict::Improved => {
-            let names = diagnosed.missing();
+            let names = diagnosed.missing().map(|name| match &last.follows {
+                Some(follows) if name == covariate::NAME => {
+                    format!("{name} {}", diagnosed.covariate(follows))
+                }
+                _ => words::plain(name),
+            });
+            let names = words::list_of(names.collect());
             let alike = if diagnosed.ambiguous().next().is_some() {
                 " (or what is ambiguous with it)"
             } else {
@@ -246,7 +252,12 @@ fn verdict(diagnosed: &Diagnosed, first: &Step<OCTAVES>, last: &Step<OCTAVES>) -
                 first.comparison.rms_percent,
                 last.comparison.rms_percent
             );
-            let missing = format!("the five terms lack {}{alike}: {error}", words::list(names));
+            let lack = if first.fit.p_value >= diagnosed.adequate_p {
+                "the five terms explain the curve, and yet lack"
+            } else {
+                "the five terms lack"
+            };
+            let missing = format!("{lack} {names}{alike}: {error}");
             if last.fit.p_value >= diagnosed.adequate_p {
                 format!("{missing}; the model is adequate now (p {p}).")
             } else {

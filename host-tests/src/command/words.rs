@@ -17,7 +17,11 @@ pub(super) fn plain(name: &str) -> String {
 
 /// Names as a list in a sentence.
 pub(super) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<String> = names.into_iter().map(plain).collect();
+    list_of(names.into_iter().map(plain).collect())
+}
+
+/// The same of what people read already.
+pub(super) fn list_of(names: Vec<String>) -> String {
     match names.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         _ => names.concat(),

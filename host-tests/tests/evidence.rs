@@ -1,0 +1,188 @@
+//! `diagnose` with what a log tells beside its curve: whether it may be believed, and what it follows.
+
+mod common;
+
+use common::{json, output, refusal};
+use serde_json::Value;
+use std::{fs, path::Path};
+use tempfile::TempDir;
+
+/// A consumer gyro's log of 2^16 samples at 100 Hz, with what is hidden in it.
+fn simulate(folder: &Path, effects: &[&str]) {
+    let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", "5"];
+    let mut arguments = [&simulate[..], &["--output", "log.csv"]].concat();
+    for effect in effects {
+        arguments.extend(["--effect", effect]);
+    }
+    output(folder, &arguments);
+}
+
+/// The log with other rates in its first column: `change(index, rate)`.
+fn change(folder: &Path, mut change: impl FnMut(usize, f64) -> f64) {
+    let path = folder.join("log.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let mut index = 0;
+    let lines = text.lines().map(|line| {
+        let Ok(rate) = line.parse::<f64>() else {
+            return line.to_owned();
+        };
+        index += 1;
+        change(index - 1, rate).to_string()
+    });
+    let changed = lines.collect::<Vec<_>>().join("\n");
+    fs::write(path, changed + "\n").unwrap();
+}
+
+fn list(value: &Value) -> Vec<&str> {
+    let list = value.as_array().unwrap();
+    list.iter().map(|text| text.as_str().unwrap()).collect()
+}
+
+#[test]
+fn a_record_that_cannot_be_believed_is_invalid_and_blames_no_effect() {
+    let folder = TempDir::new().unwrap();
+    let mut held = 0.0;
+    let cases: [(&str, &str, &mut dyn FnMut(usize, f64) -> f64); 3] = [
+        ("moved", "moved", &mut |i, rate| {
+            let turned = (30_000..30_400).contains(&i);
+            rate + if turned { 20.0 } else { 0.0 }
+        }),
+        ("stuck", "equal values", &mut |i, rate| {
+            if !(40_000..60_000).contains(&i) {
+                held = rate;
+            }
+            held
+        }),
+        ("spike", "spike", &mut |i, rate| {
+            if i == 12_345 { 500.0 } else { rate }
+        }),
+    ];
+    for (name, word, disturb) in cases {
+        simulate(folder.path(), &[]);
+        change(folder.path(), disturb);
+        let document = json(folder.path(), &["diagnose", "log.csv"]);
+        let axis = &document["axes"][0];
+        assert_eq!(axis["verdict"], "invalid", "{name}");
+        assert!(list(&axis["missing"]).is_empty() && list(&axis["ambiguous"]).is_empty());
+        let steps = axis["steps"].as_array().unwrap();
+        assert_eq!(steps.len(), 1);
+        assert!(
+            steps[0]["added"].is_null() && steps[0]["candidates"].as_array().unwrap().is_empty()
+        );
+        let notes = list(&axis["notes"]);
+        assert!(
+            notes.iter().any(|note| note.contains(word)),
+            "{name}: {notes:?}"
+        );
+        let text = output(folder.path(), &["diagnose", "log.csv"]);
+        assert!(text.contains("gx: the record is invalid: "), "{text}");
+        assert!(notes.iter().all(|note| text.contains(note)), "{text}");
+    }
+}
+
+#[test]
+fn a_temperature_is_found_with_its_slope_and_named_in_the_words() {
+    let folder = TempDir::new().unwrap();
+    simulate(
+        folder.path(),
+        &["thermal:slope=0.03,kelvin=10,period_s=300"],
+    );
+    let diagnose = ["diagnose", "log.csv", "--covariates", "temp_C"];
+    let document = json(folder.path(), &diagnose);
+    let axis = &document["axes"][0];
+    assert_eq!(list(&axis["missing"]), ["covariate"]);
+    assert_eq!(axis["steps"][0]["added"], "covariate");
+    let effect = &axis["steps"][1]["effects"][0];
+    assert_eq!(
+        (&effect["name"], &effect["channel"]),
+        (&"covariate".into(), &"temp_C".into())
+    );
+    let parameter = |name: &str| effect["parameters"][name].as_f64().unwrap();
+    let slope = parameter("slope");
+    assert!((slope / 0.03 - 1.0).abs() < 0.1, "{slope}");
+    assert!(parameter("slope_lower") < 0.03 && 0.03 < parameter("slope_upper"));
+    // Without its column the slow part of the curve has another name, or none.
+    let blind = json(folder.path(), &["diagnose", "log.csv"]);
+    assert!(!list(&blind["axes"][0]["missing"]).contains(&"covariate"));
+    let text = output(folder.path(), &diagnose);
+    assert!(text.contains("1. + covariate temp_C: "), "{text}");
+    assert!(text.contains("lack covariate temp_C: "), "{text}");
+}
+
+#[test]
+fn a_rate_of_change_is_a_covariate_too_and_a_stranger_is_not_blamed() {
+    let folder = TempDir::new().unwrap();
+    simulate(
+        folder.path(),
+        &["thermal:slope=0.03,kelvin=10,period_s=300"],
+    );
+    let both = "temp_C,rate(temp_C)";
+    let document = json(
+        folder.path(),
+        &["diagnose", "log.csv", "--covariates", both],
+    );
+    let effect = &document["axes"][0]["steps"][1]["effects"][0];
+    assert_eq!(effect["channel"], "temp_C");
+    // The temperature of another day.
+    let other = fs::read_to_string(folder.path().join("log.csv")).unwrap();
+    simulate(folder.path(), &[]);
+    let own = fs::read_to_string(folder.path().join("log.csv")).unwrap();
+    let temperature = |line: &str| line.split(',').nth(1).unwrap_or_default().to_owned();
+    let joined = own.lines().zip(other.lines()).skip(1);
+    let joined = joined.map(|(own, other)| format!("{own},{}\n", temperature(other)));
+    let log = "# rate_hz=100 unit=deg/s\n".to_owned() + &joined.collect::<String>();
+    fs::write(folder.path().join("log.csv"), log).unwrap();
+    let document = json(
+        folder.path(),
+        &["diagnose", "log.csv", "--covariates", "temp_C"],
+    );
+    assert_eq!(document["axes"][0]["verdict"], "adequate");
+}
+
+#[test]
+fn two_effects_that_look_like_a_third_are_told_from_it() {
+    let folder = TempDir::new().unwrap();
+    let hidden = [
+        "sinusoid:frequency_hz=7.7,amplitude=0.0267",
+        "decimation_filter:width_s=0.0235,stages=2",
+    ];
+    simulate(folder.path(), &hidden);
+    let document = json(folder.path(), &["diagnose", "log.csv"]);
+    let axis = &document["axes"][0];
+    let named = [list(&axis["missing"]), list(&axis["ambiguous"])].concat();
+    assert!(
+        named.contains(&"sinusoid") && named.contains(&"decimation_filter"),
+        "{named:?}"
+    );
+    assert_eq!(axis["steps"][0]["added"], "resonance");
+    assert_eq!(
+        axis["steps"][1]["candidates"][0]["swap"]["dropped"],
+        "resonance"
+    );
+    assert!(!list(&axis["missing"]).contains(&"resonance"));
+    let text = output(folder.path(), &["diagnose", "log.csv"]);
+    assert!(text.contains(" instead of resonance: χ² "), "{text}");
+}
+
+#[test]
+fn covariates_that_are_none_are_refused() {
+    let folder = TempDir::new().unwrap();
+    simulate(
+        folder.path(),
+        &["thermal:slope=0.03,kelvin=10,period_s=300"],
+    );
+    let refused = |covariates: &str| {
+        refusal(
+            folder.path(),
+            &["diagnose", "log.csv", "--covariates", covariates],
+        )
+    };
+    assert!(refused("temp").contains("there is no column \"temp\""));
+    assert!(refused("gx").contains("\"gx\" is an axis"));
+    output(
+        folder.path(),
+        &["measure", "log.csv", "--output", "curve.json"],
+    );
+    let of_a_curve = ["diagnose", "curve.json", "--covariates", "temp_C"];
+    assert!(refusal(folder.path(), &of_a_curve).contains("a curve knows no covariates"));
+}

@@ -1,0 +1,57 @@
+//! The README shows what its reader will see.
+
+mod common;
+
+use common::output;
+use std::{fs, path::Path};
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+/// Commands of the `console` blocks, and the lines shown of each.
+fn examples(readme: &str) -> Vec<(&str, Vec<&str>)> {
+    let mut examples: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut inside = false;
+    for line in readme.lines() {
+        match line {
+            "```console" => inside = true,
+            "```" => inside = false,
+            _ if !inside => {}
+            _ => match line.strip_prefix("$ cargo allanite ") {
+                Some(command) => examples.push((command, Vec::new())),
+                None => examples.last_mut().expect("a command first").1.push(line),
+            },
+        }
+    }
+    examples
+}
+
+/// Takes the lines shown from those printed, in order: `...` stands for any number of lines.
+fn find(shown: &[&str], printed: &[&str]) -> Result<(), String> {
+    let mut rest = printed;
+    for part in shown.split(|line| *line == "...") {
+        if part.is_empty() {
+            continue;
+        }
+        let found = rest.windows(part.len()).position(|window| window == part);
+        let at =
+            found.ok_or_else(|| format!("not printed, in this order:\n{}", part.join("\n")))?;
+        rest = &rest[at + part.len()..];
+    }
+    Ok(())
+}
+
+#[test]
+fn commands_print_what_is_shown() {
+    let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
+    let examples = examples(&readme);
+    assert!(examples.len() >= 4);
+    for (command, shown) in examples {
+        let arguments: Vec<&str> = command.split_whitespace().collect();
+        let printed = output(Path::new(ROOT), &arguments);
+        let printed: Vec<&str> = printed.lines().map(str::trim_end).collect();
+        assert!(shown.iter().filter(|line| **line != "...").count() >= 3);
+        if let Err(missing) = find(&shown, &printed) {
+            panic!("{command}: {missing}\nprinted:\n{}", printed.join("\n"));
+        }
+    }
+}

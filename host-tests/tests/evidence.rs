@@ -17,6 +17,9 @@ fn simulate(folder: &Path, effects: &[&str]) {
     output(folder, &arguments);
 }
 
+/// The rate that a sample is given instead of its own.
+type Change<'a> = &'a mut dyn FnMut(usize, f64) -> f64;
+
 /// The log with other rates in its first column: `change(index, rate)`.
 fn change(folder: &Path, mut change: impl FnMut(usize, f64) -> f64) {
     let path = folder.join("log.csv");
@@ -42,7 +45,7 @@ fn list(value: &Value) -> Vec<&str> {
 fn a_record_that_cannot_be_believed_is_invalid_and_blames_no_effect() {
     let folder = TempDir::new().unwrap();
     let mut held = 0.0;
-    let cases: [(&str, &str, &mut dyn FnMut(usize, f64) -> f64); 3] = [
+    let cases: [(&str, &str, Change<'_>); 3] = [
         ("moved", "moved", &mut |i, rate| {
             let turned = (30_000..30_400).contains(&i);
             rate + if turned { 20.0 } else { 0.0 }

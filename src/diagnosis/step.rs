@@ -78,7 +78,7 @@ impl core::fmt::Debug for Swap {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Follows {
-    /// Its place among [`Evidence::covariates`].
+    /// Its place among [`Evidence::covariates`](super::Evidence::covariates).
     pub covariate: usize,
     /// How.
     pub slope: Slope,

@@ -1,5 +1,8 @@
 //! The program as people run it.
 
+// Every test takes what it needs of this.
+#![allow(dead_code)]
+
 use std::{
     path::Path,
     process::{Command, Output},

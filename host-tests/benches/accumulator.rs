@@ -1,7 +1,7 @@
 //! Time a sample of the accumulator on this host: `cargo xtask bench` reads it.
 
 use allanite::Accumulator;
-use allanite::self_test::AMPLITUDES;
+use allanite::demonstration::AMPLITUDES;
 use allanite::simulated::SimulatedGyro;
 use std::{hint::black_box, time::Instant};
 

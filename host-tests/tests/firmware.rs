@@ -1,6 +1,12 @@
 //! The image on a Cortex-M4F and the same computation here agree to the bit.
 
-use allanite::{Addition, Step, Verdict, demonstration, self_test::SelfTest};
+use allanite::{
+    Addition, Step, Verdict,
+    demonstration::{
+        characterise::Characterised,
+        diagnose::{HIDDEN, diagnose},
+    },
+};
 use host_tests::firmware::{Image, run, run_with};
 
 /// The words that are bits of a number: those after each decimal one.
@@ -24,12 +30,12 @@ fn lines<'a>(log: &'a [String], kind: &str) -> Vec<&'a str> {
 
 #[test]
 fn image_and_host_agree_to_the_bit() {
-    let image = Image::build("self_test").unwrap_or_else(|error| panic!("{error:#}"));
+    let image = Image::build("characterise").unwrap_or_else(|error| panic!("{error:#}"));
     let run = run(&image).unwrap_or_else(|error| panic!("{error:#}"));
     println!("{}", run.lines.join("\n"));
     assert!(run.status.success(), "the image ended with {}", run.status);
 
-    let here = SelfTest::run().unwrap();
+    let here = Characterised::run().unwrap();
     assert!(here.passed());
 
     let octaves = lines(&run.lines, "octave");
@@ -139,13 +145,13 @@ fn condensed(line: &str) -> String {
 #[test]
 fn image_finds_hidden_effects_as_the_host_does_to_the_bit() {
     let image = Image::build("hidden_effect").unwrap_or_else(|error| panic!("{error:#}"));
-    for (name, disturbance) in demonstration::HIDDEN {
+    for (name, disturbance) in HIDDEN {
         let run = run_with(&image, &[name]).unwrap_or_else(|error| panic!("{error:#}"));
         println!("{}", run.lines.join("\n"));
         assert!(run.status.success(), "the image ended with {}", run.status);
 
         let (mut here, mut errors, mut found) = (Vec::new(), Vec::new(), Vec::new());
-        let verdict = demonstration::diagnose(Some(disturbance), |step| {
+        let verdict = diagnose(Some(disturbance), |step| {
             here.extend(logged(step));
             errors.push(step.fit.chi_squared);
             if let Some(Addition::Effect(term)) = &step.added {

@@ -11,8 +11,8 @@ fn main() {}
 
 #[cfg(target_os = "none")]
 mod image {
+    use allanite::demonstration::AMPLITUDES;
     use allanite::effect::{CATALOGUE, Effect as _, Setting, Sinusoid};
-    use allanite::self_test::AMPLITUDES;
     use allanite::simulated::{Random, SimulatedGyro};
     use allanite::{Accumulator, Curve, Diagnosis, Evidence, Fit, Model, Settings, Verdict, fit};
     use core::hint::black_box;

@@ -9,7 +9,7 @@ fn main() {}
 
 #[cfg(target_os = "none")]
 mod image {
-    use allanite::demonstration::{self, HIDDEN, OCTAVES};
+    use allanite::demonstration::diagnose::{HIDDEN, OCTAVES, diagnose};
     use allanite::{Addition, Step, Verdict};
     use cortex_m as _;
     use cortex_m_rt::entry;
@@ -27,7 +27,7 @@ mod image {
             .and_then(Result::ok)
             .unwrap_or("nothing");
         let disturbance = HIDDEN.iter().find(|(hidden, _)| *hidden == name);
-        match demonstration::diagnose(disturbance.map(|&(_, disturbance)| disturbance), log) {
+        match diagnose(disturbance.map(|&(_, disturbance)| disturbance), log) {
             Ok(verdict) => {
                 defmt::info!("verdict {}", verdict);
                 semihosting::process::exit(i32::from(matches!(verdict, Verdict::Invalid(_))))

@@ -2,6 +2,7 @@
 //! accumulated, fitted, compared and diagnosed. What an image computes on the target, and the host again,
 //! to compare the bits.
 
+use super::AMPLITUDES;
 use crate::{
     curve::Scale,
     diagnosis::{Diagnosis, Evidence, Step, Verdict},
@@ -11,7 +12,6 @@ use crate::{
     kurtosis::FourthMoments,
     model::Model,
     octave::Accumulator,
-    self_test::AMPLITUDES,
     simulated::{Disturbance, SimulatedGyro},
 };
 

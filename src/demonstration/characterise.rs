@@ -1,6 +1,6 @@
-//! The whole chain on a simulated gyro, from counts to coefficients: what the image computes on the
-//! target, and the host again, to compare the bits.
+//! From counts to coefficients.
 
+use super::AMPLITUDES;
 use crate::{
     coefficient::Coefficient,
     curve::{Curve, Scale},
@@ -8,7 +8,7 @@ use crate::{
     fit::{Fit, Settings, fit},
     model::Model,
     octave::Accumulator,
-    simulated::{Amplitudes, SimulatedGyro},
+    simulated::SimulatedGyro,
 };
 
 /// Octaves of averaging time.
@@ -17,22 +17,12 @@ pub const OCTAVES: usize = 20;
 /// Length of the record.
 pub const SAMPLES: usize = 1 << 20;
 
-/// A MEMS gyro of 131 counts per °/s at 100 Hz: Q 2e-4 °, N 5e-3 °/s/√Hz, B 4e-3 °/s, K 3e-4
-/// °/s/√s, R 5e-6 °/s².
-pub const AMPLITUDES: Amplitudes = Amplitudes {
-    quantization: 43_700_000,
-    white: 109_900_000,
-    flicker: 4_130_000,
-    walk: 65_900,
-    ramp: 110,
-};
-
 const SEED: u64 = 952;
 
 /// What came out.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct SelfTest {
+pub struct Characterised {
     /// The Allan curve, in °/s.
     pub curve: Curve<OCTAVES>,
     /// The five coefficients, in °/s and seconds.
@@ -41,7 +31,7 @@ pub struct SelfTest {
     pub truth: [f64; 5],
 }
 
-impl SelfTest {
+impl Characterised {
     /// Simulates, accumulates and fits.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ fn main() {}
 
 #[cfg(target_os = "none")]
 mod image {
-    use allanite::self_test::SelfTest;
+    use allanite::demonstration::characterise::Characterised;
     // Critical sections of a single core.
     use cortex_m as _;
     use cortex_m_rt::entry;
@@ -17,7 +17,7 @@ mod image {
 
     #[entry]
     fn main() -> ! {
-        let test = match SelfTest::run() {
+        let test = match Characterised::run() {
             Ok(test) => test,
             Err(error) => {
                 defmt::error!("no fit: {}", error);

@@ -5,7 +5,7 @@ use crate::{effect::Effect, math};
 /// Two-sided 95 % of a normal distribution, in standard errors.
 const TWO_SIDED: f64 = 1.959_964;
 /// One-sided 95 %.
-const ONE_SIDED: f64 = 1.644_854;
+pub(crate) const ONE_SIDED: f64 = 1.644_854;
 
 /// What a record says of a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -23,6 +23,7 @@ mod nnls;
 mod observability;
 mod octave;
 mod search;
+pub mod self_test;
 pub mod simulated;
 mod square_sum;
 

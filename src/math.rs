@@ -2,7 +2,7 @@
 //! std's once anything in a build links std, and host and target would compute different numbers.
 
 use core::f64::consts::PI;
-pub(crate) use libm::{ceil, erfc, exp, expm1, floor, log, sqrt};
+pub(crate) use libm::{cbrt, ceil, erfc, exp, expm1, floor, log, sqrt};
 
 /// Sine and cosine of an angle in turns: whole quadrants are taken off exactly, which spares libm's
 /// reduction, its time and its 700 bytes of stack.

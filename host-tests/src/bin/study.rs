@@ -7,6 +7,7 @@ use host_tests::{
     study::{
         coefficients,
         hidden_effect::{CASES, Strength, both_found, false_alarms, hide, study},
+        self_test::{self, Looks},
         theory, thermal,
     },
 };
@@ -47,6 +48,12 @@ enum Study {
         #[arg(long, default_value_t = 1000)]
         records: u64,
     },
+    /// How often the self-test errs, and how much sooner than one of fixed length it ends
+    SelfTest {
+        /// Devices a case
+        #[arg(long, default_value_t = 2000)]
+        devices: u64,
+    },
     /// Errors of the coefficients and coverage of their intervals, for every method
     Coefficients {
         /// Records a method
@@ -68,6 +75,7 @@ fn main() {
             effect,
         } => hidden(records, clean, preset, effect.as_deref()),
         Study::Thermal { records } => temperatures(records),
+        Study::SelfTest { devices } => self_tests(devices),
         Study::Coefficients { records, tolerance } => accuracies(records, tolerance),
     }
 }
@@ -298,5 +306,29 @@ fn temperatures(records: u64) {
     for (name, course, kelvin, _) in thermal::CASES {
         let share = thermal::with_gauss_markov(course, kelvin, records.min(200));
         println!("{name:<20} {:.1} %", 100.0 * share);
+    }
+}
+
+fn self_tests(devices: u64) {
+    println!(
+        "{devices} devices a line; a probability of {} % of false pass and of false fail is asked for",
+        100.0 * self_test::PROBABILITY
+    );
+    for case in self_test::CASES {
+        let (shortest, longest) = case.lengths_s;
+        println!("\n{}, {shortest} s to {longest} s", case.effect);
+        println!("coefficient / limit   passed   failed  undecided  median s");
+        for factor in [0.5, 1.0 / 1.3, 0.9, 1.0, 1.1, 1.3, 2.0] {
+            let tally = self_test::study(case, factor, devices, Looks::Early);
+            println!(
+                "{factor:>19.3} {:>6.2} % {:>6.2} % {:>8.2} % {:>9.2}",
+                100.0 * tally.passed,
+                100.0 * tally.failed,
+                100.0 * tally.undecided,
+                tally.median_s
+            );
+        }
+        let fixed = self_test::fixed_length_s(case, devices);
+        println!("one look that tells factors of 1.3 as surely: {fixed:.1} s");
     }
 }

@@ -1,0 +1,214 @@
+//! The self-test: verdicts, looks, and plans that are refused.
+
+use allanite::{
+    Integrity, Limits, Reason, Scale,
+    self_test::{Failure, InvalidPlan, Limit, Plan, SelfTest, Status},
+};
+use host_tests::{
+    simulate::{Preset, Simulator},
+    study::self_test::{CASES, Looks, PROBABILITY, study},
+};
+
+const RATE_HZ: f64 = 100.0;
+/// °/s a count.
+const UNIT: f64 = 1e-4;
+
+fn plan(effect: &'static str, most: f64) -> Plan {
+    Plan {
+        limits: [Limit { effect, most }].into_iter().collect(),
+        least_p: 0.0,
+        false_pass: 0.01,
+        false_fail: 0.01,
+        shortest_s: 10.0,
+        longest_s: 320.0,
+    }
+}
+
+fn scale() -> Scale {
+    Scale::new(UNIT, RATE_HZ).unwrap()
+}
+
+/// Pushes a consumer gyro's counts, changed by `change(index, count)`, until the verdict.
+fn verdict(test: &mut SelfTest<16>, change: impl Fn(u64, i32) -> i32) -> Status {
+    for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7) {
+        let count = (rate / UNIT).round() as i32;
+        test.push(change(test.accumulator().samples(), count));
+        let status = test.status();
+        if !matches!(status, Status::Running { .. }) {
+            return status;
+        }
+    }
+    unreachable!()
+}
+
+fn run(plan: Plan) -> (Status, u64) {
+    let mut test = SelfTest::new(plan, scale()).unwrap();
+    let status = verdict(&mut test, |_, count| count);
+    (status, test.accumulator().samples())
+}
+
+#[test]
+fn a_gyro_within_its_limits_passes_and_one_beyond_fails_by_how_much() {
+    // 0.005 °/s/√Hz.
+    let (status, samples) = run(plan("angle_random_walk", 0.02));
+    assert_eq!((status, samples), (Status::Passed, 1000));
+    let (status, samples) = run(plan("angle_random_walk", 0.002));
+    let Status::Failed(Failure::Limit { limit, value }) = status else {
+        panic!("{status:?}");
+    };
+    assert_eq!((limit.most, samples), (0.002, 1000));
+    assert!((value / 0.005 - 1.0).abs() < 0.2, "{value}");
+}
+
+#[test]
+fn a_gyro_at_its_limit_is_undecided_and_told_how_long_it_would_take() {
+    let (status, samples) = run(plan("angle_random_walk", 0.00495));
+    let Status::Undecided {
+        limit,
+        decided_by_s,
+    } = status
+    else {
+        panic!("{status:?}");
+    };
+    assert_eq!((limit.effect, samples), ("angle_random_walk", 32_000));
+    assert!(
+        decided_by_s.is_none_or(|seconds| seconds > 320.0),
+        "{decided_by_s:?}"
+    );
+    // A rate random walk that five minutes cannot show.
+    let (status, _) = run(plan("rate_random_walk", 1e-5));
+    assert!(matches!(status, Status::Undecided { .. }), "{status:?}");
+}
+
+#[test]
+fn looks_are_taken_once_an_octave_and_progress_is_told() {
+    let mut test = SelfTest::<16>::new(plan("angle_random_walk", 0.00495), scale()).unwrap();
+    let (mut changes, mut last) = (Vec::new(), None);
+    for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7).take(31_999) {
+        test.push((rate / UNIT).round() as i32);
+        let Status::Running {
+            progress,
+            expected_s,
+        } = test.status()
+        else {
+            panic!("{:?}", test.status());
+        };
+        let samples = test.accumulator().samples();
+        assert_eq!(progress, (samples as f64 / 32_000.0) as f32);
+        if last.replace(expected_s) != Some(expected_s) {
+            changes.push(samples);
+        }
+        assert!(expected_s > 0.0 && expected_s <= 320.0);
+    }
+    let looks = [1000, 2000, 4000, 8000, 16_000];
+    assert!(
+        changes.iter().skip(1).all(|at| looks.contains(at)),
+        "{changes:?}"
+    );
+}
+
+#[test]
+fn a_gyro_that_is_moved_or_hangs_is_invalid_with_the_reason() {
+    let mut test = SelfTest::new(plan("angle_random_walk", 0.00495), scale()).unwrap();
+    let moved = |at, count| {
+        if (5000..5300).contains(&at) {
+            count + 300_000
+        } else {
+            count
+        }
+    };
+    assert!(matches!(
+        verdict(&mut test, moved),
+        Status::Invalid(Reason::Moved { .. })
+    ));
+    let stuck = |at, count| if at < 500 { count } else { 5 };
+    // Its own limits can be given, such as the rails of 16 bits at another place.
+    let limits = Limits {
+        rails: [-1, 1, 0, 0],
+        ..Limits::default()
+    };
+    let test = SelfTest::new(plan("angle_random_walk", 0.00495), scale()).unwrap();
+    let mut test = test.with_integrity(Integrity::new(limits).unwrap());
+    assert!(matches!(
+        verdict(&mut test, stuck),
+        Status::Invalid(Reason::Stuck { .. })
+    ));
+}
+
+#[test]
+fn a_curve_that_the_five_terms_do_not_explain_fails_where_that_is_asked() {
+    let wave = |at: u64, count: i32| {
+        let phase = std::f64::consts::TAU * 7.7 * at as f64 / RATE_HZ;
+        count + (0.1 / UNIT * phase.sin()) as i32
+    };
+    let asked = Plan {
+        least_p: 1e-3,
+        ..plan("rate_ramp", 1.0)
+    };
+    let mut test = SelfTest::new(asked, scale()).unwrap();
+    let status = verdict(&mut test, wave);
+    assert!(
+        matches!(status, Status::Failed(Failure::Misfit { p_value }) if p_value < 1e-3),
+        "{status:?}"
+    );
+}
+
+#[test]
+fn plans_that_contradict_themselves_are_refused() {
+    let good = plan("angle_random_walk", 0.02);
+    let refused = |change: fn(&mut Plan)| {
+        let mut plan = good.clone();
+        change(&mut plan);
+        let error = SelfTest::<16>::new(plan, scale()).unwrap_err();
+        assert!(error.to_string().contains(": ") && !error.to_string().contains('\n'));
+        error
+    };
+    assert_eq!(
+        refused(|plan| plan.limits.clear()),
+        InvalidPlan::NothingAsked
+    );
+    let unknown = refused(|plan| plan.limits[0].effect = "sinusoid");
+    assert_eq!(unknown, InvalidPlan::UnknownEffect("sinusoid"));
+    let twice = refused(|plan| plan.limits.push(plan.limits[0]).unwrap());
+    assert_eq!(twice, InvalidPlan::TwoLimits("angle_random_walk"));
+    for most in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let mut plan = good.clone();
+        plan.limits[0].most = most;
+        let error = SelfTest::<16>::new(plan, scale()).unwrap_err();
+        assert!(matches!(error, InvalidPlan::InvalidLimit(_)));
+    }
+    assert_eq!(
+        refused(|plan| plan.false_pass = 0.0),
+        InvalidPlan::InvalidProbability(0.0)
+    );
+    assert_eq!(
+        refused(|plan| plan.false_fail = 0.5),
+        InvalidPlan::InvalidProbability(0.5)
+    );
+    assert_eq!(
+        refused(|plan| plan.least_p = 1.0),
+        InvalidPlan::InvalidProbability(1.0)
+    );
+    for change in [
+        (|plan: &mut Plan| plan.shortest_s = 0.01) as fn(&mut Plan),
+        |plan| plan.longest_s = 5.0,
+        |plan| plan.longest_s = 1e5,
+        |plan| plan.longest_s = f64::NAN,
+    ] {
+        assert!(matches!(refused(change), InvalidPlan::InvalidLength { .. }));
+    }
+}
+
+/// The study has the figures; this is a guard.
+#[test]
+fn devices_at_the_limit_are_seldom_passed_or_failed() {
+    let at_the_limit = study(CASES[0], 1.0, 300, Looks::Early);
+    // Three standard errors above what was asked for.
+    let most = PROBABILITY + 3.0 * (PROBABILITY / 300.0).sqrt();
+    assert!(
+        at_the_limit.passed <= most && at_the_limit.failed <= most,
+        "{at_the_limit:?}"
+    );
+    let good = study(CASES[0], 0.5, 50, Looks::Early);
+    assert_eq!((good.passed, good.failed), (1.0, 0.0));
+}

@@ -1,0 +1,90 @@
+//! Whether a coefficient lies above or below a limit.
+
+use crate::{
+    coefficient::{Coefficient, ONE_SIDED, State},
+    math,
+};
+
+/// Where a limit stands beside an estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Side {
+    /// The limit is kept.
+    Below,
+    /// It is not.
+    Above,
+    /// It is within the interval: `standard_errors` apart, with sign.
+    Open {
+        /// How far the estimate lies above the limit, in standard errors.
+        standard_errors: f64,
+    },
+}
+
+/// The least standard errors that an estimate and a limit must be apart for a probability.
+pub(super) fn quantile(probability: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 40.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if tail(middle) > probability {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// Probability of a normal deviate above `z`.
+fn tail(z: f64) -> f64 {
+    0.5 * math::erfc(z * core::f64::consts::FRAC_1_SQRT_2)
+}
+
+/// Decides with the quantiles of passing and failing.
+pub(super) fn side(coefficient: &Coefficient, most: f64, pass: f64, fail: f64) -> Side {
+    let limit = most * most;
+    let open = |standard_errors| Side::Open { standard_errors };
+    if let State::NotObservable { .. } = coefficient.state {
+        return open(0.0);
+    }
+    let normal = (coefficient.square - limit) / error(coefficient);
+    if coefficient.state == State::UpperBound {
+        return if normal < -pass {
+            Side::Below
+        } else {
+            open(normal)
+        };
+    }
+    let skewed = skewed(coefficient, limit);
+    // Of a sum of squares the one is right, of a small part of others' the other: both must agree.
+    let nearer = if coefficient.square > limit {
+        normal.min(skewed)
+    } else {
+        normal.max(skewed)
+    };
+    if nearer < -pass {
+        Side::Below
+    } else if nearer > fail {
+        Side::Above
+    } else {
+        open(nearer)
+    }
+}
+
+/// Standard error of the square; of one that is only bounded, that of its bound, where it may scatter
+/// more.
+fn error(coefficient: &Coefficient) -> f64 {
+    let bound = coefficient.upper * coefficient.upper - coefficient.square;
+    match coefficient.state {
+        State::UpperBound => (bound / ONE_SIDED).max(coefficient.square_error),
+        _ => coefficient.square_error,
+    }
+}
+
+/// The square taken for a mean of squares: it is distributed as χ² with `2 (β/σ)²` degrees of freedom,
+/// whose cube root is nearly normal (Wilson & Hilferty 1931).
+fn skewed(coefficient: &Coefficient, limit: f64) -> f64 {
+    let relative = coefficient.square_error / coefficient.square;
+    // 2/(9ν).
+    let variance = relative * relative / 9.0;
+    let ratio = math::cbrt(coefficient.square / limit);
+    (ratio - (1.0 - variance)) / math::sqrt(variance)
+}

@@ -1,0 +1,283 @@
+//! A self-test with limits: samples go in, a verdict comes out as soon as the record bears one.
+
+mod decide;
+mod plan;
+
+pub use plan::{InvalidPlan, Limit, Plan};
+
+use crate::{
+    coefficient::{Coefficient, State},
+    curve::Scale,
+    fit::{Fit, Settings, fit},
+    integrity::{Integrity, Reason},
+    model::Model,
+    octave::Accumulator,
+};
+use decide::{Side, quantile, side};
+
+/// How a self-test stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Status {
+    /// Push more samples.
+    Running {
+        /// Share of the longest record that is there, 0 to 1.
+        progress: f32,
+        /// Seconds from now to the look at which a verdict is expected: the last one until the first
+        /// has been taken.
+        expected_s: f64,
+    },
+    /// Every limit is kept.
+    Passed,
+    /// One is not.
+    Failed(Failure),
+    /// The longest record did not tell.
+    Undecided {
+        /// The limit that is open.
+        limit: Limit,
+        /// Length of a record that would decide if its estimate is right, in seconds; `None` where no
+        /// length up to 2³⁰ samples would.
+        decided_by_s: Option<f64>,
+    },
+    /// The samples cannot be those of a gyro at rest.
+    Invalid(Reason),
+}
+
+/// What a gyro failed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Failure {
+    /// A coefficient above its limit.
+    Limit {
+        /// The limit.
+        limit: Limit,
+        /// What was measured.
+        value: f64,
+    },
+    /// The five terms do not explain the curve.
+    Misfit {
+        /// Probability of a larger χ² if they did.
+        p_value: f64,
+    },
+}
+
+/// A self-test of one axis.
+///
+/// # The statistics
+///
+/// A look is taken at the shortest length, and whenever the record has doubled, and at the longest:
+/// the coefficients are fitted, and a limit is decided as soon as an interval leaves it. Each look is
+/// a chance to err, so the probabilities of the plan are divided among the looks (Bonferroni 1936), that
+/// of a false fail also among the limits; a false pass needs the coefficient that lies above its limit,
+/// whatever the others do. A decision stands: later looks do not ask again.
+///
+/// # Example
+///
+/// ```
+/// use allanite::{Scale, self_test::{Limit, Plan, SelfTest, Status}};
+///
+/// let plan = Plan {
+///     limits: [Limit { effect: "angle_random_walk", most: 0.02 }].into_iter().collect(),
+///     least_p: 0.0,
+///     false_pass: 0.01,
+///     false_fail: 0.01,
+///     shortest_s: 1.0,
+///     longest_s: 600.0,
+/// };
+/// // 131 counts per °/s, 100 Hz.
+/// let mut test = SelfTest::<16>::new(plan, Scale::new(1.0 / 131.0, 100.0)?)?;
+/// let mut random = 1_u32;
+/// let verdict = loop {
+///     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+///     test.push((random >> 28) as i32);
+///     match test.status() {
+///         Status::Running { .. } => continue,
+///         verdict => break verdict,
+///     }
+/// };
+/// assert_eq!(verdict, Status::Passed);
+/// assert!(test.accumulator().samples() < 1000); // ten seconds instead of ten minutes
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct SelfTest<const OCTAVES: usize> {
+    accumulator: Accumulator<OCTAVES>,
+    integrity: Integrity,
+    plan: Plan,
+    scale: Scale,
+    last: u64,
+    next: u64,
+    /// Standard errors that decide.
+    pass: f64,
+    fail: f64,
+    looks: u32,
+    kept: [bool; crate::model::MAX_EFFECTS],
+    status: Status,
+}
+
+impl<const OCTAVES: usize> SelfTest<OCTAVES> {
+    /// Ready for samples.
+    ///
+    /// # Errors
+    /// [`InvalidPlan`].
+    pub fn new(plan: Plan, scale: Scale) -> Result<Self, InvalidPlan> {
+        let (first, last) = plan.check(scale, OCTAVES)?;
+        let looks = 1 + last.div_ceil(first).next_power_of_two().ilog2();
+        let limits = plan.limits.len().max(1) as f64;
+        Ok(Self {
+            accumulator: Accumulator::new(),
+            integrity: Integrity::default(),
+            scale,
+            last,
+            next: first,
+            pass: quantile(plan.false_pass / f64::from(looks)),
+            fail: quantile(plan.false_fail / (f64::from(looks) * limits)),
+            looks,
+            kept: Default::default(),
+            status: Status::Running {
+                progress: 0.0,
+                expected_s: last as f64 / scale.rate_hz(),
+            },
+            plan,
+        })
+    }
+
+    /// With limits of what a record must be like to be believed.
+    #[must_use]
+    pub fn with_integrity(mut self, integrity: Integrity) -> Self {
+        self.integrity = integrity;
+        self
+    }
+
+    /// Adds a count: the accumulator's work and that of the integrity, no more.
+    pub fn push(&mut self, count: i32) {
+        self.accumulator.push(count);
+        self.integrity.push(count);
+    }
+
+    /// Samples were lost.
+    pub fn gap(&mut self) {
+        self.accumulator.gap();
+        self.integrity.gap();
+    }
+
+    /// The record so far.
+    pub fn accumulator(&self) -> &Accumulator<OCTAVES> {
+        &self.accumulator
+    }
+
+    /// How the test stands. Where a look is due it takes that of a [`fit`](crate::fit()), otherwise next to
+    /// nothing; nothing is lost by asking late.
+    pub fn status(&mut self) -> Status {
+        let samples = self.accumulator.samples();
+        if let Status::Running { progress, .. } = &mut self.status {
+            *progress = (samples as f64 / self.last as f64).min(1.0) as f32;
+            if samples >= self.next {
+                self.status = self.look(samples);
+                while self.next <= samples {
+                    self.next = (2 * self.next).min(self.last.max(samples + 1));
+                }
+            }
+        }
+        self.status
+    }
+
+    #[inline(never)]
+    fn look(&mut self, samples: u64) -> Status {
+        if let Some(reason) = self.integrity.verdict() {
+            return Status::Invalid(reason);
+        }
+        let is_last = samples >= self.last;
+        let seconds = samples as f64 / self.scale.rate_hz();
+        let curve = self.accumulator.curve(self.scale);
+        let fit = match fit(&curve, &Model::ieee_952(), Settings::default()) {
+            Ok(fit) => fit,
+            // Gaps may have left too few differences; the first limit stands for all.
+            Err(_) if !is_last => return self.running(samples, f64::INFINITY),
+            Err(_) => return self.undecided(0, None),
+        };
+        if fit.p_value < self.plan.least_p / f64::from(self.looks) {
+            return Status::Failed(Failure::Misfit {
+                p_value: fit.p_value,
+            });
+        }
+        let mut open: Option<(usize, f64)> = None;
+        for (i, limit) in self.plan.limits.iter().enumerate() {
+            if self.kept[i] {
+                continue;
+            }
+            let Some(coefficient) = find(&fit, limit) else {
+                continue;
+            };
+            match side(coefficient, limit.most, self.pass, self.fail) {
+                Side::Below => self.kept[i] = true,
+                Side::Above => {
+                    return Status::Failed(Failure::Limit {
+                        limit: *limit,
+                        value: coefficient.value,
+                    });
+                }
+                Side::Open { standard_errors } => {
+                    let needed = self.needed_s(coefficient, standard_errors, seconds);
+                    if open.is_none_or(|(_, longest)| needed > longest) {
+                        open = Some((i, needed));
+                    }
+                }
+            }
+        }
+        match open {
+            None if self.plan.limits.is_empty() && !is_last => self.running(samples, f64::INFINITY),
+            None => Status::Passed,
+            Some((_, needed)) if !is_last => self.running(samples, needed),
+            Some((i, needed)) => self.undecided(i, needed.is_finite().then_some(needed)),
+        }
+    }
+
+    /// Length of a record that would decide, if the estimate is right: errors fall with its root.
+    fn needed_s(&self, coefficient: &Coefficient, standard_errors: f64, seconds: f64) -> f64 {
+        if let State::NotObservable { after_s } = coefficient.state {
+            return after_s.unwrap_or(f64::INFINITY);
+        }
+        let enough = if standard_errors < 0.0 {
+            self.pass
+        } else {
+            self.fail
+        };
+        let factor = enough / standard_errors;
+        let longest = (1_u64 << 30) as f64 / self.scale.rate_hz();
+        let needed = seconds * factor * factor;
+        if needed <= longest {
+            needed
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The look after that many seconds, or the last.
+    fn running(&self, samples: u64, needed_s: f64) -> Status {
+        let mut look = self.next;
+        while look < self.last && (look as f64) < needed_s * self.scale.rate_hz() {
+            look = (2 * look).min(self.last);
+        }
+        Status::Running {
+            progress: (samples as f64 / self.last as f64) as f32,
+            expected_s: look.saturating_sub(samples) as f64 / self.scale.rate_hz(),
+        }
+    }
+
+    fn undecided(&self, i: usize, decided_by_s: Option<f64>) -> Status {
+        let of_misfit = Limit {
+            effect: "misfit",
+            most: self.plan.least_p,
+        };
+        Status::Undecided {
+            limit: self.plan.limits.get(i).copied().unwrap_or(of_misfit),
+            decided_by_s,
+        }
+    }
+}
+
+fn find<'a>(fit: &'a Fit, limit: &Limit) -> Option<&'a Coefficient> {
+    let mut coefficients = fit.coefficients.iter();
+    coefficients.find(|coefficient| coefficient.name == limit.effect)
+}

@@ -4,17 +4,19 @@ use crate::{
     integrity::{Integrity, Observation},
     octave::Accumulator,
 };
-use heapless::Vec;
+use heapless::Deque;
 
-/// Samples held back, as many as integrity takes to see motion.
-const HELD: usize = 64;
+/// Samples of a cluster that integrity takes to see motion.
+const CLUSTER: usize = 64;
+/// Samples held back: those of a cluster, and of the one before, in which motion may have begun.
+const HELD: usize = 2 * CLUSTER;
 
 /// Skips stuck values, hits of rails, spikes and motion: a [`gap`](Accumulator::gap) takes their place,
 /// and they are counted.
 ///
-/// Motion is seen at the end of a cluster of 64 samples, so as many are held back until they are known
-/// to be at rest; what begins more gradually is seen in clusters of 1024, and its first samples are in
-/// the record by then.
+/// Motion is seen at the end of a cluster of 64 samples, so twice as many are held back until they are
+/// known to be at rest, and 64 more skipped when it ends; what begins more gradually is seen in clusters
+/// of 1024, and its first samples are in the record by then.
 ///
 /// # Example
 ///
@@ -33,7 +35,9 @@ const HELD: usize = 64;
 pub struct Gate<const OCTAVES: usize> {
     accumulator: Accumulator<OCTAVES>,
     integrity: Integrity,
-    held: Vec<i32, HELD>,
+    held: Deque<i32, HELD>,
+    /// Samples yet to skip behind a motion.
+    behind: usize,
     skipped: u64,
 }
 
@@ -43,7 +47,8 @@ impl<const OCTAVES: usize> Gate<OCTAVES> {
         Self {
             accumulator: Accumulator::new(),
             integrity,
-            held: Vec::new(),
+            held: Deque::new(),
+            behind: 0,
             skipped: 0,
         }
     }
@@ -52,19 +57,21 @@ impl<const OCTAVES: usize> Gate<OCTAVES> {
     pub fn push(&mut self, count: i32) -> Observation {
         let seen = self.integrity.push(count);
         if seen.moving {
-            self.skipped = self.skipped.saturating_add(self.held.len() as u64 + 1);
+            self.behind = CLUSTER;
+            self.skip(self.held.len() as u64 + 1);
             self.held.clear();
-            self.accumulator.gap();
+        } else if self.behind > 0 {
+            self.behind -= 1;
+            self.skip(1);
         } else if seen.is_odd() {
-            self.skipped = self.skipped.saturating_add(1);
             self.let_go();
-            self.accumulator.gap();
+            self.skip(1);
         } else {
             if self.held.is_full() {
-                self.let_go();
+                self.let_one_go();
             }
             // There is room now.
-            let _ = self.held.push(count);
+            let _ = self.held.push_back(count);
         }
         seen
     }
@@ -76,12 +83,24 @@ impl<const OCTAVES: usize> Gate<OCTAVES> {
         self.integrity.gap();
     }
 
-    fn let_go(&mut self) {
-        self.accumulator.push_slice(&self.held);
-        self.held.clear();
+    fn skip(&mut self, samples: u64) {
+        self.skipped = self.skipped.saturating_add(samples);
+        self.accumulator.gap();
     }
 
-    /// The record without what was skipped, and without up to 64 samples that are held back.
+    fn let_go(&mut self) {
+        while !self.held.is_empty() {
+            self.let_one_go();
+        }
+    }
+
+    fn let_one_go(&mut self) {
+        if let Some(count) = self.held.pop_front() {
+            self.accumulator.push(count);
+        }
+    }
+
+    /// The record without what was skipped, and without up to 128 samples that are held back.
     pub fn accumulator(&self) -> &Accumulator<OCTAVES> {
         &self.accumulator
     }

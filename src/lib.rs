@@ -24,6 +24,7 @@ mod observability;
 mod octave;
 mod search;
 pub mod self_test;
+pub mod sensor;
 pub mod simulated;
 mod square_sum;
 

@@ -46,12 +46,21 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 register,
                 found,
                 expected,
-            } => write!(
-                f,
-                "identity register {register:#04x} says {found:#04x}, a {sensor} says \
-                 {expected:#04x?}: check the part; 0x00 and 0xff come from nobody, check chip \
-                 select, SPI mode and supply"
-            ),
+            } => {
+                write!(
+                    f,
+                    "identity register {register:#04x} says {found:#04x} instead of"
+                )?;
+                for (k, value) in expected.iter().enumerate() {
+                    let or = if k == 0 { "" } else { " or" };
+                    write!(f, "{or} {value:#04x}")?;
+                }
+                write!(
+                    f,
+                    ": not a {sensor}; 0x00 and 0xff mean that nobody answered: check chip \
+                     select, SPI mode and supply"
+                )
+            }
             Self::TooWide { sensor, registers } => write!(
                 f,
                 "description of {sensor}: gyro and temperature span {registers} registers, \

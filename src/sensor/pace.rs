@@ -1,4 +1,5 @@
 use crate::Error;
+use core::num::NonZeroU64;
 
 /// Intervals that a verdict takes: a timestamp late by a whole interval moves it by 0.4 %.
 const WINDOW: u32 = 256;
@@ -14,7 +15,7 @@ const NS_PER_US: u64 = 1000;
 /// A wrong rate shifts a whole curve along τ, and nothing in the counts tells.
 ///
 /// Timestamps are microseconds of any free-running counter of 32 bits, which may wrap, of the
-/// moments when samples were read. Integers only, 48 bytes.
+/// moments when samples were read. A stamp costs one division of integers; 48 bytes.
 ///
 /// ```
 /// use allanite::{Error, sensor::Pace};
@@ -32,7 +33,7 @@ const NS_PER_US: u64 = 1000;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pace {
-    interval_ns: u64,
+    interval_ns: NonZeroU64,
     /// Of the timestamp before.
     previous_us: Option<u32>,
     /// Since the window began.
@@ -49,18 +50,18 @@ impl Pace {
     /// # Errors
     /// [`Error::InvalidRate`] unless it is positive and below 1 GHz.
     pub fn new(rate_hz: f64) -> Result<Self, Error> {
-        let interval_ns = (NS_PER_S / rate_hz + 0.5) as u64; // saturates; 0 for NaN
-        if rate_hz > 0.0 && (1..u64::MAX).contains(&interval_ns) {
-            Ok(Self {
+        // Zero of a rate that is negative, infinite or not a number, saturated of one near zero.
+        let interval_ns = (NS_PER_S / rate_hz + 0.5) as u64;
+        match NonZeroU64::new(interval_ns) {
+            Some(interval_ns) if interval_ns < NonZeroU64::MAX => Ok(Self {
                 interval_ns,
                 previous_us: None,
                 elapsed_us: 0,
                 intervals: 0,
                 window_us: None,
                 tolerance_percent: TOLERANCE_PERCENT,
-            })
-        } else {
-            Err(Error::InvalidRate(rate_hz))
+            }),
+            _ => Err(Error::InvalidRate(rate_hz)),
         }
     }
 
@@ -85,7 +86,7 @@ impl Pace {
             self.window_us = Some(self.elapsed_us);
             (self.elapsed_us, self.intervals) = (0, 0);
         }
-        let rounded = (elapsed_us * NS_PER_US).saturating_add(self.interval_ns / 2);
+        let rounded = (elapsed_us * NS_PER_US).saturating_add(self.interval_ns.get() / 2);
         u32::try_from(rounded / self.interval_ns).unwrap_or(u32::MAX)
     }
 
@@ -111,14 +112,14 @@ impl Pace {
             return Ok(());
         };
         // |n T − t| ≤ tolerance · t is |f − f₀| ≤ tolerance · f₀ with f = n/t, f₀ = 1/T.
-        let expected_ns = u128::from(self.interval_ns) * u128::from(WINDOW);
+        let expected_ns = u128::from(self.interval_ns.get()) * u128::from(WINDOW);
         let elapsed_ns = u128::from(window_us) * u128::from(NS_PER_US);
         let off = expected_ns.abs_diff(elapsed_ns) * 100;
         if off <= elapsed_ns * u128::from(self.tolerance_percent) {
             return Ok(());
         }
         Err(Error::RateContradicted {
-            configured_hz: NS_PER_S / self.interval_ns as f64,
+            configured_hz: NS_PER_S / self.interval_ns.get() as f64,
             measured_hz: f64::from(WINDOW) * 1e6 / window_us as f64,
         })
     }

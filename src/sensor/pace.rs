@@ -72,7 +72,7 @@ impl Pace {
     }
 
     /// A sample was read at `timestamp_us`. How many sample intervals have passed since the one
-    /// before, rounded: above 1, samples were skipped.
+    /// before, rounded: above 1, samples were skipped; 0, one may have been read twice.
     ///
     /// The first sample, and the first after [`restart`](Self::restart), count as 1.
     pub fn stamp(&mut self, timestamp_us: u32) -> u32 {

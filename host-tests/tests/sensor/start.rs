@@ -7,7 +7,7 @@ use allanite::sensor::{
 };
 use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::delay::NoopDelay;
-use embedded_hal_mock::eh1::i2c::{Mock as I2cMock, Transaction as I2cTurn};
+use embedded_hal_mock::eh1::i2c::Mock as I2cMock;
 use embedded_hal_mock::eh1::spi::{Mock as SpiMock, Transaction as SpiTurn};
 
 /// Negative, positive and the most negative, so that bytes and axes cannot be swapped unnoticed.

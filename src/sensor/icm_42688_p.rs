@@ -35,7 +35,7 @@ pub static ICM_42688_P: Description = Description {
     },
     // GYRO_DATA_X1.
     gyro: 0x25,
-    // TEMP_DATA1; section "Temperature sensor": °C = TEMP_DATA / 132.48 + 25.
+    // TEMP_DATA1; section 4.13: °C = TEMP_DATA / 132.48 + 25.
     temperature: Some(Temperature {
         register: 0x1D,
         at_zero_c: 25.0,

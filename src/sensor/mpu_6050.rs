@@ -20,7 +20,7 @@ pub static MPU_6050: Description = Description {
         Write::new(0x6B, 0x01),
         // Register 26, CONFIG: DLPF_CFG 3, gyro at 1 kHz.
         Write::new(0x1A, 0x03),
-        // Register 25, SMPRT_DIV: 1 kHz / (1 + 9).
+        // Register 25, SMPLRT_DIV: 1 kHz / (1 + 9).
         Write::new(0x19, 0x09),
         // Register 27, GYRO_CONFIG: FS_SEL 0 (±250 °/s).
         Write::new(0x1B, 0x00),

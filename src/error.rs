@@ -44,6 +44,13 @@ pub enum Error {
         /// Differences in the same octave of the covariate.
         covariate: u64,
     },
+    /// Samples came at another rate than the configured one: the curve would be shifted along τ.
+    RateContradicted {
+        /// The rate that was configured, in Hz.
+        configured_hz: f64,
+        /// The rate that the samples came at, in Hz.
+        measured_hz: f64,
+    },
     /// The normal equations have no solution: the model's effects cannot be told apart, or a
     /// column is not finite.
     Singular,
@@ -84,6 +91,14 @@ impl core::fmt::Display for Error {
                 f,
                 "{covariate} differences of a covariate beside {gyro} of the gyro: push both, and \
                  their gaps, together"
+            ),
+            Self::RateContradicted {
+                configured_hz,
+                measured_hz,
+            } => write!(
+                f,
+                "samples come at {measured_hz:.2} Hz, {configured_hz:.2} Hz were configured: pass \
+                 the measured rate, or check the output rate and that every sample is read"
             ),
             Self::Singular => {
                 write!(

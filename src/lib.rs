@@ -26,6 +26,7 @@ mod octave;
 pub mod queue;
 mod search;
 pub mod self_test;
+pub mod sensor;
 pub mod simulated;
 mod square_sum;
 

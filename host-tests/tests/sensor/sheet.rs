@@ -1,0 +1,214 @@
+//! What data sheets say, written down a second time, as conversations on mocked buses.
+
+use allanite::sensor::{
+    BMI160, Description, I2cBus, ICM_42688_P, Imu, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Reading,
+};
+use embedded_hal_mock::eh1::delay::NoopDelay;
+use embedded_hal_mock::eh1::i2c::{Mock as I2cMock, Transaction as I2cTurn};
+use embedded_hal_mock::eh1::spi::Transaction as SpiTurn;
+
+/// What a data sheet says, written down a second time.
+pub(crate) struct Sheet {
+    pub(crate) description: &'static Description,
+    /// I²C address; bits of a read over SPI and over I²C.
+    pub(crate) bus: (u8, u8, u8),
+    /// Register and value.
+    pub(crate) identity: (u8, u8),
+    /// Register, value, and whether over I²C as well.
+    pub(crate) writes: &'static [(u8, u8, bool)],
+    pub(crate) status: u8,
+    /// First register and number of what is read at once; offsets of gyro and temperature.
+    pub(crate) block: (u8, usize, usize, Option<usize>),
+    pub(crate) big_endian: bool,
+    pub(crate) ready: u8,
+}
+
+const MPU_WRITES: &[(u8, u8, bool)] = &[
+    (0x6B, 0x80, true),
+    (0x68, 0x07, false),
+    (0x6A, 0x10, false),
+    (0x6B, 0x01, true),
+    (0x1A, 0x03, true),
+    (0x19, 0x09, true),
+    (0x1B, 0x00, true),
+    (0x37, 0x10, true),
+    (0x38, 0x01, true),
+];
+
+pub(crate) const SHEETS: [Sheet; 6] = [
+    Sheet {
+        description: &BMI160,
+        bus: (0x68, 0x80, 0),
+        identity: (0x00, 0xD1),
+        writes: &[(0x7E, 0x15, true), (0x43, 0x03, true), (0x42, 0x28, true)],
+        status: 0x1B,
+        block: (0x0C, 22, 0, Some(20)),
+        big_endian: false,
+        ready: 0x40,
+    },
+    Sheet {
+        description: &ICM_42688_P,
+        bus: (0x68, 0x80, 0),
+        identity: (0x75, 0x47),
+        writes: &[
+            (0x11, 0x01, true),
+            (0x4F, 0x68, true),
+            (0x65, 0x08, true),
+            (0x4E, 0x0C, true),
+        ],
+        status: 0x2D,
+        block: (0x1D, 14, 8, Some(0)),
+        big_endian: true,
+        ready: 0x08,
+    },
+    Sheet {
+        description: &L3GD20,
+        bus: (0x6A, 0xC0, 0x80),
+        identity: (0x0F, 0xD4),
+        writes: &[
+            (0x21, 0x00, true),
+            (0x24, 0x00, true),
+            (0x23, 0x80, true),
+            (0x20, 0x0F, true),
+        ],
+        status: 0x27,
+        block: (0x28, 6, 0, None),
+        big_endian: false,
+        ready: 0x08,
+    },
+    Sheet {
+        description: &LSM6DSO,
+        bus: (0x6A, 0x80, 0),
+        identity: (0x0F, 0x6C),
+        writes: &[(0x12, 0x01, true), (0x12, 0x44, true), (0x11, 0x40, true)],
+        status: 0x1E,
+        block: (0x20, 8, 2, Some(0)),
+        big_endian: false,
+        ready: 0x02,
+    },
+    Sheet {
+        description: &MPU_6050,
+        bus: (0x68, 0x80, 0),
+        identity: (0x75, 0x68),
+        writes: MPU_WRITES,
+        status: 0x3A,
+        block: (0x41, 8, 2, Some(0)),
+        big_endian: true,
+        ready: 0x01,
+    },
+    Sheet {
+        description: &MPU_6500,
+        bus: (0x68, 0x80, 0),
+        identity: (0x75, 0x70),
+        writes: MPU_WRITES,
+        status: 0x3A,
+        block: (0x41, 8, 2, Some(0)),
+        big_endian: true,
+        ready: 0x01,
+    },
+];
+
+/// Temperature that every sample here has, in counts.
+const TEMPERATURE: i16 = -258;
+
+impl Sheet {
+    pub(crate) fn of(description: &Description) -> &'static Self {
+        SHEETS
+            .iter()
+            .find(|sheet| sheet.description.name == description.name)
+            .unwrap()
+    }
+
+    pub(crate) fn block(&self, gyro: [i16; 3]) -> Vec<u8> {
+        let (_, length, gyro_at, temperature_at) = self.block;
+        // What lies between is not to be taken for a count.
+        let mut block = vec![0xA5; length];
+        let mut put = |at: usize, count: i16| {
+            let bytes = match self.big_endian {
+                true => count.to_be_bytes(),
+                false => count.to_le_bytes(),
+            };
+            block[at..at + 2].copy_from_slice(&bytes);
+        };
+        for (k, count) in gyro.into_iter().enumerate() {
+            put(gyro_at + 2 * k, count);
+        }
+        if let Some(at) = temperature_at {
+            put(at, TEMPERATURE);
+        }
+        block
+    }
+
+    pub(crate) fn i2c_read(&self, register: u8, answer: Vec<u8>) -> I2cTurn {
+        let (address, _, read) = self.bus;
+        I2cTurn::write_read(address, vec![register | read], answer)
+    }
+
+    pub(crate) fn i2c_sample(&self, flags: u8, gyro: [i16; 3]) -> [I2cTurn; 2] {
+        [
+            self.i2c_read(self.status, vec![flags]),
+            self.i2c_read(self.block.0, self.block(gyro)),
+        ]
+    }
+
+    pub(crate) fn i2c_start(&self) -> Vec<I2cTurn> {
+        let mut turns = vec![self.i2c_read(self.identity.0, vec![self.identity.1])];
+        for &(register, value, _) in self.writes.iter().filter(|write| write.2) {
+            turns.push(I2cTurn::write(self.bus.0, vec![register, value]));
+        }
+        turns.extend(self.i2c_sample(0, [1, 1, 1]));
+        turns
+    }
+
+    pub(crate) fn spi_read(&self, register: u8, answer: Vec<u8>) -> [SpiTurn<u8>; 4] {
+        [
+            SpiTurn::transaction_start(),
+            SpiTurn::write_vec(vec![register | self.bus.1]),
+            SpiTurn::read_vec(answer),
+            SpiTurn::transaction_end(),
+        ]
+    }
+
+    pub(crate) fn spi_sample(&self, flags: u8, gyro: [i16; 3]) -> Vec<SpiTurn<u8>> {
+        let mut turns = self.spi_read(self.status, vec![flags]).to_vec();
+        turns.extend(self.spi_read(self.block.0, self.block(gyro)));
+        turns
+    }
+
+    pub(crate) fn spi_start(&self) -> Vec<SpiTurn<u8>> {
+        let mut turns = Vec::new();
+        if self.description.name == "BMI160" {
+            turns.extend(self.spi_read(0x7F, vec![0]));
+        }
+        turns.extend(self.spi_read(self.identity.0, vec![self.identity.1]));
+        for &(register, value, _) in self.writes {
+            turns.extend([
+                SpiTurn::transaction_start(),
+                SpiTurn::write_vec(vec![register, value]),
+                SpiTurn::transaction_end(),
+            ]);
+        }
+        turns.extend(self.spi_sample(0, [1, 1, 1]));
+        turns
+    }
+
+    pub(crate) fn reading(&self, gyro: [i16; 3], overrun: bool) -> Reading {
+        Reading {
+            gyro: gyro.map(i32::from),
+            temperature: self.block.3.map(|_| TEMPERATURE),
+            overrun,
+        }
+    }
+}
+
+/// Starts over I²C; `turns` follow.
+pub(crate) fn start(
+    sheet: &Sheet,
+    turns: impl IntoIterator<Item = I2cTurn>,
+) -> (Imu<I2cBus<I2cMock>>, I2cMock) {
+    let mut all = sheet.i2c_start();
+    all.extend(turns);
+    let mock = I2cMock::new(&all);
+    let imu = Imu::start(I2cBus::new(mock.clone()), sheet.description, &mut NoopDelay).unwrap();
+    (imu, mock)
+}

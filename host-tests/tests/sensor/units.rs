@@ -1,0 +1,44 @@
+//! What counts stand for.
+
+use allanite::sensor::{
+    BMI160, CATALOGUE, Description, ICM_42688_P, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Temperature,
+};
+
+#[test]
+fn temperatures_are_those_of_the_data_sheets() {
+    let celsius = |description: &Description, count| {
+        description
+            .temperature
+            .map(|t: Temperature| t.celsius(count))
+    };
+    let near = |found: Option<f64>, expected: f64| {
+        let found = found.unwrap();
+        assert!(
+            (found - expected).abs() < 1e-9,
+            "{found} instead of {expected}"
+        );
+    };
+    near(celsius(&BMI160, 0), 23.0);
+    near(celsius(&BMI160, 0x7FFF), 87.0 - 1.0 / 512.0);
+    near(celsius(&ICM_42688_P, -1325), 25.0 - 1325.0 / 132.48);
+    near(celsius(&LSM6DSO, -2560), 15.0);
+    near(celsius(&MPU_6050, -3400), 26.53);
+    near(celsius(&MPU_6500, 0), 21.0);
+    assert_eq!(celsius(&L3GD20, 0), None);
+}
+
+#[test]
+fn scales_span_the_range_that_was_set() {
+    for description in CATALOGUE {
+        let full = description.scale_dps * 32768.0;
+        // ±250 °/s; sensitivities leave up to a seventh beyond.
+        assert!(
+            (249.0..290.0).contains(&full),
+            "{}: {full}",
+            description.name
+        );
+        let scale = description.scale().unwrap();
+        assert_eq!(scale.rate_hz(), description.rate_hz);
+        assert_eq!(scale.rate_per_count(), description.scale_dps);
+    }
+}

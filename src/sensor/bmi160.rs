@@ -1,0 +1,51 @@
+use super::{ByteOrder, Description, Interface, Status, Temperature, Write};
+
+/// Bosch BMI160, ±250 °/s at 100 Hz in normal filter mode.
+///
+/// Source: data sheet BST-BMI160-DS000-07 (revision 0.8, 2015), chapter 2.11 "Register description"
+/// and chapter 3 "Digital interfaces"; registers by the names they have there.
+pub static BMI160: Description = Description {
+    name: "BMI160",
+    // Register (0x00) CHIPID.
+    identity: 0x00,
+    identities: &[0xD1],
+    // Without a soft reset, which would put the interface back to I²C: all that matters is written,
+    // and the offsets that a reset clears are constants, which cancel.
+    start_up: &[
+        // Register (0x7E) CMD: gyr_set_pmu_mode normal; longer than a start from suspend takes.
+        Write::new(0x7E, 0x15).wait_us(100_000),
+        // Register (0x43) GYR_RANGE: 0b011, ±250 °/s. 450 µs between writes is enough in any mode
+        // (chapter 3, t_IDLE_wacc_sum).
+        Write::new(0x43, 0x03).wait_us(450),
+        // Register (0x42) GYR_CONF: gyr_bwp 0b10 (normal), gyr_odr 0b1000 (100 Hz); settling.
+        Write::new(0x42, 0x28).wait_us(100_000),
+    ],
+    interface: Interface {
+        // Chapter 3: the first bit of an SPI access is 1 for a read; data follow at once.
+        spi_read: 0x80,
+        spi_dummies: 0,
+        // "Protocol selection": a read of 0x7F before any other makes the rising edge that selects SPI.
+        spi_wake: Some(0x7F),
+        // SDO at ground.
+        i2c_address: 0x68,
+        i2c_read: 0,
+    },
+    // Register (0x1B) STATUS: drdy_gyr, bit 6, reset when the data are read.
+    status: Status {
+        register: 0x1B,
+        ready: 1 << 6,
+        overrun: 0,
+    },
+    // Register (0x04-0x17) DATA: GYR_X<7:0>.
+    gyro: 0x0C,
+    // Register (0x20-0x21) TEMPERATURE: 0 is 23 °C, 2⁻⁹ K a count.
+    temperature: Some(Temperature {
+        register: 0x20,
+        at_zero_c: 23.0,
+        counts_per_k: 512.0,
+    }),
+    byte_order: ByteOrder::LittleEndian,
+    // Register (0x43) GYR_RANGE: 131.2 LSB/°/s.
+    scale_dps: 1.0 / 131.2,
+    rate_hz: 100.0,
+};

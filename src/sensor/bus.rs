@@ -1,0 +1,143 @@
+use super::Interface;
+use embedded_hal::{
+    i2c::I2c,
+    spi::{Operation, SpiDevice},
+};
+
+/// Dummy bytes that a read over SPI may have.
+const MAX_DUMMIES: usize = 3;
+
+/// A bus with one sensor on it, as registers of 8 bits.
+pub trait Registers {
+    /// What the bus may fail with.
+    type Error;
+
+    /// Whether the writes that [`Write::spi_only`](super::Write::spi_only) marks are due.
+    const IS_SPI: bool;
+
+    /// Makes the sensor listen to this bus.
+    ///
+    /// # Errors
+    /// That of the bus.
+    fn wake(&mut self, interface: &Interface) -> Result<(), Self::Error>;
+
+    /// Reads consecutive registers, from `register` on, in one transaction.
+    ///
+    /// # Errors
+    /// That of the bus.
+    fn read(
+        &mut self,
+        interface: &Interface,
+        register: u8,
+        bytes: &mut [u8],
+    ) -> Result<(), Self::Error>;
+
+    /// Writes one register.
+    ///
+    /// # Errors
+    /// That of the bus.
+    fn write(&mut self, interface: &Interface, register: u8, value: u8) -> Result<(), Self::Error>;
+}
+
+/// A sensor on an SPI bus. `SPI` drives its chip select; a `&mut` of a device is a device too.
+#[derive(Clone, Debug)]
+pub struct SpiBus<SPI>(SPI);
+
+impl<SPI: SpiDevice> SpiBus<SPI> {
+    /// Takes the device.
+    pub const fn new(spi: SPI) -> Self {
+        Self(spi)
+    }
+
+    /// Gives the device back.
+    pub fn release(self) -> SPI {
+        self.0
+    }
+}
+
+impl<SPI: SpiDevice> Registers for SpiBus<SPI> {
+    type Error = SPI::Error;
+
+    const IS_SPI: bool = true;
+
+    fn wake(&mut self, interface: &Interface) -> Result<(), Self::Error> {
+        match interface.spi_wake {
+            Some(register) => self.read(interface, register, &mut [0]),
+            None => Ok(()),
+        }
+    }
+
+    fn read(
+        &mut self,
+        interface: &Interface,
+        register: u8,
+        bytes: &mut [u8],
+    ) -> Result<(), Self::Error> {
+        let header = [register | interface.spi_read, 0, 0, 0];
+        let dummies = usize::from(interface.spi_dummies).min(MAX_DUMMIES);
+        let header = header.get(..=dummies).unwrap_or(&header);
+        self.0
+            .transaction(&mut [Operation::Write(header), Operation::Read(bytes)])
+    }
+
+    fn write(&mut self, _: &Interface, register: u8, value: u8) -> Result<(), Self::Error> {
+        self.0.write(&[register, value])
+    }
+}
+
+/// A sensor on an I²C bus.
+#[derive(Clone, Debug)]
+pub struct I2cBus<I2C> {
+    i2c: I2C,
+    address: Option<u8>,
+}
+
+impl<I2C: I2c> I2cBus<I2C> {
+    /// Takes the bus; the sensor is at the address of its description.
+    pub const fn new(i2c: I2C) -> Self {
+        Self { i2c, address: None }
+    }
+
+    /// Takes the bus; the sensor is at another 7-bit address.
+    pub const fn at(i2c: I2C, address: u8) -> Self {
+        Self {
+            i2c,
+            address: Some(address),
+        }
+    }
+
+    /// Gives the bus back.
+    pub fn release(self) -> I2C {
+        self.i2c
+    }
+
+    fn address(&self, interface: &Interface) -> u8 {
+        self.address.unwrap_or(interface.i2c_address)
+    }
+}
+
+impl<I2C: I2c> Registers for I2cBus<I2C> {
+    type Error = I2C::Error;
+
+    const IS_SPI: bool = false;
+
+    fn wake(&mut self, _: &Interface) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    fn read(
+        &mut self,
+        interface: &Interface,
+        register: u8,
+        bytes: &mut [u8],
+    ) -> Result<(), Self::Error> {
+        let address = self.address(interface);
+        self.i2c
+            .write_read(address, &[register | interface.i2c_read], bytes)
+    }
+
+    fn write(&mut self, interface: &Interface, register: u8, value: u8) -> Result<(), Self::Error> {
+        let address = self.address(interface);
+        self.i2c.write(address, &[register, value])
+    }
+}

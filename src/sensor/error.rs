@@ -1,0 +1,73 @@
+use super::description::MAX_BLOCK;
+use core::fmt;
+
+/// Why a sensor did not start, or gave no sample. `E` is what its bus fails with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error<E> {
+    /// The bus failed.
+    Bus {
+        /// The first register of the transaction.
+        register: u8,
+        /// What the bus says.
+        error: E,
+    },
+    /// Another sensor answered, or none.
+    WrongIdentity {
+        /// The sensor that was described.
+        sensor: &'static str,
+        /// Its identity register.
+        register: u8,
+        /// What that says.
+        found: u8,
+        /// What it may say.
+        expected: &'static [u8],
+    },
+    /// Gyro and temperature of a description lie too far apart to be read at once.
+    TooWide {
+        /// The sensor that was described.
+        sensor: &'static str,
+        /// Registers from the first to the last.
+        registers: usize,
+    },
+}
+
+impl<E: fmt::Debug> fmt::Display for Error<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bus { register, error } => write!(
+                f,
+                "bus failed at register {register:#04x} ({error:?}): check wiring, clock and \
+                 address, then read again"
+            ),
+            Self::WrongIdentity {
+                sensor,
+                register,
+                found,
+                expected,
+            } => {
+                write!(
+                    f,
+                    "identity register {register:#04x} says {found:#04x} instead of"
+                )?;
+                for (k, value) in expected.iter().enumerate() {
+                    let or = if k == 0 { "" } else { " or" };
+                    write!(f, "{or} {value:#04x}")?;
+                }
+                write!(
+                    f,
+                    ": not a {sensor}; 0x00 and 0xff mean that nobody answered: check chip \
+                     select, SPI mode and supply"
+                )
+            }
+            Self::TooWide { sensor, registers } => write!(
+                f,
+                "description of {sensor}: gyro and temperature span {registers} registers, \
+                 {MAX_BLOCK} can be read at once: leave the temperature out"
+            ),
+        }
+    }
+}
+
+impl<E: fmt::Debug> core::error::Error for Error<E> {}

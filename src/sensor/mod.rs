@@ -1,0 +1,72 @@
+//! Samples from an IMU on an SPI or I²C bus, through embedded-hal 1.0.
+//!
+//! Most IMUs look alike: an identity register, a flag that says when a sample waits, three
+//! consecutive counts of 16 bits and a temperature. So a sensor is a value, a [`Description`];
+//! [`CATALOGUE`] holds some, one's own is one more. An [`Imu`] reads it, [`Axes`] makes a gap of
+//! whatever was lost, and [`Pace`] finds the samples that a sensor does not say were lost, and a
+//! configured rate that is not the true one.
+//!
+//! ```
+//! use allanite::sensor::{Axes, Error, ICM_42688_P, Imu, Pace, SpiBus};
+//! use embedded_hal::{delay::DelayNs, spi::SpiDevice};
+//!
+//! fn characterise<SPI: SpiDevice>(
+//!     spi: SPI,
+//!     delay: &mut impl DelayNs,
+//!     micros: impl Fn() -> u32,
+//!     axes: &mut Axes<20>,
+//! ) -> Result<(), Error<SPI::Error>> {
+//!     let mut imu = Imu::start(SpiBus::new(spi), &ICM_42688_P, delay)?;
+//!     let Ok(mut pace) = Pace::new(ICM_42688_P.rate_hz) else { return Ok(()) };
+//!     for _ in 0..1_000_000 {
+//!         let mut outcome = imu.read();
+//!         if let Ok(Some(reading)) = &mut outcome {
+//!             reading.overrun |= pace.stamp(micros()) > 1;
+//!         }
+//!         axes.record(&outcome); // a sample, or a gap if the bus failed
+//!         if pace.check().is_err() {
+//!             break; // not the rate that the curve would be drawn with
+//!         }
+//!     }
+//!     Ok(())
+//! }
+//! ```
+//!
+//! What this is not: a driver for all that a sensor can do. Samples of any other driver go into
+//! [`Axes::push`], or each into an [`Accumulator`](crate::Accumulator).
+
+mod axes;
+mod bmi160;
+mod bus;
+mod description;
+mod error;
+mod icm_42688_p;
+mod imu;
+mod l3gd20;
+mod lsm6dso;
+mod mpu_6050;
+mod mpu_6500;
+mod pace;
+
+pub use axes::Axes;
+pub use bmi160::BMI160;
+pub use bus::{I2cBus, Registers, SpiBus};
+pub use description::{ByteOrder, Description, Interface, Status, Temperature, Write};
+pub use error::Error;
+pub use icm_42688_p::ICM_42688_P;
+pub use imu::{Imu, Reading};
+pub use l3gd20::L3GD20;
+pub use lsm6dso::LSM6DSO;
+pub use mpu_6050::MPU_6050;
+pub use mpu_6500::MPU_6500;
+pub use pace::Pace;
+
+/// Every description here.
+pub static CATALOGUE: [&Description; 6] = [
+    &BMI160,
+    &ICM_42688_P,
+    &L3GD20,
+    &LSM6DSO,
+    &MPU_6050,
+    &MPU_6500,
+];

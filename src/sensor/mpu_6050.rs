@@ -1,0 +1,58 @@
+use super::{ByteOrder, Description, Interface, Status, Temperature, Write};
+
+/// InvenSense MPU-6050, and MPU-6000, which is the same with SPI: ±250 °/s at 100 Hz behind a low
+/// pass of 42 Hz.
+///
+/// Source: register map RM-MPU-6000A-00 (revision 4.2, 2013), chapter 4, by register number.
+pub static MPU_6050: Description = Description {
+    name: "MPU-6050",
+    // Register 117, WHO_AM_I.
+    identity: 0x75,
+    identities: &[0x68],
+    start_up: &[
+        // Register 107, PWR_MGMT_1: DEVICE_RESET.
+        Write::new(0x6B, 0x80).wait_us(100_000),
+        // Register 104, SIGNAL_PATH_RESET: gyro, accelerometer and temperature, as SPI needs.
+        Write::new(0x68, 0x07).wait_us(100_000).spi_only(),
+        // Register 106, USER_CTRL: I2C_IF_DIS. To be left at zero in an MPU-6050.
+        Write::new(0x6A, 0x10).spi_only(),
+        // Register 107, PWR_MGMT_1: awake, on the clock of the x gyro.
+        Write::new(0x6B, 0x01),
+        // Register 26, CONFIG: DLPF_CFG 3, gyro at 1 kHz.
+        Write::new(0x1A, 0x03),
+        // Register 25, SMPLRT_DIV: 1 kHz / (1 + 9).
+        Write::new(0x19, 0x09),
+        // Register 27, GYRO_CONFIG: FS_SEL 0 (±250 °/s).
+        Write::new(0x1B, 0x00),
+        // Register 55, INT_PIN_CFG: INT_RD_CLEAR, any read clears the flags.
+        Write::new(0x37, 0x10),
+        // Register 56, INT_ENABLE: DATA_RDY_EN; the gyro settles.
+        Write::new(0x38, 0x01).wait_us(100_000),
+    ],
+    interface: Interface {
+        spi_read: 0x80,
+        spi_dummies: 0,
+        spi_wake: None,
+        // AD0 at ground.
+        i2c_address: 0x68,
+        i2c_read: 0,
+    },
+    // Register 58, INT_STATUS: DATA_RDY_INT.
+    status: Status {
+        register: 0x3A,
+        ready: 1,
+        overrun: 0,
+    },
+    // Section 4.19, registers 67 to 72: GYRO_XOUT_H.
+    gyro: 0x43,
+    // Section 4.18, registers 65 and 66, TEMP_OUT: °C = TEMP_OUT / 340 + 36.53.
+    temperature: Some(Temperature {
+        register: 0x41,
+        at_zero_c: 36.53,
+        counts_per_k: 340.0,
+    }),
+    byte_order: ByteOrder::BigEndian,
+    // Section 4.19, page 31: 131 LSB/°/s for FS_SEL 0.
+    scale_dps: 1.0 / 131.0,
+    rate_hz: 100.0,
+};

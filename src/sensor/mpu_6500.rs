@@ -1,0 +1,60 @@
+use super::{ByteOrder, Description, Interface, Status, Temperature, Write};
+
+/// InvenSense MPU-6500, and MPU-9250, whose gyro has the same registers: ±250 °/s at 100 Hz behind
+/// a low pass of 41 Hz.
+///
+/// Source: register map RM-MPU-6500A-00 (revision 2.1, 2013), chapter 4, by register number;
+/// product specification PS-MPU-6500A-01 (revision 1.1, 2014).
+pub static MPU_6500: Description = Description {
+    name: "MPU-6500",
+    // Register 117, WHO_AM_I; 0x71 is the MPU-9250's (RM-MPU-9250A-00).
+    identity: 0x75,
+    identities: &[0x70, 0x71],
+    start_up: &[
+        // Register 107, PWR_MGMT_1: DEVICE_RESET.
+        Write::new(0x6B, 0x80).wait_us(100_000),
+        // Register 104, SIGNAL_PATH_RESET: gyro, accelerometer and temperature, as SPI needs.
+        Write::new(0x68, 0x07).wait_us(100_000).spi_only(),
+        // Register 106, USER_CTRL: I2C_IF_DIS.
+        Write::new(0x6A, 0x10).spi_only(),
+        // Register 107, PWR_MGMT_1: awake, on the best clock there is.
+        Write::new(0x6B, 0x01),
+        // Register 26, CONFIG: DLPF_CFG 3, gyro at 1 kHz.
+        Write::new(0x1A, 0x03),
+        // Register 25, SMPLRT_DIV: 1 kHz / (1 + 9).
+        Write::new(0x19, 0x09),
+        // Register 27, GYRO_CONFIG: GYRO_FS_SEL 0 (±250 °/s), FCHOICE_B 0 (low pass on).
+        Write::new(0x1B, 0x00),
+        // Register 55, INT_PIN_CFG: INT_ANYRD_2CLEAR, any read clears the flags.
+        Write::new(0x37, 0x10),
+        // Register 56, INT_ENABLE: RAW_RDY_EN; the gyro settles.
+        Write::new(0x38, 0x01).wait_us(100_000),
+    ],
+    interface: Interface {
+        spi_read: 0x80,
+        spi_dummies: 0,
+        spi_wake: None,
+        // AD0 at ground.
+        i2c_address: 0x68,
+        i2c_read: 0,
+    },
+    // Register 58, INT_STATUS: RAW_DATA_RDY_INT.
+    status: Status {
+        register: 0x3A,
+        ready: 1,
+        overrun: 0,
+    },
+    // Registers 67 to 72: GYRO_XOUT_H.
+    gyro: 0x43,
+    // Registers 65 and 66, TEMP_OUT, and the product specification's sensitivity: zero at 21 °C,
+    // 333.87 LSB/°C.
+    temperature: Some(Temperature {
+        register: 0x41,
+        at_zero_c: 21.0,
+        counts_per_k: 333.87,
+    }),
+    byte_order: ByteOrder::BigEndian,
+    // Product specification, table "Gyroscope specifications": 131 LSB/(°/s) for FS_SEL 0.
+    scale_dps: 1.0 / 131.0,
+    rate_hz: 100.0,
+};

@@ -12,8 +12,12 @@ mod curve;
 pub mod demonstration;
 mod diagnosis;
 pub mod effect;
+#[cfg(feature = "storage")]
+mod envelope;
 mod error;
 mod fit;
+#[cfg(feature = "flash")]
+mod flash;
 mod integrity;
 mod kurtosis;
 mod lattice;
@@ -25,6 +29,8 @@ mod octave;
 mod search;
 pub mod self_test;
 pub mod simulated;
+#[cfg(feature = "storage")]
+mod snapshot;
 mod square_sum;
 
 pub use chi_squared::chi_squared_tail;
@@ -39,8 +45,12 @@ pub use diagnosis::{
 };
 pub use error::Error;
 pub use fit::{Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};
+#[cfg(feature = "flash")]
+pub use flash::{SnapshotStore, StoreError};
 pub use integrity::{Integrity, InvalidLimit, Limits, Observation, Reason, Tally};
 pub use kurtosis::{FourthMoments, Kurtosis, KurtosisPoint};
 pub use model::{MAX_EFFECTS, Model, Term};
 pub use octave::{Accumulator, OctaveSum};
+#[cfg(feature = "storage")]
+pub use snapshot::{Snapshot, SnapshotInterval};
 pub use square_sum::SquareSum;

@@ -33,6 +33,7 @@ const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 #[repr(u8)]
 pub(crate) enum Kind {
     Snapshot = 1,
+    Record = 2,
 }
 
 /// An envelope that is being filled.

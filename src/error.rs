@@ -84,6 +84,13 @@ pub enum Error {
         /// Octaves of the accumulator that was to be restored.
         wanted: usize,
     },
+    /// A device's identity of more bytes than a record has room for.
+    DeviceTooLong {
+        /// How many it has.
+        length: usize,
+        /// How many there is room for.
+        capacity: usize,
+    },
     /// Contents that no record of a gyro has, although the checksum is right.
     Impossible,
 }
@@ -163,6 +170,10 @@ impl core::fmt::Display for Error {
             Self::OtherOctaves { found, wanted } => write!(
                 f,
                 "a snapshot of {found} octaves, not {wanted}: restore Accumulator::<{found}>"
+            ),
+            Self::DeviceTooLong { length, capacity } => write!(
+                f,
+                "the device's identity has {length} bytes: shorten it to {capacity}"
             ),
             Self::Impossible => write!(
                 f,

@@ -26,6 +26,8 @@ mod model;
 mod nnls;
 mod observability;
 mod octave;
+#[cfg(feature = "storage")]
+mod record;
 mod search;
 pub mod self_test;
 pub mod simulated;
@@ -44,13 +46,18 @@ pub use diagnosis::{
     Verdict,
 };
 pub use error::Error;
-pub use fit::{Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};
+pub use fit::{Correlations, Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};
 #[cfg(feature = "flash")]
 pub use flash::{SnapshotStore, StoreError};
 pub use integrity::{Integrity, InvalidLimit, Limits, Observation, Reason, Tally};
 pub use kurtosis::{FourthMoments, Kurtosis, KurtosisPoint};
 pub use model::{MAX_EFFECTS, Model, Term};
 pub use octave::{Accumulator, OctaveSum};
+#[cfg(feature = "storage")]
+pub use record::{
+    AxisRecord, Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, Record,
+    RecordedShape, RecordedState, RecordedTerm,
+};
 #[cfg(feature = "storage")]
 pub use snapshot::{Snapshot, SnapshotInterval};
 pub use square_sum::SquareSum;

@@ -14,8 +14,9 @@ use sequential_storage::{
 /// For every driver that implements `embedded_storage_async::nor_flash::NorFlash`; one that blocks
 /// becomes one in a line, by `embassy_embedded_hal::adapter::BlockingAsync`. What is written and
 /// where is up to `sequential_storage::map`: it appends, page after page, and erases a page only when
-/// whatever of it is the newest has been copied. Its range is two pages or more, none of which is
-/// filled by one snapshot of every axis.
+/// whatever of it is the newest has been copied. Its range is two pages or more, and
+/// one snapshot of every axis fits into a page with room to spare. A word whose write was torn is
+/// written over with zeros, which flash with error correction allows too.
 ///
 /// # Example
 ///

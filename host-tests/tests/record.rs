@@ -2,6 +2,8 @@
 
 #[path = "common/factory.rs"]
 mod factory;
+#[path = "common/sealed.rs"]
+mod sealed;
 
 use allanite::{
     Curve, EffectCode, Error, Model, RateUnit, Reason, Record, RecordedState, Settings, State,
@@ -10,6 +12,7 @@ use allanite::{
     fit,
 };
 use factory::{SINUSOID, axis, encoded, record};
+use sealed::sealed;
 
 fn three_axes() -> Record {
     let axes = [axis(None, 1), axis(Some(SINUSOID), 2), axis(None, 3)];
@@ -22,6 +25,7 @@ fn record_keeps_what_fit_and_diagnosis_said() {
     let bytes = encoded(&written);
     let read = Record::decode(&bytes).unwrap();
     assert_eq!(encoded(&read), bytes);
+    assert_eq!((bytes.len(), Record::MAX_BYTES), (610, 1726));
     assert_eq!(read.device, b"SN-0042");
     assert_eq!(read.firmware, [1, 2, 300]);
     assert_eq!(read.conditions, written.conditions);
@@ -133,6 +137,32 @@ fn every_change_of_one_byte_is_refused() {
     }
     for length in 0..bytes.len() {
         assert!(Record::decode(&bytes[..length]).is_err(), "{length} bytes");
+    }
+}
+
+#[test]
+fn contents_of_every_kind_are_refused_or_make_a_record() {
+    let bytes = encoded(&three_axes());
+    let payload = &bytes[8..bytes.len() - 4];
+    let mut accepted = 0;
+    for i in 0..payload.len() {
+        for value in 0..=u8::MAX {
+            let mut payload = payload.to_vec();
+            payload[i] = value;
+            match Record::decode(&sealed(2, 1, &payload)) {
+                Ok(record) => {
+                    let again = encoded(&record);
+                    assert_eq!(encoded(&Record::decode(&again).unwrap()), again);
+                    accepted += 1;
+                }
+                Err(error) => assert_eq!(error, Error::Impossible, "byte {i} = {value}"),
+            }
+        }
+    }
+    assert!(accepted > payload.len());
+    for length in 0..payload.len() {
+        let short = Record::decode(&sealed(2, 1, &payload[..length]));
+        assert_eq!(short, Err(Error::Impossible), "{length} bytes");
     }
 }
 

@@ -1,7 +1,11 @@
 //! Snapshots: exact, refused where anything has changed.
 
+#[path = "common/sealed.rs"]
+mod sealed;
+
 use allanite::{Accumulator, Error, Scale, Snapshot, SnapshotInterval};
 use proptest::{collection::vec, prelude::*, test_runner::RngSeed};
+use sealed::sealed;
 use std::num::NonZeroU64;
 
 fn snapshot<const OCTAVES: usize>(accumulator: &Accumulator<OCTAVES>) -> Vec<u8> {
@@ -128,6 +132,13 @@ fn every_truncation_and_every_byte_too_many_is_refused() {
 }
 
 #[test]
+fn snapshot_of_twenty_octaves_takes_a_quarter_of_a_kilobyte() {
+    let accumulator = recorded::<20>(1 << 22);
+    assert_eq!(snapshot(&accumulator).len(), 248);
+    assert_eq!(Accumulator::<20>::SNAPSHOT_BYTES, 833);
+}
+
+#[test]
 fn buffer_that_is_too_small_is_refused() {
     let accumulator = recorded::<20>(100_000);
     let length = snapshot(&accumulator).len();
@@ -175,23 +186,6 @@ fn other_kind_version_and_number_of_octaves_are_named() {
     }
 }
 
-/// An envelope with a right checksum, computed bit by bit.
-fn sealed(kind: u8, version: u8, payload: &[u8]) -> Vec<u8> {
-    let mut bytes = b"ALNT".to_vec();
-    bytes.extend([kind, version]);
-    bytes.extend((payload.len() as u16).to_le_bytes());
-    bytes.extend(payload);
-    let mut crc = u32::MAX;
-    for &byte in &bytes {
-        crc ^= u32::from(byte);
-        for _ in 0..8 {
-            crc = crc >> 1 ^ (crc & 1) * 0xEDB8_8320;
-        }
-    }
-    bytes.extend((!crc).to_le_bytes());
-    bytes
-}
-
 #[test]
 fn contents_that_no_record_has_are_refused() {
     // Two octaves of one stretch of 4 samples: 3 differences, and 1.
@@ -237,6 +231,29 @@ fn contents_that_no_record_has_are_refused() {
         restore(&[&possible[..], &[0]].concat()),
         Err(Error::Impossible)
     );
+}
+
+#[test]
+fn contents_of_every_kind_are_refused_or_make_a_snapshot() {
+    let bytes = snapshot(&recorded::<13>(1000));
+    let payload = &bytes[8..bytes.len() - 4];
+    let mut accepted = 0;
+    for i in 0..payload.len() {
+        for value in 0..=u8::MAX {
+            let mut payload = payload.to_vec();
+            payload[i] = value;
+            match Accumulator::<13>::restore(&sealed(1, 1, &payload)) {
+                Ok(restored) => {
+                    let again = Accumulator::restore(&snapshot(&restored));
+                    assert_eq!(again, Ok(restored), "byte {i} = {value}");
+                    accepted += 1;
+                }
+                Err(Error::Impossible | Error::OtherOctaves { .. }) => {}
+                Err(error) => panic!("byte {i} = {value}: {error:?}"),
+            }
+        }
+    }
+    assert!(accepted > payload.len());
 }
 
 #[test]

@@ -67,7 +67,7 @@ const TERM_BYTES: usize = 1 + 16 + 6 + 1 + 12 * MAX_PARAMETERS;
 const PAYLOAD_BYTES: usize = HEAD_BYTES + MAX_AXES * (AXIS_BYTES + MAX_EFFECTS * TERM_BYTES);
 
 impl Record {
-    /// Bytes that every record fits into; one of five terms an axis takes half of them.
+    /// Bytes that every record fits into; three axes of five terms take 600.
     pub const MAX_BYTES: usize = PAYLOAD_BYTES + OVERHEAD;
 
     /// Writes the record to a buffer and returns the part of it that was used.

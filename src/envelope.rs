@@ -97,20 +97,19 @@ pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> 
     if !MAGIC.starts_with(head) {
         return Err(Error::Foreign);
     }
-    let too_short = Error::WrongLength {
+    let wrong_length = |stored| Error::WrongLength {
         found: bytes.len(),
-        stored: OVERHEAD,
+        stored,
     };
-    let (head, rest) = bytes.split_first_chunk::<HEAD>().ok_or(too_short)?;
+    let (head, rest) = bytes
+        .split_first_chunk::<HEAD>()
+        .ok_or(wrong_length(OVERHEAD))?;
     let &[.., found, version, low, high] = head;
     let stored = OVERHEAD + usize::from(u16::from_le_bytes([low, high]));
-    let (payload, tail) = rest.split_last_chunk::<TAIL>().ok_or(too_short)?;
-    if bytes.len() != stored {
-        return Err(Error::WrongLength {
-            found: bytes.len(),
-            stored,
-        });
-    }
+    let (payload, tail) = match rest.split_last_chunk::<TAIL>() {
+        Some(parts) if bytes.len() == stored => parts,
+        _ => return Err(wrong_length(stored)),
+    };
     let mut digest = CRC.digest();
     digest.update(head);
     digest.update(payload);

@@ -58,7 +58,7 @@ pub enum Error {
     WrongLength {
         /// Bytes that were given.
         found: usize,
-        /// Bytes that were stored.
+        /// Bytes that were stored; the least that can be, where not even the head is there.
         stored: usize,
     },
     /// Stored bytes that have changed: their checksum is wrong.

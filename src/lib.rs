@@ -12,8 +12,12 @@ mod curve;
 pub mod demonstration;
 mod diagnosis;
 pub mod effect;
+#[cfg(feature = "storage")]
+mod envelope;
 mod error;
 mod fit;
+#[cfg(feature = "flash")]
+mod flash;
 mod gate;
 mod integrity;
 mod kurtosis;
@@ -24,10 +28,14 @@ mod nnls;
 mod observability;
 mod octave;
 pub mod queue;
+#[cfg(feature = "storage")]
+mod record;
 mod search;
 pub mod self_test;
 pub mod sensor;
 pub mod simulated;
+#[cfg(feature = "storage")]
+mod snapshot;
 mod square_sum;
 
 pub use chi_squared::chi_squared_tail;
@@ -41,10 +49,19 @@ pub use diagnosis::{
     Verdict,
 };
 pub use error::Error;
-pub use fit::{Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};
+pub use fit::{Correlations, Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};
+#[cfg(feature = "flash")]
+pub use flash::{SnapshotStore, StoreError};
 pub use gate::Gate;
 pub use integrity::{Integrity, InvalidLimit, Limits, Observation, Reason, Tally};
 pub use kurtosis::{FourthMoments, Kurtosis, KurtosisPoint};
 pub use model::{MAX_EFFECTS, Model, Term};
 pub use octave::{Accumulator, OctaveSum};
+#[cfg(feature = "storage")]
+pub use record::{
+    AxisRecord, Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, Record,
+    RecordedShape, RecordedState, RecordedTerm,
+};
+#[cfg(feature = "storage")]
+pub use snapshot::{Snapshot, SnapshotInterval};
 pub use square_sum::SquareSum;

@@ -251,4 +251,12 @@ impl<const P: usize> NormalEquations<P> {
         let regular = self.solve_for(free, &mut unit);
         regular.then(|| unit[i] * self.scale[i] * self.scale[i])
     }
+
+    /// Covariances of one of the free unknowns with all of them. `None` if they cannot be told apart.
+    pub(crate) fn column(&self, i: usize, free: &Free<P>) -> Option<Vector<P>> {
+        let mut unit = Vector::<P>::zeros();
+        unit[i] = 1.0;
+        let regular = self.solve_for(free, &mut unit);
+        regular.then(|| unit.component_mul(&self.scale) * self.scale[i])
+    }
 }

@@ -275,6 +275,29 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         self.gaps
     }
 
+    /// [`gaps`](Self::gaps) with one at this moment.
+    #[cfg(feature = "storage")]
+    pub(crate) fn ended_gaps(&self) -> u64 {
+        self.gaps.saturating_add(u64::from(self.number > 0))
+    }
+
+    /// The state after a gap that this had been read before.
+    #[cfg(feature = "storage")]
+    pub(crate) fn ended(
+        samples: u64,
+        gaps: u64,
+        octaves: impl IntoIterator<Item = OctaveSum>,
+    ) -> Self {
+        let mut accumulator = Self::new();
+        for (k, octave) in octaves.into_iter().take(OCTAVES).enumerate() {
+            *accumulator.sum_mut(k) = octave.sum;
+            accumulator.differences[k] = octave.differences;
+        }
+        accumulator.earlier_samples = samples;
+        accumulator.gaps = gaps;
+        accumulator
+    }
+
     /// Octave `k`, of averaging factor `2^k`, as of now: what the schedule has put off is
     /// included, the state is untouched. `None` from `OCTAVES` on.
     pub fn octave(&self, k: usize) -> Option<OctaveSum> {

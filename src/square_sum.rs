@@ -92,6 +92,19 @@ impl SquareSum {
         ]
     }
 
+    /// The sum of these limbs; `None` from 2^158 on, which no sum reaches.
+    #[cfg(feature = "storage")]
+    pub(crate) const fn from_limbs([low, middle, high]: [u64; 3]) -> Option<Self> {
+        if high >> 30 != 0 {
+            return None;
+        }
+        Some(Self {
+            low: low & DIGIT,
+            middle: (low >> 63 | middle << 1) & DIGIT,
+            high: (middle >> 62 | high << 2) as u32,
+        })
+    }
+
     /// The sum as one integer, or `None` above 128 bits, which only full-scale input kept up for
     /// days can reach.
     pub fn to_u128(&self) -> Option<u128> {

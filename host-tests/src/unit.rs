@@ -54,3 +54,12 @@ impl fmt::Display for Unit {
         f.write_str(self.name())
     }
 }
+
+impl From<allanite::RateUnit> for Unit {
+    fn from(unit: allanite::RateUnit) -> Self {
+        match unit {
+            allanite::RateUnit::DegreesPerSecond => Self::DegreesPerSecond,
+            allanite::RateUnit::RadiansPerSecond => Self::RadiansPerSecond,
+        }
+    }
+}

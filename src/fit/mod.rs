@@ -1,10 +1,15 @@
 //! From a curve to coefficients.
 
+mod correlation;
 pub(crate) mod generalized;
 mod independent;
 pub(crate) mod shape;
 pub(crate) mod weights;
 
+#[cfg(feature = "storage")]
+pub(crate) use correlation::PAIRS;
+
+pub use correlation::Correlations;
 pub use shape::{MAX_SHAPE, ShapeEstimate};
 
 use crate::{

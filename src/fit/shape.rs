@@ -121,6 +121,12 @@ impl ShapeEquations {
         self.equations.variance(i, &free)
     }
 
+    /// Covariances of a squared coefficient with all of them, the shapes free.
+    pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector<UNKNOWNS>> {
+        let free = self.with_shapes(free, self.count());
+        self.equations.column(i, &free)
+    }
+
     /// Largest standard error of a shape's logarithm, infinite where the curve does not tell it.
     pub(crate) fn worst_error(&self, free: &Free) -> f64 {
         let count = self.count();

@@ -4,6 +4,9 @@ mod compare;
 mod compare_json;
 mod compare_text;
 mod compared_model;
+mod decode;
+mod decode_json;
+mod decode_text;
 mod diagnose;
 mod diagnose_json;
 mod diagnose_text;
@@ -44,6 +47,7 @@ enum Command {
     Fit(fit::Arguments),
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
+    Decode(decode::Arguments),
 }
 
 impl CommandLine {
@@ -59,6 +63,7 @@ impl CommandLine {
             Command::Fit(arguments) => fit::run(arguments, &mut output),
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
+            Command::Decode(arguments) => decode::run(arguments, &mut output),
         }?;
         output
             .flush()

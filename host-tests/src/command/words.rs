@@ -7,7 +7,7 @@ use super::{
 use crate::{log::OCTAVES, unit::Unit};
 use allanite::{
     Coefficient, Fit, State, Step, Term,
-    effect::{Effect, MAX_PARAMETERS},
+    effect::{Effect, MAX_PARAMETERS, Parameter},
 };
 
 /// A name as people write it.
@@ -31,19 +31,8 @@ pub(super) fn list_of(names: Vec<String>) -> String {
 /// A shape: `frequency 19.6 Hz (19.5 … 19.7), quality 4`, with intervals where a fit gives them.
 pub(super) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
     let parameters = term.effect.parameters().iter().zip(term.parameters);
-    let one = |(parameter, value): (&allanite::effect::Parameter, f64)| {
-        // The unit stands behind the value.
-        let suffix = format!("_{}", parameter.unit.to_lowercase());
-        let name = plain(
-            parameter
-                .name
-                .strip_suffix(&suffix)
-                .unwrap_or(parameter.name),
-        );
-        let mut text = match parameter.unit {
-            "" => format!("{name} {}", short(value)),
-            unit => format!("{name} {} {unit}", short(value)),
-        };
+    let one = |(parameter, value): (&Parameter, f64)| {
+        let mut text = shape_value(parameter, value);
         let estimate = fit.and_then(|(fit, at)| {
             let mut shape = fit.shape.iter();
             shape.find(|one| one.term == at && one.name == parameter.name)
@@ -57,6 +46,22 @@ pub(super) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
         text
     };
     parameters.map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// A shape parameter and its value: `frequency 19.6 Hz`.
+pub(super) fn shape_value(parameter: &Parameter, value: f64) -> String {
+    // The unit stands behind the value.
+    let suffix = format!("_{}", parameter.unit.to_lowercase());
+    let name = plain(
+        parameter
+            .name
+            .strip_suffix(&suffix)
+            .unwrap_or(parameter.name),
+    );
+    match parameter.unit {
+        "" => format!("{name} {}", short(value)),
+        unit => format!("{name} {} {unit}", short(value)),
+    }
 }
 
 /// Four digits, whole numbers without a fraction.

@@ -1,0 +1,57 @@
+//! Records of simulated gyros, as a factory would write them.
+
+use allanite::{
+    Accumulator, AxisRecord, Conditions, Diagnosis, Evidence, Model, RateUnit, Record, Scale,
+    demonstration::AMPLITUDES,
+    effect::CATALOGUE,
+    simulated::{Disturbance, SimulatedGyro},
+};
+
+pub(crate) const SAMPLES: usize = 1 << 16;
+pub(crate) const SINUSOID: Disturbance = Disturbance::Sinusoid {
+    amplitude: 16 << 24,
+    turn: 8_032_000,
+};
+
+pub(crate) type Counts = Accumulator<17>;
+
+pub(crate) fn counts(disturbance: Option<Disturbance>, seed: u64) -> Counts {
+    let mut accumulator = Counts::new();
+    let gyro = SimulatedGyro::disturbed(AMPLITUDES, disturbance, seed);
+    gyro.take(SAMPLES).for_each(|count| accumulator.push(count));
+    accumulator
+}
+
+/// An axis and its diagnosis.
+pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisRecord {
+    let curve = counts(disturbance, seed).curve(Scale::new(1.0 / 131.0, 100.0).unwrap());
+    let (mut last, model) = (None, Model::ieee_952());
+    let report = |step: &allanite::Step<17>| last = Some((step.model.clone(), step.fit.clone()));
+    let verdict = Diagnosis::default()
+        .run(&curve, &Evidence::NONE, &model, &CATALOGUE, report)
+        .unwrap();
+    let (model, fit) = last.unwrap();
+    let mut axis = AxisRecord::new(&curve, &model, &fit).unwrap();
+    axis.verdict = Some(verdict);
+    axis
+}
+
+pub(crate) fn record(device: &str, unit: RateUnit, axes: &[AxisRecord]) -> Record {
+    let conditions = Conditions {
+        temperature_c: Some((22.5, 24.25)),
+        duration_s: SAMPLES as f64 / 100.0,
+        rate_hz: 100.0,
+        samples: SAMPLES as u64,
+        gaps: 0,
+    };
+    let mut record = Record::new(device.as_bytes(), [1, 2, 300], conditions, unit).unwrap();
+    for axis in axes {
+        record.axes.push(axis.clone()).unwrap();
+    }
+    record
+}
+
+pub(crate) fn encoded(record: &Record) -> Vec<u8> {
+    let mut buffer = vec![0; Record::MAX_BYTES];
+    record.encode(&mut buffer).unwrap().to_vec()
+}

@@ -1,0 +1,170 @@
+//! Snapshots in a flash whose power is cut at every operation.
+
+#[path = "common/ram_flash.rs"]
+mod ram_flash;
+
+use allanite::{Accumulator, Error, SnapshotStore, StoreError};
+use pollster::block_on;
+use ram_flash::{PAGE, PowerCut, RamFlash, WORD};
+
+const OCTAVES: usize = 13;
+const AXES: u8 = 2;
+/// Snapshots of both axes that a run writes: pages are erased and used again.
+const SNAPSHOTS: usize = 40;
+const PAGES: usize = 3;
+
+type Axis = Accumulator<OCTAVES>;
+
+fn buffer() -> Vec<u8> {
+    vec![0; (Axis::SNAPSHOT_BYTES + 1).next_multiple_of(WORD)]
+}
+
+fn store(flash: RamFlash) -> SnapshotStore<RamFlash> {
+    SnapshotStore::new(flash, 0..(PAGES * PAGE) as u32).unwrap()
+}
+
+/// What the axis' accumulator is at its n-th snapshot.
+fn states() -> Vec<[Axis; AXES as usize]> {
+    let mut axes = [Axis::new(), Axis::new()];
+    let mut random = 1_u32;
+    (0..SNAPSHOTS)
+        .map(|_| {
+            for _ in 0..500 {
+                for axis in &mut axes {
+                    random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    axis.push((random >> 20) as i32 - 2048);
+                }
+            }
+            axes.clone()
+        })
+        .collect()
+}
+
+/// Saves one after the other; how many were saved before the power went, and the flash.
+fn run(flash: RamFlash, states: &[[Axis; AXES as usize]]) -> (usize, RamFlash) {
+    let mut store = store(flash);
+    let mut saved = 0;
+    'all: for axes in states {
+        for (axis, accumulator) in (0..AXES).zip(axes) {
+            match block_on(store.save(axis, accumulator, &mut buffer())) {
+                Ok(()) => saved += 1,
+                Err(StoreError::Flash(_)) => break 'all,
+                Err(error) => panic!("{error}"),
+            }
+        }
+    }
+    (saved, store.into_flash())
+}
+
+/// What an axis restores.
+fn load(store: &mut SnapshotStore<RamFlash>, axis: u8) -> Option<Axis> {
+    block_on(store.load(axis, &mut buffer())).unwrap()
+}
+
+/// After so many saves: the newest of each axis, as it is after a gap.
+fn newest(states: &[[Axis; AXES as usize]], saved: usize, axis: u8) -> Option<Axis> {
+    let count = (saved + usize::from(AXES - 1 - axis)) / usize::from(AXES);
+    let mut newest = states[count.checked_sub(1)?][usize::from(axis)].clone();
+    newest.gap();
+    Some(newest)
+}
+
+#[test]
+fn newest_snapshot_of_each_axis_is_restored() {
+    let states = states();
+    for count in 0..=SNAPSHOTS {
+        let (saved, flash) = run(RamFlash::new(PAGES), &states[..count]);
+        assert_eq!(saved, count * usize::from(AXES));
+        let mut store = store(flash);
+        for axis in 0..AXES {
+            assert_eq!(load(&mut store, axis), newest(&states, saved, axis));
+        }
+        assert_eq!(load(&mut store, AXES), None);
+    }
+}
+
+#[test]
+fn power_cut_at_any_operation_leaves_the_old_snapshot_or_the_new() {
+    let states = states();
+    let (all, whole) = run(RamFlash::new(PAGES), &states);
+    assert_eq!(all, SNAPSHOTS * usize::from(AXES));
+    assert!(whole.erasures > 2 * PAGES, "{} erasures", whole.erasures);
+    let (mut old, mut new) = (0, 0);
+    for (after, &length) in whole.operations.iter().enumerate() {
+        for torn in torn(length) {
+            let power_cut = PowerCut { after, torn };
+            let mut flash = RamFlash::new(PAGES);
+            flash.power_cut = Some(power_cut);
+            let (saved, mut flash) = run(flash, &states);
+            flash.power_cut = None;
+            let interrupted = (saved % usize::from(AXES)) as u8;
+            let mut store = store(flash);
+            for axis in 0..AXES {
+                let found = load(&mut store, axis);
+                let before = newest(&states, saved, axis);
+                if axis == interrupted && saved < all && found == newest(&states, saved + 1, axis) {
+                    new += 1;
+                } else {
+                    assert_eq!(found, before, "axis {axis}, {power_cut:?}, {saved} saved");
+                    old += 1;
+                }
+            }
+            // And the store goes on.
+            let last = states.last().unwrap();
+            for (axis, accumulator) in (0..AXES).zip(last) {
+                block_on(store.save(axis, accumulator, &mut buffer()))
+                    .unwrap_or_else(|error| panic!("{power_cut:?}: {error}"));
+            }
+            for axis in 0..AXES {
+                assert_eq!(load(&mut store, axis), newest(&states, all, axis));
+            }
+        }
+    }
+    assert!(new > 0 && old > new, "{old} old, {new} new");
+}
+
+/// How many bytes the last operation still changes: any number of a write's, some of an erasure's.
+fn torn(length: usize) -> impl Iterator<Item = usize> {
+    let step = if length < PAGE { 1 } else { 31 };
+    (0..=length).step_by(step).chain([length])
+}
+
+#[test]
+fn damage_in_flash_is_never_restored() {
+    let states = states();
+    let (saved, flash) = run(RamFlash::new(PAGES), &states);
+    for i in 0..flash.bytes.len() {
+        for bit in 0..8 {
+            let mut damaged = flash.clone();
+            damaged.bytes[i] ^= 1 << bit;
+            let mut store = store(damaged);
+            for axis in 0..AXES {
+                // An older one, none, or an error: but nothing that was never stored.
+                if let Ok(Some(found)) = block_on(store.load::<OCTAVES>(axis, &mut buffer())) {
+                    let mut stored = (1..=saved).filter_map(|saved| newest(&states, saved, axis));
+                    assert!(stored.any(|one| one == found), "byte {i}, bit {bit}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn impossible_range_and_small_buffer_are_refused() {
+    for range in [0..0, 0..PAGE as u32, 7..4096, 0..4 * PAGE as u32] {
+        let store = SnapshotStore::new(RamFlash::new(PAGES), range.clone());
+        assert!(matches!(store, Err(StoreError::InvalidRange)), "{range:?}");
+    }
+    let mut store = store(RamFlash::new(PAGES));
+    let states = states();
+    let save = block_on(store.save(0, &states[0][0], &mut [0; 64]));
+    assert!(matches!(save, Err(StoreError::Flash(_))));
+    assert_eq!(load(&mut store, 0), None);
+    block_on(store.save(0, &states[0][0], &mut buffer())).unwrap();
+    let other = block_on(store.load::<20>(0, &mut buffer()));
+    let wanted = Error::OtherOctaves {
+        found: OCTAVES,
+        wanted: 20,
+    };
+    assert!(matches!(other, Err(StoreError::Snapshot(error)) if error == wanted));
+}

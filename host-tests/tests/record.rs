@@ -1,0 +1,290 @@
+//! Factory records: what a fit and a diagnosis said, refused where anything has changed.
+
+#[path = "common/factory.rs"]
+mod factory;
+#[path = "common/sealed.rs"]
+mod sealed;
+
+use allanite::{
+    Curve, EffectCode, Error, Model, RateUnit, Reason, Record, RecordedState, Settings, State,
+    Verdict, curve_covariance,
+    effect::{AngleRandomWalk, BiasInstability, CATALOGUE, RateRandomWalk},
+    fit,
+};
+use factory::{SINUSOID, axis, encoded, record};
+use sealed::sealed;
+
+fn three_axes() -> Record {
+    let axes = [axis(None, 1), axis(Some(SINUSOID), 2), axis(None, 3)];
+    record("SN-0042", RateUnit::DegreesPerSecond, &axes)
+}
+
+#[test]
+fn record_keeps_what_fit_and_diagnosis_said() {
+    let written = three_axes();
+    let bytes = encoded(&written);
+    let read = Record::decode(&bytes).unwrap();
+    assert_eq!(encoded(&read), bytes);
+    assert_eq!((bytes.len(), Record::MAX_BYTES), (610, 1726));
+    assert_eq!(read.device, b"SN-0042");
+    assert_eq!(read.firmware, [1, 2, 300]);
+    assert_eq!(read.conditions, written.conditions);
+    let verdicts: Vec<_> = read.axes.iter().map(|axis| axis.verdict.unwrap()).collect();
+    assert_eq!(verdicts[1], Verdict::Improved);
+    assert!(read.axes[0].found().next().is_none());
+    let found: Vec<_> = read.axes[1].found().collect();
+    assert_eq!(found[0].effect.name(), "sinusoid");
+    let frequency = found[0].shape[0];
+    assert!(frequency.lower < frequency.value && frequency.value < frequency.upper);
+    assert!((frequency.value / 7.7 - 1.0).abs() < 0.03, "{frequency:?}");
+}
+
+#[test]
+fn numbers_of_a_fit_are_kept_in_single_precision() {
+    let curve = factory::counts(None, 1).curve(allanite::Scale::new(0.01, 100.0).unwrap());
+    let model = Model::ieee_952();
+    let fit = fit(&curve, &model, Settings::default()).unwrap();
+    let axis = allanite::AxisRecord::new(&curve, &model, &fit).unwrap();
+    assert_eq!(axis.chi_squared, fit.chi_squared);
+    assert_eq!(axis.p_value, fit.p_value);
+    assert_eq!(usize::from(axis.degrees_of_freedom), fit.degrees_of_freedom);
+    for (term, coefficient) in axis.terms.iter().zip(&fit.coefficients) {
+        assert_eq!(term.effect.name(), coefficient.name);
+        assert_eq!(term.value, coefficient.value as f32);
+        assert_eq!(term.upper, coefficient.upper as f32);
+        assert_eq!(term.square_error, coefficient.square_error as f32);
+        let same = match (term.state, coefficient.state) {
+            (RecordedState::Measured, State::Measured) => true,
+            (RecordedState::UpperBound, State::UpperBound) => true,
+            (RecordedState::NotObservable { after_s: a }, State::NotObservable { after_s: b }) => {
+                a == b.map(|b| b as f32)
+            }
+            _ => false,
+        };
+        assert!(same, "{term:?} {coefficient:?}");
+    }
+}
+
+/// A curve without noise, so that the derivatives of a fit by the curve's octaves say how errors
+/// propagate.
+#[test]
+fn covariance_is_that_of_errors_propagated_through_the_fit() {
+    let squares = [0.04_f64, 0.004, 0.0009].map(|x| x * x);
+    let model = Model::new(&[&AngleRandomWalk, &BiasInstability, &RateRandomWalk]).unwrap();
+    let octaves = |changed: usize, step: f64| {
+        let (model, squares) = (&model, &squares);
+        (0..15).map(move |k| {
+            let variance = model.variance(squares, 1 << k, 0.01);
+            let factor = if k == changed { 1.0 + step } else { 1.0 };
+            (
+                1 << k,
+                ((1_u64 << 18) >> k.saturating_sub(2)) - 7,
+                variance * factor,
+            )
+        })
+    };
+    let curve = |changed, step| Curve::<15>::new(100.0, octaves(changed, step)).unwrap();
+    let fitted = |curve: &Curve<15>| fit(curve, &model, Settings::default()).unwrap();
+    let exact = curve(99, 0.0);
+    let (best, scatter) = (fitted(&exact), curve_covariance(&exact, &model, &squares));
+    let correlations = best.correlations(&exact, &model).unwrap();
+
+    const STEP: f64 = 1e-3;
+    let mut derivatives = [[0.0; 15]; 3];
+    for k in 0..15 {
+        let (up, down) = (fitted(&curve(k, STEP)), fitted(&curve(k, -STEP)));
+        for (i, row) in derivatives.iter_mut().enumerate() {
+            let change = up.coefficients[i].square - down.coefficients[i].square;
+            row[k] = change / (2.0 * STEP * exact.points()[k].variance);
+        }
+    }
+    let covariance = |i: usize, j: usize| {
+        let mut sum = 0.0;
+        for k in 0..15 {
+            for l in 0..15 {
+                sum += derivatives[i][k] * scatter[(k, l)] * derivatives[j][l];
+            }
+        }
+        sum
+    };
+    for i in 0..3 {
+        let error = best.coefficients[i].square_error;
+        assert!((covariance(i, i).sqrt() / error - 1.0).abs() < 0.02);
+        for j in 0..i {
+            let expected = covariance(i, j) / (covariance(i, i) * covariance(j, j)).sqrt();
+            let found = correlations.get(i, j);
+            assert!(
+                (found - expected).abs() < 0.01,
+                "{i}, {j}: {found} {expected}"
+            );
+            assert_eq!(found, correlations.get(j, i));
+        }
+        assert_eq!(correlations.get(i, i), 1.0);
+    }
+    assert!(correlations.get(0, 1).abs() > 0.05, "{correlations:?}");
+}
+
+#[test]
+fn every_change_of_one_byte_is_refused() {
+    let bytes = encoded(&three_axes());
+    let mut changed = bytes.clone();
+    for i in 0..bytes.len() {
+        for difference in 1..=u8::MAX {
+            changed[i] = bytes[i] ^ difference;
+            assert!(Record::decode(&changed).is_err(), "byte {i} ^ {difference}");
+        }
+        changed[i] = bytes[i];
+    }
+    for length in 0..bytes.len() {
+        assert!(Record::decode(&bytes[..length]).is_err(), "{length} bytes");
+    }
+}
+
+#[test]
+fn contents_of_every_kind_are_refused_or_make_a_record() {
+    let bytes = encoded(&three_axes());
+    let payload = &bytes[8..bytes.len() - 4];
+    let mut accepted = 0;
+    for i in 0..payload.len() {
+        for value in 0..=u8::MAX {
+            let mut payload = payload.to_vec();
+            payload[i] = value;
+            match Record::decode(&sealed(2, 1, &payload)) {
+                Ok(record) => {
+                    let again = encoded(&record);
+                    assert_eq!(encoded(&Record::decode(&again).unwrap()), again);
+                    accepted += 1;
+                }
+                Err(error) => assert_eq!(error, Error::Impossible, "byte {i} = {value}"),
+            }
+        }
+    }
+    assert!(accepted > payload.len());
+    for length in 0..payload.len() {
+        let short = Record::decode(&sealed(2, 1, &payload[..length]));
+        assert_eq!(short, Err(Error::Impossible), "{length} bytes");
+    }
+}
+
+#[test]
+fn every_effect_of_the_catalogue_has_a_code_that_stays() {
+    let codes = CATALOGUE.map(|effect| EffectCode::of(effect.name()).number());
+    assert_eq!(codes, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]);
+    for effect in CATALOGUE {
+        let code = EffectCode::of(effect.name());
+        assert_eq!(code.effect().unwrap().name(), effect.name());
+    }
+    assert_eq!(EffectCode::of("mains_hum"), EffectCode::OTHER);
+    assert_eq!(EffectCode::OTHER.name(), "other");
+    assert!(EffectCode::OTHER.effect().is_none());
+}
+
+#[test]
+fn largest_record_fits_and_what_does_not_is_refused() {
+    let mut largest = three_axes();
+    let axes = largest.axes;
+    largest = Record::new(&[0xFF; 16], [0; 3], largest.conditions, largest.unit).unwrap();
+    largest.axes = axes;
+    largest.conditions.samples = u64::MAX;
+    largest.conditions.gaps = u64::MAX;
+    largest.firmware = [u16::MAX; 3];
+    for axis in &mut largest.axes {
+        while axis.terms.push(axis.terms[0].clone()).is_ok() {}
+        for term in &mut axis.terms {
+            term.state = RecordedState::NotObservable { after_s: Some(1.0) };
+            let one = allanite::RecordedShape {
+                value: 1.0,
+                lower: 0.5,
+                upper: 2.0,
+            };
+            while term.shape.push(one).is_ok() {}
+        }
+        axis.degrees_of_freedom = u16::MAX;
+        axis.verdict = Some(Verdict::Invalid(Reason::Stuck {
+            longest_run: u32::MAX,
+            changes: u64::MAX,
+            samples: u64::MAX,
+        }));
+    }
+    let bytes = encoded(&largest);
+    assert!(bytes.len() <= Record::MAX_BYTES && bytes.len() + 8 > Record::MAX_BYTES);
+    assert_eq!(encoded(&Record::decode(&bytes).unwrap()), bytes);
+    let mut buffer = vec![0; bytes.len() - 1];
+    let needed = Record::MAX_BYTES;
+    assert_eq!(
+        largest.encode(&mut buffer),
+        Err(Error::BufferTooSmall { needed })
+    );
+
+    let long = Record::new(
+        &[0; 17],
+        [0; 3],
+        largest.conditions,
+        RateUnit::RadiansPerSecond,
+    );
+    assert_eq!(
+        long,
+        Err(Error::DeviceTooLong {
+            length: 17,
+            capacity: 16
+        })
+    );
+    largest.conditions.rate_hz = 0.0;
+    let mut buffer = vec![0; needed];
+    assert_eq!(largest.encode(&mut buffer), Err(Error::Impossible));
+}
+
+#[test]
+fn format_is_the_one_that_was_frozen() {
+    let bytes: Vec<u8> = (0..FROZEN.len())
+        .step_by(2)
+        .map(|i| u8::from_str_radix(&FROZEN[i..i + 2], 16).unwrap())
+        .collect();
+    let record = Record::decode(&bytes).unwrap();
+    assert_eq!(encoded(&record), bytes);
+    assert_eq!(record.device, b"SN-1");
+    assert_eq!(record.firmware, [1, 2, 300]);
+    let conditions = record.conditions;
+    assert_eq!(conditions.temperature_c, Some((22.5, 24.25)));
+    assert_eq!((conditions.duration_s, conditions.rate_hz), (655.36, 100.0));
+    assert_eq!((conditions.samples, conditions.gaps), (65_536, 3));
+    assert_eq!(record.unit, RateUnit::RadiansPerSecond);
+    let [axis] = &record.axes[..] else {
+        panic!("{record:?}")
+    };
+    assert_eq!(
+        (axis.chi_squared, axis.p_value, axis.tolerance),
+        (12.5, 0.25, 0.5)
+    );
+    assert_eq!(axis.degrees_of_freedom, 11);
+    let reason = Reason::Moved {
+        motions: 5,
+        cluster: 300,
+        percent: 40,
+    };
+    assert_eq!(axis.verdict, Some(Verdict::Invalid(reason)));
+    let [white, sinusoid] = &axis.terms[..] else {
+        panic!("{axis:?}")
+    };
+    assert_eq!(white.effect.name(), "angle_random_walk");
+    assert_eq!((white.value, white.lower, white.upper), (0.5, 0.25, 0.75));
+    assert_eq!(
+        (white.state, white.square_error),
+        (RecordedState::Measured, 0.125)
+    );
+    assert_eq!(sinusoid.effect.name(), "sinusoid");
+    assert_eq!(
+        sinusoid.state,
+        RecordedState::NotObservable { after_s: Some(8.0) }
+    );
+    let shape = sinusoid.shape[0];
+    assert_eq!((shape.value, shape.lower, shape.upper), (8.0, 7.0, 9.0));
+    assert_eq!(axis.correlations.get(1, 0), -0.5);
+    assert_eq!(axis.covariance(1, 0), -0.5 * 0.125 * 0.5);
+}
+
+/// One axis of two terms, in version 1; packed by hand from the table in `src/record/mod.rs`.
+const FROZEN: &str = "414c4e5402017f0004534e2d310102ac02010000b4410000c2417b14ae47e17a844000000000000059408080\
+    040301010000000000002940000000000000d03f0b0000003f040305ac022802020000003f0000803e000040\
+    3f0000003e0000070000004000000000000080400000003f02010000004101000000410000e0400000104100\
+    0000bf3f6debd2";

@@ -1,0 +1,133 @@
+//! What surrounds everything that is stored: what it is, how long it is, and whether it is intact.
+//!
+//! | offset | bytes | content |
+//! |---|---|---|
+//! | 0 | 4 | magic, `ALNT` |
+//! | 4 | 1 | kind: 1 is a snapshot, 2 a record |
+//! | 5 | 1 | version of the payload's format |
+//! | 6 | 2 | length `n` of the payload in bytes, little endian |
+//! | 8 | n | payload, [postcard](https://postcard.jamesmunns.com) |
+//! | 8 + n | 4 | CRC-32/ISO-HDLC (that of Ethernet and zip) of all before it, little endian |
+//!
+//! The envelope stays as it is in every version. A CRC-32 detects every change within 32
+//! consecutive bits, so that of any one byte, and others but for one in 2^32.
+
+use crate::error::Error;
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use serde::Serialize;
+
+const MAGIC: [u8; 4] = *b"ALNT";
+/// Bytes in front of the payload.
+const HEAD: usize = 8;
+/// Bytes behind it.
+const TAIL: usize = 4;
+
+/// Bytes around a payload.
+pub(crate) const OVERHEAD: usize = HEAD + TAIL;
+
+/// Without a table: what is stored is short, and flash is dear.
+const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+/// What a payload is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Kind {
+    Snapshot = 1,
+    Record = 2,
+}
+
+/// An envelope that is being filled.
+pub(crate) struct Writer<'b> {
+    buffer: &'b mut [u8],
+    length: usize,
+    needed: usize,
+}
+
+impl<'b> Writer<'b> {
+    /// Starts an envelope for a payload of up to `most` bytes.
+    pub(crate) fn new(
+        buffer: &'b mut [u8],
+        kind: Kind,
+        version: u8,
+        most: usize,
+    ) -> Result<Self, Error> {
+        let needed = most + OVERHEAD;
+        let head = buffer.first_chunk_mut::<HEAD>();
+        let head = head.ok_or(Error::BufferTooSmall { needed })?;
+        let [a, b, c, d] = MAGIC;
+        *head = [a, b, c, d, kind as u8, version, 0, 0];
+        Ok(Self {
+            buffer,
+            length: HEAD,
+            needed,
+        })
+    }
+
+    /// Appends a part of the payload.
+    pub(crate) fn push(&mut self, part: &impl Serialize) -> Result<(), Error> {
+        let too_small = Error::BufferTooSmall {
+            needed: self.needed,
+        };
+        let rest = self.buffer.get_mut(self.length..).ok_or(too_small)?;
+        let written = postcard::to_slice(part, rest).map_err(|_| too_small)?;
+        self.length += written.len();
+        Ok(())
+    }
+
+    /// Closes the envelope.
+    pub(crate) fn finish(self) -> Result<&'b [u8], Error> {
+        let too_small = Error::BufferTooSmall {
+            needed: self.needed,
+        };
+        let length = u16::try_from(self.length - HEAD).map_err(|_| too_small)?;
+        let all = self.buffer.get_mut(..self.length + TAIL).ok_or(too_small)?;
+        if let Some(place) = all.get_mut(HEAD - 2..HEAD) {
+            place.copy_from_slice(&length.to_le_bytes());
+        }
+        if let Some((sealed, tail)) = all.split_last_chunk_mut::<TAIL>() {
+            *tail = CRC.checksum(sealed).to_le_bytes();
+        }
+        Ok(all)
+    }
+}
+
+/// The payload of an intact envelope of this kind and version.
+pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> {
+    let (head, _) = bytes.split_at(bytes.len().min(MAGIC.len()));
+    if !MAGIC.starts_with(head) {
+        return Err(Error::Foreign);
+    }
+    let wrong_length = |stored| Error::WrongLength {
+        found: bytes.len(),
+        stored,
+    };
+    let (head, rest) = bytes
+        .split_first_chunk::<HEAD>()
+        .ok_or(wrong_length(OVERHEAD))?;
+    let &[.., found, version, low, high] = head;
+    let stored = OVERHEAD + usize::from(u16::from_le_bytes([low, high]));
+    let (payload, tail) = match rest.split_last_chunk::<TAIL>() {
+        Some(parts) if bytes.len() == stored => parts,
+        _ => return Err(wrong_length(stored)),
+    };
+    let mut digest = CRC.digest();
+    digest.update(head);
+    digest.update(payload);
+    if digest.finalize() != u32::from_le_bytes(*tail) {
+        return Err(Error::Corrupt);
+    }
+    // Past the checksum, so that a changed byte is called that.
+    if found != kind as u8 {
+        return Err(Error::OtherKind {
+            found,
+            wanted: kind as u8,
+        });
+    }
+    if version != known {
+        return Err(Error::OtherVersion {
+            found: version,
+            known,
+        });
+    }
+    Ok(payload)
+}

@@ -1,0 +1,123 @@
+//! How the errors of fitted coefficients go together.
+
+use super::{Fit, Method, Problem, shape::ShapeEquations, weights::Weights};
+use crate::{
+    curve::Curve,
+    error::Error,
+    math,
+    model::{MAX_EFFECTS, Model},
+    nnls::{Free, NormalEquations, Vector},
+};
+
+/// Pairs of effects of the largest model.
+pub(crate) const PAIRS: usize = MAX_EFFECTS * (MAX_EFFECTS - 1) / 2;
+
+/// Correlations of the squared coefficients of a fit, which is linear in these: with
+/// [`Coefficient::square_error`](crate::Coefficient::square_error) `e`, the covariance of two of
+/// them is `ρ_ij e_i e_j`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Correlations {
+    /// Lower triangle, row by row, without the diagonal.
+    below: [f32; PAIRS],
+}
+
+impl Correlations {
+    /// Of coefficients of which nothing is known.
+    pub(crate) const UNKNOWN: Self = Self {
+        below: [f32::NAN; PAIRS],
+    };
+
+    /// Of a triangle, row by row.
+    #[cfg(feature = "storage")]
+    pub(crate) const fn from_triangle(below: [f32; PAIRS]) -> Self {
+        Self { below }
+    }
+
+    /// The first rows of the triangle, of so many coefficients.
+    #[cfg(feature = "storage")]
+    pub(crate) fn triangle(&self, count: usize) -> &[f32] {
+        let pairs = count * count.saturating_sub(1) / 2;
+        &self.below[..pairs.min(PAIRS)]
+    }
+
+    /// The correlation of two squared coefficients, by their places in the model: 1 of one with
+    /// itself, 0 with one that is zero, NaN beyond the model or where the fit does not tell.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        let (low, high) = if i < j { (i, j) } else { (j, i) };
+        if low == high {
+            return 1.0;
+        }
+        let place = high * high.saturating_sub(1) / 2 + low;
+        f64::from(self.below.get(place).copied().unwrap_or(f32::NAN))
+    }
+
+    fn set(&mut self, i: usize, j: usize, correlation: f64) {
+        if let Some(slot) = self.below.get_mut(i * i.saturating_sub(1) / 2 + j) {
+            *slot = correlation as f32;
+        }
+    }
+}
+
+impl Fit {
+    /// Correlations of the squared coefficients that were fitted to this curve with this model, fitted
+    /// shapes included: of the inverse of `A'C⁻¹A`, `C` as of the fitted model. NaN for methods other
+    /// than [`Method::Covariance`].
+    ///
+    /// # Errors
+    /// [`Error::Singular`] where model or curve are not those of the fit.
+    pub fn correlations<const K: usize>(
+        &self,
+        curve: &Curve<K>,
+        model: &Model,
+    ) -> Result<Correlations, Error> {
+        let mut correlations = Correlations::UNKNOWN;
+        if self.method != Method::Covariance {
+            return Ok(correlations);
+        }
+        let count = model.terms().len();
+        if count != self.coefficients.len() {
+            return Err(Error::Singular);
+        }
+        let problem = Problem::new(curve, model);
+        let squares = Vector::from(self.squares());
+        let free: Free = core::array::from_fn(|i| squares[i] > 0.0);
+        let mut weights = Weights::empty();
+        weights.set(&problem, &squares, self.tolerance)?;
+        let mut shape = ShapeEquations::empty();
+        if shape.set(&problem, &weights, &squares) {
+            correlations.take(count, &free, |i| shape.column(i, &free));
+        } else {
+            let mut equations = NormalEquations::empty();
+            weights.equations(&problem, |_| 1.0, &[], |_| 0.0, &mut equations)?;
+            correlations.take(count, &free, |i| equations.column(i, &free));
+        }
+        Ok(correlations)
+    }
+}
+
+impl Correlations {
+    /// Takes the columns of a covariance.
+    fn take<const P: usize>(
+        &mut self,
+        count: usize,
+        free: &Free,
+        column: impl Fn(usize) -> Option<Vector<P>>,
+    ) {
+        let mut variances = [0.0; MAX_EFFECTS];
+        for i in 0..count {
+            let own = if free[i] { column(i) } else { None };
+            if let Some(own) = &own {
+                variances[i] = own[i];
+            }
+            for j in 0..i {
+                let correlation = match &own {
+                    _ if !(free[i] && free[j]) => 0.0,
+                    Some(own) => own[j] / math::sqrt(variances[i] * variances[j]),
+                    None => f64::NAN,
+                };
+                self.set(i, j, correlation);
+            }
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Factory records: who a gyro is, under which conditions it was measured, and what came of it.
+//!
+//! The payload of the [envelope](crate::envelope), version 1, as postcard writes it: f32 and f64 are
+//! little endian, integers of more than a byte are varints, an option is a byte 0 or a byte 1 and its
+//! content. NaN is what is not known.
+//!
+//! | content | type |
+//! |---|---|
+//! | device: number of bytes up to 16, and the bytes | varint, bytes |
+//! | firmware: major, minor, patch | 3 × u16 |
+//! | lowest and highest temperature in °C | option of 2 × f32 |
+//! | duration in s, sample rate in Hz | 2 × f64 |
+//! | samples, gaps | 2 × u64 |
+//! | rate unit: 0 is deg/s, 1 rad/s | u8 |
+//! | number of axes up to 3; of each axis: | u8 |
+//! | – χ², p-value | 2 × f64 |
+//! | – degrees of freedom | u16 |
+//! | – tolerance that was granted | f32 |
+//! | – verdict: 0 none, 1 adequate, 2 improved, 3 unexplained, 4 invalid and why | u8, reason |
+//! | – number of terms up to 8; of each term: | u8 |
+//! | – – [code](EffectCode) of the effect: 1 to 11, or 0 for one of somebody's own | u8 |
+//! | – – value, lower, upper, standard error of the square | 4 × f32 |
+//! | – – state: 0 measured, 1 upper bound, 2 not observable and the length in s that would do | u8, option of f32 |
+//! | – – number of shape parameters up to 2; of each: value, lower, upper | u8, 3 × f32 |
+//! | – correlations of the squares, lower triangle row by row without diagonal | f32 each |
+//!
+//! A reason is 0 stuck (longest run u32, changes u64, samples u64), 1 railed (hits u64, samples u64),
+//! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8) or 4 missing
+//! (missing u64, sent u64).
+
+mod axis;
+mod effect_code;
+mod verdict;
+mod wire;
+
+pub use axis::{AxisRecord, RecordedShape, RecordedState, RecordedTerm};
+pub use effect_code::EffectCode;
+
+use crate::error::Error;
+use heapless::Vec;
+
+/// Axes that one record has room for.
+pub const MAX_AXES: usize = 3;
+
+/// Bytes of a device's identity.
+pub const MAX_DEVICE_BYTES: usize = 16;
+
+/// The unit of a record's rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum RateUnit {
+    /// deg/s.
+    DegreesPerSecond,
+    /// rad/s.
+    RadiansPerSecond,
+}
+
+/// Under which conditions a gyro was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Conditions {
+    /// Lowest and highest temperature, in °C, where it was measured.
+    pub temperature_c: Option<(f32, f32)>,
+    /// Duration of the measurement, in seconds.
+    pub duration_s: f64,
+    /// Samples per second.
+    pub rate_hz: f64,
+    /// Samples.
+    pub samples: u64,
+    /// Ends of contiguous stretches among them.
+    pub gaps: u64,
+}
+
+impl Conditions {
+    /// Whether a gyro can have been measured so.
+    fn are_possible(&self) -> bool {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let temperature = self
+            .temperature_c
+            .is_none_or(|(low, high)| (-273.15..=high).contains(&low) && high.is_finite());
+        temperature && positive(self.duration_s) && positive(self.rate_hz)
+    }
+}
+
+/// A gyro's factory calibration.
+///
+/// # Example
+///
+/// ```
+/// use allanite::{AxisRecord, Conditions, Curve, Model, RateUnit, Record, Settings, fit};
+///
+/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / f64::from(1 << k)));
+/// let (curve, model) = (Curve::<10>::new(100.0, white)?, Model::ieee_952());
+/// let fit = fit(&curve, &model, Settings::default())?;
+///
+/// let conditions = Conditions {
+///     temperature_c: Some((22.5, 24.0)),
+///     duration_s: 400.0,
+///     rate_hz: 100.0,
+///     samples: 40_000,
+///     gaps: 0,
+/// };
+/// let mut record = Record::new(b"SN-0042", [1, 2, 0], conditions, RateUnit::DegreesPerSecond)?;
+/// let axis = AxisRecord::new(&curve, &model, &fit)?;
+/// assert!(record.axes.push(axis).is_ok());
+///
+/// let mut buffer = [0; Record::MAX_BYTES];
+/// let stored = record.encode(&mut buffer)?;
+/// let read = Record::decode(stored)?;
+/// assert_eq!(read.device, record.device);
+/// assert_eq!(read.axes[0].terms[1].effect.name(), "angle_random_walk");
+/// # Ok::<(), allanite::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Record {
+    /// Identity of the device: a serial number, as text or not.
+    pub device: Vec<u8, MAX_DEVICE_BYTES>,
+    /// Version of its firmware: major, minor, patch.
+    pub firmware: [u16; 3],
+    /// How it was measured.
+    pub conditions: Conditions,
+    /// The unit of its rates.
+    pub unit: RateUnit,
+    /// What was found of each axis.
+    pub axes: Vec<AxisRecord, MAX_AXES>,
+}
+
+impl Record {
+    /// A record without axes yet.
+    ///
+    /// # Errors
+    /// [`Error::DeviceTooLong`].
+    pub fn new(
+        device: &[u8],
+        firmware: [u16; 3],
+        conditions: Conditions,
+        unit: RateUnit,
+    ) -> Result<Self, Error> {
+        let too_long = Error::DeviceTooLong {
+            length: device.len(),
+            capacity: MAX_DEVICE_BYTES,
+        };
+        Ok(Self {
+            device: Vec::from_slice(device).map_err(|_| too_long)?,
+            firmware,
+            conditions,
+            unit,
+            axes: Vec::new(),
+        })
+    }
+}

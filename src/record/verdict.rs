@@ -1,0 +1,86 @@
+//! Verdicts as they are stored: apart from the public ones, which may be reordered.
+
+use crate::{Reason, Verdict};
+use serde::{Deserialize, Serialize};
+
+#[derive(Serialize, Deserialize)]
+pub(super) enum WireVerdict {
+    None,
+    Adequate,
+    Improved,
+    Unexplained,
+    Invalid(WireReason),
+}
+
+#[derive(Serialize, Deserialize)]
+pub(super) enum WireReason {
+    Stuck(u32, u64, u64),
+    Railed(u64, u64),
+    Spiked(u64, u8),
+    Moved(u64, u16, u8),
+    Missing(u64, u64),
+}
+
+impl From<Option<Verdict>> for WireVerdict {
+    fn from(verdict: Option<Verdict>) -> Self {
+        match verdict {
+            None => Self::None,
+            Some(Verdict::Adequate) => Self::Adequate,
+            Some(Verdict::Improved) => Self::Improved,
+            Some(Verdict::Unexplained) => Self::Unexplained,
+            Some(Verdict::Invalid(reason)) => Self::Invalid(reason.into()),
+        }
+    }
+}
+
+impl From<WireVerdict> for Option<Verdict> {
+    fn from(verdict: WireVerdict) -> Self {
+        match verdict {
+            WireVerdict::None => None,
+            WireVerdict::Adequate => Some(Verdict::Adequate),
+            WireVerdict::Improved => Some(Verdict::Improved),
+            WireVerdict::Unexplained => Some(Verdict::Unexplained),
+            WireVerdict::Invalid(reason) => Some(Verdict::Invalid(reason.into())),
+        }
+    }
+}
+
+impl From<Reason> for WireReason {
+    fn from(reason: Reason) -> Self {
+        match reason {
+            Reason::Stuck {
+                longest_run,
+                changes,
+                samples,
+            } => Self::Stuck(longest_run, changes, samples),
+            Reason::Railed { hits, samples } => Self::Railed(hits, samples),
+            Reason::Spiked { spikes, percent } => Self::Spiked(spikes, percent),
+            Reason::Moved {
+                motions,
+                cluster,
+                percent,
+            } => Self::Moved(motions, cluster, percent),
+            Reason::Missing { missing, sent } => Self::Missing(missing, sent),
+        }
+    }
+}
+
+impl From<WireReason> for Reason {
+    fn from(reason: WireReason) -> Self {
+        match reason {
+            WireReason::Stuck(longest_run, changes, samples) => Self::Stuck {
+                longest_run,
+                changes,
+                samples,
+            },
+            WireReason::Railed(hits, samples) => Self::Railed { hits, samples },
+            WireReason::Spiked(spikes, percent) => Self::Spiked { spikes, percent },
+            WireReason::Moved(motions, cluster, percent) => Self::Moved {
+                motions,
+                cluster,
+                percent,
+            },
+            WireReason::Missing(missing, sent) => Self::Missing { missing, sent },
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! Records as bytes.
+
+use super::{
+    AxisRecord, Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, Record,
+    RecordedShape, RecordedState, RecordedTerm, verdict::WireVerdict,
+};
+use crate::{
+    effect::MAX_PARAMETERS,
+    envelope::{self, Kind, OVERHEAD, Writer},
+    error::Error,
+    fit::{Correlations, PAIRS},
+    model::MAX_EFFECTS,
+};
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+const VERSION: u8 = 1;
+
+#[derive(Serialize, Deserialize)]
+struct WireHead<'a> {
+    device: &'a [u8],
+    firmware: [u16; 3],
+    temperature_c: Option<(f32, f32)>,
+    duration_s: f64,
+    rate_hz: f64,
+    samples: u64,
+    gaps: u64,
+    unit: u8,
+    axes: u8,
+}
+
+#[derive(Serialize, Deserialize)]
+struct WireAxis {
+    chi_squared: f64,
+    p_value: f64,
+    degrees_of_freedom: u16,
+    tolerance: f32,
+    verdict: WireVerdict,
+    terms: u8,
+}
+
+#[derive(Serialize, Deserialize)]
+struct WireTerm {
+    effect: u8,
+    value: f32,
+    lower: f32,
+    upper: f32,
+    square_error: f32,
+    state: WireState,
+    shapes: u8,
+}
+
+#[derive(Serialize, Deserialize)]
+enum WireState {
+    Measured,
+    UpperBound,
+    NotObservable(Option<f32>),
+}
+
+/// Value, lower, upper.
+type WireShape = (f32, f32, f32);
+
+// In bytes, varints at their longest.
+const HEAD_BYTES: usize = 1 + MAX_DEVICE_BYTES + 9 + 9 + 16 + 20 + 2;
+const AXIS_BYTES: usize = 16 + 3 + 4 + 27 + 1 + 4 * PAIRS;
+const TERM_BYTES: usize = 1 + 16 + 6 + 1 + 12 * MAX_PARAMETERS;
+const PAYLOAD_BYTES: usize = HEAD_BYTES + MAX_AXES * (AXIS_BYTES + MAX_EFFECTS * TERM_BYTES);
+
+impl Record {
+    /// Bytes that every record fits into; three axes of five terms take 600.
+    pub const MAX_BYTES: usize = PAYLOAD_BYTES + OVERHEAD;
+
+    /// Writes the record to a buffer and returns the part of it that was used.
+    ///
+    /// # Errors
+    /// [`Error::Impossible`] for conditions that are; [`Error::BufferTooSmall`], never with
+    /// [`MAX_BYTES`](Self::MAX_BYTES).
+    pub fn encode<'b>(&self, buffer: &'b mut [u8]) -> Result<&'b [u8], Error> {
+        let conditions = &self.conditions;
+        if !conditions.are_possible() {
+            return Err(Error::Impossible);
+        }
+        let mut writer = Writer::new(buffer, Kind::Record, VERSION, PAYLOAD_BYTES)?;
+        writer.push(&WireHead {
+            device: &self.device,
+            firmware: self.firmware,
+            temperature_c: conditions.temperature_c,
+            duration_s: conditions.duration_s,
+            rate_hz: conditions.rate_hz,
+            samples: conditions.samples,
+            gaps: conditions.gaps,
+            unit: match self.unit {
+                RateUnit::DegreesPerSecond => 0,
+                RateUnit::RadiansPerSecond => 1,
+            },
+            axes: self.axes.len() as u8,
+        })?;
+        for axis in &self.axes {
+            encode_axis(axis, &mut writer)?;
+        }
+        writer.finish()
+    }
+
+    /// Reads what [`encode`](Self::encode) wrote, and checks all of it.
+    ///
+    /// # Errors
+    /// [`Error::Foreign`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::OtherKind`],
+    /// [`Error::OtherVersion`]; [`Error::Impossible`] for numbers that no fit has.
+    pub fn decode(bytes: &[u8]) -> Result<Self, Error> {
+        let mut rest = envelope::open(bytes, Kind::Record, VERSION)?;
+        let record = decode_payload(&mut rest).ok_or(Error::Impossible)?;
+        rest.is_empty().then_some(record).ok_or(Error::Impossible)
+    }
+}
+
+fn encode_axis(axis: &AxisRecord, writer: &mut Writer<'_>) -> Result<(), Error> {
+    writer.push(&WireAxis {
+        chi_squared: axis.chi_squared,
+        p_value: axis.p_value,
+        degrees_of_freedom: axis.degrees_of_freedom,
+        tolerance: axis.tolerance,
+        verdict: axis.verdict.into(),
+        terms: axis.terms.len() as u8,
+    })?;
+    for term in &axis.terms {
+        writer.push(&WireTerm {
+            effect: term.effect.number(),
+            value: term.value,
+            lower: term.lower,
+            upper: term.upper,
+            square_error: term.square_error,
+            state: match term.state {
+                RecordedState::Measured => WireState::Measured,
+                RecordedState::UpperBound => WireState::UpperBound,
+                RecordedState::NotObservable { after_s } => WireState::NotObservable(after_s),
+            },
+            shapes: term.shape.len() as u8,
+        })?;
+        for shape in &term.shape {
+            writer.push(&(shape.value, shape.lower, shape.upper))?;
+        }
+    }
+    for correlation in axis.correlations.triangle(axis.terms.len()) {
+        writer.push(correlation)?;
+    }
+    Ok(())
+}
+
+/// The next part of a payload.
+fn take<'b, T: Deserialize<'b>>(rest: &mut &'b [u8]) -> Option<T> {
+    let (part, after) = postcard::take_from_bytes(rest).ok()?;
+    *rest = after;
+    Some(part)
+}
+
+fn decode_payload(rest: &mut &[u8]) -> Option<Record> {
+    let head: WireHead = take(rest)?;
+    let conditions = Conditions {
+        temperature_c: head.temperature_c,
+        duration_s: head.duration_s,
+        rate_hz: head.rate_hz,
+        samples: head.samples,
+        gaps: head.gaps,
+    };
+    if !conditions.are_possible() {
+        return None;
+    }
+    let mut axes = Vec::new();
+    for _ in 0..head.axes {
+        axes.push(decode_axis(rest)?).ok()?;
+    }
+    Some(Record {
+        device: Vec::from_slice(head.device).ok()?,
+        firmware: head.firmware,
+        conditions,
+        unit: match head.unit {
+            0 => RateUnit::DegreesPerSecond,
+            1 => RateUnit::RadiansPerSecond,
+            _ => return None,
+        },
+        axes,
+    })
+}
+
+fn decode_axis(rest: &mut &[u8]) -> Option<AxisRecord> {
+    let axis: WireAxis = take(rest)?;
+    let probability = axis.p_value.is_nan() || (0.0..=1.0).contains(&axis.p_value);
+    if !probability || axis.chi_squared < 0.0 {
+        return None;
+    }
+    let mut terms = Vec::new();
+    for _ in 0..axis.terms {
+        terms.push(decode_term(rest)?).ok()?;
+    }
+    let mut below = [f32::NAN; PAIRS];
+    let pairs = terms.len() * terms.len().saturating_sub(1) / 2;
+    for slot in below.iter_mut().take(pairs) {
+        *slot = take(rest)?;
+        // Rounding may exceed one.
+        if slot.abs() > 1.001 {
+            return None;
+        }
+    }
+    Some(AxisRecord {
+        terms,
+        correlations: Correlations::from_triangle(below),
+        chi_squared: axis.chi_squared,
+        degrees_of_freedom: axis.degrees_of_freedom,
+        p_value: axis.p_value,
+        tolerance: axis.tolerance,
+        verdict: axis.verdict.into(),
+    })
+}
+
+fn decode_term(rest: &mut &[u8]) -> Option<RecordedTerm> {
+    let term: WireTerm = take(rest)?;
+    let mut shape = Vec::new();
+    for _ in 0..term.shapes {
+        let (value, lower, upper): WireShape = take(rest)?;
+        let one = RecordedShape {
+            value,
+            lower,
+            upper,
+        };
+        shape.push(one).ok()?;
+    }
+    let state = match term.state {
+        WireState::Measured => RecordedState::Measured,
+        WireState::UpperBound => RecordedState::UpperBound,
+        WireState::NotObservable(after_s) => RecordedState::NotObservable { after_s },
+    };
+    let valued = term.value.is_finite() && term.value >= 0.0 && term.square_error >= 0.0;
+    let ordered = term.lower <= term.value && term.value <= term.upper;
+    if !valued || (state == RecordedState::Measured && !ordered) {
+        return None;
+    }
+    Some(RecordedTerm {
+        effect: EffectCode::from_number(term.effect)?,
+        value: term.value,
+        lower: term.lower,
+        upper: term.upper,
+        square_error: term.square_error,
+        state,
+        shape,
+    })
+}

@@ -1,4 +1,4 @@
-//! The image on a Cortex-M4F and the same computation here agree to the bit.
+//! The images on every core and the same computation here agree to the bit.
 
 use allanite::{
     Addition, Step, Verdict,
@@ -7,7 +7,7 @@ use allanite::{
         diagnose::{HIDDEN, diagnose},
     },
 };
-use host_tests::firmware::{Image, run, run_with};
+use host_tests::firmware::{CORES, Core, Image, run, run_with};
 
 /// The words that are bits of a number: those after each decimal one.
 fn bits(line: &str, names: &[&str]) -> Vec<u64> {
@@ -29,8 +29,15 @@ fn lines<'a>(log: &'a [String], kind: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn image_and_host_agree_to_the_bit() {
-    let image = Image::build("characterise").unwrap_or_else(|error| panic!("{error:#}"));
+fn every_core_and_the_host_agree_to_the_bit() {
+    for core in &CORES {
+        assert_agrees(core);
+    }
+}
+
+fn assert_agrees(core: &Core) {
+    println!("{}", core.name);
+    let image = Image::build_for("characterise", core).unwrap_or_else(|error| panic!("{error:#}"));
     let run = run(&image).unwrap_or_else(|error| panic!("{error:#}"));
     println!("{}", run.lines.join("\n"));
     assert!(run.status.success(), "the image ended with {}", run.status);

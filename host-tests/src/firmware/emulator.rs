@@ -26,7 +26,7 @@ pub struct Run {
     pub status: ExitStatus,
 }
 
-/// Runs an image on the Cortex-M4F of the board MPS2 AN386. An instruction takes 1 ns there.
+/// Runs an image on the board of its core. An instruction takes 1 ns there.
 ///
 /// # Errors
 /// If QEMU does not start, the image does not end, or its log cannot be decoded.
@@ -44,7 +44,7 @@ pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
         semihosting += &format!(",arg={argument}");
     }
     let mut child = Command::new(QEMU)
-        .args(["-machine", "mps2-an386", "-cpu", "cortex-m4"])
+        .args(["-machine", image.core.machine, "-cpu", image.core.cpu])
         .args(["-icount", "shift=0", "-nographic", "-monitor", "none"])
         .args(["-serial", "null"])
         .args(["-semihosting-config", &semihosting])

@@ -1,6 +1,6 @@
 //! One image, built.
 
-use super::{REMEDY, TARGET, Toolchain, toolchain::target_directory};
+use super::{CORTEX_M4F, Core, REMEDY, Toolchain, toolchain::target_directory};
 use anyhow::{Context as _, Result, bail, ensure};
 use object::{Object as _, ObjectSection as _, SectionKind};
 use std::path::PathBuf;
@@ -8,6 +8,8 @@ use std::path::PathBuf;
 /// A linked image.
 #[derive(Clone, Debug)]
 pub struct Image {
+    /// What it is built for.
+    pub core: Core,
     /// Where it lies.
     pub path: PathBuf,
     /// The file itself.
@@ -15,13 +17,22 @@ pub struct Image {
 }
 
 impl Image {
-    /// Builds the binary `name` of the library's package.
+    /// Builds the binary `name` of the library's package for a Cortex-M4F.
     ///
     /// # Errors
     /// If no compiler for the target is found, the build fails, or its result holds no code.
     pub fn build(name: &str) -> Result<Self> {
-        let toolchain = Toolchain::find()
-            .with_context(|| format!("no compiler for {TARGET} is installed: {REMEDY}"))?;
+        Self::build_for(name, &CORTEX_M4F)
+    }
+
+    /// The same for another core.
+    ///
+    /// # Errors
+    /// As of [`build`](Self::build).
+    pub fn build_for(name: &str, core: &Core) -> Result<Self> {
+        let target = core.target;
+        let toolchain = Toolchain::find(core)
+            .with_context(|| format!("no compiler for {target} is installed: {REMEDY}"))?;
         let mut command = toolchain.cargo("build");
         command
             .args(["--quiet", "--package", "allanite", "--bin", name])
@@ -32,9 +43,13 @@ impl Image {
         if !status.success() {
             bail!("building the image {name} failed ({status}): {REMEDY}");
         }
-        let path = target_directory().join(TARGET).join("firmware").join(name);
+        let path = target_directory().join(target).join("firmware").join(name);
         let elf = std::fs::read(&path).with_context(|| format!("reading {}", path.display()))?;
-        let image = Self { path, elf };
+        let image = Self {
+            core: *core,
+            path,
+            elf,
+        };
         // Flags that replaced the linker script's leave an image without code.
         ensure!(
             image.code_bytes()? > 1024,

@@ -1,15 +1,14 @@
-//! The images of `src/bin`, built for a Cortex-M4F and run in QEMU.
+//! The images of `src/bin`, built for a core and run in QEMU.
 
+pub mod core;
 pub mod emulator;
 pub mod image;
 pub mod toolchain;
 
+pub use core::{CORES, CORTEX_M4F, Core};
 pub use emulator::{Run, run, run_with};
 pub use image::Image;
 pub use toolchain::Toolchain;
-
-/// What the images are built for.
-pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// What every failure to build or run an image ends with.
 pub const REMEDY: &str = "`cargo xtask setup` installs what is missing";

@@ -1,6 +1,6 @@
 //! Which compiler can build for the target.
 
-use super::{TARGET, cargo};
+use super::{Core, cargo};
 use std::{
     path::{Path, PathBuf},
     process::Command,
@@ -14,9 +14,16 @@ const DEBIAN_CLIPPY: &str = "/usr/bin/cargo-clippy";
 /// The oldest that compiles this package: `rust-version` in its `Cargo.toml`.
 const OLDEST_MINOR: u32 = 95;
 
-/// A way to build for the target.
+/// A way to build for a core.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Toolchain {
+pub struct Toolchain {
+    core: Core,
+    origin: Origin,
+}
+
+/// Where a compiler comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
     /// The compiler in use has the target's libraries: those of `rustup target add`.
     Installed,
     /// Debian's compiler builds the target's libraries from Debian's sources.
@@ -28,24 +35,33 @@ pub enum Toolchain {
 
 impl Toolchain {
     /// The first that this machine has.
-    pub fn find() -> Option<Self> {
-        if has_target() {
-            return Some(Self::Installed);
+    pub fn find(core: &Core) -> Option<Self> {
+        let of = |origin| Self {
+            core: *core,
+            origin,
+        };
+        if has_target(core.target) {
+            return Some(of(Origin::Installed));
         }
         let linker = linker()?;
-        debian_has_sources().then_some(Self::Debian { linker })
+        debian_has_sources().then(|| of(Origin::Debian { linker }))
+    }
+
+    /// Where it comes from.
+    pub fn origin(&self) -> &Origin {
+        &self.origin
     }
 
     /// A cargo command such as `build` or `clippy` for the target, with artefacts apart from those
     /// of the host: the cargo that runs this program may hold the lock of the others.
     pub fn cargo(&self, subcommand: &str) -> Command {
-        let mut command = match self {
-            Self::Installed => {
+        let mut command = match &self.origin {
+            Origin::Installed => {
                 let mut command = cargo();
                 command.arg(subcommand);
                 command
             }
-            Self::Debian { linker } => self.debian(subcommand, linker),
+            Origin::Debian { linker } => self.debian(subcommand, linker),
         };
         // Any of these would replace what `.cargo/config.toml` says.
         for variable in [
@@ -56,8 +72,12 @@ impl Toolchain {
         ] {
             command.env_remove(variable);
         }
+        if let Some(board) = self.core.board {
+            let flags = format!("-C link-arg=--defsym={board}=1");
+            command.env(variable(self.core.target, "RUSTFLAGS"), flags);
+        }
         command
-            .args(["--target", TARGET])
+            .args(["--target", self.core.target])
             .arg("--target-dir")
             .arg(target_directory())
             .env("DEFMT_LOG", "info");
@@ -79,15 +99,15 @@ impl Toolchain {
             .env("RUSTDOC", DEBIAN_RUSTDOC)
             .env("RUSTC_BOOTSTRAP", "1")
             .env("CARGO_UNSTABLE_BUILD_STD", "core")
-            .env(linker_variable(), linker);
+            .env(variable(self.core.target, "LINKER"), linker);
         command
     }
 
     /// Whether its lints are there.
     pub fn has_clippy(&self) -> bool {
-        match self {
-            Self::Installed => true,
-            Self::Debian { .. } => Path::new(DEBIAN_CLIPPY).exists(),
+        match &self.origin {
+            Origin::Installed => true,
+            Origin::Debian { .. } => Path::new(DEBIAN_CLIPPY).exists(),
         }
     }
 }
@@ -98,9 +118,10 @@ pub fn target_directory() -> PathBuf {
     super::workspace().join(base).join("image")
 }
 
-fn linker_variable() -> String {
-    let target = TARGET.replace('-', "_").to_uppercase();
-    format!("CARGO_TARGET_{target}_LINKER")
+/// The variable that sets one of cargo's keys of a target.
+fn variable(target: &str, key: &str) -> String {
+    let target = target.replace(['-', '.'], "_").to_uppercase();
+    format!("CARGO_TARGET_{target}_{key}")
 }
 
 /// The first line that a program prints, if it runs and succeeds.
@@ -115,8 +136,8 @@ fn rustc() -> String {
     std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into())
 }
 
-fn has_target() -> bool {
-    let arguments = ["--print", "target-libdir", "--target", TARGET];
+fn has_target(target: &str) -> bool {
+    let arguments = ["--print", "target-libdir", "--target", target];
     let Some(folder) = answer(&rustc(), &arguments) else {
         return false;
     };
@@ -171,8 +192,8 @@ mod tests {
     #[test]
     fn the_linker_is_named_as_cargo_wants() {
         assert_eq!(
-            linker_variable(),
-            "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER"
+            variable("thumbv8m.main-none-eabihf", "LINKER"),
+            "CARGO_TARGET_THUMBV8M_MAIN_NONE_EABIHF_LINKER"
         );
     }
 }

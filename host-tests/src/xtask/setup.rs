@@ -1,7 +1,7 @@
 //! What this machine lacks to build and run the images. Says what it does, asks nothing.
 
 use super::step::run as run_command;
-use crate::firmware::{TARGET, Toolchain, emulator::QEMU};
+use crate::firmware::{CORES, Core, Toolchain, emulator::QEMU, toolchain::Origin};
 use anyhow::{Context as _, Result, bail};
 use std::process::{Command, Stdio};
 
@@ -12,50 +12,53 @@ const DEBIAN_LINKER: &str = "lld";
 const DEBIAN_QEMU: &str = "qemu-system-arm";
 
 pub(super) fn run() -> Result<()> {
-    compiler()?;
+    for core in &CORES {
+        compiler(core)?;
+    }
     emulator()
 }
 
-fn compiler() -> Result<()> {
-    match Toolchain::find() {
+fn compiler(core: &Core) -> Result<()> {
+    let target = core.target;
+    match Toolchain::find(core) {
         Some(toolchain) if toolchain.has_clippy() => {
-            println!("compiler for {TARGET}: {}", name(&toolchain));
+            println!("compiler for {target}: {}", name(&toolchain));
             return Ok(());
         }
         Some(_) => {}
         None => {
-            println!("compiler for {TARGET}: missing, asking rustup for it");
+            println!("compiler for {target}: missing, asking rustup for it");
             let mut rustup = Command::new("rustup");
-            match run_command(rustup.args(["target", "add", TARGET])) {
-                Ok(()) if Toolchain::find().is_some() => return Ok(()),
+            match run_command(rustup.args(["target", "add", target])) {
+                Ok(()) if Toolchain::find(core).is_some() => return Ok(()),
                 Ok(()) => println!("rustup added it to another toolchain than the one in use"),
                 Err(error) => println!("{error:#}"),
             }
         }
     }
     let packages = DEBIAN_COMPILER.join(" ");
-    println!("compiler for {TARGET}: installing Debian's packages {packages}");
+    println!("compiler for {target}: installing Debian's packages {packages}");
     let installed = apt_get(&DEBIAN_COMPILER).and_then(|()| {
-        if Toolchain::find().is_some() {
+        if Toolchain::find(core).is_some() {
             return Ok(());
         }
         println!("linker: installing Debian's package {DEBIAN_LINKER}");
         apt_get(&[DEBIAN_LINKER])
     });
     let by_hand = format!(
-        "install it by hand: `rustup target add {TARGET}`, or Debian's packages {packages} {DEBIAN_LINKER}"
+        "install it by hand: `rustup target add {target}`, or Debian's packages {packages} {DEBIAN_LINKER}"
     );
-    installed.with_context(|| format!("no compiler for {TARGET}; {by_hand}"))?;
-    match Toolchain::find() {
+    installed.with_context(|| format!("no compiler for {target}; {by_hand}"))?;
+    match Toolchain::find(core) {
         Some(_) => Ok(()),
-        None => bail!("no compiler for {TARGET} that is new enough; {by_hand}"),
+        None => bail!("no compiler for {target} that is new enough; {by_hand}"),
     }
 }
 
 fn name(toolchain: &Toolchain) -> &'static str {
-    match toolchain {
-        Toolchain::Installed => "there, with the toolchain in use",
-        Toolchain::Debian { .. } => "there, Debian's with its library sources",
+    match toolchain.origin() {
+        Origin::Installed => "there, with the toolchain in use",
+        Origin::Debian { .. } => "there, Debian's with its library sources",
     }
 }
 

@@ -1,13 +1,14 @@
 //! Everything that must hold before a change lands.
 
 use super::{setup, step::step};
-use crate::firmware::{REMEDY, Toolchain, cargo};
+use crate::firmware::{CORTEX_M4F, REMEDY, Toolchain, cargo};
 use anyhow::{Context as _, Result};
 
 pub(super) fn run() -> Result<()> {
     println!("== set-up");
     setup::run()?;
-    let toolchain = Toolchain::find().with_context(|| format!("no compiler: {REMEDY}"))?;
+    let toolchain =
+        Toolchain::find(&CORTEX_M4F).with_context(|| format!("no compiler: {REMEDY}"))?;
 
     step("format", cargo().args(["fmt", "--all", "--", "--check"]))?;
     step(
@@ -34,7 +35,7 @@ pub(super) fn run() -> Result<()> {
         cargo().args(["test", "--package", "allanite", "--all-features"]),
     )?;
     step(
-        "the image on a Cortex-M4F, in QEMU",
+        "the images on every core, in QEMU",
         cargo().args(["test", "--package", "host-tests", "--test", "firmware"]),
     )?;
     step(

@@ -106,7 +106,7 @@ impl<const K: usize> Comparison<K> {
         unknowns: usize,
     ) -> Result<Self, Error> {
         let problem = Problem::new(curve, model);
-        let squares = Vector::from(fit.squares());
+        let squares = Vector::from(nalgebra::SVector::from(fit.squares()));
         let mut weights = Weights::empty();
         weights.set(&problem, &squares, tolerance)?;
         let mut comparison = Self::empty();

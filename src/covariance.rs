@@ -20,7 +20,7 @@
 use crate::{
     curve::{Curve, Point},
     lattice::{self, Rounded, SecondDifferences},
-    math,
+    math::{self, floor_log2},
     model::{MAX_EFFECTS, Model, Term},
 };
 use core::f64::consts::PI;
@@ -71,7 +71,8 @@ pub(crate) fn covariance(
         terms.filter(|&(_, &square)| square > 0.0)
     };
     for (j, shorter) in points.iter().enumerate() {
-        let reach = (u64::from(longest / shorter.m) * 32).min(u64::from(lattice::END)) as u32;
+        let ratio = longest.checked_div(shorter.m).unwrap_or(0);
+        let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
         let m_j = f64::from(shorter.m);
         let mut random = SecondDifferences::zero(shorter.m, reach);
         for (term, &square) in present() {
@@ -142,7 +143,7 @@ impl Wave<'_> {
         }
         let turn = self
             .turn
-            .and_then(|turn| turns.get(turn)?.steps.get(step.ilog2() as usize));
+            .and_then(|turn| turns.get(turn)?.steps.get(floor_log2(step) as usize));
         self.now = match turn {
             Some(turn) => self.now * turn,
             None => {
@@ -192,7 +193,8 @@ struct Pair<'a> {
 impl Pair<'_> {
     /// The longer cluster in quarters of the shorter: the lag of the outer kinks.
     fn middle(&self) -> u32 {
-        (self.longer.m / self.shorter.m).saturating_mul(4)
+        let ratio = self.longer.m.checked_div(self.shorter.m).unwrap_or(0);
+        ratio.saturating_mul(4)
     }
 
     fn covariance(&self, differences: &Rounded, turns: &[Turn], waves: &mut [Wave<'_>]) -> f64 {
@@ -255,10 +257,10 @@ struct Starts {
 impl Starts {
     fn new(shorter: &Point, longer: &Point) -> Self {
         Self {
-            advance_bits: advance(longer.m).ilog2(),
-            quarter_bits: shorter.m.ilog2(),
+            advance_bits: floor_log2(advance(longer.m)),
+            quarter_bits: floor_log2(shorter.m),
             inside: u64::from(longer.m - shorter.m),
-            last: shorter.differences.saturating_sub(1) << advance(shorter.m).ilog2(),
+            last: shorter.differences.saturating_sub(1) << floor_log2(advance(shorter.m)),
             count: longer.differences,
         }
     }
@@ -292,12 +294,12 @@ fn step_after(lag: u32, middle: u32, stride: u32) -> u32 {
     let away = |distance: u32| match distance {
         0..KINK => stride,
         KINK..NEAR => stride.max(2),
-        _ => 1 << (distance.ilog2() - halvings),
+        _ => 1 << (floor_log2(distance) - halvings),
     };
     let towards = |distance: u32| match distance {
         0..=KINK => stride,
         _ if distance <= NEAR => stride.max(2),
-        _ => 1 << ((distance - 1).ilog2() - halvings),
+        _ => 1 << (floor_log2(distance - 1) - halvings),
     };
     if lag >= middle {
         away(lag - middle)

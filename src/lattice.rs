@@ -1,5 +1,6 @@
 //! Second differences of a kernel at every lag that two octaves of a curve can meet.
 
+use crate::math::floor_log2;
 use nalgebra::Complex;
 
 /// Positions up to this one, in quarters of a cluster, are kept one by one.
@@ -27,6 +28,8 @@ pub(crate) const fn position(slot: usize) -> u32 {
     (FINE + FINE / STEPS * step) << octave
 }
 
+const ONE: Complex<f64> = Complex::new(1.0, 0.0);
+
 /// Powers of `w` at every position, by multiplication, slot after slot.
 pub(crate) struct Powers {
     fine: [Complex<f64>; FINE_SLOTS],
@@ -36,34 +39,39 @@ pub(crate) struct Powers {
 
 impl Powers {
     pub(crate) fn new(w: Complex<f64>) -> Self {
-        let mut fine = [Complex::new(1.0, 0.0); FINE_SLOTS];
-        for slot in 1..FINE_SLOTS {
-            fine[slot] = fine[slot - 1] * w;
+        let mut fine = [ONE; FINE_SLOTS];
+        let mut power = ONE;
+        for slot in &mut fine {
+            *slot = power;
+            power *= w;
         }
         Self {
             fine,
-            last: [Complex::new(1.0, 0.0); STEPS as usize],
+            last: [ONE; STEPS as usize],
         }
     }
 
     /// At a position of up to 16.
     pub(crate) fn near(&self, position: usize) -> Complex<f64> {
-        self.fine[position]
+        self.fine.get(position).copied().unwrap_or(ONE)
     }
 
     /// In the next slot: slots are asked for in their order.
     pub(crate) fn next(&mut self, slot: usize) -> Complex<f64> {
         let steps = STEPS as usize;
         let power = if slot < FINE_SLOTS {
-            self.fine[slot]
+            self.near(slot)
         } else if slot < FINE_SLOTS + steps {
             // 20, 24, 28, 32 are 16 + 4, 16 + 8, 16 + 12, 16 + 16.
-            self.fine[FINE as usize] * self.fine[steps * (slot - FINE as usize)]
+            self.near(FINE as usize) * self.near(steps * (slot - FINE as usize))
         } else {
             // Twice the position an octave below.
-            self.last[slot % steps] * self.last[slot % steps]
+            let below = self.last.get(slot % steps).copied().unwrap_or(ONE);
+            below * below
         };
-        self.last[slot % steps] = power;
+        if let Some(last) = self.last.get_mut(slot % steps) {
+            *last = power;
+        }
         power
     }
 }
@@ -166,27 +174,34 @@ impl Rounded {
         self.unit
     }
 
+    /// That of a slot, or of the last.
+    #[inline]
+    fn slot(&self, slot: usize) -> f32 {
+        let [.., last] = self.values;
+        self.values.get(slot).copied().unwrap_or(last)
+    }
+
     /// The second difference at a lag in quarters of a cluster, on a straight line between the
     /// lattice's positions.
     #[inline]
     pub(crate) fn at(&self, position: u32) -> f32 {
         if position <= FINE {
-            return self.values[position as usize];
+            return self.slot(position as usize);
         }
         let position = position.min(END - 1);
         // The position's octave, and its step in it.
-        let octave = position.ilog2() - FINE.ilog2();
+        let octave = floor_log2(position) - FINE.ilog2();
         let width_bits = octave + (FINE / STEPS).ilog2();
         let step = (position - (FINE << octave)) >> width_bits;
         let slot = FINE as usize + (STEPS * octave + step) as usize;
         let rest = position & ((1 << width_bits) - 1);
-        let low = self.values[slot];
+        let low = self.slot(slot);
         if rest == 0 {
             return low;
         }
         // 2^-width_bits by its bits: a division costs ten multiplications in software.
         let reciprocal = f32::from_bits((127 - width_bits) << 23);
-        low + (self.values[(slot + 1).min(LEN - 1)] - low) * (rest as f32 * reciprocal)
+        low + (self.slot(slot + 1) - low) * (rest as f32 * reciprocal)
     }
 }
 

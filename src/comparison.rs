@@ -5,6 +5,7 @@ use crate::{
     curve::Curve,
     error::Error,
     fit::{Fit, Problem, weights::Weights},
+    list::numbered,
     math,
     model::{MAX_EFFECTS, Model},
     nnls::Vector,
@@ -136,7 +137,7 @@ impl<const K: usize> Comparison<K> {
     ) {
         self.octaves.clear();
         let mut sum_of_squares = 0.0;
-        for (k, point) in problem.points.iter().enumerate() {
+        for (k, point) in numbered(problem.points.iter()) {
             let model = problem.variance(k, squares);
             let octave = ComparedOctave {
                 m: point.m,

@@ -1,6 +1,6 @@
 //! Second differences of a kernel at every lag that two octaves of a curve can meet.
 
-use crate::math::floor_log2;
+use crate::{list::numbered, math::floor_log2};
 use nalgebra::Complex;
 
 /// Positions up to this one, in quarters of a cluster, are kept one by one.
@@ -25,7 +25,7 @@ pub(crate) const fn position(slot: usize) -> u32 {
     let beyond = (slot - FINE_SLOTS) as u32 + 1;
     let octave = beyond / STEPS;
     let step = beyond % STEPS;
-    (FINE + FINE / STEPS * step) << octave
+    (FINE + FINE / STEPS * step).wrapping_shl(octave)
 }
 
 const ONE: Complex<f64> = Complex::new(1.0, 0.0);
@@ -104,7 +104,7 @@ impl SecondDifferences {
 
     /// The same for an effect whose second differences vanish from the lag `end` on.
     pub fn add_below(&mut self, m: f64, end: f64, f: impl Fn(f64) -> f64) {
-        for (slot, value) in self.values.iter_mut().enumerate().take(self.used) {
+        for (slot, value) in numbered(self.values.iter_mut()).take(self.used) {
             let position = position(slot);
             // Quarters of a cluster that lie between samples are never asked for.
             if !position.is_multiple_of(self.stride) {
@@ -120,7 +120,7 @@ impl SecondDifferences {
 
     /// The same at lags of a cluster and more.
     pub(crate) fn add_from(&mut self, m: f64, f: impl Fn(f64) -> f64) {
-        let slots = self.values.iter_mut().enumerate();
+        let slots = numbered(self.values.iter_mut());
         for (slot, value) in slots.take(self.used).skip(STEPS as usize) {
             let position = position(slot);
             if position.is_multiple_of(self.stride) {
@@ -131,7 +131,7 @@ impl SecondDifferences {
 
     /// Adds `f(slot)` in every slot, one after the other.
     pub(crate) fn add_slots(&mut self, mut f: impl FnMut(usize) -> f64) {
-        for (slot, value) in self.values.iter_mut().enumerate().take(self.used) {
+        for (slot, value) in numbered(self.values.iter_mut()).take(self.used) {
             *value += f(slot);
         }
     }
@@ -190,18 +190,19 @@ impl Rounded {
         }
         let position = position.min(END - 1);
         // The position's octave, and its step in it.
-        let octave = floor_log2(position) - FINE.ilog2();
+        let octave = floor_log2(position).saturating_sub(FINE.ilog2());
         let width_bits = octave + (FINE / STEPS).ilog2();
-        let step = (position - (FINE << octave)) >> width_bits;
-        let slot = FINE as usize + (STEPS * octave + step) as usize;
-        let rest = position & ((1 << width_bits) - 1);
+        let start = FINE.wrapping_shl(octave);
+        let step = position.saturating_sub(start).wrapping_shr(width_bits);
+        let slot = FINE as usize + (STEPS * octave) as usize + (step % STEPS) as usize;
+        let rest = position & 1_u32.wrapping_shl(width_bits).wrapping_sub(1);
         let low = self.slot(slot);
         if rest == 0 {
             return low;
         }
         // 2^-width_bits by its bits: a division costs ten multiplications in software.
-        let reciprocal = f32::from_bits((127 - width_bits) << 23);
-        low + (self.slot(slot + 1) - low) * (rest as f32 * reciprocal)
+        let reciprocal = f32::from_bits(127_u32.saturating_sub(width_bits) << 23);
+        low + (self.slot(slot.saturating_add(1)) - low) * (rest as f32 * reciprocal)
     }
 }
 

@@ -1,7 +1,12 @@
 //! Lists of limited length, filled without a way to panic: heapless's own `insert` and `collect` have one.
 
-use core::mem;
+use core::{iter::Zip, mem, ops::Range};
 use heapless::Vec;
+
+/// Items with their places: the numbers of `enumerate` panic beyond `usize` where overflow is checked.
+pub(crate) fn numbered<I: IntoIterator>(items: I) -> Zip<Range<usize>, I::IntoIter> {
+    (0..usize::MAX).zip(items)
+}
 
 /// The first items, as many as there is room for.
 pub(crate) fn fill<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N> {

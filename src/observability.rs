@@ -1,6 +1,7 @@
 //! How long a record must be for an effect to show.
 
 use crate::{
+    list::numbered,
     model::{MAX_EFFECTS, Model},
     nnls::{Free, Matrix, NormalEquations, Vector},
 };
@@ -35,7 +36,7 @@ pub(crate) fn record_length_s(
     while samples <= LONGEST {
         while samples / m >= 4.0 {
             let mut row: Vector = Vector::zeros();
-            for (j, term) in model.terms().iter().enumerate() {
+            for (j, term) in numbered(model.terms().iter()) {
                 row.put(j, term.effect.variance(m, &term.setting(interval_s)));
             }
             let variance = row.dot(&assumed);

@@ -7,6 +7,7 @@ use crate::{
         Problem,
         weights::{Weights, Whitened},
     },
+    list::numbered,
     math,
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
@@ -75,7 +76,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
         let Whitened { columns, curve } = &self.whitened;
         let own = |i: usize| columns.get(i);
         self.equations
-            .set(columns.len().max(place + 1), &|i, row| {
+            .set(columns.len().max(place.saturating_add(1)), &|i, row| {
                 for j in 0..=i {
                     let element = match (i == place || j == place, own(i).zip(own(j))) {
                         (false, Some((one, other))) => one.dot(other),
@@ -240,7 +241,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     ) -> Found {
         let mut best = start;
         for _ in 0..HALVINGS {
-            for (j, (step, range)) in steps.iter_mut().zip(ranges).enumerate() {
+            for (j, (step, range)) in numbered(steps.iter_mut().zip(ranges)) {
                 if !best.term.fitted_parameters().any(|fitted| fitted == j) {
                     continue;
                 }
@@ -325,7 +326,7 @@ impl Grid {
                 low: range.low,
                 high: range.high,
                 log_step: 0.0,
-                steps: (range.high - range.low) as u32 + 1,
+                steps: ((range.high - range.low) as u32).saturating_add(1),
             };
         }
         Self::new(range)
@@ -335,11 +336,11 @@ impl Grid {
         let high = range.high.max(range.low);
         let octaves = math::log2_roughly(high / range.low);
         // A step more or less does not matter: the last is held at the upper end.
-        let steps = (octaves * range.steps_per_octave) as u32 + 2;
+        let steps = ((octaves * range.steps_per_octave) as u32).saturating_add(2);
         Self {
             low: range.low,
             high,
-            log_step: math::log(high / range.low) / f64::from(steps - 1),
+            log_step: math::log(high / range.low) / f64::from(steps.saturating_sub(1)),
             steps,
         }
     }

@@ -177,7 +177,7 @@ impl Diagnosis {
                 ));
             }
         }
-        standing.additions += 1;
+        standing.additions = standing.additions.saturating_add(1);
         Ok(None)
     }
 }

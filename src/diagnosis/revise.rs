@@ -92,11 +92,11 @@ impl Diagnosis {
             if scan_beside(curve, base, self.tolerance, effects, found).is_err() {
                 continue;
             }
-            found.retain(|found| {
+            let tried = found.iter().copied().filter(|found| {
                 let effect = found.term.effect;
                 effect.name() != preferred.added.name() && is_as_simple(effect, preferred.added)
             });
-            found.truncate(TRIED);
+            *found = list::fill(tried.take(TRIED));
             let swap = Swap {
                 dropped: preferred.added,
                 taken: other.0,

@@ -101,7 +101,8 @@ impl Diagnosis {
         let span = span(curve);
         solution.report(&mut step.fit);
         solution.bound_shapes(&mut step.fit, &span)?;
-        let unknowns = problem.points.len() - step.fit.degrees_of_freedom;
+        let octaves = problem.points.len();
+        let unknowns = octaves.saturating_sub(step.fit.degrees_of_freedom);
         step.comparison
             .set(&problem, &solution.weights, &solution.squares, unknowns);
         standing.found.clear();

@@ -83,7 +83,7 @@ impl Better {
         let mut kept: Option<f64> = None;
         let mut before = f64::INFINITY;
         let mut steps = Steps::new();
-        let mut halvings = 0;
+        let mut halvings = 0_u32;
         for _ in 0..ROUNDS {
             let mut next = Steps::new();
             let Some(now) = trial.round(curve, tolerance, &mut next, &mut tried)? else {
@@ -109,7 +109,7 @@ impl Better {
                 trial.go(&steps, 1.0, &span);
             } else {
                 // Too far: half the way back.
-                halvings += 1;
+                halvings = halvings.saturating_add(1);
                 if halvings > HALVINGS {
                     break;
                 }

@@ -16,14 +16,14 @@ pub(super) fn tell<const K: usize>(
         step, best: better, ..
     } = standing;
     // Behind a name comes its twin: nobody has told them apart.
-    let mut at = 0;
+    let mut at = 0_usize;
     while let Some(name) = step.ambiguous.get(at) {
-        at += 1;
+        at = at.saturating_add(1);
         let twin = effects.iter().find(|effect| is_twin(**effect, name));
         if let Some(twin) = twin {
             // As many names as candidates bring, with their twins.
             list::insert(&mut step.ambiguous, at, twin.name());
-            at += 1;
+            at = at.saturating_add(1);
         }
     }
     let Some(Addition::Effect(added)) = &mut step.added else {

@@ -9,6 +9,7 @@ use crate::{
     coefficient::{Coefficient, State},
     effect::Span,
     error::Error,
+    list::numbered,
     math,
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
@@ -101,7 +102,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         let mut assumed = start;
         let mut last: Option<algebra::Vector<K>> = None;
         let mut step: f64 = 1.0;
-        let mut round = 1;
+        let mut round = 1_usize;
         loop {
             self.weights.set(problem, &assumed, tolerance)?;
             let (weights, equations) = (&self.weights, &mut self.equations);
@@ -135,17 +136,18 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
             last = Some(change);
             let next = *assumed + (*self.squares - *assumed) * step;
             assumed = next.map(|square| square.max(0.0)).into();
-            round += 1;
+            round = round.saturating_add(1);
         }
     }
 
     fn degrees_of_freedom(&self) -> usize {
-        let terms = self.problem.model.terms().iter().enumerate();
+        let terms = numbered(self.problem.model.terms().iter());
         let active = terms.filter(|&(i, _)| self.free.has(i));
-        let unknowns: usize = active
-            .map(|(_, term)| 1 + term.fitted_parameters().count())
-            .sum();
-        self.problem.points.len().saturating_sub(unknowns)
+        let octaves = self.problem.points.len();
+        active.fold(octaves, |rest, (_, term)| {
+            let shapes = term.fitted_parameters();
+            shapes.fold(rest.saturating_sub(1), |rest, _| rest.saturating_sub(1))
+        })
     }
 
     pub(crate) fn p_value(&self) -> f64 {
@@ -163,7 +165,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         if before < UNDETERMINED {
             return None;
         }
-        let terms = self.problem.model.terms().iter().enumerate();
+        let terms = numbered(self.problem.model.terms().iter());
         terms
             .filter(|&(i, term)| self.free.has(i) && term.effect.parameters().is_empty())
             .map(|(i, _)| {
@@ -197,7 +199,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     fn report_of(&self, shape: Option<&ShapeEquations>, fit: &mut Fit) {
         fit.method = Method::Covariance;
         fit.coefficients.clear();
-        for (i, term) in self.problem.model.terms().iter().enumerate() {
+        for (i, term) in numbered(self.problem.model.terms().iter()) {
             // As many as effects.
             let _ = fit.coefficients.push(self.coefficient(i, term, shape));
         }

@@ -6,6 +6,7 @@ use crate::{
     coefficient::Coefficient,
     curve::Point,
     error::Error,
+    list::numbered,
     nnls::{Free, NormalEquations},
 };
 
@@ -16,7 +17,7 @@ pub(super) fn equations<const K: usize>(
     equations: &mut NormalEquations,
 ) -> Result<(), Error> {
     let sum = |i: usize, other: &dyn Fn(usize, &Point) -> f64| -> f64 {
-        let octaves = problem.points.iter().enumerate();
+        let octaves = numbered(problem.points.iter());
         octaves
             .map(|(k, point)| weight(point) * problem.unit(i, k) * other(k, point))
             .sum()
@@ -45,10 +46,8 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
     self::equations(problem, weight, &mut equations)?;
     let squares = equations.solve()?;
     let free = Free::of(|i| i < problem.count());
-    let residuals =
-        problem.points.iter().enumerate().map(|(k, point)| {
-            weight(point) * squared(point.variance - problem.variance(k, &squares))
-        });
+    let residuals = numbered(problem.points.iter())
+        .map(|(k, point)| weight(point) * squared(point.variance - problem.variance(k, &squares)));
     let mut chi_squared: f64 = residuals.sum();
     let degrees_of_freedom = problem.points.len().saturating_sub(problem.count());
     let mut scale = 1.0;
@@ -58,7 +57,7 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         chi_squared = f64::NAN;
     }
     let mut coefficients = heapless::Vec::new();
-    for (i, term) in problem.model.terms().iter().enumerate() {
+    for (i, term) in numbered(problem.model.terms().iter()) {
         let variance = equations.variance(i, &free).ok_or(Error::Singular)?;
         // As many as effects.
         let _ = coefficients.push(Coefficient::new(

@@ -203,13 +203,13 @@ impl<'a, const K: usize> Problem<'a, K> {
     /// The Allan variances of one effect, for a coefficient of one.
     pub(crate) fn column(&self, term: &Term) -> algebra::Vector<K> {
         let mut column = algebra::Vector::<K>::zeros();
-        let mut k = 0;
+        let mut k = 0_usize;
         let mut factors = self.points.iter().map(|point| f64::from(point.m));
         let setting = term.setting(self.interval_s);
         term.effect
             .variances(&mut factors, &setting, &mut |variance| {
                 column.put(k, variance);
-                k += 1;
+                k = k.saturating_add(1);
             });
         column
     }
@@ -256,7 +256,7 @@ impl<'a, const K: usize> Problem<'a, K> {
 /// Clusters `N/m` in the record, from an octave's number of differences as of a contiguous one.
 pub(crate) fn clusters(point: &Point) -> f64 {
     let m = f64::from(point.m);
-    (point.differences - 1) as f64 * (0.25 * m).max(1.0) / m + 2.0
+    point.differences.saturating_sub(1) as f64 * (0.25 * m).max(1.0) / m + 2.0
 }
 
 /// Relative accuracy of an octave as of Lv, Liu, Lai & Huang 2015: `δ = 1/√(2(N/m − 1))`.

@@ -2,7 +2,9 @@
 
 use super::{Problem, weights::Weights};
 use crate::{
-    algebra, list, math,
+    algebra,
+    list::{self, numbered},
+    math,
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
 };
@@ -58,7 +60,7 @@ impl ShapeEquations {
         squares: &Vector,
     ) -> bool {
         self.parameters.clear();
-        for (i, term) in problem.model.terms().iter().enumerate() {
+        for (i, term) in numbered(problem.model.terms().iter()) {
             for j in term.fitted_parameters().filter(|_| squares[i] > 0.0) {
                 if self.parameters.push((i, j, *term)).is_err() {
                     return false;
@@ -103,8 +105,8 @@ impl ShapeEquations {
         let Some(steps) = self.equations.solve_free(&free) else {
             return;
         };
-        for (at, &(i, j, _)) in self.parameters.iter().enumerate() {
-            each(i, j, steps[count + at]);
+        for (at, &(i, j, _)) in numbered(self.parameters.iter()) {
+            each(i, j, steps[count.saturating_add(at)]);
         }
     }
 
@@ -124,7 +126,7 @@ impl ShapeEquations {
     pub(crate) fn worst_error(&self, free: &Free) -> f64 {
         let count = self.count();
         let free = self.with_shapes(free, count);
-        let variance = |at: usize| self.equations.variance(count + at, &free);
+        let variance = |at: usize| self.equations.variance(count.saturating_add(at), &free);
         (0..self.parameters.len())
             .map(|at| variance(at).map_or(f64::INFINITY, math::sqrt))
             .fold(0.0, f64::max)
@@ -134,10 +136,10 @@ impl ShapeEquations {
     pub(crate) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
         let count = self.count();
         let free = self.with_shapes(free, count);
-        let parameters = self.parameters.iter().enumerate();
+        let parameters = numbered(self.parameters.iter());
         list::fill(parameters.map(|(at, &(term, j, shape))| {
             let value = shape.parameter(j);
-            let variance = self.equations.variance(count + at, &free);
+            let variance = self.equations.variance(count.saturating_add(at), &free);
             let error = variance.map_or(f64::INFINITY, math::sqrt);
             let factor = math::exp(1.959_964 * error);
             ShapeEstimate {

@@ -125,7 +125,7 @@ impl<const K: usize> Weights<K> {
             Some(at) => more.get(at).map_or(0.0, |column| f64::from(column[k])),
         };
         let per_error = |k: usize| 1.0 / (self.model[k] * scatter(k));
-        equations.set(count + more.len(), &|i, row| {
+        equations.set(count.saturating_add(more.len()), &|i, row| {
             // C⁻¹ of this column, in units of the errors squared.
             let mut column = self.whiten(problem, scatter, &|k| unit(i, k));
             cholesky::backward(&self.factor, n, &mut column);

@@ -58,7 +58,7 @@ impl<const OCTAVES: usize> Gate<OCTAVES> {
         let seen = self.integrity.push(count);
         if seen.moving {
             self.behind = CLUSTER;
-            self.skip(self.held.len() as u64 + 1);
+            self.skip((self.held.len() as u64).saturating_add(1));
             self.held.clear();
         } else if self.behind > 0 {
             self.behind -= 1;

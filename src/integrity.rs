@@ -434,11 +434,11 @@ impl State {
             let rule = Rule::clusters(factor, long_length);
             long.judge(&rule.with_least(&short.watch, long_length / short_length));
         }
-        short.sum += i64::from(count);
-        short.filled += 1;
+        short.sum = short.sum.saturating_add(count.into());
+        short.filled = short.filled.saturating_add(1);
         if short.filled == short_length {
-            long.sum += short.sum;
-            long.filled += short_length;
+            long.sum = long.sum.saturating_add(short.sum);
+            long.filled = long.filled.saturating_add(short_length);
             short.judge(&Rule::clusters(factor, short_length));
         }
     }

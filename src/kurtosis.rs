@@ -131,7 +131,7 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
             let (squares, fourth) = (octave.squares as f64, octave.fourth as f64);
             // As many points as octaves.
             let _ = points.push(KurtosisPoint {
-                m: 1 << k,
+                m: 1_u32.wrapping_shl(k as u32),
                 differences: octave.differences,
                 excess: n * fourth / (squares * squares) - 3.0,
             });

@@ -15,7 +15,7 @@
 //! taken: on the cautious side above white noise.
 
 use super::Story;
-use crate::{cross_sums::CrossCurve, curve::Point, fit::clusters, math};
+use crate::{cross_sums::CrossCurve, curve::Point, fit::clusters, list::numbered, math};
 
 /// Its name in files and on the command line.
 pub const NAME: &str = "covariate";
@@ -52,7 +52,7 @@ impl Slope {
     ) -> Option<Self> {
         let first = first_own(cross);
         let (mut product, mut information) = (0.0, 0.0);
-        for (k, (point, cross)) in points.iter().zip(cross.points()).enumerate().skip(first) {
+        for (k, (point, cross)) in numbered(points.iter().zip(cross.points())).skip(first) {
             let weight = clusters(point) / noise(k);
             product += weight * cross.covariance;
             information += weight * cross.variance;
@@ -84,14 +84,11 @@ const RISEN: f64 = 4.0;
 /// follow.
 fn first_own<const K: usize>(cross: &CrossCurve<K>) -> usize {
     let points = cross.points();
-    let least = points
-        .iter()
-        .enumerate()
-        .min_by(|(_, a), (_, b)| a.variance.total_cmp(&b.variance));
+    let least = numbered(points.iter()).min_by(|(_, a), (_, b)| a.variance.total_cmp(&b.variance));
     let Some((at, least)) = least.filter(|&(at, _)| at > 0) else {
         return 0;
     };
-    let mut later = points.iter().enumerate().skip(at);
+    let mut later = numbered(points.iter()).skip(at);
     later
         .find(|(_, point)| point.variance > RISEN * least.variance)
         .map_or(0, |(k, _)| k)

@@ -22,6 +22,12 @@ pub struct Correlations {
     below: [f32; PAIRS],
 }
 
+/// Where the triangle has `low` of the row `high`.
+const fn place(high: usize, low: usize) -> usize {
+    let row = high.saturating_mul(high.saturating_sub(1)) / 2;
+    row.saturating_add(low)
+}
+
 impl Correlations {
     /// Of coefficients of which nothing is known.
     pub(crate) const UNKNOWN: Self = Self {
@@ -48,12 +54,12 @@ impl Correlations {
         if low == high {
             return 1.0;
         }
-        let place = high * high.saturating_sub(1) / 2 + low;
-        f64::from(self.below.get(place).copied().unwrap_or(f32::NAN))
+        let known = self.below.get(place(high, low)).copied();
+        f64::from(known.unwrap_or(f32::NAN))
     }
 
     fn set(&mut self, i: usize, j: usize, correlation: f64) {
-        if let Some(slot) = self.below.get_mut(i * i.saturating_sub(1) / 2 + j) {
+        if let Some(slot) = self.below.get_mut(place(i, j)) {
             *slot = correlation as f32;
         }
     }

@@ -137,14 +137,17 @@ impl Watch {
         let far =
             value.abs_diff(self.reference) << FRACTION > usual.saturating_mul(rule.factor.into());
         let new = (difference << FRACTION).min(usual.saturating_mul(CUT));
-        self.scale = self.scale - (self.scale >> rule.span) + (new >> rule.span);
+        self.scale = self
+            .scale
+            .saturating_sub(self.scale.wrapping_shr(rule.span))
+            .saturating_add(new.wrapping_shr(rule.span));
         (self.judge(value, far, rule.patience), square)
     }
 
     #[inline(always)]
     fn judge(&mut self, value: i64, far: bool, patience: u8) -> Fate {
         if far && self.outside < patience {
-            self.outside += 1;
+            self.outside = self.outside.saturating_add(1);
             return Fate::Out {
                 first: self.outside == 1,
             };
@@ -164,24 +167,26 @@ impl Watch {
     }
 
     fn is_learning(&self, rule: &Rule) -> bool {
-        self.learnt < BLOCKS << rule.block
+        self.learnt < BLOCKS.wrapping_shl(rule.block)
     }
 
     #[cold]
     #[inline(never)]
     fn learn(&mut self, difference: u64, rule: &Rule) -> Fate {
         self.largest = self.largest.max(difference);
-        self.block += difference;
-        self.learnt += 1;
+        self.block = self.block.saturating_add(difference);
+        self.learnt = self.learnt.saturating_add(1);
         if self.learnt.trailing_zeros() >= rule.block {
-            self.scale = self.scale.min(self.block << FRACTION >> rule.block);
+            self.scale = self
+                .scale
+                .min((self.block << FRACTION).wrapping_shr(rule.block));
             self.block = 0;
         }
         if self.is_learning(rule) {
             return Fate::Learning;
         }
         // The least of four means of four differences lies at two thirds of the mean.
-        self.scale += self.scale / 2;
+        self.scale = self.scale.saturating_add(self.scale / 2);
         let usual = self.usual(rule);
         let outlying = self.largest << FRACTION > usual.saturating_mul(rule.factor.into());
         Fate::Learnt {

@@ -6,10 +6,12 @@ mod plan;
 pub use plan::{InvalidPlan, Limit, Plan};
 
 use crate::{
+    algebra::Choice,
     coefficient::{Coefficient, State},
     curve::Scale,
     fit::{Fit, Settings, fit},
     integrity::{Integrity, Reason},
+    list::numbered,
     model::Model,
     octave::Accumulator,
 };
@@ -111,7 +113,7 @@ pub struct SelfTest<const OCTAVES: usize> {
     pass: f64,
     fail: f64,
     looks: u32,
-    kept: [bool; crate::model::MAX_EFFECTS],
+    kept: Choice,
     status: Status,
 }
 
@@ -133,7 +135,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             pass: quantile(plan.false_pass / f64::from(looks)),
             fail: quantile(plan.false_fail / (f64::from(looks) * limits)),
             looks,
-            kept: Default::default(),
+            kept: Choice::default(),
             status: Status::Running {
                 progress: 0.0,
                 expected_s: last as f64 / scale.rate_hz(),
@@ -175,7 +177,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             if samples >= self.next {
                 self.status = self.look(samples);
                 while self.next <= samples {
-                    self.next = (2 * self.next).min(self.last.max(samples + 1));
+                    let twice = self.next.saturating_mul(2);
+                    self.next = twice.min(self.last.max(samples.saturating_add(1)));
                 }
             }
         }
@@ -202,15 +205,15 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             });
         }
         let mut open: Option<(usize, f64)> = None;
-        for (i, limit) in self.plan.limits.iter().enumerate() {
-            if self.kept[i] {
+        for (i, limit) in numbered(self.plan.limits.iter()) {
+            if self.kept.has(i) {
                 continue;
             }
             let Some(coefficient) = find(&fit, limit) else {
                 continue;
             };
             match side(coefficient, limit.most, self.pass, self.fail) {
-                Side::Below => self.kept[i] = true,
+                Side::Below => self.kept.add(i),
                 Side::Above => {
                     return Status::Failed(Failure::Limit {
                         limit: *limit,
@@ -257,7 +260,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     fn running(&self, samples: u64, needed_s: f64) -> Status {
         let mut look = self.next;
         while look < self.last && (look as f64) < needed_s * self.scale.rate_hz() {
-            look = (2 * look).min(self.last);
+            look = look.saturating_mul(2).min(self.last);
         }
         Status::Running {
             progress: (samples as f64 / self.last as f64) as f32,

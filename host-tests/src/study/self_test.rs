@@ -113,14 +113,14 @@ fn limited<'a>(base: &'a mut Coefficients, effect: &str) -> &'a mut f64 {
     }
 }
 
-/// Length in seconds, to 6 %, of the shortest test of one look that errs or leaves undecided no more
-/// devices a factor of 1.3 off the limit than `PROBABILITY`.
-pub fn fixed_length_s(case: Case, devices: u64) -> f64 {
+/// Length in seconds, to 6 %, of the shortest test of one look that errs or leaves undecided no larger
+/// share of the devices a factor of 1.3 off the limit than `missed`.
+pub fn fixed_length_s(case: Case, devices: u64, missed: f64) -> f64 {
     let mut seconds = case.lengths_s.0;
     loop {
         let once = |factor| study(case, factor, devices, Looks::Once(seconds));
         let (good, bad) = (once(1.0 / 1.3), once(1.3));
-        if good.passed >= 1.0 - PROBABILITY && bad.failed >= 1.0 - PROBABILITY {
+        if good.passed >= 1.0 - missed && bad.failed >= 1.0 - missed {
             return seconds;
         }
         seconds *= 1.125;

@@ -7,7 +7,10 @@ use super::{
 use crate::{curve_file::AxisCurve, failure::Failure, log::OCTAVES};
 use allanite::{Curve, Fit, Method, Model, Settings};
 use clap::{Args, ValueEnum};
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 /// Fit the five IEEE-952 coefficients to a log or a curve
 #[derive(Debug, Args)]
@@ -66,32 +69,35 @@ pub(super) struct Fitted {
     pub(super) fit: Fit,
 }
 
-/// Runs the command.
-pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let model = Model::ieee_952();
-    let fit_axis = |axis: AxisCurve| {
+impl Fitted {
+    /// Fits the five terms to an axis of a file.
+    pub(super) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
         let settings = Settings {
-            method: arguments.method.method(),
+            method: method.method(),
             ..Settings::default()
         };
         let fitted = axis.curve().and_then(|curve| {
-            let fit = allanite::fit(&curve, &model, settings)?;
+            let fit = allanite::fit(&curve, &Model::ieee_952(), settings)?;
             Ok((curve, fit))
         });
         match fitted {
-            Ok((curve, fit)) => Ok(Fitted {
+            Ok((curve, fit)) => Ok(Self {
                 axis,
                 curve,
-                method: arguments.method,
+                method,
                 fit,
             }),
-            Err(error) => Err(input::library_failure(&arguments.input, &axis.axis, error)),
+            Err(error) => Err(input::library_failure(path, &axis.axis, error)),
         }
-    };
+    }
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let axes = input::read(&arguments.input, &arguments.about_log)?;
     let fitted = axes
         .into_iter()
-        .map(fit_axis)
+        .map(|axis| Fitted::new(&arguments.input, axis, arguments.method))
         .collect::<Result<Vec<_>, _>>()?;
     let printed = if arguments.json {
         fit_json::print(&fitted, output)

@@ -11,7 +11,7 @@ use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
 /// Models with a smaller p-value are not adequate.
-const LEAST_P_VALUE: f64 = 0.01;
+pub(super) const LEAST_P_VALUE: f64 = 0.01;
 
 /// Prints a table an axis.
 pub(super) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {

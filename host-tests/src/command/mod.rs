@@ -11,6 +11,7 @@ mod diagnose;
 mod diagnose_json;
 mod diagnose_text;
 mod effect_argument;
+mod export;
 mod fit;
 mod fit_json;
 mod fit_table;
@@ -45,6 +46,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Measure(measure::Arguments),
     Fit(fit::Arguments),
+    Export(export::Arguments),
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
     Decode(decode::Arguments),
@@ -61,6 +63,7 @@ impl CommandLine {
             Command::Simulate(arguments) => simulate::run(arguments, &mut output),
             Command::Measure(arguments) => measure::run(arguments, &mut output),
             Command::Fit(arguments) => fit::run(arguments, &mut output),
+            Command::Export(arguments) => export::run(arguments, &mut output),
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
             Command::Decode(arguments) => decode::run(arguments, &mut output),

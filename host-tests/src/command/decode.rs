@@ -1,6 +1,6 @@
 //! `decode`: from stored bytes to what they say.
 
-use super::{decode_json, decode_text};
+use super::{decode_json, decode_text, many};
 use crate::failure::{Failure, Place};
 use allanite::{Error, OctaveSum, Record, Snapshot};
 use clap::Args;
@@ -64,13 +64,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         let printed = printed.and_then(|()| output.flush());
         printed.map_err(|error| Failure::standard_output(&error))?;
     }
-    let Some(last) = failures.pop() else {
-        return Ok(());
-    };
-    for failure in failures {
-        eprintln!("allanite: {failure}");
-    }
-    Err(last)
+    many::failed(failures)
 }
 
 fn decode(path: &Path) -> Result<Stored, Failure> {

@@ -1,28 +1,26 @@
 //! `fit`: from curves to coefficients.
 
 use super::{
-    fit_json, fit_table,
+    fit_json, fit_summary, fit_table,
     input::{self, LogArguments},
+    many::{self, FilesArguments, Findings},
 };
 use crate::{curve_file::AxisCurve, failure::Failure, log::OCTAVES};
 use allanite::{Curve, Fit, Method, Model, Settings};
 use clap::{Args, ValueEnum};
 use std::{
-    io::Write,
-    path::{Path, PathBuf},
+    io::{self, Write},
+    path::Path,
 };
 
 /// Fit the five IEEE-952 coefficients to a log or a curve
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
-    input: PathBuf,
+    #[command(flatten)]
+    files: FilesArguments,
     /// How octaves are weighted
     #[arg(long, default_value = "covariance")]
     method: MethodName,
-    /// Print the result as JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
     about_log: LogArguments,
 }
@@ -92,17 +90,28 @@ impl Fitted {
     }
 }
 
+impl Findings for Vec<Fitted> {
+    type Document<'a> = fit_json::Document<'a>;
+
+    fn document(&self) -> Self::Document<'_> {
+        fit_json::document(self)
+    }
+
+    fn print(&self, output: &mut impl Write) -> io::Result<()> {
+        fit_table::print(self, output)
+    }
+
+    fn print_many(found: &[(&Path, Self)], output: &mut impl Write) -> io::Result<()> {
+        fit_summary::print(found, output)
+    }
+}
+
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let axes = input::read(&arguments.input, &arguments.about_log)?;
-    let fitted = axes
-        .into_iter()
-        .map(|axis| Fitted::new(&arguments.input, axis, arguments.method))
-        .collect::<Result<Vec<_>, _>>()?;
-    let printed = if arguments.json {
-        fit_json::print(&fitted, output)
-    } else {
-        fit_table::print(&fitted, output)
+    let work = |path: &Path| {
+        let axes = input::read(path, &arguments.about_log)?.into_iter();
+        axes.map(|axis| Fitted::new(path, axis, arguments.method))
+            .collect::<Result<Vec<_>, _>>()
     };
-    printed.map_err(|error| Failure::standard_output(&error))
+    many::run(&arguments.files, work, output)
 }

@@ -65,13 +65,26 @@ pub(super) fn table(fit: &Fit, unit: Unit) -> Table {
     table
 }
 
-fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
-    let (factor, customary) = units::customary(unit, coefficient.half_seconds).unwrap_or((1.0, ""));
-    let shown = |factor: f64| match coefficient.state {
+/// A value, a bound, or a dash.
+fn shown(coefficient: &Coefficient, factor: f64) -> String {
+    match coefficient.state {
         State::Measured => number(factor * coefficient.value),
         State::UpperBound => format!("< {}", number(factor * coefficient.upper)),
         State::NotObservable { .. } => "–".into(),
-    };
+    }
+}
+
+fn customary_unit(coefficient: &Coefficient, unit: Unit) -> (f64, &'static str) {
+    units::customary(unit, coefficient.half_seconds).unwrap_or((1.0, ""))
+}
+
+/// The same in the customary unit.
+pub(super) fn customary(coefficient: &Coefficient, unit: Unit) -> String {
+    shown(coefficient, customary_unit(coefficient, unit).0)
+}
+
+fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
+    let (_, customary_unit) = customary_unit(coefficient, unit);
     let interval = match coefficient.state {
         State::Measured => {
             format!(
@@ -99,11 +112,11 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
     [
         coefficient.name.replace('_', " "),
         coefficient.symbol.into(),
-        shown(1.0),
+        shown(coefficient, 1.0),
         interval,
         units::unit(unit, coefficient.half_seconds),
-        shown(factor),
-        customary.into(),
+        customary(coefficient, unit),
+        customary_unit.into(),
         state,
     ]
 }

@@ -14,9 +14,11 @@ mod effect_argument;
 mod export;
 mod fit;
 mod fit_json;
+mod fit_summary;
 mod fit_table;
 mod hidden_effects;
 mod input;
+mod many;
 mod measure;
 mod model_json;
 mod number;
@@ -32,11 +34,15 @@ use std::io::{self, BufWriter, Write};
 
 /// Noise coefficients of gyros, from recorded logs or from curves.
 ///
-/// Exit status: 0 when done; 2 for bad input, with one line on standard error that names the file,
-/// the row and the remedy.
+/// Exit status: 0 when all is done; 2 for bad input, with one line on standard error that names the
+/// file, the row and the remedy. Of several files those that can be used are worked on and printed, and
+/// every bad one has its line.
 #[derive(Debug, Parser)]
 #[command(name = "allanite", version)]
 pub struct CommandLine {
+    /// Show no progress and no notes: results and failures only
+    #[arg(long, short, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -58,6 +64,9 @@ impl CommandLine {
     /// # Errors
     /// Of every kind of bad input.
     pub fn run(&self) -> Result<(), Failure> {
+        if self.quiet {
+            progress::be_quiet();
+        }
         let mut output = BufWriter::new(io::stdout().lock());
         match &self.command {
             Command::Simulate(arguments) => simulate::run(arguments, &mut output),

@@ -3,6 +3,7 @@
 use super::{
     compare_json, compare_text,
     compared_model::ModelArguments,
+    examples,
     input::{self, LogArguments},
     many::{self, FilesArguments, Findings},
 };
@@ -20,6 +21,7 @@ use std::{
 
 /// Compare a model with a record octave by octave: the five IEEE-952 terms, and what is added
 #[derive(Debug, Args)]
+#[command(after_help = examples::COMPARE)]
 pub(super) struct Arguments {
     #[command(flatten)]
     files: FilesArguments,

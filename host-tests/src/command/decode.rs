@@ -1,6 +1,6 @@
 //! `decode`: from stored bytes to what they say.
 
-use super::{decode_json, decode_text, many};
+use super::{decode_json, decode_text, examples, many};
 use crate::failure::{Failure, Place};
 use allanite::{Error, OctaveSum, Record, Snapshot};
 use clap::Args;
@@ -15,6 +15,7 @@ const LARGEST: u64 = 1 << 17;
 
 /// Decode factory records and snapshots that a gyro stored
 #[derive(Debug, Args)]
+#[command(after_help = examples::DECODE)]
 pub(super) struct Arguments {
     /// Files of one record or snapshot each; several records make one table
     #[arg(required = true)]

@@ -1,7 +1,7 @@
 //! `diagnose`: which effects a curve has that the five terms lack.
 
 use super::{
-    diagnose_json, diagnose_text,
+    diagnose_json, diagnose_text, examples,
     input::{self, LogArguments},
     many::{self, FilesArguments, Findings},
     words,
@@ -23,6 +23,7 @@ use std::{
 
 /// Find the physical effects that the five IEEE-952 terms lack, one after the other
 #[derive(Debug, Args)]
+#[command(after_help = examples::DIAGNOSE)]
 pub(super) struct Arguments {
     #[command(flatten)]
     files: FilesArguments,

@@ -1,7 +1,7 @@
 //! `fit`: from curves to coefficients.
 
 use super::{
-    fit_json, fit_summary, fit_table,
+    examples, fit_json, fit_summary, fit_table,
     input::{self, LogArguments},
     many::{self, FilesArguments, Findings},
 };
@@ -15,6 +15,7 @@ use std::{
 
 /// Fit the five IEEE-952 coefficients to a log or a curve
 #[derive(Debug, Args)]
+#[command(after_help = examples::FIT)]
 pub(super) struct Arguments {
     #[command(flatten)]
     files: FilesArguments,

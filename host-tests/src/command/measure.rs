@@ -1,6 +1,7 @@
 //! `measure`: from a log to its curves.
 
 use super::{
+    examples,
     input::{self, LogArguments},
     many,
     number::number,
@@ -19,6 +20,7 @@ use std::{
 
 /// Measure the Allan curves of logs
 #[derive(Debug, Args)]
+#[command(after_help = examples::MEASURE)]
 pub(super) struct Arguments {
     /// Recorded logs: .csv, .csv.gz or .npy
     #[arg(required = true, value_name = "LOG")]

@@ -4,6 +4,7 @@ mod compare;
 mod compare_json;
 mod compare_text;
 mod compared_model;
+mod completions;
 mod decode;
 mod decode_json;
 mod decode_text;
@@ -11,6 +12,7 @@ mod diagnose;
 mod diagnose_json;
 mod diagnose_text;
 mod effect_argument;
+mod examples;
 mod export;
 mod fit;
 mod fit_json;
@@ -37,6 +39,8 @@ use std::io::{self, BufWriter, Write};
 /// Exit status: 0 when all is done; 2 for bad input, with one line on standard error that names the
 /// file, the row and the remedy. Of several files those that can be used are worked on and printed, and
 /// every bad one has its line.
+///
+/// With NO_COLOR in the environment nothing is coloured.
 #[derive(Debug, Parser)]
 #[command(name = "allanite", version)]
 pub struct CommandLine {
@@ -56,6 +60,7 @@ enum Command {
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
     Decode(decode::Arguments),
+    Completions(completions::Arguments),
 }
 
 impl CommandLine {
@@ -76,6 +81,7 @@ impl CommandLine {
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
+            Command::Completions(arguments) => completions::run(arguments, &mut output),
         }?;
         output
             .flush()

@@ -11,6 +11,7 @@ mod matlab;
 mod summary;
 
 use super::{
+    examples,
     fit::{Fitted, MethodName},
     input::{self, LogArguments},
     output_file::OutputFile,
@@ -23,6 +24,7 @@ use std::{io::Write, path::PathBuf};
 
 /// Write the noise of a gyro as Kalibr, OpenVINS, PX4, ArduPilot, MATLAB or C take it
 #[derive(Debug, Args)]
+#[command(after_help = examples::EXPORT)]
 pub(super) struct Arguments {
     /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
     input: PathBuf,

@@ -23,7 +23,7 @@ fn commands() -> Vec<String> {
 
 #[test]
 fn help_of_every_command_has_examples_that_the_program_takes() {
-    assert!(commands().len() >= 8);
+    assert!(commands().len() >= 9);
     for command in commands() {
         let help = output(Path::new("."), &[&command, "--help"]);
         let examples = help.lines().filter(|line| line.starts_with("  allanite "));

@@ -48,6 +48,11 @@ pub(super) const DECODE: &str = examples! {
     "allanite decode --json snapshot.bin"
 };
 
+pub(super) const WATCH: &str = examples! {
+    "allanite watch --rate 100 --scale 0.00763 --axes gx,gy,gz --port /dev/ttyACM0 --output curve.json"
+    "allanite watch --rate 100 --unit rad/s --print-every 60"
+};
+
 pub(super) const COMPLETIONS: &str = examples! {
     "allanite completions bash"
     "allanite completions zsh"

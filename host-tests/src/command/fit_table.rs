@@ -83,19 +83,25 @@ pub(super) fn customary(coefficient: &Coefficient, unit: Unit) -> String {
     shown(coefficient, customary_unit(coefficient, unit).0)
 }
 
-fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
-    let (_, customary_unit) = customary_unit(coefficient, unit);
-    let interval = match coefficient.state {
-        State::Measured => {
-            format!(
-                "{} … {}",
-                number(coefficient.lower),
-                number(coefficient.upper)
-            )
-        }
+/// The 95 % interval in the customary unit.
+pub(super) fn interval(coefficient: &Coefficient, unit: Unit) -> String {
+    scaled_interval(coefficient, customary_unit(coefficient, unit).0)
+}
+
+fn scaled_interval(coefficient: &Coefficient, factor: f64) -> String {
+    match coefficient.state {
+        State::Measured => format!(
+            "{} … {}",
+            number(factor * coefficient.lower),
+            number(factor * coefficient.upper)
+        ),
         State::UpperBound => "0 inside".into(),
         State::NotObservable { .. } => "–".into(),
-    };
+    }
+}
+
+fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
+    let (_, customary_unit) = customary_unit(coefficient, unit);
     let state = match coefficient.state {
         State::Measured => "measured".into(),
         State::UpperBound => "upper bound".into(),
@@ -113,7 +119,7 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
         coefficient.name.replace('_', " "),
         coefficient.symbol.into(),
         shown(coefficient, 1.0),
-        interval,
+        scaled_interval(coefficient, 1.0),
         units::unit(unit, coefficient.half_seconds),
         customary(coefficient, unit),
         customary_unit.into(),

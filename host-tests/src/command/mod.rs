@@ -28,6 +28,7 @@ mod output_file;
 mod progress;
 mod simulate;
 mod units;
+mod watch;
 mod words;
 
 use crate::failure::Failure;
@@ -59,6 +60,7 @@ enum Command {
     Export(export::Arguments),
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
+    Watch(watch::Arguments),
     Decode(decode::Arguments),
     Completions(completions::Arguments),
 }
@@ -80,6 +82,7 @@ impl CommandLine {
             Command::Export(arguments) => export::run(arguments, &mut output),
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
+            Command::Watch(arguments) => watch::run(arguments, &mut output),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
             Command::Completions(arguments) => completions::run(arguments, &mut output),
         }?;

@@ -1,10 +1,13 @@
 //! What surrounds the library on a host: simulator, logs and curve files, command line, studies.
 
 pub mod command;
+pub mod confidence;
 pub mod curve_file;
+pub mod equivalent;
 pub mod failure;
 pub mod firmware;
 pub mod log;
+pub mod overbound;
 pub mod plot;
 pub mod simulate;
 pub mod study;

@@ -41,6 +41,14 @@ impl Unit {
         }
     }
 
+    /// Radians in one unit of the angle.
+    pub const fn radians(self) -> f64 {
+        match self {
+            Self::DegreesPerSecond => std::f64::consts::PI / 180.0,
+            Self::RadiansPerSecond => 1.0,
+        }
+    }
+
     /// The unit of that name.
     pub fn from_name(name: &str) -> Option<Self> {
         [Self::DegreesPerSecond, Self::RadiansPerSecond]

@@ -3,7 +3,9 @@
 use super::{
     compare_json, compare_text,
     compared_model::ModelArguments,
+    examples,
     input::{self, LogArguments},
+    many::{self, FilesArguments, Findings},
 };
 use crate::{
     curve_file::AxisCurve,
@@ -12,21 +14,22 @@ use crate::{
 };
 use allanite::{Comparison, Curve, Error, Fit, Model, Settings};
 use clap::Args;
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::{self, Write},
+    path::Path,
+};
 
 /// Compare a model with a record octave by octave: the five IEEE-952 terms, and what is added
 #[derive(Debug, Args)]
+#[command(after_help = examples::COMPARE)]
 pub(super) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
-    input: PathBuf,
+    #[command(flatten)]
+    files: FilesArguments,
     #[command(flatten)]
     model: ModelArguments,
     /// Fit the model to the first part of a log, and compare it with the last, this share of it
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     hold_out: Option<f64>,
-    /// Print the result as JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
     about_log: LogArguments,
 }
@@ -76,46 +79,58 @@ impl Compared {
     }
 }
 
+impl Findings for Vec<Compared> {
+    type Document<'a> = compare_json::Document<'a>;
+
+    fn document(&self) -> Self::Document<'_> {
+        compare_json::document(self)
+    }
+
+    fn print(&self, output: &mut impl Write) -> io::Result<()> {
+        compare_text::print(self, output)
+    }
+}
+
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let model = arguments.model.model()?;
-    let (fitted, held_out) = read(arguments)?;
-    let mut held_out = held_out.into_iter();
-    let mut compared = Vec::new();
-    for axis in fitted {
-        let name = axis.axis.clone();
-        let fail = |error| input::library_failure(&arguments.input, &name, error);
-        let curve = axis.curve().map_err(fail)?;
-        check_visible(&model, &curve)?;
-        compared.push(Compared::new(axis, &model, held_out.next()).map_err(fail)?);
-    }
-    let printed = if arguments.json {
-        compare_json::print(&compared, output)
-    } else {
-        compare_text::print(&compared, output)
-    };
-    printed.map_err(|error| Failure::standard_output(&error))
-}
-
-/// The curves to fit, and those to compare with where a part is held out.
-fn read(arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisCurve>), Failure> {
-    let Some(share) = arguments.hold_out else {
-        let axes = input::read(&arguments.input, &arguments.about_log)?;
-        return Ok((axes, Vec::new()));
-    };
-    if !(share > 0.0 && share < 1.0) {
+    if let Some(share) = arguments.hold_out
+        && !(share > 0.0 && share < 1.0)
+    {
         return Err(Failure::option(
             format!("--hold-out {share} is impossible"),
             "give a share between 0 and 1, such as 0.5",
         ));
     }
-    if input::is_curve(&arguments.input) {
-        return Err(Place::file(&arguments.input).failure(
+    let work = |path: &Path| {
+        let (fitted, held_out) = read(path, arguments)?;
+        let mut held_out = held_out.into_iter();
+        let mut compared = Vec::new();
+        for axis in fitted {
+            let name = axis.axis.clone();
+            let fail = |error| input::library_failure(path, &name, error);
+            let curve = axis.curve().map_err(fail)?;
+            check_visible(&model, &curve)?;
+            compared.push(Compared::new(axis, &model, held_out.next()).map_err(fail)?);
+        }
+        Ok(compared)
+    };
+    many::run(&arguments.files, work, output)
+}
+
+/// The curves to fit, and those to compare with where a part is held out.
+fn read(path: &Path, arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisCurve>), Failure> {
+    let Some(share) = arguments.hold_out else {
+        let axes = input::read(path, &arguments.about_log)?;
+        return Ok((axes, Vec::new()));
+    };
+    if input::is_curve(path) {
+        return Err(Place::file(path).failure(
             "a curve cannot be divided into a part to fit and one to hold out",
             "give the log, or leave --hold-out",
         ));
     }
-    input::measure_in_two(&arguments.input, &arguments.about_log, share)
+    input::measure_in_two(path, &arguments.about_log, share)
 }
 
 /// Less than this share of a coefficient's square, in every octave, is rounding.

@@ -9,10 +9,10 @@ use crate::unit::Unit;
 use allanite::{ComparedOctave, Model, Stretch as Side};
 use serde::Serialize;
 use serde_json::{Map, Value};
-use std::io::{self, Write};
 
+/// What a command prints of one file.
 #[derive(Serialize)]
-struct Document<'a> {
+pub(super) struct Document<'a> {
     axes: Vec<Axis<'a>>,
 }
 
@@ -70,13 +70,11 @@ struct Fitted {
     rms_percent: f64,
 }
 
-/// Prints the comparisons as one JSON document.
-pub(super) fn print(compared: &[Compared], output: &mut impl Write) -> io::Result<()> {
-    let document = Document {
+/// What to print.
+pub(super) fn document(compared: &[Compared]) -> Document<'_> {
+    Document {
         axes: compared.iter().map(axis).collect(),
-    };
-    serde_json::to_writer(&mut *output, &document)?;
-    writeln!(output)
+    }
 }
 
 fn axis(compared: &Compared) -> Axis<'_> {

@@ -1,6 +1,6 @@
 //! `decode`: from stored bytes to what they say.
 
-use super::{decode_json, decode_text};
+use super::{decode_json, decode_text, examples, many};
 use crate::failure::{Failure, Place};
 use allanite::{Error, OctaveSum, Record, Snapshot};
 use clap::Args;
@@ -15,6 +15,7 @@ const LARGEST: u64 = 1 << 17;
 
 /// Decode factory records and snapshots that a gyro stored
 #[derive(Debug, Args)]
+#[command(after_help = examples::DECODE)]
 pub(super) struct Arguments {
     /// Files of one record or snapshot each; several records make one table
     #[arg(required = true)]
@@ -64,13 +65,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         let printed = printed.and_then(|()| output.flush());
         printed.map_err(|error| Failure::standard_output(&error))?;
     }
-    let Some(last) = failures.pop() else {
-        return Ok(());
-    };
-    for failure in failures {
-        eprintln!("allanite: {failure}");
-    }
-    Err(last)
+    many::failed(failures)
 }
 
 fn decode(path: &Path) -> Result<Stored, Failure> {

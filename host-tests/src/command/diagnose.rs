@@ -1,8 +1,9 @@
 //! `diagnose`: which effects a curve has that the five terms lack.
 
 use super::{
-    diagnose_json, diagnose_text,
+    diagnose_json, diagnose_text, examples,
     input::{self, LogArguments},
+    many::{self, FilesArguments, Findings},
     words,
 };
 use crate::{
@@ -15,13 +16,17 @@ use allanite::{
     effect::{CATALOGUE, covariate},
 };
 use clap::Args;
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::{self, Write},
+    path::Path,
+};
 
 /// Find the physical effects that the five IEEE-952 terms lack, one after the other
 #[derive(Debug, Args)]
+#[command(after_help = examples::DIAGNOSE)]
 pub(super) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
-    input: PathBuf,
+    #[command(flatten)]
+    files: FilesArguments,
     /// Most effects to add [default: 3]
     #[arg(long, value_name = "N")]
     max_effects: Option<usize>,
@@ -29,9 +34,6 @@ pub(super) struct Arguments {
     /// `temp_C,rate(temp_C)`
     #[arg(long, value_delimiter = ',', value_name = "COLUMN,…")]
     covariates: Vec<CovariateChoice>,
-    /// Print the result as JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
     about_log: LogArguments,
 }
@@ -163,26 +165,30 @@ pub(super) fn added_name(added: &Addition) -> &'static str {
     }
 }
 
+impl Findings for Vec<Diagnosed> {
+    type Document<'a> = diagnose_json::Document<'a>;
+
+    fn document(&self) -> Self::Document<'_> {
+        diagnose_json::document(self)
+    }
+
+    fn print(&self, output: &mut impl Write) -> io::Result<()> {
+        diagnose_text::print(self, output)
+    }
+}
+
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let diagnose = |(axis, evidence): (AxisCurve, Evidence)| {
-        let name = axis.axis.clone();
-        Diagnosed::new(axis, evidence, arguments.max_effects)
-            .map_err(|error| input::library_failure(&arguments.input, &name, error))
+    let work = |path: &Path| {
+        let diagnose = |(axis, evidence): (AxisCurve, Evidence)| {
+            let name = axis.axis.clone();
+            Diagnosed::new(axis, evidence, arguments.max_effects)
+                .map_err(|error| input::library_failure(path, &name, error))
+        };
+        let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
+        let axes = input::read_with_evidence(path, about_log, covariates)?;
+        let diagnosed = axes.into_iter().map(diagnose);
+        diagnosed.collect::<Result<Vec<_>, _>>()
     };
-    let axes = input::read_with_evidence(
-        &arguments.input,
-        &arguments.about_log,
-        &arguments.covariates,
-    )?;
-    let diagnosed = axes
-        .into_iter()
-        .map(diagnose)
-        .collect::<Result<Vec<_>, _>>()?;
-    let printed = if arguments.json {
-        diagnose_json::print(&diagnosed, output)
-    } else {
-        diagnose_text::print(&diagnosed, output)
-    };
-    printed.map_err(|error| Failure::standard_output(&error))
+    many::run(&arguments.files, work, output)
 }

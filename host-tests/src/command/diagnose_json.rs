@@ -9,10 +9,10 @@ use crate::{log::OCTAVES, unit::Unit};
 use allanite::{Candidate as Tried, Step as Taken, Verdict};
 use serde::Serialize;
 use serde_json::{Map, Value};
-use std::io::{self, Write};
 
+/// What a command prints of one file.
 #[derive(Serialize)]
-struct Document<'a> {
+pub(super) struct Document<'a> {
     axes: Vec<Axis<'a>>,
 }
 
@@ -56,13 +56,11 @@ struct Swap {
     taken: &'static str,
 }
 
-/// Prints the diagnoses as one JSON document.
-pub(super) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
-    let document = Document {
+/// What to print.
+pub(super) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
+    Document {
         axes: diagnosed.iter().map(axis).collect(),
-    };
-    serde_json::to_writer(&mut *output, &document)?;
-    writeln!(output)
+    }
 }
 
 fn axis(diagnosed: &Diagnosed) -> Axis<'_> {

@@ -1,25 +1,27 @@
 //! `fit`: from curves to coefficients.
 
 use super::{
-    fit_json, fit_table,
+    examples, fit_json, fit_summary, fit_table,
     input::{self, LogArguments},
+    many::{self, FilesArguments, Findings},
 };
 use crate::{curve_file::AxisCurve, failure::Failure, log::OCTAVES};
 use allanite::{Curve, Fit, Method, Model, Settings};
 use clap::{Args, ValueEnum};
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::{self, Write},
+    path::Path,
+};
 
 /// Fit the five IEEE-952 coefficients to a log or a curve
 #[derive(Debug, Args)]
+#[command(after_help = examples::FIT)]
 pub(super) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
-    input: PathBuf,
+    #[command(flatten)]
+    files: FilesArguments,
     /// How octaves are weighted
     #[arg(long, default_value = "covariance")]
     method: MethodName,
-    /// Print the result as JSON
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
     about_log: LogArguments,
 }
@@ -66,37 +68,51 @@ pub(super) struct Fitted {
     pub(super) fit: Fit,
 }
 
-/// Runs the command.
-pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let model = Model::ieee_952();
-    let fit_axis = |axis: AxisCurve| {
+impl Fitted {
+    /// Fits the five terms to an axis of a file.
+    pub(super) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
         let settings = Settings {
-            method: arguments.method.method(),
+            method: method.method(),
             ..Settings::default()
         };
         let fitted = axis.curve().and_then(|curve| {
-            let fit = allanite::fit(&curve, &model, settings)?;
+            let fit = allanite::fit(&curve, &Model::ieee_952(), settings)?;
             Ok((curve, fit))
         });
         match fitted {
-            Ok((curve, fit)) => Ok(Fitted {
+            Ok((curve, fit)) => Ok(Self {
                 axis,
                 curve,
-                method: arguments.method,
+                method,
                 fit,
             }),
-            Err(error) => Err(input::library_failure(&arguments.input, &axis.axis, error)),
+            Err(error) => Err(input::library_failure(path, &axis.axis, error)),
         }
+    }
+}
+
+impl Findings for Vec<Fitted> {
+    type Document<'a> = fit_json::Document<'a>;
+
+    fn document(&self) -> Self::Document<'_> {
+        fit_json::document(self)
+    }
+
+    fn print(&self, output: &mut impl Write) -> io::Result<()> {
+        fit_table::print(self, output)
+    }
+
+    fn print_many(found: &[(&Path, Self)], output: &mut impl Write) -> io::Result<()> {
+        fit_summary::print(found, output)
+    }
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
+    let work = |path: &Path| {
+        let axes = input::read(path, &arguments.about_log)?.into_iter();
+        axes.map(|axis| Fitted::new(path, axis, arguments.method))
+            .collect::<Result<Vec<_>, _>>()
     };
-    let axes = input::read(&arguments.input, &arguments.about_log)?;
-    let fitted = axes
-        .into_iter()
-        .map(fit_axis)
-        .collect::<Result<Vec<_>, _>>()?;
-    let printed = if arguments.json {
-        fit_json::print(&fitted, output)
-    } else {
-        fit_table::print(&fitted, output)
-    };
-    printed.map_err(|error| Failure::standard_output(&error))
+    many::run(&arguments.files, work, output)
 }

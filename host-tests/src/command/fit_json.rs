@@ -4,10 +4,10 @@ use super::{fit::Fitted, units};
 use crate::unit::Unit;
 use allanite::{Coefficient, State};
 use serde::Serialize;
-use std::io::{self, Write};
 
+/// What a command prints of one file.
 #[derive(Serialize)]
-struct Document<'a> {
+pub(super) struct Document<'a> {
     axes: Vec<Axis<'a>>,
 }
 
@@ -44,13 +44,11 @@ pub(super) struct Term {
     unit: String,
 }
 
-/// Prints the fits as one JSON document.
-pub(super) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
-    let document = Document {
+/// What to print.
+pub(super) fn document(fitted: &[Fitted]) -> Document<'_> {
+    Document {
         axes: fitted.iter().map(axis).collect(),
-    };
-    serde_json::to_writer(&mut *output, &document)?;
-    writeln!(output)
+    }
 }
 
 fn axis(fitted: &Fitted) -> Axis<'_> {

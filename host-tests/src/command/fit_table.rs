@@ -11,7 +11,7 @@ use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
 /// Models with a smaller p-value are not adequate.
-const LEAST_P_VALUE: f64 = 0.01;
+pub(super) const LEAST_P_VALUE: f64 = 0.01;
 
 /// Prints a table an axis.
 pub(super) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
@@ -65,24 +65,43 @@ pub(super) fn table(fit: &Fit, unit: Unit) -> Table {
     table
 }
 
-fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
-    let (factor, customary) = units::customary(unit, coefficient.half_seconds).unwrap_or((1.0, ""));
-    let shown = |factor: f64| match coefficient.state {
+/// A value, a bound, or a dash.
+fn shown(coefficient: &Coefficient, factor: f64) -> String {
+    match coefficient.state {
         State::Measured => number(factor * coefficient.value),
         State::UpperBound => format!("< {}", number(factor * coefficient.upper)),
         State::NotObservable { .. } => "–".into(),
-    };
-    let interval = match coefficient.state {
-        State::Measured => {
-            format!(
-                "{} … {}",
-                number(coefficient.lower),
-                number(coefficient.upper)
-            )
-        }
+    }
+}
+
+fn customary_unit(coefficient: &Coefficient, unit: Unit) -> (f64, &'static str) {
+    units::customary(unit, coefficient.half_seconds).unwrap_or((1.0, ""))
+}
+
+/// The same in the customary unit.
+pub(super) fn customary(coefficient: &Coefficient, unit: Unit) -> String {
+    shown(coefficient, customary_unit(coefficient, unit).0)
+}
+
+/// The 95 % interval in the customary unit.
+pub(super) fn interval(coefficient: &Coefficient, unit: Unit) -> String {
+    scaled_interval(coefficient, customary_unit(coefficient, unit).0)
+}
+
+fn scaled_interval(coefficient: &Coefficient, factor: f64) -> String {
+    match coefficient.state {
+        State::Measured => format!(
+            "{} … {}",
+            number(factor * coefficient.lower),
+            number(factor * coefficient.upper)
+        ),
         State::UpperBound => "0 inside".into(),
         State::NotObservable { .. } => "–".into(),
-    };
+    }
+}
+
+fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
+    let (_, customary_unit) = customary_unit(coefficient, unit);
     let state = match coefficient.state {
         State::Measured => "measured".into(),
         State::UpperBound => "upper bound".into(),
@@ -99,11 +118,11 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
     [
         coefficient.name.replace('_', " "),
         coefficient.symbol.into(),
-        shown(1.0),
-        interval,
+        shown(coefficient, 1.0),
+        scaled_interval(coefficient, 1.0),
         units::unit(unit, coefficient.half_seconds),
-        shown(factor),
-        customary.into(),
+        customary(coefficient, unit),
+        customary_unit.into(),
         state,
     ]
 }

@@ -91,6 +91,9 @@ pub(super) fn measure_in_two(
 }
 
 fn note(path: &Path, log: &Log) {
+    if progress::is_quiet() {
+        return;
+    }
     for note in &log.notes {
         eprintln!("allanite: {}{}", Place::file(path), one_line(note));
     }

@@ -1,7 +1,9 @@
 //! `measure`: from a log to its curves.
 
 use super::{
+    examples,
     input::{self, LogArguments},
+    many,
     number::number,
     output_file::OutputFile,
 };
@@ -11,16 +13,19 @@ use crate::{
 };
 use clap::Args;
 use std::{
+    collections::HashMap,
     io::{self, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 
-/// Measure the Allan curves of a log
+/// Measure the Allan curves of logs
 #[derive(Debug, Args)]
+#[command(after_help = examples::MEASURE)]
 pub(super) struct Arguments {
-    /// A recorded log: .csv, .csv.gz or .npy
-    log: PathBuf,
-    /// The curve file to write: .json
+    /// Recorded logs: .csv, .csv.gz or .npy
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+    /// The curve file to write: .json; or a folder, for one file a log
     #[arg(long, short, value_name = "CURVE.json")]
     output: PathBuf,
     #[command(flatten)]
@@ -35,27 +40,90 @@ pub(super) struct Arguments {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    if !input::is_curve(&arguments.output) {
-        return Err(Place::file(&arguments.output)
-            .failure("a curve file's extension is .json", "name the output so"));
-    }
-    // First, so that a place that cannot be written to costs no measurement.
-    let mut file = OutputFile::create(&arguments.output)?;
-    let mut curves = input::measure(&arguments.log, &arguments.about_log)?;
-    for curve in &mut curves {
-        curve.source.clone_from(&arguments.source);
-        curve.licence.clone_from(&arguments.licence);
-    }
-    let curves = CurveFile::new(curves);
-    let fail = |error: io::Error| Place::file(&arguments.output).io(&error);
-    let json = curves.to_json().map_err(|error| fail(error.into()))?;
-    file.write_all(json.as_bytes()).map_err(fail)?;
-    file.commit()?;
-    summarize(&curves.axes, output).map_err(|error| Failure::standard_output(&error))
+    let places = places(&arguments.logs, &arguments.output)?;
+    let several = places.len() > 1;
+    let work = |log: &Path| {
+        let place = places.get(log).unwrap_or(&arguments.output);
+        // First, so that a place that cannot be written to costs no measurement.
+        let mut file = OutputFile::create(place)?;
+        let mut curves = input::measure(log, &arguments.about_log)?;
+        for curve in &mut curves {
+            curve.source.clone_from(&arguments.source);
+            curve.licence.clone_from(&arguments.licence);
+        }
+        write(&mut file, place, &CurveFile::new(curves.clone()))?;
+        file.commit()?;
+        Ok(curves)
+    };
+    let mut failures = Vec::new();
+    many::each(&arguments.logs, work, |log, measured| {
+        match measured {
+            Ok(curves) => {
+                let name = several.then(|| many::shown(log));
+                let printed = summarize(name.as_deref(), &curves, output);
+                printed.map_err(|error| Failure::standard_output(&error))?;
+            }
+            Err(failure) => failures.push(failure),
+        }
+        Ok(())
+    })?;
+    let flushed = output.flush();
+    flushed.map_err(|error| Failure::standard_output(&error))?;
+    many::failed(failures)
 }
 
-fn summarize(curves: &[AxisCurve], output: &mut impl Write) -> io::Result<()> {
+/// Where the curves of each log go.
+fn places(logs: &[PathBuf], output: &Path) -> Result<HashMap<PathBuf, PathBuf>, Failure> {
+    if !output.is_dir() {
+        if logs.len() > 1 {
+            return Err(Place::file(output).failure(
+                "several logs need a folder, and there is none of this name",
+                "make the folder first",
+            ));
+        }
+        if !input::is_curve(output) {
+            return Err(Place::file(output)
+                .failure("a curve file's extension is .json", "name the output so"));
+        }
+    }
+    let mut places: HashMap<PathBuf, PathBuf> = HashMap::new();
+    for log in logs {
+        let place = if output.is_dir() {
+            // Without `.csv` or `.npy`, nor `.csv.gz`.
+            let stem = Path::new(log.file_stem().unwrap_or_default());
+            let stem = match stem.extension() {
+                Some(extension) if extension.eq_ignore_ascii_case("csv") => stem.with_extension(""),
+                _ => stem.to_owned(),
+            };
+            let mut name = stem.into_os_string();
+            name.push(".json");
+            output.join(name)
+        } else {
+            output.to_owned()
+        };
+        if places.values().any(|other| *other == place) {
+            return Err(Place::file(&place).failure(
+                "two logs have this name",
+                "measure them one by one, with a file each for --output",
+            ));
+        }
+        places.insert(log.clone(), place);
+    }
+    Ok(places)
+}
+
+fn write(file: &mut OutputFile, place: &Path, curves: &CurveFile) -> Result<(), Failure> {
+    let fail = |error: io::Error| Place::file(place).io(&error);
+    let json = curves.to_json().map_err(|error| fail(error.into()))?;
+    file.write_all(json.as_bytes()).map_err(fail)
+}
+
+/// A line an axis, behind the name of the log where there are several.
+fn summarize(log: Option<&str>, curves: &[AxisCurve], output: &mut impl Write) -> io::Result<()> {
     for curve in curves {
+        if let Some(log) = log {
+            write!(output, "{log}: ")?;
+        }
         let shortest = curve.octaves.first();
         let lowest = curve
             .octaves

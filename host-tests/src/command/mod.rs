@@ -4,6 +4,7 @@ mod compare;
 mod compare_json;
 mod compare_text;
 mod compared_model;
+mod completions;
 mod decode;
 mod decode_json;
 mod decode_text;
@@ -11,11 +12,15 @@ mod diagnose;
 mod diagnose_json;
 mod diagnose_text;
 mod effect_argument;
+mod examples;
+mod export;
 mod fit;
 mod fit_json;
+mod fit_summary;
 mod fit_table;
 mod hidden_effects;
 mod input;
+mod many;
 mod measure;
 mod model_json;
 mod number;
@@ -23,6 +28,7 @@ mod output_file;
 mod progress;
 mod simulate;
 mod units;
+mod watch;
 mod words;
 
 use crate::failure::Failure;
@@ -31,11 +37,17 @@ use std::io::{self, BufWriter, Write};
 
 /// Noise coefficients of gyros, from recorded logs or from curves.
 ///
-/// Exit status: 0 when done; 2 for bad input, with one line on standard error that names the file,
-/// the row and the remedy.
+/// Exit status: 0 when all is done; 2 for bad input, with one line on standard error that names the
+/// file, the row and the remedy. Of several files those that can be used are worked on and printed, and
+/// every bad one has its line.
+///
+/// With NO_COLOR in the environment nothing is coloured.
 #[derive(Debug, Parser)]
 #[command(name = "allanite", version)]
 pub struct CommandLine {
+    /// Show no progress and no notes: results and failures only
+    #[arg(long, short, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -45,9 +57,12 @@ enum Command {
     Simulate(simulate::Arguments),
     Measure(measure::Arguments),
     Fit(fit::Arguments),
+    Export(export::Arguments),
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
+    Watch(watch::Arguments),
     Decode(decode::Arguments),
+    Completions(completions::Arguments),
 }
 
 impl CommandLine {
@@ -56,14 +71,20 @@ impl CommandLine {
     /// # Errors
     /// Of every kind of bad input.
     pub fn run(&self) -> Result<(), Failure> {
+        if self.quiet {
+            progress::be_quiet();
+        }
         let mut output = BufWriter::new(io::stdout().lock());
         match &self.command {
             Command::Simulate(arguments) => simulate::run(arguments, &mut output),
             Command::Measure(arguments) => measure::run(arguments, &mut output),
             Command::Fit(arguments) => fit::run(arguments, &mut output),
+            Command::Export(arguments) => export::run(arguments, &mut output),
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
+            Command::Watch(arguments) => watch::run(arguments, &mut output),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
+            Command::Completions(arguments) => completions::run(arguments, &mut output),
         }?;
         output
             .flush()

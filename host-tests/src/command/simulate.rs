@@ -1,6 +1,7 @@
 //! `simulate`: the log of a gyro with known coefficients.
 
 use super::{
+    examples,
     hidden_effects::{HiddenArguments, HiddenEffects},
     output_file::OutputFile,
     progress,
@@ -26,6 +27,7 @@ const TEMPERATURE: &str = "temp_C";
 
 /// Simulate the log of a gyro at rest
 #[derive(Debug, Args)]
+#[command(after_help = examples::SIMULATE)]
 pub(super) struct Arguments {
     /// A typical gyro, whose coefficients the options below override one by one
     #[arg(value_name = "PRESET")]

@@ -1,0 +1,26 @@
+//! `completions`: what a shell needs to complete commands and options.
+
+use super::{CommandLine, examples};
+use crate::failure::Failure;
+use clap::{Args, CommandFactory};
+use clap_complete::{Shell, generate};
+use std::io::Write;
+
+/// Print a shell's completions: source them, or put them where the shell looks
+#[derive(Debug, Args)]
+#[command(after_help = examples::COMPLETIONS)]
+pub(super) struct Arguments {
+    /// The shell
+    shell: Shell,
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
+    let mut command = CommandLine::command();
+    // Generating cannot fail into memory; a pipe can be closed.
+    let mut script = Vec::new();
+    generate(arguments.shell, &mut command, "allanite", &mut script);
+    output
+        .write_all(&script)
+        .map_err(|error| Failure::standard_output(&error))
+}

@@ -1,0 +1,59 @@
+//! What stands below the help of every command. A test parses each example.
+
+macro_rules! examples {
+    ($($line:literal)+) => {
+        concat!(
+            "Examples:\n",
+            $("  ", $line, "\n",)+
+            "\nExit status: 0 when all is done; 2 for bad input, one line each on standard error."
+        )
+    };
+}
+
+pub(super) const SIMULATE: &str = examples! {
+    "allanite simulate mems --duration 1h --axes 3 --output log.csv"
+    "allanite simulate mems --effect sinusoid:frequency_hz=7.7,amplitude=0.02 --output log.npy"
+};
+
+pub(super) const MEASURE: &str = examples! {
+    "allanite measure log.csv --output curve.json"
+    "allanite measure log1.csv log2.csv.gz --rate 100 --scale 0.05 --output curves"
+};
+
+pub(super) const FIT: &str = examples! {
+    "allanite fit log.csv --rate 100 --scale 0.05 --unit deg/s --columns gx,gy,gz"
+    "allanite fit log1.csv log2.csv curve.json"
+    "allanite fit --json-lines log1.csv log2.csv"
+};
+
+pub(super) const EXPORT: &str = examples! {
+    "allanite export curve.json --format kalibr --output imu.yaml"
+    "allanite export log.csv --rate 200 --format px4 --overbound --output gyro.params"
+    "allanite export curve.json --format c --name bmi160 --output noise.h"
+};
+
+pub(super) const COMPARE: &str = examples! {
+    "allanite compare curve.json"
+    "allanite compare log.csv --with sinusoid:frequency_hz=19.3 --without rate_ramp"
+    "allanite compare log.csv --hold-out 0.5"
+};
+
+pub(super) const DIAGNOSE: &str = examples! {
+    "allanite diagnose curve.json"
+    "allanite diagnose log.csv --covariates temp_C,rate(temp_C)"
+};
+
+pub(super) const DECODE: &str = examples! {
+    "allanite decode device1.bin device2.bin"
+    "allanite decode --json snapshot.bin"
+};
+
+pub(super) const WATCH: &str = examples! {
+    "allanite watch --rate 100 --scale 0.00763 --axes gx,gy,gz --port /dev/ttyACM0 --output curve.json"
+    "allanite watch --rate 100 --unit rad/s --print-every 60"
+};
+
+pub(super) const COMPLETIONS: &str = examples! {
+    "allanite completions bash"
+    "allanite completions zsh"
+};

@@ -1,0 +1,102 @@
+//! Parameter files of autopilots.
+//!
+//! The noise parameters of PX4's EKF2 and of ArduPilot's EKF3 are discrete-time, although their units
+//! do not show it. A prediction over an interval dt adds to the variances
+//!
+//! ```text
+//! (dt · gyro noise)²  of the angle,    (dt · gyro bias noise)²  of the bias
+//! ```
+//!
+//! (PX4: `Ekf::predictCovariance`, where dt is about `EKF2_PREDICT_US`; ArduPilot:
+//! `NavEKF3_core::CovariancePrediction`, which has the bias as an angle per dt, and dt about
+//! `EKF_TARGET_DT`). Continuous-time noise adds `N² dt` and `K² dt`: the parameters are `N/√dt` in rad/s
+//! and `K/√dt` in rad/s². Both autopilots' defaults are far larger than any gyro's own noise: they
+//! stand for vibration and for what the filter's model lacks.
+
+use super::{Arguments, Characterisation, Given, decimal::decimal, summary};
+use std::fmt::Write;
+
+/// One autopilot's names and ways.
+struct Autopilot {
+    noise: &'static str,
+    bias_noise: &'static str,
+    interval_s: f64,
+    interval: &'static str,
+    /// A line of the file.
+    line: fn(&str, f64) -> String,
+    notes: [&'static str; 2],
+}
+
+/// For QGroundControl: vehicle, component, name, value and type, between tabs.
+const PX4: Autopilot = Autopilot {
+    noise: "EKF2_GYR_NOISE",
+    bias_noise: "EKF2_GYR_B_NOISE",
+    interval_s: 0.01,
+    interval: "EKF2_PREDICT_US, 10000 us unless changed",
+    // Type 9 of MAVLink is a float of 32 bits.
+    line: |name, value| format!("1\t1\t{name}\t{}\t9", decimal(value)),
+    notes: [
+        "PX4's default EKF2_GYR_NOISE of 0.015 rad/s covers vibration too: lower it with care.",
+        "Vehicle-Id\tComponent-Id\tName\tValue\tType",
+    ],
+};
+
+/// For Mission Planner and MAVProxy: name and value.
+const ARDUPILOT: Autopilot = Autopilot {
+    noise: "EK3_GYRO_P_NSE",
+    bias_noise: "EK3_GBIAS_P_NSE",
+    interval_s: 0.012,
+    interval: "EKF_TARGET_DT, 0.012 s, or the period of a slower main loop",
+    line: |name, value| format!("{name},{}", decimal(value)),
+    notes: [
+        "ArduPilot's default EK3_GYRO_P_NSE of 0.015 rad/s covers vibration too: lower it with care.",
+        "name,value",
+    ],
+};
+
+/// A parameter file of PX4.
+pub(super) fn px4(known: &Characterisation, arguments: &Arguments) -> String {
+    parameters(known, arguments, &PX4)
+}
+
+/// A parameter file of ArduPilot.
+pub(super) fn ardupilot(known: &Characterisation, arguments: &Arguments) -> String {
+    parameters(known, arguments, &ARDUPILOT)
+}
+
+fn parameters(known: &Characterisation, arguments: &Arguments, of: &Autopilot) -> String {
+    let interval_s = arguments.prediction_interval.unwrap_or(of.interval_s);
+    let per_step = 1.0 / interval_s.sqrt();
+    let mut text = summary::comment(known, "#");
+    let _ = writeln!(
+        text,
+        "#\n# Discrete-time, for a prediction every {} s ({}):\n\
+         # {} = N/sqrt(dt) in rad/s, {} = K/sqrt(dt) in rad/s^2.",
+        decimal(interval_s),
+        of.interval,
+        of.noise,
+        of.bias_noise
+    );
+    for note in of.notes {
+        let _ = writeln!(text, "# {note}");
+    }
+    let (live, beside) = known.chosen(arguments.overbound);
+    for (choice, mark) in [(live, ""), (beside, "# ")] {
+        let _ = writeln!(text, "# {}:", choice.name);
+        let both = [
+            (of.noise, choice.pair.noise_density),
+            (of.bias_noise, choice.pair.random_walk),
+        ];
+        for (name, given) in both {
+            let given: Given = given.times(per_step);
+            // On lines of their own: not every reader knows comments behind a value.
+            if !given.words().is_empty() {
+                let _ = writeln!(text, "# {name}: {}", given.words());
+            }
+            if let Some(value) = given.value() {
+                let _ = writeln!(text, "{mark}{}", (of.line)(name, value));
+            }
+        }
+    }
+    text
+}

@@ -1,0 +1,46 @@
+//! The curve as a table: deviations in rad/s.
+
+use super::Characterisation;
+use csv::{QuoteStyle, WriterBuilder};
+
+/// What the columns are, for people.
+const COMMENT: &str = "# deviations in rad/s; lower and upper: 95 % interval of each octave; model: \
+                       best fit of the five terms; overbound: white noise and random walk above every upper\n";
+
+/// Every octave of every axis: measured Allan deviation, its 95 % interval, the best fit's and the
+/// overbound's.
+pub(super) fn table(known: &Characterisation) -> Result<String, csv::Error> {
+    let columns = [
+        "axis",
+        "tau_s",
+        "m",
+        "differences",
+        "deviation",
+        "lower",
+        "upper",
+        "model",
+        "overbound",
+    ];
+    // Names in quotes, so that none is taken for a comment or a number.
+    let mut writer = WriterBuilder::new()
+        .quote_style(QuoteStyle::NonNumeric)
+        .from_writer(COMMENT.as_bytes().to_vec());
+    writer.write_record(columns)?;
+    for axis in &known.axes {
+        for octave in &axis.octaves {
+            writer.write_record([
+                axis.name.clone(),
+                octave.tau_s.to_string(),
+                octave.m.to_string(),
+                octave.differences.to_string(),
+                octave.deviation.to_string(),
+                octave.lower.to_string(),
+                octave.upper.to_string(),
+                octave.model.to_string(),
+                octave.overbound.to_string(),
+            ])?;
+        }
+    }
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

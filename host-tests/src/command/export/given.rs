@@ -1,0 +1,104 @@
+//! A number for a filter, or why there is none: never a zero that means "not known".
+
+/// What a record gives for a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Given {
+    /// A positive number, and what is to be known of it.
+    Number { value: f64, remark: String },
+    /// Why there is none.
+    Missing { why: String },
+}
+
+impl Given {
+    /// A number that speaks for itself.
+    pub(super) fn plain(value: f64) -> Self {
+        Self::Number {
+            value,
+            remark: String::new(),
+        }
+    }
+
+    /// The number, if there is one.
+    pub(super) fn value(&self) -> Option<f64> {
+        match self {
+            Self::Number { value, .. } => Some(*value),
+            Self::Missing { .. } => None,
+        }
+    }
+
+    /// What is said of it.
+    pub(super) fn words(&self) -> &str {
+        match self {
+            Self::Number { remark, .. } => remark,
+            Self::Missing { why } => why,
+        }
+    }
+
+    /// The number times a factor.
+    pub(super) fn times(self, factor: f64) -> Self {
+        match self {
+            Self::Number { value, remark } => Self::Number {
+                value: factor * value,
+                remark,
+            },
+            missing => missing,
+        }
+    }
+
+    /// The largest of the axes' numbers, with what is said of any of them.
+    pub(super) fn largest<'a>(axes: impl Iterator<Item = (&'a str, Self)>) -> Self {
+        let axes: Vec<(&str, Self)> = axes.collect();
+        if let [(_, only)] = axes.as_slice() {
+            return only.clone();
+        }
+        let names = axes.iter().filter(|(_, given)| given.value().is_some());
+        let names: Vec<String> = names.map(|(name, _)| format!("{name:?}")).collect();
+        let said = axes.iter().filter(|(_, given)| !given.words().is_empty());
+        let said = said.map(|(name, given)| format!("{name:?}: {}", given.words()));
+        let values = axes.iter().filter_map(|(_, given)| given.value());
+        match values.reduce(f64::max) {
+            Some(value) => {
+                let of = format!("largest of axes {}", names.join(", "));
+                let remarks: Vec<String> = std::iter::once(of).chain(said).collect();
+                Self::Number {
+                    value,
+                    remark: remarks.join("; "),
+                }
+            }
+            None => Self::Missing {
+                why: said.collect::<Vec<_>>().join("; "),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn missing(why: &str) -> Given {
+        Given::Missing { why: why.into() }
+    }
+
+    #[test]
+    fn largest_axis_stands_for_all_and_those_without_a_number_are_named() {
+        let axes = [
+            ("x", Given::plain(1.0)),
+            ("y", Given::plain(3.0)),
+            ("z", missing("not observable")),
+        ];
+        let common = Given::largest(axes.into_iter());
+        assert_eq!(common.value(), Some(3.0));
+        assert_eq!(
+            common.words(),
+            "largest of axes \"x\", \"y\"; \"z\": not observable"
+        );
+    }
+
+    #[test]
+    fn axes_without_any_number_give_none() {
+        let axes = [("x", missing("a")), ("y", missing("b"))];
+        let common = Given::largest(axes.into_iter());
+        assert_eq!(common, missing("\"x\": a; \"y\": b"));
+    }
+}

@@ -1,0 +1,129 @@
+//! YAML of camera-IMU calibration: Kalibr's imu.yaml and the chain file of OpenVINS.
+//!
+//! Both take continuous-time densities in SI units, one number for all axes: the white noise of the
+//! rate in rad/s/√Hz and the white noise that drives its bias in rad/s²/√Hz, which is the rate random
+//! walk coefficient K (Kalibr's wiki, "IMU Noise Model"). Kalibr refuses a density that is missing, or
+//! not above zero: what a record does not give is left out, with the reason.
+
+use super::{Arguments, Characterisation, Choice, Given, decimal::decimal, summary};
+use std::fmt::Write;
+
+/// What has to be filled in by whoever measured the accelerometer.
+const ACCELEROMETER: &str = "not of a gyro's record: fill it in, or give it with";
+
+/// Kalibr's imu.yaml.
+pub(super) fn kalibr(known: &Characterisation, arguments: &Arguments) -> String {
+    let mut text = summary::comment(known, "#");
+    text.push('\n');
+    body(&mut text, "", known, arguments);
+    text
+}
+
+/// OpenVINS' kalibr_imu_chain.yaml: the same for `imu0`, in the dialect of OpenCV.
+pub(super) fn openvins(known: &Characterisation, arguments: &Arguments) -> String {
+    let mut text = format!("%YAML:1.0\n\n{}\nimu0:\n", summary::comment(known, "#"));
+    matrix(&mut text, "T_i_b", 4, "1.0");
+    body(&mut text, "  ", known, arguments);
+    text += "  time_offset: 0.0\n  model: \"kalibr\"\n";
+    // Intrinsics, which noise says nothing of: OpenVINS wants them there.
+    for name in ["Tw", "R_IMUtoGYRO", "Ta", "R_IMUtoACC"] {
+        matrix(&mut text, name, 3, "1.0");
+    }
+    matrix(&mut text, "Tg", 3, "0.0");
+    text
+}
+
+/// A square matrix with one number in its diagonal, zero else.
+fn matrix(text: &mut String, name: &str, size: usize, diagonal: &str) {
+    let _ = writeln!(text, "  {name}:");
+    for row in 0..size {
+        let entry = |column| if row == column { diagonal } else { "0.0" };
+        let row: Vec<&str> = (0..size).map(entry).collect();
+        let _ = writeln!(text, "    - [{}]", row.join(", "));
+    }
+}
+
+fn body(text: &mut String, indent: &str, known: &Characterisation, arguments: &Arguments) {
+    let accelerometer = [
+        (
+            "accelerometer_noise_density",
+            "--accelerometer-noise-density",
+            arguments.accelerometer_noise_density,
+            "m/s^2/sqrt(Hz)",
+        ),
+        (
+            "accelerometer_random_walk",
+            "--accelerometer-random-walk",
+            arguments.accelerometer_random_walk,
+            "m/s^3/sqrt(Hz)",
+        ),
+    ];
+    for (key, option, value, unit) in accelerometer {
+        let given = value.map_or_else(
+            || Given::Missing {
+                why: format!("{ACCELEROMETER} {option}"),
+            },
+            Given::plain,
+        );
+        line(text, indent, "", key, &given, unit);
+    }
+    let (live, beside) = known.chosen(arguments.overbound);
+    for (choice, mark) in [(live, ""), (beside, "# ")] {
+        let Choice { name, pair } = choice;
+        let _ = writeln!(text, "{indent}# {name}, continuous-time:");
+        let both = [
+            (
+                "gyroscope_noise_density",
+                &pair.noise_density,
+                "rad/s/sqrt(Hz)",
+            ),
+            (
+                "gyroscope_random_walk",
+                &pair.random_walk,
+                "rad/s^2/sqrt(Hz)",
+            ),
+        ];
+        for (key, given, unit) in both {
+            line(text, indent, mark, key, given, unit);
+        }
+        if let Some(density) = pair.noise_density.value() {
+            let sigma = number_at(density, known.rate_hz);
+            let _ = writeln!(
+                text,
+                "{indent}# discrete-time: {sigma} rad/s standard deviation of a sample at update_rate"
+            );
+        }
+    }
+    // A string of JSON is one of YAML.
+    let topic = serde_json::Value::from(arguments.rostopic.as_str());
+    let _ = writeln!(text, "{indent}rostopic: {topic}");
+    let _ = writeln!(
+        text,
+        "{indent}update_rate: {}  # Hz",
+        decimal(known.rate_hz)
+    );
+}
+
+fn number_at(density: f64, rate_hz: f64) -> String {
+    decimal(density * rate_hz.sqrt())
+}
+
+/// `key: value  # unit; remark`, or a comment that says why there is no value.
+fn line(text: &mut String, indent: &str, mark: &str, key: &str, given: &Given, unit: &str) {
+    let words = given.words();
+    let _ = match given.value() {
+        Some(value) => {
+            let remark = if words.is_empty() {
+                String::new()
+            } else {
+                format!("; {words}")
+            };
+            writeln!(
+                text,
+                "{indent}{mark}{key}: {}  # {unit}{remark}",
+                decimal(value)
+            )
+        }
+        None => writeln!(text, "{indent}# {key}:  # {unit}; {words}"),
+    };
+}

@@ -1,0 +1,91 @@
+//! JSON for `loadparams` of MATLAB's imuSensor.
+//!
+//! A file has parts by name, each with the properties of `gyroparams` under `Gyroscope`:
+//! `NoiseDensity` in (rad/s)/√Hz, `BiasInstability` in rad/s, `RandomWalk` in (rad/s)·√Hz, which is K.
+//! The part of the gyro's name is the best fit, `NAME_overbound` the overbound; what JSON has no comments
+//! for is in `NAME_notes`, which loadparams does not look at.
+
+use super::{Arguments, AxisNoise, Characterisation, Given, summary};
+use serde_json::{Map, Value, json};
+
+/// What a part gets wrong if nobody knows it.
+const NOTES: [&str; 3] = [
+    "NoiseType must be \"double-sided\", as it is unless changed; set SampleRate of imuSensor by hand.",
+    "A property that is left out is zero in MATLAB: see the reasons below.",
+    "BiasInstability is B itself: gyroparams shapes it with BiasInstabilityCoefficients.",
+];
+
+/// The file.
+pub(super) fn json(known: &Characterisation, arguments: &Arguments) -> String {
+    let mut notes: Vec<String> = NOTES.map(str::to_owned).into();
+    notes.push(format!("SampleRate {} Hz", known.rate_hz));
+    let mut best = Map::new();
+    property(known, &mut best, &mut notes, "NoiseDensity", |axis| {
+        axis.best("N")
+    });
+    property(known, &mut best, &mut notes, "BiasInstability", |axis| {
+        axis.best("B")
+    });
+    property(known, &mut best, &mut notes, "RandomWalk", |axis| {
+        axis.best("K")
+    });
+    let mut above = Map::new();
+    property(
+        known,
+        &mut above,
+        &mut notes,
+        "NoiseDensity",
+        AxisNoise::overbound_density,
+    );
+    property(
+        known,
+        &mut above,
+        &mut notes,
+        "RandomWalk",
+        AxisNoise::overbound_walk,
+    );
+    notes.extend(summary::lines(known));
+
+    let (live, beside) = if arguments.overbound {
+        ((above, ""), (best, "_best_fit"))
+    } else {
+        ((best, ""), (above, "_overbound"))
+    };
+    let name = &arguments.name;
+    let mut file = Map::new();
+    for (part, suffix) in [live, beside] {
+        file.insert(format!("{name}{suffix}"), json!({ "Gyroscope": part }));
+    }
+    file.insert(format!("{name}_notes"), notes.into());
+    let file = Value::from(file);
+    format!("{file:#}\n")
+}
+
+/// Three axes are a row of three; of any other number, MATLAB takes one for all.
+fn property(
+    known: &Characterisation,
+    part: &mut Map<String, Value>,
+    notes: &mut Vec<String>,
+    key: &str,
+    of_axis: impl Fn(&AxisNoise) -> Given,
+) {
+    let given: Vec<Given> = known.axes.iter().map(&of_axis).collect();
+    let values: Vec<f64> = given.iter().filter_map(Given::value).collect();
+    let (value, words) = if given.len() == 3 && values.len() == 3 {
+        let named = known.axes.iter().zip(&given);
+        let said = named.filter(|(_, given)| !given.words().is_empty());
+        let said = said.map(|(axis, given)| format!("{:?}: {}", axis.name, given.words()));
+        (Some(json!(values)), said.collect::<Vec<_>>().join("; "))
+    } else {
+        let common = known.common(of_axis);
+        (common.value().map(Value::from), common.words().to_owned())
+    };
+    let missing = value.is_none();
+    if let Some(value) = value {
+        part.insert(key.into(), value);
+    }
+    if !words.is_empty() {
+        let left_out = if missing { " left out" } else { "" };
+        notes.push(format!("{key}{left_out}: {words}"));
+    }
+}

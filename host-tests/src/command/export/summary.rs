@@ -1,0 +1,118 @@
+//! What stands in the comments of every format: where the numbers come from, axis by axis.
+
+use super::{AxisNoise, Characterisation, decimal::decimal};
+use crate::{
+    command::{
+        fit_table::LEAST_P_VALUE,
+        number::{number, probability},
+    },
+    overbound::Overbound,
+};
+use allanite::Coefficient;
+
+/// The lines, without the marks of a comment. Names in them are quoted: no name can end a comment.
+pub(super) fn lines(known: &Characterisation) -> Vec<String> {
+    let mut lines = vec![
+        format!(
+            "Noise of a gyro, by allanite {}.",
+            env!("CARGO_PKG_VERSION")
+        ),
+        "Radians and seconds; densities are continuous-time and two-sided.".into(),
+    ];
+    for axis in &known.axes {
+        lines.push(String::new());
+        lines.extend(of_axis(axis));
+    }
+    lines
+}
+
+/// The same as a block of comments.
+pub(super) fn comment(known: &Characterisation, mark: &str) -> String {
+    let lines = lines(known).into_iter();
+    lines
+        .map(|line| format!("{mark} {line}").trim_end().to_owned() + "\n")
+        .collect()
+}
+
+fn of_axis(axis: &AxisNoise) -> Vec<String> {
+    let mut lines = vec![format!(
+        "Axis {:?}: {} samples at {} Hz",
+        axis.name,
+        axis.samples,
+        decimal(axis.rate_hz)
+    )];
+    for coefficient in &axis.coefficients {
+        lines.push(of_coefficient(axis, coefficient));
+    }
+    if axis.p_value < LEAST_P_VALUE {
+        lines.push(format!(
+            "  not adequate: p {}: something else is in this record; the overbound is the safer choice",
+            probability(axis.p_value)
+        ));
+    }
+    if let Some(equivalent) = axis.equivalent {
+        lines.push(format!(
+            "  B as a Gauss-Markov process: sigma {} rad/s, correlation time {} s; in its place the \
+             model's deviation is off by {:.1} % at most, {:.1} % rms",
+            number(equivalent.process.sigma),
+            number(equivalent.process.correlation_time_s),
+            equivalent.max_percent,
+            equivalent.rms_percent
+        ));
+    }
+    lines.push(format!("  overbound: {}", of_overbound(&axis.overbound)));
+    let with_process = match axis.overbound_with_process.gauss_markov {
+        Some(_) => of_overbound(&axis.overbound_with_process),
+        None => "the same: it needs none".into(),
+    };
+    lines.push(format!(
+        "  overbound with a Gauss-Markov process: {with_process}"
+    ));
+    lines.push("  (above the upper end of the 95 % interval of every octave)".into());
+    lines
+}
+
+fn of_coefficient(axis: &AxisNoise, coefficient: &Coefficient) -> String {
+    let name = coefficient.name.replace('_', " ");
+    let unit = unit(coefficient.half_seconds);
+    let symbol = coefficient.symbol;
+    let given = axis.best(symbol);
+    let what = match given.value() {
+        Some(value) if given.words().is_empty() => format!(
+            "{} {unit} ({} to {}, 95 %)",
+            number(value),
+            number(coefficient.lower),
+            number(coefficient.upper)
+        ),
+        Some(value) => format!("below {} {unit} ({})", number(value), given.words()),
+        None => given.words().to_owned(),
+    };
+    format!("  {name} {symbol}: {what}")
+}
+
+fn of_overbound(overbound: &Overbound) -> String {
+    let mut text = format!(
+        "white noise {} rad/s/sqrt(Hz), random walk {} rad/s^2/sqrt(Hz)",
+        number(overbound.noise_density),
+        number(overbound.random_walk)
+    );
+    if let Some(process) = overbound.gauss_markov {
+        text += &format!(
+            ", sigma {} rad/s, correlation time {} s",
+            number(process.sigma),
+            number(process.correlation_time_s)
+        );
+    }
+    text
+}
+
+/// The unit of a coefficient in letters that every file takes.
+pub(super) fn unit(half_seconds: i8) -> &'static str {
+    match half_seconds {
+        2 => "rad",
+        1 => "rad/s/sqrt(Hz)",
+        0 => "rad/s",
+        -1 => "rad/s^2/sqrt(Hz)",
+        _ => "rad/s^2",
+    }
+}

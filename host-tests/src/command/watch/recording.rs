@@ -1,0 +1,233 @@
+//! Lines of counts on their way into the accumulators.
+
+use crate::{
+    curve_file::AxisCurve,
+    failure::Failure,
+    log::{Axis, OCTAVES},
+    unit::Unit,
+};
+use allanite::Accumulator;
+
+/// A line longer than this is none.
+const LONGEST_LINE: usize = 4096;
+
+/// What has been recorded.
+pub(super) struct Recording {
+    rate_hz: f64,
+    rate_per_count: f64,
+    unit: Unit,
+    names: Option<Vec<String>>,
+    /// Known from the first sample on.
+    accumulators: Vec<Accumulator<OCTAVES>>,
+    /// What has come of the next line.
+    line: Vec<u8>,
+    counts: Vec<i32>,
+    garbled: u64,
+}
+
+impl Recording {
+    /// Nothing yet, of a gyro with that scale. Axes are named as given, or as the first line has many.
+    pub(super) fn new(
+        rate_hz: f64,
+        rate_per_count: f64,
+        unit: Unit,
+        names: Option<Vec<String>>,
+    ) -> Result<Self, Failure> {
+        for (option, value) in [("--rate", rate_hz), ("--scale", rate_per_count)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(Failure::option(
+                    format!("{option} {value} is impossible"),
+                    "give a positive, finite number",
+                ));
+            }
+        }
+        if let Some(names) = &names {
+            let twice = |(i, name): (usize, &String)| names[..i].contains(name);
+            if names.iter().any(String::is_empty) || names.iter().enumerate().any(twice) {
+                return Err(Failure::option(
+                    "--axes: a name is empty or there twice",
+                    "give each axis a name of its own",
+                ));
+            }
+        }
+        Ok(Self {
+            rate_hz,
+            rate_per_count,
+            unit,
+            names,
+            accumulators: Vec::new(),
+            line: Vec::new(),
+            counts: Vec::new(),
+            garbled: 0,
+        })
+    }
+
+    /// Takes bytes as they come; samples are those of complete lines.
+    pub(super) fn take(&mut self, bytes: &[u8]) {
+        for piece in bytes.split_inclusive(|&byte| byte == b'\n') {
+            // One byte beyond the longest is enough to know that it is too long.
+            let room = (LONGEST_LINE + 1).saturating_sub(self.line.len());
+            match piece.strip_suffix(b"\n") {
+                Some(end) => {
+                    self.line.extend_from_slice(&end[..end.len().min(room)]);
+                    let line = std::mem::take(&mut self.line);
+                    self.take_line(&line);
+                    self.line = line;
+                    self.line.clear();
+                }
+                None => self.line.extend_from_slice(&piece[..piece.len().min(room)]),
+            }
+        }
+    }
+
+    fn take_line(&mut self, line: &[u8]) {
+        let line_is_short = line.len() <= LONGEST_LINE;
+        let line = line.trim_ascii();
+        if line_is_short && (line.is_empty() || line.starts_with(b"#")) {
+            return;
+        }
+        self.counts.clear();
+        let mut fields = line
+            .split(|byte| b",; \t".contains(byte))
+            .filter(|field| !field.is_empty());
+        let read = line_is_short
+            && fields.all(|field| match atoi_simd::parse::<i32, false, false>(field) {
+                Ok(count) => {
+                    self.counts.push(count);
+                    true
+                }
+                Err(_) => false,
+            });
+        let number = self
+            .names
+            .as_ref()
+            .map_or(self.accumulators.len(), Vec::len);
+        if !read || (number > 0 && self.counts.len() != number) || self.counts.is_empty() {
+            self.garbled += 1;
+            self.accumulators.iter_mut().for_each(Accumulator::gap);
+            return;
+        }
+        if self.accumulators.is_empty() {
+            self.accumulators = vec![Accumulator::new(); self.counts.len()];
+        }
+        for (accumulator, &count) in self.accumulators.iter_mut().zip(&self.counts) {
+            accumulator.push(count);
+        }
+    }
+
+    /// Samples of an axis so far.
+    pub(super) fn samples(&self) -> u64 {
+        self.accumulators.first().map_or(0, Accumulator::samples)
+    }
+
+    /// Ends of contiguous stretches so far.
+    pub(super) fn gaps(&self) -> u64 {
+        self.accumulators.first().map_or(0, Accumulator::gaps)
+    }
+
+    /// Lines that were no samples.
+    pub(super) const fn garbled(&self) -> u64 {
+        self.garbled
+    }
+
+    /// Samples per second.
+    pub(super) const fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// The curves as of now; `None` as long as they have not two octaves.
+    pub(super) fn curves(&self) -> Result<Option<Vec<AxisCurve>>, Failure> {
+        let of_axis = |(i, accumulator): (usize, &Accumulator<OCTAVES>)| {
+            let axis = Axis {
+                name: self.name(i),
+                rate_per_count: self.rate_per_count,
+                accumulator: accumulator.clone(),
+                evidence: None,
+            };
+            AxisCurve::of(&axis, self.rate_hz, self.unit)
+        };
+        let curves = self.accumulators.iter().enumerate().map(of_axis);
+        let curves = curves.collect::<Result<Vec<_>, _>>()?;
+        let long = !curves.is_empty() && curves.iter().all(|curve| curve.octaves.len() >= 2);
+        Ok(long.then_some(curves))
+    }
+
+    fn name(&self, i: usize) -> String {
+        match (&self.names, self.accumulators.len()) {
+            (Some(names), _) => names[i].clone(),
+            (None, 1) => "gyro".into(),
+            (None, 2 | 3) => ["x", "y", "z"][i].into(),
+            (None, _) => format!("axis{}", i + 1),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recording() -> Recording {
+        Recording::new(100.0, 1.0, Unit::DegreesPerSecond, None).unwrap()
+    }
+
+    #[test]
+    fn pieces_of_any_length_make_the_same_curve() {
+        let text: String = (0..500_i32)
+            .map(|i| match i % 50 {
+                49 => format!("{i},oops\n"),
+                7 => format!("# {i}\n\n{i};{}\r\n", i * i % 17),
+                _ => format!("{i}, -{}\n", i * i % 31),
+            })
+            .collect();
+        let mut whole = recording();
+        whole.take(text.as_bytes());
+        assert_eq!(
+            (whole.samples(), whole.garbled(), whole.gaps()),
+            (490, 10, 10)
+        );
+        for piece in [1, 2, 3, 7, 64, 1000] {
+            let mut pieces = recording();
+            text.as_bytes()
+                .chunks(piece)
+                .for_each(|piece| pieces.take(piece));
+            assert!(
+                pieces.accumulators == whole.accumulators,
+                "pieces of {piece}"
+            );
+        }
+    }
+
+    #[test]
+    fn line_that_is_no_sample_is_a_gap_and_an_unfinished_one_is_nothing() {
+        let garbled = [
+            "1 2\n",
+            "1.5\n",
+            "99999999999\n",
+            "\u{fffd}\n",
+            "--1\n",
+            ",\n",
+            &format!("{}\n", "1".repeat(2 * LONGEST_LINE)),
+            &format!("{}5\n", " ".repeat(2 * LONGEST_LINE)),
+        ]
+        .map(str::to_owned);
+        for line in garbled {
+            let mut recording = recording();
+            recording.take(b"5\n6\n");
+            recording.take(line.as_bytes());
+            recording.take(b"7\n8");
+            let counted = (recording.samples(), recording.garbled(), recording.gaps());
+            assert_eq!(counted, (3, 1, 1), "{line:?}");
+        }
+    }
+
+    #[test]
+    fn any_bytes_are_taken_without_a_panic() {
+        let mut random = 7_u32;
+        let mut recording = recording();
+        for _ in 0..2000 {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            recording.take(&random.to_le_bytes());
+        }
+        assert!(recording.garbled() > 0);
+    }
+}

@@ -1,0 +1,290 @@
+//! A recording on the terminal: curves above, coefficients below.
+
+use super::status::{AxisStatus, Status, verdict, waiting};
+use crate::command::{
+    fit_table,
+    number::{duration, number},
+    units,
+};
+use crossterm::{
+    cursor::{Hide, Show},
+    execute,
+    terminal::{EnterAlternateScreen, LeaveAlternateScreen},
+};
+use ratatui::{
+    Frame, Terminal,
+    backend::CrosstermBackend,
+    layout::{Constraint, Layout, Rect},
+    style::{Color, Modifier, Style},
+    symbols::Marker,
+    text::{Line, Span},
+    widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Row, Table},
+};
+use std::io::{self, Stdout};
+
+/// One colour an axis, and again from the first.
+const COLOURS: [Color; 6] = [
+    Color::Cyan,
+    Color::Yellow,
+    Color::Magenta,
+    Color::Green,
+    Color::Blue,
+    Color::Red,
+];
+
+/// The terminal as long as the recording is shown; as it was afterwards.
+pub(super) struct Screen {
+    terminal: Terminal<CrosstermBackend<Stdout>>,
+}
+
+impl Screen {
+    /// Takes the terminal.
+    pub(super) fn open() -> io::Result<Self> {
+        let terminal = Terminal::new(CrosstermBackend::new(io::stdout()))?;
+        // Dropped with an error too, which gives the terminal back.
+        let screen = Self { terminal };
+        execute!(io::stdout(), EnterAlternateScreen, Hide)?;
+        Ok(screen)
+    }
+
+    /// Shows a recording as it is.
+    pub(super) fn draw(&mut self, status: &Status) -> io::Result<()> {
+        self.terminal.draw(|frame| draw(frame, status))?;
+        Ok(())
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        // Nothing can be done about a terminal that is gone.
+        let _ = execute!(io::stdout(), LeaveAlternateScreen, Show);
+    }
+}
+
+/// Lines of an axis' table: a title, a header and five coefficients, between borders.
+const TABLE_ROWS: u16 = 8;
+
+fn draw(frame: &mut Frame<'_>, status: &Status) {
+    let tables = TABLE_ROWS * status.axes.len() as u16;
+    let [head, chart, tables, foot] = Layout::vertical([
+        Constraint::Length(1),
+        Constraint::Min(8),
+        Constraint::Max(tables),
+        Constraint::Length(1),
+    ])
+    .areas(frame.area());
+    frame.render_widget(Paragraph::new(heading(status)), head);
+    curves(frame, chart, status);
+    let areas = Layout::vertical(status.axes.iter().map(|_| Constraint::Max(TABLE_ROWS)));
+    for (i, (axis, area)) in status
+        .axes
+        .iter()
+        .zip(areas.split(tables).iter())
+        .enumerate()
+    {
+        table(
+            frame,
+            *area,
+            axis,
+            COLOURS[i % COLOURS.len()],
+            status.length_s(),
+        );
+    }
+    let foot_line = format!("{}   Ctrl-C saves and ends", status.saving);
+    frame.render_widget(Paragraph::new(foot_line).style(dim()), foot);
+}
+
+fn dim() -> Style {
+    Style::new().add_modifier(Modifier::DIM)
+}
+
+fn heading(status: &Status) -> Line<'static> {
+    let record = format!(
+        "{}: {} samples at {} Hz",
+        duration(status.length_s()),
+        status.samples,
+        status.rate_hz
+    );
+    let mut spans = vec![Span::styled(
+        record,
+        Style::new().add_modifier(Modifier::BOLD),
+    )];
+    if status.garbled > 0 {
+        let lost = format!("   {}", status.losses());
+        spans.push(Span::styled(lost, Style::new().fg(Color::Red)));
+    }
+    Line::from(spans)
+}
+
+/// Allan deviations over averaging times, on logarithmic axes.
+fn curves(frame: &mut Frame<'_>, area: Rect, status: &Status) {
+    let fitted = status.axes.iter().filter_map(|axis| axis.fitted.as_ref());
+    let unit = fitted
+        .clone()
+        .next()
+        .map_or("", |fitted| fitted.axis.unit.name());
+    let points: Vec<(String, Vec<(f64, f64)>)> = fitted
+        .map(|fitted| {
+            let points = fitted.curve.points().iter();
+            let points = points.map(|point| (point.tau_s.log10(), point.deviation().log10()));
+            (
+                fitted.axis.axis.clone(),
+                points.filter(|(_, y)| y.is_finite()).collect(),
+            )
+        })
+        .collect();
+    let block = Block::bordered().title(format!("Allan deviation, {unit}, over τ, s"));
+    let all = points.iter().flat_map(|(_, points)| points);
+    let Some((x, y)) = bounds(all) else {
+        let wait = Paragraph::new("waiting for two octaves of samples").block(block);
+        frame.render_widget(wait, area);
+        return;
+    };
+    let datasets = points.iter().enumerate().map(|(i, (name, points))| {
+        Dataset::default()
+            .name(name.as_str())
+            .marker(Marker::Braille)
+            .graph_type(GraphType::Line)
+            .style(Style::new().fg(COLOURS[i % COLOURS.len()]))
+            .data(points)
+    });
+    let labels = |[low, high]: [f64; 2]| {
+        [low, 0.5 * (low + high), high].map(|exponent| number(10f64.powf(exponent)))
+    };
+    let chart = Chart::new(datasets.collect())
+        .block(block)
+        .x_axis(Axis::default().bounds(x).labels(labels(x)).style(dim()))
+        .y_axis(Axis::default().bounds(y).labels(labels(y)).style(dim()));
+    frame.render_widget(chart, area);
+}
+
+/// Of both coordinates, with some room.
+fn bounds<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> Option<([f64; 2], [f64; 2])> {
+    const ROOM: f64 = 0.1;
+    let mut bounds: Option<([f64; 2], [f64; 2])> = None;
+    for &(x, y) in points {
+        let (xs, ys) = bounds.get_or_insert(([x, x], [y, y]));
+        *xs = [xs[0].min(x), xs[1].max(x)];
+        *ys = [ys[0].min(y), ys[1].max(y)];
+    }
+    bounds.map(|(x, [low, high])| (x, [low - ROOM, high + ROOM]))
+}
+
+/// Coefficients of an axis, and how much longer for those that are not measured.
+fn table(frame: &mut Frame<'_>, area: Rect, axis: &AxisStatus, colour: Color, length_s: f64) {
+    let title = match &axis.fitted {
+        Some(fitted) => format!("{}: {}", axis.name, verdict(&fitted.fit)),
+        None => format!("{}: nothing to fit yet", axis.name),
+    };
+    let block = Block::bordered()
+        .title(title)
+        .border_style(Style::new().fg(colour));
+    let coefficients = axis.fitted.iter().flat_map(|fitted| {
+        let unit = fitted.axis.unit;
+        fitted.fit.coefficients.iter().map(move |one| {
+            let (_, customary_unit) = units::customary(unit, one.half_seconds).unwrap_or((1.0, ""));
+            Row::new([
+                one.name.replace('_', " "),
+                one.symbol.to_owned(),
+                fit_table::customary(one, unit),
+                customary_unit.to_owned(),
+                fit_table::interval(one, unit),
+                waiting(one, length_s),
+            ])
+        })
+    });
+    let widths = [
+        Constraint::Length(17),
+        Constraint::Length(1),
+        Constraint::Length(11),
+        Constraint::Length(7),
+        Constraint::Length(23),
+        Constraint::Min(12),
+    ];
+    let header = [
+        "effect",
+        "",
+        "value",
+        "unit",
+        "95 % interval",
+        "how much longer",
+    ];
+    let table = Table::new(coefficients, widths)
+        .header(Row::new(header).style(dim()))
+        .column_spacing(2)
+        .block(block);
+    frame.render_widget(table, area);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::status::tests::status, *};
+    use ratatui::backend::TestBackend;
+
+    fn drawn(width: u16, height: u16, status: &Status) -> Vec<String> {
+        let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+        terminal.draw(|frame| draw(frame, status)).unwrap();
+        let buffer = terminal.backend().buffer();
+        let row = |y| {
+            (0..width)
+                .map(|x| buffer[(x, y)].symbol())
+                .collect::<String>()
+        };
+        (0..height).map(row).collect()
+    }
+
+    #[test]
+    fn screen_has_the_record_its_curves_coefficients_and_verdicts() {
+        let rows = drawn(100, 40, &status());
+        let text = rows.join("\n");
+        assert!(rows[0].starts_with(
+            "30.000 s: 3000 samples at 100 Hz   lines that were no samples: 1, gaps: 1"
+        ));
+        assert!(
+            rows[1].contains("Allan deviation, deg/s, over τ, s"),
+            "{text}"
+        );
+        assert!(rows[39].starts_with("curve.json saved 3 s ago   Ctrl-C saves and ends"));
+        // Dots of the curves, from one side of the chart to the other.
+        let braille = |row: &String| row.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c));
+        assert!(
+            rows[2..22].iter().filter(|row| braille(row)).count() >= 8,
+            "{text}"
+        );
+        for (name, first) in [("left", 23), ("right", 31)] {
+            assert!(
+                rows[first].contains(&format!("┌{name}: adequate, p = 0.")),
+                "{text}"
+            );
+            assert!(
+                rows[first + 1].contains("effect") && rows[first + 1].contains("how much longer")
+            );
+            let symbols = ["Q", "N", "B", "K", "R"];
+            for (row, symbol) in rows[first + 2..first + 7].iter().zip(symbols) {
+                assert!(row.contains(&format!("  {symbol}  ")), "{text}");
+            }
+            let walk = &rows[first + 3];
+            assert!(
+                walk.contains("angle random walk  N  2.") && walk.contains("°/√h"),
+                "{text}"
+            );
+            let waits = [" more", " without gaps", "no record would show it"];
+            assert!(
+                waits.iter().any(|wait| rows[first + 6].contains(wait)),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn terminals_of_any_size_and_records_without_samples_are_drawn() {
+        let mut empty = status();
+        empty.axes.clear();
+        for (width, height) in [(1, 1), (7, 3), (20, 10), (80, 24), (300, 100)] {
+            for status in [&status(), &empty] {
+                assert_eq!(drawn(width, height, status).len(), usize::from(height));
+            }
+        }
+        assert!(drawn(60, 20, &empty)[2].contains("waiting for two octaves"));
+    }
+}

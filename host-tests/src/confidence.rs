@@ -1,0 +1,76 @@
+//! Confidence limits of a curve, octave by octave.
+
+use crate::log::OCTAVES;
+use allanite::{Curve, Fit, Model, curve_covariance};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Probability below the lower limit, and above the upper one: 95 % lie between them.
+const TAIL: f64 = 0.025;
+
+/// Where an octave's true Allan variance lies, in rate units squared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Lower end of the 95 % interval.
+    pub lower: f64,
+    /// Upper end.
+    pub upper: f64,
+}
+
+/// The two-sided 95 % interval of every octave by itself.
+///
+/// An estimate of variance `σ̂²` is distributed as `σ² χ²_ν/ν` with the equivalent degrees of freedom
+/// `ν = 2 σ⁴ / Var(σ̂²)` (NIST SP 1065, 2008, section 5.4), for which the covariance of the curve at
+/// the fitted model is taken: `σ̂² ν/χ²_ν(0.975) … σ̂² ν/χ²_ν(0.025)`.
+pub fn limits(curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Vec<Limits> {
+    let squares = fit.squares();
+    let covariance = curve_covariance(curve, model, &squares);
+    let octaves = curve.points().iter().enumerate();
+    octaves
+        .map(|(k, point)| {
+            let variance = model.variance(&squares, point.m, curve.interval_s());
+            let freedom = 2.0 * variance * variance / covariance[(k, k)];
+            interval(point.variance, freedom)
+        })
+        .collect()
+}
+
+/// The interval of a variance with so many degrees of freedom.
+fn interval(variance: f64, freedom: f64) -> Limits {
+    // No estimate has less than one, nor is any model known so well that more would matter.
+    let freedom = if freedom.is_finite() {
+        freedom.clamp(1.0, 1e12)
+    } else {
+        1.0
+    };
+    match ChiSquared::new(freedom) {
+        Ok(distribution) => Limits {
+            lower: variance * freedom / distribution.inverse_cdf(1.0 - TAIL),
+            upper: variance * freedom / distribution.inverse_cdf(TAIL),
+        },
+        Err(_) => Limits {
+            lower: 0.0,
+            upper: f64::INFINITY,
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_those_of_the_tables() {
+        // χ² quantiles of 10 degrees of freedom, Abramowitz & Stegun 1964, table 26.8.
+        let limits = interval(1.0, 10.0);
+        assert!((10.0 / limits.upper - 3.246_97).abs() < 1e-4, "{limits:?}");
+        assert!((10.0 / limits.lower - 20.483_2).abs() < 1e-3, "{limits:?}");
+    }
+
+    #[test]
+    fn many_degrees_of_freedom_leave_a_normal_interval() {
+        let limits = interval(2.0, 1e8);
+        let error = 2.0 * (2.0_f64 / 1e8).sqrt();
+        assert!(((limits.upper - 2.0) / error - 1.96).abs() < 0.01);
+        assert!(((2.0 - limits.lower) / error - 1.96).abs() < 0.01);
+    }
+}

@@ -1,0 +1,396 @@
+//! Every format, read back by what its consumer reads it with.
+
+mod common;
+
+use common::{ADIS16405, json, output, refusal};
+use saphyr::{LoadableYamlNode, Yaml};
+use serde_json::Value;
+use std::{collections::HashMap, fs, path::Path, process::Command};
+use tempfile::TempDir;
+
+const TOLERANCE: f64 = 1e-12;
+
+fn close(value: f64, expected: f64) -> bool {
+    (value / expected - 1.0).abs() <= TOLERANCE
+}
+
+/// A folder with the curves of a real gyro, one axis of which has a name that means something to
+/// every format, and those of a simulated one in `short.json`, whose random walk is not observable.
+fn folder() -> (TempDir, String) {
+    let hostile = "g\"x*/ // #: ,\\\n'{%} é".to_owned();
+    let folder = TempDir::new().unwrap();
+    let mut curve: Value = serde_json::from_str(&fs::read_to_string(ADIS16405).unwrap()).unwrap();
+    curve["axes"][0]["axis"] = hostile.clone().into();
+    fs::write(folder.path().join("curve.json"), curve.to_string()).unwrap();
+    let simulate = ["simulate", "mems", "--duration", "200s", "--axes", "1"];
+    output(
+        folder.path(),
+        &[&simulate[..], &["--output", "log.csv"]].concat(),
+    );
+    let measure = ["measure", "log.csv", "--output", "short.json"];
+    output(folder.path(), &measure);
+    (folder, hostile)
+}
+
+fn export(folder: &Path, input: &str, arguments: &[&str]) -> String {
+    output(
+        folder,
+        &[&["export", input, "--format"], arguments].concat(),
+    )
+}
+
+/// In radians, what a filter may take of each axis: the value, or the upper bound.
+fn expected(folder: &Path, input: &str, symbol: &str) -> Vec<Option<f64>> {
+    let fit = json(folder, &["fit", input]);
+    let radians = std::f64::consts::PI / 180.0;
+    let of_axis = |axis: &Value| {
+        assert_eq!(axis["unit"], "deg/s");
+        let coefficients = axis["coefficients"].as_array().unwrap();
+        let one = coefficients.iter().find(|one| one["symbol"] == symbol);
+        let one = one.unwrap();
+        match one["state"].as_str().unwrap() {
+            "measured" => Some(radians * one["value"].as_f64().unwrap()),
+            "upper_bound" => Some(radians * one["upper"].as_f64().unwrap()),
+            _ => None,
+        }
+    };
+    fit["axes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(of_axis)
+        .collect()
+}
+
+fn largest(values: &[Option<f64>]) -> f64 {
+    values.iter().flatten().copied().fold(0.0, f64::max)
+}
+
+fn yaml(text: &str) -> Yaml<'_> {
+    Yaml::load_from_str(text).unwrap().remove(0)
+}
+
+/// What the comments give beside the numbers that count.
+fn commented(text: &str, key: &str) -> f64 {
+    let line = text
+        .lines()
+        .find_map(|line| line.trim_start().strip_prefix(&format!("# {key}: ")));
+    line.unwrap()
+        .split_whitespace()
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap()
+}
+
+/// Whether the resolver of YAML 1.1, which Kalibr's parser is, takes the text for a float.
+fn is_yaml_1_1_float(text: &str) -> bool {
+    let (digits, exponent) = text
+        .split_once('e')
+        .map_or((text, None), |(d, e)| (d, Some(e)));
+    let signed = exponent.is_none_or(|exponent| exponent.starts_with(['+', '-']));
+    digits.contains('.') && signed && text.parse::<f64>().is_ok()
+}
+
+#[test]
+fn kalibr_reads_the_densities_of_the_fit_and_of_the_overbound() {
+    let (folder, _) = folder();
+    let text = export(
+        folder.path(),
+        "curve.json",
+        &["kalibr", "--rostopic", "/a: \"b\" #c"],
+    );
+    let file = yaml(&text);
+    let number = |key: &str| file[key].as_floating_point().unwrap();
+    for (key, symbol) in [
+        ("gyroscope_noise_density", "N"),
+        ("gyroscope_random_walk", "K"),
+    ] {
+        let wanted = largest(&expected(folder.path(), "curve.json", symbol));
+        assert!(close(number(key), wanted), "{key}");
+        let line = text.lines().find(|line| line.starts_with(key)).unwrap();
+        assert!(
+            is_yaml_1_1_float(line.split_whitespace().nth(1).unwrap()),
+            "{line}"
+        );
+    }
+    assert_eq!(number("update_rate"), 100.0);
+    assert_eq!(file["rostopic"].as_str(), Some("/a: \"b\" #c"));
+    // A gyro's record says nothing of an accelerometer: Kalibr will ask for it.
+    assert!(file.as_mapping_get("accelerometer_noise_density").is_none());
+
+    let above = export(folder.path(), "curve.json", &["kalibr", "--overbound"]);
+    for key in ["gyroscope_noise_density", "gyroscope_random_walk"] {
+        let overbound = yaml(&above)[key].as_floating_point().unwrap();
+        assert_eq!(commented(&text, key), overbound);
+        assert_eq!(commented(&above, key), number(key));
+    }
+}
+
+#[test]
+fn openvins_finds_the_same_under_imu0_and_the_accelerometer_as_given() {
+    let (folder, _) = folder();
+    let accelerometer = [
+        "vins",
+        "--accelerometer-noise-density",
+        "2e-3",
+        "--accelerometer-random-walk",
+        "0.00003",
+    ];
+    let text = export(folder.path(), "curve.json", &accelerometer);
+    // OpenCV's first line is none of YAML.
+    let rest = text.strip_prefix("%YAML:1.0\n").unwrap();
+    let file = yaml(rest);
+    let imu = &file["imu0"];
+    let number = |key: &str| imu[key].as_floating_point().unwrap();
+    assert_eq!(number("accelerometer_noise_density"), 2e-3);
+    assert_eq!(number("accelerometer_random_walk"), 3e-5);
+    for (key, symbol) in [
+        ("gyroscope_noise_density", "N"),
+        ("gyroscope_random_walk", "K"),
+    ] {
+        assert!(close(
+            number(key),
+            largest(&expected(folder.path(), "curve.json", symbol))
+        ));
+    }
+    assert_eq!(imu["rostopic"].as_str(), Some("/imu0"));
+    assert_eq!(imu["T_i_b"][3][3].as_floating_point(), Some(1.0));
+}
+
+/// Names and values of a parameter file, comments left out.
+fn parameters(text: &str, value: impl Fn(&str) -> (String, f64)) -> HashMap<String, f64> {
+    let lines = text
+        .lines()
+        .filter(|line| !line.starts_with('#') && !line.is_empty());
+    lines.map(value).collect()
+}
+
+#[test]
+fn autopilots_read_discrete_noise_per_prediction() {
+    let (folder, _) = folder();
+    let density = largest(&expected(folder.path(), "curve.json", "N"));
+    let walk = largest(&expected(folder.path(), "curve.json", "K"));
+
+    let text = export(folder.path(), "curve.json", &["px4"]);
+    let px4 = parameters(&text, |line| {
+        let fields: Vec<&str> = line.split('\t').collect();
+        assert_eq!(
+            (fields.len(), fields[0], fields[1], fields[4]),
+            (5, "1", "1", "9")
+        );
+        (fields[2].into(), fields[3].parse().unwrap())
+    });
+    assert_eq!(px4.len(), 2);
+    assert!(close(px4["EKF2_GYR_NOISE"], density / 0.01_f64.sqrt()));
+    assert!(close(px4["EKF2_GYR_B_NOISE"], walk / 0.01_f64.sqrt()));
+
+    let slower = ["ardupilot", "--prediction-interval", "0.02"];
+    for (arguments, interval_s) in [(&slower[..1], 0.012_f64), (&slower[..], 0.02)] {
+        let text = export(folder.path(), "curve.json", arguments);
+        let ardupilot = parameters(&text, |line| {
+            let (name, value) = line.split_once(',').unwrap();
+            (name.into(), value.parse().unwrap())
+        });
+        assert_eq!(ardupilot.len(), 2);
+        assert!(close(
+            ardupilot["EK3_GYRO_P_NSE"],
+            density / interval_s.sqrt()
+        ));
+        assert!(close(
+            ardupilot["EK3_GBIAS_P_NSE"],
+            walk / interval_s.sqrt()
+        ));
+    }
+}
+
+#[test]
+fn matlab_gets_three_axes_where_all_are_known_and_one_number_else() {
+    let (folder, _) = folder();
+    let name = "part \"one\"\n";
+    let text = export(folder.path(), "curve.json", &["matlab", "--name", name]);
+    let file: Value = serde_json::from_str(&text).unwrap();
+    let gyro = &file[name]["Gyroscope"];
+    let row = |key: &str| -> Vec<f64> {
+        let row = gyro[key].as_array().unwrap();
+        row.iter().map(|value| value.as_f64().unwrap()).collect()
+    };
+    for (key, symbol) in [("NoiseDensity", "N"), ("BiasInstability", "B")] {
+        let wanted = expected(folder.path(), "curve.json", symbol);
+        assert_eq!(wanted.len(), 3);
+        for (value, wanted) in row(key).into_iter().zip(wanted) {
+            assert!(close(value, wanted.unwrap()), "{key}");
+        }
+    }
+    let wanted = largest(&expected(folder.path(), "curve.json", "K"));
+    assert!(close(gyro["RandomWalk"].as_f64().unwrap(), wanted));
+    let above = &file[format!("{name}_overbound")]["Gyroscope"];
+    assert_eq!(above["NoiseDensity"].as_array().unwrap().len(), 3);
+    assert_eq!(above["RandomWalk"].as_array().unwrap().len(), 3);
+}
+
+/// Compiles a header by itself and prints its macros.
+fn compiled(folder: &Path, header: &str, macros: &[String]) -> Vec<f64> {
+    fs::write(folder.join("noise.h"), header).unwrap();
+    let prints = macros
+        .iter()
+        .map(|name| format!("printf(\"%.17g\\n\", {name});"));
+    let program = format!(
+        "#include \"noise.h\"\n#include \"noise.h\"\n#include <stdio.h>\nint main(void) {{ {} return 0; }}\n",
+        prints.collect::<String>()
+    );
+    fs::write(folder.join("main.c"), program).unwrap();
+    let strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"];
+    let compiler = Command::new("cc")
+        .current_dir(folder)
+        .args(strict)
+        .args(["-o", "print", "main.c"])
+        .output()
+        .unwrap();
+    assert!(
+        compiler.status.success(),
+        "{}",
+        String::from_utf8_lossy(&compiler.stderr)
+    );
+    let printed = Command::new(folder.join("print")).output().unwrap();
+    let text = String::from_utf8(printed.stdout).unwrap();
+    text.lines().map(|line| line.parse().unwrap()).collect()
+}
+
+#[test]
+fn c_compiler_takes_the_header_and_prints_the_same_numbers() {
+    let (folder, _) = folder();
+    let header = export(folder.path(), "curve.json", &["c", "--name", "3 axis-gyro"]);
+    let macros = ["NOISE_DENSITY", "NOISE_SIGMA", "OVERBOUND_RANDOM_WALK"];
+    let all = macros.map(|name| format!("N3_AXIS_GYRO_ALL_{name}"));
+    let quantization = "N3_AXIS_GYRO_AXIS_GZ_QUANTIZATION".to_owned();
+    let macros = [&all[..], &[quantization]].concat();
+    let printed = compiled(folder.path(), &header, &macros);
+    let density = largest(&expected(folder.path(), "curve.json", "N"));
+    assert!(close(printed[0], density));
+    assert!(close(printed[1], density * 10.0));
+    let above = export(folder.path(), "curve.json", &["kalibr", "--overbound"]);
+    let walk = yaml(&above)["gyroscope_random_walk"]
+        .as_floating_point()
+        .unwrap();
+    assert!(close(printed[2], walk));
+    let quantization = expected(folder.path(), "curve.json", "Q")[2].unwrap();
+    assert!(close(printed[3], quantization));
+}
+
+#[test]
+fn csv_has_the_curve_its_limits_and_models() {
+    let (folder, hostile) = folder();
+    let text = export(folder.path(), "curve.json", &["csv"]);
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    let names = "axis tau_s m differences deviation lower upper model overbound";
+    let header: Vec<String> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
+    assert_eq!(header, names.split(' ').collect::<Vec<_>>());
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let compared = json(folder.path(), &["compare", "curve.json"]);
+    let octaves = compared["axes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|axis| {
+            let octaves = axis["octaves"].as_array().unwrap();
+            octaves.iter().map(move |octave| (&axis["axis"], octave))
+        });
+    let octaves: Vec<_> = octaves.collect();
+    assert_eq!(rows.len(), octaves.len());
+    assert_eq!(&rows[0][0], hostile);
+    let radians = std::f64::consts::PI / 180.0;
+    for (row, (axis, octave)) in rows.iter().zip(octaves) {
+        let number = |i: usize| row[i].parse::<f64>().unwrap();
+        assert_eq!(Some(&row[0]), axis.as_str());
+        assert!(close(number(1), octave["tau_s"].as_f64().unwrap()));
+        assert_eq!(row[2].parse().ok(), octave["m"].as_u64());
+        assert!(close(
+            number(4),
+            radians * octave["measured"].as_f64().unwrap()
+        ));
+        // The comparison keeps its columns in single precision.
+        assert!((number(7) / (radians * octave["model"].as_f64().unwrap()) - 1.0).abs() < 1e-6);
+        assert!(number(5) < number(4) && number(4) < number(6));
+        assert!(number(8) >= number(6) * (1.0 - 1e-15), "{row:?}");
+    }
+}
+
+#[test]
+fn log_in_radians_is_exported_as_it_is() {
+    let (folder, _) = folder();
+    let text = export(folder.path(), "log.csv", &["kalibr", "--unit", "rad/s"]);
+    let density = yaml(&text)["gyroscope_noise_density"]
+        .as_floating_point()
+        .unwrap();
+    let fit = json(folder.path(), &["fit", "log.csv", "--unit", "rad/s"]);
+    let walk = &fit["axes"][0]["coefficients"][1];
+    assert_eq!(walk["unit"], "rad/s/√Hz");
+    assert_eq!(Some(density), walk["value"].as_f64());
+}
+
+#[test]
+fn coefficient_that_is_not_observable_is_left_out_with_the_reason() {
+    let (folder, _) = folder();
+    assert_eq!(expected(folder.path(), "short.json", "K"), [None]);
+    let reason = "not observable in this record; one of ";
+    let text = export(folder.path(), "short.json", &["kalibr"]);
+    let file = yaml(&text);
+    assert!(file.as_mapping_get("gyroscope_random_walk").is_none());
+    assert!(text.contains(&format!(
+        "# gyroscope_random_walk:  # rad/s^2/sqrt(Hz); {reason}"
+    )));
+    let text = export(folder.path(), "short.json", &["px4"]);
+    assert!(text.contains(&format!("# EKF2_GYR_B_NOISE: {reason}")));
+    assert!(!text.contains("\n1\t1\tEKF2_GYR_B_NOISE"));
+    let text = export(folder.path(), "short.json", &["c"]);
+    assert!(text.contains(&format!(
+        "// GYRO_AXIS_GX_RANDOM_WALK is not defined: {reason}"
+    )));
+    compiled(folder.path(), &text, &["GYRO_ALL_NOISE_DENSITY".into()]);
+    let text = export(folder.path(), "short.json", &["matlab"]);
+    let file: Value = serde_json::from_str(&text).unwrap();
+    assert!(file["gyro"]["Gyroscope"].get("RandomWalk").is_none());
+    let notes = file["gyro_notes"].as_array().unwrap();
+    let said = |note: &Value| {
+        note.as_str()
+            .unwrap()
+            .starts_with("RandomWalk left out: not obs")
+    };
+    assert!(notes.iter().any(said));
+}
+
+#[test]
+fn file_is_written_as_a_whole_and_bad_options_are_refused() {
+    let (folder, _) = folder();
+    let arguments = [
+        "export",
+        "curve.json",
+        "--format",
+        "kalibr",
+        "--output",
+        "imu.yaml",
+    ];
+    assert_eq!(output(folder.path(), &arguments), "");
+    let text = fs::read_to_string(folder.path().join("imu.yaml")).unwrap();
+    assert_eq!(text, export(folder.path(), "curve.json", &["kalibr"]));
+    let interval = [
+        "export",
+        "curve.json",
+        "--format",
+        "px4",
+        "--prediction-interval",
+        "0",
+    ];
+    assert_eq!(
+        refusal(folder.path(), &interval),
+        "--prediction-interval is impossible; give a positive, finite number"
+    );
+}

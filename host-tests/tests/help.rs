@@ -1,0 +1,91 @@
+//! What the program says of itself.
+
+mod common;
+
+use clap::{CommandFactory, Parser};
+use common::output;
+use host_tests::command::CommandLine;
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Stdio},
+};
+use tempfile::TempDir;
+
+/// Names of all commands.
+fn commands() -> Vec<String> {
+    let line = CommandLine::command();
+    let names = line
+        .get_subcommands()
+        .map(|command| command.get_name().to_owned());
+    names.filter(|name| name != "help").collect()
+}
+
+#[test]
+fn help_of_every_command_has_examples_that_the_program_takes() {
+    assert!(commands().len() >= 9);
+    for command in commands() {
+        let help = output(Path::new("."), &[&command, "--help"]);
+        let examples = help.lines().filter(|line| line.starts_with("  allanite "));
+        let own = examples.filter(|line| line.starts_with(&format!("  allanite {command}")));
+        let own: Vec<&str> = own.collect();
+        assert!(own.len() >= 2, "{help}");
+        for example in own {
+            let parsed = CommandLine::try_parse_from(example.split_whitespace());
+            assert!(parsed.is_ok(), "{example}: {}", parsed.unwrap_err());
+        }
+        assert!(
+            help.contains("Exit status: 0 when all is done; 2 for bad input"),
+            "{help}"
+        );
+    }
+}
+
+#[test]
+fn completions_name_every_command_and_bash_reads_its_own() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = output(Path::new("."), &["completions", shell]);
+        for command in commands() {
+            assert!(script.contains(&command), "{shell}: {command}");
+        }
+        assert!(script.contains("overbound"), "{shell}");
+    }
+    let folder = TempDir::new().unwrap();
+    let script = folder.path().join("allanite.bash");
+    fs::write(&script, output(Path::new("."), &["completions", "bash"])).unwrap();
+    let words = "source allanite.bash; COMP_WORDS=(allanite exp); COMP_CWORD=1; \
+                 _allanite allanite exp allanite; echo ${COMPREPLY[@]}";
+    let bash = Command::new("bash")
+        .current_dir(folder.path())
+        .args(["--norc", "-c", words])
+        .stderr(Stdio::null())
+        .output()
+        .unwrap();
+    assert_eq!(String::from_utf8(bash.stdout).unwrap().trim(), "export");
+}
+
+#[test]
+fn quiet_leaves_results_alone_and_notes_out() {
+    let folder = TempDir::new().unwrap();
+    let counts: String = (0..2000_u64)
+        .map(|i| format!("{}\n", i * i * 7919 % 101))
+        .collect();
+    fs::write(folder.path().join("log.csv"), format!("gx\n{counts}")).unwrap();
+    let run = |more: &[&str]| {
+        let run = Command::new(env!("CARGO_BIN_EXE_allanite"))
+            .current_dir(folder.path())
+            .args(["fit", "log.csv", "--rate", "100"])
+            .args(more)
+            .output()
+            .unwrap();
+        assert!(run.status.success());
+        (run.stdout, String::from_utf8(run.stderr).unwrap())
+    };
+    let (loud, notes) = run(&[]);
+    let (quiet, nothing) = run(&["--quiet"]);
+    assert!(
+        notes.contains("no unit given") && nothing.is_empty(),
+        "{notes}{nothing}"
+    );
+    assert_eq!(loud, quiet);
+}

@@ -1,0 +1,354 @@
+//! A live record: what was received is in the curve, whatever ends it.
+
+mod common;
+
+use allanite::Accumulator;
+use common::refusal;
+use host_tests::{
+    curve_file::CurveFile,
+    log::{Axis, OCTAVES},
+    unit::Unit,
+};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use serialport::{SerialPort, TTYPort};
+use std::{
+    io::{Read, Write},
+    path::Path,
+    process::{Child, Command, Stdio},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+use tempfile::TempDir;
+
+const AXES: [&str; 2] = ["left", "right"];
+
+/// A line that is sent: counts, or nothing that could be any.
+#[derive(Clone, Copy)]
+enum Sent {
+    Sample([i32; 2]),
+    Garbled,
+}
+
+impl Sent {
+    fn line(self) -> String {
+        match self {
+            Self::Sample([a, b]) => format!("{a},{b}\n"),
+            Self::Garbled => "12,\u{1}x\n".into(),
+        }
+    }
+}
+
+fn lines(number: usize, seed: u64) -> Vec<Sent> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let line = |_| match random.random_range(0..1000) {
+        0 => Sent::Garbled,
+        _ => Sent::Sample([(); 2].map(|()| random.random_range(-30_000..30_000))),
+    };
+    (0..number).map(line).collect()
+}
+
+fn watch(folder: &Path, more: &[&str]) -> Child {
+    let arguments = [
+        "watch",
+        "--rate",
+        "100",
+        "--scale",
+        "0.01",
+        "--axes",
+        "left,right",
+    ];
+    Command::new(env!("CARGO_BIN_EXE_allanite"))
+        .current_dir(folder)
+        .args(arguments)
+        .args(["--output", "curve.json"])
+        .args(more)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+fn signal(child: &Child, name: &str) {
+    let kill = format!("kill -{name} {}", child.id());
+    assert!(
+        Command::new("sh")
+            .args(["-c", &kill])
+            .status()
+            .unwrap()
+            .success()
+    );
+}
+
+/// Until the curve has been saved for the first time.
+fn wait_for_curve(folder: &Path, child: &mut Child) {
+    let begun = Instant::now();
+    while !folder.join("curve.json").exists() {
+        if let Some(status) = child.try_wait().unwrap() {
+            let mut errors = String::new();
+            child
+                .stderr
+                .take()
+                .unwrap()
+                .read_to_string(&mut errors)
+                .unwrap();
+            panic!("{status}: {errors}");
+        }
+        assert!(
+            begun.elapsed() < Duration::from_secs(60),
+            "nothing is saved"
+        );
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn saved(folder: &Path) -> CurveFile {
+    CurveFile::read(&folder.join("curve.json")).unwrap()
+}
+
+/// The curves of the first lines that make up so many samples, to the bit.
+fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
+    let mut accumulators = [(); 2].map(|()| Accumulator::<OCTAVES>::new());
+    let mut rest = sent.iter();
+    while accumulators[0].samples() < samples {
+        match rest.next().expect("no more samples than were sent") {
+            Sent::Sample(counts) => {
+                for (accumulator, &count) in accumulators.iter_mut().zip(counts) {
+                    accumulator.push(count);
+                }
+            }
+            Sent::Garbled => accumulators.iter_mut().for_each(Accumulator::gap),
+        }
+    }
+    if accumulators[0].gaps() < gaps {
+        assert!(matches!(rest.next(), Some(Sent::Garbled)));
+        accumulators.iter_mut().for_each(Accumulator::gap);
+    }
+    let axes = AXES.iter().zip(accumulators).map(|(name, accumulator)| {
+        let axis = Axis {
+            name: (*name).to_owned(),
+            rate_per_count: 0.01,
+            accumulator,
+            evidence: None,
+        };
+        host_tests::curve_file::AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
+    });
+    CurveFile::new(axes.collect())
+}
+
+/// Whether the saved curve is that of a prefix of what was sent; the prefix' samples.
+fn check_prefix(folder: &Path, sent: &[Sent]) -> u64 {
+    let curves = saved(folder);
+    let (samples, gaps) = (curves.axes[0].samples, curves.axes[0].gaps);
+    assert_eq!(curves, expected(sent, samples, gaps));
+    samples
+}
+
+/// Sends lines in pieces of any length, and counts the samples that were flushed, until nobody reads.
+fn send(
+    mut pipe: impl Write + Send + 'static,
+    sent: Vec<Sent>,
+    seed: u64,
+) -> (Arc<AtomicUsize>, thread::JoinHandle<()>) {
+    let flushed = Arc::new(AtomicUsize::new(0));
+    let counter = flushed.clone();
+    let sender = thread::spawn(move || {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut rest = &sent[..];
+        while !rest.is_empty() {
+            let (piece, behind) = rest.split_at(random.random_range(1..200).min(rest.len()));
+            let text: String = piece.iter().map(|line| line.line()).collect();
+            // Cut in the middle of a line, too.
+            let (start, end) = text.as_bytes().split_at(random.random_range(0..text.len()));
+            let written = pipe.write_all(start).and_then(|()| pipe.flush());
+            thread::sleep(Duration::from_millis(random.random_range(0..4)));
+            let written = written
+                .and_then(|()| pipe.write_all(end))
+                .and_then(|()| pipe.flush());
+            if written.is_err() {
+                return;
+            }
+            let samples = piece
+                .iter()
+                .filter(|line| matches!(line, Sent::Sample(_)))
+                .count();
+            counter.fetch_add(samples, SeqCst);
+            rest = behind;
+        }
+    });
+    (flushed, sender)
+}
+
+#[test]
+fn interrupted_record_is_a_prefix_that_has_all_that_was_flushed_well_before() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(11);
+    for (seed, name) in [(1, "INT"), (2, "TERM"), (3, "INT"), (4, "INT")] {
+        let folder = TempDir::new().unwrap();
+        let sent = lines(2_000_000, seed);
+        let mut child = watch(folder.path(), &["--print-every", "0.05"]);
+        let (flushed, sender) = send(child.stdin.take().unwrap(), sent.clone(), seed);
+        while flushed.load(SeqCst) < 5000 {
+            thread::sleep(Duration::from_millis(1));
+        }
+        thread::sleep(Duration::from_micros(random.random_range(0..300_000)));
+        let well_before = flushed.load(SeqCst) as u64;
+        thread::sleep(Duration::from_millis(500));
+        signal(&child, name);
+        let ended = child.wait_with_output().unwrap();
+        assert_eq!(
+            ended.status.code(),
+            Some(0),
+            "{}",
+            String::from_utf8_lossy(&ended.stderr)
+        );
+        sender.join().unwrap();
+        let samples = check_prefix(folder.path(), &sent);
+        assert!(samples >= well_before, "{samples} of {well_before}");
+        let printed = String::from_utf8(ended.stdout).unwrap();
+        assert!(
+            printed.contains(&format!("left: {samples} samples at 100 Hz")),
+            "{printed}"
+        );
+        assert!(
+            printed
+                .lines()
+                .filter(|line| line.contains("; right: "))
+                .count()
+                >= 2
+        );
+    }
+}
+
+#[test]
+fn input_that_ends_is_saved_to_its_last_complete_line() {
+    let folder = TempDir::new().unwrap();
+    let sent = lines(5000, 7);
+    let mut child = watch(folder.path(), &[]);
+    let mut pipe = child.stdin.take().unwrap();
+    for line in &sent {
+        pipe.write_all(line.line().as_bytes()).unwrap();
+    }
+    pipe.write_all(b"1,2").unwrap();
+    drop(pipe);
+    let ended = child.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(0));
+    let samples = sent
+        .iter()
+        .filter(|line| matches!(line, Sent::Sample(_)))
+        .count();
+    assert_eq!(check_prefix(folder.path(), &sent), samples as u64);
+    let garbled = sent.len() - samples;
+    let errors = String::from_utf8(ended.stderr).unwrap();
+    assert!(
+        garbled > 0
+            && errors.starts_with(&format!(
+                "allanite: lines that were no samples: {garbled}, "
+            ))
+    );
+}
+
+#[test]
+fn curve_is_saved_on_the_way_and_whole_at_every_moment() {
+    let folder = TempDir::new().unwrap();
+    let sent = lines(2_000_000, 5);
+    let mut child = watch(folder.path(), &["--save-every", "0.05"]);
+    let (_, sender) = send(child.stdin.take().unwrap(), sent.clone(), 5);
+    wait_for_curve(folder.path(), &mut child);
+    let mut last = 0;
+    for _ in 0..40 {
+        let samples = check_prefix(folder.path(), &sent);
+        assert!(samples >= last);
+        last = samples;
+        thread::sleep(Duration::from_millis(7));
+    }
+    // Not even this loses more than what came since the last saving.
+    child.kill().unwrap();
+    child.wait().unwrap();
+    sender.join().unwrap();
+    assert!(check_prefix(folder.path(), &sent) >= last);
+}
+
+#[test]
+fn serial_port_is_read_from_a_whole_line_on() {
+    let folder = TempDir::new().unwrap();
+    let (mut device, port) = TTYPort::pair().unwrap();
+    let name = port.name().unwrap();
+    // A port has one owner.
+    drop(port);
+    let sent: Vec<Sent> = lines(100_000, 9)
+        .into_iter()
+        .filter(|line| matches!(line, Sent::Sample(_)))
+        .collect();
+    let mut child = watch(folder.path(), &["--port", &name, "--save-every", "0.05"]);
+    let ended = Arc::new(AtomicBool::new(false));
+    let (flag, counts) = (ended.clone(), sent.clone());
+    let sender = thread::spawn(move || {
+        let mut sent = counts.iter();
+        while let (false, Some(line)) = (flag.load(SeqCst), sent.next()) {
+            if device.write_all(line.line().as_bytes()).is_err() {
+                thread::sleep(Duration::from_millis(5));
+            }
+            thread::sleep(Duration::from_micros(200));
+        }
+        device
+    });
+    wait_for_curve(folder.path(), &mut child);
+    thread::sleep(Duration::from_millis(300));
+    signal(&child, "INT");
+    let output = child.wait_with_output().unwrap();
+    ended.store(true, SeqCst);
+    sender.join().unwrap();
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let curves = saved(folder.path());
+    let (samples, gaps) = (curves.axes[0].samples, curves.axes[0].gaps);
+    assert!(samples > 20 && gaps == 0, "{samples} {gaps}");
+    // From whichever line it was opened in.
+    let start = (0..sent.len() - samples as usize)
+        .find(|&start| curves == expected(&sent[start..], samples, gaps));
+    assert!(start.is_some());
+}
+
+#[test]
+fn impossible_options_are_refused_before_anything_is_read() {
+    let folder = TempDir::new().unwrap();
+    for (more, expected) in [
+        (&["--rate", "0"][..], "--rate 0 is impossible; "),
+        (
+            &["--rate", "9", "--scale", "nan"],
+            "--scale NaN is impossible; ",
+        ),
+        (
+            &["--rate", "9", "--axes", "a,a"],
+            "--axes: a name is empty or there twice; ",
+        ),
+        (
+            &["--rate", "9", "--save-every", "0"],
+            "--save-every 0 is impossible; ",
+        ),
+        (
+            &["--rate", "9", "--output", "a.csv"],
+            "a.csv: a curve file's extension is .json; ",
+        ),
+        (
+            &["--rate", "9", "--output", "no/a.json"],
+            "no/a.json: its folder does not exist; ",
+        ),
+        (
+            &["--rate", "9", "--port", "/dev/none"],
+            "--port /dev/none: ",
+        ),
+    ] {
+        let line = refusal(folder.path(), &[&["watch"], more].concat());
+        assert!(line.starts_with(expected), "{line}\nis not\n{expected}");
+    }
+}

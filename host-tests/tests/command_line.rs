@@ -387,7 +387,8 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
         (
             "silent.csv",
             &[],
-            "silent.csv: the sampling rate is not known; give it with --rate HZ",
+            "silent.csv: the sampling rate is not known; \
+             give it with --rate HZ, or name a column of time stamps with --time",
         ),
         (
             "log.txt",

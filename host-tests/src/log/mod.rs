@@ -24,29 +24,36 @@
 //! a finite number ends the reading with its row.
 
 mod accumulate;
+mod clock;
 mod columns;
 mod covariate;
 mod csv;
 mod field;
 mod lines;
 mod metadata;
+mod names;
 mod npy;
 pub mod npy_header;
 mod quantum;
+mod reading;
 mod records;
+mod scaling;
 mod source;
+mod time_column;
 mod worker;
 
 use crate::{
     failure::{Failure, Place},
-    unit::Unit,
+    unit::{Sensor, Unit},
 };
-use allanite::{Accumulator, CrossCurve, Kurtosis, Reason, Scale};
+use allanite::{Accumulator, CrossCurve, Kurtosis, Reason};
 use columns::{AxisColumn, Columns};
 pub use covariate::CovariateChoice;
 use field::{Field, Flaw};
 use indicatif::ProgressBar;
 use metadata::Metadata;
+pub use names::TimeUnit;
+use reading::read_table;
 use source::Format;
 use std::path::Path;
 
@@ -56,7 +63,7 @@ pub const OCTAVES: usize = 30;
 /// What a user may say about a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Samples per second.
+    /// Samples per second; time stamps are not needed then.
     pub rate_hz: Option<f64>,
     /// Rate units per count.
     pub scale: Option<f64>,
@@ -64,6 +71,12 @@ pub struct Options {
     pub unit: Option<Unit>,
     /// The axes, in this order; without, see [which columns are axes](self#which-columns-are-axes).
     pub columns: Option<Vec<ColumnChoice>>,
+    /// Of which sensor axes are to be found.
+    pub sensor: Option<Sensor>,
+    /// The column of time stamps; without, see [rate and gaps](self#rate-and-gaps).
+    pub time: Option<String>,
+    /// The unit of the time stamps.
+    pub time_unit: Option<TimeUnit>,
 }
 
 /// A column to take: `column` or `axis=column`.
@@ -194,6 +207,16 @@ trait Table {
     fn metadata(&self) -> &Metadata;
     fn columns(&self) -> &Columns;
 
+    /// Whether a pass shows rows one after the other, the columns of each in the order asked for.
+    fn by_rows(&self) -> bool {
+        true
+    }
+
+    /// What was found that is not as it should be, known after a pass.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Shows every value of the given columns to a visitor; of each column in the order of rows.
     fn pass<V: Visitor>(
         &self,
@@ -206,6 +229,9 @@ trait Table {
 /// What a pass over a table is made for.
 trait Visitor {
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop>;
+
+    /// Samples are missing before the next row.
+    fn gap(&mut self) {}
 }
 
 /// Why a visitor wants no more.
@@ -214,147 +240,29 @@ enum Stop {
     NotCounts,
     /// A value is no finite number either.
     Flaw(Flaw),
+    /// The row does not follow the one before.
+    Clock(Flaw),
+}
+
+impl Stop {
+    /// The failure that a value of a column was met with.
+    fn failure(&self, column: &AxisColumn, place: Place) -> Failure {
+        match self {
+            Self::Flaw(flaw) => {
+                place.failure(format!("axis {}: {}", column.axis, flaw.what), flaw.remedy)
+            }
+            Self::Clock(flaw) => flaw.at(place),
+            // Met by a visitor that takes numbers as well, so never seen.
+            Self::NotCounts => place.failure(
+                format!("axis {}: not a count", column.axis),
+                "correct the value",
+            ),
+        }
+    }
 }
 
 /// How a pass ended that found nothing wrong.
 enum Ended {
     AtTheLastRow,
     NotCounts,
-}
-
-fn read_table(
-    table: &impl Table,
-    path: &Path,
-    options: &Options,
-    (first, watch): (Option<u64>, Option<&[CovariateChoice]>),
-    progress: &ProgressBar,
-) -> Result<(Log, Vec<Axis>), Failure> {
-    let settled = table.metadata().settle(path, options)?;
-    let (axis_columns, note) = match &options.columns {
-        Some(choices) => (table.columns().chosen(path, choices)?, None),
-        None => table.columns().guessed(path)?,
-    };
-    let covariates = watch.unwrap_or_default();
-    let mut columns = axis_columns.clone();
-    columns.extend(
-        table
-            .columns()
-            .covariates(path, covariates, &axis_columns)?,
-    );
-    let plan = worker::Plan {
-        axes: axis_columns.len(),
-        first: first.unwrap_or(u64::MAX),
-        watch: watch.map(<[_]>::to_vec),
-        fineness: 0,
-    };
-    let measured = accumulate::measure(table, path, &columns, &plan, progress)?;
-    let mut notes: Vec<String> = note.into_iter().collect();
-    let mut axes = Vec::new();
-    let mut rest = Vec::new();
-    for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
-        let mut axis = Axis {
-            name: column.axis,
-            rate_per_count: settled.scale.unwrap_or(1.0) * quantum.step(),
-            accumulator: sums.accumulator,
-            evidence: None,
-        };
-        if first.is_some() {
-            let behind = Axis {
-                accumulator: sums.rest,
-                ..axis.clone()
-            };
-            check_axis(path, &behind)?;
-            rest.push(behind);
-        }
-        check_axis(path, &axis)?;
-        if let Some(watched) = sums.watched {
-            let named = covariates.iter().zip(&measured.covariates);
-            axis.evidence = Some(evidence(path, &axis, *watched, named, settled.rate_hz)?);
-        }
-        if quantum == quantum::Quantum::WHOLE && settled.scale.is_none() {
-            notes.push(format!(
-                "axis {}: whole numbers and no scale given: 1 per count assumed (say so with --scale)",
-                axis.name
-            ));
-        }
-        axes.push(axis);
-    }
-    let unit = settled.unit.unwrap_or_else(|| {
-        let assumed = Unit::DegreesPerSecond;
-        notes.push(format!(
-            "no unit given: {assumed} assumed (say so with --unit)"
-        ));
-        assumed
-    });
-    let log = Log {
-        rate_hz: settled.rate_hz,
-        unit,
-        axes,
-        notes,
-    };
-    Ok((log, rest))
-}
-
-/// What was watched, in units.
-fn evidence<'a>(
-    path: &Path,
-    axis: &Axis,
-    watched: worker::Watched,
-    covariates: impl Iterator<Item = (&'a CovariateChoice, &'a quantum::Quantum)>,
-    rate_hz: f64,
-) -> Result<Evidence, Failure> {
-    let fail = |error: allanite::Error| {
-        Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
-    };
-    let scale = Scale::new(axis.rate_per_count, rate_hz).map_err(fail)?;
-    let mut shared = Vec::new();
-    for ((choice, quantum), cross) in covariates.zip(&watched.cross) {
-        // A rate of change is counted in quanta a sample.
-        let per_count = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
-        let curve = cross.curve(&axis.accumulator, scale, per_count);
-        shared.push((choice.to_string(), curve.map_err(fail)?));
-    }
-    Ok(Evidence {
-        kurtosis: watched.moments.kurtosis(),
-        covariates: shared,
-        invalid: watched.integrity.verdict(),
-    })
-}
-
-/// Whether an axis is long enough and alive.
-fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
-    let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
-    let Axis {
-        name,
-        rate_per_count,
-        accumulator,
-        ..
-    } = axis;
-    // Two octaves with six differences each, the shorter one's neighbours less three.
-    const LEAST: u64 = 9;
-    if accumulator.samples() < LEAST {
-        return fail(
-            format!(
-                "{} samples, and two octaves need {LEAST}",
-                accumulator.samples()
-            ),
-            "record longer",
-        );
-    }
-    if accumulator
-        .octave(0)
-        .is_none_or(|octave| octave.sum.to_f64() == 0.0)
-    {
-        return fail(
-            format!("axis {name} never changes its value"),
-            "check the sensor, or choose other columns with --columns",
-        );
-    }
-    if !(rate_per_count.is_finite() && *rate_per_count > 0.0) {
-        return fail(
-            format!("axis {name}: a scale of {rate_per_count} per count is beyond floats"),
-            "give another --scale",
-        );
-    }
-    Ok(())
 }

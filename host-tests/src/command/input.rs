@@ -39,6 +39,10 @@ pub(super) struct LogArguments {
     /// rate]
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<TimeUnit>,
+    /// Topic of a bag [default: that of the only IMU], or of a ULog, such as `sensor_gyro:0`
+    /// [default: the one with the most samples]
+    #[arg(long)]
+    topic: Option<String>,
 }
 
 impl LogArguments {
@@ -51,6 +55,7 @@ impl LogArguments {
             sensor: self.sensor,
             time: self.time.clone(),
             time_unit: self.time_unit,
+            topic: self.topic.clone(),
         }
     }
 }

@@ -102,8 +102,8 @@ pub(super) struct Clock {
     steps: u64,
     sum: f64,
     squares: f64,
-    /// The greatest difference from the usual step.
-    greatest: f64,
+    /// The shortest and the longest step.
+    range: (f64, f64),
     block: (u32, f64),
     /// The shortest and the longest mean step of a block.
     means: Option<(f64, f64)>,
@@ -123,7 +123,7 @@ impl Clock {
             steps: 0,
             sum: 0.0,
             squares: 0.0,
-            greatest: 0.0,
+            range: (f64::INFINITY, 0.0),
             block: (0, 0.0),
             means: None,
         }
@@ -165,7 +165,7 @@ impl Clock {
         self.steps += 1;
         self.sum += step;
         self.squares += difference * difference;
-        self.greatest = self.greatest.max(difference.abs());
+        self.range = (self.range.0.min(step), self.range.1.max(step));
         self.block.0 += 1;
         self.block.1 += step;
         if self.block.0 == BLOCK {
@@ -220,10 +220,12 @@ impl Clock {
     /// How regular the stamps are, and what was done where they are not.
     pub(super) fn report(&self) -> String {
         let steps = self.steps.max(1) as f64;
-        let offset = self.sum / steps - self.pace.step;
+        let mean = self.sum / steps;
+        let offset = mean - self.pace.step;
         let jitter = (self.squares / steps - offset * offset).max(0.0).sqrt();
+        let greatest = (mean - self.range.0).max(self.range.1 - mean);
         let [step, jitter, greatest] =
-            [self.sum / steps, jitter, self.greatest].map(|ticks| span(self.pace.seconds(ticks)));
+            [mean, jitter, greatest].map(|ticks| span(self.pace.seconds(ticks)));
         let mut text = format!("time stamps {step} apart, jitter {jitter} rms, {greatest} at most");
         if self.gaps > 0 {
             text += &format!(

@@ -31,6 +31,8 @@ pub(super) struct Csv {
     columns: Columns,
     /// The byte behind the header, or 0.
     data_start: u64,
+    /// Whether the last row ends.
+    is_whole: bool,
 }
 
 /// What stands above the first record, and how that record is cut.
@@ -56,6 +58,7 @@ impl Csv {
                 heads: Vec::new(),
             },
             data_start: 0,
+            is_whole: gzip || source::ends_with_line(path)?,
         };
 
         let records = table.first_records()?;
@@ -159,6 +162,11 @@ impl Table for Csv {
 
     fn columns(&self) -> &Columns {
         &self.columns
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let note = "the last row does not end: it may be cut off";
+        (!self.is_whole).then(|| note.into()).into_iter().collect()
     }
 
     fn pass<V: Visitor>(

@@ -24,11 +24,13 @@
 //! a finite number ends the reading with its row.
 
 mod accumulate;
+mod bag;
 mod clock;
 mod columns;
 mod covariate;
 mod csv;
 mod field;
+mod imu_message;
 mod lines;
 mod metadata;
 mod names;
@@ -40,6 +42,9 @@ mod records;
 mod scaling;
 mod source;
 mod time_column;
+mod ulog;
+mod ulog_format;
+mod ulog_messages;
 mod worker;
 
 use crate::{
@@ -77,6 +82,8 @@ pub struct Options {
     pub time: Option<String>,
     /// The unit of the time stamps.
     pub time_unit: Option<TimeUnit>,
+    /// Of a log of several topics the one to read.
+    pub topic: Option<String>,
 }
 
 /// A column to take: `column` or `axis=column`.
@@ -196,9 +203,21 @@ fn read_parts(
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let parts = (first, watch);
-    match Format::of(path)? {
+    let format = Format::of(path)?;
+    if !format.has_topics() && options.topic.is_some() {
+        return Err(Place::file(path).failure("has no topics", "leave --topic"));
+    }
+    match format {
         Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, parts, progress),
         Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
+        Format::Mcap => {
+            let bag = bag::Bag::open(path, options)?;
+            read_table(&bag, path, options, parts, progress)
+        }
+        Format::Ulog => {
+            let log = ulog::Ulog::open(path, options)?;
+            read_table(&log, path, options, parts, progress)
+        }
     }
 }
 

@@ -72,7 +72,7 @@ impl Columns {
         let (pace, unit) = Pace::of(&self.heads[column], told)?;
         Some(TimeColumn {
             column: AxisColumn {
-                axis: self.called(column),
+                axis: names::bare(&self.called(column)).to_owned(),
                 column,
             },
             pace,

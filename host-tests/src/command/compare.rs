@@ -17,7 +17,7 @@ use std::{io::Write, path::PathBuf};
 /// Compare a model with a record octave by octave: the five IEEE-952 terms, and what is added
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
+    /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
     input: PathBuf,
     #[command(flatten)]
     model: ModelArguments,

@@ -20,7 +20,7 @@ use std::{io::Write, path::PathBuf};
 /// Find the physical effects that the five IEEE-952 terms lack, one after the other
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
+    /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
     input: PathBuf,
     /// Most effects to add [default: 3]
     #[arg(long, value_name = "N")]

@@ -12,7 +12,7 @@ use std::{io::Write, path::PathBuf};
 /// Fit the five IEEE-952 coefficients to a log or a curve
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
+    /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
     input: PathBuf,
     /// How octaves are weighted
     #[arg(long, default_value = "covariance")]

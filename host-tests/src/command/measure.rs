@@ -18,7 +18,7 @@ use std::{
 /// Measure the Allan curves of a log
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A recorded log: .csv, .csv.gz or .npy
+    /// A recorded log: .csv, .csv.gz, .npy, .mcap or .ulg
     log: PathBuf,
     /// The curve file to write: .json
     #[arg(long, short, value_name = "CURVE.json")]

@@ -1,4 +1,5 @@
-//! ROS 2 bags in MCAP files: a table of the messages of one IMU.
+//! Bags of ROS 2, and of ROS 1 as `mcap convert` writes them, in MCAP files: a table of the messages
+//! of one IMU.
 //!
 //! A bag is gone through from its beginning to its end, one chunk in memory at a time. The checksum
 //! of a chunk is verified before any message of it is taken.
@@ -6,7 +7,7 @@
 use super::{
     AxisColumn, Ended, Metadata, Options, Stop, Table, Visitor,
     columns::{Columns, Look},
-    imu_message::{COLUMNS, ImuMessage, SCHEMAS},
+    imu_message::{COLUMNS, Encoding, ImuMessage},
     source,
 };
 use crate::failure::{Failure, Place, quoted};
@@ -25,6 +26,8 @@ use std::{
 
 /// No record or chunk of a sane bag is longer.
 const LONGEST_RECORD: usize = 1 << 28;
+
+const RECOVER: &str = "copy it again, or recover what there is with `mcap recover`";
 
 /// Messages that tell what the columns look like.
 const LOOKS: usize = 100;
@@ -45,8 +48,9 @@ struct Channel {
 }
 
 impl Channel {
-    fn is_imu(&self) -> bool {
-        SCHEMAS.contains(&self.schema.as_str()) && self.encoding == "cdr"
+    /// How the messages are serialised, if they are an IMU's.
+    fn imu(&self) -> Option<Encoding> {
+        Encoding::of(&self.schema, &self.encoding)
     }
 }
 
@@ -61,10 +65,10 @@ impl Bag {
     pub(super) fn open(path: &Path, options: &Options) -> Result<Self, Failure> {
         let mut first: BTreeMap<String, Vec<ImuMessage>> = BTreeMap::new();
         let channels = each_message(path, &ProgressBar::hidden(), |channel, bytes| {
-            if channel.is_imu() {
+            if let Some(encoding) = channel.imu() {
                 let first = first.entry(channel.topic.clone()).or_default();
                 if first.len() < LOOKS {
-                    first.extend(ImuMessage::read(bytes));
+                    first.extend(ImuMessage::read(bytes, encoding));
                 }
             }
             Ok(ControlFlow::Continue(()))
@@ -109,12 +113,12 @@ impl Table for Bag {
         let mut ended = Ended::AtTheLastRow;
         let mut row = 0;
         each_message(&self.path, progress, |channel, bytes| {
-            if channel.topic != self.topic || !channel.is_imu() {
+            let Some(encoding) = channel.imu().filter(|_| channel.topic == self.topic) else {
                 return Ok(ControlFlow::Continue(()));
-            }
+            };
             row += 1;
             let place = || Place::row(&self.path, row);
-            let message = ImuMessage::read(bytes).map_err(|what| {
+            let message = ImuMessage::read(bytes, encoding).map_err(|what| {
                 place().failure(format!("{}: {what}", self.topic), "record the bag again")
             })?;
             for (i, axis) in axes.iter().enumerate() {
@@ -153,7 +157,7 @@ fn visit<V: Visitor>(
 fn choose(path: &Path, channels: &Channels, wanted: Option<&str>) -> Result<String, Failure> {
     let all = || channels.channels.values();
     let mut imus: Vec<&str> = all()
-        .filter(|channel| channel.is_imu())
+        .filter(|channel| channel.imu().is_some())
         .map(|channel| channel.topic.as_str())
         .collect();
     imus.sort_unstable();
@@ -176,8 +180,8 @@ fn choose(path: &Path, channels: &Channels, wanted: Option<&str>) -> Result<Stri
                 found => format!("only {}", found.join(", ")),
             };
             fail(
-                format!("no topic of {} in CDR: {found}", SCHEMAS[0]),
-                "give a ROS 2 bag with an IMU",
+                format!("no topic of sensor_msgs/msg/Imu: {found}"),
+                "give a bag with an IMU",
             )
         }
         (Some(wanted), imus) => fail(
@@ -202,9 +206,12 @@ fn each_message(
     let mut reader = LinearReader::new_with_options(
         LinearReaderOptions::default()
             .with_prevalidate_chunk_crcs(true)
+            .with_validate_data_section_crc(true)
+            .with_validate_summary_section_crc(true)
             .with_record_length_limit(LONGEST_RECORD),
     );
     let mut channels = Channels::default();
+    let mut messages = 0;
     while let Some(event) = reader.next_event() {
         let (opcode, data) = match event.map_err(fail)? {
             LinearReadEvent::ReadRequest(need) => {
@@ -216,7 +223,7 @@ fn each_message(
             }
             LinearReadEvent::Record { opcode, data } => (opcode, data),
         };
-        if ![op::SCHEMA, op::CHANNEL, op::MESSAGE].contains(&opcode) {
+        if ![op::SCHEMA, op::CHANNEL, op::MESSAGE, op::STATISTICS].contains(&opcode) {
             continue;
         }
         match mcap::parse_record(opcode, data).map_err(fail)? {
@@ -232,7 +239,18 @@ fn each_message(
                 };
                 channels.channels.insert(channel.id, channel_of);
             }
+            // A chunk whose first byte has changed looks like a record to be skipped.
+            Record::Statistics(statistics) if statistics.message_count != messages => {
+                return Err(Place::file(path).failure(
+                    format!(
+                        "damaged: {messages} messages where {} were written",
+                        statistics.message_count
+                    ),
+                    RECOVER,
+                ));
+            }
             Record::Message { header, data } => {
+                messages += 1;
                 let Some(channel) = channels.channels.get(&header.channel_id) else {
                     return Err(fail(McapError::UnknownChannel(
                         header.sequence,
@@ -253,18 +271,12 @@ fn failure(path: &Path, error: &McapError) -> Failure {
     let place = Place::file(path);
     match error {
         McapError::BadMagic => place.failure("not an MCAP file", "check the file"),
-        McapError::UnexpectedEof => place.failure(
-            "the bag ends in the middle",
-            "copy it again, or recover what there is with `mcap recover`",
-        ),
+        McapError::UnexpectedEof => place.failure("the bag ends in the middle", RECOVER),
         McapError::Io(error) => place.io(error),
         McapError::UnsupportedCompression(name) => place.failure(
             format!("chunks compressed with {}", quoted(name.as_bytes())),
             "compress them with `mcap compress`, with zstd or lz4",
         ),
-        error => place.failure(
-            format!("damaged: {error}"),
-            "copy it again, or recover what there is with `mcap recover`",
-        ),
+        error => place.failure(format!("damaged: {error}"), RECOVER),
     }
 }

@@ -186,8 +186,7 @@ impl Columns {
         let named = |sensor: Sensor| -> Vec<usize> {
             let is = |column: &usize| {
                 let name = self.name(*column);
-                self.looks[*column] != Look::Text
-                    && name.is_some_and(|name| names::is_axis(name, sensor))
+                name.is_some_and(|name| names::is_axis(name, sensor))
             };
             (0..count).filter(is).collect()
         };

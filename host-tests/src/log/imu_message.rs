@@ -1,10 +1,27 @@
-//! `sensor_msgs/msg/Imu` as ROS 2 serialises it: CDR behind four bytes of encapsulation.
+//! `sensor_msgs/msg/Imu` as ROS 2 serialises it, CDR behind four bytes of encapsulation, and as ROS 1
+//! does, everything packed.
 
 use byteorder::{BigEndian, LittleEndian};
 use serde::Deserialize;
 
-/// The types that are read, as ROS 2 names them.
-pub(super) const SCHEMAS: [&str; 2] = ["sensor_msgs/msg/Imu", "sensor_msgs::msg::dds_::Imu_"];
+/// How a message is serialised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Cdr,
+    Ros1,
+}
+
+impl Encoding {
+    /// The encoding of a channel of IMUs, by the name of its type and that of its encoding; `None`
+    /// of any other channel.
+    pub(super) fn of(schema: &str, encoding: &str) -> Option<Self> {
+        match (schema, encoding) {
+            ("sensor_msgs/msg/Imu" | "sensor_msgs::msg::dds_::Imu_", "cdr") => Some(Self::Cdr),
+            ("sensor_msgs/Imu", "ros1") => Some(Self::Ros1),
+            _ => None,
+        }
+    }
+}
 
 /// Columns of the table that a topic of these is: the sensor's time and six values.
 pub(super) const COLUMNS: [&str; 7] = [
@@ -26,6 +43,8 @@ pub(super) struct ImuMessage {
     pub(super) values: [f64; 6],
 }
 
+const SHORT: &str = "a message that is shorter than an Imu";
+
 #[derive(Deserialize)]
 struct Imu {
     header: Header,
@@ -45,7 +64,38 @@ struct Header {
 
 impl ImuMessage {
     /// Reads a message, or says what it is not.
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, &'static str> {
+    pub(super) fn read(bytes: &[u8], encoding: Encoding) -> Result<Self, &'static str> {
+        match encoding {
+            Encoding::Cdr => Self::read_cdr(bytes),
+            Encoding::Ros1 => Self::read_ros1(bytes).ok_or(SHORT),
+        }
+    }
+
+    fn read_ros1(bytes: &[u8]) -> Option<Self> {
+        /// Orientation, rates and accelerations lie before, between and behind their covariances.
+        const FLOATS: usize = 37;
+        let mut bytes = bytes;
+        let mut word = || {
+            let (word, rest) = bytes.split_first_chunk()?;
+            bytes = rest;
+            Some(u32::from_le_bytes(*word))
+        };
+        let [_sequence, secs, nsecs, frame] = [word()?, word()?, word()?, word()?];
+        let mut floats = [0.0; FLOATS];
+        let rest = bytes.get(usize::try_from(frame).ok()?..)?;
+        let (rest, _) = rest.split_at_checked(8 * FLOATS)?;
+        for (float, bytes) in floats.iter_mut().zip(rest.chunks_exact(8)) {
+            *float = f64::from_le_bytes(bytes.try_into().ok()?);
+        }
+        let [a, b, c] = [floats[13], floats[14], floats[15]];
+        let [d, e, f] = [floats[25], floats[26], floats[27]];
+        Some(Self {
+            stamp_ns: i64::from(secs) * 1_000_000_000 + i64::from(nsecs),
+            values: [a, b, c, d, e, f],
+        })
+    }
+
+    fn read_cdr(bytes: &[u8]) -> Result<Self, &'static str> {
         let Some((encapsulation, payload)) = bytes.split_first_chunk::<4>() else {
             return Err("a message without a beginning");
         };
@@ -54,7 +104,7 @@ impl ImuMessage {
             [0, 1, ..] => cdr_encoding::from_bytes::<Imu, LittleEndian>(payload),
             _ => return Err("a message that is not plain CDR"),
         };
-        let (imu, _) = imu.map_err(|_| "a message that is shorter than an Imu")?;
+        let (imu, _) = imu.map_err(|_| SHORT)?;
         let [a, b, c] = imu.angular_velocity;
         let [d, e, f] = imu.linear_acceleration;
         Ok(Self {
@@ -108,16 +158,35 @@ mod tests {
         ) {
             let bytes = message(frame.as_bytes(), values, big);
             let expected = ImuMessage { stamp_ns: 7_250_000_000, values };
-            prop_assert_eq!(ImuMessage::read(&bytes), Ok(expected));
+            prop_assert_eq!(ImuMessage::read(&bytes, Encoding::Cdr), Ok(expected));
             for cut in 0..bytes.len() {
-                prop_assert!(ImuMessage::read(&bytes[..cut]).is_err());
+                prop_assert!(ImuMessage::read(&bytes[..cut], Encoding::Cdr).is_err());
+            }
+        }
+
+        #[test]
+        fn packed_messages_are_read(
+            frame in "[a-z]{0,12}",
+            values in prop::array::uniform6(-1e3..1e3),
+        ) {
+            let words = [3, 7, 250_000_000, frame.len() as u32];
+            let mut bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
+            bytes.extend(frame.as_bytes());
+            let [rates, forces] = [&values[..3], &values[3..]];
+            let floats = [&[0.0; 13][..], rates, &[0.0; 9], forces, &[0.0; 9]].concat();
+            bytes.extend(floats.into_iter().flat_map(f64::to_le_bytes));
+            let expected = ImuMessage { stamp_ns: 7_250_000_000, values };
+            prop_assert_eq!(ImuMessage::read(&bytes, Encoding::Ros1), Ok(expected));
+            for cut in 0..bytes.len() {
+                prop_assert!(ImuMessage::read(&bytes[..cut], Encoding::Ros1).is_err());
             }
         }
 
         #[test]
         fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..500)) {
-            let _ = ImuMessage::read(&bytes);
-            let _ = ImuMessage::read(&[&[0, 1, 0, 0], bytes.as_slice()].concat());
+            let _ = ImuMessage::read(&bytes, Encoding::Cdr);
+            let _ = ImuMessage::read(&bytes, Encoding::Ros1);
+            let _ = ImuMessage::read(&[&[0, 1, 0, 0], bytes.as_slice()].concat(), Encoding::Cdr);
         }
     }
 }

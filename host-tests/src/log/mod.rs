@@ -4,17 +4,41 @@
 //!
 //! * `.csv`, `.csv.gz`: commas, semicolons or tabs; a header of names or none; comment lines begin
 //!   with `#`, and those at the top may say `rate_hz=…`, `scale=…` (rate units per count) and
-//!   `unit=deg/s` or `unit=rad/s`. Options win over comments.
+//!   `unit=deg/s`, `rad/s`, `m/s^2` or `g`. Options win over comments.
 //! * `.npy`: one- or two-dimensional, rows are samples; integers of 1 to 8 bytes, floats of 4 or 8,
 //!   either byte order, either memory order.
 //!
+//! * `.mcap`: bags of ROS 2, or of ROS 1 converted, with a topic of `sensor_msgs/msg/Imu`;
+//!   stamps are those of the messages' headers. One chunk is in memory at a time.
+//! * `.ulg`: logs of PX4 with `sensor_gyro`, `sensor_accel`, `sensor_combined` or `vehicle_imu`.
+//!
 //! # Which columns are axes
 //!
-//! Those that [`Options::columns`] names. Otherwise, with a header, those named like a gyro's axes
-//! (`gx`, `gyro_y`, `angular_velocity.z` and the like). Where no name says so, all columns of
-//! numbers, but for those that by their name or by rising from row to row are times, indices or
-//! temperatures. Unless every column was an axis by name, a note tells what was taken and what was
-//! left out.
+//! Those that [`Options::columns`] names. Otherwise, with a header, those named like the axes of a
+//! gyro (`gx`, `gyro_y`, `angular_velocity.z`, `w_RS_S_x [rad s^-1]`) or, where there are none or
+//! [`Options::sensor`] asks for them, of an accelerometer (`ax`, `accel_y`,
+//! `linear_acceleration.z`). Where no name says so, all columns of numbers, but for those that by
+//! their name or by rising from row to row are times, indices or temperatures. Unless every column
+//! was an axis by name, a note tells what was taken and what was left out.
+//!
+//! # Rate and gaps
+//!
+//! A rate that options or comments tell is the rate, and time stamps are not looked at unless
+//! [`Options::time`] names their column. Otherwise the rate is the mean of the stamps of the first
+//! column that is named like a time, or of the only one without a name that rises by other steps
+//! than one. Their unit is that of the name, else that of the time since 1970, else the one that
+//! gives a rate between 10 Hz and 10 kHz.
+//!
+//! A step between stamps of more than 1.5 usual ones, and far beyond how they scatter, is a gap,
+//! which no difference will span. A row with the stamp of the row before is left out. Both are
+//! counted in a note. Stamps that go back, two rates in one log, and stamps that leap or repeat in
+//! more than 5 % of the rows are refused.
+//!
+//! # Units
+//!
+//! The unit is that of [`Options::unit`], else of the comments, else of the columns' names, else
+//! deg/s or m/s². Neighbouring samples that scatter by more than 100 deg/s or 20 m/s² get a note
+//! that scale and unit are unlikely; by more than 100 000 deg/s or m/s² they are refused.
 //!
 //! # Counts
 //!

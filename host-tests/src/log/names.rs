@@ -6,9 +6,7 @@ use crate::unit::{Sensor, Unit};
 /// `ax`, `accel_y`, `linear_acceleration.z`, and the like.
 pub(super) fn is_axis(name: &str, sensor: Sensor) -> bool {
     let name = bare(name).to_lowercase();
-    let others = [
-        "temp", "time", "cov", "bias", "clip", "dt", "calib", "count",
-    ];
+    let others = ["temp", "time", "cov", "bias", "clip", "accura", "_dt"];
     if others.iter().any(|other| name.contains(other)) {
         return false;
     }

@@ -85,16 +85,17 @@ impl Ulog {
         }
         let mut found = BTreeMap::new();
         for (&identity, subscription) in &log.subscriptions {
+            let Some(&messages) = counts.get(&identity) else {
+                continue;
+            };
             let fields = log.formats.fields(&subscription.topic);
             let fields = fields.map_err(|what| Place::file(path).failure(what, COPY))?;
             let one = Found {
                 subscription: subscription.clone(),
-                messages: counts.get(&identity).copied().unwrap_or(0),
+                messages,
                 columns: columns(&subscription.topic, &fields),
             };
-            if one.messages > 0 {
-                found.insert(identity, one);
-            }
+            found.insert(identity, one);
         }
         let identity = choose(path, &found, options)?;
         let others: Vec<String> = found
@@ -290,6 +291,12 @@ fn choose(path: &Path, found: &BTreeMap<u16, Found>, options: &Options) -> Resul
                 quoted(wanted.as_bytes())
             );
             return fail(what, &format!("choose with --topic from {}", list(&all)));
+        }
+        if wanted.contains("_fifo") {
+            return fail(
+                format!("{wanted} packs several samples into a message"),
+                "log and choose a topic of single ones, such as sensor_gyro",
+            );
         }
         candidates
     } else {

@@ -258,7 +258,12 @@ impl Record {
 
     /// What `measure` has to know, and what the record was made of.
     fn write_comment(&self, output: &mut impl Write) -> io::Result<()> {
-        write!(output, "# rate_hz={} unit={}", self.rate_hz, self.unit)?;
+        write!(
+            output,
+            "# rate_hz={} unit={}",
+            self.rate_hz,
+            self.unit.name()
+        )?;
         if let Some(scale) = self.scale {
             write!(output, " scale={scale}")?;
         }

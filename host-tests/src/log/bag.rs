@@ -62,9 +62,13 @@ struct Channels {
 }
 
 impl Bag {
-    pub(super) fn open(path: &Path, options: &Options) -> Result<Self, Failure> {
+    pub(super) fn open(
+        path: &Path,
+        options: &Options,
+        progress: &ProgressBar,
+    ) -> Result<Self, Failure> {
         let mut first: BTreeMap<String, Vec<ImuMessage>> = BTreeMap::new();
-        let channels = each_message(path, &ProgressBar::hidden(), |channel, bytes| {
+        let channels = each_message(path, progress, |channel, bytes| {
             if let Some(encoding) = channel.imu() {
                 let first = first.entry(channel.topic.clone()).or_default();
                 if first.len() < LOOKS {

@@ -235,11 +235,11 @@ fn read_parts(
         Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, parts, progress),
         Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
         Format::Mcap => {
-            let bag = bag::Bag::open(path, options)?;
+            let bag = bag::Bag::open(path, options, progress)?;
             read_table(&bag, path, options, parts, progress)
         }
         Format::Ulog => {
-            let log = ulog::Ulog::open(path, options)?;
+            let log = ulog::Ulog::open(path, options, progress)?;
             read_table(&log, path, options, parts, progress)
         }
     }

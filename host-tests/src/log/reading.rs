@@ -61,13 +61,14 @@ pub(super) fn read_table(
         progress,
     };
     let measured = accumulate::measure(&passes, &plan)?;
+    let is_told = rate_hz.is_some();
     let rate_hz = match (rate_hz, &measured.clock) {
         (None, Some(clock)) => clock.rate_hz().map_err(|flaw| {
             Place::file(path).failure(flaw.what, "give --rate to leave them out")
         })?,
         (rate_hz, _) => rate_hz.unwrap_or(f64::NAN),
     };
-    let mut notes = vec![said(taken.note, &scaling, &time, rate_hz, options)];
+    let mut notes = vec![said(taken.note, &scaling, time.as_ref(), rate_hz, is_told)];
     notes.retain(|note| !note.is_empty());
     notes.extend(measured.clock.as_ref().map(Clock::report));
     notes.extend(table.notes());
@@ -143,18 +144,18 @@ fn taken(
 fn said(
     columns: Option<String>,
     scaling: &Scaling,
-    time: &Option<TimeColumn>,
+    time: Option<&TimeColumn>,
     rate_hz: f64,
-    options: &Options,
+    is_told: bool,
 ) -> String {
     let mut parts: Vec<String> = columns.into_iter().collect();
     if scaling.origin == Origin::Names {
         parts.push(format!("unit {} by their names", scaling.unit));
     }
     if let Some(time) = time {
-        let rate = match options.rate_hz {
-            None => format!("{rate_hz} Hz"),
-            Some(_) => "gaps".into(),
+        let rate = match is_told {
+            false => format!("{rate_hz} Hz"),
+            true => "gaps".into(),
         };
         let (name, unit) = (&time.column.axis, time.unit.name());
         parts.push(format!("{rate} by the time stamps of {name}, in {unit}"));

@@ -66,9 +66,13 @@ impl Found {
 }
 
 impl Ulog {
-    pub(super) fn open(path: &Path, options: &Options) -> Result<Self, Failure> {
+    pub(super) fn open(
+        path: &Path,
+        options: &Options,
+        progress: &ProgressBar,
+    ) -> Result<Self, Failure> {
         let fail = |error| failure(path, &error);
-        let file = source::open(path, &ProgressBar::hidden())?;
+        let file = source::open(path, progress)?;
         let mut log = Messages::open(file).map_err(fail)?;
         let mut counts: BTreeMap<u16, u64> = BTreeMap::new();
         let mut notes = Vec::new();

@@ -350,6 +350,28 @@ fn rate_follows_from_stamps_of_every_unit() {
 }
 
 #[test]
+fn seconds_and_nanoseconds_are_one_stamp() {
+    for (sec, nanosec) in [
+        ("header.stamp.secs", "header.stamp.nsecs"),
+        ("header_stamp_sec", "header_stamp_nanosec"),
+    ] {
+        let mut text = format!("Time,{sec},{nanosec},angular_velocity.x\n");
+        for (i, count) in (0i64..).zip(counts().iter().flatten().cycle().take(600)) {
+            let stamp = 1_700_000_000_900_000_000 + 5_000_000 * i;
+            // When it was recorded, in bursts.
+            let recorded = 1_700_000_001 + i / 50;
+            let (sec, nanosec) = (stamp / 1_000_000_000, stamp % 1_000_000_000);
+            let _ = writeln!(text, "{recorded},{sec},{nanosec},{count}");
+        }
+        let log = read_text(&text, &Options::default()).unwrap();
+        assert_eq!((log.rate_hz, log.axes.len()), (200.0, 1), "{sec}");
+        assert!(log.axes[0].accumulator.gaps() == 0 && log.axes[0].accumulator.samples() == 600);
+        let name = format!("200 Hz by the time stamps of {sec} and {nanosec}, in ns");
+        assert!(log.notes[0].ends_with(&name), "{}", log.notes[0]);
+    }
+}
+
+#[test]
 fn gaps_end_stretches_and_repeated_rows_are_left_out() {
     let noise = counts();
     let mut expected = Accumulator::<OCTAVES>::new();

@@ -3,6 +3,7 @@
 use super::{
     AxisColumn, Ended, Field, Stop, Table, Visitor,
     clock::{Clock, Tick},
+    field::Stamp,
     quantum::{self, Quantum, Range},
     time_column::TimeColumn,
     worker::{Batches, Plan, Sums},
@@ -39,18 +40,24 @@ impl<T: Table> Passes<'_, T> {
         };
         let mut timed = Timed {
             clock: Clock::new(time.pace),
+            columns: time.columns.len(),
+            seconds: None,
             repeated: false,
             visitor,
         };
-        let columns = [std::slice::from_ref(&time.column), self.columns].concat();
+        let columns = [&time.columns, self.columns].concat();
         let ended = self.table.pass(&columns, &mut timed, self.progress)?;
         Ok((ended, Some(timed.clock)))
     }
 }
 
-/// A pass whose first column is the time: it says where gaps are and which rows to leave out.
+/// A pass whose first columns are the time: it says where gaps are and which rows to leave out.
 struct Timed<'a, V> {
     clock: Clock,
+    /// Columns of the time.
+    columns: usize,
+    /// The first of two.
+    seconds: Option<Stamp>,
     repeated: bool,
     visitor: &'a mut V,
 }
@@ -58,13 +65,20 @@ struct Timed<'a, V> {
 impl<V: Visitor> Visitor for Timed<'_, V> {
     #[inline]
     fn visit<F: Field>(&mut self, column: usize, value: F) -> Result<(), Stop> {
-        if let Some(axis) = column.checked_sub(1) {
+        if let Some(axis) = column.checked_sub(self.columns) {
             return match self.repeated {
                 false => self.visitor.visit(axis, value),
                 true => Ok(()),
             };
         }
-        let stamp = value.stamp().map_err(Stop::Flaw)?;
+        let mut stamp = value.stamp().map_err(Stop::Flaw)?;
+        if column + 1 < self.columns {
+            self.seconds = Some(stamp);
+            return Ok(());
+        }
+        if let Some(seconds) = self.seconds {
+            stamp = stamp.behind_seconds(seconds);
+        }
         let tick = self.clock.tick(stamp).map_err(Stop::Clock)?;
         self.repeated = tick == Tick::Repeated;
         if tick == Tick::Gap {

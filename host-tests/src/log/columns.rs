@@ -180,9 +180,10 @@ impl Columns {
         &self,
         path: &Path,
         wanted: Option<Sensor>,
-        time: Option<usize>,
+        time: &[AxisColumn],
     ) -> Result<Taken, Failure> {
         let count = self.looks.len();
+        let is_time = |column: usize| time.iter().any(|time| time.column == column);
         let named = |sensor: Sensor| -> Vec<usize> {
             let is = |column: &usize| {
                 let name = self.name(*column);
@@ -210,7 +211,7 @@ impl Columns {
             let is_no_axis = |name| names::is_other(name) || names::is_time(name);
             let is_axis = |&column: &usize| {
                 self.looks[column] == Look::Number
-                    && time != Some(column)
+                    && !is_time(column)
                     && !self.name(column).is_some_and(is_no_axis)
             };
             (0..count).filter(is_axis).collect()
@@ -249,7 +250,7 @@ impl Columns {
         }
 
         let left: Vec<usize> = (0..count)
-            .filter(|column| !taken.contains(column) && time != Some(*column))
+            .filter(|column| !taken.contains(column) && !is_time(*column))
             .collect();
         let note = (by_name.is_empty() || !left.is_empty()).then(|| {
             let taken = self.list(&taken);
@@ -331,7 +332,7 @@ mod tests {
             looks: looks.to_vec(),
             heads: Vec::new(),
         };
-        let Taken { axes, note, .. } = columns.guessed(Path::new("a.csv"), None, None).unwrap();
+        let Taken { axes, note, .. } = columns.guessed(Path::new("a.csv"), None, &[]).unwrap();
         (
             axes.iter().map(|axis| axis.axis.clone()).collect(),
             axes.iter().map(|axis| axis.column).collect(),

@@ -34,6 +34,17 @@ impl Stamp {
         }
     }
 
+    /// The stamp so many seconds later, in nanoseconds.
+    pub(super) fn behind_seconds(self, seconds: Self) -> Self {
+        match (seconds, self) {
+            (Self::Whole(seconds), Self::Whole(nanoseconds)) => {
+                let seconds = seconds.saturating_mul(1_000_000_000);
+                Self::Whole(seconds.saturating_add(nanoseconds))
+            }
+            (seconds, nanoseconds) => Self::Real(1e9 * seconds.to_f64() + nanoseconds.to_f64()),
+        }
+    }
+
     fn to_f64(self) -> f64 {
         match self {
             Self::Whole(ticks) => ticks as f64,

@@ -25,8 +25,8 @@
 //!
 //! A rate that options or comments tell is the rate, and time stamps are not looked at unless
 //! [`Options::time`] names their column. Otherwise the rate is the mean of the stamps of the first
-//! column that is named like a time, or of the only one without a name that rises by other steps
-//! than one. Their unit is that of the name, else that of the time since 1970, else the one that
+//! column that is named like a time (of two for the seconds and nanoseconds of ROS), or of the only
+//! one without a name that rises by other steps than one. Their unit is that of the name, else that of the time since 1970, else the one that
 //! gives a rate between 10 Hz and 10 kHz.
 //!
 //! A step between stamps of more than 1.5 usual ones, and far beyond how they scatter, is a gap,

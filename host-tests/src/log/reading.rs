@@ -136,7 +136,10 @@ fn taken(
                 note: None,
             })
         }
-        None => columns.guessed(path, sensor, time.map(|time| time.column.column)),
+        None => {
+            let time = time.map_or(&[][..], |time| &time.columns);
+            columns.guessed(path, sensor, time)
+        }
     }
 }
 
@@ -157,7 +160,7 @@ fn said(
             false => format!("{rate_hz} Hz"),
             true => "gaps".into(),
         };
-        let (name, unit) = (&time.column.axis, time.unit.name());
+        let (name, unit) = (time.name(), time.unit.name());
         parts.push(format!("{rate} by the time stamps of {name}, in {unit}"));
     }
     parts.join("; ")

@@ -9,16 +9,17 @@ use super::{
 use crate::failure::{Failure, Place, quoted};
 use std::path::Path;
 
-/// A column of time stamps.
+/// A column of time stamps, or two: seconds, and nanoseconds behind them, as messages of ROS have
+/// them.
 #[derive(Clone, Debug)]
 pub(super) struct TimeColumn {
-    pub(super) column: AxisColumn,
+    pub(super) columns: Vec<AxisColumn>,
     pub(super) pace: Pace,
     pub(super) unit: TimeUnit,
 }
 
 impl Columns {
-    /// The column that the options name; without, the first that by its name is a time and
+    /// The column that the options name; without, those of seconds and nanoseconds, else the first that by its name is a time and
     /// advances in the first rows, or the only one without a name that rises by more than one.
     pub(super) fn time(
         &self,
@@ -37,6 +38,9 @@ impl Columns {
                     "name another with --time, or give --rate",
                 )
             });
+        }
+        if let Some(pair) = self.seconds_and_nanoseconds() {
+            return Ok(Some(pair));
         }
         let named = |column: &usize| self.name(*column).is_some_and(names::is_time);
         let mut by_name: Vec<usize> = (0..count).filter(named).collect();
@@ -71,13 +75,49 @@ impl Columns {
             .or_else(|| name.and_then(TimeUnit::of_name));
         let (pace, unit) = Pace::of(&self.heads[column], told)?;
         Some(TimeColumn {
-            column: AxisColumn {
-                axis: names::bare(&self.called(column)).to_owned(),
-                column,
-            },
+            columns: vec![self.time_axis(column)],
             pace,
             unit,
         })
+    }
+
+    fn time_axis(&self, column: usize) -> AxisColumn {
+        AxisColumn {
+            axis: names::bare(&self.called(column)).to_owned(),
+            column,
+        }
+    }
+
+    /// Two columns such as `header.stamp.sec` and `header.stamp.nanosec`.
+    fn seconds_and_nanoseconds(&self) -> Option<TimeColumn> {
+        let all = || 0..self.looks.len();
+        let lower = |column: usize| self.name(column).map(str::to_lowercase);
+        all().find_map(|seconds| {
+            let name = lower(seconds)?;
+            let prefix = name.strip_suffix("secs").or(name.strip_suffix("sec"))?;
+            let is_behind = |column: &usize| {
+                let name = lower(*column).unwrap_or_default();
+                let rest = name.strip_prefix(prefix);
+                rest.is_some_and(|rest| ["nsec", "nsecs", "nanosec"].contains(&rest))
+            };
+            let behind = all().find(is_behind)?;
+            let rows = self.heads[seconds].iter().zip(&self.heads[behind]);
+            let first: Vec<f64> = rows.map(|(sec, nanosec)| sec * 1e9 + nanosec).collect();
+            let (pace, unit) = Pace::of(&first, Some(TimeUnit::Ns))?;
+            Some(TimeColumn {
+                columns: vec![self.time_axis(seconds), self.time_axis(behind)],
+                pace,
+                unit,
+            })
+        })
+    }
+}
+
+impl TimeColumn {
+    /// What it is called in messages.
+    pub(super) fn name(&self) -> String {
+        let names: Vec<&str> = self.columns.iter().map(|one| one.axis.as_str()).collect();
+        names.join(" and ")
     }
 }
 

@@ -87,6 +87,9 @@ impl Ulog {
                 Message::End => break,
             }
         }
+        if counts.is_empty() && !notes.is_empty() {
+            return Err(Place::file(path).failure("the file ends before its first data", COPY));
+        }
         let mut found = BTreeMap::new();
         for (&identity, subscription) in &log.subscriptions {
             let Some(&messages) = counts.get(&identity) else {

@@ -1,9 +1,19 @@
-//! The two units that logs are kept in.
+//! The units that logs are kept in.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The unit of a gyro's rate.
+/// What a log was recorded of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Sensor {
+    /// Rates of turn.
+    Gyro,
+    /// Specific forces.
+    #[value(name = "accel", alias = "accelerometer")]
+    Accelerometer,
+}
+
+/// The unit of a gyro's rate, or of an accelerometer's acceleration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 pub enum Unit {
     /// Degrees per second.
@@ -14,52 +24,99 @@ pub enum Unit {
     #[serde(rename = "rad/s")]
     #[value(name = "rad/s")]
     RadiansPerSecond,
+    /// Metres per second squared.
+    #[serde(rename = "m/s^2")]
+    #[value(name = "m/s^2")]
+    MetresPerSecondSquared,
+    /// Standard gravity, 9.80665 m/s².
+    #[serde(rename = "g")]
+    #[value(name = "g")]
+    StandardGravity,
 }
 
 impl Unit {
+    const ALL: [Self; 4] = [
+        Self::DegreesPerSecond,
+        Self::RadiansPerSecond,
+        Self::MetresPerSecondSquared,
+        Self::StandardGravity,
+    ];
+
     /// The unit as written in files and options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::DegreesPerSecond => "deg/s",
             Self::RadiansPerSecond => "rad/s",
+            Self::MetresPerSecondSquared => "m/s^2",
+            Self::StandardGravity => "g",
         }
     }
 
-    /// The unit of the angle: that of the rate times a second.
-    pub const fn angle(self) -> &'static str {
+    /// What has this unit.
+    pub const fn sensor(self) -> Sensor {
         match self {
-            Self::DegreesPerSecond => "deg",
-            Self::RadiansPerSecond => "rad",
+            Self::DegreesPerSecond | Self::RadiansPerSecond => Sensor::Gyro,
+            Self::MetresPerSecondSquared | Self::StandardGravity => Sensor::Accelerometer,
         }
     }
 
-    /// Degrees in one unit of the angle.
-    pub const fn degrees(self) -> f64 {
+    /// The unit that a sensor's log has which does not say.
+    pub const fn usual(sensor: Sensor) -> Self {
+        match sensor {
+            Sensor::Gyro => Self::DegreesPerSecond,
+            Sensor::Accelerometer => Self::MetresPerSecondSquared,
+        }
+    }
+
+    /// This unit in the usual one of its sensor: in deg/s or m/s².
+    pub const fn in_usual(self) -> f64 {
         match self {
-            Self::DegreesPerSecond => 1.0,
+            Self::DegreesPerSecond | Self::MetresPerSecondSquared => 1.0,
             Self::RadiansPerSecond => 180.0 / std::f64::consts::PI,
+            Self::StandardGravity => 9.80665,
         }
     }
 
-    /// Radians in one unit of the angle.
-    pub const fn radians(self) -> f64 {
+    /// This unit in the SI's: in rad/s or m/s².
+    pub const fn in_si(self) -> f64 {
         match self {
             Self::DegreesPerSecond => std::f64::consts::PI / 180.0,
-            Self::RadiansPerSecond => 1.0,
+            Self::RadiansPerSecond | Self::MetresPerSecondSquared => 1.0,
+            Self::StandardGravity => self.in_usual(),
         }
     }
 
     /// The unit of that name.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::DegreesPerSecond, Self::RadiansPerSecond]
-            .into_iter()
-            .find(|unit| unit.name() == name)
+        Self::ALL.into_iter().find(|unit| unit.name() == name)
     }
 }
 
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        f.write_str(match self {
+            Self::MetresPerSecondSquared => "m/s²",
+            _ => self.name(),
+        })
+    }
+}
+
+impl Sensor {
+    /// The sensor as the option spells it.
+    pub const fn option(self) -> &'static str {
+        match self {
+            Self::Gyro => "gyro",
+            Self::Accelerometer => "accel",
+        }
+    }
+}
+
+impl fmt::Display for Sensor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gyro => "gyro",
+            Self::Accelerometer => "accelerometer",
+        })
     }
 }
 

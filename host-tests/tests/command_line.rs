@@ -387,7 +387,8 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
         (
             "silent.csv",
             &[],
-            "silent.csv: the sampling rate is not known; give it with --rate HZ",
+            "silent.csv: the sampling rate is not known; \
+             give it with --rate HZ, or name a column of time stamps with --time",
         ),
         (
             "log.txt",
@@ -481,6 +482,74 @@ fn source_and_licence_are_kept_and_axes_renamed() {
         .map(|axis| axis.axis)
         .collect();
     assert_eq!(names, ["roll", "pitch"]);
+}
+
+#[test]
+fn accelerometers_are_spoken_of_in_their_own_words_and_units() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    // 100 µg/√Hz, and a drift that the record shows.
+    let simulate = [
+        "simulate",
+        "--unit",
+        "m/s^2",
+        "--angle-random-walk",
+        "980.665e-6",
+    ];
+    let more = [
+        "--rate-random-walk",
+        "1e-3",
+        "--duration",
+        "300",
+        "--output",
+        "a.csv",
+    ];
+    output(path, &[&simulate[..], &more].concat());
+    let text = output(path, &["fit", "a.csv"]);
+    let line = |start: &str| text.lines().find(|line| line.starts_with(start)).unwrap();
+    let white: Vec<_> = line("velocity random walk").split_whitespace().collect();
+    let customary = white.iter().position(|&word| word == "µg/√Hz").unwrap();
+    let value: f64 = white[customary - 1].parse().unwrap();
+    assert!((value / 100.0 - 1.0).abs() < 0.05, "{text}");
+    assert!(white.contains(&"m/s²/√Hz"), "{text}");
+    assert!(
+        line("acceleration random walk").contains("m/s²/√s"),
+        "{text}"
+    );
+    let document = fit(path, &["a.csv"]);
+    assert_eq!(document.axes[0].unit, "m/s^2");
+    assert_eq!(document.axes[0].coefficients[1].effect, "angle_random_walk");
+    output(path, &["measure", "a.csv", "--output", "a.json"]);
+    assert_eq!(
+        text,
+        output(path, &["fit", "a.json"]),
+        "curves keep the unit"
+    );
+    let line = refusal(path, &["simulate", "mems", "--unit", "g"]);
+    assert!(
+        line.starts_with("presets are gyros, and --unit g is not; "),
+        "{line}"
+    );
+}
+
+#[test]
+fn logs_of_other_programs_fit_without_an_option() {
+    let folder = TempDir::new().unwrap();
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    for name in ["euroc.csv", "imu-zstd.mcap", "ros1.mcap", "gyro.ulg"] {
+        let path = fixtures.join(name);
+        let path = path.to_str().unwrap();
+        let gyro = output(folder.path(), &["fit", path]);
+        assert!(
+            gyro.contains("angle random walk") && gyro.contains("at 200 Hz"),
+            "{gyro}"
+        );
+        let acceleration = output(folder.path(), &["fit", path, "--sensor", "accel"]);
+        assert!(
+            acceleration.contains("velocity random walk"),
+            "{acceleration}"
+        );
+    }
 }
 
 #[test]

@@ -71,7 +71,7 @@ fn at_100_hz() -> Options {
         rate_hz: Some(100.0),
         scale: Some(0.05),
         unit: Some(Unit::DegreesPerSecond),
-        columns: None,
+        ..Options::default()
     }
 }
 
@@ -639,7 +639,8 @@ fn impossible_rates_and_scales_are_refused() {
     let line = refusal("a.csv", good.as_bytes(), &Options::default());
     assert_eq!(
         line,
-        "a.csv: the sampling rate is not known; give it with --rate HZ"
+        "a.csv: the sampling rate is not known; \
+         give it with --rate HZ, or name a column of time stamps with --time"
     );
 }
 

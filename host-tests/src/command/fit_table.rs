@@ -3,7 +3,7 @@
 use super::{
     fit::{Fitted, MethodName},
     number::{duration, number, probability},
-    units,
+    units, words,
 };
 use crate::unit::Unit;
 use allanite::{Coefficient, Fit, State};
@@ -116,7 +116,7 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
         }
     };
     [
-        coefficient.name.replace('_', " "),
+        words::of_sensor(coefficient.name, unit),
         coefficient.symbol.into(),
         shown(coefficient, 1.0),
         scaled_interval(coefficient, 1.0),

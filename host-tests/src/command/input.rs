@@ -4,8 +4,8 @@ use super::progress;
 use crate::{
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place, one_line},
-    log::{self, ColumnChoice, CovariateChoice, Evidence, Log},
-    unit::Unit,
+    log::{self, ColumnChoice, CovariateChoice, Evidence, Log, TimeUnit},
+    unit::{Sensor, Unit},
 };
 use clap::Args;
 use std::path::Path;
@@ -13,19 +13,36 @@ use std::path::Path;
 /// What to know about a log.
 #[derive(Debug, Args)]
 pub(super) struct LogArguments {
-    /// Samples per second; else the log's own comment `# rate_hz=…`
+    /// Samples per second [default: the log's own comment `# rate_hz=…`, else by its time stamps]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     rate: Option<f64>,
-    /// Rate units per count [default: the log's own comment `# scale=…`, else 1]
+    /// Units per count [default: the log's own comment `# scale=…`, else 1]
     #[arg(long, value_name = "RATE_PER_COUNT", allow_negative_numbers = true)]
     scale: Option<f64>,
-    /// Unit of the scaled values [default: the log's own comment `# unit=…`, else deg/s]
+    /// Unit of the scaled values [default: the log's own comment `# unit=…`, else by the names of
+    /// the columns, else deg/s or m/s^2]
     #[arg(long)]
     unit: Option<Unit>,
     /// Columns to take as axes, by name or by number from 1, such as `gyro_x,gyro_y` or `gx=2,gy=3`
-    /// [default: those named like a gyro's axes, else all numbers that are no time or temperature]
+    /// [default: those named like a gyro's axes, else an accelerometer's, else all numbers that are
+    /// no time or temperature]
     #[arg(long, value_delimiter = ',', value_name = "[AXIS=]COLUMN,…")]
     columns: Option<Vec<ColumnChoice>>,
+    /// The sensor whose axes to take [default: that of --unit, else a gyro if there is one]
+    #[arg(long)]
+    sensor: Option<Sensor>,
+    /// Column of time stamps, by name or by number from 1 [default: the one named like a time; none
+    /// if the rate is given]
+    #[arg(long, value_name = "COLUMN")]
+    time: Option<String>,
+    /// Unit of the time stamps [default: by the column's name, else the one that gives a plausible
+    /// rate]
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<TimeUnit>,
+    /// Topic of a bag [default: that of the only IMU], or of a ULog, such as `sensor_gyro:0`
+    /// [default: the one with the most samples]
+    #[arg(long)]
+    topic: Option<String>,
 }
 
 impl LogArguments {
@@ -35,6 +52,10 @@ impl LogArguments {
             scale: self.scale,
             unit: self.unit,
             columns: self.columns.clone(),
+            sensor: self.sensor,
+            time: self.time.clone(),
+            time_unit: self.time_unit,
+            topic: self.topic.clone(),
         }
     }
 }
@@ -114,7 +135,7 @@ pub(super) fn read(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurv
     if arguments.options() != log::Options::default() {
         return Err(Place::file(path).failure(
             "a curve knows its rate, scale, unit and axes",
-            "leave --rate, --scale, --unit and --columns to measure",
+            "leave options about logs to measure",
         ));
     }
     Ok(CurveFile::read(path)?.axes)

@@ -19,7 +19,7 @@ const ON_THE_WAY: usize = 64;
 /// What to work on, and how to print it.
 #[derive(Debug, Args)]
 pub(super) struct FilesArguments {
-    /// Logs (.csv, .csv.gz, .npy), or curve files (.json) that `measure` wrote
+    /// Logs (.csv, .csv.gz, .npy, .mcap, .ulg), or curve files (.json) that `measure` wrote
     #[arg(required = true, value_name = "INPUT")]
     pub(super) inputs: Vec<PathBuf>,
     /// Print the result as JSON

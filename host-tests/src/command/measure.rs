@@ -22,7 +22,7 @@ use std::{
 #[derive(Debug, Args)]
 #[command(after_help = examples::MEASURE)]
 pub(super) struct Arguments {
-    /// Recorded logs: .csv, .csv.gz or .npy
+    /// Recorded logs: .csv, .csv.gz, .npy, .mcap or .ulg
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
     /// The curve file to write: .json; or a folder, for one file a log

@@ -35,7 +35,7 @@ use crate::failure::Failure;
 use clap::{Parser, Subcommand};
 use std::io::{self, BufWriter, Write};
 
-/// Noise coefficients of gyros, from recorded logs or from curves.
+/// Noise coefficients of gyros and accelerometers, from recorded logs or from curves.
 ///
 /// Exit status: 0 when all is done; 2 for bad input, with one line on standard error that names the
 /// file, the row and the remedy. Of several files those that can be used are worked on and printed, and

@@ -10,7 +10,7 @@ use crate::{
     failure::{Failure, Place},
     log::npy_header::{Header, Kind},
     simulate::{Coefficients, Preset, Simulator},
-    unit::Unit,
+    unit::{Sensor, Unit},
 };
 use clap::Args;
 use flate2::{Compression, write::GzEncoder};
@@ -19,8 +19,16 @@ use std::{
     path::PathBuf,
 };
 
-/// Names of axes, as many as a gyro has.
-const AXES: [&str; 3] = ["gx", "gy", "gz"];
+/// Axes of a sensor.
+const AXES: usize = 3;
+
+/// Their names.
+const fn axes(sensor: Sensor) -> [&'static str; AXES] {
+    match sensor {
+        Sensor::Gyro => ["gx", "gy", "gz"],
+        Sensor::Accelerometer => ["ax", "ay", "az"],
+    }
+}
 
 /// The name of the temperature's column.
 const TEMPERATURE: &str = "temp_C";
@@ -71,7 +79,7 @@ pub(super) struct Arguments {
     /// Number of the record: the same seed gives the same record
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How many axes: gx, gy, gz
+    /// How many axes: gx, gy, gz, or of an accelerometer ax, ay, az
     #[arg(long, default_value_t = 1)]
     axes: usize,
     /// The unit of coefficients and rates
@@ -159,10 +167,10 @@ impl Record {
                 ));
             }
         }
-        if !(1..=AXES.len()).contains(&arguments.axes) {
+        if !(1..=AXES).contains(&arguments.axes) {
             return Err(Failure::option(
                 format!("--axes {} is impossible", arguments.axes),
-                format!("give 1 to {}", AXES.len()),
+                format!("give 1 to {AXES}"),
             ));
         }
         let duration_s = seconds(&arguments.duration)?;
@@ -228,7 +236,8 @@ impl Record {
     fn write_csv(&self, output: &mut impl Write) -> io::Result<()> {
         self.write_comment(output)?;
         let temperature = self.effects.thermal.map(|_| TEMPERATURE);
-        let names = AXES[..self.axes].iter().copied().chain(temperature);
+        let axes = axes(self.unit.sensor());
+        let names = axes[..self.axes].iter().copied().chain(temperature);
         writeln!(output, "{}", names.collect::<Vec<_>>().join(","))?;
         let mut float = ryu::Buffer::new();
         self.each(|rates, celsius| {
@@ -251,7 +260,12 @@ impl Record {
 
     /// What `measure` has to know, and what the record was made of.
     fn write_comment(&self, output: &mut impl Write) -> io::Result<()> {
-        write!(output, "# rate_hz={} unit={}", self.rate_hz, self.unit)?;
+        write!(
+            output,
+            "# rate_hz={} unit={}",
+            self.rate_hz,
+            self.unit.name()
+        )?;
         if let Some(scale) = self.scale {
             write!(output, " scale={scale}")?;
         }
@@ -321,7 +335,16 @@ fn coefficients(arguments: &Arguments) -> Result<Coefficients, Failure> {
     let mut coefficients = Coefficients::default();
     let preset = arguments.gyro.or(arguments.preset);
     if let Some(preset) = preset {
-        let per_degree = arguments.unit.degrees().recip();
+        if arguments.unit.sensor() != Sensor::Gyro {
+            return Err(Failure::option(
+                format!(
+                    "presets are gyros, and --unit {} is not",
+                    arguments.unit.name()
+                ),
+                "give coefficients such as --angle-random-walk, or another --unit",
+            ));
+        }
+        let per_degree = arguments.unit.in_usual().recip();
         let in_degrees = preset.coefficients();
         coefficients = Coefficients {
             quantization: in_degrees.quantization * per_degree,

@@ -4,7 +4,10 @@ use super::{
     number::{duration, number},
     units,
 };
-use crate::{log::OCTAVES, unit::Unit};
+use crate::{
+    log::OCTAVES,
+    unit::{Sensor, Unit},
+};
 use allanite::{
     Coefficient, Fit, State, Step, Term,
     effect::{Effect, MAX_PARAMETERS, Parameter},
@@ -13,6 +16,16 @@ use allanite::{
 /// A name as people write it.
 pub(super) fn plain(name: &str) -> String {
     name.replace('_', " ")
+}
+
+/// A coefficient's name as people write it, of an accelerometer by what it is of there.
+pub(super) fn of_sensor(name: &str, unit: Unit) -> String {
+    match (unit.sensor(), name) {
+        (Sensor::Accelerometer, "angle_random_walk") => "velocity random walk".into(),
+        (Sensor::Accelerometer, "rate_random_walk") => "acceleration random walk".into(),
+        (Sensor::Accelerometer, "rate_ramp") => "acceleration ramp".into(),
+        _ => plain(name),
+    }
 }
 
 /// Names as a list in a sentence.
@@ -75,13 +88,13 @@ fn short(value: f64) -> String {
 
 /// A coefficient and what it is: `angle random walk 1.95 °/√h (1.93 … 1.97)`.
 pub(super) fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: Unit) -> String {
+    let name = of_sensor(effect.coefficient(), unit);
     // Amplitudes are rates, and not the drifts that hours are the unit for.
     let (factor, unit) = match effect.coefficient() {
         "amplitude" | "rms" => (1.0, units::unit(unit, coefficient.half_seconds)),
         _ => customary(unit, coefficient.half_seconds),
     };
     let value = |value: f64| number(factor * value);
-    let name = plain(effect.coefficient());
     match coefficient.state {
         State::Measured => format!(
             "{name} {} {unit} ({} … {})",
@@ -140,7 +153,7 @@ pub(super) fn damage(first: &Step<OCTAVES>, last: &Step<OCTAVES>, unit: Unit) ->
     };
     let sentence = |(term, was): (&Term, &Coefficient)| {
         let (_, is) = same(term.effect.coefficient())?;
-        changed(&plain(term.effect.coefficient()), was, is, unit)
+        changed(&of_sensor(term.effect.coefficient(), unit), was, is, unit)
     };
     before.filter_map(sentence).collect()
 }

@@ -2,7 +2,10 @@
 
 use super::{
     AxisColumn, Ended, Field, Stop, Table, Visitor,
+    clock::{Clock, Tick},
+    field::Stamp,
     quantum::{self, Quantum, Range},
+    time_column::TimeColumn,
     worker::{Batches, Plan, Sums},
 };
 use crate::failure::{Failure, Place};
@@ -15,25 +18,88 @@ pub(super) struct Measured {
     pub(super) axes: Vec<(Sums, Quantum)>,
     /// Of each covariate.
     pub(super) covariates: Vec<Quantum>,
+    /// What the stamps told, if there were some.
+    pub(super) clock: Option<Clock>,
+}
+
+/// What to go through, and how.
+pub(super) struct Passes<'a, T> {
+    pub(super) table: &'a T,
+    pub(super) path: &'a Path,
+    pub(super) columns: &'a [AxisColumn],
+    pub(super) time: Option<&'a TimeColumn>,
+    pub(super) progress: &'a ProgressBar,
+}
+
+impl<T: Table> Passes<'_, T> {
+    /// Shows every row to the visitor, and to a clock if there is a time.
+    fn pass<V: Visitor>(&self, visitor: &mut V) -> Result<(Ended, Option<Clock>), Failure> {
+        let Some(time) = self.time else {
+            let ended = self.table.pass(self.columns, visitor, self.progress)?;
+            return Ok((ended, None));
+        };
+        let mut timed = Timed {
+            clock: Clock::new(time.pace),
+            columns: time.columns.len(),
+            seconds: None,
+            repeated: false,
+            visitor,
+        };
+        let columns = [&time.columns, self.columns].concat();
+        let ended = self.table.pass(&columns, &mut timed, self.progress)?;
+        Ok((ended, Some(timed.clock)))
+    }
+}
+
+/// A pass whose first columns are the time: it says where gaps are and which rows to leave out.
+struct Timed<'a, V> {
+    clock: Clock,
+    /// Columns of the time.
+    columns: usize,
+    /// The first of two.
+    seconds: Option<Stamp>,
+    repeated: bool,
+    visitor: &'a mut V,
+}
+
+impl<V: Visitor> Visitor for Timed<'_, V> {
+    #[inline]
+    fn visit<F: Field>(&mut self, column: usize, value: F) -> Result<(), Stop> {
+        if let Some(axis) = column.checked_sub(self.columns) {
+            return match self.repeated {
+                false => self.visitor.visit(axis, value),
+                true => Ok(()),
+            };
+        }
+        let mut stamp = value.stamp().map_err(Stop::Flaw)?;
+        if column + 1 < self.columns {
+            self.seconds = Some(stamp);
+            return Ok(());
+        }
+        if let Some(seconds) = self.seconds {
+            stamp = stamp.behind_seconds(seconds);
+        }
+        let tick = self.clock.tick(stamp).map_err(Stop::Clock)?;
+        self.repeated = tick == Tick::Repeated;
+        if tick == Tick::Gap {
+            self.visitor.gap();
+        }
+        Ok(())
+    }
 }
 
 /// Accumulates the given columns. Counts take one pass; at the first value that is none, the
 /// reading starts again, once for the range and once for the counts.
-pub(super) fn measure(
-    table: &impl Table,
-    path: &Path,
-    columns: &[AxisColumn],
-    plan: &Plan,
-    progress: &ProgressBar,
-) -> Result<Measured, Failure> {
+pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
+    let Passes { path, columns, .. } = *passes;
     let mut counts = Counts(Batches::new(plan.clone()));
-    if let Ended::AtTheLastRow = table.pass(columns, &mut counts, progress)? {
+    if let (Ended::AtTheLastRow, clock) = passes.pass(&mut counts)? {
         let whole = vec![Quantum::WHOLE; columns.len()];
-        return finish(path, counts.0, &whole);
+        return finish(path, counts.0, &whole, clock);
     }
 
     let mut ranges = Ranges(vec![Range::EMPTY; columns.len()]);
-    table.pass(columns, &mut ranges, progress)?;
+    passes.pass(&mut ranges)?;
     let quanta = columns
         .iter()
         .zip(ranges.0)
@@ -58,7 +124,7 @@ pub(super) fn measure(
         quanta,
         steps: vec![Steps::default(); columns.len()],
     };
-    table.pass(columns, &mut rounded, progress)?;
+    let (_, clock) = passes.pass(&mut rounded)?;
     for (column, steps) in columns.iter().zip(&rounded.steps) {
         if steps.lost > steps.all / 10 {
             return Err(Place::file(path).failure(
@@ -70,10 +136,15 @@ pub(super) fn measure(
             ));
         }
     }
-    finish(path, rounded.batches, &rounded.quanta)
+    finish(path, rounded.batches, &rounded.quanta, clock)
 }
 
-fn finish(path: &Path, batches: Batches, quanta: &[Quantum]) -> Result<Measured, Failure> {
+fn finish(
+    path: &Path,
+    batches: Batches,
+    quanta: &[Quantum],
+    clock: Option<Clock>,
+) -> Result<Measured, Failure> {
     let sums = batches.finish();
     if sums.iter().any(|axis| axis.accumulator.samples() == 0) {
         return Err(Place::file(path).failure("no rows", "record some samples"));
@@ -82,6 +153,7 @@ fn finish(path: &Path, batches: Batches, quanta: &[Quantum]) -> Result<Measured,
     Ok(Measured {
         axes: sums.into_iter().zip(axes.iter().copied()).collect(),
         covariates: covariates.to_vec(),
+        clock,
     })
 }
 
@@ -93,6 +165,10 @@ impl Visitor for Counts {
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
         self.0.push(axis, value.count().ok_or(Stop::NotCounts)?);
         Ok(())
+    }
+
+    fn gap(&mut self) {
+        self.0.gap();
     }
 }
 
@@ -142,5 +218,10 @@ impl Visitor for Rounded {
         self.steps[axis].step_to(number, count);
         self.batches.push(axis, count);
         Ok(())
+    }
+
+    fn gap(&mut self) {
+        self.batches.gap();
+        self.steps.iter_mut().for_each(|steps| steps.last = None);
     }
 }

@@ -1,7 +1,10 @@
-//! Which columns of a log are gyro axes.
+//! Which columns of a log are the sensor's axes.
 
-use super::{ColumnChoice, CovariateChoice};
-use crate::failure::{Failure, Place, quoted};
+use super::{ColumnChoice, CovariateChoice, names};
+use crate::{
+    failure::{Failure, Place, quoted},
+    unit::{Sensor, Unit},
+};
 use std::path::Path;
 
 /// An axis and the column that holds it, counted from 0.
@@ -18,6 +21,18 @@ pub(super) struct Columns {
     pub(super) names: Option<Vec<String>>,
     /// Of each column: what its first values are.
     pub(super) looks: Vec<Look>,
+    /// Of each column: those of its first values that are numbers.
+    pub(super) heads: Vec<Vec<f64>>,
+}
+
+/// Columns that were taken as axes.
+#[derive(Debug)]
+pub(super) struct Taken {
+    pub(super) axes: Vec<AxisColumn>,
+    /// The sensor that their names tell.
+    pub(super) sensor: Option<Sensor>,
+    /// What was taken and left out, where that is not obvious.
+    pub(super) note: Option<String>,
 }
 
 /// What a column's first values look like.
@@ -55,9 +70,10 @@ impl Columns {
             let column = self.find(path, &choice.column)?;
             let axis = match &choice.axis {
                 Some(axis) => axis.clone(),
-                None => self
-                    .name(column)
-                    .map_or_else(|| format!("c{}", column + 1), Into::into),
+                None => self.name(column).map_or_else(
+                    || format!("c{}", column + 1),
+                    |name| names::bare(name).into(),
+                ),
             };
             if let Some(twice) = axes.iter().find(|a| a.column == column || a.axis == axis) {
                 return Err(Failure::option(
@@ -113,19 +129,90 @@ impl Columns {
         choices.iter().enumerate().map(one).collect()
     }
 
-    /// The columns that look like a gyro's, and a note on the choice where it is not obvious: with
-    /// a header, those named like a gyro's axes; where there are none, all numbers that neither
-    /// by name nor by their values are times, indices or temperatures.
+    /// The sensor that these columns' names agree on.
+    pub(super) fn sensor_of(&self, axes: &[AxisColumn]) -> Option<Sensor> {
+        let all_are = |sensor: &Sensor| {
+            let is = |axis: &AxisColumn| {
+                let name = self.name(axis.column);
+                name.is_some_and(|name| names::is_axis(name, *sensor))
+            };
+            axes.iter().all(is)
+        };
+        [Sensor::Gyro, Sensor::Accelerometer]
+            .into_iter()
+            .find(all_are)
+    }
+
+    /// The unit that these columns' names tell and how many of it their values are; `None` where
+    /// they do not, or it is not one of this sensor.
+    pub(super) fn unit_of(
+        &self,
+        path: &Path,
+        axes: &[AxisColumn],
+        sensor: Sensor,
+    ) -> Result<Option<(Unit, f64)>, Failure> {
+        let of_axis = |axis: &AxisColumn| {
+            let unit = self.name(axis.column).and_then(names::unit);
+            unit.filter(|(unit, _)| unit.sensor() == sensor)
+        };
+        let Some((first, others)) = axes.split_first() else {
+            return Ok(None);
+        };
+        let unit = of_axis(first);
+        match others.iter().find(|axis| of_axis(axis) != unit) {
+            None => Ok(unit),
+            Some(other) => Err(Place::file(path).failure(
+                format!(
+                    "columns {} and {} are of different units",
+                    self.called(first.column),
+                    self.called(other.column)
+                ),
+                "choose those of one unit with --columns, or say --unit and --scale",
+            )),
+        }
+    }
+
+    /// The columns that look like axes of the sensor, of a gyro if there are some unless another
+    /// sensor is asked for, and a note on the choice where it is not obvious: with a header, those
+    /// named like axes; where there are none, all numbers that neither by name nor by their values
+    /// are times, indices or temperatures. A column known to be the time is left out silently.
     pub(super) fn guessed(
         &self,
         path: &Path,
-    ) -> Result<(Vec<AxisColumn>, Option<String>), Failure> {
+        wanted: Option<Sensor>,
+        time: &[AxisColumn],
+    ) -> Result<Taken, Failure> {
         let count = self.looks.len();
-        let is_gyro = |&column: &usize| self.name(column).is_some_and(is_gyro_name);
-        let by_name: Vec<usize> = (0..count).filter(is_gyro).collect();
+        let is_time = |column: usize| time.iter().any(|time| time.column == column);
+        let named = |sensor: Sensor| -> Vec<usize> {
+            let is = |column: &usize| {
+                let name = self.name(*column);
+                name.is_some_and(|name| names::is_axis(name, sensor))
+            };
+            (0..count).filter(is).collect()
+        };
+        let sensors = [Sensor::Gyro, Sensor::Accelerometer];
+        let found = sensors
+            .into_iter()
+            .filter(|&sensor| !named(sensor).is_empty())
+            .collect::<Vec<_>>();
+        let sensor = match wanted {
+            None => found.first().copied(),
+            Some(wanted) if found.contains(&wanted) || found.is_empty() => Some(wanted),
+            Some(wanted) => {
+                return Err(Place::file(path).failure(
+                    format!("no column is named like an axis of a {wanted}"),
+                    "name them with --columns, such as x=3,y=4,z=5",
+                ));
+            }
+        };
+        let by_name = sensor.map_or_else(Vec::new, named);
         let taken = if by_name.is_empty() {
+            let is_no_axis = |name| names::is_other(name) || names::is_time(name);
             let is_axis = |&column: &usize| {
-                self.looks[column] == Look::Number && !self.name(column).is_some_and(is_other_name)
+                self.looks[column] == Look::Number
+                    && !is_time(column)
+                    && !self.name(column).is_some_and(is_no_axis)
             };
             (0..count).filter(is_axis).collect()
         } else {
@@ -133,18 +220,21 @@ impl Columns {
         };
         if taken.is_empty() {
             return Err(Place::file(path).failure(
-                format!("none of {} columns looks like a gyro's axis", count),
+                format!("none of {count} columns looks like an axis"),
                 "name them with --columns, such as gx=3,gy=4,gz=5",
             ));
         }
 
-        let conventional = ["gx", "gy", "gz"];
+        let conventional = match sensor {
+            Some(Sensor::Accelerometer) => ["ax", "ay", "az"],
+            _ => ["gx", "gy", "gz"],
+        };
         let axes: Vec<AxisColumn> = taken
             .iter()
             .enumerate()
             .map(|(i, &column)| AxisColumn {
                 axis: match self.name(column) {
-                    Some(name) => name.to_owned(),
+                    Some(name) => names::bare(name).to_owned(),
                     None if taken.len() <= conventional.len() => conventional[i].to_owned(),
                     None => format!("c{}", column + 1),
                 },
@@ -160,7 +250,7 @@ impl Columns {
         }
 
         let left: Vec<usize> = (0..count)
-            .filter(|column| !taken.contains(column))
+            .filter(|column| !taken.contains(column) && !is_time(*column))
             .collect();
         let note = (by_name.is_empty() || !left.is_empty()).then(|| {
             let taken = self.list(&taken);
@@ -169,12 +259,24 @@ impl Columns {
             } else {
                 format!("left out {}", self.list(&left))
             };
-            format!("taken as axes: {taken}; {left} (choose with --columns)")
+            let other = match found.as_slice() {
+                [_, other] if wanted.is_none() => format!(" or --sensor {}", other.option()),
+                _ => String::new(),
+            };
+            format!("taken as axes: {taken}; {left} (choose with --columns{other})")
         });
-        Ok((axes, note))
+        Ok(Taken { axes, sensor, note })
     }
 
-    fn name(&self, column: usize) -> Option<&str> {
+    /// What a column is called in messages.
+    pub(super) fn called(&self, column: usize) -> String {
+        match self.name(column) {
+            Some(name) => name.to_owned(),
+            None => format!("column {}", column + 1),
+        }
+    }
+
+    pub(super) fn name(&self, column: usize) -> Option<&str> {
         self.names
             .as_ref()
             .map(|names| names[column].as_str())
@@ -182,19 +284,22 @@ impl Columns {
     }
 
     fn list(&self, columns: &[usize]) -> String {
-        let one = |&column: &usize| match self.name(column) {
-            Some(name) => name.to_owned(),
-            None => format!("column {}", column + 1),
-        };
+        let one = |&column: &usize| self.called(column);
         columns.iter().map(one).collect::<Vec<_>>().join(", ")
     }
 
-    /// The column of that name, else of that number from 1.
-    fn find(&self, path: &Path, wanted: &str) -> Result<usize, Failure> {
+    /// The column of that name, with its unit or without, else of that number from 1.
+    pub(super) fn find(&self, path: &Path, wanted: &str) -> Result<usize, Failure> {
         let count = self.looks.len();
-        let named: Vec<usize> = (0..count)
-            .filter(|&column| self.name(column) == Some(wanted))
-            .collect();
+        let named_by = |name: fn(&str) -> &str| -> Vec<usize> {
+            (0..count)
+                .filter(|&column| self.name(column).map(name) == Some(wanted))
+                .collect()
+        };
+        let mut named = named_by(|name| name);
+        if named.is_empty() {
+            named = named_by(names::bare);
+        }
         match (named.as_slice(), wanted.parse::<usize>()) {
             (&[column], _) => return Ok(column),
             ([], Ok(number)) if (1..=count).contains(&number) => return Ok(number - 1),
@@ -217,47 +322,6 @@ impl Columns {
     }
 }
 
-/// `gx`, `gyro_y`, `imu.angular_velocity.z`, `w_RS_S_x [rad s^-1]`, and the like.
-fn is_gyro_name(name: &str) -> bool {
-    let name = name.trim().to_lowercase();
-    if ["temp", "time", "cov", "bias"]
-        .iter()
-        .any(|other| name.contains(other))
-    {
-        return false;
-    }
-    let short = ["gx", "gy", "gz", "wx", "wy", "wz", "w_rs_s_"]
-        .iter()
-        .any(|axis| {
-            let rest = name.strip_prefix(axis);
-            rest.is_some_and(|rest| axis.len() > 2 || !rest.starts_with(char::is_alphabetic))
-        });
-    let long = [
-        "gyr",
-        "angular_velocity",
-        "angularvelocity",
-        "angular_rate",
-        "ang_vel",
-        "omega",
-    ];
-    short || long.iter().any(|part| name.contains(part))
-}
-
-/// A time, an index or a temperature.
-fn is_other_name(name: &str) -> bool {
-    let name = name.trim().to_lowercase();
-    let words = ["time", "stamp", "date", "index", "temp", "sample", "seq"];
-    let first = name
-        .split(|c: char| !c.is_alphanumeric())
-        .next()
-        .unwrap_or_default();
-    words.iter().any(|word| name.contains(word))
-        || [
-            "t", "s", "ms", "us", "ns", "sec", "nsec", "secs", "nsecs", "i", "n", "id",
-        ]
-        .contains(&first)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -266,8 +330,9 @@ mod tests {
         let columns = Columns {
             names: names.map(|names| names.iter().map(|&name| name.into()).collect()),
             looks: looks.to_vec(),
+            heads: Vec::new(),
         };
-        let (axes, note) = columns.guessed(Path::new("a.csv")).unwrap();
+        let Taken { axes, note, .. } = columns.guessed(Path::new("a.csv"), None, &[]).unwrap();
         (
             axes.iter().map(|axis| axis.axis.clone()).collect(),
             axes.iter().map(|axis| axis.column).collect(),
@@ -293,31 +358,6 @@ mod tests {
             note.unwrap(),
             "taken as axes: gx_raw131, gy_raw131; left out t_s, temp_C (choose with --columns)"
         );
-    }
-
-    #[test]
-    fn usual_names_of_gyro_axes_are_known() {
-        for name in [
-            "gx",
-            "GyroX",
-            "gyro_y [deg/s]",
-            "gyrADC[0]",
-            "angular_velocity.z",
-            "w_RS_S_x [rad s^-1]",
-            "wx",
-        ] {
-            assert!(is_gyro_name(name), "{name}");
-        }
-        for name in [
-            "t",
-            "ax",
-            "gyro_temp",
-            "gxyz",
-            "angular_velocity_covariance_0",
-            "weight",
-        ] {
-            assert!(!is_gyro_name(name), "{name}");
-        }
     }
 
     #[test]

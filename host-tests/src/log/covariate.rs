@@ -56,6 +56,11 @@ impl Derived {
         }
     }
 
+    /// The next count does not follow the one before.
+    pub(super) fn gap(&mut self) {
+        self.previous = None;
+    }
+
     pub(super) fn next(&mut self, count: i32) -> i32 {
         if !self.rate {
             return count;

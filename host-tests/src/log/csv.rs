@@ -31,6 +31,8 @@ pub(super) struct Csv {
     columns: Columns,
     /// The byte behind the header, or 0.
     data_start: u64,
+    /// Whether the last row ends.
+    is_whole: bool,
 }
 
 /// What stands above the first record, and how that record is cut.
@@ -53,8 +55,10 @@ impl Csv {
             columns: Columns {
                 names: None,
                 looks: Vec::new(),
+                heads: Vec::new(),
             },
             data_start: 0,
+            is_whole: gzip || source::ends_with_line(path)?,
         };
 
         let records = table.first_records()?;
@@ -78,7 +82,11 @@ impl Csv {
             table.columns.names = table.names_in_comment(&comment, first.len());
         }
         let rows = &records[usize::from(table.data_start > 0)..];
-        table.columns.looks = (0..first.len()).map(|column| look(rows, column)).collect();
+        table.columns.heads = (0..first.len()).map(|column| head(rows, column)).collect();
+        let looks = table.columns.heads.iter().enumerate();
+        table.columns.looks = looks
+            .map(|(column, head)| look(rows, column, head))
+            .collect();
         Ok(table)
     }
 
@@ -140,10 +148,7 @@ impl Csv {
             match visitor.visit(axis, Text(field(column.column))) {
                 Ok(()) => {}
                 Err(Stop::NotCounts) => return Ok(true),
-                Err(Stop::Flaw(flaw)) => {
-                    let what = format!("axis {}: {}", column.axis, flaw.what);
-                    return Err(self.row_at(byte()).failure(what, flaw.remedy));
-                }
+                Err(stop) => return Err(stop.failure(column, self.row_at(byte()))),
             }
         }
         Ok(false)
@@ -157,6 +162,11 @@ impl Table for Csv {
 
     fn columns(&self) -> &Columns {
         &self.columns
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let note = "the last row does not end: it may be cut off";
+        (!self.is_whole).then(|| note.into()).into_iter().collect()
     }
 
     fn pass<V: Visitor>(
@@ -278,11 +288,19 @@ fn names_of(record: &ByteRecord) -> Vec<String> {
         .collect()
 }
 
-fn look(rows: &[(ByteRecord, u64)], column: usize) -> Look {
-    let number = |(row, _): &(ByteRecord, u64)| Text(row.get(column)?).number().ok();
-    match rows.first().map(number) {
-        Some(None) => Look::Text,
-        _ => Look::of_numbers(&rows.iter().filter_map(number).collect::<Vec<_>>()),
+fn number(row: &ByteRecord, column: usize) -> Option<f64> {
+    Text(row.get(column)?).number().ok()
+}
+
+fn head(rows: &[(ByteRecord, u64)], column: usize) -> Vec<f64> {
+    let numbers = rows.iter().filter_map(|(row, _)| number(row, column));
+    numbers.collect()
+}
+
+fn look(rows: &[(ByteRecord, u64)], column: usize, head: &[f64]) -> Look {
+    match rows.first() {
+        Some((row, _)) if number(row, column).is_none() => Look::Text,
+        _ => Look::of_numbers(head),
     }
 }
 

@@ -1,6 +1,6 @@
 //! One value of a log, before it is a count.
 
-use crate::failure::quoted;
+use crate::failure::{Failure, Place, quoted};
 
 /// A value that is a count or a number, or wants to be one.
 pub(super) trait Field {
@@ -9,6 +9,57 @@ pub(super) trait Field {
 
     /// The value as a finite number, or what is wrong with it.
     fn number(&self) -> Result<f64, Flaw>;
+
+    /// The value as a time stamp, exact where it is a whole number.
+    fn stamp(&self) -> Result<Stamp, Flaw> {
+        self.number().map(Stamp::Real)
+    }
+}
+
+/// A time stamp in its log's unit. Nanoseconds since 1970 do not fit into a float.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Stamp {
+    /// A whole number.
+    Whole(i64),
+    /// Any other.
+    Real(f64),
+}
+
+impl Stamp {
+    /// The time since another stamp.
+    pub(super) fn since(self, other: Self) -> f64 {
+        match (self, other) {
+            (Self::Whole(now), Self::Whole(then)) => (i128::from(now) - i128::from(then)) as f64,
+            (now, then) => now.to_f64() - then.to_f64(),
+        }
+    }
+
+    /// The stamp so many seconds later, in nanoseconds.
+    pub(super) fn behind_seconds(self, seconds: Self) -> Self {
+        match (seconds, self) {
+            (Self::Whole(seconds), Self::Whole(nanoseconds)) => {
+                let seconds = seconds.saturating_mul(1_000_000_000);
+                Self::Whole(seconds.saturating_add(nanoseconds))
+            }
+            (seconds, nanoseconds) => Self::Real(1e9 * seconds.to_f64() + nanoseconds.to_f64()),
+        }
+    }
+
+    fn to_f64(self) -> f64 {
+        match self {
+            Self::Whole(ticks) => ticks as f64,
+            Self::Real(ticks) => ticks,
+        }
+    }
+}
+
+impl std::fmt::Display for Stamp {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Whole(ticks) => ticks.fmt(f),
+            Self::Real(ticks) => ticks.fmt(f),
+        }
+    }
 }
 
 /// What is wrong with a value, and what to do about it.
@@ -23,6 +74,19 @@ impl Flaw {
         Self {
             what: format!("{value} is not a finite number"),
             remedy: "cut the record there or remove the value",
+        }
+    }
+
+    /// The failure that the flaw is in a place.
+    pub(super) fn at(&self, place: Place) -> Failure {
+        place.failure(&self.what, self.remedy)
+    }
+
+    /// What is wrong with time stamps.
+    pub(super) fn stamps(what: String) -> Self {
+        Self {
+            what,
+            remedy: "cut the record there, or give --rate to leave the stamps out",
         }
     }
 }
@@ -55,6 +119,13 @@ impl Field for Text<'_> {
             }),
         }
     }
+
+    fn stamp(&self) -> Result<Stamp, Flaw> {
+        match atoi_simd::parse::<i64, false, false>(self.0.trim_ascii()) {
+            Ok(ticks) => Ok(Stamp::Whole(ticks)),
+            Err(_) => self.number().map(Stamp::Real),
+        }
+    }
 }
 
 macro_rules! integer_fields {
@@ -67,6 +138,10 @@ macro_rules! integer_fields {
 
             fn number(&self) -> Result<f64, Flaw> {
                 Ok(*self as f64)
+            }
+
+            fn stamp(&self) -> Result<Stamp, Flaw> {
+                Ok(i64::try_from(*self).map_or(Stamp::Real(*self as f64), Stamp::Whole))
             }
         }
     )*};

@@ -33,55 +33,44 @@ impl Metadata {
         }
     }
 
-    /// Rate, scale and unit: from the options, else from here, else as a log has them that does
-    /// not say. Only the rate has no such value.
-    pub(super) fn settle(&self, path: &Path, options: &Options) -> Result<Settled, Failure> {
-        let rate_hz = match (options.rate_hz, &self.rate_hz) {
-            (Some(rate_hz), _) => positive(rate_hz, "--rate", "samples per second")?,
-            (None, Some((row, text))) => positive_text(path, *row, "rate_hz", text, "--rate HZ")?,
-            (None, None) => {
-                return Err(Place::file(path)
-                    .failure("the sampling rate is not known", "give it with --rate HZ"));
+    /// The rate: from the options, else from here.
+    pub(super) fn rate_hz(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
+        Ok(match (options.rate_hz, &self.rate_hz) {
+            (Some(rate_hz), _) => Some(positive(rate_hz, "--rate", "samples per second")?),
+            (None, Some((row, text))) => {
+                Some(positive_text(path, *row, "rate_hz", text, "--rate HZ")?)
             }
-        };
-        let scale = match (options.scale, &self.scale) {
-            (Some(scale), _) => Some(positive(scale, "--scale", "rate units per count")?),
-            (None, Some((row, text))) => Some(positive_text(
-                path,
-                *row,
-                "scale",
-                text,
-                "--scale RATE_PER_COUNT",
-            )?),
             (None, None) => None,
-        };
-        let unit = match (options.unit, &self.unit) {
-            (Some(unit), _) => Some(unit),
-            (None, Some((row, text))) => Some(Unit::from_name(text).ok_or_else(|| {
-                Place::row(path, *row).failure(
-                    format!(
-                        "unit={} is neither deg/s nor rad/s",
-                        quoted(text.as_bytes())
-                    ),
-                    "correct it or give --unit",
-                )
-            })?),
-            (None, None) => None,
-        };
-        Ok(Settled {
-            rate_hz,
-            scale,
-            unit,
         })
     }
-}
 
-/// What options and metadata agree on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Settled {
-    pub(super) rate_hz: f64,
-    pub(super) scale: Option<f64>,
-    pub(super) unit: Option<Unit>,
+    /// The scale: from the options, else from here.
+    pub(super) fn scale(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
+        Ok(match (options.scale, &self.scale) {
+            (Some(scale), _) => Some(positive(scale, "--scale", "rate units per count")?),
+            (None, Some((row, text))) => {
+                let option = "--scale RATE_PER_COUNT";
+                Some(positive_text(path, *row, "scale", text, option)?)
+            }
+            (None, None) => None,
+        })
+    }
+
+    /// The unit that is told here.
+    pub(super) fn unit(&self, path: &Path) -> Result<Option<Unit>, Failure> {
+        let Some((row, text)) = &self.unit else {
+            return Ok(None);
+        };
+        Unit::from_name(text).map(Some).ok_or_else(|| {
+            Place::row(path, *row).failure(
+                format!(
+                    "unit={} is none of deg/s, rad/s, m/s^2 and g",
+                    quoted(text.as_bytes())
+                ),
+                "correct it or give --unit",
+            )
+        })
+    }
 }
 
 /// A positive, finite option.
@@ -120,10 +109,10 @@ fn positive_text(
 mod tests {
     use super::*;
 
-    fn settle(comment: &str, options: &Options) -> Result<Settled, Failure> {
+    fn read(comment: &str) -> Metadata {
         let mut metadata = Metadata::default();
         metadata.read_comment(1, comment);
-        metadata.settle(Path::new("a.csv"), options)
+        metadata
     }
 
     #[test]
@@ -132,24 +121,11 @@ mod tests {
             rate_hz: Some(200.0),
             ..Options::default()
         };
-        let settled = settle(" rate_hz=100 unit=rad/s scale=0.05", &options).unwrap();
-        assert_eq!(
-            settled,
-            Settled {
-                rate_hz: 200.0,
-                scale: Some(0.05),
-                unit: Some(Unit::RadiansPerSecond),
-            }
-        );
-    }
-
-    #[test]
-    fn rate_that_nobody_gives_is_asked_for() {
-        let failure = settle(" recorded in the cellar", &Options::default()).unwrap_err();
-        assert_eq!(
-            failure.to_string(),
-            "a.csv: the sampling rate is not known; give it with --rate HZ"
-        );
+        let metadata = read(" rate_hz=100 unit=rad/s scale=0.05");
+        let path = Path::new("a.csv");
+        assert_eq!(metadata.rate_hz(path, &options).unwrap(), Some(200.0));
+        assert_eq!(metadata.scale(path, &options).unwrap(), Some(0.05));
+        assert_eq!(metadata.unit(path).unwrap(), Some(Unit::RadiansPerSecond));
     }
 
     #[test]
@@ -160,9 +136,11 @@ mod tests {
             "rate_hz=fast",
             "rate_hz=1 scale=-1",
         ] {
-            let failure = settle(comment, &Options::default())
-                .unwrap_err()
-                .to_string();
+            let (metadata, path) = (read(comment), Path::new("a.csv"));
+            let options = Options::default();
+            let rate = metadata.rate_hz(path, &options);
+            let read = rate.and_then(|_| metadata.scale(path, &options));
+            let failure = read.unwrap_err().to_string();
             assert!(failure.starts_with("a.csv:1: "), "{failure}");
         }
     }

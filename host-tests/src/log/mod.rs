@@ -4,17 +4,41 @@
 //!
 //! * `.csv`, `.csv.gz`: commas, semicolons or tabs; a header of names or none; comment lines begin
 //!   with `#`, and those at the top may say `rate_hz=…`, `scale=…` (rate units per count) and
-//!   `unit=deg/s` or `unit=rad/s`. Options win over comments.
+//!   `unit=deg/s`, `rad/s`, `m/s^2` or `g`. Options win over comments.
 //! * `.npy`: one- or two-dimensional, rows are samples; integers of 1 to 8 bytes, floats of 4 or 8,
 //!   either byte order, either memory order.
 //!
+//! * `.mcap`: bags of ROS 2, or of ROS 1 converted, with a topic of `sensor_msgs/msg/Imu`;
+//!   stamps are those of the messages' headers. One chunk is in memory at a time.
+//! * `.ulg`: logs of PX4 with `sensor_gyro`, `sensor_accel`, `sensor_combined` or `vehicle_imu`.
+//!
 //! # Which columns are axes
 //!
-//! Those that [`Options::columns`] names. Otherwise, with a header, those named like a gyro's axes
-//! (`gx`, `gyro_y`, `angular_velocity.z` and the like). Where no name says so, all columns of
-//! numbers, but for those that by their name or by rising from row to row are times, indices or
-//! temperatures. Unless every column was an axis by name, a note tells what was taken and what was
-//! left out.
+//! Those that [`Options::columns`] names. Otherwise, with a header, those named like the axes of a
+//! gyro (`gx`, `gyro_y`, `angular_velocity.z`, `w_RS_S_x [rad s^-1]`) or, where there are none or
+//! [`Options::sensor`] asks for them, of an accelerometer (`ax`, `accel_y`,
+//! `linear_acceleration.z`). Where no name says so, all columns of numbers, but for those that by
+//! their name or by rising from row to row are times, indices or temperatures. Unless every column
+//! was an axis by name, a note tells what was taken and what was left out.
+//!
+//! # Rate and gaps
+//!
+//! A rate that options or comments tell is the rate, and time stamps are not looked at unless
+//! [`Options::time`] names their column. Otherwise the rate is the mean of the stamps of the first
+//! column that is named like a time (of two for the seconds and nanoseconds of ROS), or of the only
+//! one without a name that rises by other steps than one. Their unit is that of the name, else that of the time since 1970, else the one that
+//! gives a rate between 10 Hz and 10 kHz.
+//!
+//! A step between stamps of more than 1.5 usual ones, and far beyond how they scatter, is a gap,
+//! which no difference will span. A row with the stamp of the row before is left out. Both are
+//! counted in a note. Stamps that go back, two rates in one log, and stamps that leap or repeat in
+//! more than 5 % of the rows are refused.
+//!
+//! # Units
+//!
+//! The unit is that of [`Options::unit`], else of the comments, else of the columns' names, else
+//! deg/s or m/s². Neighbouring samples that scatter by more than 100 deg/s or 20 m/s² get a note
+//! that scale and unit are unlikely; by more than 100 000 deg/s or m/s² they are refused.
 //!
 //! # Counts
 //!
@@ -24,29 +48,41 @@
 //! a finite number ends the reading with its row.
 
 mod accumulate;
+mod bag;
+mod clock;
 mod columns;
 mod covariate;
 mod csv;
 mod field;
+mod imu_message;
 mod lines;
 mod metadata;
+mod names;
 mod npy;
 pub mod npy_header;
 mod quantum;
+mod reading;
 mod records;
+mod scaling;
 mod source;
+mod time_column;
+mod ulog;
+mod ulog_format;
+mod ulog_messages;
 mod worker;
 
 use crate::{
     failure::{Failure, Place},
-    unit::Unit,
+    unit::{Sensor, Unit},
 };
-use allanite::{Accumulator, CrossCurve, Kurtosis, Reason, Scale};
+use allanite::{Accumulator, CrossCurve, Kurtosis, Reason};
 use columns::{AxisColumn, Columns};
 pub use covariate::CovariateChoice;
 use field::{Field, Flaw};
 use indicatif::ProgressBar;
 use metadata::Metadata;
+pub use names::TimeUnit;
+use reading::read_table;
 use source::Format;
 use std::path::Path;
 
@@ -56,7 +92,7 @@ pub const OCTAVES: usize = 30;
 /// What a user may say about a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Samples per second.
+    /// Samples per second; time stamps are not needed then.
     pub rate_hz: Option<f64>,
     /// Rate units per count.
     pub scale: Option<f64>,
@@ -64,6 +100,14 @@ pub struct Options {
     pub unit: Option<Unit>,
     /// The axes, in this order; without, see [which columns are axes](self#which-columns-are-axes).
     pub columns: Option<Vec<ColumnChoice>>,
+    /// Of which sensor axes are to be found.
+    pub sensor: Option<Sensor>,
+    /// The column of time stamps; without, see [rate and gaps](self#rate-and-gaps).
+    pub time: Option<String>,
+    /// The unit of the time stamps.
+    pub time_unit: Option<TimeUnit>,
+    /// Of a log of several topics the one to read.
+    pub topic: Option<String>,
 }
 
 /// A column to take: `column` or `axis=column`.
@@ -183,9 +227,21 @@ fn read_parts(
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let parts = (first, watch);
-    match Format::of(path)? {
+    let format = Format::of(path)?;
+    if !format.has_topics() && options.topic.is_some() {
+        return Err(Place::file(path).failure("has no topics", "leave --topic"));
+    }
+    match format {
         Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, parts, progress),
         Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
+        Format::Mcap => {
+            let bag = bag::Bag::open(path, options, progress)?;
+            read_table(&bag, path, options, parts, progress)
+        }
+        Format::Ulog => {
+            let log = ulog::Ulog::open(path, options, progress)?;
+            read_table(&log, path, options, parts, progress)
+        }
     }
 }
 
@@ -193,6 +249,16 @@ fn read_parts(
 trait Table {
     fn metadata(&self) -> &Metadata;
     fn columns(&self) -> &Columns;
+
+    /// Whether a pass shows rows one after the other, the columns of each in the order asked for.
+    fn by_rows(&self) -> bool {
+        true
+    }
+
+    /// What was found that is not as it should be, known after a pass.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// Shows every value of the given columns to a visitor; of each column in the order of rows.
     fn pass<V: Visitor>(
@@ -206,6 +272,9 @@ trait Table {
 /// What a pass over a table is made for.
 trait Visitor {
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop>;
+
+    /// Samples are missing before the next row.
+    fn gap(&mut self) {}
 }
 
 /// Why a visitor wants no more.
@@ -214,147 +283,29 @@ enum Stop {
     NotCounts,
     /// A value is no finite number either.
     Flaw(Flaw),
+    /// The row does not follow the one before.
+    Clock(Flaw),
+}
+
+impl Stop {
+    /// The failure that a value of a column was met with.
+    fn failure(&self, column: &AxisColumn, place: Place) -> Failure {
+        match self {
+            Self::Flaw(flaw) => {
+                place.failure(format!("axis {}: {}", column.axis, flaw.what), flaw.remedy)
+            }
+            Self::Clock(flaw) => flaw.at(place),
+            // Met by a visitor that takes numbers as well, so never seen.
+            Self::NotCounts => place.failure(
+                format!("axis {}: not a count", column.axis),
+                "correct the value",
+            ),
+        }
+    }
 }
 
 /// How a pass ended that found nothing wrong.
 enum Ended {
     AtTheLastRow,
     NotCounts,
-}
-
-fn read_table(
-    table: &impl Table,
-    path: &Path,
-    options: &Options,
-    (first, watch): (Option<u64>, Option<&[CovariateChoice]>),
-    progress: &ProgressBar,
-) -> Result<(Log, Vec<Axis>), Failure> {
-    let settled = table.metadata().settle(path, options)?;
-    let (axis_columns, note) = match &options.columns {
-        Some(choices) => (table.columns().chosen(path, choices)?, None),
-        None => table.columns().guessed(path)?,
-    };
-    let covariates = watch.unwrap_or_default();
-    let mut columns = axis_columns.clone();
-    columns.extend(
-        table
-            .columns()
-            .covariates(path, covariates, &axis_columns)?,
-    );
-    let plan = worker::Plan {
-        axes: axis_columns.len(),
-        first: first.unwrap_or(u64::MAX),
-        watch: watch.map(<[_]>::to_vec),
-        fineness: 0,
-    };
-    let measured = accumulate::measure(table, path, &columns, &plan, progress)?;
-    let mut notes: Vec<String> = note.into_iter().collect();
-    let mut axes = Vec::new();
-    let mut rest = Vec::new();
-    for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
-        let mut axis = Axis {
-            name: column.axis,
-            rate_per_count: settled.scale.unwrap_or(1.0) * quantum.step(),
-            accumulator: sums.accumulator,
-            evidence: None,
-        };
-        if first.is_some() {
-            let behind = Axis {
-                accumulator: sums.rest,
-                ..axis.clone()
-            };
-            check_axis(path, &behind)?;
-            rest.push(behind);
-        }
-        check_axis(path, &axis)?;
-        if let Some(watched) = sums.watched {
-            let named = covariates.iter().zip(&measured.covariates);
-            axis.evidence = Some(evidence(path, &axis, *watched, named, settled.rate_hz)?);
-        }
-        if quantum == quantum::Quantum::WHOLE && settled.scale.is_none() {
-            notes.push(format!(
-                "axis {}: whole numbers and no scale given: 1 per count assumed (say so with --scale)",
-                axis.name
-            ));
-        }
-        axes.push(axis);
-    }
-    let unit = settled.unit.unwrap_or_else(|| {
-        let assumed = Unit::DegreesPerSecond;
-        notes.push(format!(
-            "no unit given: {assumed} assumed (say so with --unit)"
-        ));
-        assumed
-    });
-    let log = Log {
-        rate_hz: settled.rate_hz,
-        unit,
-        axes,
-        notes,
-    };
-    Ok((log, rest))
-}
-
-/// What was watched, in units.
-fn evidence<'a>(
-    path: &Path,
-    axis: &Axis,
-    watched: worker::Watched,
-    covariates: impl Iterator<Item = (&'a CovariateChoice, &'a quantum::Quantum)>,
-    rate_hz: f64,
-) -> Result<Evidence, Failure> {
-    let fail = |error: allanite::Error| {
-        Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
-    };
-    let scale = Scale::new(axis.rate_per_count, rate_hz).map_err(fail)?;
-    let mut shared = Vec::new();
-    for ((choice, quantum), cross) in covariates.zip(&watched.cross) {
-        // A rate of change is counted in quanta a sample.
-        let per_count = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
-        let curve = cross.curve(&axis.accumulator, scale, per_count);
-        shared.push((choice.to_string(), curve.map_err(fail)?));
-    }
-    Ok(Evidence {
-        kurtosis: watched.moments.kurtosis(),
-        covariates: shared,
-        invalid: watched.integrity.verdict(),
-    })
-}
-
-/// Whether an axis is long enough and alive.
-fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
-    let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
-    let Axis {
-        name,
-        rate_per_count,
-        accumulator,
-        ..
-    } = axis;
-    // Two octaves with six differences each, the shorter one's neighbours less three.
-    const LEAST: u64 = 9;
-    if accumulator.samples() < LEAST {
-        return fail(
-            format!(
-                "{} samples, and two octaves need {LEAST}",
-                accumulator.samples()
-            ),
-            "record longer",
-        );
-    }
-    if accumulator
-        .octave(0)
-        .is_none_or(|octave| octave.sum.to_f64() == 0.0)
-    {
-        return fail(
-            format!("axis {name} never changes its value"),
-            "check the sensor, or choose other columns with --columns",
-        );
-    }
-    if !(rate_per_count.is_finite() && *rate_per_count > 0.0) {
-        return fail(
-            format!("axis {name}: a scale of {rate_per_count} per count is beyond floats"),
-            "give another --scale",
-        );
-    }
-    Ok(())
 }

@@ -70,23 +70,26 @@ impl Npy {
             columns: Columns {
                 names: None,
                 looks: Vec::new(),
+                heads: Vec::new(),
             },
         };
+        array.columns.heads = array.heads(width)?;
         array.columns.looks = if width == 1 {
             vec![Look::Number]
         } else {
-            array.looks(width)?
+            let heads = array.columns.heads.iter();
+            heads.map(|head| Look::of_numbers(head)).collect()
         };
         Ok(array)
     }
 
-    /// The looks of the columns, from the first rows wherever they are stored.
-    fn looks(&self, width: u64) -> Result<Vec<Look>, Failure> {
+    /// The first numbers of the columns, wherever they are stored.
+    fn heads(&self, width: u64) -> Result<Vec<Vec<f64>>, Failure> {
         let fail = |error| self.failure(None, &error);
         let mut file = File::open(&self.path).map_err(fail)?;
         read_header(&self.path, &mut file)?;
         let start = file.stream_position().map_err(fail)?;
-        let mut looks = Vec::new();
+        let mut heads = Vec::new();
         for column in 0..width {
             let mut numbers = Vec::new();
             for row in 0..self.rows.min(LOOKS) {
@@ -105,9 +108,9 @@ impl Npy {
                 }
                 numbers.extend(self.number(element));
             }
-            looks.push(Look::of_numbers(&numbers));
+            heads.push(numbers);
         }
-        Ok(looks)
+        Ok(heads)
     }
 
     fn number(&self, element: &[u8]) -> Option<f64> {
@@ -141,6 +144,10 @@ impl Table for Npy {
         &self.columns
     }
 
+    fn by_rows(&self) -> bool {
+        !self.header.fortran_order
+    }
+
     fn pass<V: Visitor>(
         &self,
         axes: &[AxisColumn],
@@ -150,39 +157,33 @@ impl Table for Npy {
         let mut reader = source::open(&self.path, progress)?;
         read_header(&self.path, &mut reader)?;
         let width = self.columns.looks.len();
-        let axis_of: Vec<Option<usize>> = (0..width)
-            .map(|column| axes.iter().position(|axis| axis.column == column))
-            .collect();
-        // Runs of elements of one row, or in the other memory order of one column.
-        let (runs, length) = if self.header.fortran_order {
-            (width as u64, self.rows)
+        // A row at a time, or in the other memory order one element of a column.
+        let size = self.header.size;
+        let (columns, runs) = if self.header.fortran_order {
+            (1, self.rows * width as u64)
         } else {
-            (self.rows, width as u64)
+            (width, self.rows)
         };
-        let mut element = [0; 8];
-        let element = &mut element[..self.header.size];
+        let mut bytes = vec![0; columns * size];
         for run in 0..runs {
-            for i in 0..length {
-                let (row, column) = if self.header.fortran_order {
-                    (i, run)
-                } else {
-                    (run, i)
-                };
-                reader
-                    .read_exact(element)
-                    .map_err(|error| self.failure(Some(row), &error))?;
-                let Some(axis) = axis_of[column as usize] else {
+            let (row, first) = if self.header.fortran_order {
+                (run % self.rows, (run / self.rows) as usize)
+            } else {
+                (run, 0)
+            };
+            reader
+                .read_exact(&mut bytes)
+                .map_err(|error| self.failure(Some(row), &error))?;
+            let place = || Place::row(&self.path, row + 1);
+            for (i, axis) in axes.iter().enumerate() {
+                let at = axis.column.checked_sub(first);
+                let Some(element) = at.and_then(|at| bytes.chunks_exact(size).nth(at)) else {
                     continue;
                 };
-                match visit_element(&self.header, element, axis, visitor) {
+                match visit_element(&self.header, element, i, visitor) {
                     Ok(()) => {}
                     Err(Stop::NotCounts) => return Ok(Ended::NotCounts),
-                    Err(Stop::Flaw(flaw)) => {
-                        return Err(Place::row(&self.path, row + 1).failure(
-                            format!("axis {}: {}", axes[axis].axis, flaw.what),
-                            flaw.remedy,
-                        ));
-                    }
+                    Err(stop) => return Err(stop.failure(axis, place())),
                 }
             }
         }

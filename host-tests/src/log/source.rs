@@ -5,7 +5,7 @@ use flate2::bufread::MultiGzDecoder;
 use indicatif::ProgressBar;
 use std::{
     fs::File,
-    io::{BufRead, BufReader, Read},
+    io::{BufRead, BufReader, Read, Seek, SeekFrom},
     path::Path,
 };
 
@@ -22,6 +22,10 @@ pub(super) enum Format {
     },
     /// An array of numbers.
     Npy,
+    /// A bag of ROS 2.
+    Mcap,
+    /// A log of PX4.
+    Ulog,
 }
 
 impl Format {
@@ -38,12 +42,23 @@ impl Format {
             Ok(Self::Csv { gzip: true })
         } else if name.ends_with(".npy") {
             Ok(Self::Npy)
+        } else if name.ends_with(".mcap") {
+            Ok(Self::Mcap)
+        } else if name.ends_with(".ulg") || name.ends_with(".ulog") {
+            Ok(Self::Ulog)
         } else {
             Err(Place::file(path).failure(
                 "the extension names no kind of log",
-                "give a .csv, .csv.gz or .npy file",
+                "give a .csv, .csv.gz, .npy, .mcap or .ulg file",
             ))
         }
+    }
+}
+
+impl Format {
+    /// Whether a file holds several sensors, told apart by topics.
+    pub(super) const fn has_topics(self) -> bool {
+        matches!(self, Self::Mcap | Self::Ulog)
     }
 }
 
@@ -80,6 +95,18 @@ pub(super) fn open_text(
         text.consume(mark.len());
     }
     Ok(text)
+}
+
+/// Whether the last line of a text ends.
+pub(super) fn ends_with_line(path: &Path) -> Result<bool, Failure> {
+    let last = || {
+        let mut file = File::open(path)?;
+        let mut last = [0];
+        file.seek(SeekFrom::End(-1))?;
+        file.read_exact(&mut last)?;
+        Ok(last == *b"\n")
+    };
+    last().map_err(|error| Place::file(path).io(&error))
 }
 
 /// A failure while reading text.

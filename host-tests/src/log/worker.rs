@@ -64,12 +64,20 @@ impl Plan {
     }
 }
 
+/// What the thread is sent.
+enum Work {
+    /// Counts of a column.
+    Batch(usize, Vec<i32>),
+    /// Samples are missing behind the batches so far, which end at the same row.
+    Gap,
+}
+
 /// Counts of every column on their way into the accumulators: accumulating takes about as long as
 /// cutting and parsing text.
 pub(super) struct Batches {
     /// The batch of each column that is being filled.
     open: Vec<Vec<i32>>,
-    full: SyncSender<(usize, Vec<i32>)>,
+    full: SyncSender<Work>,
     /// Batches that have been accumulated, to be filled again.
     empty: Receiver<Vec<i32>>,
     thread: JoinHandle<Vec<Sums>>,
@@ -78,16 +86,19 @@ pub(super) struct Batches {
 impl Batches {
     pub(super) fn new(plan: Plan) -> Self {
         let columns = plan.columns();
-        let (full, incoming) = sync_channel::<(usize, Vec<i32>)>(2 * columns);
+        let (full, incoming) = sync_channel(2 * columns);
         let (outgoing, empty) = channel();
         let thread = thread::spawn(move || {
             let mut worker = Worker::new(plan);
-            for (column, batch) in incoming {
-                worker.take(column, batch, |mut batch| {
-                    batch.clear();
-                    // Nobody fills batches any more once the last ones are on their way.
-                    let _ = outgoing.send(batch);
-                });
+            for work in incoming {
+                match work {
+                    Work::Batch(column, batch) => worker.take(column, batch, |mut batch| {
+                        batch.clear();
+                        // Nobody fills batches any more once the last ones are on their way.
+                        let _ = outgoing.send(batch);
+                    }),
+                    Work::Gap => worker.gap(),
+                }
             }
             worker.sums
         });
@@ -116,13 +127,24 @@ impl Batches {
             .unwrap_or_else(|_| Vec::with_capacity(BATCH));
         let batch = replace(&mut self.open[column], next);
         // Fails if the thread has panicked only, which `finish` passes on.
-        let _ = self.full.send((column, batch));
+        let _ = self.full.send(Work::Batch(column, batch));
     }
 
-    pub(super) fn finish(mut self) -> Vec<Sums> {
+    /// Samples are missing here, between two rows.
+    #[cold]
+    pub(super) fn gap(&mut self) {
+        self.send_all();
+        let _ = self.full.send(Work::Gap);
+    }
+
+    fn send_all(&mut self) {
         for column in 0..self.open.len() {
             self.send(column);
         }
+    }
+
+    pub(super) fn finish(mut self) -> Vec<Sums> {
+        self.send_all();
         drop(self.full);
         self.thread
             .join()
@@ -180,6 +202,24 @@ impl Worker {
             }
         }
         rows.into_iter().for_each(done);
+    }
+
+    fn gap(&mut self) {
+        for derived in &mut self.derived {
+            derived.gap();
+        }
+        for sums in &mut self.sums {
+            if sums.accumulator.samples() >= self.plan.first {
+                sums.rest.gap();
+                continue;
+            }
+            sums.accumulator.gap();
+            if let Some(watched) = &mut sums.watched {
+                watched.moments.gap();
+                watched.integrity.gap();
+                watched.cross.iter_mut().for_each(CrossSums::gap);
+            }
+        }
     }
 
     fn accumulate(&mut self, axis: usize, counts: &[i32]) {

@@ -42,7 +42,7 @@ impl AxisNoise {
         let Fitted {
             axis, curve, fit, ..
         } = fitted;
-        let radians = axis.unit.radians();
+        let radians = axis.unit.in_si();
         let model = Model::ieee_952();
         let limits = limits(&curve, &model, &fit);
         let overbound = Overbound::of(&curve, &limits)?;

@@ -16,7 +16,10 @@ use super::{
     input::{self, LogArguments},
     output_file::OutputFile,
 };
-use crate::failure::{Failure, Place};
+use crate::{
+    failure::{Failure, Place},
+    unit::Sensor,
+};
 use axis_noise::AxisNoise;
 use clap::{Args, ValueEnum};
 use given::Given;
@@ -26,7 +29,7 @@ use std::{io::Write, path::PathBuf};
 #[derive(Debug, Args)]
 #[command(after_help = examples::EXPORT)]
 pub(super) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy), or a curve file (.json) that `measure` wrote
+    /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
     input: PathBuf,
     /// What to write
     #[arg(long, short)]
@@ -195,6 +198,11 @@ fn characterise(arguments: &Arguments) -> Result<Characterisation, Failure> {
     let path = &arguments.input;
     let mut axes = Vec::new();
     for axis in input::read(path, &arguments.about_log)? {
+        if axis.unit.sensor() != Sensor::Gyro {
+            let what = format!("axis {} is an accelerometer's, in {}", axis.axis, axis.unit);
+            let remedy = "export a gyro; `fit` prints the coefficients of an accelerometer";
+            return Err(Place::file(path).failure(what, remedy));
+        }
         let fitted = Fitted::new(path, axis, MethodName::Covariance)?;
         let name = fitted.axis.axis.clone();
         let noise = AxisNoise::of(fitted).ok_or_else(|| {

@@ -1,0 +1,192 @@
+//! `sensor_msgs/msg/Imu` as ROS 2 serialises it, CDR behind four bytes of encapsulation, and as ROS 1
+//! does, everything packed.
+
+use byteorder::{BigEndian, LittleEndian};
+use serde::Deserialize;
+
+/// How a message is serialised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Cdr,
+    Ros1,
+}
+
+impl Encoding {
+    /// The encoding of a channel of IMUs, by the name of its type and that of its encoding; `None`
+    /// of any other channel.
+    pub(super) fn of(schema: &str, encoding: &str) -> Option<Self> {
+        match (schema, encoding) {
+            ("sensor_msgs/msg/Imu" | "sensor_msgs::msg::dds_::Imu_", "cdr") => Some(Self::Cdr),
+            ("sensor_msgs/Imu", "ros1") => Some(Self::Ros1),
+            _ => None,
+        }
+    }
+}
+
+/// Columns of the table that a topic of these is: the sensor's time and six values.
+pub(super) const COLUMNS: [&str; 7] = [
+    "header.stamp [ns]",
+    "angular_velocity.x [rad/s]",
+    "angular_velocity.y [rad/s]",
+    "angular_velocity.z [rad/s]",
+    "linear_acceleration.x [m/s^2]",
+    "linear_acceleration.y [m/s^2]",
+    "linear_acceleration.z [m/s^2]",
+];
+
+/// What a log takes of a message.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ImuMessage {
+    /// Nanoseconds since 1970.
+    pub(super) stamp_ns: i64,
+    /// Rates of turn, in rad/s, and accelerations, in m/s².
+    pub(super) values: [f64; 6],
+}
+
+const SHORT: &str = "a message that is shorter than an Imu";
+
+#[derive(Deserialize)]
+struct Imu {
+    header: Header,
+    _orientation: ([f64; 4], [f64; 9]),
+    angular_velocity: [f64; 3],
+    _angular_velocity_covariance: [f64; 9],
+    linear_acceleration: [f64; 3],
+    _linear_acceleration_covariance: [f64; 9],
+}
+
+#[derive(Deserialize)]
+struct Header {
+    sec: i32,
+    nanosec: u32,
+    _frame_id: String,
+}
+
+impl ImuMessage {
+    /// Reads a message, or says what it is not.
+    pub(super) fn read(bytes: &[u8], encoding: Encoding) -> Result<Self, &'static str> {
+        match encoding {
+            Encoding::Cdr => Self::read_cdr(bytes),
+            Encoding::Ros1 => Self::read_ros1(bytes).ok_or(SHORT),
+        }
+    }
+
+    fn read_ros1(bytes: &[u8]) -> Option<Self> {
+        /// Orientation, rates and accelerations lie before, between and behind their covariances.
+        const FLOATS: usize = 37;
+        let mut bytes = bytes;
+        let mut word = || {
+            let (word, rest) = bytes.split_first_chunk()?;
+            bytes = rest;
+            Some(u32::from_le_bytes(*word))
+        };
+        let [_sequence, secs, nsecs, frame] = [word()?, word()?, word()?, word()?];
+        let mut floats = [0.0; FLOATS];
+        let rest = bytes.get(usize::try_from(frame).ok()?..)?;
+        let (rest, _) = rest.split_at_checked(8 * FLOATS)?;
+        for (float, bytes) in floats.iter_mut().zip(rest.chunks_exact(8)) {
+            *float = f64::from_le_bytes(bytes.try_into().ok()?);
+        }
+        let [a, b, c] = [floats[13], floats[14], floats[15]];
+        let [d, e, f] = [floats[25], floats[26], floats[27]];
+        Some(Self {
+            stamp_ns: i64::from(secs) * 1_000_000_000 + i64::from(nsecs),
+            values: [a, b, c, d, e, f],
+        })
+    }
+
+    fn read_cdr(bytes: &[u8]) -> Result<Self, &'static str> {
+        let Some((encapsulation, payload)) = bytes.split_first_chunk::<4>() else {
+            return Err("a message without a beginning");
+        };
+        let imu = match encapsulation {
+            [0, 0, ..] => cdr_encoding::from_bytes::<Imu, BigEndian>(payload),
+            [0, 1, ..] => cdr_encoding::from_bytes::<Imu, LittleEndian>(payload),
+            _ => return Err("a message that is not plain CDR"),
+        };
+        let (imu, _) = imu.map_err(|_| SHORT)?;
+        let [a, b, c] = imu.angular_velocity;
+        let [d, e, f] = imu.linear_acceleration;
+        Ok(Self {
+            stamp_ns: i64::from(imu.header.sec) * 1_000_000_000 + i64::from(imu.header.nanosec),
+            values: [a, b, c, d, e, f],
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A message in the given byte order, built by hand.
+    fn message(frame: &[u8], values: [f64; 6], big: bool) -> Vec<u8> {
+        let mut bytes = vec![0, u8::from(!big), 0, 0];
+        let word = |value: u32| {
+            if big {
+                value.to_be_bytes()
+            } else {
+                value.to_le_bytes()
+            }
+        };
+        let float = |value: f64| {
+            if big {
+                value.to_be_bytes()
+            } else {
+                value.to_le_bytes()
+            }
+        };
+        bytes.extend(word(7));
+        bytes.extend(word(250_000_000));
+        bytes.extend(word(frame.len() as u32 + 1));
+        bytes.extend(frame);
+        bytes.push(0);
+        // Floats begin at multiples of eight behind the encapsulation.
+        bytes.resize(4 + (bytes.len() - 4).next_multiple_of(8), 0);
+        let [rates, forces] = [&values[..3], &values[3..]];
+        let floats = [&[0.0; 13][..], rates, &[0.0; 9], forces, &[0.0; 9]].concat();
+        bytes.extend(floats.into_iter().flat_map(float));
+        bytes
+    }
+
+    proptest! {
+        #[test]
+        fn messages_of_either_byte_order_are_read(
+            frame in "[a-z]{0,12}",
+            values in prop::array::uniform6(-1e3..1e3),
+            big: bool,
+        ) {
+            let bytes = message(frame.as_bytes(), values, big);
+            let expected = ImuMessage { stamp_ns: 7_250_000_000, values };
+            prop_assert_eq!(ImuMessage::read(&bytes, Encoding::Cdr), Ok(expected));
+            for cut in 0..bytes.len() {
+                prop_assert!(ImuMessage::read(&bytes[..cut], Encoding::Cdr).is_err());
+            }
+        }
+
+        #[test]
+        fn packed_messages_are_read(
+            frame in "[a-z]{0,12}",
+            values in prop::array::uniform6(-1e3..1e3),
+        ) {
+            let words = [3, 7, 250_000_000, frame.len() as u32];
+            let mut bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
+            bytes.extend(frame.as_bytes());
+            let [rates, forces] = [&values[..3], &values[3..]];
+            let floats = [&[0.0; 13][..], rates, &[0.0; 9], forces, &[0.0; 9]].concat();
+            bytes.extend(floats.into_iter().flat_map(f64::to_le_bytes));
+            let expected = ImuMessage { stamp_ns: 7_250_000_000, values };
+            prop_assert_eq!(ImuMessage::read(&bytes, Encoding::Ros1), Ok(expected));
+            for cut in 0..bytes.len() {
+                prop_assert!(ImuMessage::read(&bytes[..cut], Encoding::Ros1).is_err());
+            }
+        }
+
+        #[test]
+        fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..500)) {
+            let _ = ImuMessage::read(&bytes, Encoding::Cdr);
+            let _ = ImuMessage::read(&bytes, Encoding::Ros1);
+            let _ = ImuMessage::read(&[&[0, 1, 0, 0], bytes.as_slice()].concat(), Encoding::Cdr);
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! What the names of columns say: which sensor, which unit, or that they are a time.
+
+use crate::unit::{Sensor, Unit};
+
+/// Names of this sensor's axes: `gx`, `gyro_y`, `imu.angular_velocity.z`, `w_RS_S_x [rad s^-1]`, or
+/// `ax`, `accel_y`, `linear_acceleration.z`, and the like.
+pub(super) fn is_axis(name: &str, sensor: Sensor) -> bool {
+    let name = bare(name).to_lowercase();
+    let others = ["temp", "time", "cov", "bias", "clip", "accura", "_dt"];
+    if others.iter().any(|other| name.contains(other)) {
+        return false;
+    }
+    let (short, long): (&[&str], &[&str]) = match sensor {
+        Sensor::Gyro => (
+            &["gx", "gy", "gz", "wx", "wy", "wz", "w_rs_s_"],
+            &[
+                "gyr",
+                "angular_velocity",
+                "angularvelocity",
+                "angular_rate",
+                "ang_vel",
+                "omega",
+            ],
+        ),
+        Sensor::Accelerometer => (
+            &["ax", "ay", "az", "a_x", "a_y", "a_z", "a_rs_s_"],
+            &["acc"],
+        ),
+    };
+    let is_short = |axis: &&str| {
+        let rest = name.strip_prefix(*axis);
+        rest.is_some_and(|rest| axis.len() > 3 || !rest.starts_with(char::is_alphabetic))
+    };
+    short.iter().any(is_short) || long.iter().any(|part| name.contains(part))
+}
+
+/// Time stamps: `t`, `time_us`, `timestamp [ns]`, `header.stamp`.
+pub(super) fn is_time(name: &str) -> bool {
+    let name = name.trim().to_lowercase();
+    if ["relative", "delta", "zone", "offset"]
+        .iter()
+        .any(|other| name.contains(other))
+    {
+        return false;
+    }
+    let first = tokens(&name).next().unwrap_or_default();
+    ["time", "stamp"].iter().any(|word| name.contains(word))
+        || first == "t"
+        || TimeUnit::of_token(first).is_some()
+}
+
+/// Neither a time nor an axis: an index, a date, a temperature.
+pub(super) fn is_other(name: &str) -> bool {
+    let name = name.trim().to_lowercase();
+    let words = ["date", "index", "temp", "sample", "seq"];
+    let first = tokens(&name).next().unwrap_or_default();
+    words.iter().any(|word| name.contains(word)) || ["i", "n", "id"].contains(&first)
+}
+
+fn tokens(name: &str) -> impl Iterator<Item = &str> {
+    name.split(|c: char| !c.is_alphanumeric())
+        .filter(|token| !token.is_empty())
+}
+
+/// The name without the unit in brackets behind it: `gx` of `gx [deg/s]`. An index such as that of
+/// `gyro_rad[0]` belongs to the name.
+pub(super) fn bare(name: &str) -> &str {
+    match in_brackets(name) {
+        Some((bare, _)) if !bare.is_empty() => bare,
+        _ => name.trim(),
+    }
+}
+
+/// The name and the text in brackets behind it, unless that is an index.
+fn in_brackets(name: &str) -> Option<(&str, &str)> {
+    let name = name.trim();
+    let open = name.rfind(['[', '('])?;
+    let inner = name[open + 1..].strip_suffix([']', ')'])?.trim();
+    let is_index = inner.parse::<u32>().is_ok();
+    (!is_index && !inner.is_empty()).then(|| (name[..open].trim(), inner))
+}
+
+/// A unit of time stamps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum TimeUnit {
+    /// Seconds.
+    S,
+    /// Milliseconds.
+    Ms,
+    /// Microseconds.
+    Us,
+    /// Nanoseconds.
+    Ns,
+}
+
+impl TimeUnit {
+    pub(super) const ALL: [Self; 4] = [Self::S, Self::Ms, Self::Us, Self::Ns];
+
+    /// How many make a second.
+    pub(super) const fn per_second(self) -> f64 {
+        match self {
+            Self::S => 1.0,
+            Self::Ms => 1e3,
+            Self::Us => 1e6,
+            Self::Ns => 1e9,
+        }
+    }
+
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::S => "s",
+            Self::Ms => "ms",
+            Self::Us => "µs",
+            Self::Ns => "ns",
+        }
+    }
+
+    /// The unit that a column's name ends with: `timestamp [ns]`, `time_us`, `TimeUS`, `t (s)`.
+    pub(super) fn of_name(name: &str) -> Option<Self> {
+        if let Some((_, unit)) = in_brackets(name) {
+            return Self::of_token(&unit.to_lowercase());
+        }
+        let name = name.to_lowercase();
+        let last = tokens(&name).last()?;
+        let glued = ["timestamp", "time", "stamp"]
+            .iter()
+            .find_map(|word| last.strip_prefix(word));
+        Self::of_token(glued.unwrap_or(last))
+    }
+
+    fn of_token(token: &str) -> Option<Self> {
+        Some(match token {
+            "s" | "sec" | "secs" | "second" | "seconds" => Self::S,
+            "ms" | "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => Self::Ms,
+            "us" | "µs" | "μs" | "usec" | "usecs" | "micros" | "microsecond" | "microseconds" => {
+                Self::Us
+            }
+            "ns" | "nsec" | "nsecs" | "nanos" | "nanosec" | "nanosecond" | "nanoseconds" => {
+                Self::Ns
+            }
+            _ => return None,
+        })
+    }
+}
+
+/// The unit that an axis' name tells, and how many of it a value is: `w_RS_S_x [rad s^-1]`,
+/// `gx (deg/s)`, `gyro_x_mdps`, `accelerometer_m_s2[0]`.
+pub(super) fn unit(name: &str) -> Option<(Unit, f64)> {
+    if let Some((_, text)) = in_brackets(name) {
+        return unit_of_text(text);
+    }
+    let name = name.to_lowercase();
+    let name = name.split('[').next().unwrap_or_default();
+    let tokens: Vec<&str> = tokens(name).collect();
+    // The axis may stand behind the unit: `gyro_rad_s_x`.
+    let tokens = match tokens.as_slice() {
+        [rest @ .., "x" | "y" | "z"] if rest.len() > 1 => rest,
+        all => all,
+    };
+    let at_end = |count: usize| {
+        let start = tokens.len().checked_sub(count).filter(|&start| start > 0)?;
+        unit_of_text(&tokens[start..].join("/"))
+    };
+    at_end(2).or_else(|| at_end(1))
+}
+
+/// The unit of `rad s^-1`, `deg/sec`, `dps`, `m/s²`, and how many of it one is.
+fn unit_of_text(text: &str) -> Option<(Unit, f64)> {
+    let mut text = text.to_lowercase();
+    for (long, short) in [
+        ("degrees", "deg"),
+        ("degree", "deg"),
+        ("°", "deg"),
+        ("radians", "rad"),
+        ("radian", "rad"),
+        ("seconds", "s"),
+        ("second", "s"),
+        ("sec", "s"),
+        ("⁻", "-"),
+        ("¹", "1"),
+        ("²", "2"),
+        ("μ", "u"),
+        ("µ", "u"),
+    ] {
+        text = text.replace(long, short);
+    }
+    text.retain(|c| !c.is_whitespace() && !['^', '*', '·', '(', ')', '{', '}'].contains(&c));
+    let (deg, rad) = (Unit::DegreesPerSecond, Unit::RadiansPerSecond);
+    let (metres, g) = (Unit::MetresPerSecondSquared, Unit::StandardGravity);
+    Some(match text.as_str() {
+        "deg/s" | "degs-1" | "deg.s-1" | "dps" | "degps" => (deg, 1.0),
+        "mdps" | "mdeg/s" | "mdegs-1" => (deg, 1e-3),
+        "deg/h" | "deg/hr" | "dph" => (deg, 1.0 / 3600.0),
+        "rad/s" | "rads-1" | "rad.s-1" | "rads" | "radps" | "rad" => (rad, 1.0),
+        "mrad/s" | "mrads-1" => (rad, 1e-3),
+        "m/s2" | "ms-2" | "m.s-2" | "m/s/s" | "ms2" | "mps2" | "mss" => (metres, 1.0),
+        "g" | "gs" | "g0" | "gn" => (g, 1.0),
+        "mg" => (g, 1e-3),
+        "ug" => (g, 1e-6),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_names_of_axes_are_known() {
+        let gyro = [
+            "gx",
+            "GyroX",
+            "gyro_y [deg/s]",
+            "gyrADC[0]",
+            "angular_velocity.z",
+            "w_RS_S_x [rad s^-1]",
+            "wx",
+            "gx_raw131",
+        ];
+        let accelerometer = [
+            "ax",
+            "a_x",
+            "acc_x",
+            "AccZ",
+            "accel_y (m/s^2)",
+            "linear_acceleration.z",
+            "a_RS_S_x [m s^-2]",
+            "accelerometer_m_s2[0]",
+        ];
+        let neither = [
+            "t",
+            "gyro_temp",
+            "gxyz",
+            "angular_velocity_covariance_0",
+            "weight",
+            "axis",
+            "azimuth",
+            "gyro_integral_dt",
+            "accelerometer_timestamp_relative",
+        ];
+        for (names, expected) in [
+            (&gyro[..], [true, false]),
+            (&accelerometer, [false, true]),
+            (&neither, [false, false]),
+        ] {
+            for name in names {
+                let is = [Sensor::Gyro, Sensor::Accelerometer].map(|one| is_axis(name, one));
+                assert_eq!(is, expected, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn names_of_times_are_known_with_their_units() {
+        for (name, unit) in [
+            ("timestamp [ns]", Some(TimeUnit::Ns)),
+            ("#timestamp [ns]", Some(TimeUnit::Ns)),
+            ("time_us", Some(TimeUnit::Us)),
+            ("TimeUS", Some(TimeUnit::Us)),
+            ("Time (sec)", Some(TimeUnit::S)),
+            ("t_s", Some(TimeUnit::S)),
+            ("ms", Some(TimeUnit::Ms)),
+            ("t", None),
+            ("field.header.stamp", None),
+            ("%time", None),
+            ("timestamp", None),
+        ] {
+            assert!(is_time(name), "{name}");
+            assert_eq!(TimeUnit::of_name(name), unit, "{name}");
+        }
+        for name in [
+            "temp_C",
+            "gx",
+            "accelerometer_timestamp_relative",
+            "delta_time",
+        ] {
+            assert!(!is_time(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn units_are_read_off_names() {
+        let (deg, rad) = (Unit::DegreesPerSecond, Unit::RadiansPerSecond);
+        let (metres, g) = (Unit::MetresPerSecondSquared, Unit::StandardGravity);
+        for (name, expected) in [
+            ("w_RS_S_x [rad s^-1]", Some((rad, 1.0))),
+            ("gx (deg/s)", Some((deg, 1.0))),
+            ("gx [°/s]", Some((deg, 1.0))),
+            ("gyro_x_dps", Some((deg, 1.0))),
+            ("gyro_mdps_x", Some((deg, 1e-3))),
+            ("gyro_rad[0]", Some((rad, 1.0))),
+            ("gyro_rad_s_z", Some((rad, 1.0))),
+            ("a_RS_S_x [m s^-2]", Some((metres, 1.0))),
+            ("accelerometer_m_s2[0]", Some((metres, 1.0))),
+            ("ax (m/s²)", Some((metres, 1.0))),
+            ("accel_x [mg]", Some((g, 1e-3))),
+            ("ax_g", Some((g, 1.0))),
+            ("gx", None),
+            ("gx_raw131", None),
+            ("g", None),
+            ("angular_velocity.x", None),
+        ] {
+            assert_eq!(unit(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn brackets_are_cut_off_and_indices_are_not() {
+        for (name, expected) in [
+            ("w_RS_S_x [rad s^-1]", "w_RS_S_x"),
+            ("gyro_rad[0]", "gyro_rad[0]"),
+            ("[gx]", "[gx]"),
+            (" gx ", "gx"),
+        ] {
+            assert_eq!(bare(name), expected);
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! From a table to its curves.
+
+use super::{
+    Axis, CovariateChoice, Evidence, Log, Options, Table,
+    accumulate::{self, Passes},
+    clock::Clock,
+    columns::Taken,
+    quantum,
+    scaling::{self, Origin, Scaling},
+    time_column::TimeColumn,
+    worker,
+};
+use crate::failure::{Failure, Place};
+use allanite::Scale;
+use indicatif::ProgressBar;
+use std::path::Path;
+
+/// Reads the first rows of a table, and the axes of the rest where the first are counted; watches
+/// them beside these covariates where there are some to watch.
+pub(super) fn read_table(
+    table: &impl Table,
+    path: &Path,
+    options: &Options,
+    (first, watch): (Option<u64>, Option<&[CovariateChoice]>),
+    progress: &ProgressBar,
+) -> Result<(Log, Vec<Axis>), Failure> {
+    let metadata = table.metadata();
+    let rate_hz = metadata.rate_hz(path, options)?;
+    // A rate that is given makes stamps unnecessary, unless they are asked for.
+    let time = match table.by_rows() && (rate_hz.is_none() || options.time.is_some()) {
+        true => table.columns().time(path, options)?,
+        false => None,
+    };
+    if rate_hz.is_none() && time.is_none() {
+        return Err(Place::file(path).failure(
+            "the sampling rate is not known",
+            "give it with --rate HZ, or name a column of time stamps with --time",
+        ));
+    }
+    let taken = taken(table, path, options, time.as_ref())?;
+    let axis_columns = taken.axes;
+    let scaling = Scaling::settle(table, path, options, &axis_columns, taken.sensor)?;
+    let covariates = watch.unwrap_or_default();
+    let mut columns = axis_columns.clone();
+    columns.extend(
+        table
+            .columns()
+            .covariates(path, covariates, &axis_columns)?,
+    );
+    let plan = worker::Plan {
+        axes: axis_columns.len(),
+        first: first.unwrap_or(u64::MAX),
+        watch: watch.map(<[_]>::to_vec),
+        fineness: 0,
+    };
+    let passes = Passes {
+        table,
+        path,
+        columns: &columns,
+        time: time.as_ref(),
+        progress,
+    };
+    let measured = accumulate::measure(&passes, &plan)?;
+    let is_told = rate_hz.is_some();
+    let rate_hz = match (rate_hz, &measured.clock) {
+        (None, Some(clock)) => clock.rate_hz().map_err(|flaw| {
+            Place::file(path).failure(flaw.what, "give --rate to leave them out")
+        })?,
+        (rate_hz, _) => rate_hz.unwrap_or(f64::NAN),
+    };
+    let mut notes = vec![said(taken.note, &scaling, time.as_ref(), rate_hz, is_told)];
+    notes.retain(|note| !note.is_empty());
+    notes.extend(measured.clock.as_ref().map(Clock::report));
+    notes.extend(table.notes());
+    let mut axes = Vec::new();
+    let mut rest = Vec::new();
+    for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
+        let mut axis = Axis {
+            name: column.axis,
+            rate_per_count: scaling.scale * quantum.step(),
+            accumulator: sums.accumulator,
+            evidence: None,
+        };
+        if first.is_some() {
+            let behind = Axis {
+                accumulator: sums.rest,
+                ..axis.clone()
+            };
+            check_axis(path, &behind)?;
+            rest.push(behind);
+        }
+        check_axis(path, &axis)?;
+        if let Some(watched) = sums.watched {
+            let named = covariates.iter().zip(&measured.covariates);
+            axis.evidence = Some(evidence(path, &axis, *watched, named, rate_hz)?);
+        }
+        if quantum == quantum::Quantum::WHOLE && !scaling.scale_is_told {
+            notes.push(format!(
+                "axis {}: whole numbers and no scale given: 1 per count assumed (say so with --scale)",
+                axis.name
+            ));
+        }
+        notes.extend(scaling.check(path, &axis)?);
+        axes.push(axis);
+    }
+    if scaling.origin == Origin::Assumed {
+        notes.push(format!(
+            "no unit given: {} assumed (say so with --unit)",
+            scaling.unit
+        ));
+    }
+    let log = Log {
+        rate_hz,
+        unit: scaling.unit,
+        axes,
+        notes,
+    };
+    Ok((log, rest))
+}
+
+/// The axes asked for, or those found.
+fn taken(
+    table: &impl Table,
+    path: &Path,
+    options: &Options,
+    time: Option<&TimeColumn>,
+) -> Result<Taken, Failure> {
+    let sensor = scaling::wanted_sensor(options)?;
+    let columns = table.columns();
+    match &options.columns {
+        Some(choices) => {
+            let axes = columns.chosen(path, choices)?;
+            Ok(Taken {
+                sensor: columns.sensor_of(&axes),
+                axes,
+                note: None,
+            })
+        }
+        None => {
+            let time = time.map_or(&[][..], |time| &time.columns);
+            columns.guessed(path, sensor, time)
+        }
+    }
+}
+
+/// What was found out rather than told, on one line.
+fn said(
+    columns: Option<String>,
+    scaling: &Scaling,
+    time: Option<&TimeColumn>,
+    rate_hz: f64,
+    is_told: bool,
+) -> String {
+    let mut parts: Vec<String> = columns.into_iter().collect();
+    if scaling.origin == Origin::Names {
+        parts.push(format!("unit {} by their names", scaling.unit));
+    }
+    if let Some(time) = time {
+        let rate = match is_told {
+            false => format!("{rate_hz} Hz"),
+            true => "gaps".into(),
+        };
+        let (name, unit) = (time.name(), time.unit.name());
+        parts.push(format!("{rate} by the time stamps of {name}, in {unit}"));
+    }
+    parts.join("; ")
+}
+
+/// What was watched, in units.
+fn evidence<'a>(
+    path: &Path,
+    axis: &Axis,
+    watched: worker::Watched,
+    covariates: impl Iterator<Item = (&'a CovariateChoice, &'a quantum::Quantum)>,
+    rate_hz: f64,
+) -> Result<Evidence, Failure> {
+    let fail = |error: allanite::Error| {
+        Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
+    };
+    let scale = Scale::new(axis.rate_per_count, rate_hz).map_err(fail)?;
+    let mut shared = Vec::new();
+    for ((choice, quantum), cross) in covariates.zip(&watched.cross) {
+        // A rate of change is counted in quanta a sample.
+        let per_count = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
+        let curve = cross.curve(&axis.accumulator, scale, per_count);
+        shared.push((choice.to_string(), curve.map_err(fail)?));
+    }
+    Ok(Evidence {
+        kurtosis: watched.moments.kurtosis(),
+        covariates: shared,
+        invalid: watched.integrity.verdict(),
+    })
+}
+
+/// Whether an axis is long enough and alive.
+fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
+    let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
+    let Axis {
+        name,
+        rate_per_count,
+        accumulator,
+        ..
+    } = axis;
+    // Two octaves with six differences each, the shorter one's neighbours less three.
+    const LEAST: u64 = 9;
+    if accumulator.samples() < LEAST {
+        return fail(
+            format!(
+                "{} samples, and two octaves need {LEAST}",
+                accumulator.samples()
+            ),
+            "record longer",
+        );
+    }
+    if accumulator
+        .octave(0)
+        .is_none_or(|octave| octave.sum.to_f64() == 0.0)
+    {
+        return fail(
+            format!("axis {name} never changes its value"),
+            "check the sensor, or choose other columns with --columns",
+        );
+    }
+    if !(rate_per_count.is_finite() && *rate_per_count > 0.0) {
+        return fail(
+            format!("axis {name}: a scale of {rate_per_count} per count is beyond floats"),
+            "give another --scale",
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,352 @@
+//! Logs of PX4: a table of the messages of one topic's instance.
+
+use super::{
+    AxisColumn, Ended, Metadata, Options, Stop, Table, Visitor,
+    columns::{Columns, Look},
+    names, scaling, source,
+    ulog_format::{Field, Value},
+    ulog_messages::{Error, Message, Messages, Subscription},
+};
+use crate::{
+    failure::{Failure, Place, quoted},
+    unit::Sensor,
+};
+use indicatif::ProgressBar;
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+/// Messages that tell what the columns look like.
+const LOOKS: usize = 100;
+
+/// Topics of raw samples, which are taken without being asked for.
+const RAW: [&str; 4] = [
+    "sensor_gyro",
+    "sensor_accel",
+    "sensor_combined",
+    "vehicle_imu",
+];
+
+/// A log, and the topic of it that is read.
+pub(super) struct Ulog {
+    path: PathBuf,
+    identity: u16,
+    sources: Vec<Source>,
+    metadata: Metadata,
+    columns: Columns,
+    notes: Vec<String>,
+}
+
+/// Where a column's values come from.
+#[derive(Clone, Debug)]
+struct Source {
+    field: Field,
+    /// The time that the field was integrated over, in microseconds, to divide it by.
+    over: Option<Field>,
+}
+
+/// A topic's instance in a log.
+struct Found {
+    subscription: Subscription,
+    messages: u64,
+    columns: Vec<(String, Source)>,
+}
+
+impl Found {
+    fn has(&self, sensor: Sensor) -> bool {
+        self.columns
+            .iter()
+            .any(|(name, _)| names::is_axis(name, sensor))
+    }
+
+    fn name(&self) -> String {
+        format!("{}:{}", self.subscription.topic, self.subscription.instance)
+    }
+}
+
+impl Ulog {
+    pub(super) fn open(
+        path: &Path,
+        options: &Options,
+        progress: &ProgressBar,
+    ) -> Result<Self, Failure> {
+        let fail = |error| failure(path, &error);
+        let file = source::open(path, progress)?;
+        let mut log = Messages::open(file).map_err(fail)?;
+        let mut counts: BTreeMap<u16, u64> = BTreeMap::new();
+        let mut notes = Vec::new();
+        loop {
+            match log.next().map_err(fail)? {
+                Message::Data(identity, _) => *counts.entry(identity).or_default() += 1,
+                Message::Cut => {
+                    notes
+                        .push("the file ends within a message: the record is cut off there".into());
+                    break;
+                }
+                Message::End => break,
+            }
+        }
+        if counts.is_empty() && !notes.is_empty() {
+            return Err(Place::file(path).failure("the file ends before its first data", COPY));
+        }
+        let mut found = BTreeMap::new();
+        for (&identity, subscription) in &log.subscriptions {
+            let Some(&messages) = counts.get(&identity) else {
+                continue;
+            };
+            let fields = log.formats.fields(&subscription.topic);
+            let fields = fields.map_err(|what| Place::file(path).failure(what, COPY))?;
+            let one = Found {
+                subscription: subscription.clone(),
+                messages,
+                columns: columns(&subscription.topic, &fields),
+            };
+            found.insert(identity, one);
+        }
+        let identity = choose(path, &found, options)?;
+        let others: Vec<String> = found
+            .iter()
+            .filter(|(other, one)| **other != identity && is_raw(one))
+            .map(|(_, one)| format!("{} ({} messages)", one.name(), one.messages))
+            .collect();
+        let Some(chosen) = found.remove(&identity) else {
+            return Err(Place::file(path).failure("no messages", "record some samples"));
+        };
+        let mut note = format!("topic {} of {} messages", chosen.name(), chosen.messages);
+        if !others.is_empty() {
+            note += &format!("; others: {} (choose with --topic)", others.join(", "));
+        }
+        notes.insert(0, note);
+
+        let (names, sources): (Vec<_>, Vec<_>) = chosen.columns.into_iter().unzip();
+        let mut log = Self {
+            path: path.to_owned(),
+            identity,
+            metadata: Metadata::default(),
+            columns: Columns {
+                looks: vec![Look::Number; names.len()],
+                heads: vec![Vec::new(); names.len()],
+                names: Some(names),
+            },
+            sources,
+            notes,
+        };
+        log.columns.heads = log.heads()?;
+        Ok(log)
+    }
+
+    /// The first values of every column.
+    fn heads(&self) -> Result<Vec<Vec<f64>>, Failure> {
+        let mut heads = vec![Vec::new(); self.sources.len()];
+        let mut rows = 0;
+        self.each_row(&ProgressBar::hidden(), |_, bytes| {
+            for (head, source) in heads.iter_mut().zip(&self.sources) {
+                head.extend(source.value(bytes).map(Value::to_f64));
+            }
+            rows += 1;
+            Ok(rows < LOOKS)
+        })?;
+        Ok(heads)
+    }
+
+    /// Shows the topic's messages with their numbers from 1 for as long as more are wanted.
+    fn each_row(
+        &self,
+        progress: &ProgressBar,
+        mut show: impl FnMut(u64, &[u8]) -> Result<bool, Failure>,
+    ) -> Result<(), Failure> {
+        let fail = |error| failure(&self.path, &error);
+        let file = source::open(&self.path, progress)?;
+        let mut log = Messages::open(file).map_err(fail)?;
+        let mut row = 0;
+        while let Message::Data(identity, bytes) = log.next().map_err(fail)? {
+            if identity == self.identity {
+                row += 1;
+                if !show(row, bytes)? {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Table for Ulog {
+    fn metadata(&self) -> &Metadata {
+        &self.metadata
+    }
+
+    fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    fn pass<V: Visitor>(
+        &self,
+        axes: &[AxisColumn],
+        visitor: &mut V,
+        progress: &ProgressBar,
+    ) -> Result<Ended, Failure> {
+        let mut ended = Ended::AtTheLastRow;
+        self.each_row(progress, |row, bytes| {
+            let place = || Place::row(&self.path, row);
+            for (i, axis) in axes.iter().enumerate() {
+                let Some(value) = self.sources[axis.column].value(bytes) else {
+                    return Err(place().failure("a message shorter than its format", COPY));
+                };
+                let visited = match value {
+                    Value::Signed(value) => visitor.visit(i, value),
+                    Value::Unsigned(value) => visitor.visit(i, value),
+                    Value::Float(value) => visitor.visit(i, value),
+                };
+                match visited {
+                    Ok(()) => {}
+                    Err(Stop::NotCounts) => {
+                        ended = Ended::NotCounts;
+                        return Ok(false);
+                    }
+                    Err(stop) => return Err(stop.failure(axis, place())),
+                }
+            }
+            Ok(true)
+        })?;
+        Ok(ended)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+}
+
+impl Source {
+    fn value(&self, message: &[u8]) -> Option<Value> {
+        let value = self.field.value(message)?;
+        let Some(over) = &self.over else {
+            return Some(value);
+        };
+        let seconds = 1e-6 * over.value(message)?.to_f64();
+        Some(Value::Float(value.to_f64() / seconds))
+    }
+}
+
+const COPY: &str = "copy or record the log again";
+
+fn is_raw(found: &Found) -> bool {
+    RAW.contains(&found.subscription.topic.as_str())
+}
+
+/// The columns of a topic, by names that tell sensor and unit where PX4's fields do not.
+fn columns(topic: &str, fields: &[Field]) -> Vec<(String, Source)> {
+    const GYRO: [&str; 3] = ["gyro_x [rad/s]", "gyro_y [rad/s]", "gyro_z [rad/s]"];
+    const ACCEL: [&str; 3] = ["accel_x [m/s^2]", "accel_y [m/s^2]", "accel_z [m/s^2]"];
+    const XYZ: [&str; 3] = ["x", "y", "z"];
+    const ARRAY: [&str; 3] = ["xyz[0]", "xyz[1]", "xyz[2]"];
+    const ANGLE: [&str; 3] = ["delta_angle[0]", "delta_angle[1]", "delta_angle[2]"];
+    const VELOCITY: [&str; 3] = [
+        "delta_velocity[0]",
+        "delta_velocity[1]",
+        "delta_velocity[2]",
+    ];
+    let known: &[([&str; 3], [&str; 3], Option<&str>)] = match topic {
+        "sensor_gyro" => &[(XYZ, GYRO, None)],
+        "sensor_accel" => &[(XYZ, ACCEL, None)],
+        "vehicle_angular_velocity" => &[(ARRAY, GYRO, None)],
+        "vehicle_acceleration" => &[(ARRAY, ACCEL, None)],
+        "vehicle_imu" => &[
+            (ANGLE, GYRO, Some("delta_angle_dt")),
+            (VELOCITY, ACCEL, Some("delta_velocity_dt")),
+        ],
+        _ => &[],
+    };
+    let find = |name: &str| fields.iter().find(|field| field.name == name).cloned();
+    let named = |field: &Field| {
+        let name = field.name.as_str();
+        for (from, to, over) in known {
+            if let Some(axis) = from.iter().position(|one| *one == name) {
+                return (to[axis].to_owned(), over.and_then(find));
+            }
+        }
+        match name {
+            "timestamp" | "timestamp_sample" => (format!("{name} [us]"), None),
+            name => (name.to_owned(), None),
+        }
+    };
+    let column = |field: &Field| {
+        let (name, over) = named(field);
+        let field = field.clone();
+        (name, Source { field, over })
+    };
+    fields.iter().map(column).collect()
+}
+
+/// The topic asked for, by its name or as `TOPIC:INSTANCE`; else of those that hold raw samples of
+/// the sensor the one with the most messages, if one instance of it has them all.
+fn choose(path: &Path, found: &BTreeMap<u16, Found>, options: &Options) -> Result<u16, Failure> {
+    let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
+    let list = |found: &[(&u16, &Found)]| {
+        let names: Vec<String> = found.iter().map(|(_, one)| one.name()).collect();
+        names.join(", ")
+    };
+    let all: Vec<_> = found.iter().collect();
+    let candidates: Vec<_> = if let Some(wanted) = &options.topic {
+        let is =
+            |(_, one): &(&u16, &Found)| one.subscription.topic == *wanted || one.name() == *wanted;
+        let candidates: Vec<_> = all.iter().copied().filter(is).collect();
+        if candidates.is_empty() {
+            let what = format!(
+                "there is no topic {} with messages",
+                quoted(wanted.as_bytes())
+            );
+            return fail(what, &format!("choose with --topic from {}", list(&all)));
+        }
+        if wanted.contains("_fifo") {
+            return fail(
+                format!("{wanted} packs several samples into a message"),
+                "log and choose a topic of single ones, such as sensor_gyro",
+            );
+        }
+        candidates
+    } else {
+        let of = |sensor: Sensor| -> Vec<_> {
+            let is = |(_, one): &(&u16, &Found)| is_raw(one) && one.has(sensor);
+            all.iter().copied().filter(is).collect()
+        };
+        let candidates = match scaling::wanted_sensor(options)? {
+            Some(sensor) => of(sensor),
+            None => [of(Sensor::Gyro), of(Sensor::Accelerometer)]
+                .into_iter()
+                .find(|candidates| !candidates.is_empty())
+                .unwrap_or_default(),
+        };
+        let most = candidates.iter().map(|(_, one)| one.messages).max();
+        let Some(most) = most else {
+            let there = match list(&all) {
+                there if there.is_empty() => "there are no messages at all".into(),
+                there => format!("there are {there}"),
+            };
+            return fail(
+                format!("no topic of {} with messages: {there}", RAW.join(", ")),
+                "log one of these, or choose with --topic and --columns",
+            );
+        };
+        let is = |(_, one): &(&u16, &Found)| one.messages == most;
+        candidates.into_iter().filter(is).collect()
+    };
+    match candidates.as_slice() {
+        [(identity, _)] => Ok(**identity),
+        several => fail(
+            format!("{} that fit equally: {}", several.len(), list(several)),
+            "choose one with --topic",
+        ),
+    }
+}
+
+fn failure(path: &Path, error: &Error) -> Failure {
+    match error {
+        Error::Io(error) => Place::file(path).io(error),
+        Error::Wrong(what, 0) => Place::file(path).failure(what, COPY),
+        Error::Wrong(what, byte) => {
+            Place::file(path).failure(format!("{what}, {byte} bytes from the beginning"), COPY)
+        }
+    }
+}

@@ -44,17 +44,11 @@ impl Preferred {
     fn instead(&self, model: &Model, other: usize, base: &mut Model) -> Result<(), Error> {
         let (effect, parameters) = self.others[other];
         base.clone_from(model);
-        base.remove(self.added.name());
-        if let Some(replaced) = self.added.replaces() {
-            base.restore(replaced)?;
-        }
-        if let Some(replaced) = effect.replaces() {
-            base.remove(replaced.name());
-        }
-        base.add(Term {
+        let taken = Term {
             parameters: parameters.map(f64::from),
             ..Term::fitted(effect)
-        })
+        };
+        base.exchange(self.added, taken)
     }
 }
 

@@ -1,7 +1,7 @@
 //! A diagnosis for programs.
 
 use super::{
-    diagnose::{Diagnosed, added_name},
+    diagnosed::{Diagnosed, added_name},
     fit_json,
     model_json::{self, Effect, Worst},
 };

@@ -10,6 +10,8 @@ mod decode_text;
 mod diagnose;
 mod diagnose_json;
 mod diagnose_text;
+mod diagnose_words;
+mod diagnosed;
 mod effect_argument;
 mod fit;
 mod fit_json;
@@ -20,7 +22,11 @@ mod measure;
 mod model_json;
 mod number;
 mod output_file;
+mod plot;
 mod progress;
+mod report;
+mod report_json;
+mod report_page;
 mod simulate;
 mod units;
 mod words;
@@ -47,6 +53,8 @@ enum Command {
     Fit(fit::Arguments),
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
+    Report(report::Arguments),
+    Plot(plot::Arguments),
     Decode(decode::Arguments),
 }
 
@@ -63,6 +71,8 @@ impl CommandLine {
             Command::Fit(arguments) => fit::run(arguments, &mut output),
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
+            Command::Report(arguments) => report::run(arguments),
+            Command::Plot(arguments) => plot::run(arguments),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
         }?;
         output

@@ -14,7 +14,7 @@ mod pixels;
 mod terminal;
 mod ticks;
 
-pub use drawing::{Drawing, svg};
+pub use drawing::{Drawing, effect_styles, svg};
 pub use figure::{Figure, Share};
 pub use frame::{Frame, Span};
 pub use pixels::png;

@@ -11,8 +11,9 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use std::io::{self, Write};
 
+/// The document that `--json` prints.
 #[derive(Serialize)]
-struct Document<'a> {
+pub(super) struct Document<'a> {
     axes: Vec<Axis<'a>>,
 }
 
@@ -58,11 +59,15 @@ struct Swap {
 
 /// Prints the diagnoses as one JSON document.
 pub(super) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
-    let document = Document {
-        axes: diagnosed.iter().map(axis).collect(),
-    };
-    serde_json::to_writer(&mut *output, &document)?;
+    serde_json::to_writer(&mut *output, &document(diagnosed))?;
     writeln!(output)
+}
+
+/// The diagnoses as one document.
+pub(super) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
+    Document {
+        axes: diagnosed.iter().map(axis).collect(),
+    }
 }
 
 fn axis(diagnosed: &Diagnosed) -> Axis<'_> {

@@ -59,11 +59,7 @@ pub(super) struct Diagnosed {
 }
 
 impl Diagnosed {
-    fn new(
-        axis: AxisCurve,
-        evidence: Evidence,
-        max_effects: Option<usize>,
-    ) -> Result<Self, Error> {
+    fn new(axis: AxisCurve, evidence: Evidence, max_effects: Option<usize>) -> Result<Self, Error> {
         let default = Diagnosis::default();
         let diagnosis = Diagnosis {
             max_effects: max_effects.unwrap_or(default.max_effects),
@@ -102,7 +98,9 @@ impl Diagnosed {
             return String::new();
         };
         let channel = step.follows.as_ref().map(|follows| self.covariate(follows));
-        let added = self.added_in(step).map(|term| words::plain(term.effect.name()));
+        let added = self
+            .added_in(step)
+            .map(|term| words::plain(term.effect.name()));
         let parts = std::iter::once("five terms".to_owned());
         let parts = parts.chain(channel.map(str::to_owned)).chain(added);
         parts.collect::<Vec<_>>().join(" + ")
@@ -115,7 +113,9 @@ impl Diagnosed {
         candidate: &Candidate,
     ) -> Result<Step<OCTAVES>, Error> {
         let mut curve = self.axis.curve()?;
-        let before = step.checked_sub(1).and_then(|before| self.steps.get(before));
+        let before = step
+            .checked_sub(1)
+            .and_then(|before| self.steps.get(before));
         let step = &self.steps[step];
         if let Some(follows) = &step.follows {
             self.cross[follows.covariate].correct(&mut curve, &follows.slope);
@@ -125,7 +125,10 @@ impl Diagnosed {
 
     /// The effects that were added and kept, without covariates, as the last model has them.
     fn added(&self) -> impl Iterator<Item = &Term> {
-        self.steps.last().into_iter().flat_map(|last| self.added_in(last))
+        self.steps
+            .last()
+            .into_iter()
+            .flat_map(|last| self.added_in(last))
     }
 
     /// The effects of a step that the model that was asked about has not.

@@ -83,19 +83,6 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
         State::UpperBound => "0 inside".into(),
         State::NotObservable { .. } => "–".into(),
     };
-    let state = match coefficient.state {
-        State::Measured => "measured".into(),
-        State::UpperBound => "upper bound".into(),
-        State::NotObservable { after_s: None } => "not observable".into(),
-        State::NotObservable {
-            after_s: Some(after_s),
-        } => {
-            format!(
-                "not observable; a record of {} would show it",
-                duration(after_s)
-            )
-        }
-    };
     [
         coefficient.name.replace('_', " "),
         coefficient.symbol.into(),
@@ -104,8 +91,23 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
         units::unit(unit, coefficient.half_seconds),
         shown(factor),
         customary.into(),
-        state,
+        state(coefficient),
     ]
+}
+
+/// What the record says of a coefficient.
+pub(super) fn state(coefficient: &Coefficient) -> String {
+    match coefficient.state {
+        State::Measured => "measured".into(),
+        State::UpperBound => "upper bound".into(),
+        State::NotObservable { after_s: None } => "not observable".into(),
+        State::NotObservable {
+            after_s: Some(after_s),
+        } => {
+            let length = duration(after_s);
+            format!("not observable; a record of {length} would show it")
+        }
+    }
 }
 
 /// χ² and what it says, one line each.

@@ -1,1 +1,214 @@
-//! x
+//! What the page of a report shows: the diagnosis as `diagnose --json` prints it, and beside it the
+//! figures and words of every step and of every candidate.
+
+use super::{
+    diagnose_json,
+    diagnose_words::{Finding, candidate_name, shown_p},
+    diagnosed::Diagnosed,
+    fit_json, fit_table, model_json, units,
+};
+use crate::{
+    log::OCTAVES,
+    plot::{Figure, Frame},
+    unit::Unit,
+};
+use allanite::{Addition, Candidate as Tried, Error, Step};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+#[derive(Serialize)]
+pub(super) struct Document<'a> {
+    diagnosis: diagnose_json::Document<'a>,
+    /// In the diagnosis' order.
+    axes: Vec<Axis>,
+}
+
+#[derive(Serialize)]
+struct Axis {
+    /// Units of the deviation: the log's, then the customary one.
+    units: Vec<DeviationUnit>,
+    /// From a unit of the log to the customary one, for coefficients.
+    customary: BTreeMap<String, Customary>,
+    /// Ends of the axis of averaging times, in seconds, and of that of deviations, in the log's unit.
+    tau_s: [f64; 2],
+    sigma: [f64; 2],
+    times: Vec<(f64, String)>,
+    steps: Vec<View>,
+}
+
+#[derive(Serialize)]
+struct DeviationUnit {
+    name: String,
+    /// What one unit of the log is in it.
+    factor: f64,
+    ticks: Vec<(f64, String)>,
+}
+
+#[derive(Serialize)]
+struct Customary {
+    factor: f64,
+    unit: &'static str,
+}
+
+/// A model beside the record.
+#[derive(Serialize)]
+struct View {
+    model: String,
+    figure: Figure,
+    /// Where the residual's panel ends, with its ticks.
+    z: f64,
+    residuals: [(f64, String); 3],
+    /// The octave that lies farthest off.
+    worst: usize,
+    /// Where the model fails.
+    words: String,
+    /// The p-value with its relation.
+    p: String,
+    /// What the record says of each coefficient.
+    states: Vec<String>,
+    /// What the step before had added to come here.
+    found: Option<Found>,
+    candidates: Vec<Candidate>,
+}
+
+#[derive(Serialize)]
+struct Found {
+    name: String,
+    found: Option<String>,
+    lines: Vec<(&'static str, String)>,
+    ambiguous: Option<String>,
+}
+
+#[derive(Serialize)]
+struct Candidate {
+    name: String,
+    /// Its fit in full; that of the one that was added is the next step.
+    fitted: Option<Fitted>,
+}
+
+#[derive(Serialize)]
+struct Fitted {
+    chi2: f64,
+    dof: usize,
+    p_value: f64,
+    rms_percent: f64,
+    coefficients: Vec<fit_json::Term>,
+    view: View,
+}
+
+/// The diagnoses as one document; every candidate is fitted in full.
+pub(super) fn document(diagnosed: &[Diagnosed]) -> Result<Document<'_>, (&str, Error)> {
+    let axis = |diagnosed| axis(diagnosed).map_err(|error| (diagnosed.axis.axis.as_str(), error));
+    Ok(Document {
+        diagnosis: diagnose_json::document(diagnosed),
+        axes: diagnosed.iter().map(axis).collect::<Result<_, _>>()?,
+    })
+}
+
+fn axis(diagnosed: &Diagnosed) -> Result<Axis, Error> {
+    let unit = diagnosed.axis.unit;
+    let frame = Frame::of(diagnosed.steps.iter().map(|step| &step.comparison));
+    let steps = (0..diagnosed.steps.len()).map(|at| step(diagnosed, at));
+    Ok(Axis {
+        units: deviation_units(unit, &frame),
+        customary: customary(unit),
+        tau_s: [frame.tau_s.low, frame.tau_s.high],
+        sigma: [frame.sigma.low, frame.sigma.high],
+        times: frame.tau_s.times(),
+        steps: steps.collect::<Result<_, _>>()?,
+    })
+}
+
+fn deviation_units(unit: Unit, frame: &Frame) -> Vec<DeviationUnit> {
+    let customary = units::customary(unit, 0).map(|(factor, name)| (factor, name.to_owned()));
+    let names = std::iter::once((1.0, units::unit(unit, 0))).chain(customary);
+    let unit = |(factor, name)| DeviationUnit {
+        name,
+        factor,
+        ticks: frame.sigma.scaled(factor).labelled(),
+    };
+    names.map(unit).collect()
+}
+
+fn customary(unit: Unit) -> BTreeMap<String, Customary> {
+    let one = |half_seconds| {
+        let (factor, customary) = units::customary(unit, half_seconds)?;
+        let name = units::unit(unit, half_seconds);
+        Some((
+            name,
+            Customary {
+                factor,
+                unit: customary,
+            },
+        ))
+    };
+    (-2..=2).filter_map(one).collect()
+}
+
+fn step(diagnosed: &Diagnosed, at: usize) -> Result<View, Error> {
+    let step = &diagnosed.steps[at];
+    let before = at.checked_sub(1).map(|before| &diagnosed.steps[before]);
+    let finding = before.and_then(|before| Finding::new(diagnosed, before, step));
+    let candidates = step.candidates.iter().enumerate();
+    let candidates = candidates.map(|(place, tried)| {
+        let next = place == 0 && matches!(step.added, Some(Addition::Effect(_)));
+        candidate(diagnosed, at, tried, next)
+    });
+    Ok(View {
+        found: finding.map(|finding| Found {
+            lines: finding
+                .lines()
+                .into_iter()
+                .map(|(label, text)| (label, text.to_owned()))
+                .collect(),
+            name: finding.name,
+            found: finding.found,
+            ambiguous: finding.ambiguous,
+        }),
+        candidates: candidates.collect::<Result<_, _>>()?,
+        ..view(diagnosed.model_name(at), step)
+    })
+}
+
+fn candidate(
+    diagnosed: &Diagnosed,
+    at: usize,
+    tried: &Tried,
+    next: bool,
+) -> Result<Candidate, Error> {
+    let name = candidate_name(tried);
+    if next {
+        return Ok(Candidate { name, fitted: None });
+    }
+    let step = diagnosed.alternative(at, tried)?;
+    let model = format!("{} + {name}", diagnosed.model_name(at));
+    let fitted = Fitted {
+        chi2: step.fit.chi_squared,
+        dof: step.fit.degrees_of_freedom,
+        p_value: step.fit.p_value,
+        rms_percent: step.comparison.rms_percent,
+        coefficients: model_json::coefficients(&step.fit, diagnosed.axis.unit),
+        view: view(model, &step),
+    };
+    Ok(Candidate {
+        name,
+        fitted: Some(fitted),
+    })
+}
+
+fn view(model: String, step: &Step<OCTAVES>) -> View {
+    let frame = Frame::of([&step.comparison]);
+    let figure = Figure::new(&step.model, &step.comparison);
+    View {
+        model,
+        worst: figure.worst(),
+        figure,
+        z: frame.z,
+        residuals: frame.residuals(),
+        words: step.comparison.to_string(),
+        p: shown_p(step.fit.p_value),
+        states: step.fit.coefficients.iter().map(fit_table::state).collect(),
+        found: None,
+        candidates: Vec::new(),
+    }
+}

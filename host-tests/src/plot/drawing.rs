@@ -8,12 +8,12 @@ use super::{
 use crate::{failure::one_line, unit::Unit};
 use svg::{
     Document,
-    node::element::{Group, Rectangle},
+    node::element::{Circle, Group, Rectangle},
 };
 
-const WIDTH: f64 = 1000.0;
+const WIDTH: f64 = 1030.0;
 /// Of one figure, its axis of averaging times included.
-const HEIGHT: f64 = 640.0;
+const HEIGHT: f64 = 664.0;
 const MARGIN: f64 = 24.0;
 const CURVE: Panel = Panel {
     left: 92.0,
@@ -25,12 +25,12 @@ const RESIDUAL: Panel = Panel {
     left: CURVE.left,
     top: 442.0,
     width: CURVE.width,
-    height: 130.0,
+    height: 154.0,
 };
 const LEGEND: (f64, f64) = (CURVE.left + CURVE.width + 22.0, CURVE.top + 12.0);
 const LEGEND_ROW: f64 = 24.0;
-/// Longer titles run out of the drawing.
-const LONGEST_TITLE: usize = 70;
+/// Characters that there is room for: of a title, and of the smaller words below.
+const LONGEST: [usize; 2] = [72, 120];
 /// Residuals within so many standard errors are no disagreement.
 const NOTICEABLE: f64 = 2.0;
 
@@ -39,17 +39,19 @@ const MODEL: Stroke = Stroke {
     width: 2.5,
     dashes: "none",
 };
-/// Lines of effects: colours that the colour-blind tell apart, after Okabe and Ito, and dashes.
+/// Lines of effects: colours that stand out from white, and dashes that tell them apart without.
 const EFFECTS: [(&str, &str); 8] = [
-    ("#8c959f", "2 3"),
-    ("#e69f00", "7 3"),
-    ("#009e73", "7 3 2 3"),
-    ("#cc79a7", "5 3"),
-    ("#a0522d", "2 3"),
-    ("#56b4e9", "9 3"),
-    ("#b58900", "9 3 2 3"),
-    ("#d55e00", "4 2"),
+    ("#6e7781", "2 4"),
+    ("#b35900", "8 4"),
+    ("#1a7f37", "8 3 2 3"),
+    ("#bf3989", "5 3"),
+    ("#7a4a21", "2 3"),
+    ("#1b7c83", "10 3"),
+    ("#8250df", "10 3 2 3"),
+    ("#9a6700", "4 3"),
 ];
+/// Of the octave that lies farthest off.
+const WORST: &str = "#cf222e";
 
 /// One figure of a drawing.
 #[derive(Clone, Debug)]
@@ -89,8 +91,20 @@ pub fn svg(drawings: &[Drawing]) -> String {
 
 impl Drawing {
     fn draw(&self, group: Group) -> Group {
-        let title = text((MARGIN, 36.0), &shown(&self.title), 18.0, "start", INK);
-        let subtitle = text((MARGIN, 60.0), &shown(&self.subtitle), 13.0, "start", PALE);
+        let title = text(
+            (MARGIN, 36.0),
+            &shown(&self.title, LONGEST[0]),
+            18.0,
+            "start",
+            INK,
+        );
+        let subtitle = text(
+            (MARGIN, 60.0),
+            &shown(&self.subtitle, LONGEST[1]),
+            13.0,
+            "start",
+            PALE,
+        );
         let group = group.add(title.set("font-weight", "bold")).add(subtitle);
         let group = self.draw_residual(self.draw_curve(group));
         let middle = CURVE.left + 0.5 * CURVE.width;
@@ -142,7 +156,11 @@ impl Drawing {
         for (across, up) in self.points(measured) {
             group = group.add(CURVE.mark(across, up));
         }
-        group
+        let worst = self.worst().and_then(|at| self.points(measured).nth(at));
+        match worst {
+            Some((across, up)) => group.add(ring(&CURVE, across, up)),
+            None => group,
+        }
     }
 
     fn draw_residual(&self, group: Group) -> Group {
@@ -163,14 +181,29 @@ impl Drawing {
             .add(RESIDUAL.times(&self.times(), true))
             .add(RESIDUAL.framed(&ticks))
             .add(line((RESIDUAL.left, zero), (right, zero), MODEL.colour))
-            .add(upright(&RESIDUAL, "residual z, σ"));
-        for (tau_s, z) in self.figure.tau_s.iter().zip(&self.figure.z) {
-            let (across, up) = (self.across(*tau_s), frame.up(f64::from(*z)));
+            .add(upright(&RESIDUAL, "residual, std. errors"));
+        for (at, tau_s) in self.figure.tau_s.iter().enumerate() {
+            let (across, up) = (self.across(*tau_s), self.z_up(at));
             group = group
                 .add(RESIDUAL.stem(across, frame.up(0.0), up, 1.5))
                 .add(RESIDUAL.mark(across, up));
         }
+        if let Some(at) = self.worst() {
+            let (across, up) = (self.across(self.figure.tau_s[at]), self.z_up(at));
+            group = group.add(ring(&RESIDUAL, across, up));
+        }
         group
+    }
+
+    fn z_up(&self, at: usize) -> f64 {
+        self.frame.up(f64::from(self.figure.z[at]))
+    }
+
+    /// The octave that lies farthest off, if that is noticeable.
+    fn worst(&self) -> Option<usize> {
+        let worst = self.figure.worst();
+        let z = self.figure.z.get(worst)?;
+        (f64::from(z.abs()) > NOTICEABLE).then_some(worst)
     }
 
     fn times(&self) -> Vec<(f64, String)> {
@@ -191,9 +224,9 @@ impl Drawing {
             height: 16.0,
         };
         let mut group = Group::new()
-            .add(sample.stem(0.5 - 0.4, 0.0, 1.0, 1.5))
-            .add(sample.mark(0.5 - 0.4, 0.5))
-            .add(row(top, "measured ± 1 σ"));
+            .add(sample.stem(0.1, 0.0, 1.0, 1.5))
+            .add(sample.mark(0.1, 0.5))
+            .add(row(top, "measured ± std. error"));
         let mut lines = vec![(MODEL, "model".to_owned())];
         let effects = self.figure.shares.iter();
         lines.extend(effects.map(|share| (effect(share), share.effect.replace('_', " "))));
@@ -201,9 +234,7 @@ impl Drawing {
             top += LEGEND_ROW;
             let sample = Panel { top, ..sample };
             let ends = [(-0.4, 1.0), (0.7, 1.0)].into_iter();
-            group = group
-                .add(sample.curve(ends, stroke))
-                .add(row(top, &words));
+            group = group.add(sample.curve(ends, stroke)).add(row(top, &words));
         }
         let band = Rectangle::new()
             .set("x", left)
@@ -211,16 +242,30 @@ impl Drawing {
             .set("width", 31)
             .set("height", 16)
             .set("fill", "#ddf4ff");
-        group
+        let group = group
             .add(band)
-            .add(row(RESIDUAL.top + 12.0, "within ± 2 σ"))
+            .add(row(RESIDUAL.top + 12.0, "± 2 std. errors"));
+        let Some(worst) = self.worst() else {
+            return group;
+        };
+        let sample = Panel {
+            top: RESIDUAL.top + 36.0 - 8.0,
+            ..sample
+        };
+        let words = format!("farthest off: {:+.0}", self.figure.z[worst]);
+        group
+            .add(sample.mark(0.1, 0.5))
+            .add(ring(&sample, 0.1, 0.5))
+            .add(row(RESIDUAL.top + 36.0, &words))
     }
 }
 
 /// Ticks at their places.
 fn placed(span: &Span, ticks: Vec<(f64, String)>) -> Vec<(f64, String)> {
     let ticks = ticks.into_iter();
-    ticks.map(|(value, label)| (span.along(value), label)).collect()
+    ticks
+        .map(|(value, label)| (span.along(value), label))
+        .collect()
 }
 
 /// The title of a vertical axis.
@@ -228,6 +273,11 @@ fn upright(panel: &Panel, words: &str) -> Group {
     let (x, y) = (MARGIN + 4.0, panel.top + 0.5 * panel.height);
     let turned = Group::new().set("transform", format!("translate({x} {y}) rotate(-90)"));
     turned.add(text((0.0, 0.0), words, 13.0, "middle", INK))
+}
+
+fn ring(panel: &Panel, across: f64, up: f64) -> Circle {
+    let mark = panel.mark(across, up).set("r", 8).set("fill", "none");
+    mark.set("stroke", WORST).set("stroke-width", 2)
 }
 
 fn effect(share: &Share) -> Stroke {
@@ -240,10 +290,18 @@ fn effect(share: &Share) -> Stroke {
 }
 
 /// Words of an input as XML can have them, and no longer than there is room.
-fn shown(words: &str) -> String {
+fn shown(words: &str, longest: usize) -> String {
     let words = one_line(words).replace(['\u{fffe}', '\u{ffff}'], " ");
-    if words.chars().count() <= LONGEST_TITLE {
+    if words.chars().count() <= longest {
         return words;
     }
-    words.chars().take(LONGEST_TITLE).chain(['…']).collect()
+    words.chars().take(longest).chain(['…']).collect()
+}
+
+/// The same lines for a page: a class of CSS each, `effect-` and the colour's place.
+pub fn effect_styles() -> String {
+    let rule = |(place, (colour, dashes)): (usize, (&str, &str))| {
+        format!(".effect-{place}{{stroke:{colour};stroke-dasharray:{dashes}}}\n")
+    };
+    EFFECTS.into_iter().enumerate().map(rule).collect()
 }

@@ -46,7 +46,10 @@ impl Figure {
         let octaves = comparison.octaves.iter();
         let roots = |variance: &dyn Fn(&allanite::ComparedOctave) -> f64| {
             let root = |variance: f64| variance.max(0.0).sqrt() as f32;
-            octaves.clone().map(|octave| root(variance(octave))).collect()
+            octaves
+                .clone()
+                .map(|octave| root(variance(octave)))
+                .collect()
         };
         // An octave that agrees to the last bit has no error to show.
         let error = |octave: &allanite::ComparedOctave| match octave.standard_error() {
@@ -58,7 +61,11 @@ impl Figure {
             colour: colour(term.effect),
             sigma: roots(&|octave| octave.model * f64::from(octave.shares[at])),
         };
-        let shows = |at: usize| octaves.clone().any(|octave| octave.shares[at] >= LEAST_SHARE);
+        let shows = |at: usize| {
+            octaves
+                .clone()
+                .any(|octave| octave.shares[at] >= LEAST_SHARE)
+        };
         let terms = model.terms().iter().enumerate();
         Self {
             tau_s: octaves.clone().map(|octave| octave.tau_s as f32).collect(),

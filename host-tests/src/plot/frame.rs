@@ -59,9 +59,7 @@ pub struct Frame {
 
 impl Frame {
     /// Has room for all octaves of these comparisons.
-    pub fn of<'a>(
-        comparisons: impl IntoIterator<Item = &'a Comparison<OCTAVES>> + Clone,
-    ) -> Self {
+    pub fn of<'a>(comparisons: impl IntoIterator<Item = &'a Comparison<OCTAVES>> + Clone) -> Self {
         let octaves = || {
             let comparisons = comparisons.clone().into_iter();
             comparisons.flat_map(|comparison| &comparison.octaves)

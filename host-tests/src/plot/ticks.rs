@@ -43,7 +43,9 @@ pub(super) fn plain(value: f64) -> String {
     }
     let sign = if exponent < 0 { "⁻" } else { "" };
     let digits = exponent.unsigned_abs().to_string();
-    let digits = digits.bytes().map(|digit| DIGITS[usize::from(digit - b'0')]);
+    let digits = digits
+        .bytes()
+        .map(|digit| DIGITS[usize::from(digit - b'0')]);
     let power = format!("10{sign}{}", digits.collect::<String>());
     match (value / 10_f64.powi(exponent)).round() {
         1.0 => power,

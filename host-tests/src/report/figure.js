@@ -119,9 +119,9 @@ function drawFigure(axis, view, unit, width) {
     const k = view.worst;
     dot(curve, k, up(figure.measured[k]), "worst");
     dot(residual, k, zUp(z), "worst");
-    // Beside the ring, on the side where there is room.
+    // Beside the ring, where the others do not reach.
     const begin = across[k] < 0.6;
-    const place = [x(across[k]) + (begin ? 13 : -13), y(curve, clamp(up(figure.measured[k]))) + 4];
+    const place = [x(across[k]) + (begin ? 13 : -13), y(residual, zUp(z)) + 4];
     text(place, { "text-anchor": begin ? "start" : "end", class: "worst-label" },
       `worst: ${z > 0 ? "+" : "−"}${Math.abs(z).toFixed(0)} std. errors`);
   }

@@ -119,12 +119,12 @@ class Walk {
   update() {
     const { fit, view } = this.shown();
     const strong = (words) => html("strong", {}, words);
-    this.heading.textContent = this.candidate === null ? view.model : `If it were: ${view.model}`;
+    this.heading.textContent = `${this.candidate === null ? "Model" : "If it were"}: ${view.model}`;
     this.error.replaceChildren(
       html("span", { class: "figures chi2" }, "χ² ", strong(tenth(fit.chi2)), ` for ${fit.dof} degrees of freedom`),
       html("span", { class: "figures" }, "misfit ", strong(tenth(fit.rms_percent)), " % rms"),
       html("span", { class: "figures" }, "p ", strong(view.p)));
-    this.words.textContent = `Now ${view.words}.`;
+    this.words.textContent = `${view.words[0].toUpperCase()}${view.words.slice(1)}.`;
     this.showCoefficients(fit, view);
     this.showLegend(view);
     this.draw();
@@ -168,8 +168,10 @@ class Walk {
   showCandidates() {
     const tried = this.steps[this.step].candidates;
     const views = this.axis.steps[this.step].candidates;
-    this.candidates.hidden = tried.length === 0;
-    if (tried.length === 0) return this.candidates.replaceChildren();
+    if (tried.length === 0) {
+      const words = this.step > 0 || this.steps.length === 1 ? "Nothing further was tried." : "";
+      return this.candidates.replaceChildren(html("p", { class: "hint" }, words));
+    }
     const group = `axis-${this.index}-candidate`;
     const row = (at, ...cells) => {
       const radio = html("input", { type: "radio", name: group, id: `${group}-${at ?? "none"}`, checked: at === null });
@@ -206,24 +208,28 @@ class Walk {
       if (one.state === "upper_bound") return `< ${number(factor * one.upper)}`;
       return number(factor * one.value);
     };
-    const interval = (one) => {
+    const interval = (one, state) => {
+      if (one.state !== "measured") return state;
       const factor = custom(one)?.factor ?? 1;
-      if (one.state !== "measured") return one.state === "upper_bound" ? "0 inside" : "";
       return `${number(factor * one.lower)} … ${number(factor * one.upper)}`;
     };
-    const cell = (one) => html("td", { class: "value" }, ...(one
-      ? [html("span", { class: "best" }, value(one)), html("span", { class: "interval" }, interval(one))] : ["–"]));
-    const same = (one) => before.find((other) => other.symbol === one.symbol);
+    const cell = (one, state) => html("td", { class: "value" },
+      html("span", { class: "best" }, value(one)), html("span", { class: "interval" }, interval(one, state)));
+    const none = html("td", {}, "–");
+    const earlier = (one) => {
+      const at = before.findIndex((other) => other.symbol === one.symbol);
+      return at < 0 ? none.cloneNode(true) : cell(before[at], this.axis.steps[0].states[at]);
+    };
     const walked = this.step > 0 || this.candidate !== null;
     const row = (one, at) => html("tr", {},
-      html("th", { scope: "row" }, plain(one.effect), " ", html("i", {}, one.symbol)),
-      walked ? cell(same(one)) : null, cell(one),
-      html("td", {}, custom(one)?.unit ?? one.unit), html("td", { class: "state" }, view.states[at]));
-    const head = ["coefficient", walked ? "five terms" : null, walked ? "now" : "five terms", "unit", "state"];
+      html("th", { scope: "row" }, plain(one.effect), " ", html("i", {}, one.symbol),
+        html("span", { class: "unit" }, custom(one)?.unit ?? one.unit)),
+      walked ? earlier(one) : null, cell(one, view.states[at]));
+    const head = ["coefficient", "five terms", walked ? "now" : null];
     this.coefficients.replaceChildren(html("h3", {}, "Coefficients, with 95 % intervals"),
-      html("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Coefficients" }, html("table", {},
+      html("table", {},
         html("thead", {}, html("tr", {}, ...head.filter((words) => words).map((words) => html("th", { scope: "col" }, words)))),
-        html("tbody", {}, ...fit.coefficients.map(row)))));
+        html("tbody", {}, ...fit.coefficients.map(row))));
   }
 }
 

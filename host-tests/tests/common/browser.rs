@@ -33,7 +33,12 @@ impl Browser {
     pub(crate) fn start() -> Self {
         let profile = TempDir::new().unwrap();
         let process = Command::new(CHROMIUM)
-            .args(["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"])
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--hide-scrollbars",
+            ])
             .args(["--no-first-run", "--remote-debugging-port=0"])
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .stdout(Stdio::null())
@@ -81,7 +86,10 @@ impl Browser {
     pub(crate) fn value(&mut self, expression: &str) -> Value {
         let arguments = json!({ "expression": expression, "returnByValue": true });
         let answer = self.call("Runtime.evaluate", arguments);
-        assert!(answer["exceptionDetails"].is_null(), "{expression}: {answer}");
+        assert!(
+            answer["exceptionDetails"].is_null(),
+            "{expression}: {answer}"
+        );
         answer["result"]["value"].clone()
     }
 
@@ -116,7 +124,8 @@ impl Browser {
             _ => panic!("{key}"),
         };
         for kind in ["rawKeyDown", "keyUp"] {
-            let event = json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code });
+            let event =
+                json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code });
             self.call("Input.dispatchKeyEvent", event);
         }
     }
@@ -152,7 +161,10 @@ impl Browser {
     }
 
     fn receive(&mut self) -> Value {
-        let message = self.socket.read().expect("Chromium answers within a minute");
+        let message = self
+            .socket
+            .read()
+            .expect("Chromium answers within a minute");
         let message: Value = serde_json::from_str(message.to_text().unwrap()).unwrap();
         let parameters = &message["params"];
         match message["method"].as_str() {

@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     /// The axis to draw [default: all, one below the other]
     #[arg(long, value_name = "NAME")]
     axis: Option<String>,
-    /// The model of that step of the diagnosis, 0 for the five terms [default: the last]
+    /// The model of that step of the diagnosis, 0 for the five terms; an axis of fewer steps shows its last [default: the last]
     #[arg(long, value_name = "N")]
     step: Option<usize>,
 }

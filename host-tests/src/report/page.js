@@ -191,7 +191,7 @@ class Walk {
     this.candidates.replaceChildren(
       html("h3", {}, "What was tried next"),
       html("p", { class: "hint" },
-        "Best first. Choose one to see its fit in full; its χ² may differ a little from that of the search."),
+        "Best first. Choose one to see its fit in full: the search ends earlier, with a χ² that is not final."),
       html("table", {},
         html("thead", {}, html("tr", {}, html("th", {}, "candidate"), html("th", { class: "number" }, "χ²"),
           html("th", { class: "number" }, "improvement"))),

@@ -101,6 +101,7 @@ fn drawing(diagnosed: &Diagnosed, step: Option<usize>) -> Drawing {
     let step = &diagnosed.steps[at];
     let axis = &diagnosed.axis;
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
+    let frame = Frame::of([&step.comparison]);
     Drawing {
         title: format!(
             "{}: Allan deviation, {}",
@@ -115,7 +116,7 @@ fn drawing(diagnosed: &Diagnosed, step: Option<usize>) -> Drawing {
             step.comparison.rms_percent,
         ),
         unit: axis.unit,
-        figure: Figure::new(&step.model, &step.comparison),
-        frame: Frame::of([&step.comparison]),
+        figure: Figure::new(&step.model, &step.comparison, &frame),
+        frame,
     }
 }

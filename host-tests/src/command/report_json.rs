@@ -108,7 +108,7 @@ pub(super) fn document(diagnosed: &[Diagnosed]) -> Result<Document<'_>, (&str, E
 fn axis(diagnosed: &Diagnosed) -> Result<Axis, Error> {
     let unit = diagnosed.axis.unit;
     let frame = Frame::of(diagnosed.steps.iter().map(|step| &step.comparison));
-    let steps = (0..diagnosed.steps.len()).map(|at| step(diagnosed, at));
+    let steps = (0..diagnosed.steps.len()).map(|at| step(diagnosed, at, &frame));
     Ok(Axis {
         units: deviation_units(unit, &frame),
         customary: customary(unit),
@@ -145,14 +145,17 @@ fn customary(unit: Unit) -> BTreeMap<String, Customary> {
     (-2..=2).filter_map(one).collect()
 }
 
-fn step(diagnosed: &Diagnosed, at: usize) -> Result<View, Error> {
+fn step(diagnosed: &Diagnosed, at: usize, frame: &Frame) -> Result<View, Error> {
     let step = &diagnosed.steps[at];
     let before = at.checked_sub(1).map(|before| &diagnosed.steps[before]);
     let finding = before.and_then(|before| Finding::new(diagnosed, before, step));
     let candidates = step.candidates.iter().enumerate();
     let candidates = candidates.map(|(place, tried)| {
-        let next = place == 0 && matches!(step.added, Some(Addition::Effect(_)));
-        candidate(diagnosed, at, tried, next)
+        if place == 0 && matches!(step.added, Some(Addition::Effect(_))) {
+            let name = candidate_name(tried);
+            return Ok(Candidate { name, fitted: None });
+        }
+        candidate(diagnosed, at, tried, frame)
     });
     Ok(View {
         found: finding.map(|finding| Found {
@@ -166,7 +169,7 @@ fn step(diagnosed: &Diagnosed, at: usize) -> Result<View, Error> {
             ambiguous: finding.ambiguous,
         }),
         candidates: candidates.collect::<Result<_, _>>()?,
-        ..view(diagnosed.model_name(at), step)
+        ..view(diagnosed.model_name(at), step, frame)
     })
 }
 
@@ -174,12 +177,9 @@ fn candidate(
     diagnosed: &Diagnosed,
     at: usize,
     tried: &Tried,
-    next: bool,
+    frame: &Frame,
 ) -> Result<Candidate, Error> {
     let name = candidate_name(tried);
-    if next {
-        return Ok(Candidate { name, fitted: None });
-    }
     let step = diagnosed.alternative(at, tried)?;
     let model = format!("{} + {name}", diagnosed.model_name(at));
     let fitted = Fitted {
@@ -188,7 +188,7 @@ fn candidate(
         p_value: step.fit.p_value,
         rms_percent: step.comparison.rms_percent,
         coefficients: model_json::coefficients(&step.fit, diagnosed.axis.unit),
-        view: view(model, &step),
+        view: view(model, &step, frame),
     };
     Ok(Candidate {
         name,
@@ -196,15 +196,16 @@ fn candidate(
     })
 }
 
-fn view(model: String, step: &Step<OCTAVES>) -> View {
-    let frame = Frame::of([&step.comparison]);
-    let figure = Figure::new(&step.model, &step.comparison);
+/// What is shown of a step: its deviations in the frame of all, its residuals in one of their own.
+fn view(model: String, step: &Step<OCTAVES>, frame: &Frame) -> View {
+    let own = Frame::of([&step.comparison]);
+    let figure = Figure::new(&step.model, &step.comparison, frame);
     View {
         model,
         worst: figure.worst(),
         figure,
-        z: frame.z,
-        residuals: frame.residuals(),
+        z: own.z,
+        residuals: own.residuals(),
         words: step.comparison.to_string(),
         p: shown_p(step.fit.p_value),
         states: step.fit.coefficients.iter().map(fit_table::state).collect(),

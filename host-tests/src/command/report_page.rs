@@ -4,7 +4,7 @@ use super::{diagnose_words::lead, diagnosed::Diagnosed, words};
 use crate::plot;
 use allanite::{Diagnosis, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use std::path::Path;
+use std::{collections::BTreeSet, path::Path};
 
 const STYLE: &str = include_str!("../report/page.css");
 /// Draws a figure, walks through the steps.
@@ -163,15 +163,17 @@ fn settings(content: &Content) -> Markup {
             dl {
                 @for (name, value) in &settings { dt { (name) } dd { (value) } }
             }
-            @for diagnosed in content.diagnosed {
-                @if let Some(source) = &diagnosed.axis.source {
-                    p.record { (diagnosed.axis.axis) ": " (source)
-                        @if let Some(licence) = &diagnosed.axis.licence { ", " (licence) }
-                    }
-                }
-            }
+            @for source in sources(content.diagnosed) { p.record { "record: " (source) } }
         }
     }
+}
+
+/// Where the records come from, each place once.
+fn sources(diagnosed: &[Diagnosed]) -> BTreeSet<String> {
+    let axes = diagnosed.iter().map(|one| &one.axis);
+    let named = axes.map(|axis| axis.source.iter().chain(&axis.licence));
+    let named = named.map(|words| words.cloned().collect::<Vec<_>>().join(", "));
+    named.filter(|words| !words.is_empty()).collect()
 }
 
 /// A word as a shell takes it.

@@ -252,7 +252,7 @@ impl Drawing {
             top: RESIDUAL.top + 36.0 - 8.0,
             ..sample
         };
-        let words = format!("farthest off: {:+.0}", self.figure.z[worst]);
+        let words = format!("farthest off: {:+.0}", self.figure.z[worst]).replace('-', "−");
         group
             .add(sample.mark(0.1, 0.5))
             .add(ring(&sample, 0.1, 0.5))

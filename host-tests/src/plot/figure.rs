@@ -1,5 +1,6 @@
 //! What a plot shows of a comparison.
 
+use super::frame::Frame;
 use crate::log::OCTAVES;
 use allanite::{
     Comparison, Model,
@@ -41,8 +42,8 @@ pub struct Share {
 }
 
 impl Figure {
-    /// The figure of a model beside a record.
-    pub fn new(model: &Model, comparison: &Comparison<OCTAVES>) -> Self {
+    /// The figure of a model beside a record; effects that lie below the frame do not show.
+    pub fn new(model: &Model, comparison: &Comparison<OCTAVES>, frame: &Frame) -> Self {
         let octaves = comparison.octaves.iter();
         let roots = |variance: &dyn Fn(&allanite::ComparedOctave) -> f64| {
             let root = |variance: f64| variance.max(0.0).sqrt() as f32;
@@ -62,9 +63,11 @@ impl Figure {
             sigma: roots(&|octave| octave.model * f64::from(octave.shares[at])),
         };
         let shows = |at: usize| {
-            octaves
-                .clone()
-                .any(|octave| octave.shares[at] >= LEAST_SHARE)
+            octaves.clone().any(|octave| {
+                let share = octave.shares[at];
+                let sigma = (octave.model * f64::from(share)).sqrt();
+                share >= LEAST_SHARE && sigma >= frame.sigma.low
+            })
         };
         let terms = model.terms().iter().enumerate();
         Self {

@@ -1,8 +1,7 @@
 //! `report`: a diagnosis as a page.
 
 use super::{
-    diagnose_text, diagnosed::DiagnosisArguments, input, output_file::OutputFile, report_json,
-    report_page,
+    diagnose_text, diagnosed::DiagnosisArguments, output_file::OutputFile, report_json, report_page,
 };
 use crate::failure::{Failure, Place};
 use clap::Args;
@@ -29,15 +28,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     // First, so that a place that cannot be written to costs no diagnosis.
     let mut file = OutputFile::create(&arguments.output)?;
-    let input = &arguments.diagnosis.input;
     let diagnosed = arguments.diagnosis.diagnosed()?;
     let fail = |error: io::Error| place().io(&error);
-    let pictured = report_json::document(&diagnosed)
-        .map_err(|(axis, error)| input::library_failure(input, axis, error))?;
+    let pictured = report_json::document(&diagnosed);
     let mut text = Vec::new();
     diagnose_text::print(&diagnosed, &mut text).map_err(fail)?;
     let page = report_page::page(&report_page::Content {
-        input,
+        input: &arguments.diagnosis.input,
         diagnosed: &diagnosed,
         json: &serde_json::to_string(&pictured).map_err(|error| fail(error.into()))?,
         text: &String::from_utf8_lossy(&text),

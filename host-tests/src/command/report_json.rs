@@ -12,7 +12,7 @@ use crate::{
     plot::{Figure, Frame},
     unit::Unit,
 };
-use allanite::{Addition, Candidate as Tried, Error, Step};
+use allanite::{Addition, Candidate as Tried, Step};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -82,7 +82,9 @@ struct Found {
 #[derive(Serialize)]
 struct Candidate {
     name: String,
-    /// Its fit in full; that of the one that was added is the next step.
+    /// Whether it was added: its fit is the next step.
+    added: bool,
+    /// Else its fit in full; `None` where there is none.
     fitted: Option<Fitted>,
 }
 
@@ -97,26 +99,25 @@ struct Fitted {
 }
 
 /// The diagnoses as one document; every candidate is fitted in full.
-pub(super) fn document(diagnosed: &[Diagnosed]) -> Result<Document<'_>, (&str, Error)> {
-    let axis = |diagnosed| axis(diagnosed).map_err(|error| (diagnosed.axis.axis.as_str(), error));
-    Ok(Document {
+pub(super) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
+    Document {
         diagnosis: diagnose_json::document(diagnosed),
-        axes: diagnosed.iter().map(axis).collect::<Result<_, _>>()?,
-    })
+        axes: diagnosed.iter().map(axis).collect(),
+    }
 }
 
-fn axis(diagnosed: &Diagnosed) -> Result<Axis, Error> {
+fn axis(diagnosed: &Diagnosed) -> Axis {
     let unit = diagnosed.axis.unit;
     let frame = Frame::of(diagnosed.steps.iter().map(|step| &step.comparison));
-    let steps = (0..diagnosed.steps.len()).map(|at| step(diagnosed, at, &frame));
-    Ok(Axis {
+    let steps = 0..diagnosed.steps.len();
+    Axis {
         units: deviation_units(unit, &frame),
         customary: customary(unit),
         tau_s: [frame.tau_s.low, frame.tau_s.high],
         sigma: [frame.sigma.low, frame.sigma.high],
         times: frame.tau_s.times(),
-        steps: steps.collect::<Result<_, _>>()?,
-    })
+        steps: steps.map(|at| step(diagnosed, at, &frame)).collect(),
+    }
 }
 
 fn deviation_units(unit: Unit, frame: &Frame) -> Vec<DeviationUnit> {
@@ -145,19 +146,22 @@ fn customary(unit: Unit) -> BTreeMap<String, Customary> {
     (-2..=2).filter_map(one).collect()
 }
 
-fn step(diagnosed: &Diagnosed, at: usize, frame: &Frame) -> Result<View, Error> {
+fn step(diagnosed: &Diagnosed, at: usize, frame: &Frame) -> View {
     let step = &diagnosed.steps[at];
     let before = at.checked_sub(1).map(|before| &diagnosed.steps[before]);
     let finding = before.and_then(|before| Finding::new(diagnosed, before, step));
     let candidates = step.candidates.iter().enumerate();
     let candidates = candidates.map(|(place, tried)| {
-        if place == 0 && matches!(step.added, Some(Addition::Effect(_))) {
-            let name = candidate_name(tried);
-            return Ok(Candidate { name, fitted: None });
+        let added = place == 0 && matches!(step.added, Some(Addition::Effect(_)));
+        Candidate {
+            name: candidate_name(tried),
+            added,
+            fitted: (!added)
+                .then(|| fitted(diagnosed, at, tried, frame))
+                .flatten(),
         }
-        candidate(diagnosed, at, tried, frame)
     });
-    Ok(View {
+    View {
         found: finding.map(|finding| Found {
             lines: finding
                 .lines()
@@ -168,31 +172,23 @@ fn step(diagnosed: &Diagnosed, at: usize, frame: &Frame) -> Result<View, Error> 
             found: finding.found,
             ambiguous: finding.ambiguous,
         }),
-        candidates: candidates.collect::<Result<_, _>>()?,
+        candidates: candidates.collect(),
         ..view(diagnosed.model_name(at), step, frame)
-    })
+    }
 }
 
-fn candidate(
-    diagnosed: &Diagnosed,
-    at: usize,
-    tried: &Tried,
-    frame: &Frame,
-) -> Result<Candidate, Error> {
+/// A candidate that was not added; one that cannot be fitted in full has nothing to show.
+fn fitted(diagnosed: &Diagnosed, at: usize, tried: &Tried, frame: &Frame) -> Option<Fitted> {
+    let step = diagnosed.alternative(at, tried).ok()?;
     let name = candidate_name(tried);
-    let step = diagnosed.alternative(at, tried)?;
     let model = format!("{} + {name}", diagnosed.model_name(at));
-    let fitted = Fitted {
+    Some(Fitted {
         chi2: step.fit.chi_squared,
         dof: step.fit.degrees_of_freedom,
         p_value: step.fit.p_value,
         rms_percent: step.comparison.rms_percent,
         coefficients: model_json::coefficients(&step.fit, diagnosed.axis.unit),
         view: view(model, &step, frame),
-    };
-    Ok(Candidate {
-        name,
-        fitted: Some(fitted),
     })
 }
 

@@ -179,15 +179,13 @@ class Walk {
         this.candidate = at;
         this.update();
       });
+      radio.disabled = at !== null && !views[at].added && !views[at].fitted;
       const [name, ...rest] = cells;
       return html("tr", {}, html("td", {}, radio, " ", html("label", { for: radio.id }, name)),
         ...rest.map((cell) => html("td", { class: "number" }, cell)));
     };
-    const added = this.steps[this.step].added;
-    const rows = tried.map((one, at) => {
-      const taken = at === 0 && added && !views[at].fitted;
-      return row(at, views[at].name + (taken ? " — added" : ""), tenth(one.chi2), tenth(one.improvement));
-    });
+    const rows = tried.map((one, at) =>
+      row(at, views[at].name + (views[at].added ? " — added" : ""), tenth(one.chi2), tenth(one.improvement)));
     this.candidates.replaceChildren(
       html("h3", {}, "What was tried next"),
       html("p", { class: "hint" },

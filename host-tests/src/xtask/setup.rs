@@ -1,4 +1,5 @@
-//! What this machine lacks to build and run the images, and to look at pages. Says what it does, asks nothing.
+//! What this machine lacks to build and run the images, and to look at pages. Says what it does,
+//! asks nothing.
 
 use super::step::run as run_command;
 use crate::firmware::{CORES, Core, Toolchain, emulator::QEMU, toolchain::Origin};

@@ -17,6 +17,17 @@ fn reported(folder: &Path, arguments: &[&str]) -> Value {
     json(folder, &[&["diagnose"], arguments].concat())
 }
 
+/// A consumer gyro's log of 2^16 samples at 100 Hz, with effects hidden in it.
+fn simulate(folder: &Path, effects: &[&str]) {
+    let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", "5"];
+    let effects = effects.iter().flat_map(|effect| ["--effect", *effect]);
+    let effects: Vec<&str> = effects.collect();
+    output(
+        folder,
+        &[&simulate[..], &effects, &["--output", "log.csv"]].concat(),
+    );
+}
+
 fn opened(folder: &Path) -> Browser {
     let mut browser = Browser::start();
     browser.open(&folder.join("report.html"));
@@ -178,20 +189,12 @@ fn steps_are_walked_by_click_and_by_key_and_show_their_own_error() {
 #[test]
 fn every_candidate_shows_its_own_fit() {
     let folder = TempDir::new().unwrap();
-    let simulate = [
-        "simulate",
-        "mems",
-        "--duration",
-        "655.36",
-        "--seed",
-        "5",
-        "--output",
-        "log.csv",
-    ];
     // Two that look like a third at first, so that the second step revises the first.
-    let hidden = ["--effect", "sinusoid:frequency_hz=7.7,amplitude=0.0267"];
-    let also = ["--effect", "decimation_filter:width_s=0.0235,stages=2"];
-    output(folder.path(), &[&simulate[..], &hidden, &also].concat());
+    let hidden = [
+        "sinusoid:frequency_hz=7.7,amplitude=0.0267",
+        "decimation_filter:width_s=0.0235,stages=2",
+    ];
+    simulate(folder.path(), &hidden);
     let diagnosis = reported(folder.path(), &["log.csv"]);
     let steps = steps(&diagnosis["axes"][0]);
     assert!(steps[1]["candidates"][0]["swap"].is_object());
@@ -371,18 +374,8 @@ fn names_are_text_wherever_they_come_from() {
 #[test]
 fn a_covariate_is_a_step_and_settings_tell_how_to_come_here_again() {
     let folder = TempDir::new().unwrap();
-    let simulate = [
-        "simulate",
-        "mems",
-        "--duration",
-        "655.36",
-        "--seed",
-        "5",
-        "--output",
-        "log.csv",
-    ];
-    let thermal = ["--effect", "thermal:slope=0.03,kelvin=10,period_s=300"];
-    output(folder.path(), &[&simulate[..], &thermal].concat());
+    let thermal = "thermal:slope=0.03,kelvin=10,period_s=300";
+    simulate(folder.path(), &[thermal]);
     let diagnosis = reported(folder.path(), &["log.csv", "--covariates", "temp_C"]);
     let steps = steps(&diagnosis["axes"][0]);
     let mut browser = opened(folder.path());

@@ -39,6 +39,12 @@ impl ComparedOctave {
     pub fn percent(&self) -> f64 {
         100.0 * (self.measured / self.model - 1.0)
     }
+
+    /// Standard error of the measured variance, in rate units squared: what `z` counts in, the model's
+    /// tolerance included. NaN where measured and model agree to the last bit.
+    pub fn standard_error(&self) -> f64 {
+        (self.measured - self.model) / self.z
+    }
 }
 
 /// Neighbouring octaves that noticeably disagree, all to one side.

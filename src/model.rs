@@ -153,6 +153,23 @@ impl Model {
         Some(place)
     }
 
+    /// Another effect instead of one that it has: what the old one replaced comes back, what the new one
+    /// replaces goes.
+    pub(crate) fn exchange(
+        &mut self,
+        dropped: &'static dyn Effect,
+        taken: Term,
+    ) -> Result<(), Error> {
+        self.remove(dropped.name());
+        if let Some(replaced) = dropped.replaces() {
+            self.restore(replaced)?;
+        }
+        if let Some(replaced) = taken.effect.replaces() {
+            self.remove(replaced.name());
+        }
+        self.add(taken)
+    }
+
     /// The place of the effect of that name.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.terms

@@ -3,8 +3,15 @@
 mod common;
 
 use common::{ADIS16405, json, output, refusal};
+use resvg::tiny_skia::Pixmap;
+use roxmltree::Document;
 use serde_json::Value;
-use std::path::Path;
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Stdio},
+};
+use tempfile::TempDir;
 
 /// Columns left of the panels.
 const MARGIN: usize = 11;
@@ -166,4 +173,189 @@ fn nothing_is_coloured_or_wider_than_usual_without_a_terminal() {
 fn no_plot_is_drawn_of_what_cannot_be_compared() {
     let refused = refusal(Path::new("."), &["compare", "absent.json"]);
     assert!(refused.contains("no such file"), "{refused}");
+}
+
+/// The program in a terminal of so many columns.
+fn in_a_terminal(columns: u32, variables: &[(&str, &str)]) -> String {
+    let program = env!("CARGO_BIN_EXE_allanite");
+    let line = format!("stty cols {columns} rows 40; {program} compare {ADIS16405}");
+    let mut script = Command::new("script");
+    script.args(["--quiet", "--return", "--command", &line, "/dev/null"]);
+    script.env("TERM", "xterm-256color").env_remove("NO_COLOR");
+    script.env_remove("CLICOLOR_FORCE").env_remove("CLICOLOR");
+    let output = script.envs(variables.iter().copied()).stdin(Stdio::null());
+    let output = output.output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn a_terminal_has_colours_unless_it_wants_none_and_gives_the_width() {
+    assert!(in_a_terminal(100, &[]).contains('\u{1b}'));
+    for columns in [60, 100] {
+        let text = in_a_terminal(columns, &[("NO_COLOR", "1")]);
+        assert!(!text.contains('\u{1b}'));
+        let axis = text.lines().map(|line| line.trim_end_matches('\r'));
+        let axis = axis.filter(|line| line.contains('└'));
+        let widths: Vec<usize> = axis.map(|line| line.chars().count()).collect();
+        assert_eq!(widths, [columns as usize - 1; 3]);
+    }
+}
+
+/// Places of a drawing's marks of octaves: those of the curve, then those of the residual.
+fn marks(drawing: &Document) -> Vec<(f64, f64)> {
+    let circles = drawing
+        .descendants()
+        .filter(|node| node.has_tag_name("circle"));
+    let marks = circles.filter(|circle| circle.attribute("r") == Some("3.5"));
+    let place = |circle: roxmltree::Node, name| circle.attribute(name).unwrap().parse().unwrap();
+    marks
+        .map(|mark| (place(mark, "cx"), place(mark, "cy")))
+        .collect()
+}
+
+#[test]
+fn drawing_has_its_marks_where_the_figures_are_and_words_for_everything() {
+    let folder = TempDir::new().unwrap();
+    let arguments = [
+        "plot",
+        ADIS16405,
+        "--axis",
+        "gz",
+        "--step",
+        "0",
+        "--output",
+        "curve.svg",
+    ];
+    assert_eq!(output(folder.path(), &arguments), "");
+    let text = fs::read_to_string(folder.path().join("curve.svg")).unwrap();
+    let drawing = Document::parse(&text).unwrap();
+    // The first step of a diagnosis is what `compare` shows.
+    let document = json(Path::new("."), &["compare", ADIS16405]);
+    let octaves = document["axes"][2]["octaves"].as_array().unwrap();
+    let marks = marks(&drawing);
+    let (curve, rest) = marks.split_at(octaves.len());
+    let residual = &rest[..octaves.len()];
+    let last = octaves.len() - 1;
+    let value = |k: usize, key: &str| number(&octaves[k][key]);
+    let log = |k: usize, key: &str| value(k, key).ln();
+    let z = |k: usize| value(k, "z");
+    let share = |from: f64, at: f64, to: f64| (at - from) / (to - from);
+    for k in 0..=last {
+        assert_eq!(curve[k].0, residual[k].0);
+        let across = share(curve[0].0, curve[k].0, curve[last].0);
+        let expected = share(log(0, "tau_s"), log(k, "tau_s"), log(last, "tau_s"));
+        assert!((across - expected).abs() < 1e-4, "{k}");
+        let up = share(curve[0].1, curve[k].1, curve[last].1);
+        let expected = share(
+            log(0, "measured"),
+            log(k, "measured"),
+            log(last, "measured"),
+        );
+        assert!((up - expected).abs() < 1e-3, "{k}: {up}, {expected}");
+        let up = share(residual[0].1, residual[k].1, residual[1].1);
+        let expected = share(z(0), z(k), z(1));
+        assert!((up - expected).abs() < 1e-3, "{k}: {up}, {expected}");
+    }
+    let words = drawing
+        .descendants()
+        .filter(|node| node.has_tag_name("text"));
+    let words: Vec<&str> = words
+        .filter_map(|node| node.text())
+        .map(str::trim)
+        .collect();
+    for expected in [
+        "gz: Allan deviation, five terms",
+        "Allan deviation σ, deg/s",
+        "residual, std. errors",
+        "averaging time τ",
+        "measured ± std. error",
+        "model",
+        "angle random walk",
+        "0.1",
+        "1 s",
+        "farthest off: +58",
+    ] {
+        assert!(words.contains(&expected), "{expected}: {words:?}");
+    }
+}
+
+#[test]
+fn picture_of_all_axes_decodes_and_has_letters_without_any_font_installed() {
+    let folder = TempDir::new().unwrap();
+    let arguments = ["plot", ADIS16405, "--output", "curve.png"];
+    output(folder.path(), &arguments);
+    let bytes = fs::read(folder.path().join("curve.png")).unwrap();
+    let picture = Pixmap::decode_png(&bytes).unwrap();
+    output(folder.path(), &["plot", ADIS16405, "--output", "CURVE.SVG"]);
+    let text = fs::read_to_string(folder.path().join("CURVE.SVG")).unwrap();
+    let drawing = Document::parse(&text).unwrap();
+    let size = |name| {
+        drawing
+            .root_element()
+            .attribute(name)
+            .unwrap()
+            .parse::<u32>()
+            .unwrap()
+    };
+    assert_eq!(picture.width(), 2 * size("width"));
+    assert_eq!(picture.height(), 2 * size("height"));
+    // The title of each of the three axes: dark pixels in its line, and none above.
+    let dark = |rows: std::ops::Range<u32>| {
+        let pixels = rows.flat_map(|y| (0..picture.width()).map(move |x| (x, y)));
+        pixels
+            .filter(|(x, y)| picture.pixel(*x, *y).unwrap().green() < 128)
+            .count()
+    };
+    for axis in 0..3 {
+        let top = axis * picture.height() / 3;
+        assert_eq!(dark(top..top + 30), 0);
+        assert!(dark(top + 40..top + 80) > 500);
+    }
+}
+
+#[test]
+fn pictures_that_cannot_be_drawn_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let absent = ["plot", ADIS16405, "--axis", "gq", "--output", "curve.svg"];
+    for (arguments, message) in [
+        (
+            &["plot", ADIS16405, "--output", "curve.jpg"][..],
+            "curve.jpg: a picture's extension is .svg or .png; name the output so",
+        ),
+        (
+            &["plot", ADIS16405, "--output", "curve"],
+            "a picture's extension is .svg or .png",
+        ),
+        (
+            &["plot", ADIS16405, "--output", "absent/curve.svg"],
+            "its folder does not exist",
+        ),
+        (
+            &["plot", "absent.csv", "--output", "curve.svg"],
+            "absent.csv: no such file",
+        ),
+        (&absent, "no axis \"gq\"; choose from gx, gy, gz"),
+    ] {
+        let refused = refusal(folder.path(), arguments);
+        assert!(refused.contains(message), "{refused}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn drawing_is_well_formed_whatever_an_axis_is_called() {
+    let folder = TempDir::new().unwrap();
+    let name = "<g x=\"\">&amp;\u{1}\u{fffe}</g>";
+    let mut curves: Value = serde_json::from_str(&fs::read_to_string(ADIS16405).unwrap()).unwrap();
+    curves["axes"][0]["axis"] = name.into();
+    fs::write(folder.path().join("curve.json"), curves.to_string()).unwrap();
+    for file in ["curve.svg", "curve.png"] {
+        output(folder.path(), &["plot", "curve.json", "--output", file]);
+    }
+    let text = fs::read_to_string(folder.path().join("curve.svg")).unwrap();
+    let drawing = Document::parse(&text).unwrap();
+    let shown = format!("{}: Allan", name.replace(['\u{1}', '\u{fffe}'], " "));
+    let mut words = drawing.descendants().filter_map(|node| node.text());
+    assert!(words.any(|words| words.trim().starts_with(&shown)));
 }

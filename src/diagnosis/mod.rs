@@ -1,5 +1,6 @@
 //! Which effect is missing.
 
+mod alternative;
 mod follow;
 mod revise;
 mod scan;

@@ -49,17 +49,11 @@ impl Preferred {
         base: &mut Model,
     ) -> Result<(), Error> {
         base.clone_from(model);
-        base.remove(self.added.name());
-        if let Some(replaced) = self.added.replaces() {
-            base.restore(replaced)?;
-        }
-        if let Some(replaced) = effect.replaces() {
-            base.remove(replaced.name());
-        }
-        base.add(Term {
+        let taken = Term {
             parameters: parameters.map(f64::from),
             ..Term::fitted(effect)
-        })
+        };
+        base.exchange(self.added, taken)
     }
 }
 

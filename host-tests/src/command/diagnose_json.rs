@@ -1,7 +1,7 @@
 //! A diagnosis for programs.
 
 use super::{
-    diagnose::{Diagnosed, added_name},
+    diagnosed::{Diagnosed, added_name},
     fit_json,
     model_json::{self, Effect, Worst},
 };
@@ -56,7 +56,7 @@ struct Swap {
     taken: &'static str,
 }
 
-/// What to print.
+/// The diagnoses as one document.
 pub(super) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
     Document {
         axes: diagnosed.iter().map(axis).collect(),

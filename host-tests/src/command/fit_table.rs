@@ -102,19 +102,6 @@ fn scaled_interval(coefficient: &Coefficient, factor: f64) -> String {
 
 fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
     let (_, customary_unit) = customary_unit(coefficient, unit);
-    let state = match coefficient.state {
-        State::Measured => "measured".into(),
-        State::UpperBound => "upper bound".into(),
-        State::NotObservable { after_s: None } => "not observable".into(),
-        State::NotObservable {
-            after_s: Some(after_s),
-        } => {
-            format!(
-                "not observable; a record of {} would show it",
-                duration(after_s)
-            )
-        }
-    };
     [
         words::of_sensor(coefficient.name, unit),
         coefficient.symbol.into(),
@@ -123,8 +110,23 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
         units::unit(unit, coefficient.half_seconds),
         customary(coefficient, unit),
         customary_unit.into(),
-        state,
+        state(coefficient),
     ]
+}
+
+/// What the record says of a coefficient.
+pub(super) fn state(coefficient: &Coefficient) -> String {
+    match coefficient.state {
+        State::Measured => "measured".into(),
+        State::UpperBound => "upper bound".into(),
+        State::NotObservable { after_s: None } => "not observable".into(),
+        State::NotObservable {
+            after_s: Some(after_s),
+        } => {
+            let length = duration(after_s);
+            format!("not observable; a record of {length} would show it")
+        }
+    }
 }
 
 /// χ² and what it says, one line each.

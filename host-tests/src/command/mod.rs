@@ -11,6 +11,8 @@ mod decode_text;
 mod diagnose;
 mod diagnose_json;
 mod diagnose_text;
+mod diagnose_words;
+mod diagnosed;
 mod effect_argument;
 mod examples;
 mod export;
@@ -25,7 +27,11 @@ mod measure;
 mod model_json;
 mod number;
 mod output_file;
+mod plot;
 mod progress;
+mod report;
+mod report_json;
+mod report_page;
 mod simulate;
 mod units;
 mod watch;
@@ -61,6 +67,8 @@ enum Command {
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
     Watch(watch::Arguments),
+    Report(report::Arguments),
+    Plot(plot::Arguments),
     Decode(decode::Arguments),
     Completions(completions::Arguments),
 }
@@ -83,6 +91,8 @@ impl CommandLine {
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
             Command::Watch(arguments) => watch::run(arguments, &mut output),
+            Command::Report(arguments) => report::run(arguments),
+            Command::Plot(arguments) => plot::run(arguments),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
             Command::Completions(arguments) => completions::run(arguments, &mut output),
         }?;

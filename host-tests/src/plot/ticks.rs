@@ -33,6 +33,26 @@ pub(super) fn power(value: f64) -> String {
     format!("{value:.0e}")
 }
 
+/// A number as people write it: with its zeros where these are few.
+pub(super) fn plain(value: f64) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    // Rounding leaves powers of ten a little short.
+    let exponent = (value.log10() + 1e-9).floor() as i32;
+    if (-3..5).contains(&exponent) {
+        return format!("{value:.*}", usize::try_from(-exponent).unwrap_or(0));
+    }
+    let sign = if exponent < 0 { "⁻" } else { "" };
+    let digits = exponent.unsigned_abs().to_string();
+    let digits = digits
+        .bytes()
+        .map(|digit| DIGITS[usize::from(digit - b'0')]);
+    let power = format!("10{sign}{}", digits.collect::<String>());
+    match (value / 10_f64.powi(exponent)).round() {
+        1.0 => power,
+        factor => format!("{factor}·{power}"),
+    }
+}
+
 /// A length of time.
 pub(super) fn time(seconds: f64) -> String {
     let short = |value: f64, unit: &str| format!("{} {unit}", (value * 1e6).round() / 1e6);
@@ -58,6 +78,10 @@ mod tests {
         assert_eq!(
             [1e-4, 0.01, 0.1, 1.0, 1000.0].map(time),
             ["100 µs", "10 ms", "100 ms", "1 s", "1000 s"]
+        );
+        assert_eq!(
+            [2e-5, 0.001, 0.5, 20.0, 1e6].map(plain),
+            ["2·10⁻⁵", "0.001", "0.5", "20", "10⁶"]
         );
         assert_eq!([0.001, 0.1, 20.0].map(power), ["1e-3", "1e-1", "2e1"]);
     }

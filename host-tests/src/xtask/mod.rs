@@ -5,6 +5,8 @@ mod setup;
 mod step;
 mod test;
 
+pub use setup::CHROMIUM;
+
 use crate::firmware::cargo;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -19,7 +21,7 @@ pub struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Install what this machine lacks to build and run the images.
+    /// Install what this machine lacks to build, run and test everything.
     Setup,
     /// Set up, then check and test everything.
     Test,

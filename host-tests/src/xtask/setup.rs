@@ -1,4 +1,5 @@
-//! What this machine lacks to build and run the images. Says what it does, asks nothing.
+//! What this machine lacks to build and run the images, and to look at pages. Says what it does,
+//! asks nothing.
 
 use super::step::run as run_command;
 use crate::firmware::{CORES, Core, Toolchain, emulator::QEMU, toolchain::Origin};
@@ -10,12 +11,15 @@ const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clipp
 /// Its linker, where rustup brings none.
 const DEBIAN_LINKER: &str = "lld";
 const DEBIAN_QEMU: &str = "qemu-system-arm";
+/// The browser that the tests look at pages with: the program, and Debian's package.
+pub const CHROMIUM: &str = "chromium";
 
 pub(super) fn run() -> Result<()> {
     for core in &CORES {
         compiler(core)?;
     }
-    emulator()
+    program(QEMU, DEBIAN_QEMU, "QEMU for Arm")?;
+    program(CHROMIUM, CHROMIUM, "Chromium")
 }
 
 fn compiler(core: &Core) -> Result<()> {
@@ -62,15 +66,16 @@ fn name(toolchain: &Toolchain) -> &'static str {
     }
 }
 
-fn emulator() -> Result<()> {
-    if starts(QEMU) {
-        println!("{QEMU}: there");
+/// A program that a package of Debian's has.
+fn program(program: &str, package: &str, what: &str) -> Result<()> {
+    if starts(program) {
+        println!("{program}: there");
         return Ok(());
     }
-    println!("{QEMU}: installing Debian's package {DEBIAN_QEMU}");
-    let by_hand = || format!("no {QEMU}; install QEMU for Arm by hand");
-    apt_get(&[DEBIAN_QEMU]).with_context(by_hand)?;
-    if starts(QEMU) {
+    println!("{program}: installing Debian's package {package}");
+    let by_hand = || format!("no {program}; install {what} by hand");
+    apt_get(&[package]).with_context(by_hand)?;
+    if starts(program) {
         Ok(())
     } else {
         bail!(by_hand())

@@ -1,0 +1,122 @@
+//! `plot`: a record beside a model, as a picture.
+
+use super::{
+    diagnose_words::shown_p,
+    diagnosed::{Diagnosed, DiagnosisArguments},
+    output_file::OutputFile,
+    words,
+};
+use crate::{
+    failure::{Failure, Place, quoted},
+    plot::{Drawing, Figure, Frame, png, svg},
+};
+use clap::Args;
+use std::{io::Write, path::Path, path::PathBuf};
+
+/// Draw the Allan curve beside the model that `diagnose` ends with, and where the two differ
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    diagnosis: DiagnosisArguments,
+    /// The picture to write: .svg or .png
+    #[arg(long, short, value_name = "CURVE.svg|CURVE.png")]
+    output: PathBuf,
+    /// The axis to draw [default: all, one below the other]
+    #[arg(long, value_name = "NAME")]
+    axis: Option<String>,
+    /// The model of that step of the diagnosis, 0 for the five terms; an axis of fewer steps shows its last [default: the last]
+    #[arg(long, value_name = "N")]
+    step: Option<usize>,
+}
+
+#[derive(Clone, Copy)]
+enum Format {
+    Svg,
+    Png,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, Failure> {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        match extension.map(str::to_ascii_lowercase).as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Place::file(path).failure(
+                "a picture's extension is .svg or .png",
+                "name the output so",
+            )),
+        }
+    }
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let format = Format::of(&arguments.output)?;
+    // First, so that a place that cannot be written to costs no diagnosis.
+    let mut file = OutputFile::create(&arguments.output)?;
+    let diagnosed = arguments.diagnosis.diagnosed()?;
+    let drawings = chosen(&diagnosed, arguments)?;
+    let drawings: Vec<Drawing> = drawings
+        .into_iter()
+        .map(|diagnosed| drawing(diagnosed, arguments.step))
+        .collect();
+    let drawing = svg(&drawings);
+    let place = || Place::file(&arguments.output);
+    let bytes = match format {
+        Format::Svg => drawing.into_bytes(),
+        Format::Png => png(&drawing)
+            .map_err(|error| place().failure(error, "draw one axis with --axis, or an .svg"))?,
+    };
+    let written = file.write_all(&bytes);
+    written.map_err(|error| place().io(&error))?;
+    file.commit()
+}
+
+/// The axes that were asked for.
+fn chosen<'a>(
+    diagnosed: &'a [Diagnosed],
+    arguments: &Arguments,
+) -> Result<Vec<&'a Diagnosed>, Failure> {
+    let Some(name) = &arguments.axis else {
+        return Ok(diagnosed.iter().collect());
+    };
+    let chosen = diagnosed.iter().find(|one| one.axis.axis == *name);
+    let names = || {
+        let names = diagnosed.iter().map(|one| one.axis.axis.as_str());
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let chosen = chosen.ok_or_else(|| {
+        Place::file(&arguments.diagnosis.input).failure(
+            format!("no axis {}", quoted(name.as_bytes())),
+            format!("choose from {}", names()),
+        )
+    })?;
+    Ok(vec![chosen])
+}
+
+/// The figure of a step; where the diagnosis has fewer, of the last.
+fn drawing(diagnosed: &Diagnosed, step: Option<usize>) -> Drawing {
+    let last = diagnosed.steps.len() - 1;
+    let at = step.map_or(last, |step| step.min(last));
+    let step = &diagnosed.steps[at];
+    let axis = &diagnosed.axis;
+    let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
+    let frame = Frame::of([&step.comparison]);
+    Drawing {
+        title: format!(
+            "{}: Allan deviation, {}",
+            axis.axis,
+            diagnosed.model_name(at)
+        ),
+        subtitle: format!(
+            "χ² {:.1}, {} degrees of freedom, p {}, misfit {:.1} % rms; {record}",
+            step.fit.chi_squared,
+            step.fit.degrees_of_freedom,
+            shown_p(step.fit.p_value),
+            step.comparison.rms_percent,
+        ),
+        unit: axis.unit,
+        figure: Figure::new(&step.model, &step.comparison, &frame),
+        frame,
+    }
+}

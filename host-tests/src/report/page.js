@@ -1,0 +1,243 @@
+// Walks through a diagnosis: steps, candidates, units.
+"use strict";
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const html = (name, attributes, ...children) => make(null, name, attributes, children);
+const plain = (name) => name.replaceAll("_", " ");
+let unitIndex = 0;
+
+/// Four significant digits, as the program prints them.
+function number(value) {
+  if (value === null || !Number.isFinite(value)) return "∞";
+  if (value === 0) return "0";
+  const exponent = Math.floor(Math.log10(Math.abs(value)));
+  if (exponent >= -3 && exponent <= 4) return value.toFixed(Math.max(0, 3 - exponent));
+  return value.toExponential(3).replace("e+", "e");
+}
+
+const tenth = (value) => (value === null ? "unknown" : value.toFixed(1));
+
+/// One axis: its diagnosis, its figures, and what is shown of them.
+class Walk {
+  constructor(root, index) {
+    this.root = root;
+    this.index = index;
+    this.axis = data.axes[index];
+    this.steps = data.diagnosis.axes[index].steps;
+    this.step = 0;
+    this.candidate = null;
+    this.build();
+    this.show(0);
+    // Print and phones have widths of their own.
+    new ResizeObserver(() => this.draw()).observe(this.place);
+  }
+
+  build() {
+    const id = (name) => `axis-${this.index}-${name}`;
+    const button = (words, label, by) => {
+      const one = html("button", { type: "button", class: "turn", "aria-label": label }, words);
+      one.addEventListener("click", () => this.show(this.step + by));
+      return one;
+    };
+    this.previous = button("← Previous", "Previous step", -1);
+    this.next = button("Next →", "Next step", 1);
+    this.tabs = this.steps.map((_, at) => this.tab(at, id));
+    const list = html("div", { role: "tablist", "aria-orientation": "vertical", class: "steps",
+      "aria-label": "Steps of the diagnosis" }, ...this.tabs);
+    list.addEventListener("keydown", (event) => this.turn(event));
+    this.heading = html("h3", { class: "model" });
+    this.error = html("p", { class: "error", "aria-live": "polite" });
+    this.found = html("div", { class: "finding" });
+    this.place = html("div", { class: "place" });
+    this.legend = html("ul", { class: "legend", "aria-label": "Legend" });
+    this.words = html("p", { class: "words" });
+    this.candidates = html("div", { class: "candidates" });
+    this.coefficients = html("div", { class: "coefficients" });
+    const panel = html("div", { role: "tabpanel", id: id("panel"), class: "panel" },
+      this.heading, this.error, this.words, this.place, this.legend, this.found, this.candidates, this.coefficients);
+    this.panel = panel;
+    this.root.replaceChildren(
+      html("div", { class: "control" },
+        html("div", { class: "turns" }, this.previous, this.next),
+        list,
+        html("p", { class: "key" }, "χ², on a logarithmic scale; the mark is at the degrees of freedom")),
+      panel);
+  }
+
+  /// A step, with its error as a number and as a bar.
+  tab(at, id) {
+    const { chi2, dof } = this.steps[at];
+    const view = this.axis.steps[at];
+    const most = Math.max(...this.steps.map((step) => Math.max(step.chi2 ?? 1, 2 * step.dof)));
+    const share = (value) => 100 * Math.max(0.01, Math.log(Math.max(1, value)) / Math.log(most));
+    const name = at === 0 ? "five terms" : `+ ${view.found?.name ?? ""}`;
+    const tab = html("button", { type: "button", role: "tab", id: id(`step-${at}`), class: "step",
+      "aria-controls": id("panel") },
+      html("span", { class: "name" }, name),
+      html("span", { class: "chi2" }, `χ² ${tenth(chi2)}`),
+      html("span", { class: "track", "aria-hidden": "true" },
+        html("span", { class: "fill", style: `width:${share(chi2 ?? 1)}%` }),
+        dof > 0 ? html("span", { class: "dof", style: `left:${share(dof)}%` }) : null));
+    tab.addEventListener("click", () => this.show(at));
+    return tab;
+  }
+
+  turn(event) {
+    const last = this.steps.length - 1;
+    const to = { ArrowDown: this.step + 1, ArrowRight: this.step + 1, ArrowUp: this.step - 1,
+      ArrowLeft: this.step - 1, Home: 0, End: last }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    this.show(to);
+    this.tabs[this.step].focus();
+  }
+
+  show(step) {
+    this.step = Math.min(Math.max(step, 0), this.steps.length - 1);
+    this.candidate = null;
+    this.previous.disabled = this.step === 0;
+    this.next.disabled = this.step === this.steps.length - 1;
+    this.tabs.forEach((tab, at) => {
+      tab.setAttribute("aria-selected", at === this.step);
+      tab.tabIndex = at === this.step ? 0 : -1;
+    });
+    this.panel.setAttribute("aria-labelledby", this.tabs[this.step].id);
+    this.showFinding();
+    this.showCandidates();
+    this.update();
+  }
+
+  /// The fit and the figure that are shown: the step's, or those of a candidate.
+  shown() {
+    const { step, candidate } = this;
+    if (candidate === null) return { fit: this.steps[step], view: this.axis.steps[step] };
+    const { fitted } = this.axis.steps[step].candidates[candidate];
+    if (fitted) return { fit: fitted, view: fitted.view };
+    return { fit: this.steps[step + 1], view: this.axis.steps[step + 1] };
+  }
+
+  update() {
+    const { fit, view } = this.shown();
+    const strong = (words) => html("strong", {}, words);
+    this.heading.textContent = `${this.candidate === null ? "Model" : "If it were"}: ${view.model}`;
+    this.error.replaceChildren(
+      html("span", { class: "figures chi2" }, "χ² ", strong(tenth(fit.chi2)), ` for ${fit.dof} degrees of freedom`),
+      html("span", { class: "figures" }, "misfit ", strong(tenth(fit.rms_percent)), " % rms"),
+      html("span", { class: "figures" }, "p ", strong(view.p)));
+    this.words.textContent = `${view.words[0].toUpperCase()}${view.words.slice(1)}.`;
+    this.showCoefficients(fit, view);
+    this.showLegend(view);
+    this.draw();
+  }
+
+  draw() {
+    const width = Math.round(this.place.clientWidth);
+    if (width < 100) return;
+    const { view } = this.shown();
+    this.place.replaceChildren(drawFigure(this.axis, view, this.unit(), width));
+  }
+
+  unit() {
+    return this.axis.units[Math.min(unitIndex, this.axis.units.length - 1)];
+  }
+
+  showLegend(view) {
+    const entry = (words, ...sample) => html("li", {},
+      draw("svg", { width: 34, height: 14, "aria-hidden": "true" }, ...sample), words);
+    const line = (name) => draw("line", { x1: 1, y1: 7, x2: 33, y2: 7, class: name });
+    const effects = view.figure.shares.map((share) =>
+      entry(plain(share.effect), line(`line effect-${share.colour}`)));
+    this.legend.replaceChildren(
+      entry("measured ± standard error", draw("line", { x1: 17, y1: 0, x2: 17, y2: 14, class: "bar" }),
+        draw("circle", { cx: 17, cy: 7, r: 3.5, class: "dot" })),
+      entry("model", line("line model")), ...effects,
+      entry("within ± 2 standard errors", draw("rect", { x: 1, y: 1, width: 32, height: 12, class: "band" })));
+  }
+
+  showFinding() {
+    const found = this.axis.steps[this.step].found;
+    this.found.hidden = !found;
+    if (!found) return this.found.replaceChildren();
+    const rows = [...found.lines];
+    if (found.ambiguous) rows.push(["ambiguous", found.ambiguous]);
+    const list = rows.flatMap(([label, words]) => [html("dt", {}, label), html("dd", {}, words)]);
+    this.found.replaceChildren(html("h3", {}, `What was missing: ${found.name}`),
+      found.found ? html("p", { class: "size" }, found.found) : null, html("dl", {}, ...list));
+  }
+
+  showCandidates() {
+    const tried = this.steps[this.step].candidates;
+    const views = this.axis.steps[this.step].candidates;
+    if (tried.length === 0) {
+      const words = this.step > 0 || this.steps.length === 1 ? "Nothing further was tried." : "";
+      return this.candidates.replaceChildren(html("p", { class: "hint" }, words));
+    }
+    const group = `axis-${this.index}-candidate`;
+    const row = (at, ...cells) => {
+      const radio = html("input", { type: "radio", name: group, id: `${group}-${at ?? "none"}`, checked: at === null });
+      radio.addEventListener("change", () => {
+        this.candidate = at;
+        this.update();
+      });
+      radio.disabled = at !== null && !views[at].added && !views[at].fitted;
+      const [name, ...rest] = cells;
+      return html("tr", {}, html("td", {}, radio, " ", html("label", { for: radio.id }, name)),
+        ...rest.map((cell) => html("td", { class: "number" }, cell)));
+    };
+    const rows = tried.map((one, at) =>
+      row(at, views[at].name + (views[at].added ? " — added" : ""), tenth(one.chi2), tenth(one.improvement)));
+    this.candidates.replaceChildren(
+      html("h3", {}, "What was tried next"),
+      html("p", { class: "hint" },
+        "Best first. Choose one to see its fit in full: the search ends earlier, with a χ² that is not final."),
+      html("table", {},
+        html("thead", {}, html("tr", {}, html("th", {}, "candidate"), html("th", { class: "number" }, "χ²"),
+          html("th", { class: "number" }, "improvement"))),
+        html("tbody", {}, row(null, "none: the model of this step", tenth(this.steps[this.step].chi2), "0"), ...rows)));
+  }
+
+  /// Coefficients of the five terms beside those that are shown.
+  showCoefficients(fit, view) {
+    const before = this.steps[0].coefficients;
+    const custom = (one) => (unitIndex === 1 ? this.axis.customary[one.unit] : undefined);
+    const value = (one) => {
+      const factor = custom(one)?.factor ?? 1;
+      if (one.state === "not_observable") return "–";
+      if (one.state === "upper_bound") return `< ${number(factor * one.upper)}`;
+      return number(factor * one.value);
+    };
+    const interval = (one, state) => {
+      if (one.state !== "measured") return state;
+      const factor = custom(one)?.factor ?? 1;
+      return `${number(factor * one.lower)} … ${number(factor * one.upper)}`;
+    };
+    const cell = (one, state) => html("td", { class: "value" },
+      html("span", { class: "best" }, value(one)), html("span", { class: "interval" }, interval(one, state)));
+    const none = html("td", {}, "–");
+    const earlier = (one) => {
+      const at = before.findIndex((other) => other.symbol === one.symbol);
+      return at < 0 ? none.cloneNode(true) : cell(before[at], this.axis.steps[0].states[at]);
+    };
+    const walked = this.step > 0 || this.candidate !== null;
+    const row = (one, at) => html("tr", {},
+      html("th", { scope: "row" }, plain(one.effect), " ", html("i", {}, one.symbol),
+        html("span", { class: "unit" }, custom(one)?.unit ?? one.unit)),
+      walked ? earlier(one) : null, cell(one, view.states[at]));
+    const head = ["coefficient", "five terms", walked ? "now" : null];
+    this.coefficients.replaceChildren(html("h3", {}, "Coefficients, with 95 % intervals"),
+      html("table", {},
+        html("thead", {}, html("tr", {}, ...head.filter((words) => words).map((words) => html("th", { scope: "col" }, words)))),
+        html("tbody", {}, ...fit.coefficients.map(row))));
+  }
+}
+
+const walks = [...document.querySelectorAll(".walk")].map((root) => new Walk(root, Number(root.dataset.axis)));
+const units = document.getElementById("units");
+units.hidden = false;
+units.addEventListener("change", (event) => {
+  unitIndex = Number(event.target.value);
+  walks.forEach((walk) => walk.update());
+});
+// A link to a step: #step=2, of every axis that goes as far.
+const step = /^#step=(\d+)$/.exec(location.hash);
+if (step) walks.forEach((walk) => walk.show(Number(step[1])));

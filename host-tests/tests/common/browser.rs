@@ -1,0 +1,203 @@
+//! A page as its reader has it: Chromium without a window, told what to do by its DevTools protocol.
+
+use host_tests::xtask::CHROMIUM;
+use serde_json::{Value, json};
+use std::{
+    fs,
+    net::TcpStream,
+    path::Path,
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+use tempfile::TempDir;
+use tungstenite::{Message, WebSocket};
+
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Chromium with one tab.
+pub(crate) struct Browser {
+    process: Child,
+    socket: WebSocket<TcpStream>,
+    session: Option<String>,
+    calls: u64,
+    loaded: bool,
+    /// What the console shows of errors and warnings.
+    pub(crate) complaints: Vec<String>,
+    // Outlives the process.
+    _profile: TempDir,
+}
+
+impl Browser {
+    /// Starts Chromium.
+    pub(crate) fn start() -> Self {
+        let profile = TempDir::new().unwrap();
+        let process = Command::new(CHROMIUM)
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--hide-scrollbars",
+            ])
+            .args(["--no-first-run", "--remote-debugging-port=0"])
+            .arg(format!("--user-data-dir={}", profile.path().display()))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap_or_else(|error| {
+                panic!("{CHROMIUM}: {error}; install it with `cargo xtask setup`")
+            });
+        let address = address(profile.path());
+        let (host, _) = address.split_once("/devtools").unwrap();
+        let stream = TcpStream::connect(host).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        let (socket, _) = tungstenite::client(format!("ws://{address}"), stream).unwrap();
+        let mut browser = Self {
+            process,
+            socket,
+            session: None,
+            calls: 0,
+            loaded: false,
+            complaints: Vec::new(),
+            _profile: profile,
+        };
+        let target = browser.call("Target.createTarget", json!({ "url": "about:blank" }));
+        let target = json!({ "targetId": target["targetId"], "flatten": true });
+        let session = browser.call("Target.attachToTarget", target);
+        browser.session = session["sessionId"].as_str().map(str::to_owned);
+        for domain in ["Page", "Runtime", "Log"] {
+            browser.call(&format!("{domain}.enable"), json!({}));
+        }
+        browser
+    }
+
+    /// Opens a file, and waits until it is there.
+    pub(crate) fn open(&mut self, file: &Path) {
+        self.loaded = false;
+        let url = format!("file://{}", file.display());
+        let answer = self.call("Page.navigate", json!({ "url": url }));
+        assert!(answer["errorText"].is_null(), "{answer}");
+        while !self.loaded {
+            self.receive();
+        }
+    }
+
+    /// The value of an expression of JavaScript.
+    pub(crate) fn value(&mut self, expression: &str) -> Value {
+        let arguments = json!({ "expression": expression, "returnByValue": true });
+        let answer = self.call("Runtime.evaluate", arguments);
+        assert!(
+            answer["exceptionDetails"].is_null(),
+            "{expression}: {answer}"
+        );
+        answer["result"]["value"].clone()
+    }
+
+    /// The text of the first element that a selector finds.
+    pub(crate) fn text(&mut self, selector: &str) -> String {
+        let text = self.value(&format!("document.querySelector({selector:?}).innerText"));
+        text.as_str().unwrap().to_owned()
+    }
+
+    /// Clicks into the middle of an element, with the mouse.
+    pub(crate) fn click(&mut self, selector: &str) {
+        let middle = self.value(&format!(
+            "(() => {{ const element = document.querySelector({selector:?}); \
+             element.scrollIntoView({{ block: 'center' }}); \
+             const box = element.getBoundingClientRect(); \
+             return [box.x + box.width / 2, box.y + box.height / 2]; }})()"
+        ));
+        for kind in ["mousePressed", "mouseReleased"] {
+            let event = json!({ "type": kind, "x": middle[0], "y": middle[1], "button": "left", "clickCount": 1 });
+            self.call("Input.dispatchMouseEvent", event);
+        }
+    }
+
+    /// Presses a key, such as `ArrowDown`, wherever the focus is.
+    pub(crate) fn press(&mut self, key: &str) {
+        let code = match key {
+            "ArrowLeft" => 37,
+            "ArrowUp" => 38,
+            "ArrowRight" => 39,
+            "ArrowDown" => 40,
+            "Tab" => 9,
+            _ => panic!("{key}"),
+        };
+        for kind in ["rawKeyDown", "keyUp"] {
+            let event =
+                json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code });
+            self.call("Input.dispatchKeyEvent", event);
+        }
+    }
+
+    /// A window of so many CSS pixels.
+    pub(crate) fn resize(&mut self, width: u32, height: u32) {
+        let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600 });
+        self.call("Emulation.setDeviceMetricsOverride", metrics);
+    }
+
+    /// A medium, `screen` or `print`, and a colour scheme, `light` or `dark`.
+    pub(crate) fn emulate(&mut self, medium: &str, scheme: &str) {
+        let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
+        let media = json!({ "media": medium, "features": [feature] });
+        self.call("Emulation.setEmulatedMedia", media);
+    }
+
+    /// Calls a method of the protocol.
+    pub(crate) fn call(&mut self, method: &str, parameters: Value) -> Value {
+        self.calls += 1;
+        let mut call = json!({ "id": self.calls, "method": method, "params": parameters });
+        if let Some(session) = &self.session {
+            call["sessionId"] = session.as_str().into();
+        }
+        self.socket.send(Message::text(call.to_string())).unwrap();
+        loop {
+            let message = self.receive();
+            if message["id"] == self.calls {
+                assert!(message["error"].is_null(), "{method}: {message}");
+                return message["result"].clone();
+            }
+        }
+    }
+
+    fn receive(&mut self) -> Value {
+        let message = self
+            .socket
+            .read()
+            .expect("Chromium answers within a minute");
+        let message: Value = serde_json::from_str(message.to_text().unwrap()).unwrap();
+        let parameters = &message["params"];
+        match message["method"].as_str() {
+            Some("Page.loadEventFired") => self.loaded = true,
+            Some("Runtime.exceptionThrown") | Some("Log.entryAdded") => {
+                self.complaints.push(parameters.to_string());
+            }
+            Some("Runtime.consoleAPICalled") if parameters["type"] != "log" => {
+                self.complaints.push(parameters.to_string());
+            }
+            _ => {}
+        }
+        message
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // It may be gone already.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// Where Chromium listens: it writes so into its profile.
+fn address(profile: &Path) -> String {
+    let begin = Instant::now();
+    while begin.elapsed() < PATIENCE {
+        let text = fs::read_to_string(profile.join("DevToolsActivePort")).unwrap_or_default();
+        if let Some((port, path)) = text.split_once('\n') {
+            return format!("127.0.0.1:{port}{}", path.trim());
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+    panic!("{CHROMIUM} did not start within a minute");
+}

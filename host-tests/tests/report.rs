@@ -1,0 +1,428 @@
+//! `report`: the page says what `diagnose` says, to everybody, and can be walked through.
+
+#[path = "common/browser.rs"]
+mod browser;
+mod common;
+
+use browser::Browser;
+use common::{ADIS16405, json, output, refusal};
+use serde_json::Value;
+use std::{fs, path::Path};
+use tempfile::TempDir;
+
+/// A folder with the page of an input that lies in it or elsewhere, and its diagnosis.
+fn reported(folder: &Path, arguments: &[&str]) -> Value {
+    let report = [&["report"], arguments, &["--output", "report.html"]].concat();
+    assert_eq!(output(folder, &report), "");
+    json(folder, &[&["diagnose"], arguments].concat())
+}
+
+/// A consumer gyro's log of 2^16 samples at 100 Hz, with effects hidden in it.
+fn simulate(folder: &Path, effects: &[&str]) {
+    let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", "5"];
+    let effects = effects.iter().flat_map(|effect| ["--effect", *effect]);
+    let effects: Vec<&str> = effects.collect();
+    output(
+        folder,
+        &[&simulate[..], &effects, &["--output", "log.csv"]].concat(),
+    );
+}
+
+fn opened(folder: &Path) -> Browser {
+    let mut browser = Browser::start();
+    browser.open(&folder.join("report.html"));
+    browser
+}
+
+fn steps(axis: &Value) -> &[Value] {
+    axis["steps"].as_array().unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+/// What the page says of a fit's error.
+fn error(fit: &Value) -> String {
+    let (chi2, dof) = (number(&fit["chi2"]), &fit["dof"]);
+    let rms_percent = number(&fit["rms_percent"]);
+    format!("χ² {chi2:.1} for {dof} degrees of freedom|misfit {rms_percent:.1} % rms")
+}
+
+/// What it shows, of an axis.
+fn shown_error(browser: &mut Browser, axis: usize) -> String {
+    let text = |nth: usize| format!("#axis-{axis} .error .figures:nth-child({nth})");
+    let [chi2, misfit] = [1, 2].map(|nth| browser.text(&text(nth)));
+    format!("{chi2}|{misfit}")
+}
+
+/// The part of the page that the script takes.
+fn embedded(page: &str) -> Value {
+    let (_, rest) = page.split_once("id=\"data\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}
+
+/// Two numbers, the smaller of the larger: of colours like `rgb(1, 2, 3)`, as of WCAG 2.
+const CONTRAST: &str = "((a, b) => {
+    const light = (colour) => {
+        const [r, g, b] = colour.match(/[0-9.]+/g).slice(0, 3).map((part) => part / 255)
+            .map((part) => part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
+    };
+    const [x, y] = [light(a), light(b)];
+    return Math.max(x, y) / Math.min(x, y);
+})";
+
+#[test]
+fn the_page_carries_the_diagnosis_as_it_is_printed_and_nothing_from_elsewhere() {
+    let folder = TempDir::new().unwrap();
+    let diagnosis = reported(folder.path(), &[ADIS16405]);
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.len() < 1 << 20, "{} bytes", page.len());
+    assert_eq!(embedded(&page)["diagnosis"], diagnosis);
+    for word in ["src=", "url(", "@import", "fetch(", "href=\"http"] {
+        assert!(!page.contains(word), "{word}");
+    }
+    let text = output(folder.path(), &["diagnose", ADIS16405]);
+    let html = |line: &str| {
+        line.replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('>', "&gt;")
+    };
+    // Without a script, all of it stands there.
+    let (_, plain) = page.split_once("<noscript>").unwrap();
+    assert!(text.lines().all(|line| plain.contains(&html(line))));
+}
+
+#[test]
+fn each_axis_is_led_by_where_it_fails_what_was_missing_and_how_far_the_error_fell() {
+    let folder = TempDir::new().unwrap();
+    let diagnosis = reported(folder.path(), &[ADIS16405]);
+    let mut browser = opened(folder.path());
+    for (number_of_axis, axis) in diagnosis["axes"].as_array().unwrap().iter().enumerate() {
+        let lead = browser.text(&format!(".summary li:nth-child({}) p", number_of_axis + 1));
+        let (first, last) = (&steps(axis)[0], &steps(axis)[steps(axis).len() - 1]);
+        let worst = &first["worst"];
+        let parts = [
+            format!("{:.0} % ", number(&worst["percent"]).abs()),
+            format!("τ = {:.1} ms", 1e3 * number(&worst["tau_s"])),
+            format!("({:.0} standard errors)", number(&worst["z"]).abs()),
+            format!(
+                "χ² {:.1} → {:.1}",
+                number(&first["chi2"]),
+                number(&last["chi2"])
+            ),
+            axis["missing"][0].as_str().unwrap().replace('_', " "),
+        ];
+        for part in parts {
+            assert!(lead.contains(&part), "{part}: {lead}");
+        }
+        // The worst octave is marked in both panels, and named.
+        let figure = format!("#axis-{number_of_axis} .figure");
+        let rings = browser.value(&format!(
+            "document.querySelectorAll('{figure} .worst').length"
+        ));
+        assert_eq!(rings, 2);
+        let label = browser.value(&format!(
+            "document.querySelector('{figure} .worst-label').textContent"
+        ));
+        let size = format!("{:.0} std. errors", number(&worst["z"]).abs());
+        assert!(label.as_str().unwrap().contains(&size), "{label}");
+    }
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+#[test]
+fn steps_are_walked_by_click_and_by_key_and_show_their_own_error() {
+    let folder = TempDir::new().unwrap();
+    let diagnosis = reported(folder.path(), &[ADIS16405]);
+    let mut browser = opened(folder.path());
+    let steps = steps(&diagnosis["axes"][2]);
+    assert_eq!(steps.len(), 3);
+    let expect = |browser: &mut Browser, step: usize| {
+        assert_eq!(shown_error(browser, 2), error(&steps[step]));
+        let tab = browser.text("#axis-2 [role=tab][aria-selected=true] .chi2");
+        assert_eq!(tab, format!("χ² {:.1}", number(&steps[step]["chi2"])));
+    };
+    expect(&mut browser, 0);
+    let [previous, next] =
+        ["Previous", "Next"].map(|way| format!("#axis-2 [aria-label='{way} step']"));
+    browser.click(&next);
+    expect(&mut browser, 1);
+    browser.click(&next);
+    expect(&mut browser, 2);
+    // Nothing lies behind the last.
+    browser.click(&next);
+    expect(&mut browser, 2);
+    browser.click(&previous);
+    expect(&mut browser, 1);
+    browser.click("#axis-2 [role=tab]:first-child");
+    expect(&mut browser, 0);
+    for (key, step) in [
+        ("ArrowDown", 1),
+        ("ArrowRight", 2),
+        ("ArrowRight", 2),
+        ("ArrowUp", 1),
+        ("ArrowLeft", 0),
+    ] {
+        browser.press(key);
+        expect(&mut browser, step);
+        assert_eq!(
+            browser.value("document.activeElement.getAttribute('aria-selected')"),
+            "true"
+        );
+        // By key, the focus is seen.
+        let outline = browser.value("getComputedStyle(document.activeElement).outlineStyle");
+        assert_eq!(outline, "solid");
+    }
+    // The bars fall with the error.
+    let widths = browser
+        .value("[...document.querySelectorAll('#axis-2 .fill')].map((fill) => fill.clientWidth)");
+    let widths: Vec<f64> = widths.as_array().unwrap().iter().map(number).collect();
+    assert!(
+        widths[0] > 1.2 * widths[1] && widths[1] > 1.2 * widths[2],
+        "{widths:?}"
+    );
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+#[test]
+fn every_candidate_shows_its_own_fit() {
+    let folder = TempDir::new().unwrap();
+    // Two that look like a third at first, so that the second step revises the first.
+    let hidden = [
+        "sinusoid:frequency_hz=7.7,amplitude=0.0267",
+        "decimation_filter:width_s=0.0235,stages=2",
+    ];
+    simulate(folder.path(), &hidden);
+    let diagnosis = reported(folder.path(), &["log.csv"]);
+    let steps = steps(&diagnosis["axes"][0]);
+    assert!(steps[1]["candidates"][0]["swap"].is_object());
+    let mut browser = opened(folder.path());
+    for (at, step) in steps.iter().enumerate() {
+        browser.click(&format!("#axis-0-step-{at}"));
+        let candidates = step["candidates"].as_array().unwrap();
+        for (place, candidate) in candidates.iter().enumerate() {
+            browser.click(&format!("#axis-0-candidate-{place}"));
+            let heading = browser.text("#axis-0 .model");
+            let shown = shown_error(&mut browser, 0);
+            if place == 0 && !step["added"].is_null() {
+                assert_eq!(shown, error(&steps[at + 1]));
+                continue;
+            }
+            let name = candidate["effect"].as_str().unwrap().replace('_', " ");
+            assert!(
+                heading.starts_with("If it were") && heading.contains(&name),
+                "{heading}"
+            );
+            // The search ends early with those that lag behind by more than 60.
+            let chi2: f64 = shown.split(' ').nth(1).unwrap().parse().unwrap();
+            let change = chi2 - number(&candidate["chi2"]);
+            let gain = |candidate: &Value| number(&candidate["improvement"]);
+            if gain(candidate) > gain(&candidates[0]) - 60.0 {
+                assert!(change.abs() < 1.0 + 0.05 * chi2, "{name}: {chi2}");
+            }
+            assert_ne!(shown, error(step));
+        }
+        if !candidates.is_empty() {
+            // By key, from the first to the step's own model.
+            browser.click("#axis-0-candidate-0");
+            browser.press("ArrowUp");
+            assert_eq!(shown_error(&mut browser, 0), error(step));
+        }
+    }
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+#[test]
+fn units_change_coefficients_and_the_axis_of_the_plot() {
+    let folder = TempDir::new().unwrap();
+    let diagnosis = reported(folder.path(), &[ADIS16405]);
+    let mut browser = opened(folder.path());
+    let coefficients = diagnosis["axes"][0]["steps"][0]["coefficients"]
+        .as_array()
+        .unwrap();
+    let random_walk = &coefficients[1];
+    assert_eq!(random_walk["effect"], "angle_random_walk");
+    let row = "#axis-0 .coefficients tbody tr:nth-child(2)";
+    let title = "document.querySelector('#axis-0 .figure').textContent";
+    for (unit, factor, name, rate) in [(0, 1.0, "deg/s/√Hz", "deg/s"), (1, 60.0, "°/√h", "°/h")]
+    {
+        browser.click(&format!("#units [value='{unit}']"));
+        assert_eq!(browser.text(&format!("{row} .unit")), name);
+        let shown =
+            [format!("{row} .best"), format!("{row} .interval")].map(|cell| browser.text(&cell));
+        let shown = shown.join(" … ");
+        let shown: Vec<f64> = shown
+            .split(" … ")
+            .map(|part| part.parse().unwrap())
+            .collect();
+        for (shown, key) in shown.iter().zip(["value", "lower", "upper"]) {
+            let expected = factor * number(&random_walk[key]);
+            assert!(
+                (shown / expected - 1.0).abs() < 5e-4,
+                "{key}: {shown}, {expected}"
+            );
+        }
+        let words = browser.value(title);
+        let words = words.as_str().unwrap();
+        assert!(
+            words.contains(&format!("Allan deviation σ, {rate}")),
+            "{words}"
+        );
+    }
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+#[test]
+fn the_page_fits_a_phone_is_readable_in_the_dark_and_can_be_printed() {
+    let folder = TempDir::new().unwrap();
+    reported(folder.path(), &[ADIS16405]);
+    let mut browser = opened(folder.path());
+    for (medium, scheme, width) in [
+        ("screen", "light", 390),
+        ("screen", "dark", 390),
+        ("screen", "dark", 1280),
+        ("print", "dark", 700),
+    ] {
+        browser.emulate(medium, scheme);
+        browser.resize(width, 844);
+        for step in 0..3 {
+            browser.value(&format!("walks.forEach((walk) => walk.show({step}))"));
+            let wide = browser.value("document.documentElement.scrollWidth");
+            assert!(
+                number(&wide) <= f64::from(width),
+                "{wide} pixels of {width}"
+            );
+            // Not even clipped text within.
+            let clipped = browser.value(
+                "[...document.querySelectorAll('p, td, th, dd, li, h2, h3, button')]\
+                 .filter((one) => one.scrollWidth > one.clientWidth + 1 && one.clientWidth > 0)\
+                 .map((one) => one.textContent)",
+            );
+            assert_eq!(clipped, Value::Array(Vec::new()), "{width}");
+            // Ticks and titles of the figure lie within it.
+            let outside = browser.value(
+                "[...document.querySelectorAll('.figure text')].filter((text) => {\
+                 const [box, paper] = [text, text.closest('svg')].map((one) => one.getBoundingClientRect());\
+                 return box.left < paper.left - 1 || box.right > paper.right + 1;\
+                 }).map((text) => text.textContent)",
+            );
+            assert_eq!(outside, Value::Array(Vec::new()), "{width}");
+        }
+        for (selector, property) in [
+            ("body", "color"),
+            (".words", "color"),
+            (".figure text", "fill"),
+            (".figure .pale", "fill"),
+            (".badge", "color"),
+            ("a", "color"),
+        ] {
+            let contrast = browser.value(&format!(
+                "{CONTRAST}(getComputedStyle(document.querySelector('{selector}'))['{property}'], \
+                 getComputedStyle(document.body).backgroundColor)"
+            ));
+            assert!(
+                number(&contrast) >= 4.5,
+                "{medium}, {scheme}: {selector}: {contrast}"
+            );
+        }
+        let paper = browser.value("getComputedStyle(document.body).backgroundColor");
+        assert_eq!(
+            paper == "rgb(255, 255, 255)",
+            medium == "print" || scheme == "light",
+            "{paper}"
+        );
+    }
+    let buttons = browser.value("document.querySelector('.turn').offsetHeight");
+    assert_eq!(buttons, 0, "on paper nothing is pressed");
+    let pdf = browser.call("Page.printToPDF", serde_json::json!({}));
+    // `%PDF`, in base 64.
+    assert!(pdf["data"].as_str().unwrap().starts_with("JVBERi"));
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+#[test]
+fn names_are_text_wherever_they_come_from() {
+    let folder = TempDir::new().unwrap();
+    let hostile =
+        "</script><script>window.taken=1</script><img src=x onerror='window.taken=1'>&amp;\"";
+    let mut curves: Value = serde_json::from_str(&fs::read_to_string(ADIS16405).unwrap()).unwrap();
+    let axis = &mut curves["axes"][0];
+    axis["axis"] = hostile.into();
+    axis["source"] = hostile.into();
+    let file = "<img src=x onerror=\"window.taken=1\">'.json";
+    fs::write(folder.path().join(file), curves.to_string()).unwrap();
+    let diagnosis = reported(folder.path(), &[file]);
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert_eq!(embedded(&page)["diagnosis"], diagnosis);
+    let mut browser = opened(folder.path());
+    assert_eq!(browser.value("typeof window.taken"), "undefined");
+    assert_eq!(browser.value("document.scripts.length"), 3);
+    assert_eq!(browser.value("document.images.length"), 0);
+    assert_eq!(
+        browser.value("document.querySelector('.axis h2').textContent"),
+        hostile
+    );
+    assert_eq!(
+        browser.value("document.querySelector('h1 .name').textContent"),
+        file
+    );
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+#[test]
+fn a_covariate_is_a_step_and_settings_tell_how_to_come_here_again() {
+    let folder = TempDir::new().unwrap();
+    let thermal = "thermal:slope=0.03,kelvin=10,period_s=300";
+    simulate(folder.path(), &[thermal]);
+    let diagnosis = reported(folder.path(), &["log.csv", "--covariates", "temp_C"]);
+    let steps = steps(&diagnosis["axes"][0]);
+    let mut browser = opened(folder.path());
+    browser.click("#axis-0 [aria-label='Next step']");
+    assert_eq!(shown_error(&mut browser, 0), error(&steps[1]));
+    let finding = browser.text("#axis-0 .finding");
+    assert!(
+        finding.contains("What was missing: covariate temp_C") && finding.contains("slope 0.0"),
+        "{finding}"
+    );
+    let settings = browser.text(".settings");
+    let command = "allanite report log.csv --covariates temp_C --output report.html";
+    for part in [command, env!("CARGO_PKG_VERSION"), "1 %", "p = 0.05"] {
+        assert!(settings.contains(part), "{part}: {settings}");
+    }
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+#[test]
+fn pages_that_cannot_be_written_are_refused_before_anything_is_read() {
+    let folder = TempDir::new().unwrap();
+    for (input, page, message) in [
+        (
+            ADIS16405,
+            "report.pdf",
+            "report.pdf: a page's extension is .html; name the output so",
+        ),
+        (
+            ADIS16405,
+            "absent/report.html",
+            "its folder does not exist; make the folder first",
+        ),
+        (
+            "absent.json",
+            "report.html",
+            "absent.json: no such file; check the path",
+        ),
+    ] {
+        let refused = refusal(folder.path(), &["report", input, "--output", page]);
+        assert!(refused.contains(message), "{refused}");
+    }
+    fs::create_dir(folder.path().join("folder.html")).unwrap();
+    let refused = refusal(
+        folder.path(),
+        &["report", ADIS16405, "--output", "folder.html"],
+    );
+    assert!(refused.contains("is a directory"), "{refused}");
+    // Nothing is left behind.
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}

@@ -7,6 +7,8 @@ pub struct Core {
     pub name: &'static str,
     /// What images are built for.
     pub target: &'static str,
+    /// The emulator.
+    pub qemu: &'static str,
     /// QEMU's name of the board.
     pub machine: &'static str,
     /// QEMU's name of the core.
@@ -15,10 +17,14 @@ pub struct Core {
     pub board: Option<&'static str>,
 }
 
+/// The emulator of Arm's cores.
+const QEMU_ARM: &str = "qemu-system-arm";
+
 /// The core that figures are of, where no other is named.
 pub const CORTEX_M4F: Core = Core {
     name: "Cortex-M4F",
     target: "thumbv7em-none-eabihf",
+    qemu: QEMU_ARM,
     machine: "mps2-an386",
     cpu: "cortex-m4",
     board: None,
@@ -26,10 +32,11 @@ pub const CORTEX_M4F: Core = Core {
 
 /// Every core: with hardware for single precision, for none, for double; with 4 MiB of RAM, and with
 /// 16 KiB.
-pub const CORES: [Core; 6] = [
+pub const CORES: [Core; 7] = [
     Core {
         name: "Cortex-M0",
         target: "thumbv6m-none-eabi",
+        qemu: QEMU_ARM,
         machine: "microbit",
         cpu: "cortex-m0",
         board: Some("_board_microbit"),
@@ -39,7 +46,7 @@ pub const CORES: [Core; 6] = [
         target: "thumbv7m-none-eabi",
         machine: "mps2-an385",
         cpu: "cortex-m3",
-        board: None,
+        ..CORTEX_M4F
     },
     Core {
         name: "Cortex-M4",
@@ -56,8 +63,17 @@ pub const CORES: [Core; 6] = [
     Core {
         name: "Cortex-M33",
         target: "thumbv8m.main-none-eabihf",
+        qemu: QEMU_ARM,
         machine: "mps2-an505",
         cpu: "cortex-m33",
         board: Some("_board_an505"),
+    },
+    Core {
+        name: "RISC-V RV32IMC",
+        target: "riscv32imc-unknown-none-elf",
+        qemu: "qemu-system-riscv32",
+        machine: "virt",
+        cpu: "rv32",
+        board: Some("_board_virt"),
     },
 ];

@@ -1,7 +1,7 @@
 //! What this machine lacks to build and run the images. Says what it does, asks nothing.
 
 use super::step::run as run_command;
-use crate::firmware::{CORES, Core, Toolchain, emulator::QEMU, toolchain::Origin};
+use crate::firmware::{CORES, Core, Toolchain, toolchain::Origin};
 use anyhow::{Context as _, Result, bail};
 use std::process::{Command, Stdio};
 
@@ -9,13 +9,20 @@ use std::process::{Command, Stdio};
 const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clippy"];
 /// Its linker, where rustup brings none.
 const DEBIAN_LINKER: &str = "lld";
-const DEBIAN_QEMU: &str = "qemu-system-arm";
+/// Each emulator, and the package that has it.
+const DEBIAN_QEMU: [(&str, &str); 2] = [
+    ("qemu-system-arm", "qemu-system-arm"),
+    ("qemu-system-riscv32", "qemu-system-misc"),
+];
 
 pub(super) fn run() -> Result<()> {
     for core in &CORES {
         compiler(core)?;
     }
-    emulator()
+    for (qemu, package) in DEBIAN_QEMU {
+        emulator(qemu, package)?;
+    }
+    Ok(())
 }
 
 fn compiler(core: &Core) -> Result<()> {
@@ -62,15 +69,15 @@ fn name(toolchain: &Toolchain) -> &'static str {
     }
 }
 
-fn emulator() -> Result<()> {
-    if starts(QEMU) {
-        println!("{QEMU}: there");
+fn emulator(qemu: &str, package: &str) -> Result<()> {
+    if starts(qemu) {
+        println!("{qemu}: there");
         return Ok(());
     }
-    println!("{QEMU}: installing Debian's package {DEBIAN_QEMU}");
-    let by_hand = || format!("no {QEMU}; install QEMU for Arm by hand");
-    apt_get(&[DEBIAN_QEMU]).with_context(by_hand)?;
-    if starts(QEMU) {
+    println!("{qemu}: installing Debian's package {package}");
+    let by_hand = || format!("no {qemu}; install it by hand");
+    apt_get(&[package]).with_context(by_hand)?;
+    if starts(qemu) {
         Ok(())
     } else {
         bail!(by_hand())

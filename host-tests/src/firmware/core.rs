@@ -15,6 +15,8 @@ pub struct Core {
     pub cpu: &'static str,
     /// The symbol by which `memory.x` knows the board, if it is not the usual one.
     pub board: Option<&'static str>,
+    /// Whether it has so little RAM, 16 KiB, that it fits fewer octaves and does not diagnose.
+    pub small: bool,
 }
 
 /// The emulator of Arm's cores.
@@ -28,6 +30,18 @@ pub const CORTEX_M4F: Core = Core {
     machine: "mps2-an386",
     cpu: "cortex-m4",
     board: None,
+    small: false,
+};
+
+/// The core of another architecture.
+pub const RISCV: Core = Core {
+    name: "RISC-V RV32IMC",
+    target: "riscv32imc-unknown-none-elf",
+    qemu: "qemu-system-riscv32",
+    machine: "virt",
+    cpu: "rv32",
+    board: Some("_board_virt"),
+    small: false,
 };
 
 /// Every core: with hardware for single precision, for none, for double; with 4 MiB of RAM, and with
@@ -40,6 +54,7 @@ pub const CORES: [Core; 7] = [
         machine: "microbit",
         cpu: "cortex-m0",
         board: Some("_board_microbit"),
+        small: true,
     },
     Core {
         name: "Cortex-M3",
@@ -63,17 +78,10 @@ pub const CORES: [Core; 7] = [
     Core {
         name: "Cortex-M33",
         target: "thumbv8m.main-none-eabihf",
-        qemu: QEMU_ARM,
         machine: "mps2-an505",
         cpu: "cortex-m33",
         board: Some("_board_an505"),
+        ..CORTEX_M4F
     },
-    Core {
-        name: "RISC-V RV32IMC",
-        target: "riscv32imc-unknown-none-elf",
-        qemu: "qemu-system-riscv32",
-        machine: "virt",
-        cpu: "rv32",
-        board: Some("_board_virt"),
-    },
+    RISCV,
 ];

@@ -3,11 +3,13 @@
 //! nalgebra's own takes and returns matrices by value: three copies of 3 KiB on the stack of a
 //! microcontroller for 20 octaves. A factor is found in double precision, whatever it is kept in.
 
-use crate::math;
-use nalgebra::{SMatrix, SVector};
+use crate::{
+    algebra::{Number, Square, Vector},
+    math,
+};
 
 /// What a factor's elements are kept in.
-pub(crate) trait Element: Copy {
+pub(crate) trait Element: Number {
     fn new(value: f64) -> Self;
     fn value(self) -> f64;
 }
@@ -34,7 +36,7 @@ impl Element for f32 {
 
 /// Replaces the lower triangle of the first `n` rows by its Cholesky factor, with the reciprocals of
 /// the diagonal on the diagonal. `false` if the matrix is not positive definite.
-pub(crate) fn factor<E: Element, const K: usize>(matrix: &mut SMatrix<E, K, K>, n: usize) -> bool {
+pub(crate) fn factor<E: Element, const K: usize>(matrix: &mut Square<K, E>, n: usize) -> bool {
     for j in 0..n.min(K) {
         let mut pivot = matrix[(j, j)].value();
         for k in 0..j {
@@ -44,13 +46,13 @@ pub(crate) fn factor<E: Element, const K: usize>(matrix: &mut SMatrix<E, K, K>, 
             return false;
         }
         let reciprocal = 1.0 / math::sqrt(pivot);
-        matrix[(j, j)] = E::new(reciprocal);
+        matrix.put((j, j), E::new(reciprocal));
         for i in j + 1..n.min(K) {
             let mut value = matrix[(i, j)].value();
             for k in 0..j {
                 value -= matrix[(i, k)].value() * matrix[(j, k)].value();
             }
-            matrix[(i, j)] = E::new(value * reciprocal);
+            matrix.put((i, j), E::new(value * reciprocal));
         }
     }
     true
@@ -58,45 +60,45 @@ pub(crate) fn factor<E: Element, const K: usize>(matrix: &mut SMatrix<E, K, K>, 
 
 /// Solves `L x = b` in place, for the factor `L` of [`factor`].
 pub(crate) fn forward<E: Element, const K: usize>(
-    factor: &SMatrix<E, K, K>,
+    factor: &Square<K, E>,
     n: usize,
-    x: &mut SVector<f64, K>,
+    x: &mut Vector<K>,
 ) {
     for i in 0..n.min(K) {
         let mut value = x[i];
         for k in 0..i {
             value -= factor[(i, k)].value() * x[k];
         }
-        x[i] = value * factor[(i, i)].value();
+        x.put(i, value * factor[(i, i)].value());
     }
 }
 
 /// [`forward`] in single precision.
 pub(crate) fn forward_single<const K: usize>(
-    factor: &SMatrix<f32, K, K>,
+    factor: &Square<K, f32>,
     n: usize,
-    x: &mut SVector<f32, K>,
+    x: &mut Vector<K, f32>,
 ) {
     for i in 0..n.min(K) {
         let mut value = x[i];
         for k in 0..i {
             value -= factor[(i, k)] * x[k];
         }
-        x[i] = value * factor[(i, i)];
+        x.put(i, value * factor[(i, i)]);
     }
 }
 
 /// Solves `L'x = b` in place.
 pub(crate) fn backward<E: Element, const K: usize>(
-    factor: &SMatrix<E, K, K>,
+    factor: &Square<K, E>,
     n: usize,
-    x: &mut SVector<f64, K>,
+    x: &mut Vector<K>,
 ) {
     for i in (0..n.min(K)).rev() {
         let mut value = x[i];
         for k in i + 1..n.min(K) {
             value -= factor[(k, i)].value() * x[k];
         }
-        x[i] = value * factor[(i, i)].value();
+        x.put(i, value * factor[(i, i)].value());
     }
 }

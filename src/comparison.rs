@@ -5,6 +5,7 @@ use crate::{
     curve::Curve,
     error::Error,
     fit::{Fit, Problem, weights::Weights},
+    list::numbered,
     math,
     model::{MAX_EFFECTS, Model},
     nnls::Vector,
@@ -106,7 +107,7 @@ impl<const K: usize> Comparison<K> {
         unknowns: usize,
     ) -> Result<Self, Error> {
         let problem = Problem::new(curve, model);
-        let squares = Vector::from(fit.squares());
+        let squares = Vector::from(nalgebra::SVector::from(fit.squares()));
         let mut weights = Weights::empty();
         weights.set(&problem, &squares, tolerance)?;
         let mut comparison = Self::empty();
@@ -136,7 +137,7 @@ impl<const K: usize> Comparison<K> {
     ) {
         self.octaves.clear();
         let mut sum_of_squares = 0.0;
-        for (k, point) in problem.points.iter().enumerate() {
+        for (k, point) in numbered(problem.points.iter()) {
             let model = problem.variance(k, squares);
             let octave = ComparedOctave {
                 m: point.m,

@@ -20,7 +20,8 @@
 use crate::{
     curve::{Curve, Point},
     lattice::{self, Rounded, SecondDifferences},
-    math,
+    list::numbered,
+    math::{self, floor_log2},
     model::{MAX_EFFECTS, Model, Term},
 };
 use core::f64::consts::PI;
@@ -70,8 +71,9 @@ pub(crate) fn covariance(
         let terms = model.terms().iter().zip(squares);
         terms.filter(|&(_, &square)| square > 0.0)
     };
-    for (j, shorter) in points.iter().enumerate() {
-        let reach = (u64::from(longest / shorter.m) * 32).min(u64::from(lattice::END)) as u32;
+    for (j, shorter) in numbered(points.iter()) {
+        let ratio = longest.checked_div(shorter.m).unwrap_or(0);
+        let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
         let m_j = f64::from(shorter.m);
         let mut random = SecondDifferences::zero(shorter.m, reach);
         for (term, &square) in present() {
@@ -99,7 +101,7 @@ pub(crate) fn covariance(
                 });
             }
         }
-        for (k, longer) in points.iter().enumerate().skip(j) {
+        for (k, longer) in numbered(points.iter()).skip(j) {
             let pair = Pair { shorter, longer };
             // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
             if pair.middle() >= lattice::END / 4 {
@@ -142,11 +144,11 @@ impl Wave<'_> {
         }
         let turn = self
             .turn
-            .and_then(|turn| turns.get(turn)?.steps.get(step.ilog2() as usize));
+            .and_then(|turn| turns.get(turn)?.steps.get(floor_log2(step) as usize));
         self.now = match turn {
             Some(turn) => self.now * turn,
             None => {
-                let turns = self.phase / (2.0 * PI) * f64::from(lag + step);
+                let turns = self.phase / (2.0 * PI) * (f64::from(lag) + f64::from(step));
                 Complex::new(math::sincos_of_turns(turns).1 as f32, 0.0)
             }
         };
@@ -179,7 +181,7 @@ impl Turn {
             here
         });
         known.push(Self { phase, steps }).ok()?;
-        Some(known.len() - 1)
+        known.len().checked_sub(1)
     }
 }
 
@@ -192,41 +194,44 @@ struct Pair<'a> {
 impl Pair<'_> {
     /// The longer cluster in quarters of the shorter: the lag of the outer kinks.
     fn middle(&self) -> u32 {
-        (self.longer.m / self.shorter.m).saturating_mul(4)
+        let ratio = self.longer.m.checked_div(self.shorter.m).unwrap_or(0);
+        ratio.saturating_mul(4)
     }
 
     fn covariance(&self, differences: &Rounded, turns: &[Turn], waves: &mut [Wave<'_>]) -> f64 {
         let middle = self.middle();
         let stride = lattice::stride(self.shorter.m);
         let starts = Starts::new(self.shorter, self.longer);
-        let (mut sum, mut quiet) = (0.0_f32, 0);
-        let (mut lag, mut step_before) = (0, 0);
+        let outer = middle.saturating_add(NEAR);
+        let (mut sum, mut quiet) = (0.0_f32, 0_u32);
+        let (mut lag, mut step_before) = (0_u32, 0);
         loop {
             let step = step_after(lag, middle, stride);
             let pairs = starts.pairs(lag);
             let here = differences.at(lag);
-            let random =
-                differences.at(lag.abs_diff(middle)) - (here + here) + differences.at(lag + middle);
+            let random = differences.at(lag.abs_diff(middle)) - (here + here)
+                + differences.at(lag.saturating_add(middle));
             if random != 0.0 {
                 // Half the steps to either side, in strides; both signs of the lag are in `pairs`.
-                let weight = u64::from(step_before + step).saturating_mul(pairs) as f32;
+                let weight =
+                    (u64::from(step_before) + u64::from(step)).saturating_mul(pairs) as f32;
                 let mut factor = random;
                 for wave in &*waves {
                     factor += wave.value();
                 }
                 let term = weight * (random * factor);
                 sum += term;
-                let counts = lag <= middle + NEAR || term.abs() > NEGLIGIBLE * sum.abs();
-                quiet = if counts { 0 } else { quiet + 1 };
+                let counts = lag <= outer || term.abs() > NEGLIGIBLE * sum.abs();
+                quiet = if counts { 0 } else { quiet.saturating_add(1) };
             } else {
-                quiet += 1;
+                quiet = quiet.saturating_add(1);
             }
             for wave in &mut *waves {
                 wave.advance(lag, step, turns);
             }
-            lag += step;
+            lag = lag.saturating_add(step);
             step_before = step;
-            let far = lag > middle + NEAR && quiet >= 2;
+            let far = lag > outer && quiet >= 2;
             if far || pairs == 0 || lag >= lattice::END / 2 {
                 break;
             }
@@ -255,10 +260,13 @@ struct Starts {
 impl Starts {
     fn new(shorter: &Point, longer: &Point) -> Self {
         Self {
-            advance_bits: advance(longer.m).ilog2(),
-            quarter_bits: shorter.m.ilog2(),
-            inside: u64::from(longer.m - shorter.m),
-            last: shorter.differences.saturating_sub(1) << advance(shorter.m).ilog2(),
+            advance_bits: floor_log2(advance(longer.m)),
+            quarter_bits: floor_log2(shorter.m),
+            inside: u64::from(longer.m.saturating_sub(shorter.m)),
+            last: shorter
+                .differences
+                .saturating_sub(1)
+                .wrapping_shl(floor_log2(advance(shorter.m))),
             count: longer.differences,
         }
     }
@@ -266,16 +274,20 @@ impl Starts {
     /// How many pairs of starts have their differences' middles `lag` quarters of the shorter
     /// cluster apart, either way round.
     fn pairs(&self, lag: u32) -> u64 {
-        let distance = (u64::from(lag) << self.quarter_bits) >> 2;
+        let distance = u64::from(lag).wrapping_shl(self.quarter_bits) >> 2;
         // Starts of the longer difference, less those whose partner would lie before the record …
         let outside = distance.saturating_sub(self.inside);
-        let before = (outside + (1 << self.advance_bits) - 1) >> self.advance_bits;
+        let advance = 1_u64.wrapping_shl(self.advance_bits);
+        let partly = outside.saturating_add(advance.saturating_sub(1));
+        let before = partly.wrapping_shr(self.advance_bits);
         // … or after its end.
-        let after = match self.last.checked_sub(distance + self.inside) {
-            Some(room) => (room >> self.advance_bits) + 1,
+        let end = distance.saturating_add(self.inside);
+        let after = match self.last.checked_sub(end) {
+            Some(room) => room.wrapping_shr(self.advance_bits).saturating_add(1),
             None => 0,
         };
-        self.count.saturating_sub(before) + after.min(self.count)
+        let kept = self.count.saturating_sub(before);
+        kept.saturating_add(after.min(self.count))
     }
 }
 
@@ -289,15 +301,16 @@ fn advance(m: u32) -> u32 {
 fn step_after(lag: u32, middle: u32, stride: u32) -> u32 {
     // Far apart, octaves are correlated too little for half steps to matter.
     let halvings = if middle < FAR { 1 } else { 0 };
+    let power = |distance: u32| 1_u32.wrapping_shl(floor_log2(distance).saturating_sub(halvings));
     let away = |distance: u32| match distance {
         0..KINK => stride,
         KINK..NEAR => stride.max(2),
-        _ => 1 << (distance.ilog2() - halvings),
+        _ => power(distance),
     };
     let towards = |distance: u32| match distance {
         0..=KINK => stride,
         _ if distance <= NEAR => stride.max(2),
-        _ => 1 << ((distance - 1).ilog2() - halvings),
+        _ => power(distance.saturating_sub(1)),
     };
     if lag >= middle {
         away(lag - middle)

@@ -1,6 +1,6 @@
 //! The Allan curve: what is left of the samples.
 
-use crate::{error::Error, math, octave::Accumulator};
+use crate::{error::Error, list::numbered, math, octave::Accumulator};
 use heapless::Vec;
 
 /// How counts and sample numbers become rates and seconds.
@@ -110,7 +110,7 @@ impl<const K: usize> Curve<K> {
 
     /// Other variances in place, which must be finite and not negative.
     pub(crate) fn change_variances(&mut self, variance: impl Fn(usize, f64) -> f64) {
-        for (k, point) in self.points.iter_mut().enumerate() {
+        for (k, point) in numbered(self.points.iter_mut()) {
             point.variance = variance(k, point.variance);
         }
     }

@@ -1,6 +1,7 @@
 //! Evidence beyond the curve: are the differences Gaussian?
 
 use crate::curve::Curve;
+use crate::list::numbered;
 use heapless::Vec;
 
 /// Fourth moments of the differences, octave by octave, beside an
@@ -121,7 +122,7 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
     /// fourth powers fit into 128 bits: give it counts no finer than a hundredth of the noise.
     pub fn kurtosis(&self) -> Kurtosis<OCTAVES> {
         let mut points = Vec::new();
-        for (k, octave) in self.octaves.iter().enumerate() {
+        for (k, octave) in numbered(self.octaves.iter()) {
             let saturated = octave.fourth == u128::MAX;
             if octave.differences < 30 || octave.squares == 0 || saturated {
                 continue;
@@ -179,7 +180,7 @@ impl<const K: usize> Kurtosis<K> {
         share: impl Fn(usize) -> f64,
     ) -> Option<bool> {
         let (mut product, mut weight) = (0.0, 0.0);
-        for (k, octave) in curve.points().iter().enumerate() {
+        for (k, octave) in numbered(curve.points().iter()) {
             let Some(point) = self.points.iter().find(|point| point.m == octave.m) else {
                 continue;
             };

@@ -1,5 +1,6 @@
 //! Second differences of a kernel at every lag that two octaves of a curve can meet.
 
+use crate::{list::numbered, math::floor_log2};
 use nalgebra::Complex;
 
 /// Positions up to this one, in quarters of a cluster, are kept one by one.
@@ -24,8 +25,10 @@ pub(crate) const fn position(slot: usize) -> u32 {
     let beyond = (slot - FINE_SLOTS) as u32 + 1;
     let octave = beyond / STEPS;
     let step = beyond % STEPS;
-    (FINE + FINE / STEPS * step) << octave
+    (FINE + FINE / STEPS * step).wrapping_shl(octave)
 }
+
+const ONE: Complex<f64> = Complex::new(1.0, 0.0);
 
 /// Powers of `w` at every position, by multiplication, slot after slot.
 pub(crate) struct Powers {
@@ -36,34 +39,39 @@ pub(crate) struct Powers {
 
 impl Powers {
     pub(crate) fn new(w: Complex<f64>) -> Self {
-        let mut fine = [Complex::new(1.0, 0.0); FINE_SLOTS];
-        for slot in 1..FINE_SLOTS {
-            fine[slot] = fine[slot - 1] * w;
+        let mut fine = [ONE; FINE_SLOTS];
+        let mut power = ONE;
+        for slot in &mut fine {
+            *slot = power;
+            power *= w;
         }
         Self {
             fine,
-            last: [Complex::new(1.0, 0.0); STEPS as usize],
+            last: [ONE; STEPS as usize],
         }
     }
 
     /// At a position of up to 16.
     pub(crate) fn near(&self, position: usize) -> Complex<f64> {
-        self.fine[position]
+        self.fine.get(position).copied().unwrap_or(ONE)
     }
 
     /// In the next slot: slots are asked for in their order.
     pub(crate) fn next(&mut self, slot: usize) -> Complex<f64> {
         let steps = STEPS as usize;
         let power = if slot < FINE_SLOTS {
-            self.fine[slot]
+            self.near(slot)
         } else if slot < FINE_SLOTS + steps {
             // 20, 24, 28, 32 are 16 + 4, 16 + 8, 16 + 12, 16 + 16.
-            self.fine[FINE as usize] * self.fine[steps * (slot - FINE as usize)]
+            self.near(FINE as usize) * self.near(steps * (slot - FINE as usize))
         } else {
             // Twice the position an octave below.
-            self.last[slot % steps] * self.last[slot % steps]
+            let below = self.last.get(slot % steps).copied().unwrap_or(ONE);
+            below * below
         };
-        self.last[slot % steps] = power;
+        if let Some(last) = self.last.get_mut(slot % steps) {
+            *last = power;
+        }
         power
     }
 }
@@ -96,7 +104,7 @@ impl SecondDifferences {
 
     /// The same for an effect whose second differences vanish from the lag `end` on.
     pub fn add_below(&mut self, m: f64, end: f64, f: impl Fn(f64) -> f64) {
-        for (slot, value) in self.values.iter_mut().enumerate().take(self.used) {
+        for (slot, value) in numbered(self.values.iter_mut()).take(self.used) {
             let position = position(slot);
             // Quarters of a cluster that lie between samples are never asked for.
             if !position.is_multiple_of(self.stride) {
@@ -112,7 +120,7 @@ impl SecondDifferences {
 
     /// The same at lags of a cluster and more.
     pub(crate) fn add_from(&mut self, m: f64, f: impl Fn(f64) -> f64) {
-        let slots = self.values.iter_mut().enumerate();
+        let slots = numbered(self.values.iter_mut());
         for (slot, value) in slots.take(self.used).skip(STEPS as usize) {
             let position = position(slot);
             if position.is_multiple_of(self.stride) {
@@ -123,7 +131,7 @@ impl SecondDifferences {
 
     /// Adds `f(slot)` in every slot, one after the other.
     pub(crate) fn add_slots(&mut self, mut f: impl FnMut(usize) -> f64) {
-        for (slot, value) in self.values.iter_mut().enumerate().take(self.used) {
+        for (slot, value) in numbered(self.values.iter_mut()).take(self.used) {
             *value += f(slot);
         }
     }
@@ -166,27 +174,35 @@ impl Rounded {
         self.unit
     }
 
+    /// That of a slot, or of the last.
+    #[inline]
+    fn slot(&self, slot: usize) -> f32 {
+        let [.., last] = self.values;
+        self.values.get(slot).copied().unwrap_or(last)
+    }
+
     /// The second difference at a lag in quarters of a cluster, on a straight line between the
     /// lattice's positions.
     #[inline]
     pub(crate) fn at(&self, position: u32) -> f32 {
         if position <= FINE {
-            return self.values[position as usize];
+            return self.slot(position as usize);
         }
         let position = position.min(END - 1);
         // The position's octave, and its step in it.
-        let octave = position.ilog2() - FINE.ilog2();
+        let octave = floor_log2(position).saturating_sub(FINE.ilog2());
         let width_bits = octave + (FINE / STEPS).ilog2();
-        let step = (position - (FINE << octave)) >> width_bits;
-        let slot = FINE as usize + (STEPS * octave + step) as usize;
-        let rest = position & ((1 << width_bits) - 1);
-        let low = self.values[slot];
+        let start = FINE.wrapping_shl(octave);
+        let step = position.saturating_sub(start).wrapping_shr(width_bits);
+        let slot = FINE as usize + (STEPS * octave) as usize + (step % STEPS) as usize;
+        let rest = position & 1_u32.wrapping_shl(width_bits).wrapping_sub(1);
+        let low = self.slot(slot);
         if rest == 0 {
             return low;
         }
         // 2^-width_bits by its bits: a division costs ten multiplications in software.
-        let reciprocal = f32::from_bits((127 - width_bits) << 23);
-        low + (self.values[(slot + 1).min(LEN - 1)] - low) * (rest as f32 * reciprocal)
+        let reciprocal = f32::from_bits(127_u32.saturating_sub(width_bits) << 23);
+        low + (self.slot(slot.saturating_add(1)) - low) * (rest as f32 * reciprocal)
     }
 }
 

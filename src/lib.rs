@@ -2,6 +2,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod algebra;
 mod chi_squared;
 mod cholesky;
 mod coefficient;
@@ -22,6 +23,7 @@ mod gate;
 mod integrity;
 mod kurtosis;
 mod lattice;
+mod list;
 mod math;
 mod model;
 mod nnls;

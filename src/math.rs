@@ -4,13 +4,21 @@
 use core::f64::consts::PI;
 pub(crate) use libm::{cbrt, ceil, erfc, exp, expm1, floor, log, sqrt};
 
-/// Sine and cosine of an angle in turns: whole quadrants are taken off exactly, which spares libm's
-/// reduction, its time and its 700 bytes of stack.
+/// Sine and cosine of an angle in turns, to 3e-16: whole quadrants are taken off exactly, and the rest is
+/// small enough for Taylor's series. libm's reduction of angles of any size would cost 4 KB of flash and
+/// 700 bytes of stack.
 pub(crate) fn sincos_of_turns(turns: f64) -> (f64, f64) {
     let turns = turns - floor(turns);
     let quadrant = floor(4.0 * turns + 0.5);
     let rest = 2.0 * PI * (turns - 0.25 * quadrant);
-    let (sine, cosine) = (libm::sin(rest), libm::cos(rest));
+    let square = rest * rest;
+    // x − x³/3! + …, 1 − x²/2! + …: the last terms are x^19/19! and x^18/18!, below 1e-17 of an eighth turn.
+    let (mut sine, mut cosine) = (0.0, 0.0);
+    for [odd, even] in SERIES {
+        sine = odd - square * sine;
+        cosine = even - square * cosine;
+    }
+    let sine = rest * sine;
     match quadrant as u8 {
         1 => (cosine, -sine),
         2 => (-sine, -cosine),
@@ -19,9 +27,29 @@ pub(crate) fn sincos_of_turns(turns: f64) -> (f64, f64) {
     }
 }
 
+/// `1/(2k+1)!` and `1/(2k)!` for k = 9 to 0.
+const SERIES: [[f64; 2]; 10] = {
+    let mut series = [[1.0; 2]; 10];
+    let (mut factorial, mut k) = (1.0, 1);
+    while k < 10 {
+        factorial *= (2 * k) as f64;
+        // factorial = (2k)!, exact in 53 bits up to 18!.
+        series[9 - k][1] = 1.0 / factorial;
+        factorial *= (2 * k + 1) as f64;
+        series[9 - k][0] = 1.0 / factorial;
+        k += 1;
+    }
+    series
+};
+
 /// The binary logarithm to a percent or so, for the number of steps of a search grid.
 pub(crate) fn log2_roughly(x: f64) -> f64 {
     f64::from(micromath::F32(x as f32).log2().0)
+}
+
+/// The whole part of the binary logarithm; 0 of 0, where `ilog2` panics.
+pub(crate) const fn floor_log2(n: u32) -> u32 {
+    (u32::BITS - 1) ^ (n | 1).leading_zeros()
 }
 
 /// The natural logarithm of an integer above 0, for tables computed by the compiler.
@@ -39,4 +67,34 @@ pub(crate) const fn log_of_integer(i: u32) -> f64 {
         k -= 2;
     }
     exponent as f64 * core::f64::consts::LN_2 + 2.0 * t * sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sine_and_cosine_are_those_of_libm() {
+        for i in -3000..3000 {
+            let turns = f64::from(i) / 1009.0;
+            // libm's argument is rounded: 2π of a few turns.
+            let angle = 2.0 * PI * (turns - floor(turns));
+            let (sine, cosine) = sincos_of_turns(turns);
+            assert!((sine - libm::sin(angle)).abs() < 8e-16, "sine of {turns}");
+            assert!(
+                (cosine - libm::cos(angle)).abs() < 8e-16,
+                "cosine of {turns}"
+            );
+        }
+        assert_eq!(sincos_of_turns(0.25), (1.0, 0.0));
+        assert_eq!(sincos_of_turns(-0.5), (0.0, -1.0));
+    }
+
+    #[test]
+    fn floors_of_binary_logarithms_are_those_of_core() {
+        assert_eq!(floor_log2(0), 0);
+        for n in (1..70_000).chain(u32::MAX - 3..=u32::MAX) {
+            assert_eq!(floor_log2(n), n.ilog2());
+        }
+    }
 }

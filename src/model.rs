@@ -3,6 +3,7 @@
 use crate::{
     effect::{Effect, IEEE_952, MAX_PARAMETERS, Setting},
     error::Error,
+    list,
 };
 use heapless::Vec;
 
@@ -50,6 +51,26 @@ impl Term {
         all.filter(move |&i| fitted && !effect.is_whole(i))
     }
 
+    /// A shape parameter; 0 of one that no effect has.
+    pub(crate) fn parameter(&self, j: usize) -> f64 {
+        self.parameters.get(j).copied().unwrap_or(0.0)
+    }
+
+    pub(crate) fn set_parameter(&mut self, j: usize, value: f64) {
+        if let Some(parameter) = self.parameters.get_mut(j) {
+            *parameter = value;
+        }
+    }
+
+    pub(crate) fn scale_parameter(&mut self, j: usize, factor: f64) {
+        self.set_parameter(j, self.parameter(j) * factor);
+    }
+
+    pub(crate) fn parameter_name(&self, j: usize) -> &'static str {
+        let parameters = self.effect.parameters();
+        parameters.get(j).map_or("", |parameter| parameter.name)
+    }
+
     /// Where it is evaluated for samples `interval_s` apart.
     pub fn setting(&self, interval_s: f64) -> Setting {
         Setting {
@@ -76,7 +97,7 @@ impl Model {
     pub fn ieee_952() -> Self {
         Self {
             // Five fit into eight.
-            terms: IEEE_952.into_iter().map(Term::new).collect(),
+            terms: list::fill(IEEE_952.into_iter().map(Term::new)),
         }
     }
 
@@ -106,10 +127,13 @@ impl Model {
     pub(crate) fn restore(&mut self, effect: &'static dyn Effect) -> Result<(), Error> {
         let usual = IEEE_952.iter().position(|e| e.name() == effect.name());
         let place = usual.unwrap_or(MAX_EFFECTS).min(self.terms.len());
-        let restored = self.terms.insert(place, Term::new(effect));
-        restored.map_err(|_| Error::TooManyEffects {
-            capacity: MAX_EFFECTS,
-        })
+        if self.terms.is_full() {
+            return Err(Error::TooManyEffects {
+                capacity: MAX_EFFECTS,
+            });
+        }
+        list::insert(&mut self.terms, place, Term::new(effect));
+        Ok(())
     }
 
     /// Without the effect of that name, if it has it.
@@ -117,7 +141,7 @@ impl Model {
     pub fn without(&self, name: &str) -> Self {
         let rest = self.terms.iter().filter(|term| term.effect.name() != name);
         Self {
-            terms: rest.copied().collect(),
+            terms: list::fill(rest.copied()),
         }
     }
 

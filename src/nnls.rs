@@ -1,18 +1,23 @@
 //! Least squares with coefficients that cannot be negative, from the normal equations.
 
-use crate::{cholesky, error::Error, math, model::MAX_EFFECTS};
-use nalgebra::{SMatrix, SVector};
+use crate::{
+    algebra::{self, Choice, Square},
+    cholesky,
+    error::Error,
+    math,
+    model::MAX_EFFECTS,
+};
 
 /// Normal equations `H β = b` of up to `P` unknowns.
-pub(crate) type Matrix<const P: usize = MAX_EFFECTS> = SMatrix<f64, P, P>;
+pub(crate) type Matrix<const P: usize = MAX_EFFECTS> = Square<P>;
 /// One number an unknown.
-pub(crate) type Vector<const P: usize = MAX_EFFECTS> = SVector<f64, P>;
+pub(crate) type Vector<const P: usize = MAX_EFFECTS> = algebra::Vector<P>;
 
 /// A pivot of the scaled equations below this is rounding, not information.
 const LEAST_PIVOT: f64 = 1e-10;
 
 /// Which unknowns are free; the others are held at zero.
-pub(crate) type Free<const P: usize = MAX_EFFECTS> = [bool; P];
+pub(crate) type Free = Choice;
 
 /// The equations with every column scaled to one, so that coefficients of any magnitude share one
 /// tolerance.
@@ -42,7 +47,7 @@ impl<const P: usize> NormalEquations<P> {
     pub(crate) fn set(
         &mut self,
         count: usize,
-        row: impl Fn(usize, &mut Vector<P>) -> f64,
+        row: &dyn Fn(usize, &mut Vector<P>) -> f64,
     ) -> Result<(), Error> {
         self.count = count.min(P);
         let mut own = Vector::zeros();
@@ -52,12 +57,12 @@ impl<const P: usize> NormalEquations<P> {
             if !(diagonal.is_finite() && diagonal > 0.0) {
                 return Err(Error::Singular);
             }
-            self.scale[i] = 1.0 / math::sqrt(diagonal);
-            self.right[i] = right * self.scale[i];
+            self.scale.put(i, 1.0 / math::sqrt(diagonal));
+            self.right.put(i, right * self.scale[i]);
             for j in 0..=i {
                 let scaled = own[j] * self.scale[i] * self.scale[j];
-                self.scaled[(i, j)] = scaled;
-                self.scaled[(j, i)] = scaled;
+                self.scaled.put((i, j), scaled);
+                self.scaled.put((j, i), scaled);
             }
         }
         Ok(())
@@ -70,19 +75,19 @@ impl<const P: usize> NormalEquations<P> {
     pub(crate) fn exchange(
         &mut self,
         place: usize,
-        entry: impl Fn(usize) -> f64,
+        entry: &dyn Fn(usize) -> f64,
         right: f64,
     ) -> Result<(), Error> {
         let diagonal = entry(place);
         if !(diagonal.is_finite() && diagonal > 0.0) {
             return Err(Error::Singular);
         }
-        self.scale[place] = 1.0 / math::sqrt(diagonal);
-        self.right[place] = right * self.scale[place];
+        self.scale.put(place, 1.0 / math::sqrt(diagonal));
+        self.right.put(place, right * self.scale[place]);
         for j in 0..self.count {
             let scaled = entry(j) * self.scale[place] * self.scale[j];
-            self.scaled[(place, j)] = scaled;
-            self.scaled[(j, place)] = scaled;
+            self.scaled.put((place, j), scaled);
+            self.scaled.put((j, place), scaled);
         }
         Ok(())
     }
@@ -94,14 +99,15 @@ impl<const P: usize> NormalEquations<P> {
 
     /// Factors the equations of the free unknowns; the others become the identity.
     #[inline(never)]
-    fn factor(&self, free: &Free<P>, factor: &mut Matrix<P>) -> bool {
+    fn factor(&self, free: &Free, factor: &mut Matrix<P>) -> bool {
         for i in 0..self.count {
             for j in 0..=i {
-                factor[(i, j)] = match (i == j, free[i] && free[j]) {
+                let element = match (i == j, free.has(i) && free.has(j)) {
                     (_, true) => self.scaled[(i, j)],
                     (true, false) => 1.0,
                     (false, false) => 0.0,
                 };
+                factor.put((i, j), element);
             }
         }
         // The diagonal holds reciprocals.
@@ -111,7 +117,7 @@ impl<const P: usize> NormalEquations<P> {
 
     /// Solves the scaled equations of the free unknowns for any right side.
     #[inline(never)]
-    fn solve_for(&self, free: &Free<P>, x: &mut Vector<P>) -> bool {
+    fn solve_for(&self, free: &Free, x: &mut Vector<P>) -> bool {
         let mut factor = Matrix::zeros();
         let regular = self.factor(free, &mut factor);
         if regular {
@@ -121,28 +127,29 @@ impl<const P: usize> NormalEquations<P> {
         regular
     }
 
-    fn solve_scaled(&self, free: &Free<P>) -> Option<Vector<P>> {
+    fn solve_scaled(&self, free: &Free) -> Option<Vector<P>> {
         // Beyond the count there may be something of an earlier use.
-        let mut solution = Vector::zeros();
-        for i in (0..self.count).filter(|&i| free[i]) {
-            solution[i] = self.right[i];
+        let mut solution = Vector::<P>::zeros();
+        for i in (0..self.count).filter(|&i| free.has(i)) {
+            solution.put(i, self.right[i]);
         }
         self.solve_for(free, &mut solution).then_some(solution)
     }
 
     /// `b − H β` of a scaled solution.
     fn gradient(&self, scaled: &Vector<P>) -> Vector<P> {
-        let mut gradient = Vector::zeros();
+        let mut gradient = Vector::<P>::zeros();
         for i in 0..self.count {
             let row = (0..self.count).map(|j| self.scaled[(i, j)] * scaled[j]);
-            gradient[i] = self.right[i] - row.sum::<f64>();
+            gradient.put(i, self.right[i] - row.sum::<f64>());
         }
         gradient
     }
 
     /// How far a solution lowers the sum of squared residuals.
     pub(crate) fn explained(&self, solution: &Vector<P>) -> f64 {
-        let scaled = solution.component_div(&self.scale.map(|x| if x > 0.0 { x } else { 1.0 }));
+        let scale = self.scale.map(|x| if x > 0.0 { x } else { 1.0 });
+        let scaled = Vector::from(solution.component_div(&scale));
         let rest = self.gradient(&scaled);
         (0..self.count)
             .map(|i| scaled[i] * (self.right[i] + rest[i]))
@@ -150,9 +157,9 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     /// The solution with these unknowns free, whatever its signs. `None` if they cannot be told apart.
-    pub(crate) fn solve_free(&self, free: &Free<P>) -> Option<Vector<P>> {
+    pub(crate) fn solve_free(&self, free: &Free) -> Option<Vector<P>> {
         let solution = self.solve_scaled(free)?;
-        Some(solution.component_mul(&self.scale))
+        Some(solution.component_mul(&self.scale).into())
     }
 
     /// The unconstrained solution.
@@ -160,25 +167,21 @@ impl<const P: usize> NormalEquations<P> {
     /// # Errors
     /// [`Error::Singular`].
     pub(crate) fn solve(&self) -> Result<Vector<P>, Error> {
-        let all = core::array::from_fn(|i| i < self.count);
+        let all = Free::of(|i| i < self.count);
         let solution = self.solve_scaled(&all).ok_or(Error::Singular)?;
-        Ok(solution.component_mul(&self.scale))
+        Ok(solution.component_mul(&self.scale).into())
     }
 
     /// The solution with no negative coefficient, and which are above zero (Lawson & Hanson 1974,
     /// ch. 23, on the normal equations). Those for which `held` is true stay at zero.
-    pub(crate) fn solve_non_negative(&self, held: &Free<P>) -> (Vector<P>, Free<P>) {
-        self.improve(Vector::zeros(), [false; P], held)
+    pub(crate) fn solve_non_negative(&self, held: &Free) -> (Vector<P>, Free) {
+        self.improve(Vector::zeros(), Free::default(), held)
     }
 
     /// The same, sooner where those above zero are guessed right.
-    pub(crate) fn solve_non_negative_near(
-        &self,
-        guess: &Free<P>,
-        held: &Free<P>,
-    ) -> (Vector<P>, Free<P>) {
+    pub(crate) fn solve_non_negative_near(&self, guess: &Free, held: &Free) -> (Vector<P>, Free) {
         match self.solve_scaled(guess) {
-            Some(trial) if (0..self.count).all(|i| !guess[i] || trial[i] > 0.0) => {
+            Some(trial) if (0..self.count).all(|i| !guess.has(i) || trial[i] > 0.0) => {
                 self.improve(trial, *guess, held)
             }
             _ => self.solve_non_negative(held),
@@ -186,56 +189,46 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     #[inline(never)]
-    fn improve(
-        &self,
-        mut solution: Vector<P>,
-        mut free: Free<P>,
-        held: &Free<P>,
-    ) -> (Vector<P>, Free<P>) {
-        let mut refused = [false; P];
+    fn improve(&self, mut solution: Vector<P>, mut free: Free, held: &Free) -> (Vector<P>, Free) {
+        let mut refused = Free::default();
         // Each round frees one coefficient; thrice their number is the customary limit.
         for _ in 0..3 * P {
             let gradient = self.gradient(&solution);
             let candidate = (0..self.count)
-                .filter(|&i| !free[i] && !refused[i] && !held[i] && gradient[i] > 1e-12)
+                .filter(|&i| !(free.has(i) || refused.has(i) || held.has(i)) && gradient[i] > 1e-12)
                 .max_by(|&a, &b| gradient[a].total_cmp(&gradient[b]));
             let Some(entering) = candidate else { break };
-            free[entering] = true;
+            free.add(entering);
             let Some(trial) = self
                 .solve_scaled(&free)
                 .filter(|trial| trial[entering] > 0.0)
             else {
                 // Not to be told from those already free.
-                free[entering] = false;
-                refused[entering] = true;
+                free.drop(entering);
+                refused.add(entering);
                 continue;
             };
             solution = self.retreat(solution, trial, &mut free);
             // A coefficient refused beside others may be welcome once they have changed.
-            refused = core::array::from_fn(|i| refused[i] && i == entering);
+            refused = Free::of(|i| refused.has(i) && i == entering);
         }
-        (solution.component_mul(&self.scale), free)
+        (solution.component_mul(&self.scale).into(), free)
     }
 
     /// Goes from a solution towards one that may have negative coefficients, holding those that
     /// reach zero, until none is negative.
-    fn retreat(
-        &self,
-        mut solution: Vector<P>,
-        mut trial: Vector<P>,
-        free: &mut Free<P>,
-    ) -> Vector<P> {
+    fn retreat(&self, mut solution: Vector<P>, mut trial: Vector<P>, free: &mut Free) -> Vector<P> {
         for _ in 0..self.count {
             let held = (0..self.count)
-                .filter(|&i| free[i] && trial[i] <= 0.0)
+                .filter(|&i| free.has(i) && trial[i] <= 0.0)
                 .map(|i| (i, solution[i] / (solution[i] - trial[i])))
                 .min_by(|a, b| a.1.total_cmp(&b.1));
             let Some((leaving, fraction)) = held else {
                 break;
             };
-            solution += (trial - solution) * fraction;
-            free[leaving] = false;
-            solution[leaving] = 0.0;
+            solution = (*solution + (*trial - *solution) * fraction).into();
+            free.drop(leaving);
+            solution.put(leaving, 0.0);
             match self.solve_scaled(free) {
                 Some(next) => trial = next,
                 None => return solution,
@@ -245,18 +238,18 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     /// Variance of one of the free unknowns. `None` if they cannot be told apart.
-    pub(crate) fn variance(&self, i: usize, free: &Free<P>) -> Option<f64> {
+    pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<f64> {
         let mut unit = Vector::<P>::zeros();
-        unit[i] = 1.0;
+        unit.put(i, 1.0);
         let regular = self.solve_for(free, &mut unit);
         regular.then(|| unit[i] * self.scale[i] * self.scale[i])
     }
 
     /// Covariances of one of the free unknowns with all of them. `None` if they cannot be told apart.
-    pub(crate) fn column(&self, i: usize, free: &Free<P>) -> Option<Vector<P>> {
+    pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector<P>> {
         let mut unit = Vector::<P>::zeros();
-        unit[i] = 1.0;
+        unit.put(i, 1.0);
         let regular = self.solve_for(free, &mut unit);
-        regular.then(|| unit.component_mul(&self.scale) * self.scale[i])
+        regular.then(|| (unit.component_mul(&self.scale) * self.scale[i]).into())
     }
 }

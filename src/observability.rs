@@ -1,7 +1,8 @@
 //! How long a record must be for an effect to show.
 
 use crate::{
-    model::Model,
+    list::numbered,
+    model::{MAX_EFFECTS, Model},
     nnls::{Free, Matrix, NormalEquations, Vector},
 };
 
@@ -25,19 +26,18 @@ pub(crate) fn record_length_s(
     samples: f64,
 ) -> Option<f64> {
     let mut assumed = *squares;
-    assumed[i] = square;
-    let mut with = *free;
-    with[i] = true;
+    assumed.put(i, square);
+    let with = free.with(i);
     let count = model.terms().len();
-    let mut equations = NormalEquations::empty();
+    let mut equations = NormalEquations::<MAX_EFFECTS>::empty();
     // The equations are `samples · Σ q/2m − Σ q/2`, q being an octave's share: each doubling adds one.
     let (mut growing, mut fixed): (Matrix, Matrix) = (Matrix::zeros(), Matrix::zeros());
     let (mut m, mut samples) = (1.0, 2.0 * samples);
     while samples <= LONGEST {
         while samples / m >= 4.0 {
             let mut row: Vector = Vector::zeros();
-            for (share, term) in row.iter_mut().zip(model.terms()) {
-                *share = term.effect.variance(m, &term.setting(interval_s));
+            for (j, term) in numbered(model.terms().iter()) {
+                row.put(j, term.effect.variance(m, &term.setting(interval_s)));
             }
             let variance = row.dot(&assumed);
             // Relative variance of a variance from N/m clusters: 2/(N/m − 1).
@@ -45,15 +45,15 @@ pub(crate) fn record_length_s(
             for a in 0..count {
                 for b in 0..=a {
                     let share = weight * row[a] * row[b];
-                    growing[(a, b)] += share / m;
-                    fixed[(a, b)] += share;
+                    growing.put((a, b), growing[(a, b)] + share / m);
+                    fixed.put((a, b), fixed[(a, b)] + share);
                 }
             }
             m *= 2.0;
         }
-        let set = equations.set(count, |a, row| {
+        let set = equations.set(count, &|a, row| {
             for b in 0..=a {
-                row[b] = samples * growing[(a, b)] - fixed[(a, b)];
+                row.put(b, samples * growing[(a, b)] - fixed[(a, b)]);
             }
             0.0
         });

@@ -226,7 +226,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         for k in 0..OCTAVES {
             let octave = self.read(k);
             *self.sum_mut(k) = octave.sum;
-            self.differences[k] = octave.differences;
+            self.set_counted(k, octave.differences);
         }
         self.earlier_samples = self.samples();
         self.number = 0;
@@ -247,7 +247,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         for k in 0..OCTAVES {
             let octave = other.read(k);
             self.sum_mut(k).add_sum(&octave.sum);
-            self.differences[k] = self.differences[k].saturating_add(octave.differences);
+            let counted = self.counted(k).saturating_add(octave.differences);
+            self.set_counted(k, counted);
         }
         self.earlier_samples = self.earlier_samples.saturating_add(other.samples());
         let ends = other.gaps.saturating_add(u64::from(other.number > 0));
@@ -291,7 +292,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         let mut accumulator = Self::new();
         for (k, octave) in octaves.into_iter().take(OCTAVES).enumerate() {
             *accumulator.sum_mut(k) = octave.sum;
-            accumulator.differences[k] = octave.differences;
+            accumulator.set_counted(k, octave.differences);
         }
         accumulator.earlier_samples = samples;
         accumulator.gaps = gaps;
@@ -311,20 +312,16 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
 
     fn read(&self, k: usize) -> OctaveSum {
         let level = k.saturating_sub(FIRST);
-        let mut sum = if k < FIRST {
-            self.short[k]
-        } else {
-            self.levels[level].sum
+        let served = self.levels.get(level).unwrap_or(&Level::EMPTY);
+        let mut sum = match self.short.get(k) {
+            Some(short) => *short,
+            None => served.sum,
         };
-        let block = self.position() >> level;
+        let block = self.position().wrapping_shr(level as u32);
         if self.is_pending(level) && block >= RING as u64 {
-            let ring = &self.levels[level].ring;
             let i = block as usize % RING;
-            sum.add_square(second_difference(
-                self.boundary(level),
-                ring[i ^ 4],
-                ring[i],
-            ));
+            let [middle, oldest] = [served.ring[i ^ 4], served.ring[i]];
+            sum.add_square(second_difference(self.boundary(level), middle, oldest));
         }
         // Blocks so far, less those that the first difference needs.
         let running = block.saturating_sub(match k {
@@ -333,23 +330,35 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             _ => 7,
         });
         OctaveSum {
-            m: 1 << k,
-            differences: self.differences[k].saturating_add(running),
+            m: 1_u32.wrapping_shl(k as u32),
+            differences: self.counted(k).saturating_add(running),
             sum,
         }
     }
 
     fn sum_mut(&mut self, k: usize) -> &mut SquareSum {
-        if k < FIRST {
-            &mut self.short[k]
-        } else {
-            &mut self.levels[k - FIRST].sum
+        let level = k.checked_sub(FIRST);
+        match level.and_then(|level| self.levels.get_mut(level)) {
+            Some(level) => &mut level.sum,
+            None => &mut self.short[k % FIRST],
+        }
+    }
+
+    /// Differences in the segments before the last gap.
+    fn counted(&self, k: usize) -> u64 {
+        self.differences.get(k).copied().unwrap_or(0)
+    }
+
+    fn set_counted(&mut self, k: usize, differences: u64) {
+        if let Some(counted) = self.differences.get_mut(k) {
+            *counted = differences;
         }
     }
 
     /// Whether the level's newest boundary still waits for its turn in the schedule.
     fn is_pending(&self, level: usize) -> bool {
-        level > 0 && self.number >> (level - 1) & 1 == 0
+        let below = level.checked_sub(1);
+        below.is_some_and(|below| self.number.wrapping_shr(below as u32) & 1 == 0)
     }
 
     /// The angle at the level's newest block boundary, from the first level below that has it.
@@ -359,7 +368,9 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             .find(|&l| !self.is_pending(l))
             .unwrap_or(0);
         // While levels are pending, the boundary is the newest of the level below as well.
-        self.levels[holder].ring[(self.number >> holder) as usize % RING]
+        let block = self.number.wrapping_shr(holder as u32) as usize;
+        let held = self.levels.get(holder).unwrap_or(&Level::EMPTY);
+        held.ring[block % RING]
     }
 }
 

@@ -7,6 +7,7 @@ use crate::{
         Problem,
         weights::{Weights, Whitened},
     },
+    list::numbered,
     math,
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
@@ -70,28 +71,33 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
         let (problem, weights, to_measured) = (self.problem, self.weights, self.to_measured);
         if self.whitened.columns.is_empty() {
             let scatter = |k| scatter(problem, weights, to_measured, k);
-            weights.whiten_into(problem, scatter, &mut self.whitened);
+            weights.whiten_into(problem, &scatter, &mut self.whitened);
         }
         let Whitened { columns, curve } = &self.whitened;
-        self.equations.set(columns.len().max(place + 1), |i, row| {
-            for j in 0..=i {
-                row[j] = match (i == place || j == place, i == j) {
-                    (false, _) => columns[i].dot(&columns[j]),
-                    (true, same) => f64::from(u8::from(same)),
-                };
-            }
-            columns.get(i).map_or(0.0, |column| column.dot(curve))
-        })?;
+        let own = |i: usize| columns.get(i);
+        self.equations
+            .set(columns.len().max(place.saturating_add(1)), &|i, row| {
+                for j in 0..=i {
+                    let element = match (i == place || j == place, own(i).zip(own(j))) {
+                        (false, Some((one, other))) => one.dot(other),
+                        _ => f64::from(u8::from(i == j)),
+                    };
+                    row.put(j, element);
+                }
+                own(i).map_or(0.0, |column| column.dot(curve))
+            })?;
         self.place = place;
         self.held = self.problem.held();
-        self.held[place] = false;
-        self.free = core::array::from_fn(|i| i == place || (squares[i] > 0.0 && !self.held[i]));
+        self.held.drop(place);
+        let held = self.held;
+        let above = |i: usize| i < MAX_EFFECTS && squares[i] > 0.0;
+        self.free = Free::of(|i| i == place || (above(i) && !held.has(i)));
         Ok(())
     }
 
     /// With the effects that are held at zero free as well.
     pub(crate) fn release(&mut self) {
-        self.held = [false; MAX_EFFECTS];
+        self.held = Free::default();
     }
 
     /// χ² with the effect in a shape, and the squared coefficients.
@@ -102,12 +108,12 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
         let scatter = |k| scatter(self.problem, self.weights, self.to_measured, k);
         let (column, size) = self
             .weights
-            .whiten_trial(self.problem, scatter, |k| unit[k]);
+            .whiten_trial(self.problem, &scatter, &|k| unit[k]);
         let column = column.map(|x| f64::from(x) * size);
         let others = &self.whitened.columns;
         let exchanged = self.equations.exchange(
             self.place,
-            |i| match others.get(i) {
+            &|i| match others.get(i) {
                 Some(other) if i != self.place => other.dot(&column),
                 _ => column.norm_squared(),
             },
@@ -171,7 +177,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
             let grid = Grid::of(term.effect, whole, span);
             for step in 0..grid.steps {
                 let mut other = term;
-                other.parameters[whole] = grid.at(step);
+                other.set_parameter(whole, grid.at(step));
                 let found = self.refine_known(other, span);
                 if found.chi_squared < chi_squared + RISE {
                     let interval = self.interval(&found, j, span);
@@ -188,10 +194,10 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     #[inline(never)]
     pub(crate) fn interval(&mut self, best: &Found, j: usize, span: &Span) -> (f64, f64) {
         let grid = Grid::of(best.term.effect, j, span);
-        let value = best.term.parameters[j];
+        let value = best.term.parameter(j);
         let mut rise = |factor: f64| {
             let mut term = best.term;
-            term.parameters[j] = value * factor;
+            term.set_parameter(j, value * factor);
             self.with(&term).0 - best.chi_squared
         };
         let mut end = |direction: f64| {
@@ -235,16 +241,19 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     ) -> Found {
         let mut best = start;
         for _ in 0..HALVINGS {
-            for j in best.term.fitted_parameters() {
+            for (j, (step, range)) in numbered(steps.iter_mut().zip(ranges)) {
+                if !best.term.fitted_parameters().any(|fitted| fitted == j) {
+                    continue;
+                }
                 for sign in [1.0, -1.0] {
                     let mut term = best.term;
-                    let value = term.parameters[j] * math::exp(sign * steps[j]);
-                    term.parameters[j] = value.clamp(ranges[j].low, ranges[j].high);
+                    let value = term.parameter(j) * math::exp(sign * *step);
+                    term.set_parameter(j, value.max(range.low).min(range.high));
                     if best.improve(term, self.with(&term)) {
                         break;
                     }
                 }
-                steps[j] *= 0.5;
+                *step *= 0.5;
             }
         }
         best
@@ -317,7 +326,7 @@ impl Grid {
                 low: range.low,
                 high: range.high,
                 log_step: 0.0,
-                steps: (range.high - range.low) as u32 + 1,
+                steps: ((range.high - range.low) as u32).saturating_add(1),
             };
         }
         Self::new(range)
@@ -327,11 +336,11 @@ impl Grid {
         let high = range.high.max(range.low);
         let octaves = math::log2_roughly(high / range.low);
         // A step more or less does not matter: the last is held at the upper end.
-        let steps = (octaves * range.steps_per_octave) as u32 + 2;
+        let steps = ((octaves * range.steps_per_octave) as u32).saturating_add(2);
         Self {
             low: range.low,
             high,
-            log_step: math::log(high / range.low) / f64::from(steps - 1),
+            log_step: math::log(high / range.low) / f64::from(steps.saturating_sub(1)),
             steps,
         }
     }

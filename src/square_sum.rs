@@ -38,11 +38,12 @@ impl SquareSum {
             self.add_low(square);
         } else {
             // A digit of 64 bits, and the one above it.
-            let cross = product(lower, 2 * upper) + (square >> 32) as i64;
+            let cross = sum_signed(product(lower, upper.wrapping_mul(2)), (square >> 32) as i64);
             let sum_low = square & 0xFFFF_FFFF | (cross as u64) << 32;
-            let sum_high = (product(upper, upper) + (cross >> 32)) as u64;
-            let low = self.low + (sum_low & DIGIT);
-            let middle = self.middle + (sum_high << 1 | sum_low >> 63) + (low >> 63);
+            let sum_high = sum_signed(product(upper, upper), cross >> 32) as u64;
+            let low = sum(self.low, sum_low & DIGIT);
+            let carried = sum(sum_high << 1 | sum_low >> 63, low >> 63);
+            let middle = sum(self.middle, carried);
             self.low = low & DIGIT;
             self.middle = middle & DIGIT;
             self.high = self.high.wrapping_add((middle >> 63) as u32);
@@ -52,7 +53,7 @@ impl SquareSum {
     /// Adds a sum of squares of at most 2^63.
     #[inline(always)]
     pub(crate) fn add_low(&mut self, squares: u64) {
-        let low = self.low + squares;
+        let low = sum(self.low, squares);
         if low > DIGIT {
             self.carry(low);
         } else {
@@ -64,15 +65,15 @@ impl SquareSum {
     #[inline(never)]
     fn carry(&mut self, low: u64) {
         self.low = low & DIGIT;
-        let middle = self.middle + 1;
+        let middle = sum(self.middle, 1);
         self.middle = middle & DIGIT;
         self.high = self.high.wrapping_add((middle >> 63) as u32);
     }
 
     /// Adds another sum of squares.
     pub(crate) fn add_sum(&mut self, other: &Self) {
-        let low = self.low + other.low;
-        let middle = self.middle + other.middle + (low >> 63);
+        let low = sum(self.low, other.low);
+        let middle = sum(sum(self.middle, other.middle), low >> 63);
         self.low = low & DIGIT;
         self.middle = middle & DIGIT;
         // Merged without end, a sum wraps before the counter of samples is believed.
@@ -156,6 +157,20 @@ impl From<u128> for SquareSum {
             high: (value >> 126) as u32,
         }
     }
+}
+
+/// A sum that stays below 2^64, as [`SquareSum`] proves: it needs no check of its own on a target.
+#[inline(always)]
+const fn sum(a: u64, b: u64) -> u64 {
+    debug_assert!(a.checked_add(b).is_some());
+    a.wrapping_add(b)
+}
+
+/// One that stays within ±2^63.
+#[inline(always)]
+const fn sum_signed(a: i64, b: i64) -> i64 {
+    debug_assert!(a.checked_add(b).is_some());
+    a.wrapping_add(b)
 }
 
 /// One multiplication on a 32-bit core; exact.

@@ -10,6 +10,7 @@ use crate::{
         Problem,
         generalized::{Rounds, Solution},
     },
+    list::numbered,
     model::Model,
     nnls::Vector,
 };
@@ -28,7 +29,7 @@ impl Diagnosis {
     ) -> Result<Option<Addition>, Error> {
         let model = &standing.step.model;
         let mut best: Option<Follows> = None;
-        for (covariate, cross) in evidence.covariates.iter().enumerate() {
+        for (covariate, cross) in numbered(evidence.covariates.iter()) {
             let Some(slope) = self.slope(curve, cross, model, &standing.squares)? else {
                 continue;
             };

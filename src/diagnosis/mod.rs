@@ -130,8 +130,9 @@ impl Diagnosis {
             if let Some(verdict) = end {
                 return Ok(verdict);
             }
-            if let Some(Addition::Covariate(follows)) = &standing.step.added {
-                let cross = &evidence.covariates[follows.covariate];
+            if let Some(Addition::Covariate(follows)) = &standing.step.added
+                && let Some(cross) = evidence.covariates.get(follows.covariate)
+            {
                 cross.correct(&mut rest, &follows.slope);
             }
         }
@@ -176,7 +177,7 @@ impl Diagnosis {
                 ));
             }
         }
-        standing.additions += 1;
+        standing.additions = standing.additions.saturating_add(1);
         Ok(None)
     }
 }

@@ -8,6 +8,7 @@ use crate::{
     curve::Curve,
     effect::{Effect, MAX_PARAMETERS},
     error::Error,
+    list,
     model::{Model, Term},
 };
 use heapless::Vec;
@@ -35,14 +36,18 @@ impl Preferred {
             |other: &Candidate| (other.term.effect, other.term.parameters.map(|x| x as f32));
         Some(Self {
             added: first.term.effect,
-            others: accepted.map(start).collect(),
+            others: list::fill(accepted.map(start)),
         })
     }
 
     /// The model with another effect instead of the one that was added.
     #[inline(never)]
-    fn instead(&self, model: &Model, other: usize, base: &mut Model) -> Result<(), Error> {
-        let (effect, parameters) = self.others[other];
+    fn instead(
+        &self,
+        model: &Model,
+        (effect, parameters): (&'static dyn Effect, [f32; MAX_PARAMETERS]),
+        base: &mut Model,
+    ) -> Result<(), Error> {
         base.clone_from(model);
         base.remove(self.added.name());
         if let Some(replaced) = self.added.replaces() {
@@ -75,7 +80,7 @@ impl Diagnosis {
         let Some(preferred) = standing.preferred.take() else {
             return;
         };
-        for other in 0..preferred.others.len() {
+        for &other in &preferred.others {
             // A model that cannot be fitted has no candidates.
             let Standing {
                 step, base, found, ..
@@ -87,14 +92,14 @@ impl Diagnosis {
             if scan_beside(curve, base, self.tolerance, effects, found).is_err() {
                 continue;
             }
-            found.retain(|found| {
+            let tried = found.iter().copied().filter(|found| {
                 let effect = found.term.effect;
                 effect.name() != preferred.added.name() && is_as_simple(effect, preferred.added)
             });
-            found.truncate(TRIED);
+            *found = list::fill(tried.take(TRIED));
             let swap = Swap {
                 dropped: preferred.added,
-                taken: preferred.others[other].0,
+                taken: other.0,
             };
             self.try_all(curve, Some(swap), standing);
         }

@@ -6,6 +6,7 @@ use crate::{
     effect::{Effect, Span},
     error::Error,
     fit::{Problem, generalized::Solution},
+    list,
     model::Model,
     search::{Found, Search},
 };
@@ -61,18 +62,7 @@ pub(super) fn scan<const K: usize>(
         if best.squares[place] <= 0.0 {
             continue;
         }
-        let at = found
-            .iter()
-            .position(|other| other.chi_squared > best.chi_squared)
-            .unwrap_or(found.len());
-        if at == MAX_CANDIDATES {
-            continue;
-        }
-        if found.is_full() {
-            found.pop();
-        }
-        // There is room now.
-        let _ = found.insert(at, best);
+        list::rank(found, best, |other| other.chi_squared > best.chi_squared);
     }
 }
 

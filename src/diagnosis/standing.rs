@@ -1,7 +1,7 @@
 //! Where a diagnosis stands: the model so far, and what might be added to it.
 
 use super::{
-    Addition, Candidate, Diagnosis, MAX_CANDIDATES, Step, Swap,
+    Addition, Candidate, Diagnosis, Step, Swap,
     revise::Preferred,
     scan::{Scan, scan, span},
     trial::Better,
@@ -15,6 +15,7 @@ use crate::{
         Fit, Problem,
         generalized::{Rounds, Solution},
     },
+    list,
     model::Model,
     nnls::Vector,
 };
@@ -100,7 +101,8 @@ impl Diagnosis {
         let span = span(curve);
         solution.report(&mut step.fit);
         solution.bound_shapes(&mut step.fit, &span)?;
-        let unknowns = problem.points.len() - step.fit.degrees_of_freedom;
+        let octaves = problem.points.len();
+        let unknowns = octaves.saturating_sub(step.fit.degrees_of_freedom);
         step.comparison
             .set(&problem, &solution.weights, &solution.squares, unknowns);
         standing.found.clear();
@@ -159,22 +161,12 @@ impl Diagnosis {
             };
             least = least.min(fitted);
             candidate.improvement = *score - fitted - 2.0 * candidate.cost();
-            let at = step
-                .candidates
-                .iter()
-                .position(|other| other.improvement < candidate.improvement)
-                .unwrap_or(step.candidates.len());
-            if at == MAX_CANDIDATES {
-                continue;
-            }
-            if at == 0 {
+            let place = list::rank(&mut step.candidates, candidate, |other| {
+                other.improvement < candidate.improvement
+            });
+            if place == Some(0) {
                 best.clone_from(&better);
             }
-            if step.candidates.is_full() {
-                step.candidates.pop();
-            }
-            // There is room now.
-            let _ = step.candidates.insert(at, candidate);
         }
     }
 

@@ -86,7 +86,8 @@ pub struct Follows {
 
 /// Parameters of an effect whose shape is fitted.
 pub(super) fn cost(effect: &'static dyn Effect) -> f64 {
-    (1 + Term::fitted(effect).fitted_parameters().count()) as f64
+    let shapes = Term::fitted(effect).fitted_parameters();
+    1.0 + shapes.map(|_| 1.0).sum::<f64>()
 }
 
 /// What a step adds to the model.

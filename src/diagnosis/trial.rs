@@ -57,8 +57,10 @@ impl Better {
         self.squares = found.squares;
         let replaced = found.term.effect.replaces();
         if let Some(place) = replaced.and_then(|effect| self.model.remove(effect.name())) {
-            for i in place + 1..model.terms().len() {
-                self.squares.swap_rows(i - 1, i);
+            for i in place..self.model.terms().len() {
+                let (one, other) = (self.squares[i], self.squares[i + 1]);
+                self.squares.put(i, other);
+                self.squares.put(i + 1, one);
             }
         }
         self.model.add(found.term)
@@ -81,7 +83,7 @@ impl Better {
         let mut kept: Option<f64> = None;
         let mut before = f64::INFINITY;
         let mut steps = Steps::new();
-        let mut halvings = 0;
+        let mut halvings = 0_u32;
         for _ in 0..ROUNDS {
             let mut next = Steps::new();
             let Some(now) = trial.round(curve, tolerance, &mut next, &mut tried)? else {
@@ -107,7 +109,7 @@ impl Better {
                 trial.go(&steps, 1.0, &span);
             } else {
                 // Too far: half the way back.
-                halvings += 1;
+                halvings = halvings.saturating_add(1);
                 if halvings > HALVINGS {
                     break;
                 }
@@ -124,10 +126,13 @@ impl Better {
     fn go(&mut self, steps: &Steps, sign: f64, span: &Span) {
         for &(i, j, step) in steps {
             let (j, step) = (usize::from(j), f64::from(step));
-            let term = &mut self.model.terms_mut()[usize::from(i)];
+            let Some(term) = self.model.terms_mut().get_mut(usize::from(i)) else {
+                continue;
+            };
             let range = term.effect.range(j, span);
-            let changed = term.parameters[j] * math::exp(sign * step);
-            term.parameters[j] = changed.clamp(range.low, range.high.max(range.low));
+            let changed = term.parameter(j) * math::exp(sign * step);
+            let highest = range.high.max(range.low);
+            term.set_parameter(j, changed.max(range.low).min(highest));
         }
     }
 
@@ -148,8 +153,10 @@ impl Better {
         match judge(&problem, &solution, steps, candidate) {
             None => Ok(Some(solution.minus_two_log_likelihood())),
             Some(confused) => {
-                self.model.terms_mut()[confused].held = true;
-                self.squares[confused] = 0.0;
+                if let Some(term) = self.model.terms_mut().get_mut(confused) {
+                    term.held = true;
+                }
+                self.squares.put(confused, 0.0);
                 Ok(None)
             }
         }
@@ -176,9 +183,10 @@ fn judge<const K: usize>(
             let _ = steps.push((i as u8, j as u8, step.clamp(-STRIDE, STRIDE) as f32));
         });
     }
-    let at = problem.count() - 1;
-    candidate.term = problem.model.terms()[at];
-    candidate.coefficient = math::sqrt(solution.squares[at].max(0.0));
+    if let Some((last, others)) = problem.model.terms().split_last() {
+        candidate.term = *last;
+        candidate.coefficient = math::sqrt(solution.squares[others.len()].max(0.0));
+    }
     candidate.chi_squared = solution.chi_squared;
     None
 }

@@ -112,7 +112,8 @@ impl Pole {
         sum.add_slots(|slot| {
             let (own, position) = (powers.next(slot), lattice::position(slot));
             let value = if position < 4 {
-                let near = powers.near(4 + slot) - own * 2.0 + powers.near(4 - slot);
+                let (after, before) = (slot.saturating_add(4), slot.abs_diff(4));
+                let near = powers.near(after) - own * 2.0 + powers.near(before);
                 -self.long * m * (1.0 - 0.25 * f64::from(position)) - (self.factor * near).re
             } else if gone && position == 4 {
                 -self.factor.re

@@ -80,16 +80,16 @@ impl Fit {
             return Err(Error::Singular);
         }
         let problem = Problem::new(curve, model);
-        let squares = Vector::from(self.squares());
-        let free: Free = core::array::from_fn(|i| squares[i] > 0.0);
+        let squares = Vector::from(nalgebra::SVector::from(self.squares()));
+        let free = Free::of(|i| i < MAX_EFFECTS && squares[i] > 0.0);
         let mut weights = Weights::empty();
         weights.set(&problem, &squares, self.tolerance)?;
         let mut shape = ShapeEquations::empty();
         if shape.set(&problem, &weights, &squares) {
             correlations.take(count, &free, |i| shape.column(i, &free));
         } else {
-            let mut equations = NormalEquations::empty();
-            weights.equations(&problem, |_| 1.0, &[], |_| 0.0, &mut equations)?;
+            let mut equations = NormalEquations::<MAX_EFFECTS>::empty();
+            weights.equations(&problem, &|_| 1.0, &[], &|_| 0.0, &mut equations)?;
             correlations.take(count, &free, |i| equations.column(i, &free));
         }
         Ok(correlations)
@@ -104,15 +104,15 @@ impl Correlations {
         free: &Free,
         column: impl Fn(usize) -> Option<Vector<P>>,
     ) {
-        let mut variances = [0.0; MAX_EFFECTS];
+        let mut variances = Vector::<MAX_EFFECTS>::zeros();
         for i in 0..count {
-            let own = if free[i] { column(i) } else { None };
+            let own = if free.has(i) { column(i) } else { None };
             if let Some(own) = &own {
-                variances[i] = own[i];
+                variances.put(i, own[i]);
             }
             for j in 0..i {
                 let correlation = match &own {
-                    _ if !(free[i] && free[j]) => 0.0,
+                    _ if !(free.has(i) && free.has(j)) => 0.0,
                     Some(own) => own[j] / math::sqrt(variances[i] * variances[j]),
                     None => f64::NAN,
                 };

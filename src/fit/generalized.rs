@@ -4,16 +4,18 @@ use super::{
     Fit, Method, Problem, clusters, independent, shape::ShapeEquations, squared, weights::Weights,
 };
 use crate::{
+    algebra,
     chi_squared::chi_squared_tail,
     coefficient::{Coefficient, State},
     effect::Span,
     error::Error,
+    list::numbered,
     math,
+    model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
     observability::record_length_s,
     search::Search,
 };
-use nalgebra::SVector;
 
 /// Rounds of covariance and solution; two to four bring the model to within 0.1 %, hardly ever more
 /// than eight.
@@ -95,18 +97,18 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         rounds: Rounds,
     ) -> Result<(), Error> {
         let problem = self.problem;
-        let curve = |k: usize| problem.points[k].variance;
+        let curve = |k: usize| problem.measured(k);
         // The squares that the covariance is taken at approach those that it gives.
         let mut assumed = start;
-        let mut last: Option<SVector<f64, K>> = None;
+        let mut last: Option<algebra::Vector<K>> = None;
         let mut step: f64 = 1.0;
-        let mut round = 1;
+        let mut round = 1_usize;
         loop {
             self.weights.set(problem, &assumed, tolerance)?;
             let (weights, equations) = (&self.weights, &mut self.equations);
-            weights.equations(problem, |_| 1.0, &[], curve, equations)?;
+            weights.equations(problem, &|_| 1.0, &[], &curve, equations)?;
             (self.squares, self.free) = self.equations.solve_non_negative(&problem.held());
-            let change = SVector::<f64, K>::from_fn(|k, _| {
+            let change = algebra::Vector::<K>::from_fn(|k| {
                 if k < problem.points.len() {
                     problem.variance(k, &self.squares) / self.weights.model[k] - 1.0
                 } else {
@@ -132,18 +134,20 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
                 step = (step / (1.0 - ratio.min(0.5))).clamp(0.3, 2.0);
             }
             last = Some(change);
-            assumed = (assumed + (self.squares - assumed) * step).map(|square| square.max(0.0));
-            round += 1;
+            let next = *assumed + (*self.squares - *assumed) * step;
+            assumed = next.map(|square| square.max(0.0)).into();
+            round = round.saturating_add(1);
         }
     }
 
     fn degrees_of_freedom(&self) -> usize {
-        let terms = self.problem.model.terms().iter().zip(&self.free);
-        let active = terms.filter(|&(_, &free)| free);
-        let unknowns: usize = active
-            .map(|(term, _)| 1 + term.fitted_parameters().count())
-            .sum();
-        self.problem.points.len().saturating_sub(unknowns)
+        let terms = numbered(self.problem.model.terms().iter());
+        let active = terms.filter(|&(i, _)| self.free.has(i));
+        let octaves = self.problem.points.len();
+        active.fold(octaves, |rest, (_, term)| {
+            let shapes = term.fitted_parameters();
+            shapes.fold(rest.saturating_sub(1), |rest, _| rest.saturating_sub(1))
+        })
     }
 
     pub(crate) fn p_value(&self) -> f64 {
@@ -161,12 +165,12 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         if before < UNDETERMINED {
             return None;
         }
-        let terms = self.problem.model.terms().iter().enumerate();
+        let terms = numbered(self.problem.model.terms().iter());
         terms
-            .filter(|&(i, term)| self.free[i] && term.effect.parameters().is_empty())
+            .filter(|&(i, term)| self.free.has(i) && term.effect.parameters().is_empty())
             .map(|(i, _)| {
                 let mut without = self.free;
-                without[i] = false;
+                without.drop(i);
                 (i, shape.worst_error(&without))
             })
             .filter(|&(_, error)| 3.0 * error < before)
@@ -195,9 +199,9 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     fn report_of(&self, shape: Option<&ShapeEquations>, fit: &mut Fit) {
         fit.method = Method::Covariance;
         fit.coefficients.clear();
-        for i in 0..self.problem.count() {
+        for (i, term) in numbered(self.problem.model.terms().iter()) {
             // As many as effects.
-            let _ = fit.coefficients.push(self.coefficient(i, shape));
+            let _ = fit.coefficients.push(self.coefficient(i, term, shape));
         }
         fit.shape = shape.map_or(heapless::Vec::new(), |shape| shape.estimates(&self.free));
         fit.chi_squared = self.chi_squared;
@@ -217,7 +221,9 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         let problem = self.problem;
         let mut search = Search::new(problem, &self.weights, false);
         for shape in &mut fit.shape {
-            let term = problem.model.terms()[shape.term];
+            let Some(&term) = problem.model.terms().get(shape.term) else {
+                continue;
+            };
             let mut parameters = term.fitted_parameters();
             if let (Some(j), None) = (parameters.next(), parameters.next()) {
                 search.at(shape.term, &self.squares)?;
@@ -230,13 +236,16 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
 
     /// One effect's coefficient.
     #[inline(never)]
-    pub(crate) fn coefficient(&self, i: usize, shape: Option<&ShapeEquations>) -> Coefficient {
-        let term = &self.problem.model.terms()[i];
+    pub(crate) fn coefficient(
+        &self,
+        i: usize,
+        term: &Term,
+        shape: Option<&ShapeEquations>,
+    ) -> Coefficient {
         if term.held {
             return Coefficient::new(term.effect, 0.0, None);
         }
-        let mut with = self.free;
-        with[i] = true;
+        let with = self.free.with(i);
         let linear = || self.equations.variance(i, &with);
         let variance = match shape {
             Some(shape) => shape.variance(i, &with).or_else(linear),
@@ -276,19 +285,19 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     #[inline(never)]
     fn bound(&self, i: usize, first: f64) -> f64 {
         let problem = self.problem;
-        let curve = |k: usize| problem.points[k].variance;
-        let mut equations = NormalEquations::empty();
+        let curve = |k: usize| problem.measured(k);
+        let mut equations = NormalEquations::<MAX_EFFECTS>::empty();
         let mut bound = first;
         for _ in 0..BOUND_ROUNDS {
             let scatter = |k: usize| 1.0 + bound * problem.unit(i, k) / self.weights.model[k];
             let weights = &self.weights;
-            let set = weights.equations(problem, scatter, &[], curve, &mut equations);
+            let set = weights.equations(problem, &scatter, &[], &curve, &mut equations);
             if set.is_err() {
                 break;
             }
             let (squares, mut free) =
                 equations.solve_non_negative_near(&self.free, &problem.held());
-            free[i] = true;
+            free.add(i);
             let Some(variance) = equations.variance(i, &free) else {
                 break;
             };

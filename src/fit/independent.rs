@@ -2,8 +2,12 @@
 
 use super::{Fit, Method, Problem, relative_accuracy, squared};
 use crate::{
-    chi_squared::chi_squared_tail, coefficient::Coefficient, curve::Point, error::Error,
-    nnls::NormalEquations,
+    chi_squared::chi_squared_tail,
+    coefficient::Coefficient,
+    curve::Point,
+    error::Error,
+    list::numbered,
+    nnls::{Free, NormalEquations},
 };
 
 /// The normal equations of weighted, independent octaves.
@@ -13,14 +17,14 @@ pub(super) fn equations<const K: usize>(
     equations: &mut NormalEquations,
 ) -> Result<(), Error> {
     let sum = |i: usize, other: &dyn Fn(usize, &Point) -> f64| -> f64 {
-        let octaves = problem.points.iter().enumerate();
+        let octaves = numbered(problem.points.iter());
         octaves
             .map(|(k, point)| weight(point) * problem.unit(i, k) * other(k, point))
             .sum()
     };
-    equations.set(problem.count(), |i, row| {
+    equations.set(problem.count(), &|i, row| {
         for j in 0..=i {
-            row[j] = sum(i, &|k, _| problem.unit(j, k));
+            row.put(j, sum(i, &|k, _| problem.unit(j, k)));
         }
         sum(i, &|_, point| point.variance)
     })
@@ -41,13 +45,11 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
     let mut equations = NormalEquations::empty();
     self::equations(problem, weight, &mut equations)?;
     let squares = equations.solve()?;
-    let free = core::array::from_fn(|i| i < problem.count());
-    let residuals =
-        problem.points.iter().enumerate().map(|(k, point)| {
-            weight(point) * squared(point.variance - problem.variance(k, &squares))
-        });
+    let free = Free::of(|i| i < problem.count());
+    let residuals = numbered(problem.points.iter())
+        .map(|(k, point)| weight(point) * squared(point.variance - problem.variance(k, &squares)));
     let mut chi_squared: f64 = residuals.sum();
-    let degrees_of_freedom = problem.points.len() - problem.count();
+    let degrees_of_freedom = problem.points.len().saturating_sub(problem.count());
     let mut scale = 1.0;
     if method != Method::RelativeAccuracy {
         // No error model: the residuals themselves give the scale.
@@ -55,7 +57,7 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         chi_squared = f64::NAN;
     }
     let mut coefficients = heapless::Vec::new();
-    for (i, term) in problem.model.terms().iter().enumerate() {
+    for (i, term) in numbered(problem.model.terms().iter()) {
         let variance = equations.variance(i, &free).ok_or(Error::Singular)?;
         // As many as effects.
         let _ = coefficients.push(Coefficient::new(

@@ -13,6 +13,7 @@ pub use correlation::Correlations;
 pub use shape::{MAX_SHAPE, ShapeEstimate};
 
 use crate::{
+    algebra,
     coefficient::Coefficient,
     curve::{Curve, Point},
     error::Error,
@@ -22,7 +23,6 @@ use crate::{
 };
 use generalized::Solution;
 use heapless::Vec;
-use nalgebra::SVector;
 
 /// How octaves are weighted, and whether squared coefficients may be negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -180,7 +180,7 @@ pub(crate) struct Problem<'a, const K: usize> {
     pub(crate) interval_s: f64,
     /// Allan variances of unit coefficients, of each effect: single precision is far below what any
     /// record tells of them.
-    columns: Vec<SVector<f32, K>, MAX_EFFECTS>,
+    columns: Vec<algebra::Vector<K, f32>, MAX_EFFECTS>,
 }
 
 impl<'a, const K: usize> Problem<'a, K> {
@@ -195,30 +195,35 @@ impl<'a, const K: usize> Problem<'a, K> {
             // As many columns as effects.
             let _ = problem
                 .columns
-                .push(problem.column(term).map(|variance| variance as f32));
+                .push(problem.column(term).map(|variance| variance as f32).into());
         }
         problem
     }
 
     /// The Allan variances of one effect, for a coefficient of one.
-    pub(crate) fn column(&self, term: &Term) -> SVector<f64, K> {
-        let mut column = SVector::<f64, K>::zeros();
-        let mut k = 0;
+    pub(crate) fn column(&self, term: &Term) -> algebra::Vector<K> {
+        let mut column = algebra::Vector::<K>::zeros();
+        let mut k = 0_usize;
         let mut factors = self.points.iter().map(|point| f64::from(point.m));
         let setting = term.setting(self.interval_s);
         term.effect
             .variances(&mut factors, &setting, &mut |variance| {
-                if let Some(slot) = column.get_mut(k) {
-                    *slot = variance;
-                }
-                k += 1;
+                column.put(k, variance);
+                k = k.saturating_add(1);
             });
         column
     }
 
+    /// The curve's variance in octave `k`.
+    pub(crate) fn measured(&self, k: usize) -> f64 {
+        self.points.get(k).map_or(0.0, |point| point.variance)
+    }
+
     /// Variance of an effect in octave `k`, for a coefficient of one.
     pub(crate) fn unit(&self, i: usize, k: usize) -> f64 {
-        f64::from(self.columns[i][k])
+        self.columns
+            .get(i)
+            .map_or(0.0, |column| f64::from(column[k]))
     }
 
     /// An effect's share of the model's variance in octave `k`; 0 beyond the model.
@@ -232,7 +237,7 @@ impl<'a, const K: usize> Problem<'a, K> {
 
     /// Which coefficients are held at zero.
     pub(crate) fn held(&self) -> Free {
-        core::array::from_fn(|i| self.model.terms().get(i).is_some_and(|term| term.held))
+        Free::of(|i| self.model.terms().get(i).is_some_and(|term| term.held))
     }
 
     /// Number of coefficients.
@@ -251,7 +256,7 @@ impl<'a, const K: usize> Problem<'a, K> {
 /// Clusters `N/m` in the record, from an octave's number of differences as of a contiguous one.
 pub(crate) fn clusters(point: &Point) -> f64 {
     let m = f64::from(point.m);
-    (point.differences - 1) as f64 * (0.25 * m).max(1.0) / m + 2.0
+    point.differences.saturating_sub(1) as f64 * (0.25 * m).max(1.0) / m + 2.0
 }
 
 /// Relative accuracy of an octave as of Lv, Liu, Lai & Huang 2015: `δ = 1/√(2(N/m − 1))`.

@@ -2,12 +2,13 @@
 
 use super::{Problem, weights::Weights};
 use crate::{
+    algebra,
+    list::{self, numbered},
     math,
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
 };
 use heapless::Vec;
-use nalgebra::SVector;
 
 /// Fitted shape parameters that one model has room for.
 pub const MAX_SHAPE: usize = 4;
@@ -59,7 +60,7 @@ impl ShapeEquations {
         squares: &Vector,
     ) -> bool {
         self.parameters.clear();
-        for (i, term) in problem.model.terms().iter().enumerate() {
+        for (i, term) in numbered(problem.model.terms().iter()) {
             for j in term.fitted_parameters().filter(|_| squares[i] > 0.0) {
                 if self.parameters.push((i, j, *term)).is_err() {
                     return false;
@@ -70,36 +71,30 @@ impl ShapeEquations {
             return false;
         }
         // Coefficients first, the shapes behind them.
-        let mut derivatives: Vec<SVector<f32, K>, MAX_SHAPE> = Vec::new();
+        let mut derivatives: Vec<algebra::Vector<K, f32>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
             let column = |factor: f64| {
                 let mut term = term;
-                term.parameters[j] *= factor;
+                term.scale_parameter(j, factor);
                 problem.column(&term)
             };
-            let change = column(math::exp(STEP)) - column(math::exp(-STEP));
+            let change = *column(math::exp(STEP)) - *column(math::exp(-STEP));
             let scale = 0.5 * squares[i] / STEP;
             // As many as parameters.
-            let _ = derivatives.push(change.map(|change| (change * scale) as f32));
+            let _ = derivatives.push(change.map(|change| (change * scale) as f32).into());
         }
-        let residual = |k: usize| problem.points[k].variance - problem.variance(k, squares);
-        let (none, equations) = (|_: usize| 1.0, &mut self.equations);
-        let set = weights.equations(problem, none, &derivatives, residual, equations);
+        let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
+        let equations = &mut self.equations;
+        let set = weights.equations(problem, &|_| 1.0, &derivatives, &residual, equations);
         set.is_ok()
     }
 
-    fn with_shapes(&self, free: &Free, count: usize) -> Free<UNKNOWNS> {
-        core::array::from_fn(|i| {
-            if i < count {
-                free.get(i).copied().unwrap_or(false)
-            } else {
-                i < count + self.parameters.len()
-            }
-        })
+    fn with_shapes(&self, free: &Free, count: usize) -> Free {
+        Free::of(|i| (i < count && free.has(i)) || (count..self.equations.count()).contains(&i))
     }
 
     fn count(&self) -> usize {
-        self.equations.count() - self.parameters.len()
+        self.equations.count().saturating_sub(self.parameters.len())
     }
 
     /// The step of Gauss and Newton: by how much the logarithms of the shapes ought to change for the
@@ -110,8 +105,8 @@ impl ShapeEquations {
         let Some(steps) = self.equations.solve_free(&free) else {
             return;
         };
-        for (at, &(i, j, _)) in self.parameters.iter().enumerate() {
-            each(i, j, steps[count + at]);
+        for (at, &(i, j, _)) in numbered(self.parameters.iter()) {
+            each(i, j, steps[count.saturating_add(at)]);
         }
     }
 
@@ -131,7 +126,7 @@ impl ShapeEquations {
     pub(crate) fn worst_error(&self, free: &Free) -> f64 {
         let count = self.count();
         let free = self.with_shapes(free, count);
-        let variance = |at: usize| self.equations.variance(count + at, &free);
+        let variance = |at: usize| self.equations.variance(count.saturating_add(at), &free);
         (0..self.parameters.len())
             .map(|at| variance(at).map_or(f64::INFINITY, math::sqrt))
             .fold(0.0, f64::max)
@@ -141,21 +136,19 @@ impl ShapeEquations {
     pub(crate) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
         let count = self.count();
         let free = self.with_shapes(free, count);
-        let parameters = self.parameters.iter().enumerate();
-        parameters
-            .map(|(at, &(term, j, shape))| {
-                let value = shape.parameters[j];
-                let variance = self.equations.variance(count + at, &free);
-                let error = variance.map_or(f64::INFINITY, math::sqrt);
-                let factor = math::exp(1.959_964 * error);
-                ShapeEstimate {
-                    term,
-                    name: shape.effect.parameters()[j].name,
-                    value,
-                    lower: value / factor,
-                    upper: value * factor,
-                }
-            })
-            .collect()
+        let parameters = numbered(self.parameters.iter());
+        list::fill(parameters.map(|(at, &(term, j, shape))| {
+            let value = shape.parameter(j);
+            let variance = self.equations.variance(count.saturating_add(at), &free);
+            let error = variance.map_or(f64::INFINITY, math::sqrt);
+            let factor = math::exp(1.959_964 * error);
+            ShapeEstimate {
+                term,
+                name: shape.parameter_name(j),
+                value,
+                lower: value / factor,
+                upper: value * factor,
+            }
+        }))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Problem, squared};
 use crate::{
+    algebra::{self, Square},
     cholesky,
     covariance::covariance,
     error::Error,
@@ -10,7 +11,6 @@ use crate::{
     nnls::{NormalEquations, Vector},
 };
 use heapless::Vec;
-use nalgebra::{SMatrix, SVector};
 
 /// How much of the correlations a covariance keeps, tried in turn until it is positive definite.
 const SHRINKAGES: [f64; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
@@ -18,9 +18,9 @@ const SHRINKAGES: [f64; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
 /// The covariance of a curve relative to a model, factored.
 pub(crate) struct Weights<const K: usize> {
     /// The model's variances.
-    pub(crate) model: SVector<f64, K>,
+    pub(crate) model: algebra::Vector<K>,
     /// Of the covariance relative to them; single precision is that of the covariance.
-    factor: SMatrix<f32, K, K>,
+    factor: Square<K, f32>,
     /// Of the covariance in rate units.
     pub(crate) log_determinant: f64,
     pub(crate) tolerance: f64,
@@ -31,8 +31,8 @@ impl<const K: usize> Weights<K> {
     /// Not yet of any model.
     pub(crate) fn empty() -> Self {
         Self {
-            model: SVector::zeros(),
-            factor: SMatrix::zeros(),
+            model: algebra::Vector::zeros(),
+            factor: Square::zeros(),
             log_determinant: 0.0,
             tolerance: 0.0,
             shrinkage: 0.0,
@@ -53,7 +53,7 @@ impl<const K: usize> Weights<K> {
             if !(variance.is_finite() && variance > 0.0) {
                 return Err(Error::Singular);
             }
-            self.model[k] = variance;
+            self.model.put(k, variance);
         }
         self.tolerance = tolerance;
         for shrinkage in SHRINKAGES {
@@ -73,7 +73,7 @@ impl<const K: usize> Weights<K> {
     fn take_relative(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: f64) {
         let mut reciprocal = self.model;
         for k in 0..problem.points.len().min(K) {
-            reciprocal[k] = 1.0 / self.model[k];
+            reciprocal.put(k, 1.0 / self.model[k]);
         }
         let (factor, tolerance) = (&mut self.factor, self.tolerance);
         covariance(
@@ -83,11 +83,12 @@ impl<const K: usize> Weights<K> {
             problem.interval_s,
             &mut |k, j, covariance| {
                 let relative = covariance * reciprocal[j] * reciprocal[k];
-                factor[(k, j)] = if j == k {
+                let kept = if j == k {
                     relative + squared(tolerance)
                 } else {
                     relative * keep
-                } as f32;
+                };
+                factor.put((k, j), kept as f32);
             },
         );
     }
@@ -102,8 +103,8 @@ impl<const K: usize> Weights<K> {
 
     /// χ² of the curve beside the model with these squared coefficients.
     pub(crate) fn chi_squared(&self, problem: &Problem<'_, K>, squares: &Vector) -> f64 {
-        let residual = |k: usize| problem.points[k].variance - problem.variance(k, squares);
-        self.whiten(problem, |_| 1.0, residual).norm_squared()
+        let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
+        self.whiten(problem, &|_| 1.0, &residual).norm_squared()
     }
 
     /// The normal equations `A'C⁻¹A β = A'C⁻¹y`, one column at a time, with the standard error of octave
@@ -112,27 +113,27 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn equations<const P: usize>(
         &self,
         problem: &Problem<'_, K>,
-        scatter: impl Fn(usize) -> f64,
-        more: &[SVector<f32, K>],
-        right: impl Fn(usize) -> f64,
+        scatter: &dyn Fn(usize) -> f64,
+        more: &[algebra::Vector<K, f32>],
+        right: &dyn Fn(usize) -> f64,
         equations: &mut NormalEquations<P>,
     ) -> Result<(), Error> {
         let n = problem.points.len().min(K);
         let count = problem.count();
         let unit = |i: usize, k: usize| match i.checked_sub(count) {
             None => problem.unit(i, k),
-            Some(at) => f64::from(more[at][k]),
+            Some(at) => more.get(at).map_or(0.0, |column| f64::from(column[k])),
         };
         let per_error = |k: usize| 1.0 / (self.model[k] * scatter(k));
-        equations.set(count + more.len(), |i, row| {
+        equations.set(count.saturating_add(more.len()), &|i, row| {
             // C⁻¹ of this column, in units of the errors squared.
-            let mut column = self.whiten(problem, &scatter, |k| unit(i, k));
+            let mut column = self.whiten(problem, scatter, &|k| unit(i, k));
             cholesky::backward(&self.factor, n, &mut column);
             for k in 0..n {
-                column[k] *= per_error(k);
+                column.put(k, column[k] * per_error(k));
             }
             for j in 0..=i {
-                row[j] = (0..n).map(|k| column[k] * unit(j, k)).sum();
+                row.put(j, (0..n).map(|k| column[k] * unit(j, k)).sum());
             }
             (0..n).map(|k| column[k] * right(k)).sum()
         })
@@ -144,7 +145,7 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn whiten_into(
         &self,
         problem: &Problem<'_, K>,
-        scatter: impl Fn(usize) -> f64,
+        scatter: &dyn Fn(usize) -> f64,
         whitened: &mut Whitened<K>,
     ) {
         whitened.columns.clear();
@@ -152,22 +153,23 @@ impl<const K: usize> Weights<K> {
             // As many columns as effects.
             let _ = whitened
                 .columns
-                .push(self.whiten(problem, &scatter, |k| f64::from(column[k])));
+                .push(self.whiten(problem, scatter, &|k| f64::from(column[k])));
         }
-        whitened.curve = self.whiten(problem, &scatter, |k| problem.points[k].variance);
+        whitened.curve = self.whiten(problem, scatter, &|k| problem.measured(k));
     }
 
     /// One more column of variances in the same units.
+    #[inline(never)]
     pub(crate) fn whiten(
         &self,
         problem: &Problem<'_, K>,
-        scatter: impl Fn(usize) -> f64,
-        variance: impl Fn(usize) -> f64,
-    ) -> SVector<f64, K> {
-        let mut column = SVector::zeros();
+        scatter: &dyn Fn(usize) -> f64,
+        variance: &dyn Fn(usize) -> f64,
+    ) -> algebra::Vector<K> {
+        let mut column = algebra::Vector::<K>::zeros();
         let n = problem.points.len().min(K);
         for k in 0..n {
-            column[k] = variance(k) / (self.model[k] * scatter(k));
+            column.put(k, variance(k) / (self.model[k] * scatter(k)));
         }
         cholesky::forward(&self.factor, n, &mut column);
         column
@@ -179,15 +181,15 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn whiten_trial(
         &self,
         problem: &Problem<'_, K>,
-        scatter: impl Fn(usize) -> f64,
-        variance: impl Fn(usize) -> f64,
-    ) -> (SVector<f32, K>, f64) {
+        scatter: &dyn Fn(usize) -> f64,
+        variance: &dyn Fn(usize) -> f64,
+    ) -> (algebra::Vector<K, f32>, f64) {
         let n = problem.points.len().min(K);
         let relative = |k: usize| variance(k) / (self.model[k] * scatter(k));
         let unit = (0..n).map(relative).fold(0.0, f64::max);
-        let mut column = SVector::<f32, K>::zeros();
+        let mut column = algebra::Vector::<K, f32>::zeros();
         for k in 0..n {
-            column[k] = (relative(k) / unit) as f32;
+            column.put(k, (relative(k) / unit) as f32);
         }
         cholesky::forward_single(&self.factor, n, &mut column);
         (column, unit)
@@ -197,15 +199,15 @@ impl<const K: usize> Weights<K> {
 /// Curve and columns in units in which octaves are independent. Octaves that the curve does not have
 /// are zero.
 pub(crate) struct Whitened<const K: usize> {
-    pub(crate) columns: Vec<SVector<f64, K>, MAX_EFFECTS>,
-    pub(crate) curve: SVector<f64, K>,
+    pub(crate) columns: Vec<algebra::Vector<K>, MAX_EFFECTS>,
+    pub(crate) curve: algebra::Vector<K>,
 }
 
 impl<const K: usize> Whitened<K> {
     pub(crate) fn empty() -> Self {
         Self {
             columns: Vec::new(),
-            curve: SVector::zeros(),
+            curve: algebra::Vector::zeros(),
         }
     }
 }

@@ -103,40 +103,6 @@ fn compare(place: &str, measured: &Value, budget: &Value, complaints: &mut Vec<S
     }
 }
 
-/// The README's table of cores.
-///
-/// # Errors
-/// If a core's entry lacks a figure.
-pub fn table(budgets: &Value) -> Result<String> {
-    let mut table = String::from(
-        "| core | instructions a sample | worst | fit, million | diagnosis, million | flash | RAM | of it stack |\n\
-         |---|---|---|---|---|---|---|---|\n",
-    );
-    for core in budgets["cores"].as_array().context("no cores")? {
-        let name = core["core"].as_str().context("a core without a name")?;
-        let number = |figure: &str| {
-            core[figure]
-                .as_f64()
-                .with_context(|| format!("{name} has no {figure}"))
-        };
-        let million = |number: f64| format!("{:.1}", number / 1e6);
-        let diagnosis = match &core["instructions_diagnosis"] {
-            Value::Null => "–".into(),
-            _ => million(number("instructions_diagnosis")?),
-        };
-        table += &format!(
-            "| {name} | {:.0} | {} | {} | {diagnosis} | {} | {} | {} |\n",
-            number("instructions_per_sample")?,
-            number("instructions_worst_sample")?,
-            million(number("instructions_fit")?),
-            number("flash_bytes")?,
-            number("ram_bytes")?,
-            number("stack_bytes")?,
-        );
-    }
-    Ok(table)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

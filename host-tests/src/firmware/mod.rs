@@ -4,6 +4,7 @@ pub mod agreement;
 pub mod budgets;
 pub mod core;
 pub mod emulator;
+pub mod figures;
 pub mod image;
 pub mod measure;
 pub mod toolchain;

@@ -1,7 +1,7 @@
 //! What the library costs, on the target and on the host.
 
 use super::{setup, step::shown};
-use crate::firmware::{CORES, agreement, budgets, cargo, measure};
+use crate::firmware::{CORES, agreement, budgets, cargo, figures, measure};
 use anyhow::{Context as _, Result, bail};
 use comfy_table::{Table, presets};
 use serde_json::{Map, Value};
@@ -90,7 +90,7 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
     if update_budgets {
         budgets::update(&measured)?;
         println!("written: {}", budgets::path().display());
-        println!("for the README:\n\n{}", budgets::table(&measured)?);
+        println!("for the README:\n\n{}", figures::readme(&measured)?);
         return Ok(());
     }
     let host = host()?;

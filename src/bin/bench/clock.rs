@@ -100,7 +100,8 @@ mod systick {
     pub(super) fn now() -> u64 {
         loop {
             let laps = LAPS.load(Ordering::Relaxed);
-            let rest = LAST - SYST::get_current();
+            // Zero, where it starts too, begins a lap: the exception has counted it.
+            let rest = SYST::get_current().wrapping_neg() & LAST;
             if laps == LAPS.load(Ordering::Relaxed) {
                 return (u64::from(laps) << 24) + u64::from(rest);
             }

@@ -93,8 +93,9 @@ fn compare(place: &str, measured: &Value, budget: &Value, complaints: &mut Vec<S
         }
         (Value::Number(_), Value::Number(_)) => {
             let [figure, limit] = [measured, budget].map(|one| one.as_f64().unwrap_or(f64::NAN));
-            // Not a number is too much.
-            if !(figure <= limit * (1.0 + TOLERANCE)) {
+            // What is not a number does not keep it.
+            let kept = figure <= limit * (1.0 + TOLERANCE);
+            if !kept {
                 complaints.push(format!("{place}: {figure}, the budget is {limit}"));
             }
         }

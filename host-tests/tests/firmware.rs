@@ -1,85 +1,57 @@
 //! The images on every core and the same computation here agree to the bit.
 
 use allanite::{
-    Addition, Step, Verdict,
+    Accumulator, Addition, Scale, Step, Verdict,
     demonstration::{
-        characterise::Characterised,
+        AMPLITUDES,
         diagnose::{HIDDEN, diagnose},
     },
+    simulated::SimulatedGyro,
 };
-use host_tests::firmware::{CORES, Core, Image, run, run_with};
-
-/// The words that are bits of a number: those after each decimal one.
-fn bits(line: &str, names: &[&str]) -> Vec<u64> {
-    let words: Vec<_> = line.split(' ').collect();
-    let value = |name: &&str| {
-        let place = words.iter().position(|word| word == name)?;
-        u64::from_str_radix(words.get(place + 2)?, 16).ok()
-    };
-    let bits: Vec<_> = names.iter().filter_map(value).collect();
-    assert_eq!(bits.len(), names.len(), "{line:?} lacks some of {names:?}");
-    bits
-}
-
-fn lines<'a>(log: &'a [String], kind: &str) -> Vec<&'a str> {
-    let start = format!("info {kind} ");
-    log.iter()
-        .filter_map(|line| line.strip_prefix(&start))
-        .collect()
-}
+use host_tests::firmware::{CORES, CORTEX_M4F, Image, RISCV, agreement, run, run_with};
 
 #[test]
 fn every_core_and_the_host_agree_to_the_bit() {
     for core in &CORES {
-        assert_agrees(core);
+        println!("{}", core.name);
+        let difference = agreement::difference(core);
+        let difference = difference.unwrap_or_else(|error| panic!("{}: {error:#}", core.name));
+        assert_eq!(difference, None, "{}", core.name);
     }
 }
 
-fn assert_agrees(core: &Core) {
-    println!("{}", core.name);
-    let image = Image::build_for("characterise", core).unwrap_or_else(|error| panic!("{error:#}"));
-    let run = run(&image).unwrap_or_else(|error| panic!("{error:#}"));
-    println!("{}", run.lines.join("\n"));
-    assert!(run.status.success(), "the image ended with {}", run.status);
+/// Images whose every part is free of panics, to the point that the linker finds no way to one.
+const PANIC_FREE: [&str; 5] = [
+    "footprint_nothing",
+    "footprint_accumulator",
+    "footprint_fit",
+    "footprint_diagnosis",
+    "footprint_everything",
+];
 
-    let here = Characterised::run().unwrap();
-    assert!(here.passed());
-
-    let octaves = lines(&run.lines, "octave");
-    assert_eq!(octaves.len(), here.curve.points().len());
-    for (line, point) in octaves.iter().zip(here.curve.points()) {
-        let start = format!("m {} differences {} ", point.m, point.differences);
-        assert!(
-            line.starts_with(&start),
-            "{line:?} does not start with {start:?}"
-        );
-        assert_eq!(
-            bits(line, &["variance"]),
-            [point.variance.to_bits()],
-            "{line}"
-        );
+#[test]
+fn images_have_no_path_to_a_panic_arithmetic_checked_or_not() {
+    for name in PANIC_FREE {
+        for profile in ["firmware", "checked"] {
+            assert_eq!(panic_paths(name, profile), [""; 0], "{name}, {profile}");
+        }
     }
+}
 
-    let coefficients = lines(&run.lines, "coefficient");
-    assert_eq!(coefficients.len(), here.fit.coefficients.len());
-    for (line, coefficient) in coefficients.iter().zip(&here.fit.coefficients) {
-        assert!(line.starts_with(coefficient.name), "{line}");
-        let expected = [coefficient.value, coefficient.lower, coefficient.upper];
-        let bits = bits(line, &["value", "lower", "upper"]);
-        assert_eq!(bits, expected.map(f64::to_bits), "{line}");
-    }
-
-    let [fit] = lines(&run.lines, "fit")[..] else {
-        panic!("the image says nothing of the fit");
-    };
-    let start = format!("degrees_of_freedom {} ", here.fit.degrees_of_freedom);
-    assert!(fit.starts_with(&start), "{fit}");
-    let expected = [here.fit.chi_squared, here.fit.p_value];
-    assert_eq!(
-        bits(fit, &["chi_squared", "p_value"]),
-        expected.map(f64::to_bits),
-        "{fit}"
+#[test]
+fn an_image_that_can_panic_is_found_to() {
+    // Its logger panics if it is entered twice.
+    let found = panic_paths("characterise", "firmware");
+    assert!(
+        found.iter().any(|name| name.contains("rust_begin_unwind")),
+        "{found:?}"
     );
+}
+
+fn panic_paths(name: &str, profile: &str) -> Vec<String> {
+    Image::build_with(name, &CORTEX_M4F, profile)
+        .and_then(|image| image.panic_paths())
+        .unwrap_or_else(|error| panic!("{error:#}"))
 }
 
 /// The lines that the image logs of a step, with the bits of every number.
@@ -178,5 +150,67 @@ fn image_finds_hidden_effects_as_the_host_does_to_the_bit() {
         let there: Vec<String> = there.map(condensed).collect();
         assert_eq!(there[..there.len() - 1], here, "{name}");
         assert_eq!(there[there.len() - 1], "verdict Improved");
+    }
+}
+
+/// Numbers after these words in a line.
+fn numbers<const N: usize>(line: &str, names: [&str; N]) -> [u32; N] {
+    let words: Vec<&str> = line.split([' ', ',']).collect();
+    names.map(|name| {
+        let place = words.iter().position(|word| *word == name);
+        let number = place.and_then(|place| words.get(place + 1)?.parse().ok());
+        number.unwrap_or_else(|| panic!("{line:?} does not tell {name}"))
+    })
+}
+
+#[test]
+fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
+    for core in &[CORES[0], CORTEX_M4F, RISCV] {
+        println!("{}", core.name);
+        let run = Image::build_for("interrupt", core).and_then(|image| run(&image));
+        let run = run.unwrap_or_else(|error| panic!("{error:#}"));
+        println!("{}", run.lines.join("\n"));
+        assert!(run.status.success(), "the image ended with {}", run.status);
+        let lines = |kind: &str| -> Vec<&str> {
+            let start = format!("info {kind} ");
+            let lines = run.lines.iter();
+            lines.filter_map(|line| line.strip_prefix(&start)).collect()
+        };
+        let [record, total] = ["record", "total"].map(|kind| lines(kind)[0]);
+        let [seed, octaves] = numbers(record, ["seed", "octaves"]);
+        let [made, taken, lost] = numbers(total, ["made", "taken", "lost"]);
+        assert_eq!(taken + lost, made);
+
+        // The same record here, told where samples were lost.
+        let mut gyro = SimulatedGyro::new(AMPLITUDES, seed.into());
+        let mut accumulator = Accumulator::<12>::new();
+        assert_eq!(octaves, 12);
+        let (mut taken_here, mut lost_here) = (0, 0);
+        let gaps = lines("gap");
+        for line in &gaps {
+            let [after, lost] = numbers(line, ["after", "lost"]);
+            for count in gyro.by_ref().take((after - taken_here) as usize) {
+                accumulator.push(count);
+            }
+            accumulator.gap();
+            gyro.by_ref().take(lost as usize).for_each(drop);
+            (taken_here, lost_here) = (after, lost_here + lost);
+        }
+        for count in gyro.take((taken - taken_here) as usize) {
+            accumulator.push(count);
+        }
+        // Failed reads, overflows of the queue, and the end that no later sample tells of.
+        assert!(gaps.len() >= 5 && lost_here > 400, "{gaps:?}");
+        assert!(
+            lost_here + 100 < lost,
+            "{lost_here} of {lost} before the end"
+        );
+        let curve = accumulator.curve(Scale::new(1.0 / 131.0, 100.0).unwrap());
+        let here = curve.points().iter().map(agreement::octave);
+        let there = run
+            .lines
+            .iter()
+            .filter(|line| line.starts_with("info octave"));
+        assert_eq!(there.cloned().collect::<Vec<_>>(), here.collect::<Vec<_>>());
     }
 }

@@ -3,6 +3,7 @@
 mod common;
 
 use common::output;
+use host_tests::firmware::{budgets, figures};
 use std::{fs, path::Path};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
@@ -54,4 +55,25 @@ fn commands_print_what_is_shown() {
             panic!("{command}: {missing}\nprinted:\n{}", printed.join("\n"));
         }
     }
+}
+
+#[test]
+fn figures_are_those_of_the_budgets() {
+    let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
+    let shown = figures::readme(&budgets::committed().unwrap()).unwrap();
+    assert!(shown.lines().count() > 20);
+    assert!(readme.contains(&shown), "the README lacks:\n{shown}");
+}
+
+#[test]
+fn memory_that_is_promised_is_enough() {
+    let budgets = budgets::committed().unwrap();
+    let ram = |core: &str| {
+        let entries = budgets["cores"].as_array().unwrap().iter();
+        let entry = entries.clone().find(|entry| entry["core"] == core).unwrap();
+        entry["ram_bytes"].as_u64().unwrap()
+    };
+    assert!(ram("Cortex-M0") < 16 * 1024);
+    let three_axes = &budgets["target"]["ram_bytes_three_axes_20_with_diagnosis"];
+    assert!(three_axes.as_u64().unwrap() < 32 * 1024);
 }

@@ -11,11 +11,14 @@ fn main() {}
 mod image {
     use allanite::demonstration::characterise::Characterised;
     // Critical sections of a single core.
+    #[cfg(target_arch = "arm")]
     use cortex_m as _;
-    use cortex_m_rt::entry;
     use defmt_semihosting as _;
+    #[cfg(target_arch = "riscv32")]
+    use riscv as _;
 
-    #[entry]
+    #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+    #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
     fn main() -> ! {
         let test = match Characterised::run() {
             Ok(test) => test,

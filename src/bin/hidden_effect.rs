@@ -11,11 +11,15 @@ fn main() {}
 mod image {
     use allanite::demonstration::diagnose::{HIDDEN, OCTAVES, diagnose};
     use allanite::{Addition, Step, Verdict};
+    // Critical sections of a single core.
+    #[cfg(target_arch = "arm")]
     use cortex_m as _;
-    use cortex_m_rt::entry;
     use defmt_semihosting as _;
+    #[cfg(target_arch = "riscv32")]
+    use riscv as _;
 
-    #[entry]
+    #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+    #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
     fn main() -> ! {
         let Ok(arguments) = semihosting::experimental::env::args::<128>() else {
             defmt::error!("no arguments: start the image with what to hide");

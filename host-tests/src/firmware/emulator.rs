@@ -11,9 +11,6 @@ use std::{
 };
 use wait_timeout::ChildExt as _;
 
-/// The emulator.
-pub const QEMU: &str = "qemu-system-arm";
-
 /// The images take seconds; one that hangs is ended.
 const LIMIT: Duration = Duration::from_secs(600);
 
@@ -43,8 +40,11 @@ pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
     for argument in arguments {
         semihosting += &format!(",arg={argument}");
     }
-    let mut child = Command::new(QEMU)
+    let qemu = image.core.qemu;
+    let mut child = Command::new(qemu)
         .args(["-machine", image.core.machine, "-cpu", image.core.cpu])
+        // The image is all that runs: RISC-V would start its own firmware first.
+        .args(["-bios", "none"])
         .args(["-icount", "shift=0", "-nographic", "-monitor", "none"])
         .args(["-serial", "null"])
         .args(["-semihosting-config", &semihosting])
@@ -53,7 +53,7 @@ pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .spawn()
-        .with_context(|| format!("{QEMU} did not start: {REMEDY}"))?;
+        .with_context(|| format!("{qemu} did not start: {REMEDY}"))?;
     let mut stdout = child.stdout.take().context("no output to read")?;
     let reader = thread::spawn(move || {
         let mut log = Vec::new();
@@ -70,7 +70,7 @@ pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
     };
     let log = match reader.join() {
         Ok(log) => log?,
-        Err(_) => bail!("reading the output of {QEMU} failed"),
+        Err(_) => bail!("reading the output of {qemu} failed"),
     };
     let lines = decode(&image.elf, &log).with_context(|| {
         let path = image.path.display();

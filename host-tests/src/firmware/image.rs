@@ -2,8 +2,20 @@
 
 use super::{CORTEX_M4F, Core, REMEDY, Toolchain, toolchain::target_directory};
 use anyhow::{Context as _, Result, bail, ensure};
-use object::{Object as _, ObjectSection as _, SectionKind};
+use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SectionKind, SymbolKind};
 use std::path::PathBuf;
+
+/// What the names of such functions have in common: the handler, and the way to it.
+const PANICS: [&str; 8] = [
+    "rust_begin_unwind",
+    "core::panicking::",
+    "panic_fmt",
+    "panic_bounds_check",
+    "unwrap_failed",
+    "expect_failed",
+    "slice::index::slice_",
+    "copy_from_slice_impl::len_mismatch_fail",
+];
 
 /// A linked image.
 #[derive(Clone, Debug)]
@@ -30,20 +42,28 @@ impl Image {
     /// # Errors
     /// As of [`build`](Self::build).
     pub fn build_for(name: &str, core: &Core) -> Result<Self> {
+        Self::build_with(name, core, "firmware")
+    }
+
+    /// The same with a profile of the workspace: `firmware`, or `checked` with arithmetic checked.
+    ///
+    /// # Errors
+    /// As of [`build`](Self::build).
+    pub fn build_with(name: &str, core: &Core, profile: &str) -> Result<Self> {
         let target = core.target;
         let toolchain = Toolchain::find(core)
             .with_context(|| format!("no compiler for {target} is installed: {REMEDY}"))?;
         let mut command = toolchain.cargo("build");
         command
             .args(["--quiet", "--package", "allanite", "--bin", name])
-            .args(["--features", "firmware", "--profile", "firmware"]);
+            .args(["--features", "firmware", "--profile", profile]);
         let status = command
             .status()
             .with_context(|| format!("cargo did not start: {REMEDY}"))?;
         if !status.success() {
             bail!("building the image {name} failed ({status}): {REMEDY}");
         }
-        let path = target_directory().join(target).join("firmware").join(name);
+        let path = target_directory().join(target).join(profile).join(name);
         let elf = std::fs::read(&path).with_context(|| format!("reading {}", path.display()))?;
         let image = Self {
             core: *core,
@@ -52,10 +72,38 @@ impl Image {
         };
         // Flags that replaced the linker script's leave an image without code.
         ensure!(
-            image.code_bytes()? > 1024,
+            image.code_bytes()? > 64,
             "the image {name} holds no code: unset RUSTFLAGS and the like"
         );
         Ok(image)
+    }
+
+    /// Functions in the image that something that panics would need, sorted. Nothing that remains in
+    /// it can panic if there is none.
+    ///
+    /// # Errors
+    /// If the file is no ELF file, or names no functions.
+    pub fn panic_paths(&self) -> Result<Vec<String>> {
+        let file = self.file()?;
+        let functions = file
+            .symbols()
+            .filter(|symbol| symbol.kind() == SymbolKind::Text);
+        let mut names = functions
+            .map(|symbol| Ok(format!("{:#}", rustc_demangle::demangle(symbol.name()?))))
+            .collect::<Result<Vec<_>>>()?;
+        ensure!(
+            names.iter().any(|name| name == "main"),
+            "{} names no functions",
+            self.path.display()
+        );
+        names.retain(|name| PANICS.iter().any(|part| name.contains(part)));
+        names.sort();
+        names.dedup();
+        Ok(names)
+    }
+
+    fn file(&self) -> Result<object::File<'_>> {
+        object::File::parse(&*self.elf).with_context(|| format!("reading {}", self.path.display()))
     }
 
     /// Bytes of its sections of instructions.
@@ -81,8 +129,7 @@ impl Image {
     }
 
     fn sum(&self, counts: impl Fn(SectionKind) -> bool) -> Result<u64> {
-        let file = object::File::parse(&*self.elf)
-            .with_context(|| format!("reading {}", self.path.display()))?;
+        let file = self.file()?;
         let sections = file.sections().filter(|section| counts(section.kind()));
         Ok(sections.map(|section| section.size()).sum())
     }

@@ -1,11 +1,15 @@
 //! The images of `src/bin`, built for a core and run in QEMU.
 
+pub mod agreement;
+pub mod budgets;
 pub mod core;
 pub mod emulator;
+pub mod figures;
 pub mod image;
+pub mod measure;
 pub mod toolchain;
 
-pub use core::{CORES, CORTEX_M4F, Core};
+pub use core::{CORES, CORTEX_M4F, Core, RISCV};
 pub use emulator::{Run, run, run_with};
 pub use image::Image;
 pub use toolchain::Toolchain;

@@ -1,13 +1,13 @@
 //! What the library costs, on the target and on the host.
 
 use super::{setup, step::shown};
-use crate::firmware::{self, Image, cargo};
+use crate::firmware::{CORES, agreement, budgets, cargo, figures, measure};
 use anyhow::{Context as _, Result, bail};
 use comfy_table::{Table, presets};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
-/// A figure, its unit and what it counts.
-const FIGURES: [(&str, &str, &str); 14] = [
+/// A figure of the Cortex-M4F or of this host, its unit and what it counts.
+const FIGURES: [(&str, &str, &str); 18] = [
     (
         "instructions_per_sample",
         "instructions",
@@ -48,6 +48,13 @@ const FIGURES: [(&str, &str, &str); 14] = [
         "bytes",
         "accumulator, curve and fit, with start-up code",
     ),
+    ("flash_bytes_accumulator", "bytes", "push, gap and merge"),
+    ("flash_bytes_with_fit", "bytes", "with curve and fit"),
+    (
+        "flash_bytes_with_diagnosis",
+        "bytes",
+        "with curve, fit and diagnosis, whole catalogue",
+    ),
     (
         "instructions_fit_20",
         "instructions",
@@ -61,6 +68,11 @@ const FIGURES: [(&str, &str, &str); 14] = [
     ),
     ("stack_bytes_diagnosis_20", "bytes", "the same"),
     (
+        "ram_bytes_three_axes_20_with_diagnosis",
+        "bytes",
+        "three accumulators, a curve, the stack of a diagnosis",
+    ),
+    (
         "ns_per_sample_slice",
         "ns",
         "push_slice on this host, one core, median of 15 runs",
@@ -70,16 +82,25 @@ const FIGURES: [(&str, &str, &str); 14] = [
 
 const NOTE: &str = "QEMU counts instructions, not cycles";
 
-pub(super) fn run(json: bool) -> Result<()> {
+pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
     if !json {
         setup::run()?;
     }
-    let target = target()?;
+    let mut measured = budgets::measured()?;
+    if update_budgets {
+        budgets::update(&measured)?;
+        println!("written: {}", budgets::path().display());
+        println!("for the README:\n\n{}", figures::readme(&measured)?);
+        return Ok(());
+    }
     let host = host()?;
     if json {
-        let mut target = target;
-        target.insert("note".into(), NOTE.into());
-        println!("{:#}", json!({ "target": target, "host": host }));
+        for (core, entry) in CORES.iter().zip(entries(&mut measured)) {
+            entry["bits_equal_host"] = agreement::difference(core)?.is_none().into();
+        }
+        measured["target"]["note"] = NOTE.into();
+        measured["host"] = host.into();
+        println!("{measured:#}");
         return Ok(());
     }
     let mut table = Table::new();
@@ -87,36 +108,43 @@ pub(super) fn run(json: bool) -> Result<()> {
         .load_style(presets::NOTHING)
         .set_header(["figure", "value", "unit", "of what"]);
     for (name, unit, of) in FIGURES {
-        let value = target.get(name).or_else(|| host.get(name));
+        let value = measured["target"].get(name).or_else(|| host.get(name));
         let value = value.with_context(|| format!("{name} was not measured"))?;
-        let number = value.as_f64().unwrap_or(f64::NAN);
-        let digits = usize::from(unit == "ns" || number.fract() != 0.0);
-        table.add_row([name, &format!("{number:.digits$}"), unit, of]);
+        table.add_row([name, &shown_number(value), unit, of]);
     }
-    println!("{table}\n{NOTE}.");
+    println!("Cortex-M4F and this host\n{table}\n");
+    println!("every core\n{}\n{NOTE}.", core_table(&mut measured));
     Ok(())
 }
 
-/// What the images `bench` and `footprint` tell.
-fn target() -> Result<Map<String, Value>> {
-    let run = firmware::run(&Image::build("bench")?)?;
-    if !run.status.success() {
-        bail!("the image bench ended with {}: {:?}", run.status, run.lines);
+/// Measures again, and compares with what the library may cost.
+pub(super) fn check_budgets() -> Result<()> {
+    budgets::check(&budgets::measured()?, &budgets::committed()?)
+}
+
+fn entries(measured: &mut Value) -> impl Iterator<Item = &mut Value> {
+    measured["cores"].as_array_mut().into_iter().flatten()
+}
+
+/// A row a core, a column a figure.
+fn core_table(measured: &mut Value) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    for entry in entries(measured) {
+        let figures = entry.as_object().into_iter().flatten();
+        let (names, values): (Vec<_>, Vec<_>) = figures.unzip();
+        table.set_header(names);
+        table.add_row(values.into_iter().map(shown_number));
     }
-    let lines = run
-        .lines
-        .iter()
-        .filter_map(|line| line.strip_prefix("info "));
-    let mut figures = figures(lines)?;
-    let worst = figures
-        .iter()
-        .filter(|(name, _)| name.starts_with("instructions_worst_sample_"))
-        .filter_map(|(_, value)| value.as_u64())
-        .max();
-    figures.insert("instructions_worst_sample".into(), worst.into());
-    let footprint = Image::build("footprint")?;
-    figures.insert("flash_bytes".into(), footprint.flash_bytes()?.into());
-    Ok(figures)
+    table
+}
+
+fn shown_number(value: &Value) -> String {
+    match value {
+        Value::Number(number) => number.to_string(),
+        Value::String(text) => text.clone(),
+        _ => "–".into(),
+    }
 }
 
 /// What `host-tests/benches/accumulator.rs` tells.
@@ -137,17 +165,5 @@ fn host() -> Result<Map<String, Value>> {
     if !output.status.success() {
         bail!("`{}` failed ({})", shown(&command), output.status);
     }
-    figures(String::from_utf8(output.stdout)?.lines())
-}
-
-/// Lines of a name and a number.
-fn figures<'a>(lines: impl Iterator<Item = &'a str>) -> Result<Map<String, Value>> {
-    let figure = |line: &str| {
-        let (name, number) = line.split_once(' ')?;
-        let number: serde_json::Number = number.parse().ok()?;
-        Some((name.to_owned(), number.into()))
-    };
-    lines
-        .map(|line| figure(line).with_context(|| format!("{line:?} is not a name and a number")))
-        .collect()
+    measure::named_numbers(String::from_utf8(output.stdout)?.lines())
 }

@@ -36,6 +36,9 @@ enum Task {
         /// Print JSON instead of a table.
         #[arg(long)]
         json: bool,
+        /// Write what the target takes to host-tests/budgets.json, which the tests hold it to.
+        #[arg(long, conflicts_with = "json")]
+        update_budgets: bool,
     },
 }
 
@@ -54,7 +57,10 @@ impl CommandLine {
                 study.args(["--bin", "study", "--"]).args(arguments);
                 step::step("the study", &mut study)
             }
-            Task::Bench { json } => bench::run(json),
+            Task::Bench {
+                json,
+                update_budgets,
+            } => bench::run(json, update_budgets),
         }
     }
 }

@@ -2,7 +2,7 @@
 //! asks nothing.
 
 use super::step::run as run_command;
-use crate::firmware::{CORES, Core, Toolchain, emulator::QEMU, toolchain::Origin};
+use crate::firmware::{CORES, Core, Toolchain, toolchain::Origin};
 use anyhow::{Context as _, Result, bail};
 use std::process::{Command, Stdio};
 
@@ -10,16 +10,23 @@ use std::process::{Command, Stdio};
 const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clippy"];
 /// Its linker, where rustup brings none.
 const DEBIAN_LINKER: &str = "lld";
-const DEBIAN_QEMU: &str = "qemu-system-arm";
-/// The browser that the tests look at pages with: the program, and Debian's package.
+/// Programs that the tests run, and Debian's packages that have them.
+const PROGRAMS: [(&str, &str); 3] = [
+    ("qemu-system-arm", "qemu-system-arm"),
+    ("qemu-system-riscv32", "qemu-system-misc"),
+    (CHROMIUM, "chromium"),
+];
+/// The browser that the tests look at pages with.
 pub const CHROMIUM: &str = "chromium";
 
 pub(super) fn run() -> Result<()> {
     for core in &CORES {
         compiler(core)?;
     }
-    program(QEMU, DEBIAN_QEMU, "QEMU for Arm")?;
-    program(CHROMIUM, CHROMIUM, "Chromium")
+    for (name, package) in PROGRAMS {
+        program(name, package)?;
+    }
+    Ok(())
 }
 
 fn compiler(core: &Core) -> Result<()> {
@@ -67,13 +74,13 @@ fn name(toolchain: &Toolchain) -> &'static str {
 }
 
 /// A program that a package of Debian's has.
-fn program(program: &str, package: &str, what: &str) -> Result<()> {
+fn program(program: &str, package: &str) -> Result<()> {
     if starts(program) {
         println!("{program}: there");
         return Ok(());
     }
     println!("{program}: installing Debian's package {package}");
-    let by_hand = || format!("no {program}; install {what} by hand");
+    let by_hand = || format!("no {program}; install it by hand");
     apt_get(&[package]).with_context(by_hand)?;
     if starts(program) {
         Ok(())

@@ -1,15 +1,12 @@
 //! Everything that must hold before a change lands.
 
 use super::{setup, step::step};
-use crate::firmware::{CORTEX_M4F, REMEDY, Toolchain, cargo};
+use crate::firmware::{CORTEX_M4F, REMEDY, RISCV, Toolchain, cargo};
 use anyhow::{Context as _, Result};
 
 pub(super) fn run() -> Result<()> {
     println!("== set-up");
     setup::run()?;
-    let toolchain =
-        Toolchain::find(&CORTEX_M4F).with_context(|| format!("no compiler: {REMEDY}"))?;
-
     step("format", cargo().args(["fmt", "--all", "--", "--check"]))?;
     step(
         "lints, on the host",
@@ -17,13 +14,16 @@ pub(super) fn run() -> Result<()> {
             .args(["clippy", "--workspace", "--all-targets", "--all-features"])
             .args(["--", "-D", "warnings"]),
     )?;
-    step(
-        "lints, on the target",
-        toolchain
-            .cargo("clippy")
-            .args(["--package", "allanite", "--lib", "--bins", "--all-features"])
-            .args(["--", "-D", "warnings"]),
-    )?;
+    for core in [&CORTEX_M4F, &RISCV] {
+        let toolchain = Toolchain::find(core).with_context(|| format!("no compiler: {REMEDY}"))?;
+        step(
+            &format!("lints, on {}", core.name),
+            toolchain
+                .cargo("clippy")
+                .args(["--package", "allanite", "--lib", "--bins", "--all-features"])
+                .args(["--", "-D", "warnings"]),
+        )?;
+    }
     step(
         "documentation",
         cargo()
@@ -38,6 +38,8 @@ pub(super) fn run() -> Result<()> {
         "the images on every core, in QEMU",
         cargo().args(["test", "--package", "host-tests", "--test", "firmware"]),
     )?;
+    println!("\n== budgets of every core");
+    super::bench::check_budgets()?;
     step(
         "tests on the host, examples in the documentation",
         cargo().args(["test", "--workspace"]),

@@ -1,5 +1,4 @@
-//! The smallest image that takes counts, makes the curve and fits it: what the library costs in
-//! flash, start-up code included. `cargo xtask bench` sums its sections.
+//! The smallest image that takes counts, makes the curve and fits it.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -10,9 +9,9 @@ fn main() {}
 mod image {
     use allanite::{Accumulator, Model, Scale, Settings, fit};
     use core::hint::black_box;
-    use cortex_m_rt::entry;
 
-    #[entry]
+    #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+    #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
     fn main() -> ! {
         let mut accumulator = Accumulator::<20>::new();
         while let Some(count) = black_box(None) {
@@ -24,9 +23,7 @@ mod image {
         black_box(&fit);
         semihosting::process::exit(0)
     }
-
-    #[panic_handler]
-    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-        semihosting::process::exit(101)
-    }
 }
+
+#[cfg(target_os = "none")]
+mod panic;

@@ -1,0 +1,158 @@
+//! What the library may cost on each core: `host-tests/budgets.json`, and whether it is kept.
+
+use super::{CORES, CORTEX_M4F, measure, workspace};
+use anyhow::{Context as _, Result, ensure};
+use serde_json::{Map, Value, json};
+use std::path::PathBuf;
+
+/// How far a figure may exceed its budget.
+const TOLERANCE: f64 = 0.05;
+
+/// What brings the file in line with what was measured.
+const UPDATE: &str =
+    "if the cost is worth it, `cargo xtask bench --update-budgets` writes what is measured now";
+
+/// Figures of the Cortex-M4F in detail, and of every core.
+///
+/// # Errors
+/// If an image cannot be built or run.
+pub fn measured() -> Result<Value> {
+    let mut target = Map::new();
+    let mut cores = Vec::new();
+    for core in &CORES {
+        let figures = measure::figures(core)?;
+        cores.push(measure::entry(core, &figures)?);
+        if core == &CORTEX_M4F {
+            target = figures;
+        }
+    }
+    target.append(&mut measure::flash_by_part()?);
+    Ok(json!({ "target": target, "cores": cores }))
+}
+
+/// The file.
+pub fn path() -> PathBuf {
+    workspace().join("host-tests/budgets.json")
+}
+
+/// Its content.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn committed() -> Result<Value> {
+    let path = path();
+    let read = || -> Result<Value> { Ok(serde_json::from_slice(&std::fs::read(&path)?)?) };
+    read().with_context(|| format!("reading {}: {UPDATE}", path.display()))
+}
+
+/// Writes it.
+///
+/// # Errors
+/// If that fails.
+pub fn update(measured: &Value) -> Result<()> {
+    let path = path();
+    std::fs::write(&path, format!("{measured:#}\n"))
+        .with_context(|| format!("writing {}", path.display()))
+}
+
+/// Compares what was measured with the budgets.
+///
+/// # Errors
+/// Every figure that exceeds its budget by more than 5 %, has none, or was not measured.
+pub fn check(measured: &Value, budgets: &Value) -> Result<()> {
+    let mut complaints = Vec::new();
+    compare("", measured, budgets, &mut complaints);
+    ensure!(complaints.is_empty(), "{}\n{UPDATE}", complaints.join("\n"));
+    Ok(())
+}
+
+/// Both must have the same shape; numbers of the first may exceed those of the second a little.
+fn compare(place: &str, measured: &Value, budget: &Value, complaints: &mut Vec<String>) {
+    match (measured, budget) {
+        (Value::Object(figures), Value::Object(budgets)) => {
+            let forgotten = budgets.keys().filter(|name| !figures.contains_key(*name));
+            for name in figures.keys().chain(forgotten) {
+                let place = format!("{place} {name}");
+                let of = |map: &Map<String, Value>| map.get(name).cloned();
+                match (of(figures), of(budgets)) {
+                    (Some(figure), Some(budget)) => compare(&place, &figure, &budget, complaints),
+                    (None, _) => complaints.push(format!("{place}: was not measured")),
+                    (_, None) => complaints.push(format!("{place}: has no budget")),
+                }
+            }
+        }
+        (Value::Array(cores), Value::Array(budgets)) => {
+            if cores.len() != budgets.len() {
+                let (here, there) = (cores.len(), budgets.len());
+                complaints.push(format!("{place}: {here} entries, {there} budgets"));
+            }
+            for (core, budget) in cores.iter().zip(budgets) {
+                let place = format!("{place}: {}", core["core"].as_str().unwrap_or("?"));
+                compare(&place, core, budget, complaints);
+            }
+        }
+        (Value::Number(_), Value::Number(_)) => {
+            let [figure, limit] = [measured, budget].map(|one| one.as_f64().unwrap_or(f64::NAN));
+            // What is not a number does not keep it.
+            let kept = figure <= limit * (1.0 + TOLERANCE);
+            if !kept {
+                complaints.push(format!("{place}: {figure}, the budget is {limit}"));
+            }
+        }
+        _ if measured == budget => {}
+        _ => complaints.push(format!("{place}: {measured}, the budget is {budget}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn complaints(figure: Value, budget: Value) -> String {
+        let cores = |figure| json!({ "cores": [{ "core": "M4F", "flash_bytes": figure }] });
+        let checked = check(&cores(figure), &cores(budget));
+        checked
+            .err()
+            .map_or(String::new(), |error| error.to_string())
+    }
+
+    #[test]
+    fn up_to_5_percent_more_is_let_pass() {
+        assert_eq!(complaints(json!(105), json!(100)), "");
+        assert_eq!(complaints(json!(50), json!(100)), "");
+        let said = complaints(json!(106), json!(100));
+        assert!(
+            said.starts_with(" cores: M4F flash_bytes: 106, the budget is 100\n"),
+            "{said}"
+        );
+        assert!(said.ends_with(UPDATE), "{said}");
+    }
+
+    #[test]
+    fn empty_figures_and_budgets_are_refused() {
+        assert!(complaints(Value::Null, json!(100)).contains("null, the budget is 100"));
+        assert!(complaints(json!(100), Value::Null).contains("100, the budget is null"));
+        assert_eq!(complaints(Value::Null, Value::Null), "");
+        let core = |core| json!({ "cores": core });
+        let none = check(&core(json!([{"core": "M0"}])), &core(json!([])));
+        assert!(
+            none.unwrap_err()
+                .to_string()
+                .contains("1 entries, 0 budgets")
+        );
+        let missing = check(&json!({"flash_bytes": 1}), &json!({}));
+        assert!(
+            missing
+                .unwrap_err()
+                .to_string()
+                .contains("flash_bytes: has no budget")
+        );
+        let not_measured = check(&json!({}), &json!({"flash_bytes": 1}));
+        assert!(
+            not_measured
+                .unwrap_err()
+                .to_string()
+                .contains("flash_bytes: was not measured")
+        );
+    }
+}

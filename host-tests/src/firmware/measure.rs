@@ -1,0 +1,106 @@
+//! What the library costs on a core.
+
+use super::{CORTEX_M4F, Core, Image, run_with};
+use anyhow::{Context as _, Result, bail};
+use serde_json::{Map, Number, Value, json};
+
+/// What the images that are weighed hold beyond start-up code, and the figure that they give.
+const PARTS: [(&str, &str); 3] = [
+    ("footprint_accumulator", "flash_bytes_accumulator"),
+    ("footprint_fit", "flash_bytes_with_fit"),
+    ("footprint_diagnosis", "flash_bytes_with_diagnosis"),
+];
+
+/// Whatever the image `bench` tells of a core: much more of a Cortex-M4F than of others.
+///
+/// # Errors
+/// If an image cannot be built or run, or ends with a failure.
+pub fn figures(core: &Core) -> Result<Map<String, Value>> {
+    let extent = match core {
+        _ if core == &CORTEX_M4F => "full",
+        Core { small: true, .. } => "small",
+        _ => "usual",
+    };
+    let run = run_with(&Image::build_for("bench", core)?, &[extent])?;
+    let (status, lines) = (run.status, run.lines);
+    if !status.success() {
+        bail!("bench on {} ended with {status}: {lines:?}", core.name);
+    }
+    let lines = lines.iter().filter_map(|line| line.strip_prefix("info "));
+    let mut figures = named_numbers(lines)?;
+    let worst = largest(&figures, "instructions_worst_sample_");
+    figures.insert("instructions_worst_sample".into(), worst.into());
+    let flash = Image::build_for("footprint_fit", core)?.flash_bytes()?;
+    figures.insert("flash_bytes".into(), flash.into());
+    Ok(figures)
+}
+
+/// The entry of a core in a list of them; a diagnosis that it has no room for is null.
+///
+/// # Errors
+/// If another figure was not measured.
+pub fn entry(core: &Core, figures: &Map<String, Value>) -> Result<Value> {
+    let measured = |value: Option<u64>, of: &str| {
+        value.with_context(|| format!("{}: {of} was not measured", core.name))
+    };
+    let whole = |name: &str| measured(figures.get(name).and_then(Value::as_u64), name);
+    let stack = measured(largest(figures, "stack_bytes_"), "stack_bytes")?;
+    let fit = measured(largest(figures, "instructions_fit_"), "instructions_fit")?;
+    Ok(json!({
+        "core": core.name,
+        "octaves": whole("octaves")?,
+        "instructions_per_sample": figures["instructions_per_sample"],
+        "instructions_worst_sample": whole("instructions_worst_sample")?,
+        "instructions_fit": fit,
+        "instructions_diagnosis": largest(figures, "instructions_diagnosis_"),
+        "flash_bytes": whole("flash_bytes")?,
+        "ram_bytes": whole("ram_bytes_axis_and_curve")? + stack,
+        "stack_bytes": stack,
+    }))
+}
+
+/// The largest of the figures whose names start so.
+fn largest(figures: &Map<String, Value>, start: &str) -> Option<u64> {
+    let named = figures.iter().filter(|(name, _)| name.starts_with(start));
+    named.filter_map(|(_, value)| value.as_u64()).max()
+}
+
+/// What each part of the library takes of a Cortex-M4F's flash: its image less the one that does
+/// nothing.
+///
+/// # Errors
+/// If an image cannot be built.
+pub fn flash_by_part() -> Result<Map<String, Value>> {
+    let nothing = Image::build("footprint_nothing")?.flash_bytes()?;
+    let mut figures = Map::new();
+    figures.insert("flash_bytes_start_up".into(), nothing.into());
+    for (image, figure) in PARTS {
+        let flash = Image::build(image)?.flash_bytes()?;
+        figures.insert(figure.into(), flash.saturating_sub(nothing).into());
+    }
+    Ok(figures)
+}
+
+/// Lines of a name and a number.
+///
+/// # Errors
+/// If one is something else.
+pub fn named_numbers<'a>(lines: impl Iterator<Item = &'a str>) -> Result<Map<String, Value>> {
+    let figure = |line: &str| {
+        let (name, number) = line.split_once(' ')?;
+        let number: Number = number.parse().ok()?;
+        Some((name.to_owned(), rounded(number)))
+    };
+    lines
+        .map(|line| figure(line).with_context(|| format!("{line:?} is not a name and a number")))
+        .collect()
+}
+
+/// A number of instructions that a clock gave, without the digits that it did not resolve.
+fn rounded(number: Number) -> Value {
+    match number.as_f64() {
+        Some(float) if float >= 1e5 => (float.round() as u64).into(),
+        Some(float) if number.is_f64() => ((float * 100.0).round() / 100.0).into(),
+        _ => number.into(),
+    }
+}

@@ -1,0 +1,141 @@
+//! The image that measures the library in QEMU, where instructions can be counted but not cycles:
+//! `cargo xtask bench`. Its first argument is how much to measure: `full` is everything, `small` what
+//! 16 KiB of RAM have room for.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(not(target_os = "none"))]
+fn main() {}
+
+#[cfg(target_os = "none")]
+mod clock;
+#[cfg(target_os = "none")]
+mod stack;
+#[cfg(target_os = "none")]
+mod work;
+
+#[cfg(target_os = "none")]
+mod image {
+    use crate::clock::Clock;
+    use crate::{stack, work};
+    use allanite::{Accumulator, Curve, Model};
+    use core::hint::black_box;
+    #[cfg(target_arch = "arm")]
+    use cortex_m as _;
+    use defmt_semihosting as _;
+
+    /// Octaves of an axis whose fit 16 KiB have room for.
+    const SMALL: usize = 14;
+    const USUAL: usize = 20;
+
+    #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+    #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
+    fn main() -> ! {
+        let Some(clock) = Clock::start() else {
+            defmt::error!("no clock that counts");
+            semihosting::process::exit(1);
+        };
+        let done = with_extent(|extent| match extent {
+            "small" => {
+                samples(&clock);
+                worst::<24>(&clock, SOON);
+                fit::<SMALL>(&clock)
+            }
+            "full" => {
+                samples(&clock);
+                slices(&clock);
+                worst::<12>(&clock, LATE);
+                worst::<24>(&clock, LATE);
+                worst::<30>(&clock, LATE);
+                fit::<USUAL>(&clock) && diagnosis(&clock)
+            }
+            _ => {
+                samples(&clock);
+                worst::<24>(&clock, SOON);
+                fit::<USUAL>(&clock) && diagnosis(&clock)
+            }
+        });
+        semihosting::process::exit(i32::from(!done))
+    }
+
+    /// Calls with the first argument; the image's own name stands before it.
+    fn with_extent(measure: impl FnOnce(&str) -> bool) -> bool {
+        let arguments = semihosting::experimental::env::args::<64>();
+        let mut words = arguments.iter().flatten();
+        measure(words.nth(1).and_then(Result::ok).unwrap_or(""))
+    }
+
+    #[inline(never)]
+    fn samples(clock: &Clock) {
+        let mean = work::mean(clock, work::push) - work::mean(clock, work::nothing);
+        defmt::info!("instructions_per_sample {=f64}", mean);
+        defmt::info!(
+            "ram_bytes_per_axis_24 {=usize}",
+            size_of::<Accumulator<24>>()
+        );
+    }
+
+    #[inline(never)]
+    fn slices(clock: &Clock) {
+        let mean = work::mean_of_slices(clock);
+        defmt::info!("instructions_per_sample_slice {=f64}", mean);
+    }
+
+    /// The schedule has every level due once up to the one of half as many samples.
+    const SOON: u32 = 1 << 16;
+    const LATE: u32 = 1 << 20;
+
+    #[inline(never)]
+    fn worst<const OCTAVES: usize>(clock: &Clock, deepest: u32) {
+        let worst = work::worst::<OCTAVES>(clock, deepest);
+        defmt::info!("instructions_worst_sample_{=usize} {=u64}", OCTAVES, worst);
+    }
+
+    #[inline(never)]
+    fn fit<const OCTAVES: usize>(clock: &Clock) -> bool {
+        let Some(curve) = work::curve::<OCTAVES>(0.0) else {
+            return false;
+        };
+        let mut fitted = false;
+        let fit = || fitted = work::characterise(black_box(&curve)).is_ok();
+        let instructions = clock.instructions(fit);
+        let stack = stack::used_by(|| {
+            black_box(work::characterise(black_box(&curve)).is_ok());
+        });
+        let axis = size_of::<Accumulator<OCTAVES>>() + size_of::<Curve<OCTAVES>>();
+        defmt::info!("octaves {=usize}", OCTAVES);
+        defmt::info!("ram_bytes_axis_and_curve {=usize}", axis);
+        defmt::info!("instructions_fit_{=usize} {=f64}", OCTAVES, instructions);
+        defmt::info!("stack_bytes_fit_{=usize} {=usize}", OCTAVES, stack);
+        fitted
+    }
+
+    #[inline(never)]
+    fn diagnosis(clock: &Clock) -> bool {
+        let model = Model::ieee_952();
+        let Some(curve) = work::curve::<USUAL>(0.02) else {
+            return false;
+        };
+        let mut found = false;
+        let diagnose = || found = work::diagnose(black_box(&curve), &model);
+        let instructions = clock.instructions(diagnose);
+        let stack = stack::used_by(|| {
+            black_box(work::diagnose(black_box(&curve), &model));
+        });
+        let ram = size_of::<Accumulator<USUAL>>() * 3 + size_of::<Curve<USUAL>>() + stack;
+        defmt::info!(
+            "instructions_diagnosis_{=usize} {=f64}",
+            USUAL,
+            instructions
+        );
+        defmt::info!("stack_bytes_diagnosis_{=usize} {=usize}", USUAL, stack);
+        defmt::info!("ram_bytes_three_axes_20_with_diagnosis {=usize}", ram);
+        found
+    }
+
+    #[panic_handler]
+    fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
+        defmt::error!("{}", defmt::Display2Format(info));
+        semihosting::process::exit(101)
+    }
+}

@@ -1,0 +1,35 @@
+//! The same, and a diagnosis with every effect of the catalogue.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(not(target_os = "none"))]
+fn main() {}
+
+#[cfg(target_os = "none")]
+mod image {
+    use allanite::effect::CATALOGUE;
+    use allanite::{Accumulator, Diagnosis, Evidence, Model, Scale};
+    use core::hint::black_box;
+
+    #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+    #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
+    fn main() -> ! {
+        let mut accumulator = Accumulator::<20>::new();
+        while let Some(count) = black_box(None) {
+            accumulator.push(count);
+        }
+        let verdict = Scale::new(1.0, 100.0).and_then(|scale| {
+            let curve = accumulator.curve(scale);
+            let model = Model::ieee_952();
+            let report = |step: &_| {
+                black_box(step);
+            };
+            Diagnosis::default().run(&curve, &Evidence::NONE, &model, &CATALOGUE, report)
+        });
+        black_box(&verdict);
+        semihosting::process::exit(0)
+    }
+}
+
+#[cfg(target_os = "none")]
+mod panic;

@@ -1,0 +1,73 @@
+//! A timer that interrupts when a sample is ready. The sample itself takes a fraction of the time
+//! between two.
+
+#[cfg(target_arch = "arm")]
+pub(crate) use systick::start;
+
+#[cfg(target_arch = "riscv32")]
+pub(crate) use machine_timer::start;
+
+#[cfg(target_arch = "arm")]
+mod systick {
+    use cortex_m::peripheral::{Peripherals, syst::SystClkSource};
+
+    /// 10 000 to 30 000 instructions in QEMU.
+    const INTERVAL: u32 = 400;
+
+    pub(crate) fn start() {
+        let Some(core) = Peripherals::take() else {
+            return;
+        };
+        let mut systick = core.SYST;
+        systick.set_clock_source(SystClkSource::Core);
+        systick.set_reload(INTERVAL);
+        systick.clear_current();
+        systick.enable_interrupt();
+        systick.enable_counter();
+    }
+
+    #[cortex_m_rt::exception]
+    fn SysTick() {
+        crate::image::ready();
+    }
+}
+
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)]
+mod machine_timer {
+    use core::ptr;
+    use riscv::interrupt::{self, Interrupt};
+    use riscv::register::mie;
+
+    /// Of the timer's 10 MHz: 20 000 instructions in QEMU.
+    const INTERVAL: u64 = 200;
+
+    /// `mtimecmp` of the first hart on QEMU's virt, and `mtime`.
+    const COMPARE: *mut u64 = 0x0200_4000 as *mut u64;
+    const TIME: *const u32 = 0x0200_BFF8 as *const u32;
+
+    pub(crate) fn start() {
+        next();
+        // SAFETY: the handler is there, and what it shares lies in critical sections.
+        unsafe {
+            mie::set_mtimer();
+            interrupt::enable();
+        }
+    }
+
+    #[riscv_rt::core_interrupt(Interrupt::MachineTimer)]
+    fn machine_timer() {
+        next();
+        crate::image::ready();
+    }
+
+    /// Sets the time of the next interrupt.
+    fn next() {
+        // SAFETY: registers that every `virt` has. Seconds of a record do not fill 32 bits, so the
+        // upper half of the time is zero.
+        unsafe {
+            let now = u64::from(ptr::read_volatile(TIME));
+            ptr::write_volatile(COMPARE, now + INTERVAL);
+        }
+    }
+}

@@ -73,10 +73,12 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         self.take::<{ BATCH >> 3 }>(3, n, base, &mut offsets, RING);
         self.take::<{ BATCH >> 4 }>(4, n, base, &mut offsets, RING);
         for level in 5..=DEPTH {
-            if level + FIRST < OCTAVES {
+            if level + FIRST < OCTAVES
+                && let Some(own) = self.levels.get_mut(level)
+            {
                 let boundaries = offsets[RING..RING + (BATCH >> 4)].iter();
                 for (block, &offset) in (n >> level..).zip(boundaries.step_by(1 << (level - 4))) {
-                    self.levels[level].push(block, base.wrapping_add(u64::from(offset)));
+                    own.push(block, base.wrapping_add(u64::from(offset)));
                 }
             }
         }

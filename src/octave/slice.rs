@@ -77,7 +77,9 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
                 && let Some(own) = self.levels.get_mut(level)
             {
                 let boundaries = offsets[RING..RING + (BATCH >> 4)].iter();
-                for (block, &offset) in (n >> level..).zip(boundaries.step_by(1 << (level - 4))) {
+                for (block, &offset) in
+                    (n >> level..u32::MAX).zip(boundaries.step_by(1 << (level - 4)))
+                {
                     own.push(block, base.wrapping_add(u64::from(offset)));
                 }
             }
@@ -161,5 +163,6 @@ fn squares<const LAG: usize, const COUNT: usize>(offsets: &Offsets) -> u64 {
 #[inline(never)]
 fn sum_of_squares(magnitudes: &[u32]) -> u64 {
     let square = |&magnitude: &u32| u64::from(magnitude) * u64::from(magnitude);
-    magnitudes.iter().map(square).sum()
+    // Below 2^63, as of SPAN.
+    magnitudes.iter().map(square).fold(0, u64::wrapping_add)
 }

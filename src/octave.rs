@@ -67,9 +67,9 @@ impl Level {
 /// Integers only: a constant offset cancels exactly, host and target agree to the bit, and the
 /// order in which records are [merged](Self::merge) does not matter.
 ///
-/// On a Cortex-M4F [`push`](Self::push) takes 122 instructions a sample, whatever the number of
+/// On a Cortex-M4F [`push`](Self::push) takes 136 instructions a sample, whatever the number of
 /// octaves and the position in the schedule, as long as no difference exceeds 31 bits, and at most
-/// 225 with full-scale input; [`push_slice`](Self::push_slice) takes 81. The state is `80 + 96 ·
+/// 232 with full-scale input; [`push_slice`](Self::push_slice) takes 127, built for size. The state is `80 + 96 ·
 /// OCTAVES` bytes: 2384 for 24 octaves. `cargo xtask bench` measures this.
 ///
 /// # Example

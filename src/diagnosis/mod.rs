@@ -90,7 +90,7 @@ impl Diagnosis {
     /// carries its own evidence. Every step is handed to `report`, the last one included.
     ///
     /// With 20 octaves it takes less than 16 KiB of stack and, where an effect is found, some
-    /// 10⁸ instructions on a Cortex-M4F: `cargo xtask bench` measures this.
+    /// 3·10⁸ instructions on a Cortex-M4F: `cargo xtask bench` measures this.
     ///
     /// # Errors
     /// As of [`fit`](crate::fit).

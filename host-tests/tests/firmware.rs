@@ -5,10 +5,21 @@ use allanite::{
     demonstration::{
         AMPLITUDES,
         diagnose::{HIDDEN, diagnose},
+        stream::SEED,
     },
     simulated::SimulatedGyro,
 };
-use host_tests::firmware::{CORES, CORTEX_M4F, Image, RISCV, agreement, run, run_with};
+use host_tests::{
+    curve_file::{AxisCurve, CurveFile},
+    firmware::{CORES, CORTEX_M4F, Image, RISCV, agreement, run, run_with},
+    log::Axis,
+    unit::Unit,
+};
+use std::{
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
 
 #[test]
 fn every_core_and_the_host_agree_to_the_bit() {
@@ -17,6 +28,53 @@ fn every_core_and_the_host_agree_to_the_bit() {
         let difference = agreement::difference(core);
         let difference = difference.unwrap_or_else(|error| panic!("{}: {error:#}", core.name));
         assert_eq!(difference, None, "{}", core.name);
+    }
+}
+
+#[test]
+fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let curve = folder.path().join("curve.json");
+    for milliseconds in [0, 137, 611] {
+        let watch = Command::new(env!("CARGO_BIN_EXE_allanite"))
+            .args(["watch", "--image", "--rate", "100", "--axes", "image"])
+            .args(["--save-every", "0.2", "--output"])
+            .arg(&curve)
+            .stdout(Stdio::null())
+            .spawn();
+        let mut watch = watch.expect("the command line");
+        let begun = Instant::now();
+        while !curve.exists() {
+            assert!(watch.try_wait().is_ok_and(|status| status.is_none()));
+            assert!(begun.elapsed().as_secs() < 300, "nothing is saved");
+            thread::sleep(Duration::from_millis(1));
+        }
+        thread::sleep(Duration::from_millis(milliseconds));
+        let kill = format!("kill -INT {}", watch.id());
+        assert!(
+            Command::new("sh")
+                .args(["-c", &kill])
+                .status()
+                .is_ok_and(|status| status.success())
+        );
+        assert!(watch.wait().is_ok_and(|status| status.success()));
+
+        let saved = CurveFile::read(&curve).expect("a curve");
+        let samples = saved.axes[0].samples;
+        let mut accumulator = Accumulator::new();
+        for count in SimulatedGyro::new(AMPLITUDES, SEED).take(samples as usize) {
+            accumulator.push(count);
+        }
+        let axis = Axis {
+            name: "image".to_owned(),
+            rate_per_count: 1.0,
+            accumulator,
+            evidence: None,
+        };
+        let sent = AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).expect("a curve");
+        assert!(samples > 100, "{samples}");
+        assert_eq!(saved.axes, [sent], "after {samples} samples");
+        std::fs::remove_file(&curve).expect("a file");
     }
 }
 

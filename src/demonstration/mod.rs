@@ -3,6 +3,7 @@
 
 pub mod characterise;
 pub mod diagnose;
+pub mod stream;
 
 use crate::simulated::Amplitudes;
 

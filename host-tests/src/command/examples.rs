@@ -51,6 +51,7 @@ pub(super) const DECODE: &str = examples! {
 pub(super) const WATCH: &str = examples! {
     "allanite watch --rate 100 --scale 0.00763 --axes gx,gy,gz --port /dev/ttyACM0 --output curve.json"
     "allanite watch --rate 100 --unit rad/s --print-every 60"
+    "allanite watch --rate 100 --scale 0.00763 --image"
 };
 
 pub(super) const COMPLETIONS: &str = examples! {

@@ -5,7 +5,7 @@ use anyhow::{Context as _, Result, bail};
 use defmt_decoder::{DecodeError, Table};
 use std::{
     io::Read,
-    process::{Command, ExitStatus, Stdio},
+    process::{Child, Command, ExitStatus, Stdio},
     thread,
     time::Duration,
 };
@@ -36,24 +36,7 @@ pub fn run(image: &Image) -> Result<Run> {
 /// # Errors
 /// As of [`run`].
 pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
-    let mut semihosting = String::from("enable=on,target=native,arg=image");
-    for argument in arguments {
-        semihosting += &format!(",arg={argument}");
-    }
-    let qemu = image.core.qemu;
-    let mut child = Command::new(qemu)
-        .args(["-machine", image.core.machine, "-cpu", image.core.cpu])
-        // The image is all that runs: RISC-V would start its own firmware first.
-        .args(["-bios", "none"])
-        .args(["-icount", "shift=0", "-nographic", "-monitor", "none"])
-        .args(["-serial", "null"])
-        .args(["-semihosting-config", &semihosting])
-        .arg("-kernel")
-        .arg(&image.path)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .spawn()
-        .with_context(|| format!("{qemu} did not start: {REMEDY}"))?;
+    let mut child = start(image, arguments)?;
     let mut stdout = child.stdout.take().context("no output to read")?;
     let reader = thread::spawn(move || {
         let mut log = Vec::new();
@@ -70,13 +53,38 @@ pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
     };
     let log = match reader.join() {
         Ok(log) => log?,
-        Err(_) => bail!("reading the output of {qemu} failed"),
+        Err(_) => bail!("reading the output of {} failed", image.core.qemu),
     };
     let lines = decode(&image.elf, &log).with_context(|| {
         let path = image.path.display();
         format!("decoding the log of {path}, which ended with {status}")
     })?;
     Ok(Run { lines, status })
+}
+
+/// Starts an image; what it writes is to be read.
+///
+/// # Errors
+/// If QEMU does not start.
+pub fn start(image: &Image, arguments: &[&str]) -> Result<Child> {
+    let mut semihosting = String::from("enable=on,target=native,arg=image");
+    for argument in arguments {
+        semihosting += &format!(",arg={argument}");
+    }
+    let qemu = image.core.qemu;
+    Command::new(qemu)
+        .args(["-machine", image.core.machine, "-cpu", image.core.cpu])
+        // The image is all that runs: RISC-V would start its own firmware first.
+        .args(["-bios", "none"])
+        .args(["-icount", "shift=0", "-nographic", "-monitor", "none"])
+        .args(["-serial", "null"])
+        .args(["-semihosting-config", &semihosting])
+        .arg("-kernel")
+        .arg(&image.path)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn()
+        .with_context(|| format!("{qemu} did not start: {REMEDY}"))
 }
 
 /// The messages of a defmt log, each with its level.

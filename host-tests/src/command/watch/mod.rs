@@ -71,6 +71,9 @@ pub(super) struct Arguments {
     /// Serial port to read, such as /dev/ttyACM0 [default: standard input]
     #[arg(long, value_name = "DEVICE")]
     port: Option<String>,
+    /// Read a simulated gyro that an image sends from a Cortex-M4F in QEMU
+    #[arg(long, conflicts_with = "port")]
+    image: bool,
     /// Bits per second of the serial port
     #[arg(long, default_value_t = 115_200, requires = "port")]
     baud: u32,
@@ -106,6 +109,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
             port: port.clone(),
             baud: arguments.baud,
         },
+        None if arguments.image => Source::Image,
         None => Source::StandardInput,
     };
     let interrupted = Arc::new(AtomicBool::new(false));

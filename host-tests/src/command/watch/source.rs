@@ -1,6 +1,9 @@
 //! Where counts come from: one variant a source, bytes from all of them.
 
-use crate::failure::{Failure, one_line};
+use crate::{
+    failure::{Failure, one_line},
+    firmware::{self, Image},
+};
 use std::{
     io::{self, ErrorKind, Read},
     sync::mpsc::{Receiver, SyncSender, sync_channel},
@@ -29,6 +32,8 @@ pub(super) enum Source {
         /// Bits per second.
         baud: u32,
     },
+    /// The image `stream` on a Cortex-M4F in QEMU.
+    Image,
 }
 
 /// What a source has to say.
@@ -61,6 +66,19 @@ impl Source {
                     begun: false,
                 };
                 thread::spawn(move || pass_on(lines, &port, &sender));
+            }
+            Self::Image => {
+                let started = Image::build("stream").and_then(|image| firmware::start(&image, &[]));
+                let mut emulator = started
+                    .map_err(|error| Failure::option("--image", one_line(&format!("{error:#}"))))?;
+                thread::spawn(move || {
+                    if let Some(output) = emulator.stdout.take() {
+                        pass_on(output, "the image", &sender);
+                    }
+                    // It sends for ever: whoever listened has gone. One that has ended cannot be killed.
+                    let _ = emulator.kill();
+                    let _ = emulator.wait();
+                });
             }
         }
         Ok(receiver)

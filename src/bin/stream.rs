@@ -1,0 +1,40 @@
+//! The image that sends the counts of a simulated gyro for as long as somebody reads them, a line of text
+//! each, as a firmware would through a serial port: `cargo allanite watch --image`.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(not(target_os = "none"))]
+fn main() {}
+
+#[cfg(target_os = "none")]
+mod image {
+    use allanite::demonstration::AMPLITUDES;
+    use allanite::demonstration::stream::SEED;
+    use allanite::simulated::SimulatedGyro;
+    use core::fmt::Write as _;
+    use heapless::String;
+    use semihosting::io::{self, Write as _};
+
+    /// Bytes of the longest count, its sign and the end of its line.
+    const LINE: usize = 12;
+
+    #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+    #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
+    fn main() -> ! {
+        let Ok(mut output) = io::stdout() else {
+            semihosting::process::exit(1);
+        };
+        for count in SimulatedGyro::new(AMPLITUDES, SEED) {
+            let mut line = String::<LINE>::new();
+            if writeln!(line, "{count}").is_err() || output.write_all(line.as_bytes()).is_err() {
+                semihosting::process::exit(1);
+            }
+        }
+        semihosting::process::exit(0)
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        semihosting::process::exit(101)
+    }
+}

@@ -43,6 +43,16 @@ pub(super) const DIAGNOSE: &str = examples! {
     "allanite diagnose log.csv --covariates temp_C,rate(temp_C)"
 };
 
+pub(super) const REPORT: &str = examples! {
+    "allanite report curve.json --output report.html"
+    "allanite report log.csv --rate 100 --scale 0.05 --unit deg/s --output report.html"
+};
+
+pub(super) const PLOT: &str = examples! {
+    "allanite plot curve.json --axis gz --output curve.svg"
+    "allanite plot log.csv --step 0 --output five-terms.png"
+};
+
 pub(super) const DECODE: &str = examples! {
     "allanite decode device1.bin device2.bin"
     "allanite decode --json snapshot.bin"

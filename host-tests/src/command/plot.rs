@@ -3,6 +3,7 @@
 use super::{
     diagnose_words::shown_p,
     diagnosed::{Diagnosed, DiagnosisArguments},
+    examples,
     output_file::OutputFile,
     words,
 };
@@ -15,6 +16,7 @@ use std::{io::Write, path::Path, path::PathBuf};
 
 /// Draw the Allan curve beside the model that `diagnose` ends with, and where the two differ
 #[derive(Debug, Args)]
+#[command(after_help = examples::PLOT)]
 pub(super) struct Arguments {
     #[command(flatten)]
     diagnosis: DiagnosisArguments,

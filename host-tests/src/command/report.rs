@@ -1,7 +1,8 @@
 //! `report`: a diagnosis as a page.
 
 use super::{
-    diagnose_text, diagnosed::DiagnosisArguments, output_file::OutputFile, report_json, report_page,
+    diagnose_text, diagnosed::DiagnosisArguments, examples, output_file::OutputFile, report_json,
+    report_page,
 };
 use crate::failure::{Failure, Place};
 use clap::Args;
@@ -12,6 +13,7 @@ use std::{
 
 /// Write the diagnosis as a page to walk through: one HTML file that needs nothing else
 #[derive(Debug, Args)]
+#[command(after_help = examples::REPORT)]
 pub(super) struct Arguments {
     #[command(flatten)]
     diagnosis: DiagnosisArguments,

@@ -1,0 +1,42 @@
+//! Means of clusters, which show motion.
+
+use super::watch::{Fate, Rule, Watch};
+
+/// Clusters of one length.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(super) struct Cluster {
+    pub(super) sum: i64,
+    /// Samples in the sum.
+    pub(super) filled: u16,
+    pub(super) watch: Watch,
+    /// Σ D² where the rate had left its level.
+    pub(super) squares: u128,
+    pub(super) motions: u64,
+}
+
+impl Cluster {
+    pub(super) const NEW: Self = Self {
+        sum: 0,
+        filled: 0,
+        watch: Watch::NEW,
+        squares: 0,
+        motions: 0,
+    };
+
+    /// The cluster is full.
+    #[inline(never)]
+    pub(super) fn judge(&mut self, rule: &Rule) {
+        let (fate, square) = self.watch.push(self.sum, rule);
+        self.sum = 0;
+        self.filled = 0;
+        let (squares, motions) = match fate {
+            Fate::Start | Fate::Learning | Fate::Ordinary => (0, 0),
+            Fate::Learnt { outlier } => (outlier, u64::from(outlier > 0)),
+            Fate::Out { first } => (square, u64::from(first)),
+            Fate::Back | Fate::Accepted => (square, 0),
+        };
+        self.squares = self.squares.saturating_add(squares);
+        self.motions = self.motions.saturating_add(motions);
+    }
+}

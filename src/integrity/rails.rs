@@ -1,0 +1,63 @@
+//! Where a converter clips.
+
+/// Hits of the record's extremes where they are rails.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(super) struct Rails {
+    lowest: i32,
+    highest: i32,
+    lowest_hits: u64,
+    highest_hits: u64,
+}
+
+impl Rails {
+    pub(super) const NEW: Self = Self {
+        lowest: i32::MAX,
+        highest: i32::MIN,
+        lowest_hits: 0,
+        highest_hits: 0,
+    };
+
+    /// Whether the count is a rail and the record's extreme.
+    #[inline(always)]
+    pub(super) fn push(&mut self, count: i32, rails: &[i32; 4]) -> bool {
+        if count > self.lowest && count < self.highest {
+            return false;
+        }
+        let hit = rails.contains(&count);
+        if count < self.lowest {
+            (self.lowest, self.lowest_hits) = (count, 0);
+        }
+        if count > self.highest {
+            (self.highest, self.highest_hits) = (count, 0);
+        }
+        if hit && count == self.lowest {
+            self.lowest_hits = self.lowest_hits.saturating_add(1);
+        }
+        if hit && count == self.highest {
+            self.highest_hits = self.highest_hits.saturating_add(1);
+        }
+        hit
+    }
+
+    pub(super) fn hits(&self) -> u64 {
+        if self.lowest == self.highest {
+            self.lowest_hits
+        } else {
+            self.lowest_hits.saturating_add(self.highest_hits)
+        }
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        if other.lowest < self.lowest {
+            (self.lowest, self.lowest_hits) = (other.lowest, other.lowest_hits);
+        } else if other.lowest == self.lowest {
+            self.lowest_hits = self.lowest_hits.saturating_add(other.lowest_hits);
+        }
+        if other.highest > self.highest {
+            (self.highest, self.highest_hits) = (other.highest, other.highest_hits);
+        } else if other.highest == self.highest {
+            self.highest_hits = self.highest_hits.saturating_add(other.highest_hits);
+        }
+    }
+}

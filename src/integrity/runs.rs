@@ -1,0 +1,94 @@
+//! How long values repeat.
+
+/// Changes of value after which the mean run is known well enough to judge a run by it.
+const KNOWN: u32 = 16;
+
+/// Runs of equal values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(super) struct Runs {
+    /// Samples of the present run; 0 after a gap.
+    pub(super) present: u32,
+    pub(super) value: i32,
+    pub(super) longest: u32,
+    /// Samples in runs that have ended, and how many these are; both halved before they overflow.
+    ended_samples: u32,
+    ended: u32,
+    pub(super) stuck: u64,
+    pub(super) stuck_samples: u64,
+}
+
+impl Runs {
+    pub(super) const NEW: Self = Self {
+        present: 0,
+        value: 0,
+        longest: 0,
+        ended_samples: 0,
+        ended: 0,
+        stuck: 0,
+        stuck_samples: 0,
+    };
+
+    /// Whether the present run is implausibly long.
+    #[inline(always)]
+    pub(super) fn push(&mut self, count: i32, factor: u16) -> bool {
+        if self.present == 0 || self.value != count {
+            self.end();
+            self.value = count;
+            self.present = 1;
+            self.longest = self.longest.max(1);
+            return false;
+        }
+        self.present = self.present.saturating_add(1);
+        self.longest = self.longest.max(self.present);
+        let stuck = self.is_implausible(self.present, self.ended_samples, factor);
+        if stuck {
+            // The first time with all samples of the run so far.
+            let before = self.is_implausible(self.present - 1, self.ended_samples, factor);
+            let new = if before { 1 } else { self.present };
+            self.stuck = self.stuck.saturating_add(u64::from(!before));
+            self.stuck_samples = self.stuck_samples.saturating_add(new.into());
+        }
+        stuck
+    }
+
+    /// A value has followed that is not the run's.
+    #[inline(always)]
+    fn end(&mut self) {
+        if self.present > 0 {
+            self.add_ended(self.present, 1);
+        }
+    }
+
+    fn add_ended(&mut self, samples: u32, runs: u32) {
+        // The mean is kept, what is older than 2^31 samples fades.
+        let sum = u64::from(self.ended_samples) + u64::from(samples);
+        let fade = sum.checked_ilog2().unwrap_or(0).saturating_sub(30);
+        self.ended_samples = (sum >> fade) as u32;
+        self.ended = ((u64::from(self.ended) + u64::from(runs)) >> fade) as u32;
+    }
+
+    /// Whether a run is longer than `factor` times the mean one.
+    #[inline(always)]
+    fn is_implausible(&self, run: u32, ended_samples: u32, factor: u16) -> bool {
+        self.ended >= KNOWN
+            && u64::from(run) * u64::from(self.ended) > u64::from(ended_samples) * u64::from(factor)
+    }
+
+    pub(super) fn is_longest_implausible(&self, factor: u16) -> bool {
+        // Without itself, if it has ended.
+        let others = if self.longest == self.present {
+            self.ended_samples
+        } else {
+            self.ended_samples.saturating_sub(self.longest)
+        };
+        self.is_implausible(self.longest, others, factor)
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.longest = self.longest.max(other.longest);
+        self.add_ended(other.ended_samples, other.ended);
+        self.stuck = self.stuck.saturating_add(other.stuck);
+        self.stuck_samples = self.stuck_samples.saturating_add(other.stuck_samples);
+    }
+}

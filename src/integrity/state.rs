@@ -1,0 +1,139 @@
+//! What has been seen of a record, whatever the limits.
+
+use super::{
+    cluster::Cluster,
+    rails::Rails,
+    runs::Runs,
+    watch::{Fate, Rule, Watch},
+};
+
+/// How many samples a cluster has whose mean shows motion: 0.64 s and 10 s at 100 Hz, 8 ms and
+/// 0.13 s at 8 kHz.
+pub(super) const CLUSTERS: [u16; 2] = [64, 1024];
+
+/// Everything but the configuration.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(super) struct State {
+    pub(super) samples: u64,
+    pub(super) missing: u64,
+    pub(super) repeats: u64,
+    pub(super) changes: u64,
+    pub(super) runs: Runs,
+    pub(super) rails: Rails,
+    pub(super) neighbours: Watch,
+    pub(super) spikes: u64,
+    pub(super) steps: u64,
+    /// Σ D² of the spikes and of the steps.
+    pub(super) spike_squares: u128,
+    pub(super) step_squares: u128,
+    /// Of the excursion that goes on.
+    pub(super) pending_squares: u128,
+    pub(super) clusters: [Cluster; CLUSTERS.len()],
+}
+
+impl State {
+    pub(super) const NEW: Self = Self {
+        samples: 0,
+        missing: 0,
+        repeats: 0,
+        changes: 0,
+        runs: Runs::NEW,
+        rails: Rails::NEW,
+        neighbours: Watch::NEW,
+        spikes: 0,
+        steps: 0,
+        spike_squares: 0,
+        step_squares: 0,
+        pending_squares: 0,
+        clusters: [Cluster::NEW, Cluster::NEW],
+    };
+
+    /// Whether the count is far from the last ordinary one, and what clusters take in its place,
+    /// once the scale is known.
+    #[inline(always)]
+    pub(super) fn push_neighbour(&mut self, count: i32, factor: u16) -> (bool, Option<i32>) {
+        let (fate, square) = self
+            .neighbours
+            .push(count.into(), &Rule::neighbours(factor));
+        match fate {
+            Fate::Learning => return (false, None),
+            Fate::Learnt { outlier: 0 } => {}
+            Fate::Learnt { outlier } => self.add_spike(outlier),
+            Fate::Start | Fate::Ordinary => {}
+            Fate::Out { .. } => {
+                self.pending_squares = self.pending_squares.saturating_add(square);
+                return (true, Some(self.neighbours.reference() as i32));
+            }
+            Fate::Back => {
+                let squares = self.pending_squares.saturating_add(square);
+                self.add_spike(squares);
+            }
+            Fate::Accepted => {
+                let squares = self.pending_squares.saturating_add(square);
+                self.step_squares = self.step_squares.saturating_add(squares);
+                self.steps = self.steps.saturating_add(1);
+                self.pending_squares = 0;
+                return (true, Some(count));
+            }
+        }
+        (false, Some(count))
+    }
+
+    pub(super) fn add_spike(&mut self, squares: u128) {
+        self.spikes = self.spikes.saturating_add(1);
+        self.spike_squares = self.spike_squares.saturating_add(squares);
+        self.pending_squares = 0;
+    }
+
+    /// At most one length is judged at a sample, the shorter at the end of its cluster, the longer
+    /// at the sample after.
+    #[inline(always)]
+    pub(super) fn push_clusters(&mut self, count: i32, factor: u16) {
+        let [short, long] = &mut self.clusters;
+        let [short_length, long_length] = CLUSTERS;
+        if long.filled == long_length {
+            let rule = Rule::clusters(factor, long_length);
+            long.judge(&rule.with_least(&short.watch, long_length / short_length));
+        }
+        short.sum = short.sum.saturating_add(count.into());
+        short.filled = short.filled.saturating_add(1);
+        if short.filled == short_length {
+            long.sum = long.sum.saturating_add(short.sum);
+            long.filled = long.filled.saturating_add(short_length);
+            short.judge(&Rule::clusters(factor, short_length));
+        }
+    }
+
+    pub(super) fn gap(&mut self) {
+        self.runs.present = 0;
+        self.neighbours.gap();
+        self.pending_squares = 0;
+        for cluster in &mut self.clusters {
+            cluster.sum = 0;
+            cluster.filled = 0;
+            cluster.watch.gap();
+        }
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.gap();
+        let add = |sum: &mut u64, other: u64| *sum = sum.saturating_add(other);
+        add(&mut self.samples, other.samples);
+        add(&mut self.missing, other.missing);
+        add(&mut self.repeats, other.repeats);
+        add(&mut self.changes, other.changes);
+        add(&mut self.spikes, other.spikes);
+        add(&mut self.steps, other.steps);
+        self.spike_squares = self.spike_squares.saturating_add(other.spike_squares);
+        self.step_squares = self.step_squares.saturating_add(other.step_squares);
+        self.runs.merge(&other.runs);
+        self.rails.merge(&other.rails);
+        self.neighbours.merge(&other.neighbours);
+        for (cluster, other) in self.clusters.iter_mut().zip(&other.clusters) {
+            cluster.watch.merge(&other.watch);
+            cluster.squares = cluster.squares.saturating_add(other.squares);
+            add(&mut cluster.motions, other.motions);
+        }
+    }
+}

@@ -9,6 +9,7 @@ pub mod firmware;
 pub mod log;
 pub mod overbound;
 pub mod plot;
+pub mod program;
 pub mod simulate;
 pub mod study;
 pub mod unit;

@@ -1,43 +1,9 @@
 //! What people and scripts see of the program: results, statuses, and one line for what is wrong.
 
+use host_tests::program::{command, output, refusal};
 use serde::Deserialize;
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output, Stdio},
-};
+use std::{fs, path::Path, process::Stdio};
 use tempfile::TempDir;
-
-fn allanite(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_allanite"));
-    command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-/// The standard output of a command that works.
-fn output(folder: &Path, arguments: &[&str]) -> String {
-    let output = allanite(folder, arguments);
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{arguments:?}: {errors}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// The one line of a command that refuses.
-fn refusal(folder: &Path, arguments: &[&str]) -> String {
-    let output = allanite(folder, arguments);
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-    let line = errors.strip_suffix('\n').unwrap();
-    assert!(
-        !line.contains('\n') && line.contains("; "),
-        "{arguments:?}: {line}"
-    );
-    line.strip_prefix("allanite: ").unwrap().to_owned()
-}
 
 /// A folder with a simulated log of 20 000 samples, three axes and their curves.
 fn folder() -> TempDir {
@@ -599,9 +565,7 @@ fn impossible_simulations_are_refused() {
 
 #[test]
 fn reader_that_leaves_early_is_no_failure() {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_allanite"));
-    command.args(["simulate", "mems", "--duration", "1d"]);
-    let mut child = command
+    let mut child = command(Path::new("."), &["simulate", "mems", "--duration", "1d"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

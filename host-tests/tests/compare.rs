@@ -1,8 +1,6 @@
 //! `compare`: models with and without effects, beside what they were fitted to or not.
 
-mod common;
-
-use common::{ADIS16405, json, output, refusal};
+use host_tests::program::{ADIS16405, json, output, refusal};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;

@@ -1,13 +1,12 @@
 //! `decode`: records and snapshots, whole and broken, one and many.
 
-mod common;
 #[path = "common/factory.rs"]
 mod factory;
 
 use allanite::{AxisRecord, RateUnit};
-use common::{json, output, refusal};
 use factory::{SINUSOID, axis, encoded, record};
-use std::{fs, process::Command, sync::LazyLock};
+use host_tests::program::{json, output, refusal, run};
+use std::{fs, sync::LazyLock};
 use tempfile::TempDir;
 
 static AXES: LazyLock<[AxisRecord; 2]> = LazyLock::new(|| [axis(None, 1), axis(Some(SINUSOID), 2)]);
@@ -121,12 +120,7 @@ fn broken_files_are_named_and_the_others_printed() {
         "absent.bin",
         "text.bin",
     ];
-    let run = Command::new(env!("CARGO_BIN_EXE_allanite"))
-        .current_dir(folder.path())
-        .arg("decode")
-        .args(files)
-        .output()
-        .unwrap();
+    let run = run(folder.path(), &[&["decode"], &files[..]].concat());
     assert_eq!(run.status.code(), Some(2));
     let whole = output(folder.path(), &["decode", "first.bin", "second.bin"]);
     assert_eq!(String::from_utf8(run.stdout).unwrap(), whole);

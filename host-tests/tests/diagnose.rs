@@ -1,9 +1,7 @@
 //! `diagnose`: hidden effects are named, real gyros explained, and words say what the figures say.
 
-mod common;
-
 use allanite::{Diagnosis, Evidence, Model, Step, effect::CATALOGUE};
-use common::{ADIS16405, json, output, refusal};
+use host_tests::program::{ADIS16405, json, output, refusal};
 use host_tests::{curve_file::CurveFile, log::OCTAVES};
 use serde_json::Value;
 use std::path::Path;

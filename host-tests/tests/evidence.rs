@@ -1,8 +1,6 @@
 //! `diagnose` with what a log tells beside its curve: whether it may be believed, and what it follows.
 
-mod common;
-
-use common::{json, output, refusal};
+use host_tests::program::{json, output, refusal};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

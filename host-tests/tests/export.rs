@@ -1,8 +1,6 @@
 //! Every format, read back by what its consumer reads it with.
 
-mod common;
-
-use common::{ADIS16405, json, output, refusal};
+use host_tests::program::{ADIS16405, json, output, refusal};
 use saphyr::{LoadableYamlNode, Yaml};
 use serde_json::Value;
 use std::{collections::HashMap, fs, path::Path, process::Command};

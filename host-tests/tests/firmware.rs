@@ -13,6 +13,7 @@ use host_tests::{
     curve_file::{AxisCurve, CurveFile},
     firmware::{CORES, CORTEX_M4F, Image, RISCV, agreement, run, run_with},
     log::Axis,
+    program::command,
     unit::Unit,
 };
 use std::{
@@ -36,8 +37,8 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
     let folder = tempfile::tempdir().expect("a folder");
     let curve = folder.path().join("curve.json");
     for milliseconds in [0, 137, 611] {
-        let watch = Command::new(env!("CARGO_BIN_EXE_allanite"))
-            .args(["watch", "--image", "--rate", "100", "--axes", "image"])
+        let watch = ["watch", "--image", "--rate", "100", "--axes", "image"];
+        let watch = command(folder.path(), &watch)
             .args(["--save-every", "0.2", "--output"])
             .arg(&curve)
             .stdout(Stdio::null())

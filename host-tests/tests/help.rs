@@ -1,10 +1,8 @@
 //! What the program says of itself.
 
-mod common;
-
 use clap::{CommandFactory, Parser};
-use common::output;
 use host_tests::command::CommandLine;
+use host_tests::program::{self, output};
 use std::{
     fs,
     path::Path,
@@ -72,12 +70,8 @@ fn quiet_leaves_results_alone_and_notes_out() {
         .collect();
     fs::write(folder.path().join("log.csv"), format!("gx\n{counts}")).unwrap();
     let run = |more: &[&str]| {
-        let run = Command::new(env!("CARGO_BIN_EXE_allanite"))
-            .current_dir(folder.path())
-            .args(["fit", "log.csv", "--rate", "100"])
-            .args(more)
-            .output()
-            .unwrap();
+        let arguments = [&["fit", "log.csv", "--rate", "100"], more].concat();
+        let run = program::run(folder.path(), &arguments);
         assert!(run.status.success());
         (run.stdout, String::from_utf8(run.stderr).unwrap())
     };

@@ -1,10 +1,8 @@
 //! Many files at once: all that can be done is done, and printed in the order of the arguments.
 
-mod common;
-
-use common::{json, output, refusal};
+use host_tests::program::{command, json, output, refusal};
 use serde_json::Value;
-use std::{fs, path::Path, process::Command};
+use std::{fs, path::Path};
 use tempfile::TempDir;
 
 const FILES: usize = 200;
@@ -40,12 +38,7 @@ fn folder() -> (TempDir, Vec<String>) {
 
 /// Standard output, standard error and the status of a command.
 fn run(folder: &Path, arguments: &[&str], files: &[String]) -> (String, String, Option<i32>) {
-    let run = Command::new(env!("CARGO_BIN_EXE_allanite"))
-        .current_dir(folder)
-        .args(arguments)
-        .args(files)
-        .output()
-        .unwrap();
+    let run = command(folder, arguments).args(files).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (text(run.stdout), text(run.stderr), run.status.code())
 }

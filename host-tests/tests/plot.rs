@@ -1,8 +1,6 @@
 //! The plot of a record says what its figures and its words say.
 
-mod common;
-
-use common::{ADIS16405, json, output, refusal};
+use host_tests::program::{self, ADIS16405, json, output, refusal};
 use resvg::tiny_skia::Pixmap;
 use roxmltree::Document;
 use serde_json::Value;
@@ -177,7 +175,8 @@ fn no_plot_is_drawn_of_what_cannot_be_compared() {
 
 /// The program in a terminal of so many columns.
 fn in_a_terminal(columns: u32, variables: &[(&str, &str)]) -> String {
-    let program = env!("CARGO_BIN_EXE_allanite");
+    let program = program::path();
+    let program = program.display();
     let line = format!("stty cols {columns} rows 40; {program} compare {ADIS16405}");
     let mut script = Command::new("script");
     script.args(["--quiet", "--return", "--command", &line, "/dev/null"]);

@@ -1,9 +1,7 @@
 //! The README shows what its reader will see.
 
-mod common;
-
-use common::output;
 use host_tests::firmware::{budgets, figures};
+use host_tests::program::output;
 use std::{fs, path::Path};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");

@@ -2,10 +2,9 @@
 
 #[path = "common/browser.rs"]
 mod browser;
-mod common;
 
 use browser::Browser;
-use common::{ADIS16405, json, output, refusal};
+use host_tests::program::{ADIS16405, json, output, refusal};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;

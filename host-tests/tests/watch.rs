@@ -1,9 +1,7 @@
 //! A live record: what was received is in the curve, whatever ends it.
 
-mod common;
-
 use allanite::Accumulator;
-use common::refusal;
+use host_tests::program::{command, refusal};
 use host_tests::{
     curve_file::CurveFile,
     log::{Axis, OCTAVES},
@@ -62,9 +60,7 @@ fn watch(folder: &Path, more: &[&str]) -> Child {
         "--axes",
         "left,right",
     ];
-    Command::new(env!("CARGO_BIN_EXE_allanite"))
-        .current_dir(folder)
-        .args(arguments)
+    command(folder, &arguments)
         .args(["--output", "curve.json"])
         .args(more)
         .stdin(Stdio::piped())

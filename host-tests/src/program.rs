@@ -1,0 +1,68 @@
+//! The program as people run it: what the tests of the command line share.
+
+use serde_json::Value;
+use std::{
+    ffi::OsString,
+    path::Path,
+    process::{Command, Output},
+};
+
+/// Curves of a real gyro.
+pub const ADIS16405: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/adis16405.json");
+
+/// Where cargo has put the program for a test that it runs; elsewhere, the one on the path.
+pub fn path() -> OsString {
+    std::env::var_os("CARGO_BIN_EXE_allanite").unwrap_or_else(|| "allanite".into())
+}
+
+/// A command, in a folder.
+pub fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(path());
+    command.current_dir(folder).args(arguments);
+    command
+}
+
+/// What became of a command.
+///
+/// # Panics
+/// Without the program.
+pub fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let run = command(folder, arguments).output();
+    run.unwrap_or_else(|error| panic!("{}: {error}", path().display()))
+}
+
+/// The standard output of a command that works.
+///
+/// # Panics
+/// If it does not work.
+pub fn output(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {errors}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// The same as JSON.
+///
+/// # Panics
+/// If the command does not work, or prints something else.
+pub fn json(folder: &Path, arguments: &[&str]) -> Value {
+    serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).expect("JSON")
+}
+
+/// The one line of a command that refuses.
+///
+/// # Panics
+/// If it does something else than that.
+pub fn refusal(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    let errors = String::from_utf8(output.stderr).expect("UTF-8");
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    let line = errors.strip_suffix('\n').expect("a line");
+    assert!(
+        !line.contains('\n') && line.contains("; "),
+        "{arguments:?}: {line}"
+    );
+    line.strip_prefix("allanite: ").expect("a name").to_owned()
+}

@@ -1,0 +1,140 @@
+//! One line, and nothing lost.
+
+use super::folder;
+use host_tests::program::refusal;
+use std::fs;
+
+#[test]
+fn bad_input_ends_with_one_line_and_no_output_file() {
+    let folder = folder();
+    let path = folder.path();
+    let good = fs::read_to_string(path.join("log.csv")).unwrap();
+    let curve = fs::read_to_string(path.join("curve.json")).unwrap();
+    let write = |name: &str, bytes: &[u8]| fs::write(path.join(name), bytes).unwrap();
+    write("ragged.csv", format!("{good}1,2\n").as_bytes());
+    write("text.csv", format!("{good}1,2,many\n").as_bytes());
+    write("nan.csv", format!("{good}nan,2,3\n").as_bytes());
+    write("empty.csv", b"");
+    write("bare.csv", b"# rate_hz=100\ngx\n");
+    write("short.csv", b"# rate_hz=100\ngx\n1\n2\n4\n");
+    write(
+        "stuck.csv",
+        ["# rate_hz=100\ngx\n", &"7\n".repeat(99)]
+            .concat()
+            .as_bytes(),
+    );
+    write("rate.csv", b"# rate_hz=0\ngx\n1\n2\n4\n");
+    write("silent.csv", b"gx\n1\n2\n4\n");
+    write("log.txt", good.as_bytes());
+    write(
+        "old.json",
+        curve.replace("\"version\": 1", "\"version\": 0").as_bytes(),
+    );
+    write(
+        "odd.json",
+        curve.replacen("\"m\": 2", "\"m\": 3", 1).as_bytes(),
+    );
+    for (input, more, expected) in [
+        (
+            "ragged.csv",
+            &[][..],
+            "ragged.csv:20003: 2 values where the first row has 3; ",
+        ),
+        (
+            "text.csv",
+            &[],
+            "text.csv:20003: axis gz: \"many\" is not a number; ",
+        ),
+        (
+            "nan.csv",
+            &[],
+            "nan.csv:20003: axis gx: \"nan\" is not a finite number; ",
+        ),
+        ("empty.csv", &[], "empty.csv: the file is empty; "),
+        ("bare.csv", &[], "bare.csv: no rows; "),
+        (
+            "short.csv",
+            &[],
+            "short.csv: 3 samples, and two octaves need 9; record longer",
+        ),
+        (
+            "stuck.csv",
+            &[],
+            "stuck.csv: axis gx never changes its value; ",
+        ),
+        (
+            "rate.csv",
+            &[],
+            "rate.csv:1: rate_hz=\"0\" is not a positive, finite number; ",
+        ),
+        (
+            "silent.csv",
+            &[],
+            "silent.csv: the sampling rate is not known; \
+             give it with --rate HZ, or name a column of time stamps with --time",
+        ),
+        (
+            "log.txt",
+            &[],
+            "log.txt: the extension names no kind of log; ",
+        ),
+        ("none.csv", &[], "none.csv: no such file; check the path"),
+        (".", &[], "the extension names no kind of log; "),
+        ("log.csv", &["--rate", "0"], "--rate 0 is impossible; "),
+        ("log.csv", &["--rate", "-5"], "--rate -5 is impossible; "),
+        ("log.csv", &["--rate", "nan"], "--rate NaN is impossible; "),
+        ("log.csv", &["--scale", "-1"], "--scale -1 is impossible; "),
+        (
+            "log.csv",
+            &["--columns", "gx,gw"],
+            "log.csv: there is no column \"gw\"; ",
+        ),
+    ] {
+        for command in [&["fit"][..], &["measure", "--output", "new.json"]] {
+            let line = refusal(path, &[command, &[input], more].concat());
+            assert!(line.contains(expected), "{line}\nis not\n{expected}");
+        }
+        assert!(!path.join("new.json").exists(), "{input}");
+    }
+    for (input, expected) in [
+        (
+            "old.json",
+            "old.json: version 0 of the format, and this program reads 1; ",
+        ),
+        ("odd.json", "odd.json: axis \"gx\": octave m = 3: "),
+        ("none.json", "none.json: no such file; "),
+    ] {
+        let line = refusal(path, &["fit", input]);
+        assert!(line.starts_with(expected), "{line}");
+    }
+    let line = refusal(path, &["fit", "curve.json", "--rate", "100"]);
+    assert!(
+        line.starts_with("curve.json: a curve knows its rate"),
+        "{line}"
+    );
+}
+
+#[test]
+fn failure_leaves_an_earlier_output_as_it_was() {
+    let folder = folder();
+    let path = folder.path();
+    let before = fs::read(path.join("curve.json")).unwrap();
+    fs::write(path.join("bad.csv"), "# rate_hz=1\ngx\n1\n2\nx\n").unwrap();
+    refusal(path, &["measure", "bad.csv", "--output", "curve.json"]);
+    assert_eq!(before, fs::read(path.join("curve.json")).unwrap());
+    assert_eq!(
+        fs::read_dir(path).unwrap().count(),
+        3,
+        "no temporary file stays behind"
+    );
+    let line = refusal(path, &["measure", "log.csv", "--output", "log.csv"]);
+    assert_eq!(
+        line,
+        "log.csv: a curve file's extension is .json; name the output so"
+    );
+    let line = refusal(path, &["measure", "log.csv", "--output", "none/curve.json"]);
+    assert_eq!(
+        line,
+        "none/curve.json: its folder does not exist; make the folder first"
+    );
+}

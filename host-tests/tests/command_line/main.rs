@@ -1,0 +1,77 @@
+//! What people and scripts see of the program: results, statuses, and one line for what is wrong.
+
+mod bad_input;
+mod fitting;
+mod simulating;
+
+use host_tests::program::output;
+use serde::Deserialize;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A folder with a simulated log of 20 000 samples, three axes and their curves.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let simulate = [
+        "simulate",
+        "mems",
+        "--duration",
+        "200s",
+        "--axes",
+        "3",
+        "--output",
+        "log.csv",
+    ];
+    assert_eq!(output(folder.path(), &simulate), "");
+    output(
+        folder.path(),
+        &["measure", "log.csv", "--output", "curve.json"],
+    );
+    folder
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    axes: Vec<Axis>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Axis {
+    axis: String,
+    rate_hz: f64,
+    unit: String,
+    octaves: Vec<Octave>,
+    method: String,
+    coefficients: Vec<Coefficient>,
+    chi2: Option<f64>,
+    dof: Option<u32>,
+    p_value: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Octave {
+    m: u32,
+    tau_s: f64,
+    differences: u64,
+    variance: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Coefficient {
+    effect: String,
+    symbol: String,
+    value: Option<f64>,
+    lower: Option<f64>,
+    upper: Option<f64>,
+    state: String,
+    unit: String,
+}
+
+fn fit(folder: &Path, arguments: &[&str]) -> Document {
+    let arguments = [&["fit", "--json"], arguments].concat();
+    serde_json::from_str(&output(folder, &arguments)).unwrap()
+}

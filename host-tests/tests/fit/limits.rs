@@ -1,0 +1,111 @@
+//! Curves and models that tell nothing.
+
+use super::{ALL, METHODS, OCTAVES, RATE_HZ, assert_relative, changed, exact, settings};
+use allanite::{
+    Curve, Error, Method, Model, Settings, State,
+    effect::{AngleRandomWalk, Effect, RateRamp},
+    fit,
+};
+use rayon::prelude::*;
+
+#[test]
+fn too_few_octaves_are_refused_by_number() {
+    let curve = exact(ALL, 40, RATE_HZ);
+    let found = curve.points().len();
+    assert_eq!(found, 4);
+    for method in METHODS {
+        let found = fit(&curve, &Model::ieee_952(), settings(method)).map(|fit| fit.method);
+        let refused = Err(Error::TooFewOctaves {
+            found: 4,
+            needed: 5,
+        });
+        assert_eq!(
+            found,
+            if method == Method::Covariance {
+                Ok(method)
+            } else {
+                refused
+            }
+        );
+    }
+    let octave = Curve::<OCTAVES>::new(1.0, [(1, 100, 1.0)]).expect("possible");
+    let found = fit(&octave, &Model::ieee_952(), Settings::default());
+    assert_eq!(
+        found,
+        Err(Error::TooFewOctaves {
+            found: 1,
+            needed: 2
+        })
+    );
+    let empty = Curve::<OCTAVES>::new(1.0, []).expect("possible");
+    for method in METHODS {
+        let found = fit(&empty, &Model::ieee_952(), settings(method));
+        assert!(
+            matches!(found, Err(Error::TooFewOctaves { found: 0, .. })),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+fn a_curve_without_noise_is_refused_by_its_octave() {
+    let flat = changed(&exact(ALL, 1 << 12, RATE_HZ), |k| {
+        if k >= 3 { 0.0 } else { 1.0 }
+    });
+    for method in METHODS {
+        let found = fit(&flat, &Model::ieee_952(), settings(method));
+        assert_eq!(found, Err(Error::NoNoise { m: 8 }));
+    }
+}
+
+#[test]
+fn effects_that_cannot_be_told_apart_are_refused_or_not_observable() {
+    let curve = exact(ALL, 1 << 14, RATE_HZ);
+    let twice: [&'static dyn Effect; 3] = [&AngleRandomWalk, &RateRamp, &AngleRandomWalk];
+    let model = Model::new(&twice).expect("three effects");
+    for method in [
+        Method::Ordinary,
+        Method::RelativeAccuracy,
+        Method::ClusterCount,
+    ] {
+        assert_eq!(fit(&curve, &model, settings(method)), Err(Error::Singular));
+    }
+    let found = fit(&curve, &model, Settings::default()).expect("one of the two");
+    let states: Vec<State> = [0, 2].map(|i| found.coefficients[i].state).to_vec();
+    let not_observable = |state: &State| matches!(state, State::NotObservable { .. });
+    assert!(states.iter().any(not_observable), "{states:?}");
+    // Nothing to fit is nothing to tell.
+    assert_eq!(
+        fit(&curve, &Model::default(), Settings::default()),
+        Err(Error::Singular)
+    );
+}
+
+#[test]
+fn variances_of_any_size_fit_or_are_refused() {
+    let curve = exact(ALL, 1 << 14, RATE_HZ);
+    for exponent in (-150..=150).step_by(10) {
+        let scaled = changed(&curve, |_| 10_f64.powi(exponent));
+        for method in METHODS {
+            match fit(&scaled, &Model::ieee_952(), settings(method)) {
+                Ok(fit) => {
+                    let expected = ALL[1] * 10_f64.powi(exponent).sqrt();
+                    let what = format!("{method:?} at 10^{exponent}");
+                    assert_relative(fit.coefficients[1].value, expected, 1e-3, &what);
+                }
+                Err(error) => {
+                    assert_eq!(error, Error::Singular);
+                    assert!(exponent.abs() >= 130, "{method:?} at 10^{exponent}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_model_has_room_for_eight_effects() {
+    let nine: [&'static dyn Effect; 9] = [&AngleRandomWalk; 9];
+    assert!(Model::new(&nine[..8]).is_ok_and(|model| model.terms().len() == 8));
+    let refused = Model::new(&nine).map(|model| model.terms().len());
+    assert_eq!(refused, Err(Error::TooManyEffects { capacity: 8 }));
+}

@@ -1,0 +1,66 @@
+//! The fit on exact curves, under changes of unit, at its optimum, and where it must refuse.
+
+mod limits;
+mod oracle;
+mod recovery;
+
+use allanite::{Curve, Fit, Method, Model, Settings, effect::Effect, fit};
+use host_tests::{simulate::Preset, study};
+use rayon::prelude::*;
+
+const OCTAVES: usize = study::OCTAVES;
+
+const RATE_HZ: f64 = 100.0;
+
+const METHODS: [Method; 4] = [
+    Method::Ordinary,
+    Method::RelativeAccuracy,
+    Method::ClusterCount,
+    Method::Covariance,
+];
+
+/// Coefficients Q, N, B, K, R, all of which show in some octave of a three-hour record.
+const ALL: [f64; 5] = [2e-4, 5e-3, 4e-3, 3e-4, 3e-6];
+
+fn settings(method: Method) -> Settings {
+    Settings {
+        method,
+        ..Settings::default()
+    }
+}
+
+/// The curve that a gyro would have on average, for a record of so many samples.
+fn exact(coefficients: [f64; 5], samples: u64, rate_hz: f64) -> Curve<OCTAVES> {
+    let model = Model::ieee_952();
+    let squares = coefficients.map(|x| x * x);
+    let octave = |k: u32| {
+        let m = 1_u64 << k;
+        let differences = (samples.checked_sub(2 * m)?) / (m / 4).max(1) + 1;
+        let variance = model.variance(&squares, m as u32, 1.0 / rate_hz);
+        (differences >= 6).then_some((m as u32, differences, variance))
+    };
+    Curve::new(rate_hz, (0..OCTAVES as u32).map_while(octave)).expect("possible")
+}
+
+/// The same curve with every variance changed by its octave's factor.
+fn changed(curve: &Curve<OCTAVES>, factor: impl Fn(usize) -> f64) -> Curve<OCTAVES> {
+    let points = curve.points().iter().enumerate();
+    let octaves = points.map(|(k, p)| (p.m, p.differences, p.variance * factor(k)));
+    Curve::new(curve.rate_hz(), octaves).expect("possible")
+}
+
+/// The curve of a simulated record.
+fn noisy(samples: usize, seed: u64) -> Curve<OCTAVES> {
+    study::curve(Preset::Mems.coefficients(), samples, seed)
+}
+
+fn fitted(curve: &Curve<OCTAVES>, settings: Settings) -> Fit {
+    fit(curve, &Model::ieee_952(), settings).expect("a curve to fit")
+}
+
+fn assert_relative(found: f64, expected: f64, tolerance: f64, what: &str) {
+    assert!(
+        (found - expected).abs() <= tolerance * expected.abs(),
+        "{what}: {found:e}, expected {expected:e}"
+    );
+}

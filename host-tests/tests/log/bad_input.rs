@@ -1,0 +1,297 @@
+//! What is refused, in a line.
+
+use super::{at_100_hz, columns, counts, gzip, header, npy, refusal, rows_of_text, try_read};
+use host_tests::log::{Options, npy_header::Kind};
+use std::fmt::Write as _;
+
+#[test]
+fn outlier_that_leaves_the_noise_no_counts_is_refused() {
+    let mut text = String::from("gx\n1e9\n");
+    for [x, ..] in counts(500) {
+        let _ = writeln!(text, "{}", f64::from(x) * 1e-4);
+    }
+    assert_eq!(
+        refusal("a.csv", text.as_bytes(), &at_100_hz()),
+        "a.csv: axis gx: 499 of 500 steps between values are lost in 2^-30 of their range; \
+         remove the outliers that make the range so wide"
+    );
+}
+
+#[test]
+fn bad_text_is_refused_with_its_row() {
+    let good = rows_of_text(&counts(50));
+    for (text, expected) in [
+        (
+            String::new(),
+            "bad.csv: the file is empty; record some samples",
+        ),
+        (
+            "\n# only words\n".into(),
+            "bad.csv: no rows; record some samples",
+        ),
+        ("gx,gy,gz\n".into(), "bad.csv: no rows; record some samples"),
+        (
+            format!("gx,gy,gz\n{good}1,2\n{good}"),
+            "bad.csv:52: 2 values where the first row has 3; correct the row or cut the record there",
+        ),
+        (
+            format!("# rate_hz=1\n\n{good}1,2,3,4\n"),
+            "bad.csv:53: 4 values where the first row has 3; correct the row or cut the record there",
+        ),
+        (
+            format!("{good}1,two,3\n{good}"),
+            "bad.csv:51: axis gy: \"two\" is not a number; \
+             correct it or choose other columns with --columns",
+        ),
+        (
+            format!("{}1,two,3\r\n", good.replace('\n', "\r\n# and\r\n\r\n")),
+            "bad.csv:151: axis gy: \"two\" is not a number; \
+             correct it or choose other columns with --columns",
+        ),
+        (
+            format!("\"gx\",\"gyro\ny\",\"gz\"\n{good}\"1\",two,3"),
+            "bad.csv:53: axis gyro y: \"two\" is not a number; \
+             correct it or choose other columns with --columns",
+        ),
+        (
+            format!("{good}1,2,NaN\n"),
+            "bad.csv:51: axis gz: \"NaN\" is not a finite number; \
+             cut the record there or remove the value",
+        ),
+        (
+            format!("{good}-inf,2,3"),
+            "bad.csv:51: axis gx: \"-inf\" is not a finite number; \
+             cut the record there or remove the value",
+        ),
+        (
+            format!("{good}1e999,2,3\n"),
+            "bad.csv:51: axis gx: \"1e999\" is not a finite number; \
+             cut the record there or remove the value",
+        ),
+        (
+            format!("{good}1,,3\n"),
+            "bad.csv:51: axis gy: a value is missing; cut the record there or fill it in",
+        ),
+        (
+            format!("gx,7,gz\n{good}"),
+            "bad.csv:1: the first row mixes numbers and text such as \"gx\"; \
+             make it a header of names alone, or correct it",
+        ),
+        (
+            "1,2,3\n4,5,7\n".into(),
+            "bad.csv: 2 samples, and two octaves need 9; record longer",
+        ),
+        (
+            "gx\n5\n5\n5\n5\n5\n5\n5\n5\n5\n5\n".into(),
+            "bad.csv: axis gx never changes its value; \
+             check the sensor, or choose other columns with --columns",
+        ),
+        (
+            "gx\n0.1\n0.1\n0.1\n0.1\n0.1\n0.1\n0.1\n0.1\n0.1\n".into(),
+            "bad.csv: axis gx never changes its value; \
+             check the sensor, or choose other columns with --columns",
+        ),
+        (
+            "gx\n-1e308\n1e308\n1e308\n-1e308\n".into(),
+            "bad.csv: axis gx: its range is beyond what floats can scale; \
+             scale the values or remove the outliers",
+        ),
+        (
+            format!("a,b,b\n{good}"),
+            "bad.csv: two columns are named \"b\"; \
+             tell them apart by number, such as --columns gx=1,gy=2",
+        ),
+        (
+            format!("{good}1,\"2,3\n{}", good.repeat(5000)),
+            "bad.csv:51: a row of more than 1024 KiB is not one of a log; \
+             look for a quote that is never closed",
+        ),
+        (
+            "x".repeat(1 << 17),
+            "bad.csv:1: a line of 64 KiB or more is not one of a log; check that the file is text",
+        ),
+    ] {
+        assert_eq!(refusal("bad.csv", text.as_bytes(), &at_100_hz()), expected);
+        if !text.is_empty() {
+            let packed = gzip(text.as_bytes());
+            let expected = expected.replace("bad.csv", "bad.csv.gz");
+            assert_eq!(refusal("bad.csv.gz", &packed, &at_100_hz()), expected);
+        }
+    }
+}
+
+#[test]
+fn broken_gzip_is_refused() {
+    let packed = gzip(rows_of_text(&counts(20_000)).as_bytes());
+    let line = refusal("a.csv.gz", &packed[..packed.len() / 2], &at_100_hz());
+    let row: u64 = line.split(':').nth(1).unwrap().parse().unwrap();
+    assert!(
+        line.contains("the gzip stream ends in the middle"),
+        "{line}"
+    );
+    assert!((5_000..20_000).contains(&row), "{line}");
+
+    let line = refusal("a.csv.gz", b"gx,gy,gz\n1,2,3\n", &at_100_hz());
+    assert!(line.starts_with("a.csv.gz: not a gzip stream"), "{line}");
+
+    let mut flipped = packed;
+    let middle = flipped.len() / 2;
+    flipped[middle] ^= 0x55;
+    refusal("a.csv.gz", &flipped, &at_100_hz());
+}
+
+#[test]
+fn bad_arrays_are_refused() {
+    let good: Vec<u8> = counts(50)
+        .iter()
+        .flatten()
+        .flat_map(|c| f64::from(*c).to_le_bytes())
+        .collect();
+    let spoilt = |value: f64| {
+        let mut elements = good.clone();
+        elements[8 * (3 * 40 + 1)..][..8].copy_from_slice(&value.to_le_bytes());
+        npy(&header(Kind::Float, 8, &[50, 3]), &elements)
+    };
+    let shaped = |shape: &[u64]| npy(&header(Kind::Float, 8, shape), &good);
+    for (bytes, expected) in [
+        (
+            spoilt(f64::NAN),
+            "a.npy:41: axis gy: NaN is not a finite number",
+        ),
+        (
+            spoilt(f64::INFINITY),
+            "a.npy:41: axis gy: inf is not a finite number",
+        ),
+        (
+            shaped(&[51, 3]),
+            "a.npy:51: the file ends before the 51 rows of its header",
+        ),
+        (
+            shaped(&[49, 3]),
+            "a.npy: more data behind the 49 rows of its header",
+        ),
+        (shaped(&[0, 3]), "a.npy: no rows"),
+        (
+            shaped(&[3, 100]),
+            "a.npy: an array of 3 rows and 100 columns",
+        ),
+        (shaped(&[5, 10, 3]), "a.npy: an array of 3 dimensions"),
+        (shaped(&[]), "a.npy: an array of 0 dimensions"),
+        (
+            shaped(&[u64::MAX, 3]),
+            "a.npy: an array of 18446744073709551615 rows cannot be",
+        ),
+        (shaped(&[50, 0]), "a.npy: an array of 50 rows and 0 columns"),
+        (Vec::new(), "a.npy: the file ends within its header"),
+        (
+            shaped(&[50, 3])[..20].to_vec(),
+            "a.npy: the file ends within its header",
+        ),
+        (
+            vec![b'x'; 200],
+            "a.npy: the file does not begin as a NumPy array",
+        ),
+    ] {
+        let line = refusal("a.npy", &bytes, &at_100_hz());
+        assert!(line.starts_with(expected) && line.contains("; "), "{line}");
+    }
+    let elements = shaped(&[50, 3]);
+    let text = String::from_utf8_lossy(&elements[..128]).replace("<f8", "<c8");
+    let complex = [&elements[..10], &text.as_bytes()[text.find('{').unwrap()..]].concat();
+    let line = refusal("a.npy", &complex, &at_100_hz());
+    assert!(line.contains("\"<c8\" are not plain numbers"), "{line}");
+}
+
+#[test]
+fn missing_columns_are_named_with_those_there_are() {
+    let good = rows_of_text(&counts(50));
+    let named = format!("gx,gy,gz\n{good}");
+    for (text, list, expected) in [
+        (
+            &named,
+            "gw",
+            "a.csv: there is no column \"gw\"; choose by name from gx, gy, gz or by number",
+        ),
+        (
+            &named,
+            "4",
+            "a.csv: there is no column \"4\"; choose by name from gx, gy, gz or by number",
+        ),
+        (
+            &good,
+            "gx",
+            "a.csv: there is no column \"gx\"; there is no header: choose by number from 1 to 3",
+        ),
+        (
+            &good,
+            "0",
+            "a.csv: there is no column \"0\"; there is no header: choose by number from 1 to 3",
+        ),
+        (
+            &named,
+            "gx,gx",
+            "--columns names \"gx\" twice; name every axis and every column once",
+        ),
+        (
+            &named,
+            "a=gx,a=gy",
+            "--columns names \"a\" twice; name every axis and every column once",
+        ),
+    ] {
+        assert_eq!(refusal("a.csv", text.as_bytes(), &columns(list)), expected);
+    }
+}
+
+#[test]
+fn impossible_rates_and_scales_are_refused() {
+    let good = rows_of_text(&counts(50));
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let options = Options {
+            rate_hz: Some(value),
+            ..at_100_hz()
+        };
+        let line = refusal("a.csv", good.as_bytes(), &options);
+        assert!(
+            line.starts_with(&format!("--rate {value} is impossible; ")),
+            "{line}"
+        );
+        let options = Options {
+            scale: Some(value),
+            ..at_100_hz()
+        };
+        let line = refusal("a.csv", good.as_bytes(), &options);
+        assert!(
+            line.starts_with(&format!("--scale {value} is impossible; ")),
+            "{line}"
+        );
+    }
+    let line = refusal("a.csv", good.as_bytes(), &Options::default());
+    assert_eq!(
+        line,
+        "a.csv: the sampling rate is not known; \
+         give it with --rate HZ, or name a column of time stamps with --time"
+    );
+}
+
+#[test]
+fn any_bytes_are_read_or_refused_without_a_panic() {
+    let mut state = 7u64;
+    let alphabet = b"0123456789,,,\n\n\r\"#-+.eNa;\t \xff\0";
+    for name in ["a.csv", "a.csv.gz", "a.npy"] {
+        for length in (0..400).step_by(3) {
+            let bytes: Vec<u8> = (0..length)
+                .map(|_| {
+                    state = state
+                        .wrapping_mul(6_364_136_223_846_793_005)
+                        .wrapping_add(1);
+                    alphabet[(state >> 33) as usize % alphabet.len()]
+                })
+                .collect();
+            let _ = try_read(name, &bytes, &at_100_hz());
+            let mut array = npy(&header(Kind::Signed, 4, &[9, 2]), &bytes);
+            let spot = bytes.first().map_or(0, |&byte| usize::from(byte) % 100);
+            array[spot] ^= 0x15;
+            let _ = try_read("a.npy", &array, &at_100_hz());
+        }
+    }
+}

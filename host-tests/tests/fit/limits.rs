@@ -6,7 +6,6 @@ use allanite::{
     effect::{AngleRandomWalk, Effect, RateRamp},
     fit,
 };
-use rayon::prelude::*;
 
 #[test]
 fn too_few_octaves_are_refused_by_number() {

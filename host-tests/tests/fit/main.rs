@@ -4,9 +4,8 @@ mod limits;
 mod oracle;
 mod recovery;
 
-use allanite::{Curve, Fit, Method, Model, Settings, effect::Effect, fit};
+use allanite::{Curve, Fit, Method, Model, Settings, fit};
 use host_tests::{simulate::Preset, study};
-use rayon::prelude::*;
 
 const OCTAVES: usize = study::OCTAVES;
 

@@ -3,9 +3,8 @@
 use super::{OCTAVES, assert_relative, fitted, noisy, settings};
 use allanite::{
     Curve, Method, Model, Settings, chi_squared_tail, curve_covariance,
-    effect::{Effect, IEEE_952, Setting},
+    effect::{IEEE_952, Setting},
 };
-use rayon::prelude::*;
 
 /// `A_k`, the variances of unit coefficients.
 fn columns(curve: &Curve<OCTAVES>) -> Vec<[f64; 5]> {

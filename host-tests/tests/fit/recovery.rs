@@ -1,10 +1,7 @@
 //! Coefficients come back, with intervals.
 
 use super::{ALL, METHODS, RATE_HZ, assert_relative, changed, exact, fitted, noisy, settings};
-use allanite::{
-    Coefficient, Curve, Settings, State,
-    effect::{Effect, IEEE_952},
-};
+use allanite::{Coefficient, Curve, Settings, State, effect::IEEE_952};
 use rayon::prelude::*;
 
 #[test]

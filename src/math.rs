@@ -2,7 +2,7 @@
 //! std's once anything in a build links std, and host and target would compute different numbers.
 
 use core::f64::consts::PI;
-pub(crate) use libm::{cbrt, ceil, erfc, exp, expm1, floor, log, sqrt};
+pub(crate) use libm::{cbrt, ceil, erfc, exp, floor, log, sqrt};
 
 /// Sine and cosine of an angle in turns, to 3e-16: whole quadrants are taken off exactly, and the rest is
 /// small enough for Taylor's series. libm's reduction of angles of any size would cost 4 KB of flash and

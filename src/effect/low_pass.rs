@@ -1,7 +1,6 @@
 use super::{
     AngleRandomWalk, Effect, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole,
 };
-use crate::math;
 
 /// Angle random walk behind a first-order low pass, coefficient N in rate · √s, of time constant T:
 /// takes the place of [`AngleRandomWalk`].
@@ -17,8 +16,7 @@ fn pole(setting: &Setting) -> Pole {
 
 /// `s²` for N = 1.
 fn variance(setting: &Setting) -> f64 {
-    let decay = setting.interval_s / setting.parameters[0];
-    -math::expm1(-decay) / ((1.0 + math::exp(-decay)) * setting.interval_s)
+    1.0 / (pole(setting).long_mean() * setting.interval_s)
 }
 
 impl Effect for LowPass {

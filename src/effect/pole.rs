@@ -2,28 +2,40 @@
 
 use super::SecondDifferences;
 use crate::{lattice, math};
+use core::f64::consts::PI;
 use nalgebra::Complex;
 
 /// Decays of a cluster beyond this leave nothing of what lies past it.
 const GONE: f64 = 200.0;
 
+/// Exponents below this have their exponential's remainders summed by Taylor's series: beyond, what
+/// cancels leaves twelve digits.
+const SMALL: f64 = 0.1;
+
+/// The last power in that series: the next is below 1e-17 of the first.
+const LAST_POWER: u8 = 11;
+
 const ONE: Complex<f64> = Complex::new(1.0, 0.0);
 
-/// A rate whose autocovariance is `Re zⁿ` at a lag of `n` samples.
+/// A rate whose autocovariance is `Re zⁿ` at a lag of `n` samples, `z = e^(−s)`.
 ///
 /// ```text
-/// G(n) = −½ τ₀² Re[ n (1+z)/(1−z) − 2z (1−zⁿ)/(1−z)² ]
+/// G(n) = −½ τ₀² Re[ n (1+z)/(1−z) − 2z (1−zⁿ)/(1−z)² ] = τ₀² Re[ κ n − (e^(−sn) − 1 + sn) z/(1−z)² ],
+/// κ = s z/(1−z)² − ½ (1+z)/(1−z)
 /// ```
 ///
-/// All functions leave the factor τ₀² to the caller.
+/// of which the second form does not cancel where the pole is slow. All functions leave the factor τ₀² to
+/// the caller.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pole {
     /// Decay a sample, τ₀/T.
     decay: f64,
     /// Cycles a sample, fτ₀.
     cycles: f64,
-    /// Re (1+z)/(1−z): the variance that a long mean has, times its samples.
-    long: f64,
+    /// `s`, of the frequency's alias below half the sample rate.
+    exponent: Complex<f64>,
+    /// Re κ.
+    slope: f64,
     /// z/(1−z)².
     factor: Complex<f64>,
 }
@@ -33,54 +45,74 @@ impl Pole {
     pub(super) fn new(time_s: f64, frequency_hz: f64, interval_s: f64) -> Self {
         let decay = interval_s / time_s;
         let cycles = frequency_hz * interval_s;
+        let s = Complex::new(decay, 2.0 * PI * (math::floor(cycles + 0.5) - cycles));
         let z = power(decay, cycles, 1.0);
-        // 1 − z without cancellation where the pole is slow.
-        let (sine, _) = math::sincos_of_turns(0.5 * cycles);
-        let rest = Complex::new(
-            -math::expm1(-decay) + 2.0 * math::exp(-decay) * sine * sine,
-            -z.im,
-        );
+        let rest = Exponential {
+            exponent: s,
+            power: z,
+        }
+        .rest();
+        let factor = z / (rest * rest);
+        let slope = if s.norm_sqr() < SMALL * SMALL {
+            // Its series, of which the next term is s⁵/5040.
+            -s * (ONE - s * s / 30.0) / 6.0
+        } else {
+            s * factor - (z + 1.0) / rest * 0.5
+        };
         Self {
             decay,
             cycles,
-            long: ((z + 1.0) / rest).re,
-            factor: z / (rest * rest),
+            exponent: s,
+            slope: slope.re,
+            factor,
+        }
+    }
+
+    /// Re (1+z)/(1−z): the variance that a long mean has, times its samples.
+    pub(super) fn long_mean(&self) -> f64 {
+        2.0 * ((self.exponent * self.factor).re - self.slope)
+    }
+
+    /// `z^n`, with its exponent.
+    fn power(&self, n: f64) -> Exponential {
+        self.known(n, power(self.decay, self.cycles, n))
+    }
+
+    fn known(&self, n: f64, power: Complex<f64>) -> Exponential {
+        Exponential {
+            exponent: self.exponent * n,
+            power,
         }
     }
 
     /// `G(n)/τ₀²`.
     pub(super) fn kernel(&self, n: f64) -> f64 {
-        let power = power(self.decay, self.cycles, n);
-        -0.5 * n * self.long + (self.factor * (ONE - power)).re
+        self.slope * n - (self.factor * self.power(n).second_rest()).re
     }
 
     /// `[G(x + m) − 2 G(x) + G(|x − m|)]/τ₀²`.
     pub(super) fn second_difference(&self, x: f64, m: f64) -> f64 {
-        let power = |n: f64| power(self.decay, self.cycles, n);
         if x < m {
-            let powers = power(m + x) - power(x) * 2.0 + power(m - x);
-            -self.long * (m - x) - (self.factor * powers).re
+            self.kernel(m + x) - 2.0 * self.kernel(x) + self.kernel(m - x)
         } else {
-            let rest = ONE - power(m);
-            -(self.factor * power(x - m) * rest * rest).re
+            let rest = self.power(m).rest();
+            -(self.factor * self.power(x - m).power * rest * rest).re
         }
     }
 
-    /// `σ²(mτ₀)` for a power `W = z^m`: `[m·long − Re factor (1−W)(3−W)]/m²`.
-    fn variance_of(&self, m: f64, w: Complex<f64>) -> f64 {
-        let slow = self.decay * m < 1e-4 && self.cycles == 0.0;
-        if slow {
-            // The terms cancel to the first order: to that order the rate is a walk of
-            // K² = 2/T, in samples σ² = 2 decay (2m² + 1)/6m · (1 − decay · m · 3/4).
-            return self.decay * (2.0 * m * m + 1.0) / (3.0 * m) * (1.0 - 0.75 * self.decay * m);
-        }
-        let product = self.factor * (ONE - w) * (Complex::new(3.0, 0.0) - w);
-        (m * self.long - product.re) / (m * m)
+    /// `σ²(mτ₀)` for a power `z^m`.
+    fn variance_of(&self, m: f64, power: Complex<f64>) -> f64 {
+        // 4 G(m) − G(2m) − 3 G(0), less what κ brings: with e^(−v) = 1 − v + v²/2 − r that is
+        // factor · [2vφ − φ² − 2r], φ = v²/2 − r.
+        let (v, third) = (self.exponent * m, self.known(m, power).third_rest());
+        let second = v * v * 0.5 - third;
+        let product = self.factor * (v * second * 2.0 - second * second - third * 2.0);
+        product.re / (m * m) - 2.0 * self.slope / m
     }
 
     /// Allan variance.
     pub(super) fn variance(&self, m: f64) -> f64 {
-        self.variance_of(m, power(self.decay, self.cycles, m))
+        self.variance_of(m, self.power(m).power)
     }
 
     /// Allan variances at ascending averaging factors: powers by squaring from octave to octave.
@@ -101,27 +133,65 @@ impl Pole {
     pub(super) fn add_second_differences(&self, m: f64, weight: f64, sum: &mut SecondDifferences) {
         let quarter = power(self.decay, self.cycles, 0.25 * m);
         let mut powers = lattice::Powers::new(quarter);
-        let cluster = powers.near(4);
+        let cluster = self.known(m, powers.near(4));
         let gone = self.decay * m > GONE;
         let beyond = if gone {
             Complex::new(0.0, 0.0)
         } else {
-            // z^(x−m) (1−z^m)² = z^x (z^−m − 2 + z^m).
-            ONE / cluster - 2.0 + cluster
+            // z^(x−m) (1−z^m)² = z^x (1−z^m)²/z^m.
+            let rest = cluster.rest();
+            self.factor * rest * rest / cluster.power
+        };
+        let kernel = |powers: &lattice::Powers, position: u32| {
+            let n = 0.25 * m * f64::from(position);
+            let power = self.known(n, powers.near(position as usize));
+            self.slope * n - (self.factor * power.second_rest()).re
         };
         sum.add_slots(|slot| {
             let (own, position) = (powers.next(slot), lattice::position(slot));
             let value = if position < 4 {
-                let (after, before) = (slot.saturating_add(4), slot.abs_diff(4));
-                let near = powers.near(after) - own * 2.0 + powers.near(before);
-                -self.long * m * (1.0 - 0.25 * f64::from(position)) - (self.factor * near).re
+                kernel(&powers, position.saturating_add(4)) - 2.0 * kernel(&powers, position)
+                    + kernel(&powers, position.abs_diff(4))
             } else if gone && position == 4 {
                 -self.factor.re
             } else {
-                -(self.factor * own * beyond).re
+                -(beyond * own).re
             };
             weight * value
         });
+    }
+}
+
+/// `e^(−v)`.
+struct Exponential {
+    /// `v`.
+    exponent: Complex<f64>,
+    power: Complex<f64>,
+}
+
+impl Exponential {
+    /// `1 − v + v²/2 − e^(−v)`, without cancellation.
+    fn third_rest(&self) -> Complex<f64> {
+        let v = self.exponent;
+        if v.norm_sqr() >= SMALL * SMALL {
+            return ONE - v + v * v * 0.5 - self.power;
+        }
+        // v³/3! − v⁴/4! + …
+        let mut sum = ONE;
+        for k in (4..=LAST_POWER).rev() {
+            sum = ONE - v * sum / f64::from(k);
+        }
+        v * v * v * sum / 6.0
+    }
+
+    /// `e^(−v) − 1 + v`.
+    fn second_rest(&self) -> Complex<f64> {
+        self.exponent * self.exponent * 0.5 - self.third_rest()
+    }
+
+    /// `1 − e^(−v)`.
+    fn rest(&self) -> Complex<f64> {
+        self.exponent - self.second_rest()
     }
 }
 

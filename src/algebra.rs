@@ -3,6 +3,7 @@
 //! An index that may panic brings a way to panic into firmware, with its messages. Here, what lies beyond
 //! the end is zero, and what is put there is dropped; debug assertions tell of either.
 
+use crate::real::Real;
 use core::ops::{Deref, Index};
 use nalgebra::{RealField, SMatrix, SVector};
 
@@ -22,7 +23,7 @@ impl Number for f32 {
 
 /// A column of numbers.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Vector<const N: usize, E = f64>(SVector<E, N>);
+pub(crate) struct Vector<const N: usize, E = Real>(SVector<E, N>);
 
 impl<const N: usize, E: Number> Vector<N, E> {
     pub(crate) fn zeros() -> Self {
@@ -67,7 +68,7 @@ impl<const N: usize, E> From<SVector<E, N>> for Vector<N, E> {
 
 /// As many rows as columns.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Square<const N: usize, E = f64>(SMatrix<E, N, N>);
+pub(crate) struct Square<const N: usize, E = Real>(SMatrix<E, N, N>);
 
 impl<const N: usize, E: Number> Square<N, E> {
     pub(crate) fn zeros() -> Self {

@@ -1,7 +1,8 @@
 //! The χ² distribution, for whole degrees of freedom.
 
 use crate::math;
-use core::f64::consts::PI;
+use crate::real::Real;
+use crate::real::consts::PI;
 
 /// Probability that χ² with `degrees_of_freedom` exceeds `x`.
 ///
@@ -13,14 +14,14 @@ use core::f64::consts::PI;
 /// // The 95 % quantile of χ² with 11 degrees of freedom.
 /// assert!((allanite::chi_squared_tail(19.675, 11) - 0.05).abs() < 1e-5);
 /// ```
-pub fn chi_squared_tail(x: f64, degrees_of_freedom: usize) -> f64 {
+pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
     if degrees_of_freedom == 0 || x.is_nan() {
-        return f64::NAN;
+        return Real::NAN;
     }
     if x <= 0.0 {
         return 1.0;
     }
-    if x == f64::INFINITY {
+    if x == Real::INFINITY {
         return 0.0;
     }
     let half = 0.5 * x;

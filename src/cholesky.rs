@@ -1,36 +1,37 @@
 //! Cholesky factors of a curve's covariance and of the normal equations, in place.
 //!
 //! nalgebra's own takes and returns matrices by value: three copies of 3 KiB on the stack of a
-//! microcontroller for 20 octaves. A factor is found in double precision, whatever it is kept in.
+//! microcontroller for 20 octaves. A factor is found in the precision of the rest, whatever it is kept in.
 
 use crate::{
     algebra::{Number, Square, Vector},
     math,
+    real::{Real, double, real},
 };
 
 /// What a factor's elements are kept in.
 pub(crate) trait Element: Number {
-    fn new(value: f64) -> Self;
-    fn value(self) -> f64;
+    fn new(value: Real) -> Self;
+    fn value(self) -> Real;
 }
 
 impl Element for f64 {
-    fn new(value: f64) -> Self {
-        value
+    fn new(value: Real) -> Self {
+        double(value)
     }
 
-    fn value(self) -> f64 {
-        self
+    fn value(self) -> Real {
+        real(self)
     }
 }
 
 impl Element for f32 {
-    fn new(value: f64) -> Self {
+    fn new(value: Real) -> Self {
         value as f32
     }
 
-    fn value(self) -> f64 {
-        f64::from(self)
+    fn value(self) -> Real {
+        real(self)
     }
 }
 

@@ -1,11 +1,11 @@
 //! A coefficient, and what a record says of it.
 
-use crate::{effect::Effect, math};
+use crate::{effect::Effect, math, real::Real};
 
 /// Two-sided 95 % of a normal distribution, in standard errors.
-const TWO_SIDED: f64 = 1.959_964;
+const TWO_SIDED: Real = 1.959_964;
 /// One-sided 95 %.
-pub(crate) const ONE_SIDED: f64 = 1.644_854;
+pub(crate) const ONE_SIDED: Real = 1.644_854;
 
 /// What a record says of a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub enum State {
     NotObservable {
         /// Length of a record, in seconds, that would measure it if it were at its bound; `None`
         /// where no length up to 2^29 samples would.
-        after_s: Option<f64>,
+        after_s: Option<Real>,
     },
 }
 
@@ -35,26 +35,26 @@ pub struct Coefficient {
     /// The unit is rate unit · s^(half_seconds/2).
     pub half_seconds: i8,
     /// Best value; zero where the square is negative, which only unconstrained methods return.
-    pub value: f64,
+    pub value: Real,
     /// Lower end of the 95 % interval; zero unless measured.
-    pub lower: f64,
+    pub lower: Real,
     /// Upper end of the 95 % interval, or the one-sided 95 % bound; infinite if the effect cannot
     /// be told from others.
-    pub upper: f64,
+    pub upper: Real,
     /// Whether it was measured.
     pub state: State,
     /// The squared coefficient, which is what the fit is linear in.
-    pub square: f64,
+    pub square: Real,
     /// Standard error of the square; infinite as `upper`.
-    pub square_error: f64,
+    pub square_error: Real,
 }
 
 impl Coefficient {
     /// A squared coefficient and its variance; `None` where the fit cannot tell the effect from
     /// others.
-    pub(crate) fn new(effect: &dyn Effect, square: f64, variance: Option<f64>) -> Self {
-        let error = variance.map_or(f64::INFINITY, math::sqrt);
-        let root = |square: f64| {
+    pub(crate) fn new(effect: &dyn Effect, square: Real, variance: Option<Real>) -> Self {
+        let error = variance.map_or(Real::INFINITY, math::sqrt);
+        let root = |square: Real| {
             if square > 0.0 {
                 math::sqrt(square)
             } else {
@@ -70,7 +70,7 @@ impl Coefficient {
                 Self::one_sided_bound(square, error * error),
             )
         } else {
-            (State::NotObservable { after_s: None }, f64::INFINITY)
+            (State::NotObservable { after_s: None }, Real::INFINITY)
         };
         Self {
             name: effect.name(),
@@ -85,8 +85,21 @@ impl Coefficient {
         }
     }
 
+    /// That of a curve whose variances are so many times larger.
+    pub(crate) fn in_unit(self, unit: Real) -> Self {
+        let root = math::sqrt(unit);
+        Self {
+            value: self.value * root,
+            lower: self.lower * root,
+            upper: self.upper * root,
+            square: self.square * unit,
+            square_error: self.square_error * unit,
+            ..self
+        }
+    }
+
     /// One-sided 95 % bound of a square that cannot be negative.
-    pub(crate) fn one_sided_bound(square: f64, variance: f64) -> f64 {
+    pub(crate) fn one_sided_bound(square: Real, variance: Real) -> Real {
         square.max(0.0) + ONE_SIDED * math::sqrt(variance)
     }
 }

@@ -9,11 +9,12 @@ use crate::{
     math,
     model::{MAX_EFFECTS, Model},
     nnls::Vector,
+    real::Real,
 };
 use heapless::Vec;
 
 /// A disagreement of an octave below so many standard errors is not one.
-const NOTICEABLE: f64 = 2.0;
+const NOTICEABLE: Real = 2.0;
 
 /// One octave of a measurement beside a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,27 +23,27 @@ pub struct ComparedOctave {
     /// Averaging factor.
     pub m: u32,
     /// Averaging time, in seconds.
-    pub tau_s: f64,
+    pub tau_s: Real,
     /// Measured Allan variance, in rate units squared.
-    pub measured: f64,
+    pub measured: Real,
     /// The model's.
-    pub model: f64,
+    pub model: Real,
     /// How far the measured variance lies above the model's in standard errors, the model's tolerance
     /// among them.
-    pub z: f64,
+    pub z: Real,
     /// Each effect's share of the model's variance, in the model's order.
     pub shares: [f32; MAX_EFFECTS],
 }
 
 impl ComparedOctave {
     /// How far the measured variance lies above the model's, in percent of the model's.
-    pub fn percent(&self) -> f64 {
+    pub fn percent(&self) -> Real {
         100.0 * (self.measured / self.model - 1.0)
     }
 
     /// Standard error of the measured variance, in rate units squared: what `z` counts in, the model's
     /// tolerance included. NaN where measured and model agree to the last bit.
-    pub fn standard_error(&self) -> f64 {
+    pub fn standard_error(&self) -> Real {
         (self.measured - self.model) / self.z
     }
 }
@@ -54,9 +55,9 @@ pub struct Stretch {
     /// Whether the measurement lies above the model.
     pub above: bool,
     /// Its first octave's averaging time, in seconds.
-    pub from_s: f64,
+    pub from_s: Real,
     /// Its last octave's averaging time, in seconds.
-    pub to_s: f64,
+    pub to_s: Real,
 }
 
 /// A measurement beside a model, octave by octave and as a whole.
@@ -66,13 +67,13 @@ pub struct Comparison<const K: usize> {
     /// The octaves, shortest averaging time first.
     pub octaves: Vec<ComparedOctave, K>,
     /// Squared disagreement in units of the curve's covariance.
-    pub chi_squared: f64,
+    pub chi_squared: Real,
     /// Octaves less what was fitted to them.
     pub degrees_of_freedom: usize,
     /// Probability of a larger χ² if the model is true.
-    pub p_value: f64,
+    pub p_value: Real,
     /// Root-mean-square disagreement of the octaves, in percent.
-    pub rms_percent: f64,
+    pub rms_percent: Real,
 }
 
 impl<const K: usize> Comparison<K> {
@@ -100,7 +101,7 @@ impl<const K: usize> Comparison<K> {
         curve: &Curve<K>,
         model: &Model,
         fit: &Fit,
-        tolerance: f64,
+        tolerance: Real,
     ) -> Result<Self, Error> {
         Self::with_unknowns(curve, model, fit, tolerance, 0)
     }
@@ -109,11 +110,11 @@ impl<const K: usize> Comparison<K> {
         curve: &Curve<K>,
         model: &Model,
         fit: &Fit,
-        tolerance: f64,
+        tolerance: Real,
         unknowns: usize,
     ) -> Result<Self, Error> {
         let problem = Problem::new(curve, model);
-        let squares = Vector::from(nalgebra::SVector::from(fit.squares()));
+        let squares = problem.squares_of(fit);
         let mut weights = Weights::empty();
         weights.set(&problem, &squares, tolerance)?;
         let mut comparison = Self::empty();
@@ -125,10 +126,10 @@ impl<const K: usize> Comparison<K> {
     pub(crate) const fn empty() -> Self {
         Self {
             octaves: Vec::new(),
-            chi_squared: f64::NAN,
+            chi_squared: Real::NAN,
             degrees_of_freedom: 0,
-            p_value: f64::NAN,
-            rms_percent: f64::NAN,
+            p_value: Real::NAN,
+            rms_percent: Real::NAN,
         }
     }
 
@@ -149,8 +150,8 @@ impl<const K: usize> Comparison<K> {
                 m: point.m,
                 tau_s: point.tau_s,
                 measured: point.variance,
-                model,
-                z: (point.variance - model) / (weights.model[k] * weights.relative_error(k)),
+                model: model * problem.unit,
+                z: (problem.measured(k) - model) / (weights.model[k] * weights.relative_error(k)),
                 shares: core::array::from_fn(|i| problem.share(k, i, squares) as f32),
             };
             sum_of_squares += octave.percent() * octave.percent();
@@ -160,7 +161,7 @@ impl<const K: usize> Comparison<K> {
         self.chi_squared = weights.chi_squared(problem, squares);
         self.degrees_of_freedom = self.octaves.len().saturating_sub(unknowns);
         self.p_value = chi_squared_tail(self.chi_squared, self.degrees_of_freedom);
-        self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as f64);
+        self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as Real);
     }
 
     /// Stretches of octaves that noticeably disagree to one side, shortest averaging time first.
@@ -242,7 +243,7 @@ const fn side(above: bool) -> &'static str {
 }
 
 /// A time in milliseconds or seconds, to three digits.
-pub(crate) struct Time(pub(crate) f64);
+pub(crate) struct Time(pub(crate) Real);
 
 impl core::fmt::Display for Time {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {

@@ -17,14 +17,15 @@
 //! It is taken in single precision, of numbers in units of the octave's own variance: weights need no
 //! more than six digits, and a core whose arithmetic is in single precision spends half as long.
 
+use crate::real::consts::PI;
 use crate::{
     curve::{Curve, Point},
     lattice::{self, Rounded, SecondDifferences},
     list::numbered,
     math::{self, floor_log2},
     model::{MAX_EFFECTS, Model, Term},
+    real::{Real, real},
 };
-use core::f64::consts::PI;
 use heapless::Vec;
 use nalgebra::{Complex, SMatrix};
 
@@ -45,9 +46,9 @@ const NEGLIGIBLE: f32 = 1e-4;
 pub fn curve_covariance<const K: usize>(
     curve: &Curve<K>,
     model: &Model,
-    squares: &[f64],
-) -> SMatrix<f64, K, K> {
-    let mut matrix = SMatrix::<f64, K, K>::zeros();
+    squares: &[Real],
+) -> SMatrix<Real, K, K> {
+    let mut matrix = SMatrix::<Real, K, K>::zeros();
     let (points, interval_s) = (curve.points(), curve.interval_s());
     covariance(points, model, squares, interval_s, &mut |k, j, value| {
         matrix[(k, j)] = value;
@@ -62,9 +63,9 @@ pub fn curve_covariance<const K: usize>(
 pub(crate) fn covariance(
     points: &[Point],
     model: &Model,
-    squares: &[f64],
-    interval_s: f64,
-    each: &mut dyn FnMut(usize, usize, f64),
+    squares: &[Real],
+    interval_s: Real,
+    each: &mut dyn FnMut(usize, usize, Real),
 ) {
     let longest = points.last().map_or(1, |point| point.m);
     let present = || {
@@ -74,7 +75,7 @@ pub(crate) fn covariance(
     for (j, shorter) in numbered(points.iter()) {
         let ratio = longest.checked_div(shorter.m).unwrap_or(0);
         let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
-        let m_j = f64::from(shorter.m);
+        let m_j = real(shorter.m);
         let mut random = SecondDifferences::zero(shorter.m, reach);
         for (term, &square) in present() {
             let setting = term.setting(interval_s);
@@ -110,7 +111,7 @@ pub(crate) fn covariance(
             }
             for wave in &mut waves {
                 let setting = wave.term.setting(interval_s);
-                let long = wave.term.effect.response(f64::from(longer.m), &setting);
+                let long = wave.term.effect.response(real(longer.m), &setting);
                 wave.product = long.map_or(0.0, |long| (wave.size * long.amplitude) as f32);
                 wave.now = START;
             }
@@ -124,9 +125,9 @@ pub(crate) fn covariance(
 struct Wave<'a> {
     term: &'a Term,
     /// All of the product but what the longer octave brings.
-    size: f64,
+    size: Real,
     product: f32,
-    phase: f64,
+    phase: Real,
     turn: Option<usize>,
     /// `e^(i · phase · ℓ)`.
     now: Complex<f32>,
@@ -148,7 +149,7 @@ impl Wave<'_> {
         self.now = match turn {
             Some(turn) => self.now * turn,
             None => {
-                let turns = self.phase / (2.0 * PI) * (f64::from(lag) + f64::from(step));
+                let turns = self.phase / (2.0 * PI) * (real(lag) + real(step));
                 Complex::new(math::sincos_of_turns(turns).1 as f32, 0.0)
             }
         };
@@ -162,14 +163,14 @@ const TABLES: usize = 2;
 
 /// `e^(i · phase · 2^k)`, by squaring: a lattice of cosines for one exponential.
 struct Turn {
-    phase: f64,
+    phase: Real,
     steps: [Complex<f32>; (lattice::END / 2).ilog2() as usize],
 }
 
 impl Turn {
     /// The place of a phase's turns among those that are known, or where they come to be. `None` where
     /// there is no room.
-    fn of(phase: f64, known: &mut Vec<Self, TABLES>) -> Option<usize> {
+    fn of(phase: Real, known: &mut Vec<Self, TABLES>) -> Option<usize> {
         if let Some(at) = known.iter().position(|turn| turn.phase == phase) {
             return Some(at);
         }
@@ -198,7 +199,7 @@ impl Pair<'_> {
         ratio.saturating_mul(4)
     }
 
-    fn covariance(&self, differences: &Rounded, turns: &[Turn], waves: &mut [Wave<'_>]) -> f64 {
+    fn covariance(&self, differences: &Rounded, turns: &[Turn], waves: &mut [Wave<'_>]) -> Real {
         let middle = self.middle();
         let stride = lattice::stride(self.shorter.m);
         let starts = Starts::new(self.shorter, self.longer);
@@ -236,10 +237,10 @@ impl Pair<'_> {
                 break;
             }
         }
-        let tau = self.shorter.tau_s * self.longer.tau_s;
-        let counts = self.shorter.differences as f64 * self.longer.differences as f64;
-        let unit = differences.unit();
-        0.25 * f64::from(sum) * (unit * unit) / (f64::from(stride) * counts * tau * tau)
+        let counts = self.shorter.differences as Real * self.longer.differences as Real;
+        // Of single precision's range, the square of τ² would take too much.
+        let unit = differences.unit() / (self.shorter.tau_s * self.longer.tau_s);
+        0.25 * real(sum) * (unit * unit) / (real(stride) * counts)
     }
 }
 

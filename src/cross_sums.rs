@@ -5,6 +5,7 @@ use crate::{
     effect::covariate::Slope,
     error::Error,
     octave::Accumulator,
+    real::{Real, real},
 };
 use heapless::Vec;
 
@@ -83,7 +84,7 @@ impl<const OCTAVES: usize> CrossSums<OCTAVES> {
         &self,
         gyro: &Accumulator<OCTAVES>,
         scale: Scale,
-        per_count: f64,
+        per_count: Real,
     ) -> Result<CrossCurve<OCTAVES>, Error> {
         Scale::new(per_count, scale.rate_hz())?;
         let mut points = Vec::new();
@@ -99,14 +100,14 @@ impl<const OCTAVES: usize> CrossSums<OCTAVES> {
                 continue;
             }
             // ½ mean (D_g/m)(D_x/m), and 2 Σ D_g D_x = Σ (D_g + D_x)² − Σ D_g² − Σ D_x².
-            let m = f64::from(gyro.m);
-            let half_mean = 0.5 / (gyro.differences as f64 * m * m);
+            let m = real(gyro.m);
+            let half_mean = 0.5 / (gyro.differences as Real * m * m);
             let product = 0.5 * both.sum.excess(&gyro.sum, &covariate.sum);
             // As many octaves as capacity.
             let _ = points.push(CrossPoint {
                 m: gyro.m,
                 covariance: half_mean * product * scale.rate_per_count() * per_count,
-                variance: half_mean * covariate.sum.to_f64() * per_count * per_count,
+                variance: half_mean * covariate.sum.to_real() * per_count * per_count,
             });
         }
         Ok(CrossCurve { points })
@@ -126,9 +127,9 @@ pub struct CrossPoint {
     /// Averaging factor.
     pub m: u32,
     /// Allan covariance `½ mean (D_g D_x)/m²`, in rate units times the covariate's.
-    pub covariance: f64,
+    pub covariance: Real,
     /// The covariate's Allan variance, in its unit squared.
-    pub variance: f64,
+    pub variance: Real,
 }
 
 /// What a gyro and a covariate share, octave by octave: all that a diagnosis knows of the covariate.
@@ -153,7 +154,7 @@ impl<const K: usize> CrossCurve<K> {
             Some(cross) => {
                 let follows = value * (2.0 * cross.covariance - value * cross.variance);
                 // A mean square, but for rounding.
-                let rest = (variance - follows).max(variance * f64::EPSILON);
+                let rest = (variance - follows).max(variance * Real::EPSILON);
                 rest + error * error * cross.variance
             }
             None => variance,

@@ -1,14 +1,20 @@
 //! The Allan curve: what is left of the samples.
 
-use crate::{error::Error, list::numbered, math, octave::Accumulator};
+use crate::{
+    error::Error,
+    list::numbered,
+    math,
+    octave::Accumulator,
+    real::{Real, real},
+};
 use heapless::Vec;
 
 /// How counts and sample numbers become rates and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Scale {
-    rate_per_count: f64,
-    rate_hz: f64,
+    rate_per_count: Real,
+    rate_hz: Real,
 }
 
 impl Scale {
@@ -17,8 +23,8 @@ impl Scale {
     ///
     /// # Errors
     /// [`Error::InvalidScale`], [`Error::InvalidRate`] unless both are positive and finite.
-    pub fn new(rate_per_count: f64, rate_hz: f64) -> Result<Self, Error> {
-        let valid = |x: f64| x.is_finite() && x > 0.0;
+    pub fn new(rate_per_count: Real, rate_hz: Real) -> Result<Self, Error> {
+        let valid = |x: Real| x.is_finite() && x > 0.0;
         if !valid(rate_per_count) {
             return Err(Error::InvalidScale(rate_per_count));
         }
@@ -32,12 +38,12 @@ impl Scale {
     }
 
     /// Rate units per count.
-    pub const fn rate_per_count(&self) -> f64 {
+    pub const fn rate_per_count(&self) -> Real {
         self.rate_per_count
     }
 
     /// Samples per second.
-    pub const fn rate_hz(&self) -> f64 {
+    pub const fn rate_hz(&self) -> Real {
         self.rate_hz
     }
 }
@@ -49,16 +55,16 @@ pub struct Point {
     /// Averaging factor: samples in a cluster, a power of two.
     pub m: u32,
     /// Averaging time τ = m τ₀, in seconds.
-    pub tau_s: f64,
+    pub tau_s: Real,
     /// Quarter-overlapping differences behind the variance.
     pub differences: u64,
     /// Allan variance σ²(τ), in rate units squared.
-    pub variance: f64,
+    pub variance: Real,
 }
 
 impl Point {
     /// Allan deviation σ(τ), in rate units.
-    pub fn deviation(&self) -> f64 {
+    pub fn deviation(&self) -> Real {
         math::sqrt(self.variance)
     }
 }
@@ -68,7 +74,10 @@ impl Point {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Curve<const K: usize> {
-    rate_hz: f64,
+    rate_hz: Real,
+    /// A power of four near the least variance: in this unit, squares of variances do not leave single
+    /// precision's range.
+    unit: Real,
     points: Vec<Point, K>,
 }
 
@@ -83,8 +92,8 @@ impl<const K: usize> Curve<K> {
     /// # Errors
     /// [`Error::InvalidRate`], [`Error::InvalidPoint`], [`Error::TooManyOctaves`].
     pub fn new(
-        rate_hz: f64,
-        octaves: impl IntoIterator<Item = (u32, u64, f64)>,
+        rate_hz: Real,
+        octaves: impl IntoIterator<Item = (u32, u64, Real)>,
     ) -> Result<Self, Error> {
         Scale::new(1.0, rate_hz)?;
         let mut points: Vec<Point, K> = Vec::new();
@@ -97,7 +106,7 @@ impl<const K: usize> Curve<K> {
             last = m;
             let point = Point {
                 m,
-                tau_s: f64::from(m) / rate_hz,
+                tau_s: real(m) / rate_hz,
                 differences,
                 variance,
             };
@@ -105,30 +114,58 @@ impl<const K: usize> Curve<K> {
                 return Err(Error::TooManyOctaves { capacity: K });
             }
         }
-        Ok(Self { rate_hz, points })
+        Ok(Self {
+            rate_hz,
+            unit: power_of_four(&points),
+            points,
+        })
     }
 
     /// Other variances in place, which must be finite and not negative.
-    pub(crate) fn change_variances(&mut self, variance: impl Fn(usize, f64) -> f64) {
+    pub(crate) fn change_variances(&mut self, variance: impl Fn(usize, Real) -> Real) {
         for (k, point) in numbered(self.points.iter_mut()) {
             point.variance = variance(k, point.variance);
         }
     }
 
     /// Samples per second.
-    pub const fn rate_hz(&self) -> f64 {
+    pub const fn rate_hz(&self) -> Real {
         self.rate_hz
     }
 
     /// Sample interval τ₀, in seconds.
-    pub fn interval_s(&self) -> f64 {
+    pub fn interval_s(&self) -> Real {
         1.0 / self.rate_hz
+    }
+
+    /// The unit that a fit counts variances in, and with them squared coefficients. What is taken off a
+    /// curve leaves it.
+    pub(crate) const fn unit(&self) -> Real {
+        self.unit
     }
 
     /// The octaves, shortest averaging time first.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
+}
+
+/// That near the least variance above zero; 1 of none.
+fn power_of_four(points: &[Point]) -> Real {
+    let positive = points.iter().map(|point| point.variance);
+    let least = positive
+        .filter(|&variance| variance > 0.0)
+        .fold(Real::INFINITY, Real::min);
+    let mut unit = 1.0;
+    if least < Real::INFINITY {
+        while least < unit {
+            unit *= 0.25;
+        }
+        while least >= 4.0 * unit {
+            unit *= 4.0;
+        }
+    }
+    unit
 }
 
 impl<const K: usize> Accumulator<K> {
@@ -145,11 +182,11 @@ impl<const K: usize> Accumulator<K> {
                 continue;
             }
             // σ² = ½ mean (D/m)², in counts² until scaled.
-            let cluster_scale = scale.rate_per_count / f64::from(octave.m);
-            let mean_square = octave.sum.to_f64() / octave.differences as f64;
+            let cluster_scale = scale.rate_per_count / real(octave.m);
+            let mean_square = octave.sum.to_real() / octave.differences as Real;
             let point = Point {
                 m: octave.m,
-                tau_s: f64::from(octave.m) / scale.rate_hz,
+                tau_s: real(octave.m) / scale.rate_hz,
                 differences: octave.differences,
                 variance: 0.5 * mean_square * cluster_scale * cluster_scale,
             };
@@ -158,6 +195,7 @@ impl<const K: usize> Accumulator<K> {
         }
         Curve {
             rate_hz: scale.rate_hz,
+            unit: power_of_four(&points),
             points,
         }
     }

@@ -1,14 +1,15 @@
 //! What can be wrong with an input.
 
+use crate::real::Real;
 /// Why a curve could not be made or fitted, or what is stored not written or read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error {
     /// The sampling rate is not a positive, finite number of hertz.
-    InvalidRate(f64),
+    InvalidRate(Real),
     /// The rate per count is not a positive, finite number.
-    InvalidScale(f64),
+    InvalidScale(Real),
     /// A curve's point is impossible: `m` is not a power of two up to 2^29, not above the one
     /// before it, without differences, or its variance is negative or not finite.
     InvalidPoint {
@@ -47,9 +48,9 @@ pub enum Error {
     /// Samples came at another rate than the configured one: the curve would be shifted along τ.
     RateContradicted {
         /// The rate that was configured, in Hz.
-        configured_hz: f64,
+        configured_hz: Real,
         /// The rate that the samples came at, in Hz.
-        measured_hz: f64,
+        measured_hz: Real,
     },
     /// The normal equations have no solution: the model's effects cannot be told apart, or a
     /// column is not finite.

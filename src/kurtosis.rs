@@ -2,6 +2,7 @@
 
 use crate::curve::Curve;
 use crate::list::numbered;
+use crate::real::Real;
 use heapless::Vec;
 
 /// Fourth moments of the differences, octave by octave, beside an
@@ -127,13 +128,13 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
             if octave.differences < 30 || octave.squares == 0 || saturated {
                 continue;
             }
-            let n = octave.differences as f64;
-            let (squares, fourth) = (octave.squares as f64, octave.fourth as f64);
+            let n = octave.differences as Real;
+            let (squares, fourth) = (octave.squares as Real, octave.fourth as Real);
             // As many points as octaves.
             let _ = points.push(KurtosisPoint {
                 m: 1_u32.wrapping_shl(k as u32),
                 differences: octave.differences,
-                excess: n * fourth / (squares * squares) - 3.0,
+                excess: (fourth / squares) * (n / squares) - 3.0,
             });
         }
         Kurtosis { points }
@@ -155,7 +156,7 @@ pub struct KurtosisPoint {
     /// Differences behind it.
     pub differences: u64,
     /// Kurtosis less 3: zero for Gaussian noise.
-    pub excess: f64,
+    pub excess: Real,
 }
 
 /// Excess kurtosis by octave, shortest averaging time first.
@@ -176,8 +177,8 @@ impl<const K: usize> Kurtosis<K> {
     pub(crate) fn jumps(
         &self,
         curve: &Curve<K>,
-        correlation_time_s: f64,
-        share: impl Fn(usize) -> f64,
+        correlation_time_s: Real,
+        share: impl Fn(usize) -> Real,
     ) -> Option<bool> {
         let (mut product, mut weight) = (0.0, 0.0);
         for (k, octave) in numbered(curve.points().iter()) {
@@ -187,7 +188,7 @@ impl<const K: usize> Kurtosis<K> {
             let share = share(k);
             let expected = share * share * telegraph_excess(octave.tau_s / correlation_time_s);
             // Variance of the excess of Gaussian differences, half of each shared with the next.
-            let variance = 27.0 / point.differences as f64;
+            let variance = 27.0 / point.differences as Real;
             product += expected * point.excess / variance;
             weight += expected * expected / variance;
         }
@@ -199,11 +200,11 @@ impl<const K: usize> Kurtosis<K> {
 }
 
 /// Standard errors that lie between the two before one is named.
-const DECISIVE: f64 = 6.0;
+const DECISIVE: Real = 6.0;
 
 /// Excess kurtosis of the differences of random telegraph noise alone, at `x = τ/T_c`: where jumps
 /// are rare, a share `x` of the differences holds one, and its size is triangular in its place.
 /// `1.8/x − 1.6` to a fifth for `x ≤ 1`; zero is close beyond.
-pub(crate) fn telegraph_excess(x: f64) -> f64 {
+pub(crate) fn telegraph_excess(x: Real) -> Real {
     (1.8 / x - 1.6).max(0.0)
 }

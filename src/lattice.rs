@@ -1,6 +1,10 @@
 //! Second differences of a kernel at every lag that two octaves of a curve can meet.
 
-use crate::{list::numbered, math::floor_log2};
+use crate::{
+    list::numbered,
+    math::floor_log2,
+    real::{Real, real},
+};
 use nalgebra::Complex;
 
 /// Positions up to this one, in quarters of a cluster, are kept one by one.
@@ -28,17 +32,17 @@ pub(crate) const fn position(slot: usize) -> u32 {
     (FINE + FINE / STEPS * step).wrapping_shl(octave)
 }
 
-const ONE: Complex<f64> = Complex::new(1.0, 0.0);
+const ONE: Complex<Real> = Complex::new(1.0, 0.0);
 
 /// Powers of `w` at every position, by multiplication, slot after slot.
 pub(crate) struct Powers {
-    fine: [Complex<f64>; FINE_SLOTS],
+    fine: [Complex<Real>; FINE_SLOTS],
     /// Those of the last slots, slot `s` at `s % STEPS`.
-    last: [Complex<f64>; STEPS as usize],
+    last: [Complex<Real>; STEPS as usize],
 }
 
 impl Powers {
-    pub(crate) fn new(w: Complex<f64>) -> Self {
+    pub(crate) fn new(w: Complex<Real>) -> Self {
         let mut fine = [ONE; FINE_SLOTS];
         let mut power = ONE;
         for slot in &mut fine {
@@ -52,12 +56,12 @@ impl Powers {
     }
 
     /// At a position of up to 16.
-    pub(crate) fn near(&self, position: usize) -> Complex<f64> {
+    pub(crate) fn near(&self, position: usize) -> Complex<Real> {
         self.fine.get(position).copied().unwrap_or(ONE)
     }
 
     /// In the next slot: slots are asked for in their order.
-    pub(crate) fn next(&mut self, slot: usize) -> Complex<f64> {
+    pub(crate) fn next(&mut self, slot: usize) -> Complex<Real> {
         let steps = STEPS as usize;
         let power = if slot < FINE_SLOTS {
             self.near(slot)
@@ -81,7 +85,7 @@ impl Powers {
 /// kinks lie within `m`.
 #[derive(Clone, Debug)]
 pub struct SecondDifferences {
-    values: [f64; LEN],
+    values: [Real; LEN],
     used: usize,
     stride: u32,
 }
@@ -98,19 +102,19 @@ impl SecondDifferences {
     }
 
     /// Adds `f(x)` at every lag `x`, in samples, of clusters of `m` samples.
-    pub fn add(&mut self, m: f64, f: impl Fn(f64) -> f64) {
-        self.add_below(m, f64::INFINITY, f);
+    pub fn add(&mut self, m: Real, f: impl Fn(Real) -> Real) {
+        self.add_below(m, Real::INFINITY, f);
     }
 
     /// The same for an effect whose second differences vanish from the lag `end` on.
-    pub fn add_below(&mut self, m: f64, end: f64, f: impl Fn(f64) -> f64) {
+    pub fn add_below(&mut self, m: Real, end: Real, f: impl Fn(Real) -> Real) {
         for (slot, value) in numbered(self.values.iter_mut()).take(self.used) {
             let position = position(slot);
             // Quarters of a cluster that lie between samples are never asked for.
             if !position.is_multiple_of(self.stride) {
                 continue;
             }
-            let lag = 0.25 * m * f64::from(position);
+            let lag = 0.25 * m * real(position);
             if lag >= end {
                 break;
             }
@@ -119,32 +123,32 @@ impl SecondDifferences {
     }
 
     /// The same at lags of a cluster and more.
-    pub(crate) fn add_from(&mut self, m: f64, f: impl Fn(f64) -> f64) {
+    pub(crate) fn add_from(&mut self, m: Real, f: impl Fn(Real) -> Real) {
         let slots = numbered(self.values.iter_mut());
         for (slot, value) in slots.take(self.used).skip(STEPS as usize) {
             let position = position(slot);
             if position.is_multiple_of(self.stride) {
-                *value += f(0.25 * m * f64::from(position));
+                *value += f(0.25 * m * real(position));
             }
         }
     }
 
     /// Adds `f(slot)` in every slot, one after the other.
-    pub(crate) fn add_slots(&mut self, mut f: impl FnMut(usize) -> f64) {
+    pub(crate) fn add_slots(&mut self, mut f: impl FnMut(usize) -> Real) {
         for (slot, value) in numbered(self.values.iter_mut()).take(self.used) {
             *value += f(slot);
         }
     }
 
     /// Adds `weight` times a table of all positions.
-    pub(crate) fn add_scaled(&mut self, weight: f64, table: &[f64; LEN]) {
+    pub(crate) fn add_scaled(&mut self, weight: Real, table: &[Real; LEN]) {
         for (value, unit) in self.values.iter_mut().zip(table).take(self.used) {
             *value += weight * unit;
         }
     }
 
     /// Adds to one position up to 16 quarters of a cluster.
-    pub fn add_at(&mut self, position: u32, value: f64) {
+    pub fn add_at(&mut self, position: u32, value: Real) {
         if let Some(slot) = self.values.get_mut(position.min(FINE) as usize) {
             *slot += value;
         }
@@ -165,12 +169,12 @@ impl SecondDifferences {
 /// Second differences in units of their octave's variance.
 pub(crate) struct Rounded {
     values: [f32; LEN],
-    unit: f64,
+    unit: Real,
 }
 
 impl Rounded {
     /// τ² times the octave's Allan variance.
-    pub(crate) fn unit(&self) -> f64 {
+    pub(crate) fn unit(&self) -> Real {
         self.unit
     }
 

@@ -30,6 +30,7 @@ mod nnls;
 mod observability;
 mod octave;
 pub mod queue;
+mod real;
 #[cfg(feature = "storage")]
 mod record;
 mod search;
@@ -59,6 +60,7 @@ pub use integrity::{Integrity, InvalidLimit, Limits, Observation, Reason, Tally}
 pub use kurtosis::{FourthMoments, Kurtosis, KurtosisPoint};
 pub use model::{MAX_EFFECTS, Model, Term};
 pub use octave::{Accumulator, OctaveSum};
+pub use real::Real;
 #[cfg(feature = "storage")]
 pub use record::{
     AxisRecord, Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, Record,

@@ -1,18 +1,24 @@
 //! Every transcendental function of the library, by name: a method such as `x.sqrt()` becomes
 //! std's once anything in a build links std, and host and target would compute different numbers.
 
-use core::f64::consts::PI;
+use crate::real::{Real, consts::PI, real};
+#[cfg(feature = "double")]
 pub(crate) use libm::{cbrt, ceil, erfc, exp, floor, log, sqrt};
+#[cfg(not(feature = "double"))]
+pub(crate) use libm::{
+    cbrtf as cbrt, ceilf as ceil, erfcf as erfc, expf as exp, floorf as floor, logf as log,
+    sqrtf as sqrt,
+};
 
-/// Sine and cosine of an angle in turns, to 3e-16: whole quadrants are taken off exactly, and the rest is
+/// Sine and cosine of an angle in turns, to 3e-16 (2e-7 in single precision): whole quadrants are taken off exactly, and the rest is
 /// small enough for Taylor's series. libm's reduction of angles of any size would cost 4 KB of flash and
 /// 700 bytes of stack.
-pub(crate) fn sincos_of_turns(turns: f64) -> (f64, f64) {
+pub(crate) fn sincos_of_turns(turns: Real) -> (Real, Real) {
     let turns = turns - floor(turns);
     let quadrant = floor(4.0 * turns + 0.5);
     let rest = 2.0 * PI * (turns - 0.25 * quadrant);
     let square = rest * rest;
-    // x − x³/3! + …, 1 − x²/2! + …: the last terms are x^19/19! and x^18/18!, below 1e-17 of an eighth turn.
+    // x − x³/3! + …, 1 − x²/2! + ….
     let (mut sine, mut cosine) = (0.0, 0.0);
     for [odd, even] in SERIES {
         sine = odd - square * sine;
@@ -27,24 +33,27 @@ pub(crate) fn sincos_of_turns(turns: f64) -> (f64, f64) {
     }
 }
 
-/// `1/(2k+1)!` and `1/(2k)!` for k = 9 to 0.
-const SERIES: [[f64; 2]; 10] = {
-    let mut series = [[1.0; 2]; 10];
-    let (mut factorial, mut k) = (1.0, 1);
-    while k < 10 {
+/// Terms of the series: those left out are below 1e-17 of an eighth turn, in single precision 1e-9.
+const TERMS: usize = if cfg!(feature = "double") { 10 } else { 6 };
+
+/// `1/(2k+1)!` and `1/(2k)!`, the highest k first.
+const SERIES: [[Real; 2]; TERMS] = {
+    let mut series = [[1.0; 2]; TERMS];
+    let (mut factorial, mut k) = (1.0_f64, 1);
+    while k < TERMS {
         factorial *= (2 * k) as f64;
         // factorial = (2k)!, exact in 53 bits up to 18!.
-        series[9 - k][1] = 1.0 / factorial;
+        series[TERMS - 1 - k][1] = (1.0 / factorial) as Real;
         factorial *= (2 * k + 1) as f64;
-        series[9 - k][0] = 1.0 / factorial;
+        series[TERMS - 1 - k][0] = (1.0 / factorial) as Real;
         k += 1;
     }
     series
 };
 
 /// The binary logarithm to a percent or so, for the number of steps of a search grid.
-pub(crate) fn log2_roughly(x: f64) -> f64 {
-    f64::from(micromath::F32(x as f32).log2().0)
+pub(crate) fn log2_roughly(x: Real) -> Real {
+    real(micromath::F32(x as f32).log2().0)
 }
 
 /// The whole part of the binary logarithm; 0 of 0, where `ilog2` panics.

@@ -4,6 +4,7 @@ use crate::{
     effect::{Effect, IEEE_952, MAX_PARAMETERS, Setting},
     error::Error,
     list,
+    real::{Real, real},
 };
 use heapless::Vec;
 
@@ -16,7 +17,7 @@ pub struct Term {
     /// The effect.
     pub effect: &'static dyn Effect,
     /// Its shape parameters, in the order in which it names them.
-    pub parameters: [f64; MAX_PARAMETERS],
+    pub parameters: [Real; MAX_PARAMETERS],
     /// Whether the shape was found on the curve that the model is fitted to: it then costs degrees
     /// of freedom, and widens the intervals of the coefficients.
     pub fitted: bool,
@@ -52,17 +53,17 @@ impl Term {
     }
 
     /// A shape parameter; 0 of one that no effect has.
-    pub(crate) fn parameter(&self, j: usize) -> f64 {
+    pub(crate) fn parameter(&self, j: usize) -> Real {
         self.parameters.get(j).copied().unwrap_or(0.0)
     }
 
-    pub(crate) fn set_parameter(&mut self, j: usize, value: f64) {
+    pub(crate) fn set_parameter(&mut self, j: usize, value: Real) {
         if let Some(parameter) = self.parameters.get_mut(j) {
             *parameter = value;
         }
     }
 
-    pub(crate) fn scale_parameter(&mut self, j: usize, factor: f64) {
+    pub(crate) fn scale_parameter(&mut self, j: usize, factor: Real) {
         self.set_parameter(j, self.parameter(j) * factor);
     }
 
@@ -72,7 +73,7 @@ impl Term {
     }
 
     /// Where it is evaluated for samples `interval_s` apart.
-    pub fn setting(&self, interval_s: f64) -> Setting {
+    pub fn setting(&self, interval_s: Real) -> Setting {
         Setting {
             interval_s,
             parameters: self.parameters,
@@ -188,15 +189,10 @@ impl Model {
 
     /// Allan variance at an averaging factor, in rate units squared, for squared coefficients in
     /// the order of the effects.
-    pub fn variance(&self, squares: &[f64], m: u32, interval_s: f64) -> f64 {
+    pub fn variance(&self, squares: &[Real], m: u32, interval_s: Real) -> Real {
         let shares = self.terms.iter().zip(squares);
         shares
-            .map(|(term, square)| {
-                square
-                    * term
-                        .effect
-                        .variance(f64::from(m), &term.setting(interval_s))
-            })
+            .map(|(term, square)| square * term.effect.variance(real(m), &term.setting(interval_s)))
             .sum()
     }
 }

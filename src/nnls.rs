@@ -6,6 +6,7 @@ use crate::{
     error::Error,
     math,
     model::MAX_EFFECTS,
+    real::{Real, by_precision},
 };
 
 /// Normal equations `H β = b` of up to `P` unknowns.
@@ -14,7 +15,9 @@ pub(crate) type Matrix<const P: usize = MAX_EFFECTS> = Square<P>;
 pub(crate) type Vector<const P: usize = MAX_EFFECTS> = algebra::Vector<P>;
 
 /// A pivot of the scaled equations below this is rounding, not information.
-const LEAST_PIVOT: f64 = 1e-10;
+const LEAST_PIVOT: Real = by_precision(1e-10, 1e-5);
+/// A slope of the scaled equations below this is rounding, too.
+const LEAST_SLOPE: Real = by_precision(1e-12, 1e-6);
 
 /// Which unknowns are free; the others are held at zero.
 pub(crate) type Free = Choice;
@@ -47,7 +50,7 @@ impl<const P: usize> NormalEquations<P> {
     pub(crate) fn set(
         &mut self,
         count: usize,
-        row: &dyn Fn(usize, &mut Vector<P>) -> f64,
+        row: &dyn Fn(usize, &mut Vector<P>) -> Real,
     ) -> Result<(), Error> {
         self.count = count.min(P);
         let mut own = Vector::zeros();
@@ -75,8 +78,8 @@ impl<const P: usize> NormalEquations<P> {
     pub(crate) fn exchange(
         &mut self,
         place: usize,
-        entry: &dyn Fn(usize) -> f64,
-        right: f64,
+        entry: &dyn Fn(usize) -> Real,
+        right: Real,
     ) -> Result<(), Error> {
         let diagonal = entry(place);
         if !(diagonal.is_finite() && diagonal > 0.0) {
@@ -141,13 +144,13 @@ impl<const P: usize> NormalEquations<P> {
         let mut gradient = Vector::<P>::zeros();
         for i in 0..self.count {
             let row = (0..self.count).map(|j| self.scaled[(i, j)] * scaled[j]);
-            gradient.put(i, self.right[i] - row.sum::<f64>());
+            gradient.put(i, self.right[i] - row.sum::<Real>());
         }
         gradient
     }
 
     /// How far a solution lowers the sum of squared residuals.
-    pub(crate) fn explained(&self, solution: &Vector<P>) -> f64 {
+    pub(crate) fn explained(&self, solution: &Vector<P>) -> Real {
         let scale = self.scale.map(|x| if x > 0.0 { x } else { 1.0 });
         let scaled = Vector::from(solution.component_div(&scale));
         let rest = self.gradient(&scaled);
@@ -195,7 +198,9 @@ impl<const P: usize> NormalEquations<P> {
         for _ in 0..3 * P {
             let gradient = self.gradient(&solution);
             let candidate = (0..self.count)
-                .filter(|&i| !(free.has(i) || refused.has(i) || held.has(i)) && gradient[i] > 1e-12)
+                .filter(|&i| {
+                    !(free.has(i) || refused.has(i) || held.has(i)) && gradient[i] > LEAST_SLOPE
+                })
                 .max_by(|&a, &b| gradient[a].total_cmp(&gradient[b]));
             let Some(entering) = candidate else { break };
             free.add(entering);
@@ -238,7 +243,7 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     /// Variance of one of the free unknowns. `None` if they cannot be told apart.
-    pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<f64> {
+    pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<Real> {
         let mut unit = Vector::<P>::zeros();
         unit.put(i, 1.0);
         let regular = self.solve_for(free, &mut unit);

@@ -4,10 +4,11 @@ use crate::{
     list::numbered,
     model::{MAX_EFFECTS, Model},
     nnls::{Free, Matrix, NormalEquations, Vector},
+    real::Real,
 };
 
 /// Longest record that is considered, in samples: the longest octave's.
-const LONGEST: f64 = (1_u64 << 30) as f64;
+const LONGEST: Real = (1_u64 << 30) as Real;
 
 /// Length in seconds, the present one doubled as often as needed, of a record in which effect `i`
 /// would be measured: with its square at `square`, and the others as `squares` has them, 1.96
@@ -18,13 +19,13 @@ const LONGEST: f64 = (1_u64 << 30) as f64;
 #[inline(never)]
 pub(crate) fn record_length_s(
     i: usize,
-    square: f64,
+    square: Real,
     squares: &Vector,
     free: &Free,
     model: &Model,
-    interval_s: f64,
-    samples: f64,
-) -> Option<f64> {
+    interval_s: Real,
+    samples: Real,
+) -> Option<Real> {
     let mut assumed = *squares;
     assumed.put(i, square);
     let with = free.with(i);

@@ -11,10 +11,11 @@ use crate::{
     math,
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
+    real::{Real, real},
 };
 
 /// The 95 % quantile of χ² with one degree of freedom.
-const RISE: f64 = 3.841_459;
+const RISE: Real = 3.841_459;
 /// Halvings of the step in a refinement: from half a grid step to a 32nd.
 const HALVINGS: usize = 5;
 
@@ -80,7 +81,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
                 for j in 0..=i {
                     let element = match (i == place || j == place, own(i).zip(own(j))) {
                         (false, Some((one, other))) => one.dot(other),
-                        _ => f64::from(u8::from(i == j)),
+                        _ => real(u8::from(i == j)),
                     };
                     row.put(j, element);
                 }
@@ -102,14 +103,14 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
 
     /// χ² with the effect in a shape, and the squared coefficients.
     #[inline(never)]
-    fn with(&mut self, term: &Term) -> (f64, Vector) {
-        let without = (f64::INFINITY, Vector::zeros());
+    fn with(&mut self, term: &Term) -> (Real, Vector) {
+        let without = (Real::INFINITY, Vector::zeros());
         let unit = self.problem.column(term);
         let scatter = |k| scatter(self.problem, self.weights, self.to_measured, k);
         let (column, size) = self
             .weights
             .whiten_trial(self.problem, &scatter, &|k| unit[k]);
-        let column = column.map(|x| f64::from(x) * size);
+        let column = column.map(|x| real(x) * size);
         let others = &self.whitened.columns;
         let exchanged = self.equations.exchange(
             self.place,
@@ -134,7 +135,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
         let mut term = Term::fitted(effect);
         let mut best = Found {
             term,
-            chi_squared: f64::INFINITY,
+            chi_squared: Real::INFINITY,
             squares: Vector::zeros(),
         };
         let ranges: [Grid; MAX_PARAMETERS] = core::array::from_fn(|i| Grid::of(effect, i, span));
@@ -164,7 +165,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     /// [`interval`](Self::interval) around a known shape, joined with those of the other values of a
     /// whole-numbered parameter that explain the curve as well.
     #[inline(never)]
-    pub(crate) fn joint_interval(&mut self, term: Term, j: usize, span: &Span) -> (f64, f64) {
+    pub(crate) fn joint_interval(&mut self, term: Term, j: usize, span: &Span) -> (Real, Real) {
         let (chi_squared, squares) = self.with(&term);
         let known = Found {
             term,
@@ -192,15 +193,15 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     /// The interval of an effect's only fitted parameter in which χ² stays within that of 95 % of the
     /// least, all coefficients free: also where another effect could take the shape's place.
     #[inline(never)]
-    pub(crate) fn interval(&mut self, best: &Found, j: usize, span: &Span) -> (f64, f64) {
+    pub(crate) fn interval(&mut self, best: &Found, j: usize, span: &Span) -> (Real, Real) {
         let grid = Grid::of(best.term.effect, j, span);
         let value = best.term.parameter(j);
-        let mut rise = |factor: f64| {
+        let mut rise = |factor: Real| {
             let mut term = best.term;
             term.set_parameter(j, value * factor);
             self.with(&term).0 - best.chi_squared
         };
-        let mut end = |direction: f64| {
+        let mut end = |direction: Real| {
             // Doubling steps of the logarithm until outside, then halving.
             let (mut inside, mut step) = (0.0, 0.005);
             loop {
@@ -236,7 +237,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
     fn refine(
         &mut self,
         start: Found,
-        mut steps: [f64; MAX_PARAMETERS],
+        mut steps: [Real; MAX_PARAMETERS],
         ranges: &[Grid; MAX_PARAMETERS],
     ) -> Found {
         let mut best = start;
@@ -266,9 +267,9 @@ fn scatter<const K: usize>(
     weights: &Weights<K>,
     to_measured: bool,
     k: usize,
-) -> f64 {
+) -> Real {
     match problem.points.get(k) {
-        Some(point) if to_measured => point.variance / weights.model[k],
+        Some(_) if to_measured => problem.measured(k) / weights.model[k],
         _ => 1.0,
     }
 }
@@ -277,13 +278,13 @@ fn scatter<const K: usize>(
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
     pub(crate) term: Term,
-    pub(crate) chi_squared: f64,
+    pub(crate) chi_squared: Real,
     /// The effect's at its place in the search.
     pub(crate) squares: Vector,
 }
 
 impl Found {
-    fn improve(&mut self, term: Term, (chi_squared, squares): (f64, Vector)) -> bool {
+    fn improve(&mut self, term: Term, (chi_squared, squares): (Real, Vector)) -> bool {
         let better = chi_squared < self.chi_squared;
         if better {
             *self = Self {
@@ -299,10 +300,10 @@ impl Found {
 /// Evenly spaced logarithms, or whole numbers.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
-    low: f64,
-    high: f64,
+    low: Real,
+    high: Real,
     /// Zero for whole numbers.
-    log_step: f64,
+    log_step: Real,
     steps: u32,
 }
 
@@ -340,19 +341,19 @@ impl Grid {
         Self {
             low: range.low,
             high,
-            log_step: math::log(high / range.low) / f64::from(steps.saturating_sub(1)),
+            log_step: math::log(high / range.low) / real(steps.saturating_sub(1)),
             steps,
         }
     }
 
     /// The value after so many steps.
-    fn at(&self, step: u32) -> f64 {
+    fn at(&self, step: u32) -> Real {
         if step == 0 {
             return self.low;
         }
         if self.log_step == 0.0 {
-            return self.low + f64::from(step);
+            return self.low + real(step);
         }
-        (self.low * math::exp(self.log_step * f64::from(step))).min(self.high)
+        (self.low * math::exp(self.log_step * real(step))).min(self.high)
     }
 }

@@ -4,8 +4,12 @@ mod disturbance;
 
 pub use disturbance::Disturbance;
 
-use crate::{curve::Scale, math};
-use core::f64::consts::{LN_2, PI};
+use crate::real::consts::{LN_2, PI};
+use crate::{
+    curve::Scale,
+    math,
+    real::{Real, real},
+};
 use disturbance::Source;
 
 /// Fraction bits of every amplitude.
@@ -39,8 +43,8 @@ impl Amplitudes {
     /// ```text
     /// Q = u τ₀ √(a² + 1/12)      N = u √τ₀ a      B = u √(π/ln 2) a      K = u a/√τ₀      R = u a/τ₀
     /// ```
-    pub fn coefficients(&self, scale: Scale) -> [f64; 5] {
-        let counts = |amplitude: u32| f64::from(amplitude) / f64::from(1 << FRACTION);
+    pub fn coefficients(&self, scale: Scale) -> [Real; 5] {
+        let counts = |amplitude: u32| real(amplitude) / real(1 << FRACTION);
         let rate = scale.rate_per_count();
         let interval_s = 1.0 / scale.rate_hz();
         let jitter = counts(self.quantization);
@@ -49,7 +53,7 @@ impl Amplitudes {
             rate * math::sqrt(interval_s) * counts(self.white),
             rate * math::sqrt(PI / LN_2) * counts(self.flicker),
             rate / math::sqrt(interval_s) * counts(self.walk),
-            rate / interval_s * f64::from(self.ramp) / f64::from(1 << FRACTION),
+            rate / interval_s * real(self.ramp) / real(1 << FRACTION),
         ]
     }
 }

@@ -1,5 +1,6 @@
 //! An exact sum of squares, wide enough for every record.
 
+use crate::real::Real;
 /// A sum of squared differences, exact: 158 bits in digits of 63, 63 and 32 bits, so that a carry
 /// shows as a sign.
 ///
@@ -114,12 +115,12 @@ impl SquareSum {
     }
 
     /// This sum less two others, rounded; exact where it is small.
-    pub(crate) fn excess(&self, one: &Self, other: &Self) -> f64 {
+    pub(crate) fn excess(&self, one: &Self, other: &Self) -> Real {
         let mut both = *one;
         both.add_sum(other);
         match (self.less(&both), both.less(self)) {
-            (Some(above), _) => above.to_f64(),
-            (None, Some(below)) => -below.to_f64(),
+            (Some(above), _) => above.to_real(),
+            (None, Some(below)) => -below.to_real(),
             (None, None) => 0.0,
         }
     }
@@ -142,10 +143,10 @@ impl SquareSum {
     }
 
     /// The sum, rounded to within one unit in the last place.
-    pub fn to_f64(&self) -> f64 {
-        const LIMB: f64 = 18_446_744_073_709_551_616.0; // 2^64
+    pub fn to_real(&self) -> Real {
+        const LIMB: Real = 18_446_744_073_709_551_616.0; // 2^64
         let [low, middle, high] = self.limbs();
-        (high as f64 * LIMB + middle as f64) * LIMB + low as f64
+        (high as Real * LIMB + middle as Real) * LIMB + low as Real
     }
 }
 

@@ -87,8 +87,8 @@ fn assert_sums<'a>(
         for (octave, expected) in axis.accumulator.octaves().zip(expected.octaves()) {
             assert_eq!(octave.differences, expected.differences, "{what}");
             assert_eq!(
-                octave.sum.to_f64() * axis.rate_per_count.powi(2),
-                expected.sum.to_f64() * scale.powi(2),
+                octave.sum.to_real() * axis.rate_per_count.powi(2),
+                expected.sum.to_real() * scale.powi(2),
                 "{what}, axis {}",
                 axis.name
             );

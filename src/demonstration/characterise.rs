@@ -8,6 +8,7 @@ use crate::{
     fit::{Fit, Settings, fit},
     model::Model,
     octave::Accumulator,
+    real::Real,
     simulated::SimulatedGyro,
 };
 
@@ -28,7 +29,7 @@ pub struct Characterised {
     /// The five coefficients, in °/s and seconds.
     pub fit: Fit,
     /// The simulated coefficients.
-    pub truth: [f64; 5],
+    pub truth: [Real; 5],
 }
 
 impl Characterised {
@@ -50,7 +51,7 @@ impl Characterised {
     /// Whether the curve is explained (p > 0.1 %), and every coefficient within four standard
     /// errors of the simulated one.
     pub fn passed(&self) -> bool {
-        let within = |(coefficient, truth): (&Coefficient, &f64)| {
+        let within = |(coefficient, truth): (&Coefficient, &Real)| {
             let square = truth * truth;
             (coefficient.square - square).abs() <= 4.0 * coefficient.square_error
         };

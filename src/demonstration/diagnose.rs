@@ -12,6 +12,7 @@ use crate::{
     kurtosis::FourthMoments,
     model::Model,
     octave::Accumulator,
+    real::Real,
     simulated::{Disturbance, SimulatedGyro},
 };
 
@@ -22,7 +23,7 @@ pub const OCTAVES: usize = 20;
 pub const SAMPLES: usize = 1 << 17;
 
 /// Samples per second.
-pub const RATE_HZ: f64 = 100.0;
+pub const RATE_HZ: Real = 100.0;
 
 /// Names of what can be hidden, those of the effects.
 pub const HIDDEN: [(&str, Disturbance); 3] = [

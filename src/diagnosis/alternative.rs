@@ -6,6 +6,7 @@ use crate::{
     error::Error,
     fit::{Problem, generalized::Solution},
     model::{Model, Term},
+    real::Real,
 };
 
 impl Diagnosis {
@@ -53,7 +54,12 @@ impl Diagnosis {
         };
         let mut better = Better { model, squares };
         // Infinitely much to gain: no round is hopeless.
-        better.fit(curve, self.tolerance, f64::INFINITY, &mut candidate.clone())?;
+        better.fit(
+            curve,
+            self.tolerance,
+            Real::INFINITY,
+            &mut candidate.clone(),
+        )?;
         let mut standing = Standing::at(&better.model);
         standing.step.follows = step.follows;
         standing.squares = better.squares;

@@ -67,7 +67,9 @@ impl Diagnosis {
                 solution.converge(squares, self.tolerance, Rounds::All)?;
                 squares = solution.squares;
             }
-            slope = Slope::of(cross, curve.points(), |k| problem.variance(k, &squares));
+            slope = Slope::of(cross, curve.points(), |k| {
+                problem.variance(k, &squares) * problem.unit
+            });
         }
         Ok(slope)
     }

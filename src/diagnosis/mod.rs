@@ -13,7 +13,7 @@ pub use step::{Addition, Candidate, Follows, MAX_AMBIGUOUS, MAX_CANDIDATES, Step
 
 use crate::{
     cross_sums::CrossCurve, curve::Curve, effect::Effect, error::Error, fit::check,
-    integrity::Reason, kurtosis::Kurtosis, model::Model,
+    integrity::Reason, kurtosis::Kurtosis, model::Model, real::Real,
 };
 use standing::Standing;
 
@@ -21,16 +21,16 @@ use standing::Standing;
 #[derive(Clone, Copy, Debug)]
 pub struct Diagnosis {
     /// Tolerance of the model, as of [`Settings`](crate::Settings).
-    pub tolerance: f64,
+    pub tolerance: Real,
     /// A model of lower p-value is not adequate, and an effect is looked for.
-    pub adequate_p: f64,
+    pub adequate_p: Real,
     /// Least improvement of `−2 ln L`, less what the effect's own parameters cost, that an effect is
     /// accepted for.
-    pub threshold: f64,
+    pub threshold: Real,
     /// Candidates whose scores lie within this of the best are ambiguous.
-    pub ambiguity: f64,
+    pub ambiguity: Real,
     /// A covariate is believed from a slope of so many standard errors on.
-    pub covariate_z: f64,
+    pub covariate_z: Real,
     /// Most effects to add, a covariate among them.
     pub max_effects: usize,
 }

@@ -10,6 +10,7 @@ use crate::{
     error::Error,
     list,
     model::{Model, Term},
+    real::Real,
 };
 use heapless::Vec;
 
@@ -27,7 +28,7 @@ pub(super) struct Preferred {
 impl Preferred {
     /// The first of the candidates to the others, as far as these would have been accepted and are no
     /// freer in shape.
-    pub(super) fn of(candidates: &[Candidate], threshold: f64) -> Option<Self> {
+    pub(super) fn of(candidates: &[Candidate], threshold: Real) -> Option<Self> {
         let (first, others) = candidates.split_first()?;
         let accepted = others.iter().filter(|other| {
             is_as_simple(other.term.effect, first.term.effect) && other.improvement >= threshold
@@ -50,7 +51,7 @@ impl Preferred {
     ) -> Result<(), Error> {
         base.clone_from(model);
         let taken = Term {
-            parameters: parameters.map(f64::from),
+            parameters: parameters.map(Real::from),
             ..Term::fitted(effect)
         };
         base.exchange(self.added, taken)

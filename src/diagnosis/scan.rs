@@ -8,6 +8,7 @@ use crate::{
     fit::{Problem, generalized::Solution},
     list,
     model::Model,
+    real::Real,
     search::{Found, Search},
 };
 use heapless::Vec;
@@ -20,7 +21,7 @@ pub(super) type Scan = Vec<Found, MAX_CANDIDATES>;
 pub(super) fn scan_beside<const K: usize>(
     curve: &Curve<K>,
     model: &Model,
-    tolerance: f64,
+    tolerance: Real,
     effects: &[&'static dyn Effect],
     found: &mut Scan,
 ) -> Result<(), Error> {

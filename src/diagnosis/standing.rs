@@ -18,6 +18,7 @@ use crate::{
     list,
     model::Model,
     nnls::Vector,
+    real::Real,
 };
 use heapless::Vec;
 
@@ -31,7 +32,7 @@ pub(super) struct Standing<const K: usize> {
     pub(super) squares: Vector,
     pub(super) has_start: bool,
     /// Its score, `−2 ln L`.
-    pub(super) score: f64,
+    pub(super) score: Real,
     pub(super) adequate: bool,
     /// The best shapes that a scan found: beside the model, or beside `base` if an effect is swapped.
     pub(super) found: Scan,
@@ -57,7 +58,7 @@ impl<const K: usize> Standing<K> {
             additions: 0,
             squares: Vector::zeros(),
             has_start: false,
-            score: f64::NAN,
+            score: Real::NAN,
             adequate: false,
             found: Scan::new(),
             base: Model::default(),
@@ -67,7 +68,7 @@ impl<const K: usize> Standing<K> {
     }
 
     /// Goes on to the model with the best candidate.
-    pub(super) fn accept(&mut self, threshold: f64) {
+    pub(super) fn accept(&mut self, threshold: Real) {
         self.preferred = Preferred::of(&self.step.candidates, threshold);
         self.step.model.clone_from(&self.best.model);
         self.squares = self.best.squares;
@@ -149,7 +150,7 @@ impl Diagnosis {
                 term: found.term,
                 swap,
                 coefficient: 0.0,
-                chi_squared: f64::NAN,
+                chi_squared: Real::NAN,
                 improvement: 0.0,
             };
             if known(step, &candidate) {

@@ -5,6 +5,7 @@ use crate::{
     effect::{Effect, covariate::Slope},
     fit::Fit,
     model::{Model, Term},
+    real::Real,
 };
 use heapless::Vec;
 
@@ -22,16 +23,16 @@ pub struct Candidate {
     /// What else changes where it is added.
     pub swap: Option<Swap>,
     /// Its coefficient, in the unit that a [`Coefficient`](crate::Coefficient) of it has.
-    pub coefficient: f64,
+    pub coefficient: Real,
     /// χ² of the model with it.
-    pub chi_squared: f64,
+    pub chi_squared: Real,
     /// How far it lowers `−2 ln L`, less two for each parameter that it brings.
-    pub improvement: f64,
+    pub improvement: Real,
 }
 
 impl Candidate {
     /// Parameters that it brings: a coefficient and shapes.
-    pub(super) fn cost(&self) -> f64 {
+    pub(super) fn cost(&self) -> Real {
         let swap = self
             .swap
             .map_or(0.0, |swap| cost(swap.taken) - cost(swap.dropped));
@@ -85,9 +86,9 @@ pub struct Follows {
 }
 
 /// Parameters of an effect whose shape is fitted.
-pub(super) fn cost(effect: &'static dyn Effect) -> f64 {
+pub(super) fn cost(effect: &'static dyn Effect) -> Real {
     let shapes = Term::fitted(effect).fitted_parameters();
-    1.0 + shapes.map(|_| 1.0).sum::<f64>()
+    1.0 + shapes.map(|_| 1.0).sum::<Real>()
 }
 
 /// What a step adds to the model.

@@ -13,6 +13,7 @@ use crate::{
     math,
     model::Model,
     nnls::Vector,
+    real::{Real, real},
     search::Found,
 };
 use heapless::Vec;
@@ -20,14 +21,14 @@ use heapless::Vec;
 /// Rounds of fitting and polishing the shapes of a candidate.
 const ROUNDS: usize = 10;
 /// A change of `−2 ln L` that ends the rounds.
-const SETTLED: f64 = 0.5;
+const SETTLED: Real = 0.5;
 /// A lag of `−2 ln L` behind the best candidate that ends them too …
-const HOPELESS: f64 = 60.0;
+const HOPELESS: Real = 60.0;
 /// … where a round makes up for less than this share of it.
-const CATCHING_UP: f64 = 0.25;
+const CATCHING_UP: Real = 0.25;
 
 /// The longest step of a shape's logarithm.
-const STRIDE: f64 = 0.2;
+const STRIDE: Real = 0.2;
 /// Times that a step is halved because it led too far.
 const HALVINGS: u32 = 4;
 
@@ -73,22 +74,22 @@ impl Better {
     pub(super) fn fit<const K: usize>(
         &mut self,
         curve: &Curve<K>,
-        tolerance: f64,
-        best: f64,
+        tolerance: Real,
+        best: Real,
         candidate: &mut Candidate,
-    ) -> Result<Option<f64>, Error> {
+    ) -> Result<Option<Real>, Error> {
         let span = span(curve);
         let mut trial = self.clone();
         let mut tried = *candidate;
-        let mut kept: Option<f64> = None;
-        let mut before = f64::INFINITY;
+        let mut kept: Option<Real> = None;
+        let mut before = Real::INFINITY;
         let mut steps = Steps::new();
         let mut halvings = 0_u32;
         for _ in 0..ROUNDS {
             let mut next = Steps::new();
             let Some(now) = trial.round(curve, tolerance, &mut next, &mut tried)? else {
                 // Another model, with scores of its own.
-                before = f64::INFINITY;
+                before = Real::INFINITY;
                 continue;
             };
             let (gain, lag) = (before - now, now - best);
@@ -123,9 +124,9 @@ impl Better {
     }
 
     /// Changes shapes.
-    fn go(&mut self, steps: &Steps, sign: f64, span: &Span) {
+    fn go(&mut self, steps: &Steps, sign: Real, span: &Span) {
         for &(i, j, step) in steps {
-            let (j, step) = (usize::from(j), f64::from(step));
+            let (j, step) = (usize::from(j), real(step));
             let Some(term) = self.model.terms_mut().get_mut(usize::from(i)) else {
                 continue;
             };
@@ -142,10 +143,10 @@ impl Better {
     fn round<const K: usize>(
         &mut self,
         curve: &Curve<K>,
-        tolerance: f64,
+        tolerance: Real,
         steps: &mut Steps,
         candidate: &mut Candidate,
-    ) -> Result<Option<f64>, Error> {
+    ) -> Result<Option<Real>, Error> {
         let problem = Problem::new(curve, &self.model);
         let mut solution = Solution::new(&problem);
         solution.converge(self.squares, tolerance, Rounds::One)?;
@@ -185,7 +186,7 @@ fn judge<const K: usize>(
     }
     if let Some((last, others)) = problem.model.terms().split_last() {
         candidate.term = *last;
-        candidate.coefficient = math::sqrt(solution.squares[others.len()].max(0.0));
+        candidate.coefficient = math::sqrt(solution.squares[others.len()].max(0.0) * problem.unit);
     }
     candidate.chi_squared = solution.chi_squared;
     None

@@ -1,4 +1,5 @@
 use super::{Effect, SecondDifferences, Setting, Story};
+use crate::real::Real;
 
 /// Angle random walk, coefficient N in rate · √s: white rate noise of two-sided density N².
 ///
@@ -27,11 +28,11 @@ impl Effect for AngleRandomWalk {
         }
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         -0.5 * setting.interval_s * lag
     }
 
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         // Beyond a cluster the straight lines cancel exactly.
         if x < m {
             setting.interval_s * (x - m)
@@ -41,8 +42,8 @@ impl Effect for AngleRandomWalk {
     }
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {

@@ -1,7 +1,10 @@
 use super::{Effect, Setting, Story};
 use crate::lattice::{self, SecondDifferences};
 use crate::math;
-use core::f64::consts::PI;
+use crate::real::{
+    Real,
+    consts::{LN_2, PI},
+};
 
 /// Bias instability, coefficient B in rate: flicker noise, of spectral density `B²/(2πf)`, averaged
 /// over each sample interval.
@@ -36,7 +39,7 @@ impl Effect for BiasInstability {
         }
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         if lag == 0.0 {
             return 0.0;
         }
@@ -44,14 +47,14 @@ impl Effect for BiasInstability {
         t * t * math::log(t) / (2.0 * PI)
     }
 
-    fn variance(&self, _: f64, _: &Setting) -> f64 {
-        2.0 * core::f64::consts::LN_2 / PI
+    fn variance(&self, _: Real, _: &Setting) -> Real {
+        2.0 * LN_2 / PI
     }
 
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {
@@ -61,11 +64,11 @@ impl Effect for BiasInstability {
 }
 
 /// `[(i+4)² ln(i+4) − 2 i² ln i + (i−4)² ln|i−4|]/16` at the lattice's positions `i = 4x/m`.
-static SCALE_FREE: [f64; lattice::LEN] = {
+static SCALE_FREE: [Real; lattice::LEN] = {
     let mut table = [0.0; lattice::LEN];
     let mut slot = 0;
     while slot < lattice::LEN {
-        table[slot] = scale_free(lattice::position(slot));
+        table[slot] = scale_free(lattice::position(slot)) as Real;
         slot += 1;
     }
     table

@@ -15,7 +15,9 @@
 //! taken: on the cautious side above white noise.
 
 use super::Story;
-use crate::{cross_sums::CrossCurve, curve::Point, fit::clusters, list::numbered, math};
+use crate::{
+    cross_sums::CrossCurve, curve::Point, fit::clusters, list::numbered, math, real::Real,
+};
 
 /// Its name in files and on the command line.
 pub const NAME: &str = "covariate";
@@ -30,16 +32,16 @@ pub const STORY: Story = Story {
 };
 
 /// Variance of a slope times the information that the octaves sum up.
-const CAUTION: f64 = 3.42;
+const CAUTION: Real = 3.42;
 
 /// How a rate follows a covariate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Slope {
     /// Rate units per unit of the covariate, with sign.
-    pub value: f64,
+    pub value: Real,
     /// Its standard error.
-    pub error: f64,
+    pub error: Real,
 }
 
 impl Slope {
@@ -48,7 +50,7 @@ impl Slope {
     pub(crate) fn of<const K: usize>(
         cross: &CrossCurve<K>,
         points: &[Point],
-        noise: impl Fn(usize) -> f64,
+        noise: impl Fn(usize) -> Real,
     ) -> Option<Self> {
         let first = first_own(cross);
         let (mut product, mut information) = (0.0, 0.0);
@@ -64,12 +66,12 @@ impl Slope {
     }
 
     /// The slope in standard errors.
-    pub fn z(&self) -> f64 {
+    pub fn z(&self) -> Real {
         self.value / self.error
     }
 
     /// The 95 % interval.
-    pub fn interval(&self) -> (f64, f64) {
+    pub fn interval(&self) -> (Real, Real) {
         let half = 1.959_964 * self.error;
         (self.value - half, self.value + half)
     }
@@ -77,7 +79,7 @@ impl Slope {
 
 /// A sensor's own noise, which the rate does not follow, would dilute the slope: where a covariate's
 /// curve falls before it rises, octaves count from where it has risen to this many times its least.
-const RISEN: f64 = 4.0;
+const RISEN: Real = 4.0;
 
 /// The first octave in which the covariate is more than its sensor's noise: the very first, where the
 /// curve rises from the start; so too, where it never rises and all of it is noise that the rate might

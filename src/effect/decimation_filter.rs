@@ -1,5 +1,6 @@
 use super::{AngleRandomWalk, Effect, Parameter, Range, SecondDifferences, Setting, Span, Story};
 use crate::math;
+use crate::real::Real;
 
 /// Angle random walk behind a decimation filter of `stages` boxcars, coefficient N in rate · √s:
 /// takes the place of [`AngleRandomWalk`]. One stage is a moving average, two are a Bartlett
@@ -15,10 +16,10 @@ use crate::math;
 pub struct DecimationFilter;
 
 /// Widths up to so many samples: the sums over the autocovariance stay short.
-const WIDEST: f64 = 64.0;
+const WIDEST: Real = 64.0;
 
 /// The autocovariance at a lag of `x` widths, up to a factor, and the lag from which it is zero.
-fn spline(x: f64, stages: f64) -> f64 {
+fn spline(x: Real, stages: Real) -> Real {
     if stages < 1.5 {
         return (1.0 - x).max(0.0);
     }
@@ -34,14 +35,14 @@ fn spline(x: f64, stages: f64) -> f64 {
 
 /// The sampled autocovariance, normalised.
 struct Filter {
-    per_sample: f64,
-    stages: f64,
+    per_sample: Real,
+    stages: Real,
     /// Lags from which on it is zero.
-    support: f64,
+    support: Real,
     /// 1/Σ r_i.
-    scale: f64,
+    scale: Real,
     /// 2 Σ_{i>0} i r_i.
-    moment: f64,
+    moment: Real,
 }
 
 impl Filter {
@@ -69,12 +70,12 @@ impl Filter {
         filter
     }
 
-    fn at(&self, i: f64) -> f64 {
+    fn at(&self, i: Real) -> Real {
         self.scale * spline(i * self.per_sample, self.stages)
     }
 
     /// `n r₀ + 2 Σ_{i<n} (n−i) r_i`.
-    fn sum(&self, n: f64) -> f64 {
+    fn sum(&self, n: Real) -> Real {
         if n >= self.support {
             return n - self.moment;
         }
@@ -88,7 +89,7 @@ impl Filter {
     }
 
     /// A second difference of the sums.
-    fn second_difference(&self, x: f64, m: f64) -> f64 {
+    fn second_difference(&self, x: Real, m: Real) -> Real {
         if x >= m + self.support {
             return 0.0;
         }
@@ -158,22 +159,22 @@ impl Effect for DecimationFilter {
         Some(&AngleRandomWalk)
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         -0.5 * setting.interval_s * Filter::new(setting).sum(lag)
     }
 
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         -0.5 * setting.interval_s * Filter::new(setting).second_difference(x, m)
     }
 
     fn variances(
         &self,
-        factors: &mut dyn Iterator<Item = f64>,
+        factors: &mut dyn Iterator<Item = Real>,
         setting: &Setting,
-        each: &mut dyn FnMut(f64),
+        each: &mut dyn FnMut(Real),
     ) {
         let filter = Filter::new(setting);
-        let mut last: Option<(f64, f64)> = None;
+        let mut last: Option<(Real, Real)> = None;
         for m in factors {
             let own = match last {
                 Some((before, sum)) if before == m => sum,
@@ -188,8 +189,8 @@ impl Effect for DecimationFilter {
 
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {

@@ -1,4 +1,5 @@
 use super::{Effect, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole};
+use crate::real::Real;
 
 /// Exponentially correlated noise, coefficient its rms in rate, correlation time T_c: one real pole.
 ///
@@ -50,31 +51,31 @@ impl Effect for GaussMarkov {
         correlation_times(span)
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         squared(setting.interval_s) * pole(setting).kernel(lag)
     }
 
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         squared(setting.interval_s) * pole(setting).second_difference(x, m)
     }
 
-    fn variance(&self, m: f64, setting: &Setting) -> f64 {
+    fn variance(&self, m: Real, setting: &Setting) -> Real {
         pole(setting).variance(m)
     }
 
     fn variances(
         &self,
-        factors: &mut dyn Iterator<Item = f64>,
+        factors: &mut dyn Iterator<Item = Real>,
         setting: &Setting,
-        each: &mut dyn FnMut(f64),
+        each: &mut dyn FnMut(Real),
     ) {
         pole(setting).variances(factors, each);
     }
 
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {
@@ -92,6 +93,6 @@ pub(super) fn correlation_times(span: &Span) -> Range {
     }
 }
 
-fn squared(x: f64) -> f64 {
+fn squared(x: Real) -> Real {
     x * x
 }

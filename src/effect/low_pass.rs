@@ -1,6 +1,7 @@
 use super::{
     AngleRandomWalk, Effect, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole,
 };
+use crate::real::Real;
 
 /// Angle random walk behind a first-order low pass, coefficient N in rate · √s, of time constant T:
 /// takes the place of [`AngleRandomWalk`].
@@ -15,7 +16,7 @@ fn pole(setting: &Setting) -> Pole {
 }
 
 /// `s²` for N = 1.
-fn variance(setting: &Setting) -> f64 {
+fn variance(setting: &Setting) -> Real {
     1.0 / (pole(setting).long_mean() * setting.interval_s)
 }
 
@@ -63,23 +64,23 @@ impl Effect for LowPass {
         Some(&AngleRandomWalk)
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         scale(setting) * pole(setting).kernel(lag)
     }
 
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         scale(setting) * pole(setting).second_difference(x, m)
     }
 
-    fn variance(&self, m: f64, setting: &Setting) -> f64 {
+    fn variance(&self, m: Real, setting: &Setting) -> Real {
         variance(setting) * pole(setting).variance(m)
     }
 
     fn variances(
         &self,
-        factors: &mut dyn Iterator<Item = f64>,
+        factors: &mut dyn Iterator<Item = Real>,
         setting: &Setting,
-        each: &mut dyn FnMut(f64),
+        each: &mut dyn FnMut(Real),
     ) {
         let scale = variance(setting);
         pole(setting).variances(factors, |value| each(scale * value));
@@ -87,8 +88,8 @@ impl Effect for LowPass {
 
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {
@@ -96,6 +97,6 @@ impl Effect for LowPass {
     }
 }
 
-fn scale(setting: &Setting) -> f64 {
+fn scale(setting: &Setting) -> Real {
     variance(setting) * setting.interval_s * setting.interval_s
 }

@@ -19,6 +19,7 @@ mod rate_random_walk;
 mod resonance;
 mod sinusoid;
 
+use crate::real::Real;
 pub use angle_random_walk::AngleRandomWalk;
 pub use bias_instability::BiasInstability;
 pub use decimation_filter::DecimationFilter;
@@ -40,15 +41,15 @@ pub const MAX_PARAMETERS: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// Sample interval τ₀, in seconds.
-    pub interval_s: f64,
+    pub interval_s: Real,
     /// The effect's shape parameters, in the order in which it names them; those that it does not
     /// have are ignored.
-    pub parameters: [f64; MAX_PARAMETERS],
+    pub parameters: [Real; MAX_PARAMETERS],
 }
 
 impl Setting {
     /// For an effect without shape parameters.
-    pub const fn new(interval_s: f64) -> Self {
+    pub const fn new(interval_s: Real) -> Self {
         Self {
             interval_s,
             parameters: [0.0; MAX_PARAMETERS],
@@ -62,9 +63,9 @@ impl Setting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// Root-mean-square of a difference, times τ.
-    pub amplitude: f64,
+    pub amplitude: Real,
     /// Phase from one sample to the next, in radians.
-    pub phase: f64,
+    pub phase: Real,
 }
 
 /// A shape parameter of an effect.
@@ -81,20 +82,20 @@ pub struct Parameter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// The lowest value, above zero.
-    pub low: f64,
+    pub low: Real,
     /// The highest value.
-    pub high: f64,
+    pub high: Real,
     /// Values tried for each factor of two.
-    pub steps_per_octave: f64,
+    pub steps_per_octave: Real,
 }
 
 /// What a curve spans.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// Sample interval τ₀, in seconds.
-    pub interval_s: f64,
+    pub interval_s: Real,
     /// Averaging time of the longest octave, in seconds.
-    pub longest_tau_s: f64,
+    pub longest_tau_s: Real,
 }
 
 /// What to tell somebody whose gyro has an effect.
@@ -164,12 +165,12 @@ pub trait Effect: Sync {
 
     /// The generalised covariance `G(n)`, in s² times the rate unit squared per coefficient
     /// squared, for `lag = n ≥ 0` samples, up to a polynomial of the third degree.
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64;
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real;
 
     /// `G(x + m) − 2 G(x) + G(|x − m|)` for lags in samples, up to a straight line in `x`.
     ///
     /// For `x ≫ m` the terms cancel: an effect with a closed form should give it.
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         let apart = if x < m { m - x } else { x - m };
         self.kernel(x + m, setting) - 2.0 * self.kernel(x, setting) + self.kernel(apart, setting)
     }
@@ -177,7 +178,7 @@ pub trait Effect: Sync {
     /// τ_j τ_k times the covariance of two differences of adjacent cluster means, of `m_j ≤ m_k`
     /// samples, whose middles lie `offset ≥ 0` samples apart:
     /// `Σ w_u w_v G(ℓ + v m_k − u m_j)` with `w = (1, −2, 1)`.
-    fn cross_difference(&self, m_j: f64, m_k: f64, offset: f64, setting: &Setting) -> f64 {
+    fn cross_difference(&self, m_j: Real, m_k: Real, offset: Real, setting: &Setting) -> Real {
         let apart = if offset < m_k {
             m_k - offset
         } else {
@@ -189,7 +190,7 @@ pub trait Effect: Sync {
     }
 
     /// Allan variance `σ²(mτ₀)`, in the rate unit squared per coefficient squared.
-    fn variance(&self, m: f64, setting: &Setting) -> f64 {
+    fn variance(&self, m: Real, setting: &Setting) -> Real {
         let tau_s = m * setting.interval_s;
         let at_m = self.second_difference(m, m, setting);
         (at_m - self.second_difference(0.0, m, setting)) / (tau_s * tau_s)
@@ -198,9 +199,9 @@ pub trait Effect: Sync {
     /// Allan variances at ascending averaging factors: sooner, where one gives the next.
     fn variances(
         &self,
-        factors: &mut dyn Iterator<Item = f64>,
+        factors: &mut dyn Iterator<Item = Real>,
         setting: &Setting,
-        each: &mut dyn FnMut(f64),
+        each: &mut dyn FnMut(Real),
     ) {
         for m in factors {
             each(self.variance(m, setting));
@@ -211,8 +212,8 @@ pub trait Effect: Sync {
     /// of the lattice.
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {
@@ -221,7 +222,7 @@ pub trait Effect: Sync {
 
     /// For an effect that is the same in every record, and not random: its response to clusters of
     /// `m` samples. It shifts the curve, but scatters it only where random effects beat against it.
-    fn response(&self, m: f64, setting: &Setting) -> Option<Response> {
+    fn response(&self, m: Real, setting: &Setting) -> Option<Response> {
         let _ = (m, setting);
         None
     }

@@ -1,21 +1,23 @@
 //! The kernel of one complex pole, which Gauss–Markov noise, resonances and low-passed noise share.
 
 use super::SecondDifferences;
-use crate::{lattice, math};
-use core::f64::consts::PI;
+use crate::{
+    lattice, math,
+    real::{Real, by_precision, consts::PI, real},
+};
 use nalgebra::Complex;
 
-/// Decays of a cluster beyond this leave nothing of what lies past it.
-const GONE: f64 = 200.0;
+/// Decays of a cluster beyond this leave nothing of what lies past it, and reach the range's end.
+const GONE: Real = by_precision(200.0, 40.0);
 
 /// Exponents below this have their exponential's remainders summed by Taylor's series: beyond, what
-/// cancels leaves twelve digits.
-const SMALL: f64 = 0.1;
+/// cancels leaves twelve digits, or six.
+const SMALL: Real = by_precision(0.1, 1.0);
 
-/// The last power in that series: the next is below 1e-17 of the first.
+/// The last power in that series: the next is below 1e-17 of the first, or 1e-8.
 const LAST_POWER: u8 = 11;
 
-const ONE: Complex<f64> = Complex::new(1.0, 0.0);
+const ONE: Complex<Real> = Complex::new(1.0, 0.0);
 
 /// A rate whose autocovariance is `Re zⁿ` at a lag of `n` samples, `z = e^(−s)`.
 ///
@@ -29,20 +31,20 @@ const ONE: Complex<f64> = Complex::new(1.0, 0.0);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pole {
     /// Decay a sample, τ₀/T.
-    decay: f64,
+    decay: Real,
     /// Cycles a sample, fτ₀.
-    cycles: f64,
+    cycles: Real,
     /// `s`, of the frequency's alias below half the sample rate.
-    exponent: Complex<f64>,
+    exponent: Complex<Real>,
     /// Re κ.
-    slope: f64,
+    slope: Real,
     /// z/(1−z)².
-    factor: Complex<f64>,
+    factor: Complex<Real>,
 }
 
 impl Pole {
     /// A pole of time constant `time_s` and frequency `frequency_hz`.
-    pub(super) fn new(time_s: f64, frequency_hz: f64, interval_s: f64) -> Self {
+    pub(super) fn new(time_s: Real, frequency_hz: Real, interval_s: Real) -> Self {
         let decay = interval_s / time_s;
         let cycles = frequency_hz * interval_s;
         let s = Complex::new(decay, 2.0 * PI * (math::floor(cycles + 0.5) - cycles));
@@ -69,16 +71,16 @@ impl Pole {
     }
 
     /// Re (1+z)/(1−z): the variance that a long mean has, times its samples.
-    pub(super) fn long_mean(&self) -> f64 {
+    pub(super) fn long_mean(&self) -> Real {
         2.0 * ((self.exponent * self.factor).re - self.slope)
     }
 
     /// `z^n`, with its exponent.
-    fn power(&self, n: f64) -> Exponential {
+    fn power(&self, n: Real) -> Exponential {
         self.known(n, power(self.decay, self.cycles, n))
     }
 
-    fn known(&self, n: f64, power: Complex<f64>) -> Exponential {
+    fn known(&self, n: Real, power: Complex<Real>) -> Exponential {
         Exponential {
             exponent: self.exponent * n,
             power,
@@ -86,12 +88,12 @@ impl Pole {
     }
 
     /// `G(n)/τ₀²`.
-    pub(super) fn kernel(&self, n: f64) -> f64 {
+    pub(super) fn kernel(&self, n: Real) -> Real {
         self.slope * n - (self.factor * self.power(n).second_rest()).re
     }
 
     /// `[G(x + m) − 2 G(x) + G(|x − m|)]/τ₀²`.
-    pub(super) fn second_difference(&self, x: f64, m: f64) -> f64 {
+    pub(super) fn second_difference(&self, x: Real, m: Real) -> Real {
         if x < m {
             self.kernel(m + x) - 2.0 * self.kernel(x) + self.kernel(m - x)
         } else {
@@ -101,7 +103,7 @@ impl Pole {
     }
 
     /// `σ²(mτ₀)` for a power `z^m`.
-    fn variance_of(&self, m: f64, power: Complex<f64>) -> f64 {
+    fn variance_of(&self, m: Real, power: Complex<Real>) -> Real {
         // 4 G(m) − G(2m) − 3 G(0), less what κ brings: with e^(−v) = 1 − v + v²/2 − r that is
         // factor · [2vφ − φ² − 2r], φ = v²/2 − r.
         let (v, third) = (self.exponent * m, self.known(m, power).third_rest());
@@ -111,13 +113,17 @@ impl Pole {
     }
 
     /// Allan variance.
-    pub(super) fn variance(&self, m: f64) -> f64 {
+    pub(super) fn variance(&self, m: Real) -> Real {
         self.variance_of(m, self.power(m).power)
     }
 
     /// Allan variances at ascending averaging factors: powers by squaring from octave to octave.
-    pub(super) fn variances(&self, factors: impl Iterator<Item = f64>, mut each: impl FnMut(f64)) {
-        let mut last: Option<(f64, Complex<f64>)> = None;
+    pub(super) fn variances(
+        &self,
+        factors: impl Iterator<Item = Real>,
+        mut each: impl FnMut(Real),
+    ) {
+        let mut last: Option<(Real, Complex<Real>)> = None;
         for m in factors {
             let w = match last {
                 Some((before, w)) if m == 2.0 * before => w * w,
@@ -130,7 +136,12 @@ impl Pole {
 
     /// Adds `weight` times the second differences for clusters of `m` samples: powers by
     /// multiplication along the lattice.
-    pub(super) fn add_second_differences(&self, m: f64, weight: f64, sum: &mut SecondDifferences) {
+    pub(super) fn add_second_differences(
+        &self,
+        m: Real,
+        weight: Real,
+        sum: &mut SecondDifferences,
+    ) {
         let quarter = power(self.decay, self.cycles, 0.25 * m);
         let mut powers = lattice::Powers::new(quarter);
         let cluster = self.known(m, powers.near(4));
@@ -143,7 +154,7 @@ impl Pole {
             self.factor * rest * rest / cluster.power
         };
         let kernel = |powers: &lattice::Powers, position: u32| {
-            let n = 0.25 * m * f64::from(position);
+            let n = 0.25 * m * real(position);
             let power = self.known(n, powers.near(position as usize));
             self.slope * n - (self.factor * power.second_rest()).re
         };
@@ -165,13 +176,13 @@ impl Pole {
 /// `e^(−v)`.
 struct Exponential {
     /// `v`.
-    exponent: Complex<f64>,
-    power: Complex<f64>,
+    exponent: Complex<Real>,
+    power: Complex<Real>,
 }
 
 impl Exponential {
     /// `1 − v + v²/2 − e^(−v)`, without cancellation.
-    fn third_rest(&self) -> Complex<f64> {
+    fn third_rest(&self) -> Complex<Real> {
         let v = self.exponent;
         if v.norm_sqr() >= SMALL * SMALL {
             return ONE - v + v * v * 0.5 - self.power;
@@ -179,24 +190,24 @@ impl Exponential {
         // v³/3! − v⁴/4! + …
         let mut sum = ONE;
         for k in (4..=LAST_POWER).rev() {
-            sum = ONE - v * sum / f64::from(k);
+            sum = ONE - v * sum / real(k);
         }
         v * v * v * sum / 6.0
     }
 
     /// `e^(−v) − 1 + v`.
-    fn second_rest(&self) -> Complex<f64> {
+    fn second_rest(&self) -> Complex<Real> {
         self.exponent * self.exponent * 0.5 - self.third_rest()
     }
 
     /// `1 − e^(−v)`.
-    fn rest(&self) -> Complex<f64> {
+    fn rest(&self) -> Complex<Real> {
         self.exponent - self.second_rest()
     }
 }
 
 /// `e^((−decay + 2πi cycles) n)`.
-fn power(decay: f64, cycles: f64, n: f64) -> Complex<f64> {
+fn power(decay: Real, cycles: Real, n: Real) -> Complex<Real> {
     let size = math::exp(-decay * n);
     if cycles == 0.0 {
         return Complex::new(size, 0.0);

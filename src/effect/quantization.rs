@@ -1,5 +1,6 @@
 use super::{Effect, Setting, Story};
 use crate::lattice::SecondDifferences;
+use crate::real::Real;
 
 /// Quantization noise, coefficient Q in rate · s (an angle): the angle is rounded, or jitters, by an
 /// amount that is independent from sample to sample.
@@ -29,14 +30,14 @@ impl Effect for Quantization {
         }
     }
 
-    fn kernel(&self, lag: f64, _: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, _: &Setting) -> Real {
         if lag == 0.0 { 1.0 } else { 0.0 }
     }
 
     fn add_second_differences(
         &self,
-        _: f64,
-        weight: f64,
+        _: Real,
+        weight: Real,
         _: &Setting,
         sum: &mut SecondDifferences,
     ) {

@@ -2,6 +2,7 @@ use super::{
     Effect, GaussMarkov, Parameter, Range, SecondDifferences, Setting, Span, Story,
     gauss_markov::{PARAMETERS, correlation_times},
 };
+use crate::real::Real;
 
 /// Random telegraph noise, coefficient its rms in rate, correlation time T_c: the rate jumps
 /// between two levels, `2 rms` apart, on average every `2 T_c` (Machlup 1954).
@@ -48,31 +49,31 @@ impl Effect for RandomTelegraph {
         Some(&GaussMarkov)
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         GaussMarkov.kernel(lag, setting)
     }
 
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         GaussMarkov.second_difference(x, m, setting)
     }
 
-    fn variance(&self, m: f64, setting: &Setting) -> f64 {
+    fn variance(&self, m: Real, setting: &Setting) -> Real {
         GaussMarkov.variance(m, setting)
     }
 
     fn variances(
         &self,
-        factors: &mut dyn Iterator<Item = f64>,
+        factors: &mut dyn Iterator<Item = Real>,
         setting: &Setting,
-        each: &mut dyn FnMut(f64),
+        each: &mut dyn FnMut(Real),
     ) {
         GaussMarkov.variances(factors, setting, each);
     }
 
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {

@@ -1,4 +1,5 @@
 use super::{Effect, Response, Setting, Story};
+use crate::real::Real;
 
 /// Rate ramp, coefficient R in rate / s: the rate drifts steadily, the same in every difference.
 ///
@@ -27,19 +28,19 @@ impl Effect for RateRamp {
         }
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         let t2 = setting.interval_s * setting.interval_s;
         let n2 = lag * lag;
         t2 * t2 * n2 * n2 / 24.0
     }
 
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         let t2 = setting.interval_s * setting.interval_s;
         let m2 = m * m;
         t2 * t2 * m2 * (0.5 * x * x + m2 / 12.0)
     }
 
-    fn response(&self, m: f64, setting: &Setting) -> Option<Response> {
+    fn response(&self, m: Real, setting: &Setting) -> Option<Response> {
         // Every difference is Rτ, wherever it lies.
         let tau_s = m * setting.interval_s;
         Some(Response {

@@ -1,4 +1,5 @@
 use super::{Effect, SecondDifferences, Setting, Story};
+use crate::real::Real;
 
 /// Rate random walk, coefficient K in rate / √s: the rate is a walk, stepped once a sample.
 ///
@@ -28,12 +29,12 @@ impl Effect for RateRandomWalk {
         }
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         let t = setting.interval_s;
         t * t * t * lag * (lag * lag - 1.0) / 12.0
     }
 
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         let t = setting.interval_s;
         let cubic = if x < m {
             // 2m³ + 6mx² − 2x³, less 2(m − x) for the linear part of the kernel.
@@ -45,8 +46,8 @@ impl Effect for RateRandomWalk {
     }
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {

@@ -1,5 +1,6 @@
 use super::{Effect, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole};
-use core::f64::consts::PI;
+use crate::real::Real;
+use crate::real::consts::PI;
 
 /// A lightly damped mode driven by noise, coefficient its rms in rate: a complex pole of frequency
 /// `f` and quality factor `quality`, with time constant `T = quality/(πf)`.
@@ -70,31 +71,31 @@ impl Effect for Resonance {
         }
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         squared(setting.interval_s) * pole(setting).kernel(lag)
     }
 
-    fn second_difference(&self, x: f64, m: f64, setting: &Setting) -> f64 {
+    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
         squared(setting.interval_s) * pole(setting).second_difference(x, m)
     }
 
-    fn variance(&self, m: f64, setting: &Setting) -> f64 {
+    fn variance(&self, m: Real, setting: &Setting) -> Real {
         pole(setting).variance(m)
     }
 
     fn variances(
         &self,
-        factors: &mut dyn Iterator<Item = f64>,
+        factors: &mut dyn Iterator<Item = Real>,
         setting: &Setting,
-        each: &mut dyn FnMut(f64),
+        each: &mut dyn FnMut(Real),
     ) {
         pole(setting).variances(factors, each);
     }
 
     fn add_second_differences(
         &self,
-        m: f64,
-        weight: f64,
+        m: Real,
+        weight: Real,
         setting: &Setting,
         sum: &mut SecondDifferences,
     ) {
@@ -103,6 +104,6 @@ impl Effect for Resonance {
     }
 }
 
-fn squared(x: f64) -> f64 {
+fn squared(x: Real) -> Real {
     x * x
 }

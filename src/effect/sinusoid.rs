@@ -1,6 +1,9 @@
 use super::{Effect, Parameter, Range, Response, Setting, Span, Story};
 use crate::math;
-use core::f64::consts::PI;
+use crate::real::{
+    Real,
+    consts::{PI, SQRT_2},
+};
 
 /// A sinusoidal rate, coefficient its amplitude Ω₀ in rate, of frequency `f`.
 ///
@@ -11,12 +14,12 @@ use core::f64::consts::PI;
 pub struct Sinusoid;
 
 /// `sin(π x)` of a number of half turns, however large.
-fn sine_of_turns(x: f64) -> f64 {
+fn sine_of_turns(x: Real) -> Real {
     math::sincos_of_turns(0.5 * x).0
 }
 
 /// `sin²(πfτ₀n)/sin(πfτ₀)`.
-fn kernel_root(n: f64, setting: &Setting) -> f64 {
+fn kernel_root(n: Real, setting: &Setting) -> Real {
     let cycles = setting.parameters[0] * setting.interval_s;
     let sine = sine_of_turns(cycles * n);
     sine * sine / sine_of_turns(cycles)
@@ -58,24 +61,24 @@ impl Effect for Sinusoid {
         frequencies(span)
     }
 
-    fn kernel(&self, lag: f64, setting: &Setting) -> f64 {
+    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         let cycles = setting.parameters[0] * setting.interval_s;
         -0.25 * squared(setting.interval_s) * kernel_root(lag, setting) / sine_of_turns(cycles)
     }
 
-    fn variance(&self, m: f64, setting: &Setting) -> f64 {
+    fn variance(&self, m: Real, setting: &Setting) -> Real {
         squared(kernel_root(m, setting) / m)
     }
 
     fn variances(
         &self,
-        factors: &mut dyn Iterator<Item = f64>,
+        factors: &mut dyn Iterator<Item = Real>,
         setting: &Setting,
-        each: &mut dyn FnMut(f64),
+        each: &mut dyn FnMut(Real),
     ) {
         let cycles = setting.parameters[0] * setting.interval_s;
         let per_sample = 1.0 / sine_of_turns(cycles);
-        let mut last: Option<(f64, f64)> = None;
+        let mut last: Option<(Real, Real)> = None;
         for m in factors {
             // sin²2x = 4 sin²x (1 − sin²x) from octave to octave, each of which doubles an error of 1e-16.
             let square = match last {
@@ -87,9 +90,9 @@ impl Effect for Sinusoid {
         }
     }
 
-    fn response(&self, m: f64, setting: &Setting) -> Option<Response> {
+    fn response(&self, m: Real, setting: &Setting) -> Option<Response> {
         // The mean product of two sines is half the product of their amplitudes.
-        let half = core::f64::consts::SQRT_2;
+        let half = SQRT_2;
         let turns = setting.parameters[0] * setting.interval_s;
         Some(Response {
             amplitude: half * setting.interval_s * kernel_root(m, setting),
@@ -108,6 +111,6 @@ pub(super) fn frequencies(span: &Span) -> Range {
     }
 }
 
-fn squared(x: f64) -> f64 {
+fn squared(x: Real) -> Real {
     x * x
 }

@@ -7,6 +7,7 @@ use crate::{
     math,
     model::{MAX_EFFECTS, Model},
     nnls::{Free, NormalEquations, Vector},
+    real::{Real, real},
 };
 
 /// Pairs of effects of the largest model.
@@ -49,16 +50,16 @@ impl Correlations {
 
     /// The correlation of two squared coefficients, by their places in the model: 1 of one with
     /// itself, 0 with one that is zero, NaN beyond the model or where the fit does not tell.
-    pub fn get(&self, i: usize, j: usize) -> f64 {
+    pub fn get(&self, i: usize, j: usize) -> Real {
         let (low, high) = if i < j { (i, j) } else { (j, i) };
         if low == high {
             return 1.0;
         }
         let known = self.below.get(place(high, low)).copied();
-        f64::from(known.unwrap_or(f32::NAN))
+        real(known.unwrap_or(f32::NAN))
     }
 
-    fn set(&mut self, i: usize, j: usize, correlation: f64) {
+    fn set(&mut self, i: usize, j: usize, correlation: Real) {
         if let Some(slot) = self.below.get_mut(place(i, j)) {
             *slot = correlation as f32;
         }
@@ -86,7 +87,7 @@ impl Fit {
             return Err(Error::Singular);
         }
         let problem = Problem::new(curve, model);
-        let squares = Vector::from(nalgebra::SVector::from(self.squares()));
+        let squares = problem.squares_of(self);
         let free = Free::of(|i| i < MAX_EFFECTS && squares[i] > 0.0);
         let mut weights = Weights::empty();
         weights.set(&problem, &squares, self.tolerance)?;
@@ -120,7 +121,7 @@ impl Correlations {
                 let correlation = match &own {
                     _ if !(free.has(i) && free.has(j)) => 0.0,
                     Some(own) => own[j] / math::sqrt(variances[i] * variances[j]),
-                    None => f64::NAN,
+                    None => Real::NAN,
                 };
                 self.set(i, j, correlation);
             }

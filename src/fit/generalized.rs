@@ -14,6 +14,7 @@ use crate::{
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
     observability::record_length_s,
+    real::{Real, real},
     search::Search,
 };
 
@@ -21,14 +22,14 @@ use crate::{
 /// than eight.
 const ROUNDS: usize = 8;
 /// A p-value that no further round makes plausible.
-const HOPELESS: f64 = 1e-6;
+const HOPELESS: Real = 1e-6;
 /// A change of the model that ends the rounds.
-const CONVERGED: f64 = 3e-3;
+const CONVERGED: Real = 3e-3;
 /// Below this p-value the curve's scatter does not explain the misfit, and the model is granted
 /// its tolerance.
-const UNEXPLAINED: f64 = 0.05;
+const UNEXPLAINED: Real = 0.05;
 /// A shape parameter with a larger standard error of its logarithm is not determined.
-const UNDETERMINED: f64 = 0.3;
+const UNDETERMINED: Real = 0.3;
 /// Rounds of a bound and the covariance that it implies.
 const BOUND_ROUNDS: usize = 2;
 
@@ -50,7 +51,7 @@ pub(crate) struct Solution<'a, 'b, const K: usize> {
     equations: NormalEquations,
     pub(crate) squares: Vector,
     pub(crate) free: Free,
-    pub(crate) chi_squared: f64,
+    pub(crate) chi_squared: Real,
 }
 
 impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
@@ -62,12 +63,12 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
             equations: NormalEquations::empty(),
             squares: Vector::zeros(),
             free: Free::default(),
-            chi_squared: f64::NAN,
+            chi_squared: Real::NAN,
         }
     }
 
     /// Finds it, with the model's tolerance where the curve needs it.
-    pub(crate) fn solve(&mut self, tolerance: f64) -> Result<(), Error> {
+    pub(crate) fn solve(&mut self, tolerance: Real) -> Result<(), Error> {
         let problem = self.problem;
         let weight = independent::by_relative_accuracy;
         independent::equations(problem, weight, &mut self.equations)?;
@@ -93,7 +94,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     pub(crate) fn converge(
         &mut self,
         start: Vector,
-        tolerance: f64,
+        tolerance: Real,
         rounds: Rounds,
     ) -> Result<(), Error> {
         let problem = self.problem;
@@ -101,7 +102,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         // The squares that the covariance is taken at approach those that it gives.
         let mut assumed = start;
         let mut last: Option<algebra::Vector<K>> = None;
-        let mut step: f64 = 1.0;
+        let mut step: Real = 1.0;
         let mut round = 1_usize;
         loop {
             self.weights.set(problem, &assumed, tolerance)?;
@@ -150,11 +151,11 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         })
     }
 
-    pub(crate) fn p_value(&self) -> f64 {
+    pub(crate) fn p_value(&self) -> Real {
         chi_squared_tail(self.chi_squared, self.degrees_of_freedom())
     }
 
-    pub(crate) fn minus_two_log_likelihood(&self) -> f64 {
+    pub(crate) fn minus_two_log_likelihood(&self) -> Real {
         self.chi_squared + self.weights.log_determinant
     }
 
@@ -201,7 +202,10 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         fit.coefficients.clear();
         for (i, term) in numbered(self.problem.model.terms().iter()) {
             // As many as effects.
-            let _ = fit.coefficients.push(self.coefficient(i, term, shape));
+            let coefficient = self.coefficient(i, term, shape);
+            let _ = fit
+                .coefficients
+                .push(coefficient.in_unit(self.problem.unit));
         }
         fit.shape = shape.map_or(heapless::Vec::new(), |shape| shape.estimates(&self.free));
         fit.chi_squared = self.chi_squared;
@@ -269,7 +273,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
                 &self.free,
                 problem.model,
                 problem.interval_s,
-                last.map_or(0.0, |point| clusters(point) * f64::from(point.m)),
+                last.map_or(0.0, |point| clusters(point) * real(point.m)),
             );
             State::NotObservable { after_s }
         };
@@ -283,7 +287,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     /// The one-sided 95 % bound of a square, with the covariance that the model would have at that
     /// bound: where an effect may add to an octave, it may also scatter it.
     #[inline(never)]
-    fn bound(&self, i: usize, first: f64) -> f64 {
+    fn bound(&self, i: usize, first: Real) -> Real {
         let problem = self.problem;
         let curve = |k: usize| problem.measured(k);
         let mut equations = NormalEquations::<MAX_EFFECTS>::empty();
@@ -307,7 +311,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     }
 
     /// Whether a bound says more than that the effect cannot exceed the whole curve.
-    fn is_informative(&self, i: usize, bound: f64) -> bool {
+    fn is_informative(&self, i: usize, bound: Real) -> bool {
         let octaves = 0..self.problem.points.len();
         octaves
             .into_iter()

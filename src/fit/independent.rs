@@ -8,63 +8,63 @@ use crate::{
     error::Error,
     list::numbered,
     nnls::{Free, NormalEquations},
+    real::Real,
 };
 
 /// The normal equations of weighted, independent octaves.
 pub(super) fn equations<const K: usize>(
     problem: &Problem<'_, K>,
-    weight: impl Fn(&Point) -> f64,
+    weight: impl Fn(&Point, Real) -> Real,
     equations: &mut NormalEquations,
 ) -> Result<(), Error> {
-    let sum = |i: usize, other: &dyn Fn(usize, &Point) -> f64| -> f64 {
+    let sum = |i: usize, other: &dyn Fn(usize) -> Real| -> Real {
         let octaves = numbered(problem.points.iter());
         octaves
-            .map(|(k, point)| weight(point) * problem.unit(i, k) * other(k, point))
+            .map(|(k, point)| weight(point, problem.measured(k)) * problem.unit(i, k) * other(k))
             .sum()
     };
     equations.set(problem.count(), &|i, row| {
         for j in 0..=i {
-            row.put(j, sum(i, &|k, _| problem.unit(j, k)));
+            row.put(j, sum(i, &|k| problem.unit(j, k)));
         }
-        sum(i, &|_, point| point.variance)
+        sum(i, &|k| problem.measured(k))
     })
 }
 
-/// The inverse square of an octave's standard error, `δσ̂²`.
-pub(super) fn by_relative_accuracy(point: &Point) -> f64 {
-    1.0 / squared(relative_accuracy(point) * point.variance)
+/// The inverse square of the standard error of an octave that was measured, `δσ̂²`.
+pub(super) fn by_relative_accuracy(point: &Point, measured: Real) -> Real {
+    1.0 / squared(relative_accuracy(point) * measured)
 }
 
 /// An unconstrained fit.
 pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> Result<Fit, Error> {
-    let weight = |point: &Point| match method {
+    let weight = |point: &Point, measured: Real| match method {
         Method::Ordinary => 1.0,
         Method::ClusterCount => 1.0 / squared(relative_accuracy(point)),
-        _ => by_relative_accuracy(point),
+        _ => by_relative_accuracy(point, measured),
     };
     let mut equations = NormalEquations::empty();
     self::equations(problem, weight, &mut equations)?;
     let squares = equations.solve()?;
     let free = Free::of(|i| i < problem.count());
-    let residuals = numbered(problem.points.iter())
-        .map(|(k, point)| weight(point) * squared(point.variance - problem.variance(k, &squares)));
-    let mut chi_squared: f64 = residuals.sum();
+    let residuals = numbered(problem.points.iter()).map(|(k, point)| {
+        let measured = problem.measured(k);
+        weight(point, measured) * squared(measured - problem.variance(k, &squares))
+    });
+    let mut chi_squared: Real = residuals.sum();
     let degrees_of_freedom = problem.points.len().saturating_sub(problem.count());
     let mut scale = 1.0;
     if method != Method::RelativeAccuracy {
         // No error model: the residuals themselves give the scale.
-        scale = chi_squared / degrees_of_freedom.max(1) as f64;
-        chi_squared = f64::NAN;
+        scale = chi_squared / degrees_of_freedom.max(1) as Real;
+        chi_squared = Real::NAN;
     }
     let mut coefficients = heapless::Vec::new();
     for (i, term) in numbered(problem.model.terms().iter()) {
         let variance = equations.variance(i, &free).ok_or(Error::Singular)?;
         // As many as effects.
-        let _ = coefficients.push(Coefficient::new(
-            term.effect,
-            squares[i],
-            Some(scale * variance),
-        ));
+        let coefficient = Coefficient::new(term.effect, squares[i], Some(scale * variance));
+        let _ = coefficients.push(coefficient.in_unit(problem.unit));
     }
     Ok(Fit {
         method,
@@ -73,7 +73,7 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         chi_squared,
         degrees_of_freedom,
         p_value: chi_squared_tail(chi_squared, degrees_of_freedom),
-        minus_two_log_likelihood: f64::NAN,
+        minus_two_log_likelihood: Real::NAN,
         tolerance: 0.0,
         shrinkage: 0.0,
     })

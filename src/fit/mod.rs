@@ -20,6 +20,7 @@ use crate::{
     math,
     model::{MAX_EFFECTS, Model, Term},
     nnls::{Free, Vector},
+    real::{Real, real},
 };
 use generalized::Solution;
 use heapless::Vec;
@@ -52,7 +53,7 @@ pub struct Settings {
     /// 0.1 %, and no kernel is that true. Granted, in quadrature to the diagonal of the covariance,
     /// only to a curve that its scatter alone does not explain (p < 5 %): where it does, every
     /// octave keeps its full weight. For `Method::Covariance`.
-    pub tolerance: f64,
+    pub tolerance: Real,
 }
 
 impl Default for Settings {
@@ -77,18 +78,18 @@ pub struct Fit {
     /// Squared residuals in units of their covariance. NaN for the methods without error model,
     /// `Ordinary` and `ClusterCount`; too large for `RelativeAccuracy`, which takes octaves for
     /// independent.
-    pub chi_squared: f64,
+    pub chi_squared: Real,
     /// Octaves less coefficients above zero.
     pub degrees_of_freedom: usize,
     /// Probability of a larger χ² if the model is true. NaN without χ² or degrees of freedom.
-    pub p_value: f64,
+    pub p_value: Real,
     /// `−2 ln L = r'C⁻¹r + ln det C`, up to a constant: ranks models of one curve. NaN where χ² is.
-    pub minus_two_log_likelihood: f64,
+    pub minus_two_log_likelihood: Real,
     /// The tolerance that was granted, `Settings::tolerance` or 0.
-    pub tolerance: f64,
+    pub tolerance: Real,
     /// How far correlations had to be shrunk for the covariance to be positive definite; 0 is
     /// usual.
-    pub shrinkage: f64,
+    pub shrinkage: Real,
 }
 
 impl Fit {
@@ -98,17 +99,17 @@ impl Fit {
             method: Method::Covariance,
             coefficients: Vec::new(),
             shape: Vec::new(),
-            chi_squared: f64::NAN,
+            chi_squared: Real::NAN,
             degrees_of_freedom: 0,
-            p_value: f64::NAN,
-            minus_two_log_likelihood: f64::NAN,
+            p_value: Real::NAN,
+            minus_two_log_likelihood: Real::NAN,
             tolerance: 0.0,
             shrinkage: 0.0,
         }
     }
 
     /// The squared coefficients, for [`Model::variance`].
-    pub fn squares(&self) -> [f64; MAX_EFFECTS] {
+    pub fn squares(&self) -> [Real; MAX_EFFECTS] {
         let mut squares = [0.0; MAX_EFFECTS];
         for (square, coefficient) in squares.iter_mut().zip(&self.coefficients) {
             *square = coefficient.square;
@@ -177,7 +178,10 @@ pub(crate) fn check(points: &[Point], needed: usize) -> Result<(), Error> {
 pub(crate) struct Problem<'a, const K: usize> {
     pub(crate) points: &'a [Point],
     pub(crate) model: &'a Model,
-    pub(crate) interval_s: f64,
+    pub(crate) interval_s: Real,
+    /// What variances and squared coefficients are counted in here.
+    pub(crate) unit: Real,
+    per_unit: Real,
     /// Allan variances of unit coefficients, of each effect: single precision is far below what any
     /// record tells of them.
     columns: Vec<algebra::Vector<K, f32>, MAX_EFFECTS>,
@@ -189,6 +193,8 @@ impl<'a, const K: usize> Problem<'a, K> {
             points: curve.points(),
             model,
             interval_s: curve.interval_s(),
+            unit: curve.unit(),
+            per_unit: 1.0 / curve.unit(),
             columns: Vec::new(),
         };
         for term in model.terms() {
@@ -204,7 +210,7 @@ impl<'a, const K: usize> Problem<'a, K> {
     pub(crate) fn column(&self, term: &Term) -> algebra::Vector<K> {
         let mut column = algebra::Vector::<K>::zeros();
         let mut k = 0_usize;
-        let mut factors = self.points.iter().map(|point| f64::from(point.m));
+        let mut factors = self.points.iter().map(|point| real(point.m));
         let setting = term.setting(self.interval_s);
         term.effect
             .variances(&mut factors, &setting, &mut |variance| {
@@ -215,19 +221,26 @@ impl<'a, const K: usize> Problem<'a, K> {
     }
 
     /// The curve's variance in octave `k`.
-    pub(crate) fn measured(&self, k: usize) -> f64 {
-        self.points.get(k).map_or(0.0, |point| point.variance)
+    pub(crate) fn measured(&self, k: usize) -> Real {
+        let point = self.points.get(k);
+        point.map_or(0.0, |point| point.variance * self.per_unit)
+    }
+
+    /// The squared coefficients of a fit.
+    pub(crate) fn squares_of(&self, fit: &Fit) -> Vector {
+        Vector::from_fn(|i| {
+            let coefficient = fit.coefficients.get(i);
+            coefficient.map_or(0.0, |coefficient| coefficient.square * self.per_unit)
+        })
     }
 
     /// Variance of an effect in octave `k`, for a coefficient of one.
-    pub(crate) fn unit(&self, i: usize, k: usize) -> f64 {
-        self.columns
-            .get(i)
-            .map_or(0.0, |column| f64::from(column[k]))
+    pub(crate) fn unit(&self, i: usize, k: usize) -> Real {
+        self.columns.get(i).map_or(0.0, |column| real(column[k]))
     }
 
     /// An effect's share of the model's variance in octave `k`; 0 beyond the model.
-    pub(crate) fn share(&self, k: usize, i: usize, squares: &Vector) -> f64 {
+    pub(crate) fn share(&self, k: usize, i: usize, squares: &Vector) -> Real {
         if i < self.count() {
             self.unit(i, k) * squares[i] / self.variance(k, squares)
         } else {
@@ -246,7 +259,7 @@ impl<'a, const K: usize> Problem<'a, K> {
     }
 
     /// The model's variance in octave `k`.
-    pub(crate) fn variance(&self, k: usize, squares: &Vector) -> f64 {
+    pub(crate) fn variance(&self, k: usize, squares: &Vector) -> Real {
         (0..self.count())
             .map(|i| self.unit(i, k) * squares[i])
             .sum()
@@ -254,16 +267,16 @@ impl<'a, const K: usize> Problem<'a, K> {
 }
 
 /// Clusters `N/m` in the record, from an octave's number of differences as of a contiguous one.
-pub(crate) fn clusters(point: &Point) -> f64 {
-    let m = f64::from(point.m);
-    point.differences.saturating_sub(1) as f64 * (0.25 * m).max(1.0) / m + 2.0
+pub(crate) fn clusters(point: &Point) -> Real {
+    let m = real(point.m);
+    point.differences.saturating_sub(1) as Real * (0.25 * m).max(1.0) / m + 2.0
 }
 
 /// Relative accuracy of an octave as of Lv, Liu, Lai & Huang 2015: `δ = 1/√(2(N/m − 1))`.
-fn relative_accuracy(point: &Point) -> f64 {
+fn relative_accuracy(point: &Point) -> Real {
     1.0 / math::sqrt(2.0 * (clusters(point) - 1.0))
 }
 
-fn squared(x: f64) -> f64 {
+fn squared(x: Real) -> Real {
     x * x
 }

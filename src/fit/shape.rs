@@ -7,6 +7,7 @@ use crate::{
     math,
     model::{MAX_EFFECTS, Term},
     nnls::{Free, NormalEquations, Vector},
+    real::Real,
 };
 use heapless::Vec;
 
@@ -16,7 +17,7 @@ pub const MAX_SHAPE: usize = 4;
 const UNKNOWNS: usize = MAX_EFFECTS + MAX_SHAPE;
 
 /// Relative step of the numerical derivatives.
-const STEP: f64 = 0.01;
+const STEP: Real = 0.01;
 
 /// A fitted shape parameter, with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,11 +28,11 @@ pub struct ShapeEstimate {
     /// The parameter's name, such as `frequency_hz`.
     pub name: &'static str,
     /// Best value.
-    pub value: f64,
+    pub value: Real,
     /// Lower end of the interval.
-    pub lower: f64,
+    pub lower: Real,
     /// Upper end of the interval.
-    pub upper: f64,
+    pub upper: Real,
 }
 
 /// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
@@ -73,7 +74,7 @@ impl ShapeEquations {
         // Coefficients first, the shapes behind them.
         let mut derivatives: Vec<algebra::Vector<K, f32>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
-            let column = |factor: f64| {
+            let column = |factor: Real| {
                 let mut term = term;
                 term.scale_parameter(j, factor);
                 problem.column(&term)
@@ -99,7 +100,7 @@ impl ShapeEquations {
 
     /// The step of Gauss and Newton: by how much the logarithms of the shapes ought to change for the
     /// least χ², all of the free coefficients following; `each(effect, parameter, change)`.
-    pub(crate) fn steps(&self, free: &Free, mut each: impl FnMut(usize, usize, f64)) {
+    pub(crate) fn steps(&self, free: &Free, mut each: impl FnMut(usize, usize, Real)) {
         let count = self.count();
         let free = self.with_shapes(free, count);
         let Some(steps) = self.equations.solve_free(&free) else {
@@ -111,7 +112,7 @@ impl ShapeEquations {
     }
 
     /// Variance of a squared coefficient with the shapes free.
-    pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<f64> {
+    pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<Real> {
         let free = self.with_shapes(free, self.count());
         self.equations.variance(i, &free)
     }
@@ -123,13 +124,13 @@ impl ShapeEquations {
     }
 
     /// Largest standard error of a shape's logarithm, infinite where the curve does not tell it.
-    pub(crate) fn worst_error(&self, free: &Free) -> f64 {
+    pub(crate) fn worst_error(&self, free: &Free) -> Real {
         let count = self.count();
         let free = self.with_shapes(free, count);
         let variance = |at: usize| self.equations.variance(count.saturating_add(at), &free);
         (0..self.parameters.len())
-            .map(|at| variance(at).map_or(f64::INFINITY, math::sqrt))
-            .fold(0.0, f64::max)
+            .map(|at| variance(at).map_or(Real::INFINITY, math::sqrt))
+            .fold(0.0, Real::max)
     }
 
     /// The fitted parameters with their intervals, which are even in the logarithm.
@@ -140,7 +141,7 @@ impl ShapeEquations {
         list::fill(parameters.map(|(at, &(term, j, shape))| {
             let value = shape.parameter(j);
             let variance = self.equations.variance(count.saturating_add(at), &free);
-            let error = variance.map_or(f64::INFINITY, math::sqrt);
+            let error = variance.map_or(Real::INFINITY, math::sqrt);
             let factor = math::exp(1.959_964 * error);
             ShapeEstimate {
                 term,

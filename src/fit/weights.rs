@@ -9,11 +9,12 @@ use crate::{
     math,
     model::MAX_EFFECTS,
     nnls::{NormalEquations, Vector},
+    real::{Real, real},
 };
 use heapless::Vec;
 
 /// How much of the correlations a covariance keeps, tried in turn until it is positive definite.
-const SHRINKAGES: [f64; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
+const SHRINKAGES: [Real; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
 
 /// The covariance of a curve relative to a model, factored.
 pub(crate) struct Weights<const K: usize> {
@@ -22,9 +23,9 @@ pub(crate) struct Weights<const K: usize> {
     /// Of the covariance relative to them; single precision is that of the covariance.
     factor: Square<K, f32>,
     /// Of the covariance in rate units.
-    pub(crate) log_determinant: f64,
-    pub(crate) tolerance: f64,
-    pub(crate) shrinkage: f64,
+    pub(crate) log_determinant: Real,
+    pub(crate) tolerance: Real,
+    pub(crate) shrinkage: Real,
 }
 
 impl<const K: usize> Weights<K> {
@@ -45,7 +46,7 @@ impl<const K: usize> Weights<K> {
         &mut self,
         problem: &Problem<'_, K>,
         squares: &Vector,
-        tolerance: f64,
+        tolerance: Real,
     ) -> Result<(), Error> {
         let n = problem.points.len().min(K);
         for k in 0..n {
@@ -61,7 +62,9 @@ impl<const K: usize> Weights<K> {
             self.take_relative(problem, squares, 1.0 - shrinkage);
             if cholesky::factor(&mut self.factor, n) {
                 self.log_determinant = (0..n)
-                    .map(|k| 2.0 * math::log(self.model[k] / f64::from(self.factor[(k, k)])))
+                    .map(|k| {
+                        2.0 * math::log(self.model[k] * problem.unit / real(self.factor[(k, k)]))
+                    })
                     .sum();
                 return Ok(());
             }
@@ -70,7 +73,7 @@ impl<const K: usize> Weights<K> {
     }
 
     /// The covariance relative to the model, of which correlations keep a share.
-    fn take_relative(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: f64) {
+    fn take_relative(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: Real) {
         let mut reciprocal = self.model;
         for k in 0..problem.points.len().min(K) {
             reciprocal.put(k, 1.0 / self.model[k]);
@@ -94,15 +97,15 @@ impl<const K: usize> Weights<K> {
     }
 
     /// Standard error of octave `k`, relative to the model's variance.
-    pub(crate) fn relative_error(&self, k: usize) -> f64 {
-        let element = |j: usize| f64::from(self.factor[(k, j)]);
+    pub(crate) fn relative_error(&self, k: usize) -> Real {
+        let element = |j: usize| real(self.factor[(k, j)]);
         let row = (0..k).map(|j| squared(element(j)));
         let diagonal = 1.0 / element(k);
-        math::sqrt(row.sum::<f64>() + squared(diagonal))
+        math::sqrt(row.sum::<Real>() + squared(diagonal))
     }
 
     /// χ² of the curve beside the model with these squared coefficients.
-    pub(crate) fn chi_squared(&self, problem: &Problem<'_, K>, squares: &Vector) -> f64 {
+    pub(crate) fn chi_squared(&self, problem: &Problem<'_, K>, squares: &Vector) -> Real {
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
         self.whiten(problem, &|_| 1.0, &residual).norm_squared()
     }
@@ -113,16 +116,16 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn equations<const P: usize>(
         &self,
         problem: &Problem<'_, K>,
-        scatter: &dyn Fn(usize) -> f64,
+        scatter: &dyn Fn(usize) -> Real,
         more: &[algebra::Vector<K, f32>],
-        right: &dyn Fn(usize) -> f64,
+        right: &dyn Fn(usize) -> Real,
         equations: &mut NormalEquations<P>,
     ) -> Result<(), Error> {
         let n = problem.points.len().min(K);
         let count = problem.count();
         let unit = |i: usize, k: usize| match i.checked_sub(count) {
             None => problem.unit(i, k),
-            Some(at) => more.get(at).map_or(0.0, |column| f64::from(column[k])),
+            Some(at) => more.get(at).map_or(0.0, |column| real(column[k])),
         };
         let per_error = |k: usize| 1.0 / (self.model[k] * scatter(k));
         equations.set(count.saturating_add(more.len()), &|i, row| {
@@ -145,7 +148,7 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn whiten_into(
         &self,
         problem: &Problem<'_, K>,
-        scatter: &dyn Fn(usize) -> f64,
+        scatter: &dyn Fn(usize) -> Real,
         whitened: &mut Whitened<K>,
     ) {
         whitened.columns.clear();
@@ -153,7 +156,7 @@ impl<const K: usize> Weights<K> {
             // As many columns as effects.
             let _ = whitened
                 .columns
-                .push(self.whiten(problem, scatter, &|k| f64::from(column[k])));
+                .push(self.whiten(problem, scatter, &|k| real(column[k])));
         }
         whitened.curve = self.whiten(problem, scatter, &|k| problem.measured(k));
     }
@@ -163,8 +166,8 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn whiten(
         &self,
         problem: &Problem<'_, K>,
-        scatter: &dyn Fn(usize) -> f64,
-        variance: &dyn Fn(usize) -> f64,
+        scatter: &dyn Fn(usize) -> Real,
+        variance: &dyn Fn(usize) -> Real,
     ) -> algebra::Vector<K> {
         let mut column = algebra::Vector::<K>::zeros();
         let n = problem.points.len().min(K);
@@ -181,12 +184,12 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn whiten_trial(
         &self,
         problem: &Problem<'_, K>,
-        scatter: &dyn Fn(usize) -> f64,
-        variance: &dyn Fn(usize) -> f64,
-    ) -> (algebra::Vector<K, f32>, f64) {
+        scatter: &dyn Fn(usize) -> Real,
+        variance: &dyn Fn(usize) -> Real,
+    ) -> (algebra::Vector<K, f32>, Real) {
         let n = problem.points.len().min(K);
         let relative = |k: usize| variance(k) / (self.model[k] * scatter(k));
-        let unit = (0..n).map(relative).fold(0.0, f64::max);
+        let unit = (0..n).map(relative).fold(0.0, Real::max);
         let mut column = algebra::Vector::<K, f32>::zeros();
         for k in 0..n {
             column.put(k, (relative(k) / unit) as f32);

@@ -3,6 +3,7 @@
 use crate::{
     coefficient::{Coefficient, ONE_SIDED, State},
     math,
+    real::Real,
 };
 
 /// Where a limit stands beside an estimate.
@@ -15,12 +16,12 @@ pub(super) enum Side {
     /// It is within the interval: `standard_errors` apart, with sign.
     Open {
         /// How far the estimate lies above the limit, in standard errors.
-        standard_errors: f64,
+        standard_errors: Real,
     },
 }
 
 /// The least standard errors that an estimate and a limit must be apart for a probability.
-pub(super) fn quantile(probability: f64) -> f64 {
+pub(super) fn quantile(probability: Real) -> Real {
     let (mut low, mut high) = (0.0, 40.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -34,12 +35,12 @@ pub(super) fn quantile(probability: f64) -> f64 {
 }
 
 /// Probability of a normal deviate above `z`.
-fn tail(z: f64) -> f64 {
-    0.5 * math::erfc(z * core::f64::consts::FRAC_1_SQRT_2)
+fn tail(z: Real) -> Real {
+    0.5 * math::erfc(z * crate::real::consts::FRAC_1_SQRT_2)
 }
 
 /// Decides with the quantiles of passing and failing.
-pub(super) fn side(coefficient: &Coefficient, most: f64, pass: f64, fail: f64) -> Side {
+pub(super) fn side(coefficient: &Coefficient, most: Real, pass: Real, fail: Real) -> Side {
     let limit = most * most;
     let open = |standard_errors| Side::Open { standard_errors };
     if let State::NotObservable { .. } = coefficient.state {
@@ -71,7 +72,7 @@ pub(super) fn side(coefficient: &Coefficient, most: f64, pass: f64, fail: f64) -
 
 /// Standard error of the square; of one that is only bounded, that of its bound, where it may scatter
 /// more.
-fn error(coefficient: &Coefficient) -> f64 {
+fn error(coefficient: &Coefficient) -> Real {
     let bound = coefficient.upper * coefficient.upper - coefficient.square;
     match coefficient.state {
         State::UpperBound => (bound / ONE_SIDED).max(coefficient.square_error),
@@ -81,7 +82,7 @@ fn error(coefficient: &Coefficient) -> f64 {
 
 /// The square taken for a mean of squares: it is distributed as χ² with `2 (β/σ)²` degrees of freedom,
 /// whose cube root is nearly normal (Wilson & Hilferty 1931).
-fn skewed(coefficient: &Coefficient, limit: f64) -> f64 {
+fn skewed(coefficient: &Coefficient, limit: Real) -> Real {
     let relative = coefficient.square_error / coefficient.square;
     // 2/(9ν).
     let variance = relative * relative / 9.0;

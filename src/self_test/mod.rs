@@ -14,6 +14,7 @@ use crate::{
     list::numbered,
     model::Model,
     octave::Accumulator,
+    real::{Real, real},
 };
 use decide::{Side, quantile, side};
 
@@ -27,7 +28,7 @@ pub enum Status {
         progress: f32,
         /// Seconds from now to the look at which a verdict is expected: the last one until the first
         /// has been taken.
-        expected_s: f64,
+        expected_s: Real,
     },
     /// Every limit is kept.
     Passed,
@@ -39,7 +40,7 @@ pub enum Status {
         limit: Limit,
         /// Length of a record that would decide if its estimate is right, in seconds; `None` where no
         /// length up to 2³⁰ samples would.
-        decided_by_s: Option<f64>,
+        decided_by_s: Option<Real>,
     },
     /// The samples cannot be those of a gyro at rest.
     Invalid(Reason),
@@ -54,12 +55,12 @@ pub enum Failure {
         /// The limit.
         limit: Limit,
         /// What was measured.
-        value: f64,
+        value: Real,
     },
     /// The five terms do not explain the curve.
     Misfit {
         /// Probability of a larger χ² if they did.
-        p_value: f64,
+        p_value: Real,
     },
 }
 
@@ -110,8 +111,8 @@ pub struct SelfTest<const OCTAVES: usize> {
     last: u64,
     next: u64,
     /// Standard errors that decide.
-    pass: f64,
-    fail: f64,
+    pass: Real,
+    fail: Real,
     looks: u32,
     kept: Choice,
     status: Status,
@@ -125,20 +126,20 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     pub fn new(plan: Plan, scale: Scale) -> Result<Self, InvalidPlan> {
         let (first, last) = plan.check(scale, OCTAVES)?;
         let looks = 1 + last.div_ceil(first).next_power_of_two().ilog2();
-        let limits = plan.limits.len().max(1) as f64;
+        let limits = plan.limits.len().max(1) as Real;
         Ok(Self {
             accumulator: Accumulator::new(),
             integrity: Integrity::default(),
             scale,
             last,
             next: first,
-            pass: quantile(plan.false_pass / f64::from(looks)),
-            fail: quantile(plan.false_fail / (f64::from(looks) * limits)),
+            pass: quantile(plan.false_pass / real(looks)),
+            fail: quantile(plan.false_fail / (real(looks) * limits)),
             looks,
             kept: Choice::default(),
             status: Status::Running {
                 progress: 0.0,
-                expected_s: last as f64 / scale.rate_hz(),
+                expected_s: last as Real / scale.rate_hz(),
             },
             plan,
         })
@@ -173,7 +174,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     pub fn status(&mut self) -> Status {
         let samples = self.accumulator.samples();
         if let Status::Running { progress, .. } = &mut self.status {
-            *progress = (samples as f64 / self.last as f64).min(1.0) as f32;
+            *progress = (samples as Real / self.last as Real).min(1.0) as f32;
             if samples >= self.next {
                 self.status = self.look(samples);
                 while self.next <= samples {
@@ -191,20 +192,20 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             return Status::Invalid(reason);
         }
         let is_last = samples >= self.last;
-        let seconds = samples as f64 / self.scale.rate_hz();
+        let seconds = samples as Real / self.scale.rate_hz();
         let curve = self.accumulator.curve(self.scale);
         let fit = match fit(&curve, &Model::ieee_952(), Settings::default()) {
             Ok(fit) => fit,
             // Gaps may have left too few differences; the first limit stands for all.
-            Err(_) if !is_last => return self.running(samples, f64::INFINITY),
+            Err(_) if !is_last => return self.running(samples, Real::INFINITY),
             Err(_) => return self.undecided(0, None),
         };
-        if fit.p_value < self.plan.least_p / f64::from(self.looks) {
+        if fit.p_value < self.plan.least_p / real(self.looks) {
             return Status::Failed(Failure::Misfit {
                 p_value: fit.p_value,
             });
         }
-        let mut open: Option<(usize, f64)> = None;
+        let mut open: Option<(usize, Real)> = None;
         for (i, limit) in numbered(self.plan.limits.iter()) {
             if self.kept.has(i) {
                 continue;
@@ -229,7 +230,9 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             }
         }
         match open {
-            None if self.plan.limits.is_empty() && !is_last => self.running(samples, f64::INFINITY),
+            None if self.plan.limits.is_empty() && !is_last => {
+                self.running(samples, Real::INFINITY)
+            }
             None => Status::Passed,
             Some((_, needed)) if !is_last => self.running(samples, needed),
             Some((i, needed)) => self.undecided(i, needed.is_finite().then_some(needed)),
@@ -237,9 +240,9 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     }
 
     /// Length of a record that would decide, if the estimate is right: errors fall with its root.
-    fn needed_s(&self, coefficient: &Coefficient, standard_errors: f64, seconds: f64) -> f64 {
+    fn needed_s(&self, coefficient: &Coefficient, standard_errors: Real, seconds: Real) -> Real {
         if let State::NotObservable { after_s } = coefficient.state {
-            return after_s.unwrap_or(f64::INFINITY);
+            return after_s.unwrap_or(Real::INFINITY);
         }
         let enough = if standard_errors < 0.0 {
             self.pass
@@ -247,28 +250,28 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             self.fail
         };
         let factor = enough / standard_errors;
-        let longest = (1_u64 << 30) as f64 / self.scale.rate_hz();
+        let longest = (1_u64 << 30) as Real / self.scale.rate_hz();
         let needed = seconds * factor * factor;
         if needed <= longest {
             needed
         } else {
-            f64::INFINITY
+            Real::INFINITY
         }
     }
 
     /// The look after that many seconds, or the last.
-    fn running(&self, samples: u64, needed_s: f64) -> Status {
+    fn running(&self, samples: u64, needed_s: Real) -> Status {
         let mut look = self.next;
-        while look < self.last && (look as f64) < needed_s * self.scale.rate_hz() {
+        while look < self.last && (look as Real) < needed_s * self.scale.rate_hz() {
             look = look.saturating_mul(2).min(self.last);
         }
         Status::Running {
-            progress: (samples as f64 / self.last as f64) as f32,
-            expected_s: look.saturating_sub(samples) as f64 / self.scale.rate_hz(),
+            progress: (samples as Real / self.last as Real) as f32,
+            expected_s: look.saturating_sub(samples) as Real / self.scale.rate_hz(),
         }
     }
 
-    fn undecided(&self, i: usize, decided_by_s: Option<f64>) -> Status {
+    fn undecided(&self, i: usize, decided_by_s: Option<Real>) -> Status {
         let of_misfit = Limit {
             effect: "misfit",
             most: self.plan.least_p,

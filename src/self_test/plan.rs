@@ -4,6 +4,7 @@ use crate::{
     curve::{Curve, Scale},
     effect::IEEE_952,
     model::MAX_EFFECTS,
+    real::Real,
 };
 use heapless::Vec;
 
@@ -14,7 +15,7 @@ pub struct Limit {
     /// One of the five IEEE-952 terms, by name: `angle_random_walk`.
     pub effect: &'static str,
     /// In the coefficient's unit: rate unit · s^(half_seconds/2).
-    pub most: f64,
+    pub most: Real,
 }
 
 /// What a self-test asks of a gyro.
@@ -25,15 +26,15 @@ pub struct Plan {
     pub limits: Vec<Limit, MAX_EFFECTS>,
     /// A gyro fails whose five-term fit has a lower p-value, which is then divided among the looks;
     /// 0 asks for nothing.
-    pub least_p: f64,
+    pub least_p: Real,
     /// Probability that a gyro at one of its limits passes, at most; below 0.5.
-    pub false_pass: f64,
+    pub false_pass: Real,
     /// Probability that a gyro at all of its limits fails, at most; below 0.5.
-    pub false_fail: f64,
+    pub false_fail: Real,
     /// Length of the record at the first look, in seconds.
-    pub shortest_s: f64,
+    pub shortest_s: Real,
     /// Length of the record at the last, in seconds.
-    pub longest_s: f64,
+    pub longest_s: Real,
 }
 
 /// Why a plan is none.
@@ -51,16 +52,16 @@ pub enum InvalidPlan {
     InvalidLimit(Limit),
     /// A probability of false pass or false fail outside 0 to 0.5, or a least p-value that is no
     /// probability.
-    InvalidProbability(f64),
+    InvalidProbability(Real),
     /// The shortest length takes fewer samples than a fit of two octaves, the longest is shorter than the
     /// shortest, or takes more samples than 2³⁰ or than the octaves have a use for.
     InvalidLength {
         /// As planned, in seconds.
-        shortest_s: f64,
+        shortest_s: Real,
         /// As planned, in seconds.
-        longest_s: f64,
+        longest_s: Real,
         /// The longest of any use, in seconds.
-        most_s: f64,
+        most_s: Real,
     },
 }
 
@@ -92,7 +93,7 @@ impl Plan {
         }
         // Beyond it no octave is added.
         let most = (8_u64 << octaves.min(MAX_SAMPLES.ilog2() as usize - 3)).min(MAX_SAMPLES);
-        let samples = |seconds: f64| (seconds * scale.rate_hz()) as u64;
+        let samples = |seconds: Real| (seconds * scale.rate_hz()) as u64;
         let (first, last) = (samples(self.shortest_s), samples(self.longest_s));
         // Two octaves, of one and of two samples.
         let least = Curve::<2>::MIN_DIFFERENCES + 4;
@@ -100,7 +101,7 @@ impl Plan {
             return Err(InvalidPlan::InvalidLength {
                 shortest_s: self.shortest_s,
                 longest_s: self.longest_s,
-                most_s: most as f64 / scale.rate_hz(),
+                most_s: most as Real / scale.rate_hz(),
             });
         }
         Ok((first, last))

@@ -1,4 +1,7 @@
-use crate::{Error, Scale};
+use crate::{
+    Error, Scale,
+    real::{Real, real},
+};
 
 /// Registers that are read at once, at most.
 pub(super) const MAX_BLOCK: usize = 24;
@@ -96,15 +99,15 @@ pub struct Temperature {
     /// The lower of its two registers.
     pub register: u8,
     /// What a count of zero means, in °C.
-    pub at_zero_c: f64,
+    pub at_zero_c: Real,
     /// Counts per kelvin.
-    pub counts_per_k: f64,
+    pub counts_per_k: Real,
 }
 
 impl Temperature {
     /// The temperature that `count` stands for, in °C.
-    pub fn celsius(&self, count: i16) -> f64 {
-        self.at_zero_c + f64::from(count) / self.counts_per_k
+    pub fn celsius(&self, count: i16) -> Real {
+        self.at_zero_c + real(count) / self.counts_per_k
     }
 }
 
@@ -131,10 +134,10 @@ pub struct Description {
     /// How gyro and temperature lie in their registers.
     pub byte_order: ByteOrder,
     /// °/s per count, nominal, after the start-up writes.
-    pub scale_dps: f64,
+    pub scale_dps: Real,
     /// Samples per second, nominal, after the start-up writes. An oscillator of its own sets the
     /// true rate, a few per cent off: see [`Pace`](super::Pace).
-    pub rate_hz: f64,
+    pub rate_hz: Real,
 }
 
 impl Description {

@@ -1,4 +1,5 @@
 use crate::Error;
+use crate::real::{Real, real};
 use core::num::NonZeroU64;
 
 /// Intervals that a verdict takes: a timestamp late by a whole interval moves it by 0.4 %.
@@ -8,7 +9,7 @@ const WINDOW: u32 = 256;
 /// cheap sensors are off.
 const TOLERANCE_PERCENT: u8 = 5;
 
-const NS_PER_S: f64 = 1e9;
+const NS_PER_S: Real = 1e9;
 const NS_PER_US: u64 = 1000;
 
 /// Watches the samples' timestamps: were samples skipped, and is the configured rate the true one?
@@ -49,7 +50,7 @@ impl Pace {
     ///
     /// # Errors
     /// [`Error::InvalidRate`] unless it is positive and below 1 GHz.
-    pub fn new(rate_hz: f64) -> Result<Self, Error> {
+    pub fn new(rate_hz: Real) -> Result<Self, Error> {
         // Zero of a rate that is negative, infinite or not a number, saturated of one near zero.
         let interval_ns = (NS_PER_S / rate_hz + 0.5) as u64;
         match NonZeroU64::new(interval_ns) {
@@ -98,8 +99,8 @@ impl Pace {
     }
 
     /// Samples per second over the last complete window of 256; `None` before.
-    pub fn measured_hz(&self) -> Option<f64> {
-        self.window_us.map(|us| f64::from(WINDOW) * 1e6 / us as f64)
+    pub fn measured_hz(&self) -> Option<Real> {
+        self.window_us.map(|us| real(WINDOW) * 1e6 / us as Real)
     }
 
     /// Whether the last complete window agrees with the configured rate. Before there is one,
@@ -119,8 +120,8 @@ impl Pace {
             return Ok(());
         }
         Err(Error::RateContradicted {
-            configured_hz: NS_PER_S / self.interval_ns.get() as f64,
-            measured_hz: f64::from(WINDOW) * 1e6 / window_us as f64,
+            configured_hz: NS_PER_S / self.interval_ns.get() as Real,
+            measured_hz: real(WINDOW) * 1e6 / window_us as Real,
         })
     }
 }

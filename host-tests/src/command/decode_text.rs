@@ -243,7 +243,7 @@ fn print_snapshot(
     let mut table = columns(["m", "differences", "deviation"].map(String::from));
     for octave in &snapshot.octaves {
         let m = f64::from(octave.m);
-        let mean = octave.sum.to_f64() / octave.differences as f64;
+        let mean = octave.sum.to_real() / octave.differences as f64;
         let deviation = match octave.differences {
             0 => "–".into(),
             _ => format!("{} counts", number((0.5 * mean).sqrt() / m)),

@@ -214,7 +214,7 @@ fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
     }
     if accumulator
         .octave(0)
-        .is_none_or(|octave| octave.sum.to_f64() == 0.0)
+        .is_none_or(|octave| octave.sum.to_real() == 0.0)
     {
         return fail(
             format!("axis {name} never changes its value"),

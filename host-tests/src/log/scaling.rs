@@ -87,7 +87,7 @@ impl Scaling {
         let Some(octave) = axis.accumulator.octave(0) else {
             return Ok(None);
         };
-        let variance = 0.5 * octave.sum.to_f64() / octave.differences as f64;
+        let variance = 0.5 * octave.sum.to_real() / octave.differences as f64;
         let deviation = variance.sqrt() * axis.rate_per_count;
         let what = format!(
             "axis {}: samples that scatter by {deviation:.3e} {} are {{}} of a {} at rest",

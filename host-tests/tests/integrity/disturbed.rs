@@ -148,7 +148,7 @@ fn a_spike_matters_by_its_share_of_the_squares() {
         .next()
         .expect("an octave")
         .sum
-        .to_f64();
+        .to_real();
     // Two differences: 2 S² / (2 S² + quiet) of 4 % and of 6 %.
     for (share, refused) in [(0.04, false), (0.06, true)] {
         let size = (0.5 * quiet * share / (1.0 - share)).sqrt();

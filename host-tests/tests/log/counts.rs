@@ -129,8 +129,8 @@ fn floats_give_the_curve_of_their_counts_whatever_their_offset() {
         assert!(text.accumulator == array.accumulator);
         assert_eq!(text.rate_per_count, array.rate_per_count);
         for (float, count) in text.accumulator.octaves().zip(counts.octaves()).take(12) {
-            let variance = float.sum.to_f64() * text.rate_per_count.powi(2);
-            let expected = count.sum.to_f64() * 0.05f64.powi(2);
+            let variance = float.sum.to_real() * text.rate_per_count.powi(2);
+            let expected = count.sum.to_real() * 0.05f64.powi(2);
             assert!(
                 (variance / expected - 1.0).abs() < 1e-6,
                 "{variance} {expected}"
@@ -166,7 +166,8 @@ fn whole_numbers_beyond_32_bits_are_numbers_all_the_same() {
     });
     let log = read("wide.csv", text.as_bytes(), &at_100_hz());
     let expected = &accumulators(&rows)[0];
-    let shortest = |accumulator: &Accumulator<OCTAVES>| accumulator.octave(0).unwrap().sum.to_f64();
+    let shortest =
+        |accumulator: &Accumulator<OCTAVES>| accumulator.octave(0).unwrap().sum.to_real();
     let quantum = log.axes[0].rate_per_count / 0.05;
     assert_eq!(
         shortest(&log.axes[0].accumulator) * quantum * quantum,

@@ -1,17 +1,13 @@
 //! The images on every core and the same computation here agree to the bit.
 
 use allanite::{
-    Accumulator, Addition, Scale, Step, Verdict,
-    demonstration::{
-        AMPLITUDES,
-        diagnose::{HIDDEN, diagnose},
-        stream::SEED,
-    },
+    Accumulator, Scale,
+    demonstration::{AMPLITUDES, diagnose::HIDDEN, stream::SEED, tell},
     simulated::SimulatedGyro,
 };
 use host_tests::{
     curve_file::{AxisCurve, CurveFile},
-    firmware::{CORES, CORTEX_M4F, Image, RISCV, agreement, run, run_with},
+    firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run},
     log::Axis,
     program::command,
     unit::Unit,
@@ -24,11 +20,11 @@ use std::{
 
 #[test]
 fn every_core_and_the_host_agree_to_the_bit() {
-    for core in &CORES {
-        println!("{}", core.name);
-        let difference = agreement::difference(core);
-        let difference = difference.unwrap_or_else(|error| panic!("{}: {error:#}", core.name));
-        assert_eq!(difference, None, "{}", core.name);
+    for core in Core::all() {
+        println!("{core}");
+        let difference = agreement::difference(&core);
+        let difference = difference.unwrap_or_else(|error| panic!("{core}: {error:#}"));
+        assert_eq!(difference, None, "{core}");
     }
 }
 
@@ -92,7 +88,10 @@ const PANIC_FREE: [&str; 5] = [
 fn images_have_no_path_to_a_panic_arithmetic_checked_or_not() {
     for name in PANIC_FREE {
         for profile in ["firmware", "checked"] {
-            assert_eq!(panic_paths(name, profile), [""; 0], "{name}, {profile}");
+            for core in Precision::ALL.map(|precision| CORTEX_M4F.with(precision)) {
+                let found = panic_paths(name, &core, profile);
+                assert_eq!(found, [""; 0], "{name}, {core}, {profile}");
+            }
         }
     }
 }
@@ -100,116 +99,50 @@ fn images_have_no_path_to_a_panic_arithmetic_checked_or_not() {
 #[test]
 fn an_image_that_can_panic_is_found_to() {
     // Its logger panics if it is entered twice.
-    let found = panic_paths("characterise", "firmware");
+    let found = panic_paths("characterise", &CORTEX_M4F, "firmware");
     assert!(
         found.iter().any(|name| name.contains("rust_begin_unwind")),
         "{found:?}"
     );
 }
 
-fn panic_paths(name: &str, profile: &str) -> Vec<String> {
-    Image::build_with(name, &CORTEX_M4F, profile)
+fn panic_paths(name: &str, core: &Core, profile: &str) -> Vec<String> {
+    Image::build_with(name, core, profile)
         .and_then(|image| image.panic_paths())
         .unwrap_or_else(|error| panic!("{error:#}"))
 }
 
-/// The lines that the image logs of a step, with the bits of every number.
-fn logged<const K: usize>(step: &Step<K>) -> Vec<String> {
-    let mut lines = Vec::new();
-    for octave in &step.comparison.octaves {
-        lines.push(format!("octave {} {:x}", octave.m, octave.z.to_bits()));
-    }
-    lines.push(format!("comparison {}", step.comparison));
-    let numbers = [
-        step.fit.chi_squared,
-        step.fit.p_value,
-        step.comparison.rms_percent,
-    ];
-    let [chi_squared, p_value, rms] = numbers.map(f64::to_bits);
-    let freedom = step.fit.degrees_of_freedom;
-    lines.push(format!("fit {freedom} {chi_squared:x} {p_value:x} {rms:x}"));
-    for one in &step.fit.coefficients {
-        lines.push(format!(
-            "coefficient {} {:x}",
-            one.name,
-            one.value.to_bits()
-        ));
-    }
-    for one in &step.candidates {
-        let name = one.term.effect.name();
-        lines.push(format!("candidate {name} {:x}", one.improvement.to_bits()));
-    }
-    if let Some(swap) = step.swap() {
-        let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| effect.name());
-        lines.push(format!("{taken} instead of {dropped}"));
-    }
-    for name in &step.ambiguous {
-        lines.push(format!("ambiguous {name}"));
-    }
-    if let Some(Addition::Effect(term)) = &step.added {
-        let name = term.effect.name();
-        lines.push(format!("added {name} {:x}", term.parameters[0].to_bits()));
-    }
-    lines
-}
-
-/// A line of the image with names and decimals taken out: what [`logged`] writes.
-fn condensed(line: &str) -> String {
-    let words: Vec<&str> = line.split(' ').collect();
-    match words[..] {
-        ["octave", _, m, .., bits] => format!("octave {m} {bits}"),
-        [
-            "fit",
-            _,
-            freedom,
-            _,
-            _,
-            chi_squared,
-            _,
-            _,
-            p_value,
-            _,
-            _,
-            rms,
-        ] => {
-            format!("fit {freedom} {chi_squared} {p_value} {rms}")
-        }
-        ["comparison", ..] | ["ambiguous", _] | [_, "instead", ..] => line.to_owned(),
-        [kind, name, .., bits] => format!("{kind} {name} {bits}"),
-        _ => line.to_owned(),
-    }
-}
-
 #[test]
 fn image_finds_hidden_effects_as_the_host_does_to_the_bit() {
-    let image = Image::build("hidden_effect").unwrap_or_else(|error| panic!("{error:#}"));
-    for (name, disturbance) in HIDDEN {
-        let run = run_with(&image, &[name]).unwrap_or_else(|error| panic!("{error:#}"));
-        println!("{}", run.lines.join("\n"));
-        assert!(run.status.success(), "the image ended with {}", run.status);
+    for precision in Precision::ALL {
+        let core = CORTEX_M4F.with(precision);
+        for (name, _) in HIDDEN {
+            let told = |lines: Result<Vec<String>, anyhow::Error>| {
+                lines.unwrap_or_else(|error| panic!("{core}, {name}: {error:#}"))
+            };
+            let there = told(agreement::told(&core, "hidden_effect", &[name]));
+            println!("{core}, {name}\n{}", there.join("\n"));
+            let here = told(agreement::told_here(precision, "hidden_effect", &[name]));
+            assert_eq!(agreement::first_difference(&here, &there), None, "{core}");
 
-        let (mut here, mut errors, mut found) = (Vec::new(), Vec::new(), Vec::new());
-        let verdict = diagnose(Some(disturbance), |step| {
-            here.extend(logged(step));
-            errors.push(step.fit.chi_squared);
-            if let Some(Addition::Effect(term)) = &step.added {
-                found.push(term.effect.name());
-                found.extend(&step.ambiguous);
-            }
-        });
-        assert_eq!(verdict, Ok(Verdict::Improved), "{name}");
-        assert!(found.contains(&name), "{name}: {found:?}");
-        let (first, last) = (errors[0], errors[errors.len() - 1]);
-        assert!(last < 0.3 * first, "{name}: {errors:?}");
-
-        let there = run
-            .lines
-            .iter()
-            .filter_map(|line| line.strip_prefix("info "));
-        let there: Vec<String> = there.map(condensed).collect();
-        assert_eq!(there[..there.len() - 1], here, "{name}");
-        assert_eq!(there[there.len() - 1], "verdict Improved");
+            let after = |start: &str| -> Vec<&str> {
+                let lines = there.iter().filter_map(|line| line.strip_prefix(start));
+                lines.filter_map(|rest| rest.split(' ').next()).collect()
+            };
+            assert_eq!(after("verdict "), ["Improved"]);
+            let found = [after("added "), after("ambiguous ")].concat();
+            assert!(found.contains(&name), "{name}: {found:?}");
+            let errors: Vec<f64> = there.iter().filter_map(|line| chi_squared(line)).collect();
+            let (first, last) = (errors[0], errors[errors.len() - 1]);
+            assert!(last < 0.3 * first, "{name}: {errors:?}");
+        }
     }
+}
+
+/// χ² of a line on a fit.
+fn chi_squared(line: &str) -> Option<f64> {
+    let (_, rest) = line.split_once(" chi_squared ")?;
+    rest.split(' ').next()?.parse().ok()
 }
 
 /// Numbers after these words in a line.
@@ -265,11 +198,10 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
             "{lost_here} of {lost} before the end"
         );
         let curve = accumulator.curve(Scale::new(1.0 / 131.0, 100.0).unwrap());
-        let here = curve.points().iter().map(agreement::octave);
-        let there = run
-            .lines
-            .iter()
-            .filter(|line| line.starts_with("info octave"));
-        assert_eq!(there.cloned().collect::<Vec<_>>(), here.collect::<Vec<_>>());
+        let mut here = Vec::new();
+        tell::curve(&curve, |line| here.push(format!("info {line}")));
+        let octaves = run.lines.iter();
+        let there = octaves.filter(|line| line.starts_with("info octave"));
+        assert!(there.eq(&here), "{:?}, here {here:?}", run.lines);
     }
 }

@@ -4,6 +4,7 @@
 pub mod characterise;
 pub mod diagnose;
 pub mod stream;
+pub mod tell;
 
 use crate::simulated::Amplitudes;
 

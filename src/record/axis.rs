@@ -5,6 +5,7 @@ use crate::{
     Curve, Error, Fit, MAX_EFFECTS, Model, State, Verdict,
     effect::{IEEE_952, MAX_PARAMETERS},
     fit::Correlations,
+    real::double,
 };
 use heapless::Vec;
 
@@ -89,9 +90,9 @@ impl AxisRecord {
                 .filter_map(|i| term(model, fit, i))
                 .collect(),
             correlations: fit.correlations(curve, model)?,
-            chi_squared: fit.chi_squared,
+            chi_squared: double(fit.chi_squared),
             degrees_of_freedom: fit.degrees_of_freedom.min(usize::from(u16::MAX)) as u16,
-            p_value: fit.p_value,
+            p_value: double(fit.p_value),
             tolerance: fit.tolerance as f32,
             verdict: None,
         })
@@ -103,7 +104,7 @@ impl AxisRecord {
             let term = self.terms.get(i);
             term.map_or(f64::NAN, |term| f64::from(term.square_error))
         };
-        self.correlations.get(i, j) * error(i) * error(j)
+        double(self.correlations.get(i, j)) * error(i) * error(j)
     }
 
     /// The effects beyond the five of IEEE Std 952.

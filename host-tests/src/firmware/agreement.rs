@@ -1,8 +1,10 @@
 //! Whether an image and this host compute the same bits.
 
-use super::{Core, Image, run};
-use allanite::{Point, demonstration::characterise::Characterised};
-use anyhow::{Result, ensure};
+use super::{
+    Core, Image, Precision, REMEDY, cargo, run_with,
+    toolchain::{exclusive, target_directory},
+};
+use anyhow::{Context as _, Result, ensure};
 
 /// The first line in which `characterise` on a core and the same here differ; `None` if every number
 /// has the same bits.
@@ -10,50 +12,55 @@ use anyhow::{Result, ensure};
 /// # Errors
 /// If the image cannot be built or run, or ends with a failure.
 pub fn difference(core: &Core) -> Result<Option<String>> {
-    let run = run(&Image::build_for("characterise", core)?)?;
-    let (status, there) = (run.status, run.lines);
-    ensure!(status.success(), "the image ended with {status}: {there:?}");
-    let here = expected(&Characterised::run()?);
-    let lines = here.iter().zip(&there).find(|(here, there)| here != there);
-    Ok(match lines {
+    let there = told(core, "characterise", &[])?;
+    let here = told_here(core.precision, "characterise", &[])?;
+    Ok(first_difference(&here, &there))
+}
+
+/// The first line in which two that should tell the same differ.
+pub fn first_difference(here: &[String], there: &[String]) -> Option<String> {
+    let differ = here.iter().zip(there).find(|(here, there)| here != there);
+    match differ {
         Some((here, there)) => Some(format!("{here:?} here, {there:?} there")),
         None if here.len() != there.len() => {
             Some(format!("{} lines here, {} there", here.len(), there.len()))
         }
         None => None,
-    })
-}
-
-/// What the image logs.
-fn expected(characterised: &Characterised) -> Vec<String> {
-    let Characterised { curve, fit, truth } = characterised;
-    let mut lines: Vec<String> = curve.points().iter().map(octave).collect();
-    for (one, truth) in fit.coefficients.iter().zip(truth) {
-        let [value, lower, upper] = [one.value, one.lower, one.upper].map(number);
-        let truth = ryu::Buffer::new().format(*truth).to_owned();
-        let (name, state) = (one.name, one.state);
-        lines.push(format!(
-            "info coefficient {name} value {value} lower {lower} upper {upper} truth {truth} {state:?}"
-        ));
     }
-    let [chi_squared, p_value] = [fit.chi_squared, fit.p_value].map(number);
-    let freedom = fit.degrees_of_freedom;
-    lines.push(format!(
-        "info fit degrees_of_freedom {freedom} chi_squared {chi_squared} p_value {p_value}"
-    ));
-    lines.push("info passed".into());
-    lines
 }
 
-/// What images log of one octave.
-pub fn octave(point: &Point) -> String {
-    let (m, differences) = (point.m, point.differences);
-    let variance = number(point.variance);
-    format!("info octave m {m} differences {differences} variance {variance}")
+/// What an image logs on a core.
+///
+/// # Errors
+/// If the image cannot be built or run, or ends with a failure.
+pub fn told(core: &Core, image: &str, arguments: &[&str]) -> Result<Vec<String>> {
+    let run = run_with(&Image::build_for(image, core)?, arguments)?;
+    let (status, lines) = (run.status, run.lines);
+    ensure!(status.success(), "the image ended with {status}: {lines:?}");
+    let message = |line: &String| line.strip_prefix("info ").unwrap_or(line).to_owned();
+    Ok(lines.iter().map(message).collect())
 }
 
-/// A number as the images log it: the shortest decimal, and the bits.
-fn number(number: f64) -> String {
-    let decimal = ryu::Buffer::new().format(number).to_owned();
-    format!("{decimal} {:x}", number.to_bits())
+/// What the same program prints on this host.
+///
+/// # Errors
+/// If it cannot be built or run, or ends with a failure.
+pub fn told_here(precision: Precision, image: &str, arguments: &[&str]) -> Result<Vec<String>> {
+    // Both precisions have one path.
+    let _lock = exclusive()?;
+    let output = cargo()
+        .args(["run", "--quiet", "--package", "allanite", "--bin", image])
+        .args(["--features", "firmware"])
+        .args(precision.arguments())
+        // The cargo that runs this program may hold the lock of the usual one.
+        .arg("--target-dir")
+        .arg(target_directory())
+        .arg("--")
+        .args(arguments)
+        .stderr(std::process::Stdio::inherit())
+        .output()
+        .with_context(|| format!("cargo did not start: {REMEDY}"))?;
+    let (status, text) = (output.status, String::from_utf8(output.stdout)?);
+    ensure!(status.success(), "{image} ended with {status} here: {text}");
+    Ok(text.lines().map(str::to_owned).collect())
 }

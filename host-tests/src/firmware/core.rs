@@ -17,6 +17,59 @@ pub struct Core {
     pub board: Option<&'static str>,
     /// Whether it has so little RAM, 16 KiB, that it fits fewer octaves and does not diagnose.
     pub small: bool,
+    /// What it computes in.
+    pub precision: Precision,
+}
+
+/// What curves, fits and diagnoses are computed in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// Double, the library's default.
+    Double,
+    /// Single: the library without default features.
+    Single,
+}
+
+impl Precision {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Single, Self::Double];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Double => "double",
+            Self::Single => "single",
+        }
+    }
+
+    /// Arguments of cargo that choose it.
+    pub fn arguments(self) -> &'static [&'static str] {
+        match self {
+            Self::Double => &[],
+            Self::Single => &["--no-default-features"],
+        }
+    }
+}
+
+impl Core {
+    /// The same with another precision.
+    #[must_use]
+    pub const fn with(self, precision: Precision) -> Self {
+        Self { precision, ..self }
+    }
+
+    /// Every core with either precision.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let both = |core: Self| Precision::ALL.map(|precision| core.with(precision));
+        CORES.into_iter().flat_map(both)
+    }
+}
+
+/// With its precision.
+impl std::fmt::Display for Core {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}, {} precision", self.name, self.precision.name())
+    }
 }
 
 /// The emulator of Arm's cores.
@@ -31,6 +84,7 @@ pub const CORTEX_M4F: Core = Core {
     cpu: "cortex-m4",
     board: None,
     small: false,
+    precision: Precision::Double,
 };
 
 /// The core of another architecture.
@@ -42,6 +96,7 @@ pub const RISCV: Core = Core {
     cpu: "rv32",
     board: Some("_board_virt"),
     small: false,
+    precision: Precision::Double,
 };
 
 /// Every core: with hardware for single precision, for none, for double; with 4 MiB of RAM, and with
@@ -55,6 +110,7 @@ pub const CORES: [Core; 7] = [
         cpu: "cortex-m0",
         board: Some("_board_microbit"),
         small: true,
+        precision: Precision::Double,
     },
     Core {
         name: "Cortex-M3",

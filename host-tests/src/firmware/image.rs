@@ -1,9 +1,15 @@
 //! One image, built.
 
-use super::{CORTEX_M4F, Core, REMEDY, Toolchain, toolchain::target_directory};
+use super::{
+    CORTEX_M4F, Core, REMEDY, Toolchain,
+    toolchain::{exclusive, target_directory},
+};
 use anyhow::{Context as _, Result, bail, ensure};
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SectionKind, SymbolKind};
-use std::path::PathBuf;
+use std::{
+    io::Write as _,
+    path::{Path, PathBuf},
+};
 
 /// What the names of such functions have in common: the handler, and the way to it.
 const PANICS: [&str; 8] = [
@@ -56,15 +62,21 @@ impl Image {
         let mut command = toolchain.cargo("build");
         command
             .args(["--quiet", "--package", "allanite", "--bin", name])
-            .args(["--features", "firmware", "--profile", profile]);
+            .args(["--features", "firmware", "--profile", profile])
+            .args(core.precision.arguments());
+        // Both precisions' images have one path, and others may be building.
+        let lock = exclusive()?;
         let status = command
             .status()
             .with_context(|| format!("cargo did not start: {REMEDY}"))?;
         if !status.success() {
             bail!("building the image {name} failed ({status}): {REMEDY}");
         }
-        let path = target_directory().join(target).join(profile).join(name);
-        let elf = std::fs::read(&path).with_context(|| format!("reading {}", path.display()))?;
+        let built = target_directory().join(target).join(profile).join(name);
+        let path = built.with_file_name(format!("{name}-{}", core.precision.name()));
+        let elf = std::fs::read(&built).with_context(|| format!("reading {}", built.display()))?;
+        replace(&path, &elf).with_context(|| format!("writing {}", path.display()))?;
+        drop(lock);
         let image = Self {
             core: *core,
             path,
@@ -133,4 +145,12 @@ impl Image {
         let sections = file.sections().filter(|section| counts(section.kind()));
         Ok(sections.map(|section| section.size()).sum())
     }
+}
+
+/// Another may be running the file that is there: it keeps it.
+fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut file = tempfile::NamedTempFile::new_in(path.parent().unwrap_or(path))?;
+    file.write_all(bytes)?;
+    file.persist(path)?;
+    Ok(())
 }

@@ -9,7 +9,7 @@ pub mod image;
 pub mod measure;
 pub mod toolchain;
 
-pub use core::{CORES, CORTEX_M4F, Core, RISCV};
+pub use core::{CORES, CORTEX_M4F, Core, Precision, RISCV};
 pub use emulator::{Run, run, run_with, start};
 pub use image::Image;
 pub use toolchain::Toolchain;

@@ -1,7 +1,9 @@
 //! Which compiler can build for the target.
 
 use super::{Core, cargo};
+use anyhow::{Context as _, Result};
 use std::{
+    fs::File,
     path::{Path, PathBuf},
     process::Command,
 };
@@ -116,6 +118,21 @@ impl Toolchain {
 pub fn target_directory() -> PathBuf {
     let base = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     super::workspace().join(base).join("image")
+}
+
+/// Keeps other programs from building there, as long as it is held.
+///
+/// # Errors
+/// If the folder cannot be written.
+pub fn exclusive() -> Result<File> {
+    let folder = target_directory();
+    let lock = || -> std::io::Result<File> {
+        std::fs::create_dir_all(&folder)?;
+        let file = File::create(folder.join("images.lock"))?;
+        file.lock()?;
+        Ok(file)
+    };
+    lock().with_context(|| format!("locking {}", folder.display()))
 }
 
 /// The variable that sets one of cargo's keys of a target.

@@ -5,7 +5,7 @@ use allanite::demonstration::AMPLITUDES;
 use allanite::effect::{CATALOGUE, Effect as _, Setting, Sinusoid};
 use allanite::simulated::{Random, SimulatedGyro};
 use allanite::{
-    Accumulator, Curve, Diagnosis, Error, Evidence, Fit, Model, Settings, Verdict, fit,
+    Accumulator, Curve, Diagnosis, Error, Evidence, Fit, Model, Real, Settings, Verdict, fit,
 };
 use core::hint::black_box;
 
@@ -98,10 +98,10 @@ pub(crate) fn worst<const OCTAVES: usize>(clock: &Clock, deepest: u32) -> u64 {
 
 /// Octaves of a gyro with all five terms, each off by a few per cent, and an oscillation at 7.7 Hz of
 /// some amplitude.
-pub(crate) fn curve<const OCTAVES: usize>(amplitude: f64) -> Option<Curve<OCTAVES>> {
+pub(crate) fn curve<const OCTAVES: usize>(amplitude: Real) -> Option<Curve<OCTAVES>> {
     let octaves = (0..OCTAVES).map(|k| {
         let m = 1_u32 << k;
-        let tau_s = f64::from(m) / 100.0;
+        let tau_s = m as Real / 100.0;
         let smooth = 1.2e-7 / (tau_s * tau_s)
             + 2.5e-5 / tau_s
             + 7.1e-6
@@ -111,10 +111,10 @@ pub(crate) fn curve<const OCTAVES: usize>(amplitude: f64) -> Option<Curve<OCTAVE
             parameters: [7.7, 0.0],
             ..Setting::new(0.01)
         };
-        let wave = amplitude * amplitude * Sinusoid.variance(f64::from(m), &setting);
+        let wave = amplitude * amplitude * Sinusoid.variance(m as Real, &setting);
         let smooth = smooth + wave;
         let differences = (2_u64 << OCTAVES) / u64::from((m / 4).max(1)) - 7;
-        let off = [0.3, -0.5, 0.9, -0.2, -0.7][k % 5] / (differences as f64 * 0.2 + 9.0);
+        let off = [0.3, -0.5, 0.9, -0.2, -0.7][k % 5] / (differences as Real * 0.2 + 9.0);
         (m, differences, smooth * (1.0 + off))
     });
     Curve::new(100.0, octaves).ok()

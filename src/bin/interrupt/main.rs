@@ -16,6 +16,7 @@ mod timer;
 #[cfg(target_os = "none")]
 mod image {
     use allanite::demonstration::AMPLITUDES;
+    use allanite::demonstration::tell;
     use allanite::queue::{self, Queued, Receiver, Sender};
     use allanite::simulated::SimulatedGyro;
     use allanite::{Accumulator, Scale};
@@ -133,15 +134,9 @@ mod image {
         let Ok(scale) = Scale::new(1.0 / 131.0, 100.0) else {
             return false;
         };
-        for point in accumulator.curve(scale).points() {
-            defmt::info!(
-                "octave m {=u32} differences {=u64} variance {=f64} {=u64:x}",
-                point.m,
-                point.differences,
-                point.variance,
-                point.variance.to_bits()
-            );
-        }
+        tell::curve(&accumulator.curve(scale), |line| {
+            defmt::info!("{}", defmt::Display2Format(&line));
+        });
         accumulator.samples() == u64::from(taken) && u64::from(taken) + lost == u64::from(made())
     }
 

@@ -1,0 +1,94 @@
+//! What images log and the host prints, with the bits of every number: equal lines, equal bits.
+
+use super::{characterise::Characterised, diagnose::OCTAVES};
+use crate::{
+    curve::Curve,
+    diagnosis::{Addition, Step},
+    real::{Real, double},
+};
+use core::fmt::{self, Arguments, Display, Formatter};
+
+/// A number, and the bits that it has in double precision.
+struct Exact(Real);
+
+impl Display for Exact {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{:e} {:x}", self.0, double(self.0).to_bits())
+    }
+}
+
+/// A line an octave.
+pub fn curve<const K: usize>(curve: &Curve<K>, mut line: impl FnMut(Arguments<'_>)) {
+    for point in curve.points() {
+        line(format_args!(
+            "octave m {} differences {} variance {}",
+            point.m,
+            point.differences,
+            Exact(point.variance)
+        ));
+    }
+}
+
+/// The curve, a line a coefficient, and one of the fit.
+pub fn characterised(test: &Characterised, mut line: impl FnMut(Arguments<'_>)) {
+    curve(&test.curve, &mut line);
+    for (coefficient, truth) in test.fit.coefficients.iter().zip(test.truth) {
+        line(format_args!(
+            "coefficient {} value {} lower {} upper {} truth {truth:e} {:?}",
+            coefficient.name,
+            Exact(coefficient.value),
+            Exact(coefficient.lower),
+            Exact(coefficient.upper),
+            coefficient.state
+        ));
+    }
+    line(format_args!(
+        "fit degrees_of_freedom {} chi_squared {} p_value {}",
+        test.fit.degrees_of_freedom,
+        Exact(test.fit.chi_squared),
+        Exact(test.fit.p_value)
+    ));
+}
+
+/// A step of a diagnosis: error by octave, what was fitted, what was tried, what was added.
+pub fn step(step: &Step<OCTAVES>, mut line: impl FnMut(Arguments<'_>)) {
+    for octave in &step.comparison.octaves {
+        line(format_args!(
+            "octave m {} measured {:e} model {:e} z {}",
+            octave.m,
+            octave.measured,
+            octave.model,
+            Exact(octave.z)
+        ));
+    }
+    line(format_args!("comparison {}", step.comparison));
+    line(format_args!(
+        "fit degrees_of_freedom {} chi_squared {} p_value {} rms_percent {}",
+        step.fit.degrees_of_freedom,
+        Exact(step.fit.chi_squared),
+        Exact(step.fit.p_value),
+        Exact(step.comparison.rms_percent)
+    ));
+    for coefficient in &step.fit.coefficients {
+        let value = Exact(coefficient.value);
+        line(format_args!(
+            "coefficient {} value {value}",
+            coefficient.name
+        ));
+    }
+    for candidate in &step.candidates {
+        let (name, improvement) = (candidate.term.effect.name(), Exact(candidate.improvement));
+        line(format_args!("candidate {name} improvement {improvement}"));
+    }
+    if let Some(swap) = step.swap() {
+        let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| effect.name());
+        line(format_args!("{taken} instead of {dropped}"));
+    }
+    for name in &step.ambiguous {
+        line(format_args!("ambiguous {name}"));
+    }
+    if let Some(Addition::Effect(term)) = &step.added {
+        let first = Exact(term.parameters[0]);
+        line(format_args!("added {} first {first}", term.effect.name()));
+    }
+}

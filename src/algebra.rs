@@ -93,6 +93,60 @@ impl<const N: usize, E: Number> Index<(usize, usize)> for Square<N, E> {
     }
 }
 
+/// A symmetric matrix or its factor: what is on the diagonal and below, row by row, in `LENGTH` places.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangle<const LENGTH: usize>([Real; LENGTH]);
+
+impl<const LENGTH: usize> Triangle<LENGTH> {
+    pub(crate) fn zeros() -> Self {
+        Self([0.0; LENGTH])
+    }
+
+    const fn place(i: usize, j: usize) -> usize {
+        let (row, column) = if i < j { (j, i) } else { (i, j) };
+        row.saturating_mul(row.saturating_add(1)) / 2 + column
+    }
+}
+
+/// Elements by row and column.
+pub(crate) trait Elements {
+    type Element: Number;
+
+    fn at(&self, i: usize, j: usize) -> Self::Element;
+
+    fn put_at(&mut self, i: usize, j: usize, value: Self::Element);
+}
+
+impl<const LENGTH: usize> Elements for Triangle<LENGTH> {
+    type Element = Real;
+
+    fn at(&self, i: usize, j: usize) -> Real {
+        let element = self.0.get(Self::place(i, j));
+        debug_assert!(element.is_some());
+        element.copied().unwrap_or(0.0)
+    }
+
+    fn put_at(&mut self, i: usize, j: usize, value: Real) {
+        let slot = self.0.get_mut(Self::place(i, j));
+        debug_assert!(slot.is_some());
+        if let Some(slot) = slot {
+            *slot = value;
+        }
+    }
+}
+
+impl<const N: usize, E: Number> Elements for Square<N, E> {
+    type Element = E;
+
+    fn at(&self, i: usize, j: usize) -> E {
+        self[(i, j)]
+    }
+
+    fn put_at(&mut self, i: usize, j: usize, value: E) {
+        self.put((i, j), value);
+    }
+}
+
 /// A choice among unknowns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Choice(u16);

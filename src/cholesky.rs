@@ -4,7 +4,7 @@
 //! microcontroller for 20 octaves. A factor is found in the precision of the rest, whatever it is kept in.
 
 use crate::{
-    algebra::{Number, Square, Vector},
+    algebra::{Elements, Number, Square, Vector},
     math,
     real::{Real, double, real},
 };
@@ -37,44 +37,47 @@ impl Element for f32 {
 
 /// Replaces the lower triangle of the first `n` rows by its Cholesky factor, with the reciprocals of
 /// the diagonal on the diagonal. `false` if the matrix is not positive definite.
-pub(crate) fn factor<E: Element, const K: usize>(matrix: &mut Square<K, E>, n: usize) -> bool {
-    for j in 0..n.min(K) {
-        let mut pivot = matrix[(j, j)].value();
-        for k in 0..j {
-            pivot -= matrix[(j, k)].value() * matrix[(j, k)].value();
-        }
-        if !(pivot > 0.0 && pivot.is_finite()) {
-            return false;
-        }
-        let reciprocal = 1.0 / math::sqrt(pivot);
-        matrix.put((j, j), E::new(reciprocal));
-        for i in j + 1..n.min(K) {
-            let mut value = matrix[(i, j)].value();
+#[inline(never)]
+pub(crate) fn factor<M: Elements<Element: Element>>(matrix: &mut M, n: usize) -> bool {
+    let mut reciprocal = 0.0;
+    for j in 0..n {
+        for i in j..n {
+            let mut value = matrix.at(i, j).value();
             for k in 0..j {
-                value -= matrix[(i, k)].value() * matrix[(j, k)].value();
+                value -= matrix.at(i, k).value() * matrix.at(j, k).value();
             }
-            matrix.put((i, j), E::new(value * reciprocal));
+            let element = if i > j {
+                value * reciprocal
+            } else if value > 0.0 && value.is_finite() {
+                reciprocal = 1.0 / math::sqrt(value);
+                reciprocal
+            } else {
+                return false;
+            };
+            matrix.put_at(i, j, Element::new(element));
         }
     }
     true
 }
 
 /// Solves `L x = b` in place, for the factor `L` of [`factor`].
-pub(crate) fn forward<E: Element, const K: usize>(
-    factor: &Square<K, E>,
+#[inline(never)]
+pub(crate) fn forward<M: Elements<Element: Element>, const K: usize>(
+    factor: &M,
     n: usize,
     x: &mut Vector<K>,
 ) {
     for i in 0..n.min(K) {
         let mut value = x[i];
         for k in 0..i {
-            value -= factor[(i, k)].value() * x[k];
+            value -= factor.at(i, k).value() * x[k];
         }
-        x.put(i, value * factor[(i, i)].value());
+        x.put(i, value * factor.at(i, i).value());
     }
 }
 
 /// [`forward`] in single precision.
+#[inline(never)]
 pub(crate) fn forward_single<const K: usize>(
     factor: &Square<K, f32>,
     n: usize,
@@ -90,16 +93,17 @@ pub(crate) fn forward_single<const K: usize>(
 }
 
 /// Solves `L'x = b` in place.
-pub(crate) fn backward<E: Element, const K: usize>(
-    factor: &Square<K, E>,
+#[inline(never)]
+pub(crate) fn backward<M: Elements<Element: Element>, const K: usize>(
+    factor: &M,
     n: usize,
     x: &mut Vector<K>,
 ) {
     for i in (0..n.min(K)).rev() {
         let mut value = x[i];
         for k in i + 1..n.min(K) {
-            value -= factor[(k, i)].value() * x[k];
+            value -= factor.at(k, i).value() * x[k];
         }
-        x.put(i, value * factor[(i, i)].value());
+        x.put(i, value * factor.at(i, i).value());
     }
 }

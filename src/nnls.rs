@@ -1,18 +1,21 @@
 //! Least squares with coefficients that cannot be negative, from the normal equations.
 
 use crate::{
-    algebra::{self, Choice, Square},
+    algebra::{self, Choice, Elements as _, Triangle},
     cholesky,
     error::Error,
+    fit::MAX_SHAPE,
     math,
     model::MAX_EFFECTS,
     real::{Real, by_precision},
 };
 
-/// Normal equations `H β = b` of up to `P` unknowns.
-pub(crate) type Matrix<const P: usize = MAX_EFFECTS> = Square<P>;
+/// Unknowns at most: coefficients, and behind them fitted shapes.
+pub(crate) const UNKNOWNS: usize = MAX_EFFECTS + MAX_SHAPE;
+/// `H` of normal equations `H β = b`.
+pub(crate) type Matrix = Triangle<{ UNKNOWNS * (UNKNOWNS + 1) / 2 }>;
 /// One number an unknown.
-pub(crate) type Vector<const P: usize = MAX_EFFECTS> = algebra::Vector<P>;
+pub(crate) type Vector = algebra::Vector<UNKNOWNS>;
 
 /// A pivot of the scaled equations below this is rounding, not information.
 const LEAST_PIVOT: Real = by_precision(1e-10, 1e-5);
@@ -24,14 +27,14 @@ pub(crate) type Free = Choice;
 
 /// The equations with every column scaled to one, so that coefficients of any magnitude share one
 /// tolerance.
-pub(crate) struct NormalEquations<const P: usize = MAX_EFFECTS> {
-    scaled: Matrix<P>,
-    right: Vector<P>,
-    scale: Vector<P>,
+pub(crate) struct NormalEquations {
+    scaled: Matrix,
+    right: Vector,
+    scale: Vector,
     count: usize,
 }
 
-impl<const P: usize> NormalEquations<P> {
+impl NormalEquations {
     /// Of no unknowns.
     pub(crate) fn empty() -> Self {
         Self {
@@ -50,9 +53,9 @@ impl<const P: usize> NormalEquations<P> {
     pub(crate) fn set(
         &mut self,
         count: usize,
-        row: &dyn Fn(usize, &mut Vector<P>) -> Real,
+        row: &dyn Fn(usize, &mut Vector) -> Real,
     ) -> Result<(), Error> {
-        self.count = count.min(P);
+        self.count = count.min(UNKNOWNS);
         let mut own = Vector::zeros();
         for i in 0..self.count {
             let right = row(i, &mut own);
@@ -64,8 +67,7 @@ impl<const P: usize> NormalEquations<P> {
             self.right.put(i, right * self.scale[i]);
             for j in 0..=i {
                 let scaled = own[j] * self.scale[i] * self.scale[j];
-                self.scaled.put((i, j), scaled);
-                self.scaled.put((j, i), scaled);
+                self.scaled.put_at(i, j, scaled);
             }
         }
         Ok(())
@@ -89,8 +91,7 @@ impl<const P: usize> NormalEquations<P> {
         self.right.put(place, right * self.scale[place]);
         for j in 0..self.count {
             let scaled = entry(j) * self.scale[place] * self.scale[j];
-            self.scaled.put((place, j), scaled);
-            self.scaled.put((j, place), scaled);
+            self.scaled.put_at(place, j, scaled);
         }
         Ok(())
     }
@@ -102,25 +103,25 @@ impl<const P: usize> NormalEquations<P> {
 
     /// Factors the equations of the free unknowns; the others become the identity.
     #[inline(never)]
-    fn factor(&self, free: &Free, factor: &mut Matrix<P>) -> bool {
+    fn factor(&self, free: &Free, factor: &mut Matrix) -> bool {
         for i in 0..self.count {
             for j in 0..=i {
                 let element = match (i == j, free.has(i) && free.has(j)) {
-                    (_, true) => self.scaled[(i, j)],
+                    (_, true) => self.scaled.at(i, j),
                     (true, false) => 1.0,
                     (false, false) => 0.0,
                 };
-                factor.put((i, j), element);
+                factor.put_at(i, j, element);
             }
         }
         // The diagonal holds reciprocals.
         cholesky::factor(factor, self.count)
-            && (0..self.count).all(|i| factor[(i, i)] * factor[(i, i)] * LEAST_PIVOT < 1.0)
+            && (0..self.count).all(|i| factor.at(i, i) * factor.at(i, i) * LEAST_PIVOT < 1.0)
     }
 
     /// Solves the scaled equations of the free unknowns for any right side.
     #[inline(never)]
-    fn solve_for(&self, free: &Free, x: &mut Vector<P>) -> bool {
+    fn solve_for(&self, free: &Free, x: &mut Vector) -> bool {
         let mut factor = Matrix::zeros();
         let regular = self.factor(free, &mut factor);
         if regular {
@@ -130,9 +131,9 @@ impl<const P: usize> NormalEquations<P> {
         regular
     }
 
-    fn solve_scaled(&self, free: &Free) -> Option<Vector<P>> {
+    fn solve_scaled(&self, free: &Free) -> Option<Vector> {
         // Beyond the count there may be something of an earlier use.
-        let mut solution = Vector::<P>::zeros();
+        let mut solution = Vector::zeros();
         for i in (0..self.count).filter(|&i| free.has(i)) {
             solution.put(i, self.right[i]);
         }
@@ -140,17 +141,17 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     /// `b − H β` of a scaled solution.
-    fn gradient(&self, scaled: &Vector<P>) -> Vector<P> {
-        let mut gradient = Vector::<P>::zeros();
+    fn gradient(&self, scaled: &Vector) -> Vector {
+        let mut gradient = Vector::zeros();
         for i in 0..self.count {
-            let row = (0..self.count).map(|j| self.scaled[(i, j)] * scaled[j]);
+            let row = (0..self.count).map(|j| self.scaled.at(i, j) * scaled[j]);
             gradient.put(i, self.right[i] - row.sum::<Real>());
         }
         gradient
     }
 
     /// How far a solution lowers the sum of squared residuals.
-    pub(crate) fn explained(&self, solution: &Vector<P>) -> Real {
+    pub(crate) fn explained(&self, solution: &Vector) -> Real {
         let scale = self.scale.map(|x| if x > 0.0 { x } else { 1.0 });
         let scaled = Vector::from(solution.component_div(&scale));
         let rest = self.gradient(&scaled);
@@ -160,7 +161,7 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     /// The solution with these unknowns free, whatever its signs. `None` if they cannot be told apart.
-    pub(crate) fn solve_free(&self, free: &Free) -> Option<Vector<P>> {
+    pub(crate) fn solve_free(&self, free: &Free) -> Option<Vector> {
         let solution = self.solve_scaled(free)?;
         Some(solution.component_mul(&self.scale).into())
     }
@@ -169,7 +170,7 @@ impl<const P: usize> NormalEquations<P> {
     ///
     /// # Errors
     /// [`Error::Singular`].
-    pub(crate) fn solve(&self) -> Result<Vector<P>, Error> {
+    pub(crate) fn solve(&self) -> Result<Vector, Error> {
         let all = Free::of(|i| i < self.count);
         let solution = self.solve_scaled(&all).ok_or(Error::Singular)?;
         Ok(solution.component_mul(&self.scale).into())
@@ -177,12 +178,12 @@ impl<const P: usize> NormalEquations<P> {
 
     /// The solution with no negative coefficient, and which are above zero (Lawson & Hanson 1974,
     /// ch. 23, on the normal equations). Those for which `held` is true stay at zero.
-    pub(crate) fn solve_non_negative(&self, held: &Free) -> (Vector<P>, Free) {
+    pub(crate) fn solve_non_negative(&self, held: &Free) -> (Vector, Free) {
         self.improve(Vector::zeros(), Free::default(), held)
     }
 
     /// The same, sooner where those above zero are guessed right.
-    pub(crate) fn solve_non_negative_near(&self, guess: &Free, held: &Free) -> (Vector<P>, Free) {
+    pub(crate) fn solve_non_negative_near(&self, guess: &Free, held: &Free) -> (Vector, Free) {
         match self.solve_scaled(guess) {
             Some(trial) if (0..self.count).all(|i| !guess.has(i) || trial[i] > 0.0) => {
                 self.improve(trial, *guess, held)
@@ -192,10 +193,10 @@ impl<const P: usize> NormalEquations<P> {
     }
 
     #[inline(never)]
-    fn improve(&self, mut solution: Vector<P>, mut free: Free, held: &Free) -> (Vector<P>, Free) {
+    fn improve(&self, mut solution: Vector, mut free: Free, held: &Free) -> (Vector, Free) {
         let mut refused = Free::default();
         // Each round frees one coefficient; thrice their number is the customary limit.
-        for _ in 0..3 * P {
+        for _ in 0..3 * UNKNOWNS {
             let gradient = self.gradient(&solution);
             let candidate = (0..self.count)
                 .filter(|&i| {
@@ -222,7 +223,7 @@ impl<const P: usize> NormalEquations<P> {
 
     /// Goes from a solution towards one that may have negative coefficients, holding those that
     /// reach zero, until none is negative.
-    fn retreat(&self, mut solution: Vector<P>, mut trial: Vector<P>, free: &mut Free) -> Vector<P> {
+    fn retreat(&self, mut solution: Vector, mut trial: Vector, free: &mut Free) -> Vector {
         for _ in 0..self.count {
             let held = (0..self.count)
                 .filter(|&i| free.has(i) && trial[i] <= 0.0)
@@ -244,15 +245,15 @@ impl<const P: usize> NormalEquations<P> {
 
     /// Variance of one of the free unknowns. `None` if they cannot be told apart.
     pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<Real> {
-        let mut unit = Vector::<P>::zeros();
+        let mut unit = Vector::zeros();
         unit.put(i, 1.0);
         let regular = self.solve_for(free, &mut unit);
         regular.then(|| unit[i] * self.scale[i] * self.scale[i])
     }
 
     /// Covariances of one of the free unknowns with all of them. `None` if they cannot be told apart.
-    pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector<P>> {
-        let mut unit = Vector::<P>::zeros();
+    pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector> {
+        let mut unit = Vector::zeros();
         unit.put(i, 1.0);
         let regular = self.solve_for(free, &mut unit);
         regular.then(|| (unit.component_mul(&self.scale) * self.scale[i]).into())

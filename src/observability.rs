@@ -1,8 +1,9 @@
 //! How long a record must be for an effect to show.
 
 use crate::{
+    algebra::Elements as _,
     list::numbered,
-    model::{MAX_EFFECTS, Model},
+    model::Model,
     nnls::{Free, Matrix, NormalEquations, Vector},
     real::Real,
 };
@@ -30,7 +31,7 @@ pub(crate) fn record_length_s(
     assumed.put(i, square);
     let with = free.with(i);
     let count = model.terms().len();
-    let mut equations = NormalEquations::<MAX_EFFECTS>::empty();
+    let mut equations = NormalEquations::empty();
     // The equations are `samples · Σ q/2m − Σ q/2`, q being an octave's share: each doubling adds one.
     let (mut growing, mut fixed): (Matrix, Matrix) = (Matrix::zeros(), Matrix::zeros());
     let (mut m, mut samples) = (1.0, 2.0 * samples);
@@ -46,15 +47,15 @@ pub(crate) fn record_length_s(
             for a in 0..count {
                 for b in 0..=a {
                     let share = weight * row[a] * row[b];
-                    growing.put((a, b), growing[(a, b)] + share / m);
-                    fixed.put((a, b), fixed[(a, b)] + share);
+                    growing.put_at(a, b, growing.at(a, b) + share / m);
+                    fixed.put_at(a, b, fixed.at(a, b) + share);
                 }
             }
             m *= 2.0;
         }
         let set = equations.set(count, &|a, row| {
             for b in 0..=a {
-                row.put(b, samples * growing[(a, b)] - fixed[(a, b)]);
+                row.put(b, samples * growing.at(a, b) - fixed.at(a, b));
             }
             0.0
         });

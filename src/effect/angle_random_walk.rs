@@ -1,4 +1,4 @@
-use super::{Effect, SecondDifferences, Setting, Story};
+use super::{Effect, Explain, SecondDifferences, Setting, Story};
 use crate::real::Real;
 
 /// Angle random walk, coefficient N in rate · √s: white rate noise of two-sided density N².
@@ -18,14 +18,6 @@ impl Effect for AngleRandomWalk {
 
     fn half_seconds(&self) -> i8 {
         1
-    }
-
-    fn story(&self) -> Story {
-        Story {
-            what: "angle random walk: white noise of the rate",
-            origin: "thermo-mechanical noise of the proof mass, photon shot noise, the front end's amplifier",
-            check: "compare with the datasheet's noise density; does the sensor's power mode change it?",
-        }
     }
 
     fn kernel(&self, lag: Real, setting: &Setting) -> Real {
@@ -48,5 +40,15 @@ impl Effect for AngleRandomWalk {
         sum: &mut SecondDifferences,
     ) {
         sum.add_below(m, m, |x| weight * self.second_difference(x, m, setting));
+    }
+}
+
+impl Explain for AngleRandomWalk {
+    fn story(&self) -> Story {
+        Story {
+            what: "angle random walk: white noise of the rate",
+            origin: "thermo-mechanical noise of the proof mass, photon shot noise, the front end's amplifier",
+            check: "compare with the datasheet's noise density; does the sensor's power mode change it?",
+        }
     }
 }

@@ -1,4 +1,4 @@
-use super::{Effect, Setting, Story};
+use super::{Effect, Explain, Setting, Story};
 use crate::lattice::{self, SecondDifferences};
 use crate::math;
 use crate::real::{
@@ -31,14 +31,6 @@ impl Effect for BiasInstability {
         0
     }
 
-    fn story(&self) -> Story {
-        Story {
-            what: "bias instability: flicker noise of the rate",
-            origin: "1/f noise of the electronics, discharge in a laser gyro, surface charge in MEMS",
-            check: "compare with the datasheet; does chopping or another bias current change it?",
-        }
-    }
-
     fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         if lag == 0.0 {
             return 0.0;
@@ -60,6 +52,16 @@ impl Effect for BiasInstability {
     ) {
         let tau_s = m * setting.interval_s;
         sum.add_scaled(weight * tau_s * tau_s / (2.0 * PI), &SCALE_FREE);
+    }
+}
+
+impl Explain for BiasInstability {
+    fn story(&self) -> Story {
+        Story {
+            what: "bias instability: flicker noise of the rate",
+            origin: "1/f noise of the electronics, discharge in a laser gyro, surface charge in MEMS",
+            check: "compare with the datasheet; does chopping or another bias current change it?",
+        }
     }
 }
 

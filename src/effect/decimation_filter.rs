@@ -1,4 +1,6 @@
-use super::{AngleRandomWalk, Effect, Parameter, Range, SecondDifferences, Setting, Span, Story};
+use super::{
+    AngleRandomWalk, Effect, Explain, Parameter, Range, SecondDifferences, Setting, Span, Story,
+};
 use crate::math;
 use crate::real::Real;
 
@@ -115,14 +117,6 @@ impl Effect for DecimationFilter {
         1
     }
 
-    fn story(&self) -> Story {
-        Story {
-            what: "a decimation filter: white noise is averaged over longer than a sample interval",
-            origin: "the sensor's own digital filter, a moving average or a Bartlett window, set to fewer hertz than the output rate carries",
-            check: "read the sensor's filter register and its group delay; open the filter and see the deficit at short averaging times go",
-        }
-    }
-
     fn parameters(&self) -> &'static [Parameter] {
         &[
             Parameter {
@@ -199,5 +193,15 @@ impl Effect for DecimationFilter {
         sum.add_below(m, m + filter.support, |x| {
             weight * filter.second_difference(x, m)
         });
+    }
+}
+
+impl Explain for DecimationFilter {
+    fn story(&self) -> Story {
+        Story {
+            what: "a decimation filter: white noise is averaged over longer than a sample interval",
+            origin: "the sensor's own digital filter, a moving average or a Bartlett window, set to fewer hertz than the output rate carries",
+            check: "read the sensor's filter register and its group delay; open the filter and see the deficit at short averaging times go",
+        }
     }
 }

@@ -1,4 +1,6 @@
-use super::{Effect, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole};
+use super::{
+    Effect, Explain, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole,
+};
 use crate::real::Real;
 
 /// Exponentially correlated noise, coefficient its rms in rate, correlation time T_c: one real pole.
@@ -33,14 +35,6 @@ impl Effect for GaussMarkov {
 
     fn half_seconds(&self) -> i8 {
         0
-    }
-
-    fn story(&self) -> Story {
-        Story {
-            what: "exponentially correlated noise: a disturbance that forgets itself after its correlation time",
-            origin: "temperature control loops, charge trapping in the sense electronics, slow mechanical relaxation of the package",
-            check: "log temperature and supply beside the rate; does the correlation time change with either?",
-        }
     }
 
     fn parameters(&self) -> &'static [Parameter] {
@@ -81,6 +75,16 @@ impl Effect for GaussMarkov {
     ) {
         let weight = weight * squared(setting.interval_s);
         pole(setting).add_second_differences(m, weight, sum);
+    }
+}
+
+impl Explain for GaussMarkov {
+    fn story(&self) -> Story {
+        Story {
+            what: "exponentially correlated noise: a disturbance that forgets itself after its correlation time",
+            origin: "temperature control loops, charge trapping in the sense electronics, slow mechanical relaxation of the package",
+            check: "log temperature and supply beside the rate; does the correlation time change with either?",
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 use super::{
-    AngleRandomWalk, Effect, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole,
+    AngleRandomWalk, Effect, Explain, Parameter, Range, SecondDifferences, Setting, Span, Story,
+    pole::Pole,
 };
 use crate::real::Real;
 
@@ -35,14 +36,6 @@ impl Effect for LowPass {
 
     fn half_seconds(&self) -> i8 {
         1
-    }
-
-    fn story(&self) -> Story {
-        Story {
-            what: "a first-order low pass: white noise is cut off before it is sampled",
-            origin: "an analogue RC filter, or a digital smoothing filter of one pole, in the sensor's signal path",
-            check: "read the sensor's bandwidth setting; does the deficit at short averaging times move with it?",
-        }
     }
 
     fn parameters(&self) -> &'static [Parameter] {
@@ -94,6 +87,16 @@ impl Effect for LowPass {
         sum: &mut SecondDifferences,
     ) {
         pole(setting).add_second_differences(m, weight * scale(setting), sum);
+    }
+}
+
+impl Explain for LowPass {
+    fn story(&self) -> Story {
+        Story {
+            what: "a first-order low pass: white noise is cut off before it is sampled",
+            origin: "an analogue RC filter, or a digital smoothing filter of one pole, in the sensor's signal path",
+            check: "read the sensor's bandwidth setting; does the deficit at short averaging times move with it?",
+        }
     }
 }
 

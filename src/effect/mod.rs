@@ -125,9 +125,6 @@ pub trait Effect: Sync {
         self.name()
     }
 
-    /// What it is, where it comes from, what to check.
-    fn story(&self) -> Story;
-
     /// The shape parameters, up to [`MAX_PARAMETERS`].
     fn parameters(&self) -> &'static [Parameter] {
         &[]
@@ -175,20 +172,6 @@ pub trait Effect: Sync {
         self.kernel(x + m, setting) - 2.0 * self.kernel(x, setting) + self.kernel(apart, setting)
     }
 
-    /// τ_j τ_k times the covariance of two differences of adjacent cluster means, of `m_j ≤ m_k`
-    /// samples, whose middles lie `offset ≥ 0` samples apart:
-    /// `Σ w_u w_v G(ℓ + v m_k − u m_j)` with `w = (1, −2, 1)`.
-    fn cross_difference(&self, m_j: Real, m_k: Real, offset: Real, setting: &Setting) -> Real {
-        let apart = if offset < m_k {
-            m_k - offset
-        } else {
-            offset - m_k
-        };
-        self.second_difference(apart, m_j, setting)
-            - 2.0 * self.second_difference(offset, m_j, setting)
-            + self.second_difference(offset + m_k, m_j, setting)
-    }
-
     /// Allan variance `σ²(mτ₀)`, in the rate unit squared per coefficient squared.
     fn variance(&self, m: Real, setting: &Setting) -> Real {
         let tau_s = m * setting.interval_s;
@@ -228,6 +211,13 @@ pub trait Effect: Sync {
     }
 }
 
+/// What people are told of an effect: apart from what it computes, so that firmware that tells nobody has no
+/// room to spend on words.
+pub trait Explain: Effect {
+    /// What it is, where it comes from, what to check.
+    fn story(&self) -> Story;
+}
+
 /// The five terms of IEEE Std 952-1997, annex C, in the order of their slopes.
 pub const IEEE_952: [&dyn Effect; 5] = [
     &Quantization,
@@ -237,18 +227,33 @@ pub const IEEE_952: [&dyn Effect; 5] = [
     &RateRamp,
 ];
 
-/// Every effect that a diagnosis tries. An effect of one's own takes a file beside the others and a
-/// line here, or none in this crate: a diagnosis takes any list.
-pub const CATALOGUE: [&dyn Effect; 11] = [
-    &Quantization,
-    &AngleRandomWalk,
-    &BiasInstability,
-    &RateRandomWalk,
-    &RateRamp,
-    &GaussMarkov,
-    &Sinusoid,
-    &Resonance,
-    &LowPass,
-    &DecimationFilter,
-    &RandomTelegraph,
-];
+/// The catalogue, once: effects to compute with, and what to tell of them.
+macro_rules! catalogue {
+    ($($effect:ident,)*) => {
+        /// Every effect that a diagnosis tries. An effect of one's own takes a file beside the others and
+        /// a line here, or none in this crate: a diagnosis takes any list.
+        pub const CATALOGUE: [&dyn Effect; [$(stringify!($effect)),*].len()] = [$(&$effect),*];
+
+        const EXPLAINED: [&dyn Explain; CATALOGUE.len()] = [$(&$effect),*];
+    };
+}
+
+catalogue! {
+    Quantization,
+    AngleRandomWalk,
+    BiasInstability,
+    RateRandomWalk,
+    RateRamp,
+    GaussMarkov,
+    Sinusoid,
+    Resonance,
+    LowPass,
+    DecimationFilter,
+    RandomTelegraph,
+}
+
+/// What to tell of an effect of the catalogue, by its name.
+pub fn story(name: &str) -> Option<Story> {
+    let mut named = EXPLAINED.iter().filter(|effect| effect.name() == name);
+    named.next().map(|effect| effect.story())
+}

@@ -1,4 +1,4 @@
-use super::{Effect, Setting, Story};
+use super::{Effect, Explain, Setting, Story};
 use crate::lattice::SecondDifferences;
 use crate::real::Real;
 
@@ -22,14 +22,6 @@ impl Effect for Quantization {
         2
     }
 
-    fn story(&self) -> Story {
-        Story {
-            what: "quantization noise: the angle is rounded, or its sampling instant jitters",
-            origin: "the resolution of an angle-integrating output, jitter of the sample clock, readout of a laser gyro's fringe count",
-            check: "does it change with the output's resolution or the clock? a rate-output gyro has little of it",
-        }
-    }
-
     fn kernel(&self, lag: Real, _: &Setting) -> Real {
         if lag == 0.0 { 1.0 } else { 0.0 }
     }
@@ -44,5 +36,15 @@ impl Effect for Quantization {
         // G(0) is met at x = 0, twice and negative, and at x = m.
         sum.add_at(0, -2.0 * weight);
         sum.add_at(4, weight);
+    }
+}
+
+impl Explain for Quantization {
+    fn story(&self) -> Story {
+        Story {
+            what: "quantization noise: the angle is rounded, or its sampling instant jitters",
+            origin: "the resolution of an angle-integrating output, jitter of the sample clock, readout of a laser gyro's fringe count",
+            check: "does it change with the output's resolution or the clock? a rate-output gyro has little of it",
+        }
     }
 }

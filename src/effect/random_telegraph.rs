@@ -1,5 +1,5 @@
 use super::{
-    Effect, GaussMarkov, Parameter, Range, SecondDifferences, Setting, Span, Story,
+    Effect, Explain, GaussMarkov, Parameter, Range, SecondDifferences, Setting, Span, Story,
     gauss_markov::{PARAMETERS, correlation_times},
 };
 use crate::real::Real;
@@ -27,14 +27,6 @@ impl Effect for RandomTelegraph {
 
     fn half_seconds(&self) -> i8 {
         0
-    }
-
-    fn story(&self) -> Story {
-        Story {
-            what: "random telegraph noise: the rate jumps between two levels",
-            origin: "a single defect in the sense electronics that captures and releases charge (popcorn noise), a stick-slip contact in the package",
-            check: "plot the rate averaged over a fifth of the correlation time: are there two levels? exchange the amplifier or cool it",
-        }
     }
 
     fn parameters(&self) -> &'static [Parameter] {
@@ -78,5 +70,15 @@ impl Effect for RandomTelegraph {
         sum: &mut SecondDifferences,
     ) {
         GaussMarkov.add_second_differences(m, weight, setting, sum);
+    }
+}
+
+impl Explain for RandomTelegraph {
+    fn story(&self) -> Story {
+        Story {
+            what: "random telegraph noise: the rate jumps between two levels",
+            origin: "a single defect in the sense electronics that captures and releases charge (popcorn noise), a stick-slip contact in the package",
+            check: "plot the rate averaged over a fifth of the correlation time: are there two levels? exchange the amplifier or cool it",
+        }
     }
 }

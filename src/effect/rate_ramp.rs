@@ -1,4 +1,4 @@
-use super::{Effect, Response, Setting, Story};
+use super::{Effect, Explain, Response, Setting, Story};
 use crate::real::Real;
 
 /// Rate ramp, coefficient R in rate / s: the rate drifts steadily, the same in every difference.
@@ -20,14 +20,6 @@ impl Effect for RateRamp {
         -2
     }
 
-    fn story(&self) -> Story {
-        Story {
-            what: "rate ramp: the rate drifts steadily",
-            origin: "warming up after power-on, a steady temperature gradient, a slow turn of the mount",
-            check: "let the sensor warm up before recording; log temperature beside the rate",
-        }
-    }
-
     fn kernel(&self, lag: Real, setting: &Setting) -> Real {
         let t2 = setting.interval_s * setting.interval_s;
         let n2 = lag * lag;
@@ -47,5 +39,15 @@ impl Effect for RateRamp {
             amplitude: tau_s * tau_s,
             phase: 0.0,
         })
+    }
+}
+
+impl Explain for RateRamp {
+    fn story(&self) -> Story {
+        Story {
+            what: "rate ramp: the rate drifts steadily",
+            origin: "warming up after power-on, a steady temperature gradient, a slow turn of the mount",
+            check: "let the sensor warm up before recording; log temperature beside the rate",
+        }
     }
 }

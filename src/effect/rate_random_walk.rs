@@ -1,4 +1,4 @@
-use super::{Effect, SecondDifferences, Setting, Story};
+use super::{Effect, Explain, SecondDifferences, Setting, Story};
 use crate::real::Real;
 
 /// Rate random walk, coefficient K in rate / √s: the rate is a walk, stepped once a sample.
@@ -19,14 +19,6 @@ impl Effect for RateRandomWalk {
 
     fn half_seconds(&self) -> i8 {
         -1
-    }
-
-    fn story(&self) -> Story {
-        Story {
-            what: "rate random walk: the rate itself wanders",
-            origin: "ageing, slow temperature drift, creep of the package's stress",
-            check: "log temperature beside the rate and record for longer",
-        }
     }
 
     fn kernel(&self, lag: Real, setting: &Setting) -> Real {
@@ -55,5 +47,15 @@ impl Effect for RateRandomWalk {
         let t = setting.interval_s;
         let slope = 0.5 * weight * t * t * t * m * m;
         sum.add_from(m, |x| slope * x);
+    }
+}
+
+impl Explain for RateRandomWalk {
+    fn story(&self) -> Story {
+        Story {
+            what: "rate random walk: the rate itself wanders",
+            origin: "ageing, slow temperature drift, creep of the package's stress",
+            check: "log temperature beside the rate and record for longer",
+        }
     }
 }

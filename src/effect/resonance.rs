@@ -1,4 +1,6 @@
-use super::{Effect, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole};
+use super::{
+    Effect, Explain, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole,
+};
 use crate::real::Real;
 use crate::real::consts::PI;
 
@@ -33,14 +35,6 @@ impl Effect for Resonance {
 
     fn half_seconds(&self) -> i8 {
         0
-    }
-
-    fn story(&self) -> Story {
-        Story {
-            what: "a resonance: an oscillation with a phase that wanders",
-            origin: "a mode of the board, the mount or the proof mass excited by vibration; an alias of the drive or of its beat with another gyro's",
-            check: "tap the board; change the mount's stiffness; change the sample rate a little: an alias moves, a mechanical mode stays",
-        }
     }
 
     fn parameters(&self) -> &'static [Parameter] {
@@ -101,6 +95,16 @@ impl Effect for Resonance {
     ) {
         let weight = weight * squared(setting.interval_s);
         pole(setting).add_second_differences(m, weight, sum);
+    }
+}
+
+impl Explain for Resonance {
+    fn story(&self) -> Story {
+        Story {
+            what: "a resonance: an oscillation with a phase that wanders",
+            origin: "a mode of the board, the mount or the proof mass excited by vibration; an alias of the drive or of its beat with another gyro's",
+            check: "tap the board; change the mount's stiffness; change the sample rate a little: an alias moves, a mechanical mode stays",
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-use super::{Effect, Parameter, Range, Response, Setting, Span, Story};
+use super::{Effect, Explain, Parameter, Range, Response, Setting, Span, Story};
 use crate::math;
 use crate::real::{
     Real,
@@ -40,14 +40,6 @@ impl Effect for Sinusoid {
 
     fn half_seconds(&self) -> i8 {
         0
-    }
-
-    fn story(&self) -> Story {
-        Story {
-            what: "a sinusoid: a steady oscillation of one frequency",
-            origin: "mains hum, a fan or a turntable's drive, the dither of a laser gyro, an alias of the drive frequency",
-            check: "switch off motors and supplies one by one; change the sample rate a little: an alias moves, a true line stays",
-        }
     }
 
     fn parameters(&self) -> &'static [Parameter] {
@@ -98,6 +90,16 @@ impl Effect for Sinusoid {
             amplitude: half * setting.interval_s * kernel_root(m, setting),
             phase: 2.0 * PI * (turns - math::floor(turns)),
         })
+    }
+}
+
+impl Explain for Sinusoid {
+    fn story(&self) -> Story {
+        Story {
+            what: "a sinusoid: a steady oscillation of one frequency",
+            origin: "mains hum, a fan or a turntable's drive, the dither of a laser gyro, an alias of the drive frequency",
+            check: "switch off motors and supplies one by one; change the sample rate a little: an alias moves, a true line stays",
+        }
     }
 }
 

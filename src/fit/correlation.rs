@@ -95,7 +95,7 @@ impl Fit {
         if shape.set(&problem, &weights, &squares) {
             correlations.take(count, &free, |i| shape.column(i, &free));
         } else {
-            let mut equations = NormalEquations::<MAX_EFFECTS>::empty();
+            let mut equations = NormalEquations::empty();
             weights.equations(&problem, &|_| 1.0, &[], &|_| 0.0, &mut equations)?;
             correlations.take(count, &free, |i| equations.column(i, &free));
         }
@@ -105,13 +105,8 @@ impl Fit {
 
 impl Correlations {
     /// Takes the columns of a covariance.
-    fn take<const P: usize>(
-        &mut self,
-        count: usize,
-        free: &Free,
-        column: impl Fn(usize) -> Option<Vector<P>>,
-    ) {
-        let mut variances = Vector::<MAX_EFFECTS>::zeros();
+    fn take(&mut self, count: usize, free: &Free, column: impl Fn(usize) -> Option<Vector>) {
+        let mut variances = Vector::zeros();
         for i in 0..count {
             let own = if free.has(i) { column(i) } else { None };
             if let Some(own) = &own {

@@ -11,7 +11,7 @@ use crate::{
     error::Error,
     list::numbered,
     math,
-    model::{MAX_EFFECTS, Term},
+    model::Term,
     nnls::{Free, NormalEquations, Vector},
     observability::record_length_s,
     real::{Real, real},
@@ -290,7 +290,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
     fn bound(&self, i: usize, first: Real) -> Real {
         let problem = self.problem;
         let curve = |k: usize| problem.measured(k);
-        let mut equations = NormalEquations::<MAX_EFFECTS>::empty();
+        let mut equations = NormalEquations::empty();
         let mut bound = first;
         for _ in 0..BOUND_ROUNDS {
             let scatter = |k: usize| 1.0 + bound * problem.unit(i, k) / self.weights.model[k];

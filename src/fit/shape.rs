@@ -5,7 +5,7 @@ use crate::{
     algebra,
     list::{self, numbered},
     math,
-    model::{MAX_EFFECTS, Term},
+    model::Term,
     nnls::{Free, NormalEquations, Vector},
     real::Real,
 };
@@ -13,8 +13,6 @@ use heapless::Vec;
 
 /// Fitted shape parameters that one model has room for.
 pub const MAX_SHAPE: usize = 4;
-
-const UNKNOWNS: usize = MAX_EFFECTS + MAX_SHAPE;
 
 /// Relative step of the numerical derivatives.
 const STEP: Real = 0.01;
@@ -38,7 +36,7 @@ pub struct ShapeEstimate {
 /// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
 /// linear around the solution.
 pub(crate) struct ShapeEquations {
-    equations: NormalEquations<UNKNOWNS>,
+    equations: NormalEquations,
     parameters: Vec<(usize, usize, Term), MAX_SHAPE>,
 }
 
@@ -118,7 +116,7 @@ impl ShapeEquations {
     }
 
     /// Covariances of a squared coefficient with all of them, the shapes free.
-    pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector<UNKNOWNS>> {
+    pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector> {
         let free = self.with_shapes(free, self.count());
         self.equations.column(i, &free)
     }

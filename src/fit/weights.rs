@@ -113,13 +113,13 @@ impl<const K: usize> Weights<K> {
     /// The normal equations `A'C⁻¹A β = A'C⁻¹y`, one column at a time, with the standard error of octave
     /// `k` enlarged by `scatter(k)`. Behind the model's own columns there may be `more`.
     #[inline(never)]
-    pub(crate) fn equations<const P: usize>(
+    pub(crate) fn equations(
         &self,
         problem: &Problem<'_, K>,
         scatter: &dyn Fn(usize) -> Real,
         more: &[algebra::Vector<K, f32>],
         right: &dyn Fn(usize) -> Real,
-        equations: &mut NormalEquations<P>,
+        equations: &mut NormalEquations,
     ) -> Result<(), Error> {
         let n = problem.points.len().min(K);
         let count = problem.count();

@@ -8,7 +8,7 @@ use super::{
 use crate::log::OCTAVES;
 use allanite::{
     Addition, Candidate, Follows, Step, Swap, Term, Verdict,
-    effect::{Story, covariate},
+    effect::{Story, covariate, story},
 };
 
 /// What a step of a diagnosis added, and why.
@@ -17,7 +17,7 @@ pub(super) struct Finding {
     pub(super) name: String,
     /// Its shape and its size, with intervals.
     pub(super) found: Option<String>,
-    story: Story,
+    story: Option<Story>,
     /// What it changes in the model or in the curve.
     change: Option<(&'static str, String)>,
     /// What cannot be told from it.
@@ -55,7 +55,7 @@ impl Finding {
         Self {
             name,
             found: found(after, effect.name(), diagnosed),
-            story: effect.story(),
+            story: story(effect.name()),
             change: change.map(|change| ("in the model", change)),
             ambiguous: None,
         }
@@ -76,7 +76,7 @@ impl Finding {
         Self {
             name: format!("{} {channel}", words::plain(covariate::NAME)),
             found: Some(found),
-            story: covariate::STORY,
+            story: Some(covariate::STORY),
             change: Some(("in the curve", change)),
             ambiguous: None,
         }
@@ -84,14 +84,16 @@ impl Finding {
 
     /// What it is, where it comes from, what to check, and what it changes: each with its label.
     pub(super) fn lines(&self) -> Vec<(&'static str, &str)> {
-        let story = [
-            ("what it is", self.story.what),
-            ("where it comes from", self.story.origin),
-            ("what to check", self.story.check),
-        ];
+        let story = self.story.map(|story| {
+            [
+                ("what it is", story.what),
+                ("where it comes from", story.origin),
+                ("what to check", story.check),
+            ]
+        });
         let change = self.change.as_ref();
         let change = change.map(|(label, text)| (*label, text.as_str()));
-        story.into_iter().chain(change).collect()
+        story.into_iter().flatten().chain(change).collect()
     }
 }
 

@@ -4,25 +4,26 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+/// The arguments are seeds to characterise gyros with, instead of the image's.
 #[cfg(not(target_os = "none"))]
-fn main() -> std::process::ExitCode {
-    use allanite::demonstration::{characterise::Characterised, tell};
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    use allanite::demonstration::{characterise, tell};
 
-    match Characterised::run() {
-        Ok(test) => {
-            tell::characterised(&test, |line| println!("{line}"));
-            u8::from(!test.passed()).into()
-        }
-        Err(error) => {
-            eprintln!("no fit: {error}");
-            std::process::ExitCode::FAILURE
-        }
+    let seeds = std::env::args().skip(1).map(|seed| seed.parse());
+    let mut seeds = seeds.collect::<Result<Vec<u64>, _>>()?;
+    if seeds.is_empty() {
+        seeds.push(characterise::SEED);
     }
+    for seed in seeds {
+        let test = characterise::Characterised::run(seed)?;
+        tell::characterised(&test, |line| println!("{line}"));
+    }
+    Ok(())
 }
 
 #[cfg(target_os = "none")]
 mod image {
-    use allanite::demonstration::{characterise::Characterised, tell};
+    use allanite::demonstration::{characterise, tell};
     // Critical sections of a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;
@@ -33,7 +34,7 @@ mod image {
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
     #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
     fn main() -> ! {
-        let test = match Characterised::run() {
+        let test = match characterise::Characterised::run(characterise::SEED) {
             Ok(test) => test,
             Err(error) => {
                 defmt::error!("no fit: {}", error);

@@ -5,22 +5,23 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+/// Behind the name there may be seeds to diagnose gyros with, instead of the image's.
 #[cfg(not(target_os = "none"))]
-fn main() -> std::process::ExitCode {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     use allanite::demonstration::{diagnose, tell};
 
-    let name = std::env::args().nth(1).unwrap_or_default();
-    let step = |step: &_| tell::step(step, |line| println!("{line}"));
-    match diagnose::diagnose(diagnose::hidden(&name), step) {
-        Ok(verdict) => {
-            println!("verdict {verdict:?}");
-            std::process::ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("no diagnosis: {error}");
-            std::process::ExitCode::FAILURE
-        }
+    let disturbance = diagnose::hidden(&std::env::args().nth(1).unwrap_or_default());
+    let seeds = std::env::args().skip(2).map(|seed| seed.parse());
+    let mut seeds = seeds.collect::<Result<Vec<u64>, _>>()?;
+    if seeds.is_empty() {
+        seeds.push(diagnose::SEED);
     }
+    for seed in seeds {
+        let step = |step: &_| tell::step(step, |line| println!("{line}"));
+        let verdict = diagnose::diagnose(disturbance, seed, step)?;
+        println!("verdict {verdict:?}");
+    }
+    Ok(())
 }
 
 #[cfg(target_os = "none")]
@@ -47,7 +48,7 @@ mod image {
                 defmt::info!("{}", defmt::Display2Format(&line));
             });
         };
-        match diagnose::diagnose(diagnose::hidden(name), step) {
+        match diagnose::diagnose(diagnose::hidden(name), diagnose::SEED, step) {
             Ok(verdict) => {
                 defmt::info!("verdict {}", defmt::Debug2Format(&verdict));
                 semihosting::process::exit(0)

@@ -18,7 +18,8 @@ pub const OCTAVES: usize = 20;
 /// Length of the record.
 pub const SAMPLES: usize = 1 << 20;
 
-const SEED: u64 = 952;
+/// The seed of its noise, where there is no reason for another.
+pub const SEED: u64 = 952;
 
 /// What came out.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,13 +34,13 @@ pub struct Characterised {
 }
 
 impl Characterised {
-    /// Simulates, accumulates and fits.
+    /// Simulates a gyro whose noise has a seed, accumulates and fits.
     ///
     /// # Errors
     /// Those of [`fit`].
-    pub fn run() -> Result<Self, Error> {
+    pub fn run(seed: u64) -> Result<Self, Error> {
         let scale = Scale::new(1.0 / 131.0, 100.0)?;
-        let curve = accumulated(scale);
+        let curve = accumulated(scale, seed);
         let fit = fit(&curve, &Model::ieee_952(), Settings::default())?;
         Ok(Self {
             curve,
@@ -61,9 +62,9 @@ impl Characterised {
 
 /// A call of its own: on a core of 16 KiB of RAM, gyro and accumulator leave the stack to the fit.
 #[inline(never)]
-fn accumulated(scale: Scale) -> Curve<OCTAVES> {
+fn accumulated(scale: Scale, seed: u64) -> Curve<OCTAVES> {
     let mut accumulator = Accumulator::<OCTAVES>::new();
-    for count in SimulatedGyro::new(AMPLITUDES, SEED).take(SAMPLES) {
+    for count in SimulatedGyro::new(AMPLITUDES, seed).take(SAMPLES) {
         accumulator.push(count);
     }
     accumulator.curve(scale)

@@ -56,19 +56,20 @@ pub fn hidden(name: &str) -> Option<Disturbance> {
     named.next().map(|&(_, disturbance)| disturbance)
 }
 
-/// Simulates a gyro with a disturbance and diagnoses it; every step is handed to `report`. The diagnosis
+/// Simulates a gyro with a disturbance, its noise of a seed, and diagnoses it; every step is handed to `report`. The diagnosis
 /// knows the counts alone.
 ///
 /// # Errors
 /// As of [`Diagnosis::run`].
 pub fn diagnose(
     disturbance: Option<Disturbance>,
+    seed: u64,
     report: impl FnMut(&Step<OCTAVES>),
 ) -> Result<Verdict, Error> {
     let mut accumulator = Accumulator::<OCTAVES>::new();
     let mut moments = FourthMoments::<OCTAVES>::new();
     let mut integrity = Integrity::default();
-    for count in SimulatedGyro::disturbed(AMPLITUDES, disturbance, SEED).take(SAMPLES) {
+    for count in SimulatedGyro::disturbed(AMPLITUDES, disturbance, seed).take(SAMPLES) {
         accumulator.push(count);
         moments.push(count);
         integrity.push(count);
@@ -84,4 +85,5 @@ pub fn diagnose(
     Diagnosis::default().run(&curve, &evidence, &model, &CATALOGUE, report)
 }
 
-const SEED: u64 = 1952;
+/// The seed of its noise, where there is no reason for another.
+pub const SEED: u64 = 1952;

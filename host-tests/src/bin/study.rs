@@ -1,12 +1,14 @@
 //! The studies behind the README's figures: `cargo xtask study NAME`.
 
 use allanite::Settings;
+use anyhow::Result;
 use clap::{Parser, Subcommand};
 use host_tests::{
     simulate::{Coefficients, Preset},
     study::{
         coefficients,
         hidden_effect::{CASES, Strength, both_found, false_alarms, hide, study},
+        precision, quantile,
         self_test::{self, Looks},
         theory, thermal,
     },
@@ -54,6 +56,12 @@ enum Study {
         #[arg(long, default_value_t = 2000)]
         devices: u64,
     },
+    /// What single precision makes of the same records, beside double
+    Precision {
+        /// Records a table
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+    },
     /// Errors of the coefficients and coverage of their intervals, for every method
     Coefficients {
         /// Records a method
@@ -65,7 +73,7 @@ enum Study {
     },
 }
 
-fn main() {
+fn main() -> Result<()> {
     match Arguments::parse().study {
         Study::Theory { records } => theory(records),
         Study::HiddenEffect {
@@ -76,8 +84,35 @@ fn main() {
         } => hidden(records, clean, preset, effect.as_deref()),
         Study::Thermal { records } => temperatures(records),
         Study::SelfTest { devices } => self_tests(devices),
+        Study::Precision { records } => precisions(records)?,
         Study::Coefficients { records, tolerance } => accuracies(records, tolerance),
     }
+    Ok(())
+}
+
+fn precisions(records: u64) -> Result<()> {
+    let fits = precision::fits(records)?;
+    println!("single beside double precision: fits of {records} records of 2^20 samples");
+    println!(
+        "{:>28} {:>9} {:>9} {:>9}",
+        "difference of", "median", "99 %", "largest"
+    );
+    for (what, sorted) in [
+        ("coefficients, in errors", &fits.standard_errors),
+        ("χ²", &fits.chi_squared),
+    ] {
+        let [median, most, largest] = [0.5, 0.99, 1.0].map(|share| quantile(sorted, share));
+        println!("{what:>28} {median:>9.1e} {most:>9.1e} {largest:>9.1e}");
+    }
+    println!("\ndiagnoses of {records} records of 2^17 samples each");
+    println!(
+        "{:>28} {:>9} {:>22}",
+        "hidden", "the same", "ambiguous otherwise"
+    );
+    for (name, alike) in precision::diagnoses(records)? {
+        println!("{name:>28} {:>9} {:>22}", alike.same, alike.ambiguous);
+    }
+    Ok(())
 }
 
 fn theory(records: u64) {

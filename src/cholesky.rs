@@ -6,7 +6,7 @@
 use crate::{
     algebra::{Elements, Number, Square, Vector},
     math,
-    real::{Real, double, real},
+    real::{Real, double, real, single},
 };
 
 /// What a factor's elements are kept in.
@@ -27,7 +27,7 @@ impl Element for f64 {
 
 impl Element for f32 {
     fn new(value: Real) -> Self {
-        value as f32
+        single(value)
     }
 
     fn value(self) -> Real {

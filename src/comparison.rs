@@ -9,7 +9,7 @@ use crate::{
     math,
     model::{MAX_EFFECTS, Model},
     nnls::Vector,
-    real::Real,
+    real::{Real, single},
 };
 use heapless::Vec;
 
@@ -152,7 +152,7 @@ impl<const K: usize> Comparison<K> {
                 measured: point.variance,
                 model: model * problem.unit,
                 z: (problem.measured(k) - model) / (weights.model[k] * weights.relative_error(k)),
-                shares: core::array::from_fn(|i| problem.share(k, i, squares) as f32),
+                shares: core::array::from_fn(|i| single(problem.share(k, i, squares))),
             };
             sum_of_squares += octave.percent() * octave.percent();
             // As many as the curve has.

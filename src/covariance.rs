@@ -24,7 +24,7 @@ use crate::{
     list::numbered,
     math::{self, floor_log2},
     model::{MAX_EFFECTS, Model, Term},
-    real::{Real, real},
+    real::{Real, real, single},
 };
 use heapless::Vec;
 use nalgebra::{Complex, SMatrix};
@@ -112,7 +112,7 @@ pub(crate) fn covariance(
             for wave in &mut waves {
                 let setting = wave.term.setting(interval_s);
                 let long = wave.term.effect.response(real(longer.m), &setting);
-                wave.product = long.map_or(0.0, |long| (wave.size * long.amplitude) as f32);
+                wave.product = long.map_or(0.0, |long| single(wave.size * long.amplitude));
                 wave.now = START;
             }
             each(k, j, pair.covariance(&random, &turns, &mut waves));
@@ -150,7 +150,7 @@ impl Wave<'_> {
             Some(turn) => self.now * turn,
             None => {
                 let turns = self.phase / (2.0 * PI) * (real(lag) + real(step));
-                Complex::new(math::sincos_of_turns(turns).1 as f32, 0.0)
+                Complex::new(single(math::sincos_of_turns(turns).1), 0.0)
             }
         };
     }
@@ -177,7 +177,7 @@ impl Turn {
         let (sine, cosine) = math::sincos_of_turns(phase / (2.0 * PI));
         let mut turn = Complex::new(cosine, sine);
         let steps = core::array::from_fn(|_| {
-            let here = Complex::new(turn.re as f32, turn.im as f32);
+            let here = Complex::new(single(turn.re), single(turn.im));
             turn *= turn;
             here
         });

@@ -3,7 +3,7 @@
 use crate::{
     list::numbered,
     math::floor_log2,
-    real::{Real, real},
+    real::{Real, real, single},
 };
 use nalgebra::Complex;
 
@@ -160,7 +160,7 @@ impl SecondDifferences {
         let unit = if unit > 0.0 { unit } else { 1.0 };
         let reciprocal = 1.0 / unit;
         Rounded {
-            values: self.values.map(|value| (value * reciprocal) as f32),
+            values: self.values.map(|value| single(value * reciprocal)),
             unit,
         }
     }

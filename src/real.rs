@@ -26,6 +26,11 @@ pub(crate) fn real(x: impl AsPrimitive<Real>) -> Real {
     x.as_()
 }
 
+/// The nearest number in single precision, for what nothing more depends on.
+pub(crate) fn single(x: Real) -> f32 {
+    x.as_()
+}
+
 /// The same number in double precision, for what is stored or logged.
 pub(crate) fn double(x: Real) -> f64 {
     x.as_()

@@ -10,8 +10,10 @@ use host_tests::{
     firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run},
     log::Axis,
     program::command,
+    study::precision,
     unit::Unit,
 };
+use rayon::prelude::*;
 use std::{
     process::{Command, Stdio},
     thread,
@@ -20,12 +22,12 @@ use std::{
 
 #[test]
 fn every_core_and_the_host_agree_to_the_bit() {
-    for core in Core::all() {
-        println!("{core}");
-        let difference = agreement::difference(&core);
+    let cores: Vec<Core> = Core::all().collect();
+    cores.par_iter().for_each(|core| {
+        let difference = agreement::difference(core);
         let difference = difference.unwrap_or_else(|error| panic!("{core}: {error:#}"));
         assert_eq!(difference, None, "{core}");
-    }
+    });
 }
 
 #[test]
@@ -72,6 +74,19 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
         assert!(samples > 100, "{samples}");
         assert_eq!(saved.axes, [sent], "after {samples} samples");
         std::fs::remove_file(&curve).expect("a file");
+    }
+}
+
+#[test]
+fn single_precision_says_what_double_says() {
+    let fits = precision::fits(4).unwrap_or_else(|error| panic!("{error:#}"));
+    assert!(fits.standard_errors.len() > 4 * 4);
+    let largest = |sorted: &[f64]| sorted.last().copied().unwrap_or(f64::NAN);
+    assert!(largest(&fits.standard_errors) < 2e-3, "{fits:?}");
+    assert!(largest(&fits.chi_squared) < 2e-3, "{fits:?}");
+    let diagnoses = precision::diagnoses(2).unwrap_or_else(|error| panic!("{error:#}"));
+    for (name, alike) in diagnoses {
+        assert_eq!((alike.records, alike.same), (2, 2), "{name}");
     }
 }
 

@@ -1,6 +1,10 @@
 //! The README shows what its reader will see.
 
-use host_tests::firmware::{budgets, figures};
+use host_tests::firmware::{
+    Precision,
+    budgets::{self, target},
+    figures,
+};
 use host_tests::program::output;
 use std::{fs, path::Path};
 
@@ -66,12 +70,20 @@ fn figures_are_those_of_the_budgets() {
 #[test]
 fn memory_that_is_promised_is_enough() {
     let budgets = budgets::committed().unwrap();
-    let ram = |core: &str| {
-        let entries = budgets["cores"].as_array().unwrap().iter();
-        let entry = entries.clone().find(|entry| entry["core"] == core).unwrap();
-        entry["ram_bytes"].as_u64().unwrap()
+    for core in budgets["cores"].as_array().unwrap() {
+        let ram = core["ram_bytes"].as_u64().unwrap();
+        assert!(core["core"] != "Cortex-M0" || ram < 16 * 1024, "{core}");
+    }
+    let most = |precision, figure: &str, kibibytes: u64| {
+        let bytes = budgets[target(precision)][figure].as_u64().unwrap();
+        assert!(bytes <= kibibytes * 1024, "{figure}: {bytes}");
     };
-    assert!(ram("Cortex-M0") < 16 * 1024);
-    let three_axes = &budgets["target"]["ram_bytes_three_axes_20_with_diagnosis"];
-    assert!(three_axes.as_u64().unwrap() < 32 * 1024);
+    for precision in Precision::ALL {
+        most(precision, "ram_bytes_three_axes_20_with_diagnosis", 32);
+        most(precision, "flash_bytes_accumulator", 3);
+        most(precision, "stack_bytes_fit_20", 12);
+        most(precision, "stack_bytes_diagnosis_20", 16);
+    }
+    most(Precision::Single, "flash_bytes_with_fit", 24);
+    most(Precision::Single, "flash_bytes_with_diagnosis", 48);
 }

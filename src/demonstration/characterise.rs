@@ -15,8 +15,8 @@ use crate::{
 /// Octaves of averaging time.
 pub const OCTAVES: usize = 20;
 
-/// Length of the record.
-pub const SAMPLES: usize = 1 << 20;
+/// Length of the record: 44 minutes.
+pub const SAMPLES: usize = 1 << 18;
 
 /// The seed of its noise, where there is no reason for another.
 pub const SEED: u64 = 952;

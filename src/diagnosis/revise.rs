@@ -10,7 +10,7 @@ use crate::{
     error::Error,
     list,
     model::{Model, Term},
-    real::Real,
+    real::{Real, single},
 };
 use heapless::Vec;
 
@@ -33,8 +33,7 @@ impl Preferred {
         let accepted = others.iter().filter(|other| {
             is_as_simple(other.term.effect, first.term.effect) && other.improvement >= threshold
         });
-        let start =
-            |other: &Candidate| (other.term.effect, other.term.parameters.map(|x| x as f32));
+        let start = |other: &Candidate| (other.term.effect, other.term.parameters.map(single));
         Some(Self {
             added: first.term.effect,
             others: list::fill(accepted.map(start)),

@@ -13,7 +13,7 @@ use crate::{
     math,
     model::Model,
     nnls::Vector,
-    real::{Real, real},
+    real::{Real, real, single},
     search::Found,
 };
 use heapless::Vec;
@@ -181,7 +181,7 @@ fn judge<const K: usize>(
         }
         shape.steps(&solution.free, |i, j, step| {
             // As many as fitted shapes.
-            let _ = steps.push((i as u8, j as u8, step.clamp(-STRIDE, STRIDE) as f32));
+            let _ = steps.push((i as u8, j as u8, single(step.clamp(-STRIDE, STRIDE))));
         });
     }
     if let Some((last, others)) = problem.model.terms().split_last() {

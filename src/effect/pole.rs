@@ -14,8 +14,16 @@ const GONE: Real = by_precision(200.0, 40.0);
 /// cancels leaves twelve digits, or six.
 const SMALL: Real = by_precision(0.1, 1.0);
 
-/// The last power in that series: the next is below 1e-17 of the first, or 1e-8.
-const LAST_POWER: u8 = 11;
+/// `1/11` to `1/4`, of that series: the next power is below 1e-17 of the first, or 1e-8.
+const RECIPROCALS: [Real; 8] = {
+    let mut reciprocals = [0.0; 8];
+    let mut i = 0;
+    while i < 8 {
+        reciprocals[i] = 1.0 / (11 - i) as Real;
+        i += 1;
+    }
+    reciprocals
+};
 
 const ONE: Complex<Real> = Complex::new(1.0, 0.0);
 
@@ -189,8 +197,8 @@ impl Exponential {
         }
         // v³/3! − v⁴/4! + …
         let mut sum = ONE;
-        for k in (4..=LAST_POWER).rev() {
-            sum = ONE - v * sum / real(k);
+        for reciprocal in RECIPROCALS {
+            sum = ONE - v * sum * reciprocal;
         }
         v * v * v * sum / 6.0
     }

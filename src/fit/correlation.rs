@@ -7,7 +7,7 @@ use crate::{
     math,
     model::{MAX_EFFECTS, Model},
     nnls::{Free, NormalEquations, Vector},
-    real::{Real, real},
+    real::{Real, real, single},
 };
 
 /// Pairs of effects of the largest model.
@@ -61,7 +61,7 @@ impl Correlations {
 
     fn set(&mut self, i: usize, j: usize, correlation: Real) {
         if let Some(slot) = self.below.get_mut(place(i, j)) {
-            *slot = correlation as f32;
+            *slot = single(correlation);
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::{
     math,
     model::{MAX_EFFECTS, Model, Term},
     nnls::{Free, Vector},
-    real::{Real, real},
+    real::{Real, real, single},
 };
 use generalized::Solution;
 use heapless::Vec;
@@ -201,7 +201,7 @@ impl<'a, const K: usize> Problem<'a, K> {
             // As many columns as effects.
             let _ = problem
                 .columns
-                .push(problem.column(term).map(|variance| variance as f32).into());
+                .push(problem.column(term).map(single).into());
         }
         problem
     }

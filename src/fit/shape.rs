@@ -7,7 +7,7 @@ use crate::{
     math,
     model::Term,
     nnls::{Free, NormalEquations, Vector},
-    real::Real,
+    real::{Real, single},
 };
 use heapless::Vec;
 
@@ -80,7 +80,7 @@ impl ShapeEquations {
             let change = *column(math::exp(STEP)) - *column(math::exp(-STEP));
             let scale = 0.5 * squares[i] / STEP;
             // As many as parameters.
-            let _ = derivatives.push(change.map(|change| (change * scale) as f32).into());
+            let _ = derivatives.push(change.map(|change| single(change * scale)).into());
         }
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
         let equations = &mut self.equations;

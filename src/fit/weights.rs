@@ -9,7 +9,7 @@ use crate::{
     math,
     model::MAX_EFFECTS,
     nnls::{NormalEquations, Vector},
-    real::{Real, real},
+    real::{Real, real, single},
 };
 use heapless::Vec;
 
@@ -91,7 +91,7 @@ impl<const K: usize> Weights<K> {
                 } else {
                     relative * keep
                 };
-                factor.put((k, j), kept as f32);
+                factor.put((k, j), single(kept));
             },
         );
     }
@@ -192,7 +192,7 @@ impl<const K: usize> Weights<K> {
         let unit = (0..n).map(relative).fold(0.0, Real::max);
         let mut column = algebra::Vector::<K, f32>::zeros();
         for k in 0..n {
-            column.put(k, (relative(k) / unit) as f32);
+            column.put(k, single(relative(k) / unit));
         }
         cholesky::forward_single(&self.factor, n, &mut column);
         (column, unit)

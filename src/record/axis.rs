@@ -5,7 +5,7 @@ use crate::{
     Curve, Error, Fit, MAX_EFFECTS, Model, State, Verdict,
     effect::{IEEE_952, MAX_PARAMETERS},
     fit::Correlations,
-    real::double,
+    real::{double, single},
 };
 use heapless::Vec;
 
@@ -93,7 +93,7 @@ impl AxisRecord {
             chi_squared: double(fit.chi_squared),
             degrees_of_freedom: fit.degrees_of_freedom.min(usize::from(u16::MAX)) as u16,
             p_value: double(fit.p_value),
-            tolerance: fit.tolerance as f32,
+            tolerance: single(fit.tolerance),
             verdict: None,
         })
     }
@@ -124,22 +124,22 @@ fn term(model: &Model, fit: &Fit, i: usize) -> Option<RecordedTerm> {
         let mut estimates = fit.shape.iter();
         let estimate = estimates.find(|one| one.term == i && one.name == parameter.name);
         RecordedShape {
-            value: value as f32,
-            lower: estimate.map_or(f32::NAN, |one| one.lower as f32),
-            upper: estimate.map_or(f32::NAN, |one| one.upper as f32),
+            value: single(value),
+            lower: estimate.map_or(f32::NAN, |one| single(one.lower)),
+            upper: estimate.map_or(f32::NAN, |one| single(one.upper)),
         }
     });
     Some(RecordedTerm {
         effect: EffectCode::of(term.effect.name()),
-        value: coefficient.value as f32,
-        lower: coefficient.lower as f32,
-        upper: coefficient.upper as f32,
-        square_error: coefficient.square_error as f32,
+        value: single(coefficient.value),
+        lower: single(coefficient.lower),
+        upper: single(coefficient.upper),
+        square_error: single(coefficient.square_error),
         state: match coefficient.state {
             State::Measured => RecordedState::Measured,
             State::UpperBound => RecordedState::UpperBound,
             State::NotObservable { after_s } => RecordedState::NotObservable {
-                after_s: after_s.map(|after_s| after_s as f32),
+                after_s: after_s.map(single),
             },
         },
         shape: shape.take(MAX_PARAMETERS).collect(),

@@ -14,7 +14,7 @@ use crate::{
     list::numbered,
     model::Model,
     octave::Accumulator,
-    real::{Real, real},
+    real::{Real, real, single},
 };
 use decide::{Side, quantile, side};
 
@@ -174,7 +174,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     pub fn status(&mut self) -> Status {
         let samples = self.accumulator.samples();
         if let Status::Running { progress, .. } = &mut self.status {
-            *progress = (samples as Real / self.last as Real).min(1.0) as f32;
+            *progress = single((samples as Real / self.last as Real).min(1.0));
             if samples >= self.next {
                 self.status = self.look(samples);
                 while self.next <= samples {
@@ -266,7 +266,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             look = look.saturating_mul(2).min(self.last);
         }
         Status::Running {
-            progress: (samples as Real / self.last as Real) as f32,
+            progress: single(samples as Real / self.last as Real),
             expected_s: look.saturating_sub(samples) as Real / self.scale.rate_hz(),
         }
     }

@@ -92,7 +92,7 @@ fn main() -> Result<()> {
 
 fn precisions(records: u64) -> Result<()> {
     let fits = precision::fits(records)?;
-    println!("single beside double precision: fits of {records} records of 2^20 samples");
+    println!("single beside double precision: fits of {records} records of 2^18 samples");
     println!(
         "{:>28} {:>9} {:>9} {:>9}",
         "difference of", "median", "99 %", "largest"

@@ -1,7 +1,8 @@
 //! What the library may cost on each core: `host-tests/budgets.json`, and whether it is kept.
 
-use super::{CORES, CORTEX_M4F, measure, workspace};
+use super::{CORTEX_M4F, Core, Precision, measure, workspace};
 use anyhow::{Context as _, Result, ensure};
+use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
@@ -12,22 +13,34 @@ const TOLERANCE: f64 = 0.05;
 const UPDATE: &str =
     "if the cost is worth it, `cargo xtask bench --update-budgets` writes what is measured now";
 
-/// Figures of the Cortex-M4F in detail, and of every core.
+/// Figures of the Cortex-M4F in detail, in single and in double precision, and of every core.
 ///
 /// # Errors
 /// If an image cannot be built or run.
 pub fn measured() -> Result<Value> {
-    let mut target = Map::new();
-    let mut cores = Vec::new();
-    for core in &CORES {
-        let figures = measure::figures(core)?;
-        cores.push(measure::entry(core, &figures)?);
-        if core == &CORTEX_M4F {
-            target = figures;
+    let cores: Vec<Core> = Core::all().collect();
+    // Images are built one at a time, and run meanwhile: instructions are counted, not timed.
+    let figures = cores.par_iter().map(measure::figures);
+    let figures = figures.collect::<Result<Vec<_>>>()?;
+    let mut measured = json!({});
+    let mut entries = Vec::new();
+    for (core, mut figures) in cores.iter().zip(figures) {
+        entries.push(measure::entry(core, &figures)?);
+        if core.name == CORTEX_M4F.name {
+            figures.append(&mut measure::flash_by_part(core)?);
+            measured[target(core.precision)] = figures.into();
         }
     }
-    target.append(&mut measure::flash_by_part()?);
-    Ok(json!({ "target": target, "cores": cores }))
+    measured["cores"] = entries.into();
+    Ok(measured)
+}
+
+/// Where the Cortex-M4F's figures are.
+pub fn target(precision: Precision) -> &'static str {
+    match precision {
+        Precision::Single => "target",
+        Precision::Double => "target_double",
+    }
 }
 
 /// The file.
@@ -87,7 +100,8 @@ fn compare(place: &str, measured: &Value, budget: &Value, complaints: &mut Vec<S
                 complaints.push(format!("{place}: {here} entries, {there} budgets"));
             }
             for (core, budget) in cores.iter().zip(budgets) {
-                let place = format!("{place}: {}", core["core"].as_str().unwrap_or("?"));
+                let word = |name: &str| core[name].as_str().unwrap_or("?").to_owned();
+                let place = format!("{place}: {} {}", word("core"), word("precision"));
                 compare(&place, core, budget, complaints);
             }
         }
@@ -109,7 +123,7 @@ mod tests {
     use super::*;
 
     fn complaints(figure: Value, budget: Value) -> String {
-        let cores = |figure| json!({ "cores": [{ "core": "M4F", "flash_bytes": figure }] });
+        let cores = |figure| json!({ "cores": [{ "core": "M4F", "precision": "single", "flash_bytes": figure }] });
         let checked = check(&cores(figure), &cores(budget));
         checked
             .err()
@@ -122,7 +136,7 @@ mod tests {
         assert_eq!(complaints(json!(50), json!(100)), "");
         let said = complaints(json!(106), json!(100));
         assert!(
-            said.starts_with(" cores: M4F flash_bytes: 106, the budget is 100\n"),
+            said.starts_with(" cores: M4F single flash_bytes: 106, the budget is 100\n"),
             "{said}"
         );
         assert!(said.ends_with(UPDATE), "{said}");

@@ -24,10 +24,10 @@ pub struct Core {
 /// What curves, fits and diagnoses are computed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
+    /// Single: the library without default features, as firmware is best.
+    Single,
     /// Double, the library's default.
     Double,
-    /// Single: the library without default features.
-    Single,
 }
 
 impl Precision {
@@ -60,8 +60,8 @@ impl Core {
 
     /// Every core with either precision.
     pub fn all() -> impl Iterator<Item = Self> {
-        let both = |core: Self| Precision::ALL.map(|precision| core.with(precision));
-        CORES.into_iter().flat_map(both)
+        let cores = |precision| CORES.map(|core| core.with(precision));
+        Precision::ALL.into_iter().flat_map(cores)
     }
 }
 
@@ -84,7 +84,7 @@ pub const CORTEX_M4F: Core = Core {
     cpu: "cortex-m4",
     board: None,
     small: false,
-    precision: Precision::Double,
+    precision: Precision::Single,
 };
 
 /// The core of another architecture.
@@ -96,7 +96,7 @@ pub const RISCV: Core = Core {
     cpu: "rv32",
     board: Some("_board_virt"),
     small: false,
-    precision: Precision::Double,
+    precision: Precision::Single,
 };
 
 /// Every core: with hardware for single precision, for none, for double; with 4 MiB of RAM, and with
@@ -110,7 +110,7 @@ pub const CORES: [Core; 7] = [
         cpu: "cortex-m0",
         board: Some("_board_microbit"),
         small: true,
-        precision: Precision::Double,
+        precision: Precision::Single,
     },
     Core {
         name: "Cortex-M3",

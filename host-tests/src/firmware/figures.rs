@@ -1,5 +1,6 @@
 //! The README's figures of the target, from the budgets that the tests hold the library to.
 
+use super::{Precision, budgets::target};
 use anyhow::{Context as _, Result};
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -16,76 +17,79 @@ pub fn readme(budgets: &Value) -> Result<String> {
     Ok(format!("{}\n{}", detail(budgets)?, cores(budgets)?))
 }
 
-/// Figures of a Cortex-M4F.
+/// Figures of a Cortex-M4F: a row a figure, a column a precision.
 fn detail(budgets: &Value) -> Result<String> {
-    let target = Figures("Cortex-M4F", &budgets["target"]);
-    let mean = target.of("instructions_per_sample")?;
-    let fit = target.million("instructions_fit_20")?;
-    let diagnosis = target.million("instructions_diagnosis_20")?;
-    let of = |name| target.of(name);
-    let mut table = String::from("| figure | value |\n|---|---|\n");
-    let mut row = |figure: &str, value: String| writeln!(table, "| {figure} | {value} |");
-    row(
-        "instructions a sample, mean, m = 1 and 2 included",
-        format!("{mean:.0}"),
-    )?;
-    row(
-        "the same through `push_slice`",
-        format!("{:.0}", of("instructions_per_sample_slice")?),
-    )?;
-    row(
-        "instructions a sample, worst, 12 to 30 octaves alike",
-        format!("{:.0}", of("instructions_worst_sample")?),
-    )?;
-    row(
-        "three axes at 8 kHz, of 64 million instructions a second",
-        format!("{:.1} %", 100.0 * mean * SAMPLES_PER_S / INSTRUCTIONS_PER_S),
-    )?;
-    row(
-        "RAM an axis, 24 octaves",
-        format!("{} bytes", of("ram_bytes_per_axis_24")?),
-    )?;
-    row(
-        "flash of the accumulator",
-        format!("{} bytes", of("flash_bytes_accumulator")?),
-    )?;
-    row(
-        "with curve and fit, with the whole diagnosis",
-        format!(
-            "{} and {} bytes",
-            of("flash_bytes_with_fit")?,
-            of("flash_bytes_with_diagnosis")?
-        ),
-    )?;
-    row(
-        "fit of 20 octaves",
-        format!(
-            "{fit} million instructions, {} bytes of stack",
-            of("stack_bytes_fit_20")?
-        ),
-    )?;
-    row(
-        "diagnosis of 20 octaves with one hidden effect",
-        format!(
-            "{diagnosis} million instructions, {} bytes of stack",
-            of("stack_bytes_diagnosis_20")?
-        ),
-    )?;
-    row(
-        "RAM of three axes of 20 octaves, stack of a diagnosis included",
-        format!("{} bytes", of("ram_bytes_three_axes_20_with_diagnosis")?),
-    )?;
+    let [single, double] = Precision::ALL.map(|precision| {
+        let figures = &budgets[target(precision)];
+        rows(&Figures("Cortex-M4F", figures))
+    });
+    let mut table =
+        String::from("| figure | single precision | double precision |\n|---|---|---|\n");
+    for ((figure, single), (_, double)) in single?.into_iter().zip(double?) {
+        writeln!(table, "| {figure} | {single} | {double} |")?;
+    }
     Ok(table)
 }
 
-/// A row a core. What a core has no room for is a dash.
+fn rows(target: &Figures<'_>) -> Result<Vec<(&'static str, String)>> {
+    let mean = target.of("instructions_per_sample")?;
+    let of = |name| target.of(name);
+    let bytes = |name| Ok::<_, anyhow::Error>(format!("{} bytes", of(name)?));
+    let run = |of: &str| -> Result<String> {
+        let instructions = target.million(&format!("instructions_{of}_20"))?;
+        let stack = target.of(&format!("stack_bytes_{of}_20"))?;
+        Ok(format!(
+            "{instructions} million instructions, {stack} bytes of stack"
+        ))
+    };
+    Ok(vec![
+        (
+            "instructions a sample, mean, m = 1 and 2 included",
+            format!("{mean:.0}"),
+        ),
+        (
+            "the same through `push_slice`",
+            format!("{:.0}", of("instructions_per_sample_slice")?),
+        ),
+        (
+            "instructions a sample, worst, 12 to 30 octaves alike",
+            format!("{:.0}", of("instructions_worst_sample")?),
+        ),
+        (
+            "three axes at 8 kHz, of 64 million instructions a second",
+            format!("{:.1} %", 100.0 * mean * SAMPLES_PER_S / INSTRUCTIONS_PER_S),
+        ),
+        ("RAM an axis, 24 octaves", bytes("ram_bytes_per_axis_24")?),
+        (
+            "flash of the accumulator",
+            bytes("flash_bytes_accumulator")?,
+        ),
+        ("flash with curve and fit", bytes("flash_bytes_with_fit")?),
+        (
+            "flash with the whole diagnosis",
+            bytes("flash_bytes_with_diagnosis")?,
+        ),
+        ("fit of 20 octaves", run("fit")?),
+        (
+            "diagnosis of 20 octaves with one hidden effect",
+            run("diagnosis")?,
+        ),
+        (
+            "RAM of three axes of 20 octaves, stack of a diagnosis included",
+            bytes("ram_bytes_three_axes_20_with_diagnosis")?,
+        ),
+    ])
+}
+
+/// A row a core and precision. What a core has no room for is a dash.
 fn cores(budgets: &Value) -> Result<String> {
     let mut table = String::from(
-        "| core | instructions a sample | worst | fit, million | diagnosis, million | flash | stack | RAM, stack included |\n\
-         |---|---|---|---|---|---|---|---|\n",
+        "| core | precision | instructions a sample | worst | fit, million | diagnosis, million | flash | stack | RAM, stack included |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
     );
     for core in budgets["cores"].as_array().context("no cores")? {
         let name = core["core"].as_str().context("a core without a name")?;
+        let precision = core["precision"].as_str().context("no precision")?;
         let core = Figures(name, core);
         let diagnosis = match core.1["instructions_diagnosis"] {
             Value::Null => "–".into(),
@@ -93,7 +97,7 @@ fn cores(budgets: &Value) -> Result<String> {
         };
         writeln!(
             table,
-            "| {name} | {:.0} | {} | {} | {diagnosis} | {} | {} | {} |",
+            "| {name} | {precision} | {:.0} | {} | {} | {diagnosis} | {} | {} | {} |",
             core.of("instructions_per_sample")?,
             core.of("instructions_worst_sample")?,
             core.million("instructions_fit")?,

@@ -17,7 +17,7 @@ const PARTS: [(&str, &str); 3] = [
 /// If an image cannot be built or run, or ends with a failure.
 pub fn figures(core: &Core) -> Result<Map<String, Value>> {
     let extent = match core {
-        _ if core == &CORTEX_M4F => "full",
+        _ if core.name == CORTEX_M4F.name => "full",
         Core { small: true, .. } => "small",
         _ => "usual",
     };
@@ -48,6 +48,7 @@ pub fn entry(core: &Core, figures: &Map<String, Value>) -> Result<Value> {
     let fit = measured(largest(figures, "instructions_fit_"), "instructions_fit")?;
     Ok(json!({
         "core": core.name,
+        "precision": core.precision.name(),
         "octaves": whole("octaves")?,
         "instructions_per_sample": figures["instructions_per_sample"],
         "instructions_worst_sample": whole("instructions_worst_sample")?,
@@ -65,17 +66,16 @@ fn largest(figures: &Map<String, Value>, start: &str) -> Option<u64> {
     named.filter_map(|(_, value)| value.as_u64()).max()
 }
 
-/// What each part of the library takes of a Cortex-M4F's flash: its image less the one that does
-/// nothing.
+/// What each part of the library takes of a core's flash: its image less the one that does nothing.
 ///
 /// # Errors
 /// If an image cannot be built.
-pub fn flash_by_part() -> Result<Map<String, Value>> {
-    let nothing = Image::build("footprint_nothing")?.flash_bytes()?;
+pub fn flash_by_part(core: &Core) -> Result<Map<String, Value>> {
+    let nothing = Image::build_for("footprint_nothing", core)?.flash_bytes()?;
     let mut figures = Map::new();
     figures.insert("flash_bytes_start_up".into(), nothing.into());
     for (image, figure) in PARTS {
-        let flash = Image::build(image)?.flash_bytes()?;
+        let flash = Image::build_for(image, core)?.flash_bytes()?;
         figures.insert(figure.into(), flash.saturating_sub(nothing).into());
     }
     Ok(figures)

@@ -1,7 +1,7 @@
 //! What the library costs, on the target and on the host.
 
 use super::{setup, step::shown};
-use crate::firmware::{CORES, agreement, budgets, cargo, figures, measure};
+use crate::firmware::{Core, Precision, agreement, budgets, cargo, figures, measure};
 use anyhow::{Context as _, Result, bail};
 use comfy_table::{Table, presets};
 use serde_json::{Map, Value};
@@ -95,10 +95,12 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
     }
     let host = host()?;
     if json {
-        for (core, entry) in CORES.iter().zip(entries(&mut measured)) {
-            entry["bits_equal_host"] = agreement::difference(core)?.is_none().into();
+        for (core, entry) in Core::all().zip(entries(&mut measured)) {
+            entry["bits_equal_host"] = agreement::difference(&core)?.is_none().into();
         }
-        measured["target"]["note"] = NOTE.into();
+        for precision in Precision::ALL {
+            measured[budgets::target(precision)]["note"] = NOTE.into();
+        }
         measured["host"] = host.into();
         println!("{measured:#}");
         return Ok(());
@@ -106,11 +108,16 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
     let mut table = Table::new();
     table
         .load_style(presets::NOTHING)
-        .set_header(["figure", "value", "unit", "of what"]);
+        .set_header(["figure", "single", "double", "unit", "of what"]);
     for (name, unit, of) in FIGURES {
-        let value = measured["target"].get(name).or_else(|| host.get(name));
-        let value = value.with_context(|| format!("{name} was not measured"))?;
-        table.add_row([name, &shown_number(value), unit, of]);
+        let [single, double] = Precision::ALL.map(|precision| {
+            let target = &measured[budgets::target(precision)];
+            target.get(name).map(shown_number)
+        });
+        // On the host, what is timed has no precision.
+        let single = single.or_else(|| host.get(name).map(shown_number));
+        let single = single.with_context(|| format!("{name} was not measured"))?;
+        table.add_row([name, &single, &double.unwrap_or_default(), unit, of]);
     }
     println!("Cortex-M4F and this host\n{table}\n");
     println!("every core\n{}\n{NOTE}.", core_table(&mut measured));

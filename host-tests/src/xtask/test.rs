@@ -4,6 +4,13 @@ use super::{setup, step::step};
 use crate::firmware::{CORTEX_M4F, REMEDY, RISCV, Toolchain, cargo};
 use anyhow::{Context as _, Result};
 
+/// Every feature but double precision.
+const SINGLE: [&str; 3] = [
+    "--no-default-features",
+    "--features",
+    "defmt,storage,flash,firmware",
+];
+
 pub(super) fn run() -> Result<()> {
     println!("== set-up");
     setup::run()?;
@@ -12,6 +19,13 @@ pub(super) fn run() -> Result<()> {
         "lints, on the host",
         cargo()
             .args(["clippy", "--workspace", "--all-targets", "--all-features"])
+            .args(["--", "-D", "warnings"]),
+    )?;
+    step(
+        "lints, in single precision",
+        cargo()
+            .args(["clippy", "--package", "allanite", "--all-targets"])
+            .args(SINGLE)
             .args(["--", "-D", "warnings"]),
     )?;
     for core in [&CORTEX_M4F, &RISCV] {
@@ -33,6 +47,12 @@ pub(super) fn run() -> Result<()> {
     step(
         "the library with every feature, on the host",
         cargo().args(["test", "--package", "allanite", "--all-features"]),
+    )?;
+    step(
+        "the library in single precision, on the host",
+        cargo()
+            .args(["test", "--package", "allanite", "--lib"])
+            .args(SINGLE),
     )?;
     step(
         "the images on every core, in QEMU",

@@ -4,8 +4,8 @@
 use allanite::{
     Curve, Model, curve_covariance,
     effect::{
-        AngleRandomWalk, BiasInstability, Effect, IEEE_952, Quantization, RateRamp, RateRandomWalk,
-        Response, Setting,
+        AngleRandomWalk, BiasInstability, Effect, GaussMarkov, IEEE_952, Quantization, RateRamp,
+        RateRandomWalk, Resonance, Response, Setting,
     },
 };
 use std::f64::consts::{LN_2, PI};
@@ -195,6 +195,51 @@ fn cross_difference(
 ) -> f64 {
     let at = |x: f64| effect.second_difference(x, short, setting);
     at((offset - long).abs()) - 2.0 * at(offset) + at(offset + long)
+}
+
+#[test]
+fn variances_of_poles_are_those_of_the_sum_over_pairs() {
+    let interval_s = 0.01;
+    for exponent in -10..=30 {
+        // A sample's decay, from a thousandth of a millionth to some hundreds.
+        let decay = 10_f64.powf(-0.3 * f64::from(exponent));
+        for cycles in [0.0, 1e-4, 0.03, 0.3, 0.49, 0.8] {
+            let time_s = interval_s / decay;
+            let frequency_hz = cycles / interval_s;
+            let (effect, parameters): (&dyn Effect, _) = if cycles == 0.0 {
+                (&GaussMarkov, [time_s, 0.0])
+            } else {
+                (&Resonance, [frequency_hz, PI * frequency_hz * time_s])
+            };
+            let setting = Setting {
+                interval_s,
+                parameters,
+            };
+            // 1 − r_n, which does not cancel.
+            let fallen = |n: usize| {
+                let n = n as f64;
+                let half_turn = (PI * cycles * n).sin();
+                -(-decay * n).exp_m1() + (-decay * n).exp() * 2.0 * half_turn * half_turn
+            };
+            for m in [1_usize, 2, 4, 32] {
+                let pairs = (0..m).flat_map(|i| (0..m).map(move |j| (i, j)));
+                let sum: f64 = pairs
+                    .map(|(i, j)| fallen(m + i - j) - fallen(i.abs_diff(j)))
+                    .sum();
+                let expected = sum / (m * m) as f64;
+                let found = effect.variance(m as f64, &setting);
+                let what = format!(
+                    "{}, decay {decay:e}, cycles {cycles}, m = {m}",
+                    effect.name()
+                );
+                // A pole's terms may cancel in the sum, as they do where it swings.
+                assert!(
+                    (found - expected).abs() < 1e-9 * expected + 1e-13,
+                    "{what}: {found:e}, not {expected:e}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -14,6 +14,9 @@ const GONE: Real = by_precision(200.0, 40.0);
 /// cancels leaves twelve digits, or six.
 const SMALL: Real = by_precision(0.1, 1.0);
 
+/// Exponents of a sample below this have κ by its series: beyond, what cancels leaves it to as many digits.
+const SLOW: Real = by_precision(0.01, 0.3);
+
 /// `1/11` to `1/4`, of that series: the next power is below 1e-17 of the first, or 1e-8.
 const RECIPROCALS: [Real; 8] = {
     let mut reciprocals = [0.0; 8];
@@ -46,6 +49,8 @@ pub(super) struct Pole {
     exponent: Complex<Real>,
     /// Re κ.
     slope: Real,
+    /// Re (1+z)/(1−z).
+    long: Real,
     /// z/(1−z)².
     factor: Complex<Real>,
 }
@@ -57,30 +62,31 @@ impl Pole {
         let cycles = frequency_hz * interval_s;
         let s = Complex::new(decay, 2.0 * PI * (math::floor(cycles + 0.5) - cycles));
         let z = power(decay, cycles, 1.0);
-        let rest = Exponential {
+        let sample = Exponential {
             exponent: s,
             power: z,
-        }
-        .rest();
-        let factor = z / (rest * rest);
-        let slope = if s.norm_sqr() < SMALL * SMALL {
+        };
+        let rest = sample.rest();
+        let (factor, long) = (z / (rest * rest), (z + 1.0) / rest);
+        let slope = if s.norm_sqr() < SLOW * SLOW {
             // Its series, of which the next term is s⁵/5040.
             -s * (ONE - s * s / 30.0) / 6.0
         } else {
-            s * factor - (z + 1.0) / rest * 0.5
+            s * factor - long * 0.5
         };
         Self {
             decay,
             cycles,
             exponent: s,
             slope: slope.re,
+            long: long.re,
             factor,
         }
     }
 
-    /// Re (1+z)/(1−z): the variance that a long mean has, times its samples.
+    /// The variance that a long mean has, times its samples.
     pub(super) fn long_mean(&self) -> Real {
-        2.0 * ((self.exponent * self.factor).re - self.slope)
+        self.long
     }
 
     /// `z^n`, with its exponent.
@@ -110,11 +116,16 @@ impl Pole {
         }
     }
 
-    /// `σ²(mτ₀)` for a power `z^m`.
-    fn variance_of(&self, m: Real, power: Complex<Real>) -> Real {
-        // 4 G(m) − G(2m) − 3 G(0), less what κ brings: with e^(−v) = 1 − v + v²/2 − r that is
-        // factor · [2vφ − φ² − 2r], φ = v²/2 − r.
-        let (v, third) = (self.exponent * m, self.known(m, power).third_rest());
+    /// `σ²(mτ₀)` for a power `W = z^m`: `[m·long − Re factor (1−W)(3−W)]/m²`.
+    fn variance_of(&self, m: Real, w: Complex<Real>) -> Real {
+        let power = self.known(m, w);
+        if !power.is_small() {
+            let product = self.factor * (ONE - w) * (Complex::new(3.0, 0.0) - w);
+            return (m * self.long - product.re) / (m * m);
+        }
+        // In the form that does not cancel, with φ = W − 1 + v: Re factor [4 φ − (W² − 1 + 2v)] − 2 κ m,
+        // where the brackets are 2vφ − φ² − 2 (v²/2 − φ).
+        let (v, third) = (power.exponent, power.third_rest());
         let second = v * v * 0.5 - third;
         let product = self.factor * (v * second * 2.0 - second * second - third * 2.0);
         product.re / (m * m) - 2.0 * self.slope / m
@@ -189,10 +200,14 @@ struct Exponential {
 }
 
 impl Exponential {
+    fn is_small(&self) -> bool {
+        self.exponent.norm_sqr() < SMALL * SMALL
+    }
+
     /// `1 − v + v²/2 − e^(−v)`, without cancellation.
     fn third_rest(&self) -> Complex<Real> {
         let v = self.exponent;
-        if v.norm_sqr() >= SMALL * SMALL {
+        if !self.is_small() {
             return ONE - v + v * v * 0.5 - self.power;
         }
         // v³/3! − v⁴/4! + …

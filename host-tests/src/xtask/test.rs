@@ -30,13 +30,16 @@ pub(super) fn run() -> Result<()> {
     )?;
     for core in [&CORTEX_M4F, &RISCV] {
         let toolchain = Toolchain::find(core).with_context(|| format!("no compiler: {REMEDY}"))?;
-        step(
-            &format!("lints, on {}", core.name),
-            toolchain
-                .cargo("clippy")
-                .args(["--package", "allanite", "--lib", "--bins", "--all-features"])
-                .args(["--", "-D", "warnings"]),
-        )?;
+        for (precision, features) in [("single", &SINGLE[..]), ("double", &["--all-features"])] {
+            step(
+                &format!("lints, on {}, {precision} precision", core.name),
+                toolchain
+                    .cargo("clippy")
+                    .args(["--package", "allanite", "--lib", "--bins"])
+                    .args(features)
+                    .args(["--", "-D", "warnings"]),
+            )?;
+        }
     }
     step(
         "documentation",

@@ -101,7 +101,8 @@ pub(crate) fn worst<const OCTAVES: usize>(clock: &Clock, deepest: u32) -> u64 {
 pub(crate) fn curve<const OCTAVES: usize>(amplitude: Real) -> Option<Curve<OCTAVES>> {
     let octaves = (0..OCTAVES).map(|k| {
         let m = 1_u32 << k;
-        let tau_s = m as Real / 100.0;
+        let averaged = (1_u64 << k) as Real;
+        let tau_s = averaged / 100.0;
         let smooth = 1.2e-7 / (tau_s * tau_s)
             + 2.5e-5 / tau_s
             + 7.1e-6
@@ -111,7 +112,7 @@ pub(crate) fn curve<const OCTAVES: usize>(amplitude: Real) -> Option<Curve<OCTAV
             parameters: [7.7, 0.0],
             ..Setting::new(0.01)
         };
-        let wave = amplitude * amplitude * Sinusoid.variance(m as Real, &setting);
+        let wave = amplitude * amplitude * Sinusoid.variance(averaged, &setting);
         let smooth = smooth + wave;
         let differences = (2_u64 << OCTAVES) / u64::from((m / 4).max(1)) - 7;
         let off = [0.3, -0.5, 0.9, -0.2, -0.7][k % 5] / (differences as Real * 0.2 + 9.0);

@@ -104,7 +104,7 @@ impl<const LENGTH: usize> Triangle<LENGTH> {
 
     const fn place(i: usize, j: usize) -> usize {
         let (row, column) = if i < j { (j, i) } else { (i, j) };
-        row.saturating_mul(row.saturating_add(1)) / 2 + column
+        (row.saturating_mul(row.saturating_add(1)) / 2).saturating_add(column)
     }
 }
 

@@ -284,6 +284,17 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         }
     }
 
+    /// Standard error of a squared coefficient with those before and behind it in the model free, though
+    /// they may have been held at zero: what one of them has, this one may have taken over. Infinite where
+    /// they cannot be told apart.
+    pub(crate) fn error_beside(&self, i: usize) -> Real {
+        let neighbours = [i.saturating_sub(1), i, i.saturating_add(1)];
+        let known = neighbours.into_iter().filter(|&j| j < self.problem.count());
+        let free = known.fold(self.free, Free::with);
+        let variance = self.equations.variance(i, &free);
+        variance.map_or(Real::INFINITY, math::sqrt) * self.problem.unit
+    }
+
     /// The one-sided 95 % bound of a square, with the covariance that the model would have at that
     /// bound: where an effect may add to an octave, it may also scatter it.
     #[inline(never)]

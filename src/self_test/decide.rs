@@ -20,6 +20,10 @@ pub(super) enum Side {
     },
 }
 
+/// A square less sure than this share of itself is not called too large: it may have taken over what others
+/// have, and its distribution is known too little.
+const SURE: Real = 0.25;
+
 /// The least standard errors that an estimate and a limit must be apart for a probability.
 pub(super) fn quantile(probability: Real) -> Real {
     let (mut low, mut high) = (0.0, 40.0);
@@ -39,8 +43,16 @@ fn tail(z: Real) -> Real {
     0.5 * math::erfc(z * crate::real::consts::FRAC_1_SQRT_2)
 }
 
-/// Decides with the quantiles of passing and failing.
-pub(super) fn side(coefficient: &Coefficient, most: Real, pass: Real, fail: Real) -> Side {
+/// Decides with the quantiles of passing and failing. `beside` is the standard error of the square with the
+/// coefficients of neighbouring slopes free: where the fit holds one at zero that is not, this one has its
+/// share, and is surer of it than it should be.
+pub(super) fn side(
+    coefficient: &Coefficient,
+    beside: Real,
+    most: Real,
+    pass: Real,
+    fail: Real,
+) -> Side {
     let limit = most * most;
     let open = |standard_errors| Side::Open { standard_errors };
     if let State::NotObservable { .. } = coefficient.state {
@@ -54,17 +66,18 @@ pub(super) fn side(coefficient: &Coefficient, most: Real, pass: Real, fail: Real
             open(normal)
         };
     }
-    let skewed = skewed(coefficient, limit);
+    if coefficient.square > limit {
+        let above = skewed(coefficient.square, beside, limit);
+        return if above > fail && beside < SURE * coefficient.square {
+            Side::Above
+        } else {
+            open(above)
+        };
+    }
     // Of a sum of squares the one is right, of a small part of others' the other: both must agree.
-    let nearer = if coefficient.square > limit {
-        normal.min(skewed)
-    } else {
-        normal.max(skewed)
-    };
+    let nearer = normal.max(skewed(coefficient.square, coefficient.square_error, limit));
     if nearer < -pass {
         Side::Below
-    } else if nearer > fail {
-        Side::Above
     } else {
         open(nearer)
     }
@@ -82,10 +95,10 @@ fn error(coefficient: &Coefficient) -> Real {
 
 /// The square taken for a mean of squares: it is distributed as χ² with `2 (β/σ)²` degrees of freedom,
 /// whose cube root is nearly normal (Wilson & Hilferty 1931).
-fn skewed(coefficient: &Coefficient, limit: Real) -> Real {
-    let relative = coefficient.square_error / coefficient.square;
+fn skewed(square: Real, error: Real, limit: Real) -> Real {
+    let relative = error / square;
     // 2/(9ν).
     let variance = relative * relative / 9.0;
-    let ratio = math::cbrt(coefficient.square / limit);
+    let ratio = math::cbrt(square / limit);
     (ratio - (1.0 - variance)) / math::sqrt(variance)
 }

@@ -9,7 +9,7 @@ use crate::{
     algebra::Choice,
     coefficient::{Coefficient, State},
     curve::Scale,
-    fit::{Fit, Settings, fit},
+    fit::{Fit, Problem, Settings, check, generalized::Solution},
     integrity::{Integrity, Reason},
     list::numbered,
     model::Model,
@@ -110,9 +110,11 @@ pub struct SelfTest<const OCTAVES: usize> {
     scale: Scale,
     last: u64,
     next: u64,
-    /// Standard errors that decide.
+    /// Standard errors that pass a gyro.
     pass: Real,
-    fail: Real,
+    /// Probability of a false fail that is left for the looks to come: each spends half of it, the last
+    /// one all. Early looks have most need of it, and a gyro that is far off fails at one.
+    fail_left: Real,
     looks: u32,
     kept: Choice,
     status: Status,
@@ -134,7 +136,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             last,
             next: first,
             pass: quantile(plan.false_pass / real(looks)),
-            fail: quantile(plan.false_fail / (real(looks) * limits)),
+            fail_left: plan.false_fail / limits,
             looks,
             kept: Choice::default(),
             status: Status::Running {
@@ -194,12 +196,24 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let is_last = samples >= self.last;
         let seconds = samples as Real / self.scale.rate_hz();
         let curve = self.accumulator.curve(self.scale);
-        let fit = match fit(&curve, &Model::ieee_952(), Settings::default()) {
-            Ok(fit) => fit,
+        let model = Model::ieee_952();
+        let problem = Problem::new(&curve, &model);
+        let mut solution = Solution::new(&problem);
+        let solved =
+            check(curve.points(), 2).and_then(|()| solution.solve(Settings::default().tolerance));
+        if solved.is_err() {
             // Gaps may have left too few differences; the first limit stands for all.
-            Err(_) if !is_last => return self.running(samples, Real::INFINITY),
-            Err(_) => return self.undecided(0, None),
-        };
+            return if is_last {
+                self.undecided(0, None)
+            } else {
+                self.running(samples, Real::INFINITY)
+            };
+        }
+        let mut fit = Fit::empty();
+        solution.report(&mut fit);
+        let spent = if is_last { 1.0 } else { 0.5 } * self.fail_left;
+        self.fail_left -= spent;
+        let fail = quantile(spent);
         if fit.p_value < self.plan.least_p / real(self.looks) {
             return Status::Failed(Failure::Misfit {
                 p_value: fit.p_value,
@@ -210,10 +224,14 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             if self.kept.has(i) {
                 continue;
             }
-            let Some(coefficient) = find(&fit, limit) else {
+            let Some(at) = model.position(limit.effect) else {
                 continue;
             };
-            match side(coefficient, limit.most, self.pass, self.fail) {
+            let Some(coefficient) = fit.coefficients.get(at) else {
+                continue;
+            };
+            let beside = solution.error_beside(at);
+            match side(coefficient, beside, limit.most, self.pass, fail) {
                 Side::Below => self.kept.add(i),
                 Side::Above => {
                     return Status::Failed(Failure::Limit {
@@ -222,7 +240,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
                     });
                 }
                 Side::Open { standard_errors } => {
-                    let needed = self.needed_s(coefficient, standard_errors, seconds);
+                    let needed = self.needed_s(coefficient, standard_errors, fail, seconds);
                     if open.is_none_or(|(_, longest)| needed > longest) {
                         open = Some((i, needed));
                     }
@@ -240,14 +258,20 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     }
 
     /// Length of a record that would decide, if the estimate is right: errors fall with its root.
-    fn needed_s(&self, coefficient: &Coefficient, standard_errors: Real, seconds: Real) -> Real {
+    fn needed_s(
+        &self,
+        coefficient: &Coefficient,
+        standard_errors: Real,
+        fail: Real,
+        seconds: Real,
+    ) -> Real {
         if let State::NotObservable { after_s } = coefficient.state {
             return after_s.unwrap_or(Real::INFINITY);
         }
         let enough = if standard_errors < 0.0 {
             self.pass
         } else {
-            self.fail
+            fail
         };
         let factor = enough / standard_errors;
         let longest = (1_u64 << 30) as Real / self.scale.rate_hz();
@@ -281,9 +305,4 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             decided_by_s,
         }
     }
-}
-
-fn find<'a>(fit: &'a Fit, limit: &Limit) -> Option<&'a Coefficient> {
-    let mut coefficients = fit.coefficients.iter();
-    coefficients.find(|coefficient| coefficient.name == limit.effect)
 }

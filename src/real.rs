@@ -5,9 +5,9 @@ use num_traits::AsPrimitive;
 /// A number of a curve, a fit, a comparison or a diagnosis: double precision with the feature `double`,
 /// which is on unless default features are off; single precision without.
 ///
-/// A core with single precision in hardware fits in a tenth of the time without, and in two thirds of the
-/// flash. What comes out differs by some 10⁻⁴ of the standard errors. One program has one precision:
-/// whatever asks for `double` gives it to all.
+/// Without, a core with single precision in hardware fits in a third of the time, and any core in two
+/// thirds of the flash. What comes out differs by some 10⁻⁴ of the standard errors. One program has one
+/// precision: whatever asks for `double` gives it to all.
 #[cfg(feature = "double")]
 pub type Real = f64;
 

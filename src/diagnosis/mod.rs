@@ -89,8 +89,8 @@ impl Diagnosis {
     /// and again, until the model is adequate or nothing helps. A covariate is tried first: it
     /// carries its own evidence. Every step is handed to `report`, the last one included.
     ///
-    /// With 20 octaves it takes less than 16 KiB of stack and, where an effect is found, some
-    /// 3·10⁸ instructions on a Cortex-M4F: `cargo xtask bench` measures this.
+    /// With 20 octaves it takes less than 16 KiB of stack and, where an effect is found, some 4·10⁸
+    /// instructions on a Cortex-M4F, in single precision 10⁸: `cargo xtask bench` measures this.
     ///
     /// # Errors
     /// As of [`fit`](crate::fit).

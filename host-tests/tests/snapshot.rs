@@ -2,10 +2,13 @@
 
 #[path = "common/sealed.rs"]
 mod sealed;
+#[path = "common/seeded.rs"]
+mod seeded;
 
 use allanite::{Accumulator, Error, Scale, Snapshot, SnapshotInterval};
-use proptest::{collection::vec, prelude::*, test_runner::RngSeed};
+use proptest::{collection::vec, prelude::*};
 use sealed::sealed;
+use seeded::seeded;
 use std::num::NonZeroU64;
 
 fn snapshot<const OCTAVES: usize>(accumulator: &Accumulator<OCTAVES>) -> Vec<u8> {
@@ -60,12 +63,7 @@ fn stretches() -> impl Strategy<Value = Vec<Vec<i32>>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 200,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(seeded(200))]
 
     #[test]
     fn restored_accumulator_is_the_old_one_after_a_gap(

@@ -1,7 +1,7 @@
 //! Coefficients come back, with intervals.
 
 use super::{ALL, METHODS, RATE_HZ, assert_relative, changed, exact, fitted, noisy, settings};
-use allanite::{Coefficient, Curve, Settings, State, effect::IEEE_952};
+use allanite::{Coefficient, Curve, Fit, Settings, State, effect::IEEE_952};
 use rayon::prelude::*;
 
 #[test]
@@ -67,17 +67,19 @@ fn every_term_of_a_long_record_is_measured_within_its_interval() {
     );
 }
 
+/// A fit of all five terms to the exact curve of 2^exponent samples without one of them.
+fn fitted_without(absent: usize, exponent: u32) -> Fit {
+    let mut coefficients = ALL;
+    coefficients[absent] = 0.0;
+    let curve = exact(coefficients, 1 << exponent, RATE_HZ);
+    fitted(&curve, Settings::default())
+}
+
 #[test]
 fn a_term_that_is_absent_is_never_measured() {
     for absent in 0..5 {
         for exponent in [10, 14, 18, 22] {
-            let mut coefficients = ALL;
-            coefficients[absent] = 0.0;
-            let fit = fitted(
-                &exact(coefficients, 1 << exponent, RATE_HZ),
-                Settings::default(),
-            );
-            let found = fit.coefficients[absent];
+            let found = fitted_without(absent, exponent).coefficients[absent];
             let what = format!("2^{exponent} samples: {found:?}");
             // Rounding, far below what the record tells.
             assert!(found.square <= 1e-6 * found.square_error, "{what}");
@@ -102,12 +104,7 @@ fn a_record_of_the_length_that_is_told_measures_the_term() {
     let mut told = 0;
     for absent in 0..5 {
         for exponent in [10, 12, 14, 16] {
-            let mut coefficients = ALL;
-            coefficients[absent] = 0.0;
-            let fit = fitted(
-                &exact(coefficients, 1 << exponent, RATE_HZ),
-                Settings::default(),
-            );
+            let fit = fitted_without(absent, exponent);
             let found = fit.coefficients[absent];
             let State::NotObservable {
                 after_s: Some(after_s),

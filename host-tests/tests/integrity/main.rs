@@ -2,6 +2,8 @@
 
 mod disturbed;
 mod rest;
+#[path = "../common/seeded.rs"]
+mod seeded;
 mod state;
 
 use allanite::{Integrity, Tally};

@@ -1,8 +1,9 @@
 //! What is told, counted, merged and forgotten.
 
+use super::seeded::seeded;
 use super::{disturb, integrity, mems};
 use allanite::{Integrity, Limits, Observation};
-use proptest::{collection::vec, prelude::*, test_runner::RngSeed};
+use proptest::{collection::vec, prelude::*};
 
 #[test]
 fn an_observation_tells_the_odd_sample() {
@@ -150,16 +151,6 @@ fn play(integrity: &mut Integrity, events: &[Event]) {
         if let Some(reason) = integrity.verdict() {
             assert!(!reason.to_string().contains('\n'));
         }
-    }
-}
-
-/// The same cases in every run.
-fn seeded(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(952),
-        failure_persistence: None,
-        ..ProptestConfig::default()
     }
 }
 

@@ -246,24 +246,21 @@ fn missing_columns_are_named_with_those_there_are() {
 fn impossible_rates_and_scales_are_refused() {
     let good = rows_of_text(&counts(50));
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let options = Options {
+        let rate = Options {
             rate_hz: Some(value),
             ..at_100_hz()
         };
-        let line = refusal("a.csv", good.as_bytes(), &options);
-        assert!(
-            line.starts_with(&format!("--rate {value} is impossible; ")),
-            "{line}"
-        );
-        let options = Options {
+        let scale = Options {
             scale: Some(value),
             ..at_100_hz()
         };
-        let line = refusal("a.csv", good.as_bytes(), &options);
-        assert!(
-            line.starts_with(&format!("--scale {value} is impossible; ")),
-            "{line}"
-        );
+        for (name, options) in [("--rate", rate), ("--scale", scale)] {
+            let line = refusal("a.csv", good.as_bytes(), &options);
+            assert!(
+                line.starts_with(&format!("{name} {value} is impossible; ")),
+                "{line}"
+            );
+        }
     }
     let line = refusal("a.csv", good.as_bytes(), &Options::default());
     assert_eq!(

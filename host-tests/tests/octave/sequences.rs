@@ -1,0 +1,106 @@
+//! Any sequence of counts, slices, gaps and merges sums what the definition sums.
+
+use super::{
+    definition::{octaves, square},
+    events::{check, counts, events, play},
+    seeded::seeded,
+};
+use allanite::Accumulator;
+use proptest::{collection::vec, prelude::*};
+
+proptest! {
+    #![proptest_config(seeded(256))]
+
+    #[test]
+    fn any_sequence_of_events_sums_what_the_definition_sums(events in events()) {
+        let (accumulator, record) = play::<13>(&events);
+        check(&accumulator, &record);
+        // Fewer octaves are the first of more, down to the least, and the most.
+        check(&play::<2>(&events).0, &record);
+        check(&play::<3>(&events).0, &record);
+        check(&play::<4>(&events).0, &record);
+        check(&play::<30>(&events).0, &record);
+    }
+
+    #[test]
+    fn slices_of_any_cut_leave_the_state_of_single_counts(
+        stretches in vec((counts(2000), vec(any::<prop::sample::Index>(), 0..8)), 1..3),
+    ) {
+        let (mut singly, mut sliced) = (Accumulator::<13>::new(), Accumulator::<13>::new());
+        for (counts, cuts) in stretches {
+            singly.gap();
+            sliced.gap();
+            counts.iter().for_each(|&count| singly.push(count));
+            let mut cuts: Vec<_> = cuts.iter().map(|cut| cut.index(counts.len() + 1)).collect();
+            cuts.extend([0, counts.len()]);
+            cuts.sort_unstable();
+            cuts.windows(2).for_each(|cut| sliced.push_slice(&counts[cut[0]..cut[1]]));
+            prop_assert_eq!(&singly, &sliced);
+        }
+    }
+
+    #[test]
+    fn a_copy_goes_on_where_the_original_stopped(before in counts(1500), after in counts(1500)) {
+        let mut one = Accumulator::<13>::new();
+        one.push_slice(&before);
+        let mut restarted = one.clone();
+        let mut whole = Accumulator::<13>::new();
+        let all: Vec<i32> = before.iter().chain(&after).copied().collect();
+        restarted.push_slice(&after);
+        whole.push_slice(&all);
+        prop_assert_eq!(restarted, whole);
+    }
+
+    #[test]
+    fn merging_is_one_record_with_a_gap_between(first in counts(1500), second in counts(1500)) {
+        let accumulate = |counts: &[i32]| {
+            let mut accumulator = Accumulator::<13>::new();
+            accumulator.push_slice(counts);
+            accumulator
+        };
+        let mut merged = accumulate(&first);
+        merged.merge(&accumulate(&second));
+        let mut batch = accumulate(&first);
+        batch.gap();
+        batch.push_slice(&second);
+        // An empty second record leaves the first one open.
+        prop_assert_eq!(octaves(&merged), octaves(&batch));
+        if !second.is_empty() {
+            batch.gap();
+            prop_assert_eq!(merged, batch);
+        }
+    }
+
+    #[test]
+    fn the_order_of_merging_does_not_show(first in events(), second in events()) {
+        let ((mut one, _), (mut other, _)) = (play::<13>(&first), play::<13>(&second));
+        let before = one.clone();
+        one.merge(&other);
+        other.merge(&before);
+        prop_assert_eq!(octaves(&one), octaves(&other));
+        prop_assert_eq!(one.samples(), other.samples());
+    }
+
+    #[test]
+    fn a_constant_offset_cancels_exactly(counts in counts(2000), offset in any::<i32>()) {
+        let halves = counts.iter().map(|count| count / 2);
+        let mut plain = Accumulator::<13>::new();
+        halves.clone().for_each(|count| plain.push(count));
+        let mut shifted = Accumulator::<13>::new();
+        halves.for_each(|count| shifted.push(count + offset / 2));
+        prop_assert_eq!(octaves(&plain), octaves(&shifted));
+    }
+
+    #[test]
+    fn sums_scale_with_the_square_of_the_counts(counts in counts(2000), factor in -63_i32..=64) {
+        let narrow = counts.iter().map(|count| count / 64);
+        let mut unit = Accumulator::<13>::new();
+        narrow.clone().for_each(|count| unit.push(count));
+        let mut scaled = Accumulator::<13>::new();
+        narrow.for_each(|count| scaled.push(count * factor));
+        for (unit, scaled) in octaves(&unit).into_iter().zip(octaves(&scaled)) {
+            prop_assert_eq!(unit.1, scaled.1);
+            prop_assert_eq!(unit.2 * square(i128::from(factor)), scaled.2);
+        }
+    }
+}

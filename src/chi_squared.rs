@@ -1,8 +1,9 @@
 //! The χ² distribution, for whole degrees of freedom.
 
-use crate::math;
-use crate::real::Real;
-use crate::real::consts::PI;
+use crate::{
+    math,
+    real::{Real, consts::PI},
+};
 
 /// Probability that χ² with `degrees_of_freedom` exceeds `x`.
 ///

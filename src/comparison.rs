@@ -150,7 +150,7 @@ impl<const K: usize> Comparison<K> {
                 m: point.m,
                 tau_s: point.tau_s,
                 measured: point.variance,
-                model: model * problem.unit,
+                model: model * problem.variance_unit,
                 z: (problem.measured(k) - model) / (weights.model[k] * weights.relative_error(k)),
                 shares: core::array::from_fn(|i| single(problem.share(k, i, squares))),
             };

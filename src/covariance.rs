@@ -17,14 +17,13 @@
 //! It is taken in single precision, of numbers in units of the octave's own variance: weights need no
 //! more than six digits, and a core whose arithmetic is in single precision spends half as long.
 
-use crate::real::consts::PI;
 use crate::{
     curve::{Curve, Point},
     lattice::{self, Rounded, SecondDifferences},
     list::numbered,
     math::{self, floor_log2},
     model::{MAX_EFFECTS, Model, Term},
-    real::{Real, real, single},
+    real::{Real, consts::PI, real, single},
 };
 use heapless::Vec;
 use nalgebra::{Complex, SMatrix};

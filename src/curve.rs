@@ -77,7 +77,7 @@ pub struct Curve<const K: usize> {
     rate_hz: Real,
     /// A power of four near the least variance: in this unit, squares of variances do not leave single
     /// precision's range.
-    unit: Real,
+    variance_unit: Real,
     points: Vec<Point, K>,
 }
 
@@ -116,7 +116,7 @@ impl<const K: usize> Curve<K> {
         }
         Ok(Self {
             rate_hz,
-            unit: power_of_four(&points),
+            variance_unit: power_of_four(&points),
             points,
         })
     }
@@ -140,8 +140,8 @@ impl<const K: usize> Curve<K> {
 
     /// The unit that a fit counts variances in, and with them squared coefficients. What is taken off a
     /// curve leaves it.
-    pub(crate) const fn unit(&self) -> Real {
-        self.unit
+    pub(crate) const fn variance_unit(&self) -> Real {
+        self.variance_unit
     }
 
     /// The octaves, shortest averaging time first.
@@ -195,7 +195,7 @@ impl<const K: usize> Accumulator<K> {
         }
         Curve {
             rate_hz: scale.rate_hz,
-            unit: power_of_four(&points),
+            variance_unit: power_of_four(&points),
             points,
         }
     }

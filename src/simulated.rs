@@ -4,11 +4,14 @@ mod disturbance;
 
 pub use disturbance::Disturbance;
 
-use crate::real::consts::{LN_2, PI};
 use crate::{
     curve::Scale,
     math,
-    real::{Real, real},
+    real::{
+        Real,
+        consts::{LN_2, PI},
+        real,
+    },
 };
 use disturbance::Source;
 

@@ -52,12 +52,12 @@ pub const HIDDEN: [(&str, Disturbance); 3] = [
 
 /// The disturbance of that name.
 pub fn hidden(name: &str) -> Option<Disturbance> {
-    let mut named = HIDDEN.iter().filter(|(hidden, _)| *hidden == name);
-    named.next().map(|&(_, disturbance)| disturbance)
+    let named = HIDDEN.iter().find(|(hidden, _)| *hidden == name);
+    named.map(|&(_, disturbance)| disturbance)
 }
 
-/// Simulates a gyro with a disturbance, its noise of a seed, and diagnoses it; every step is handed to `report`. The diagnosis
-/// knows the counts alone.
+/// Simulates a gyro with a disturbance, its noise of a seed, and diagnoses it; every step is handed to
+/// `report`. The diagnosis knows the counts alone.
 ///
 /// # Errors
 /// As of [`Diagnosis::run`].

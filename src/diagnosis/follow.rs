@@ -68,7 +68,7 @@ impl Diagnosis {
                 squares = solution.squares;
             }
             slope = Slope::of(cross, curve.points(), |k| {
-                problem.variance(k, &squares) * problem.unit
+                problem.variance(k, &squares) * problem.variance_unit
             });
         }
         Ok(slope)

@@ -186,7 +186,8 @@ fn judge<const K: usize>(
     }
     if let Some((last, others)) = problem.model.terms().split_last() {
         candidate.term = *last;
-        candidate.coefficient = math::sqrt(solution.squares[others.len()].max(0.0) * problem.unit);
+        candidate.coefficient =
+            math::sqrt(solution.squares[others.len()].max(0.0) * problem.variance_unit);
     }
     candidate.chi_squared = solution.chi_squared;
     None

@@ -254,6 +254,6 @@ catalogue! {
 
 /// What to tell of an effect of the catalogue, by its name.
 pub fn story(name: &str) -> Option<Story> {
-    let mut named = EXPLAINED.iter().filter(|effect| effect.name() == name);
-    named.next().map(|effect| effect.story())
+    let named = EXPLAINED.iter().find(|effect| effect.name() == name);
+    named.map(|effect| effect.story())
 }

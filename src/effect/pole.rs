@@ -103,7 +103,11 @@ impl Pole {
 
     /// `G(n)/τ₀²`.
     pub(super) fn kernel(&self, n: Real) -> Real {
-        self.slope * n - (self.factor * self.power(n).second_rest()).re
+        self.kernel_of(n, &self.power(n))
+    }
+
+    fn kernel_of(&self, n: Real, power: &Exponential) -> Real {
+        self.slope * n - (self.factor * power.second_rest()).re
     }
 
     /// `[G(x + m) − 2 G(x) + G(|x − m|)]/τ₀²`.
@@ -174,8 +178,7 @@ impl Pole {
         };
         let kernel = |powers: &lattice::Powers, position: u32| {
             let n = 0.25 * m * real(position);
-            let power = self.known(n, powers.near(position as usize));
-            self.slope * n - (self.factor * power.second_rest()).re
+            self.kernel_of(n, &self.known(n, powers.near(position as usize)))
         };
         sum.add_slots(|slot| {
             let (own, position) = (powers.next(slot), lattice::position(slot));

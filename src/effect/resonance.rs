@@ -1,8 +1,7 @@
 use super::{
     Effect, Explain, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole,
 };
-use crate::real::Real;
-use crate::real::consts::PI;
+use crate::real::{Real, consts::PI};
 
 /// A lightly damped mode driven by noise, coefficient its rms in rate: a complex pole of frequency
 /// `f` and quality factor `quality`, with time constant `T = quality/(πf)`.

@@ -205,7 +205,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
             let coefficient = self.coefficient(i, term, shape);
             let _ = fit
                 .coefficients
-                .push(coefficient.in_unit(self.problem.unit));
+                .push(coefficient.in_unit(self.problem.variance_unit));
         }
         fit.shape = shape.map_or(heapless::Vec::new(), |shape| shape.estimates(&self.free));
         fit.chi_squared = self.chi_squared;
@@ -292,7 +292,7 @@ impl<'a, 'b, const K: usize> Solution<'a, 'b, K> {
         let known = neighbours.into_iter().filter(|&j| j < self.problem.count());
         let free = known.fold(self.free, Free::with);
         let variance = self.equations.variance(i, &free);
-        variance.map_or(Real::INFINITY, math::sqrt) * self.problem.unit
+        variance.map_or(Real::INFINITY, math::sqrt) * self.problem.variance_unit
     }
 
     /// The one-sided 95 % bound of a square, with the covariance that the model would have at that

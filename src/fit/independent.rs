@@ -64,7 +64,7 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         let variance = equations.variance(i, &free).ok_or(Error::Singular)?;
         // As many as effects.
         let coefficient = Coefficient::new(term.effect, squares[i], Some(scale * variance));
-        let _ = coefficients.push(coefficient.in_unit(problem.unit));
+        let _ = coefficients.push(coefficient.in_unit(problem.variance_unit));
     }
     Ok(Fit {
         method,

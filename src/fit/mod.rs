@@ -180,7 +180,7 @@ pub(crate) struct Problem<'a, const K: usize> {
     pub(crate) model: &'a Model,
     pub(crate) interval_s: Real,
     /// What variances and squared coefficients are counted in here.
-    pub(crate) unit: Real,
+    pub(crate) variance_unit: Real,
     per_unit: Real,
     /// Allan variances of unit coefficients, of each effect: single precision is far below what any
     /// record tells of them.
@@ -193,8 +193,8 @@ impl<'a, const K: usize> Problem<'a, K> {
             points: curve.points(),
             model,
             interval_s: curve.interval_s(),
-            unit: curve.unit(),
-            per_unit: 1.0 / curve.unit(),
+            variance_unit: curve.variance_unit(),
+            per_unit: 1.0 / curve.variance_unit(),
             columns: Vec::new(),
         };
         for term in model.terms() {

@@ -63,7 +63,9 @@ impl<const K: usize> Weights<K> {
             if cholesky::factor(&mut self.factor, n) {
                 self.log_determinant = (0..n)
                     .map(|k| {
-                        2.0 * math::log(self.model[k] * problem.unit / real(self.factor[(k, k)]))
+                        2.0 * math::log(
+                            self.model[k] * problem.variance_unit / real(self.factor[(k, k)]),
+                        )
                     })
                     .sum();
                 return Ok(());

@@ -3,7 +3,7 @@
 use crate::{
     coefficient::{Coefficient, ONE_SIDED, State},
     math,
-    real::Real,
+    real::{Real, consts::FRAC_1_SQRT_2},
 };
 
 /// Where a limit stands beside an estimate.
@@ -40,7 +40,7 @@ pub(super) fn quantile(probability: Real) -> Real {
 
 /// Probability of a normal deviate above `z`.
 fn tail(z: Real) -> Real {
-    0.5 * math::erfc(z * crate::real::consts::FRAC_1_SQRT_2)
+    0.5 * math::erfc(z * FRAC_1_SQRT_2)
 }
 
 /// Decides with the quantiles of passing and failing. `beside` is the standard error of the square with the

@@ -18,17 +18,31 @@ pub struct Case {
     pub effect: &'static str,
     /// First and last look, in seconds.
     pub lengths_s: (f64, f64),
+    /// Flicker noise, as a multiple of the usual gyro's.
+    pub flicker: f64,
+    /// Whether a test of one look is short enough to look for its length.
+    pub compared: bool,
 }
 
-/// A limit that is told in seconds, and one that takes minutes.
-pub const CASES: [Case; 2] = [
+/// A limit that is told in seconds, one that takes minutes, and one that other noise hides at first.
+pub const CASES: [Case; 3] = [
     Case {
         effect: "angle_random_walk",
         lengths_s: (1.0, 256.0),
+        flicker: 1.0,
+        compared: true,
     },
     Case {
         effect: "bias_instability",
         lengths_s: (40.96, 1310.72),
+        flicker: 1.0,
+        compared: false,
+    },
+    Case {
+        effect: "angle_random_walk",
+        lengths_s: (1.0, 256.0),
+        flicker: 4.0,
+        compared: false,
     },
 ];
 
@@ -74,6 +88,7 @@ pub enum Looks {
 
 fn test(case: Case, factor: f64, seed: u64, looks: Looks) -> (Status, f64) {
     let mut base = Preset::Mems.coefficients();
+    base.bias_instability *= case.flicker;
     let limited = limited(&mut base, case.effect);
     let most = *limited / factor;
     let (shortest_s, longest_s) = match looks {

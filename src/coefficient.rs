@@ -1,11 +1,11 @@
 //! A coefficient, and what a record says of it.
 
-use crate::{effect::Effect, math, real::Real};
-
-/// Two-sided 95 % of a normal distribution, in standard errors.
-const TWO_SIDED: Real = 1.959_964;
-/// One-sided 95 %.
-pub(crate) const ONE_SIDED: Real = 1.644_854;
+use crate::{
+    effect::Effect,
+    limits::{ONE_SIDED_95, TWO_SIDED_95},
+    math,
+    real::{Real, real},
+};
 
 /// What a record says of a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,9 +61,10 @@ impl Coefficient {
                 0.0
             }
         };
-        let below = square - TWO_SIDED * error;
+        let half_width = real(TWO_SIDED_95) * error;
+        let below = square - half_width;
         let (state, upper) = if below > 0.0 {
-            (State::Measured, square + TWO_SIDED * error)
+            (State::Measured, square + half_width)
         } else if error.is_finite() {
             (
                 State::UpperBound,
@@ -100,6 +101,6 @@ impl Coefficient {
 
     /// One-sided 95 % bound of a square that cannot be negative.
     pub(crate) fn one_sided_bound(square: Real, variance: Real) -> Real {
-        square.max(0.0) + ONE_SIDED * math::sqrt(variance)
+        square.max(0.0) + real(ONE_SIDED_95) * math::sqrt(variance)
     }
 }

@@ -5,9 +5,10 @@ use crate::{
     curve::Curve,
     error::Error,
     fit::{Fit, Problem, weights::Weights},
+    limits::MAX_EFFECTS,
     list::numbered,
     math,
-    model::{MAX_EFFECTS, Model},
+    model::Model,
     nnls::Vector,
     real::{Real, single},
 };

@@ -20,9 +20,10 @@
 use crate::{
     curve::{Curve, Point},
     lattice::{self, Rounded, SecondDifferences},
+    limits::MAX_EFFECTS,
     list::numbered,
     math::{self, floor_log2},
-    model::{MAX_EFFECTS, Model, Term},
+    model::{Model, Term},
     real::{Real, consts::PI, real, single},
 };
 use heapless::Vec;

@@ -23,6 +23,7 @@ mod gate;
 mod integrity;
 mod kurtosis;
 mod lattice;
+mod limits;
 mod list;
 mod math;
 mod model;
@@ -52,13 +53,14 @@ pub use diagnosis::{
     Verdict,
 };
 pub use error::Error;
-pub use fit::{Correlations, Fit, MAX_SHAPE, Method, Settings, ShapeEstimate, fit};
+pub use fit::{Correlations, Fit, Method, Settings, ShapeEstimate, fit};
 #[cfg(feature = "flash")]
 pub use flash::{SnapshotStore, StoreError};
 pub use gate::Gate;
 pub use integrity::{Integrity, InvalidLimit, Limits, Observation, Reason, Tally};
 pub use kurtosis::{FourthMoments, Kurtosis, KurtosisPoint};
-pub use model::{MAX_EFFECTS, Model, Term};
+pub use limits::{MAX_EFFECTS, MAX_SHAPE};
+pub use model::{Model, Term};
 pub use octave::{Accumulator, OctaveSum};
 pub use real::Real;
 #[cfg(feature = "storage")]

@@ -1,15 +1,13 @@
 //! A model: the effects that make up a curve.
 
 use crate::{
-    effect::{Effect, IEEE_952, MAX_PARAMETERS, Setting},
+    effect::{Effect, IEEE_952, Setting},
     error::Error,
+    limits::{MAX_EFFECTS, MAX_PARAMETERS},
     list,
     real::{Real, real},
 };
 use heapless::Vec;
-
-/// Effects that one model has room for.
-pub const MAX_EFFECTS: usize = 8;
 
 /// One effect of a model, with its shape.
 #[derive(Clone, Copy)]

@@ -4,14 +4,11 @@ use crate::{
     algebra::{self, Choice, Elements as _, Triangle},
     cholesky,
     error::Error,
-    fit::MAX_SHAPE,
+    limits::UNKNOWNS,
     math,
-    model::MAX_EFFECTS,
     real::{Real, by_precision},
 };
 
-/// Unknowns at most: coefficients, and behind them fitted shapes.
-pub(crate) const UNKNOWNS: usize = MAX_EFFECTS + MAX_SHAPE;
 /// `H` of normal equations `H β = b`.
 pub(crate) type Matrix = Triangle<{ UNKNOWNS * (UNKNOWNS + 1) / 2 }>;
 /// One number an unknown.

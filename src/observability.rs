@@ -2,18 +2,19 @@
 
 use crate::{
     algebra::Elements as _,
+    limits::CHI_SQUARED_95,
     list::numbered,
     model::Model,
     nnls::{Free, Matrix, NormalEquations, Vector},
-    real::Real,
+    real::{Real, real},
 };
 
 /// Longest record that is considered, in samples: the longest octave's.
 const LONGEST: Real = (1_u64 << 30) as Real;
 
 /// Length in seconds, the present one doubled as often as needed, of a record in which effect `i`
-/// would be measured: with its square at `square`, and the others as `squares` has them, 1.96
-/// standard errors are less than the square. `None` if no length does it.
+/// would be measured: with its square at `square`, and the others as `squares` has them, the square
+/// exceeds half the width of its 95 % interval. `None` if no length does it.
 ///
 /// Standard errors come from independent octaves of `N/m − 1` clusters each, which is between
 /// what overlapping estimates gain and their correlation takes away.
@@ -61,7 +62,7 @@ pub(crate) fn record_length_s(
         });
         set.ok()?;
         let variance = equations.variance(i, &with);
-        if variance.is_some_and(|variance| square * square > 1.96 * 1.96 * variance) {
+        if variance.is_some_and(|variance| square * square > real(CHI_SQUARED_95) * variance) {
             return Some(samples * interval_s);
         }
         samples *= 2.0;

@@ -1,21 +1,20 @@
 //! The shape of an effect that would explain a curve best.
 
 use crate::{
-    effect::{Effect, MAX_PARAMETERS, Range, Span},
+    effect::{Effect, Range, Span},
     error::Error,
     fit::{
         Problem,
         weights::{Weights, Whitened},
     },
+    limits::{CHI_SQUARED_95, MAX_EFFECTS, MAX_PARAMETERS},
     list::numbered,
     math,
-    model::{MAX_EFFECTS, Term},
+    model::Term,
     nnls::{Free, NormalEquations, Vector},
     real::{Real, real},
 };
 
-/// The 95 % quantile of χ² with one degree of freedom.
-const RISE: Real = 3.841_459;
 /// Halvings of the step in a refinement: from half a grid step to a 32nd.
 const HALVINGS: usize = 5;
 
@@ -180,7 +179,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
                 let mut other = term;
                 other.set_parameter(whole, grid.at(step));
                 let found = self.refine_known(other, span);
-                if found.chi_squared < chi_squared + RISE {
+                if found.chi_squared < chi_squared + real(CHI_SQUARED_95) {
                     let interval = self.interval(&found, j, span);
                     lower = interval.0.min(lower);
                     upper = interval.1.max(upper);
@@ -214,7 +213,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
                         grid.high.max(value)
                     };
                 }
-                if rise(math::exp(direction * at)) > RISE {
+                if rise(math::exp(direction * at)) > real(CHI_SQUARED_95) {
                     break;
                 }
                 inside = at;
@@ -222,7 +221,7 @@ impl<'a, 'b, const K: usize> Search<'a, 'b, K> {
             }
             for _ in 0..6 {
                 step *= 0.5;
-                if rise(math::exp(direction * (inside + step))) <= RISE {
+                if rise(math::exp(direction * (inside + step))) <= real(CHI_SQUARED_95) {
                     inside += step;
                 }
             }

@@ -6,8 +6,9 @@ use super::{
 };
 use crate::{
     curve::Curve,
-    effect::{Effect, MAX_PARAMETERS},
+    effect::Effect,
     error::Error,
+    limits::MAX_PARAMETERS,
     list,
     model::{Model, Term},
     real::{Real, single},

@@ -8,8 +8,9 @@ use crate::{
     fit::{
         Problem,
         generalized::{Rounds, Solution},
-        shape::{MAX_SHAPE, ShapeEquations},
+        shape::ShapeEquations,
     },
+    limits::MAX_SHAPE,
     math,
     model::Model,
     nnls::Vector,

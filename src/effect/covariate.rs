@@ -16,7 +16,13 @@
 
 use super::Story;
 use crate::{
-    cross_sums::CrossCurve, curve::Point, fit::clusters, list::numbered, math, real::Real,
+    cross_sums::CrossCurve,
+    curve::Point,
+    fit::clusters,
+    limits::TWO_SIDED_95,
+    list::numbered,
+    math,
+    real::{Real, real},
 };
 
 /// Its name in files and on the command line.
@@ -72,7 +78,7 @@ impl Slope {
 
     /// The 95 % interval.
     pub fn interval(&self) -> (Real, Real) {
-        let half = 1.959_964 * self.error;
+        let half = real(TWO_SIDED_95) * self.error;
         (self.value - half, self.value + half)
     }
 }

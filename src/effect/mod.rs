@@ -32,10 +32,7 @@ pub use rate_random_walk::RateRandomWalk;
 pub use resonance::Resonance;
 pub use sinusoid::Sinusoid;
 
-pub use crate::lattice::SecondDifferences;
-
-/// Shape parameters that an effect can have: a frequency and a quality are the most.
-pub const MAX_PARAMETERS: usize = 2;
+pub use crate::{lattice::SecondDifferences, limits::MAX_PARAMETERS};
 
 /// Where an effect is evaluated: the sampling, and the effect's own shape.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,14 +4,12 @@ use super::{Fit, Method, Problem, shape::ShapeEquations, weights::Weights};
 use crate::{
     curve::Curve,
     error::Error,
+    limits::{MAX_EFFECTS, PAIRS},
     math,
-    model::{MAX_EFFECTS, Model},
+    model::Model,
     nnls::{Free, NormalEquations, Vector},
     real::{Real, real, single},
 };
-
-/// Pairs of effects of the largest model.
-pub(crate) const PAIRS: usize = MAX_EFFECTS * (MAX_EFFECTS - 1) / 2;
 
 /// Correlations of the squared coefficients of a fit, which is linear in these: with
 /// [`Coefficient::square_error`](crate::Coefficient::square_error) `e`, the covariance of two of

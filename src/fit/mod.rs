@@ -6,19 +6,17 @@ mod independent;
 pub(crate) mod shape;
 pub(crate) mod weights;
 
-#[cfg(feature = "storage")]
-pub(crate) use correlation::PAIRS;
-
 pub use correlation::Correlations;
-pub use shape::{MAX_SHAPE, ShapeEstimate};
+pub use shape::ShapeEstimate;
 
 use crate::{
     algebra,
     coefficient::Coefficient,
     curve::{Curve, Point},
     error::Error,
+    limits::{MAX_EFFECTS, MAX_SHAPE},
     math,
-    model::{MAX_EFFECTS, Model, Term},
+    model::{Model, Term},
     nnls::{Free, Vector},
     real::{Real, real, single},
 };

@@ -3,16 +3,14 @@
 use super::{Problem, weights::Weights};
 use crate::{
     algebra,
+    limits::{MAX_SHAPE, TWO_SIDED_95},
     list::{self, numbered},
     math,
     model::Term,
     nnls::{Free, NormalEquations, Vector},
-    real::{Real, single},
+    real::{Real, real, single},
 };
 use heapless::Vec;
-
-/// Fitted shape parameters that one model has room for.
-pub const MAX_SHAPE: usize = 4;
 
 /// Relative step of the numerical derivatives.
 const STEP: Real = 0.01;
@@ -140,7 +138,7 @@ impl ShapeEquations {
             let value = shape.parameter(j);
             let variance = self.equations.variance(count.saturating_add(at), &free);
             let error = variance.map_or(Real::INFINITY, math::sqrt);
-            let factor = math::exp(1.959_964 * error);
+            let factor = math::exp(real(TWO_SIDED_95) * error);
             ShapeEstimate {
                 term,
                 name: shape.parameter_name(j),

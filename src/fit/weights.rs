@@ -6,8 +6,8 @@ use crate::{
     cholesky,
     covariance::covariance,
     error::Error,
+    limits::MAX_EFFECTS,
     math,
-    model::MAX_EFFECTS,
     nnls::{NormalEquations, Vector},
     real::{Real, real, single},
 };

@@ -3,8 +3,9 @@
 use super::EffectCode;
 use crate::{
     Curve, Error, Fit, MAX_EFFECTS, Model, State, Verdict,
-    effect::{IEEE_952, MAX_PARAMETERS},
+    effect::IEEE_952,
     fit::Correlations,
+    limits::MAX_PARAMETERS,
     real::{double, single},
 };
 use heapless::Vec;

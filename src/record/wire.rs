@@ -5,11 +5,10 @@ use super::{
     RecordedShape, RecordedState, RecordedTerm, verdict::WireVerdict,
 };
 use crate::{
-    effect::MAX_PARAMETERS,
     envelope::{self, Kind, OVERHEAD, Writer},
     error::Error,
-    fit::{Correlations, PAIRS},
-    model::MAX_EFFECTS,
+    fit::Correlations,
+    limits::{MAX_EFFECTS, MAX_PARAMETERS, PAIRS},
 };
 use heapless::Vec;
 use serde::{Deserialize, Serialize};

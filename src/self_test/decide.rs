@@ -1,9 +1,10 @@
 //! Whether a coefficient lies above or below a limit.
 
 use crate::{
-    coefficient::{Coefficient, ONE_SIDED, State},
+    coefficient::{Coefficient, State},
+    limits::ONE_SIDED_95,
     math,
-    real::{Real, consts::FRAC_1_SQRT_2},
+    real::{Real, consts::FRAC_1_SQRT_2, real},
 };
 
 /// Where a limit stands beside an estimate.
@@ -88,7 +89,7 @@ pub(super) fn side(
 fn error(coefficient: &Coefficient) -> Real {
     let bound = coefficient.upper * coefficient.upper - coefficient.square;
     match coefficient.state {
-        State::UpperBound => (bound / ONE_SIDED).max(coefficient.square_error),
+        State::UpperBound => (bound / real(ONE_SIDED_95)).max(coefficient.square_error),
         _ => coefficient.square_error,
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     curve::{Curve, Scale},
     effect::IEEE_952,
-    model::MAX_EFFECTS,
+    limits::MAX_EFFECTS,
     real::Real,
 };
 use heapless::Vec;

@@ -1,0 +1,31 @@
+//! Sizes of the library's lists, and the quantiles that decide at 95 %.
+//!
+//! Every other module may use these numbers, so this module uses none of them: it imports nothing.
+
+/// Effects that one model has room for.
+pub const MAX_EFFECTS: usize = 8;
+
+/// Shape parameters that one effect has room for.
+pub const MAX_PARAMETERS: usize = 2;
+
+/// Fitted shape parameters that one model has room for.
+pub const MAX_SHAPE: usize = 4;
+
+/// Unknowns of the largest system of normal equations: the coefficients of a model, and behind them its
+/// fitted shape parameters.
+pub(crate) const UNKNOWNS: usize = MAX_EFFECTS + MAX_SHAPE;
+
+/// Pairs of different effects in the largest model.
+pub(crate) const PAIRS: usize = MAX_EFFECTS * (MAX_EFFECTS - 1) / 2;
+
+/// A normal variable lies within so many standard errors of its mean with a probability of 95 %
+/// (Abramowitz & Stegun 1964, table 26.5).
+pub(crate) const TWO_SIDED_95: f64 = 1.959_964;
+
+/// A normal variable lies below its mean plus so many standard errors with a probability of 95 %
+/// (Abramowitz & Stegun 1964, table 26.5).
+pub(crate) const ONE_SIDED_95: f64 = 1.644_854;
+
+/// χ² with one degree of freedom lies below this with a probability of 95 %: the square of
+/// [`TWO_SIDED_95`] (Abramowitz & Stegun 1964, table 26.8).
+pub(crate) const CHI_SQUARED_95: f64 = 3.841_459;

@@ -4,7 +4,7 @@ use crate::{
     chi_squared::chi_squared_tail,
     curve::Curve,
     error::Error,
-    fit::{Fit, Problem, weights::Weights},
+    fit::{Columns, Fit, Problem, Weights},
     limits::MAX_EFFECTS,
     list::numbered,
     math,
@@ -114,7 +114,8 @@ impl<const K: usize> Comparison<K> {
         tolerance: Real,
         unknowns: usize,
     ) -> Result<Self, Error> {
-        let problem = Problem::new(curve, model);
+        let columns = Columns::new(curve, model);
+        let problem = Problem::new(curve, model, &columns);
         let squares = problem.squares_of(fit);
         let mut weights = Weights::empty();
         weights.set(&problem, &squares, tolerance)?;

@@ -59,7 +59,6 @@ pub fn curve_covariance<const K: usize>(
 
 /// The covariance of a curve's variances, in rate units to the fourth, where the effects have the
 /// squared coefficients `squares`: `each(k, j, covariance)` for the lower triangle, `j ≤ k`.
-#[inline(never)]
 pub(crate) fn covariance(
     points: &[Point],
     model: &Model,
@@ -67,56 +66,75 @@ pub(crate) fn covariance(
     interval_s: Real,
     each: &mut dyn FnMut(usize, usize, Real),
 ) {
+    for j in 0..points.len() {
+        covariance_row(points, model, squares, interval_s, j, &mut |k, value| {
+            each(k, j, value);
+        });
+    }
+}
+
+/// The covariance of octave `j` with itself and with all longer ones: `each(k, covariance)` for
+/// `k ≥ j`. Nothing for an octave that the curve does not have.
+#[inline(never)]
+pub(crate) fn covariance_row(
+    points: &[Point],
+    model: &Model,
+    squares: &[Real],
+    interval_s: Real,
+    j: usize,
+    each: &mut dyn FnMut(usize, Real),
+) {
     let longest = points.last().map_or(1, |point| point.m);
     let present = || {
         let terms = model.terms().iter().zip(squares);
         terms.filter(|&(_, &square)| square > 0.0)
     };
-    for (j, shorter) in numbered(points.iter()) {
-        let ratio = longest.checked_div(shorter.m).unwrap_or(0);
-        let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
-        let m_j = real(shorter.m);
-        let mut random = SecondDifferences::zero(shorter.m, reach);
-        for (term, &square) in present() {
-            let setting = term.setting(interval_s);
-            if term.effect.response(m_j, &setting).is_none() {
-                term.effect
-                    .add_second_differences(m_j, square, &setting, &mut random);
-            }
+    let Some(shorter) = points.get(j) else {
+        return;
+    };
+    let ratio = longest.checked_div(shorter.m).unwrap_or(0);
+    let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
+    let m_j = real(shorter.m);
+    let mut random = SecondDifferences::zero(shorter.m, reach);
+    for (term, &square) in present() {
+        let setting = term.setting(interval_s);
+        if term.effect.response(m_j, &setting).is_none() {
+            term.effect
+                .add_second_differences(m_j, square, &setting, &mut random);
         }
-        let random = random.rounded();
-        let per_unit = 2.0 / random.unit();
-        let mut turns = Vec::<Turn, TABLES>::new();
-        let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
-        for (term, &square) in present() {
-            if let Some(short) = term.effect.response(m_j, &term.setting(interval_s)) {
-                let phase = 0.25 * m_j * short.phase;
-                // As many as effects: there is always room.
-                let _ = waves.push(Wave {
-                    term,
-                    size: per_unit * square * short.amplitude,
-                    product: 0.0,
-                    phase,
-                    turn: Turn::of(phase, &mut turns),
-                    now: START,
-                });
-            }
+    }
+    let random = random.rounded();
+    let per_unit = 2.0 / random.unit();
+    let mut turns = Vec::<Turn, TABLES>::new();
+    let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
+    for (term, &square) in present() {
+        if let Some(short) = term.effect.response(m_j, &term.setting(interval_s)) {
+            let phase = 0.25 * m_j * short.phase;
+            // As many as effects: there is always room.
+            let _ = waves.push(Wave {
+                term,
+                size: per_unit * square * short.amplitude,
+                product: 0.0,
+                phase,
+                turn: Turn::of(phase, &mut turns),
+                now: START,
+            });
         }
-        for (k, longer) in numbered(points.iter()).skip(j) {
-            let pair = Pair { shorter, longer };
-            // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
-            if pair.middle() >= lattice::END / 4 {
-                each(k, j, 0.0);
-                continue;
-            }
-            for wave in &mut waves {
-                let setting = wave.term.setting(interval_s);
-                let long = wave.term.effect.response(real(longer.m), &setting);
-                wave.product = long.map_or(0.0, |long| single(wave.size * long.amplitude));
-                wave.now = START;
-            }
-            each(k, j, pair.covariance(&random, &turns, &mut waves));
+    }
+    for (k, longer) in numbered(points.iter()).skip(j) {
+        let pair = Pair { shorter, longer };
+        // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
+        if pair.middle() >= lattice::END / 4 {
+            each(k, 0.0);
+            continue;
         }
+        for wave in &mut waves {
+            let setting = wave.term.setting(interval_s);
+            let long = wave.term.effect.response(real(longer.m), &setting);
+            wave.product = long.map_or(0.0, |long| single(wave.size * long.amplitude));
+            wave.now = START;
+        }
+        each(k, pair.covariance(&random, &turns, &mut waves));
     }
 }
 

@@ -1,6 +1,7 @@
 //! The Allan curve: what is left of the samples.
 
 use crate::{
+    effect::Span,
     error::Error,
     list::numbered,
     math,
@@ -136,6 +137,14 @@ impl<const K: usize> Curve<K> {
     /// Sample interval τ₀, in seconds.
     pub fn interval_s(&self) -> Real {
         1.0 / self.rate_hz
+    }
+
+    /// What the curve spans.
+    pub(crate) fn span(&self) -> Span {
+        Span {
+            interval_s: self.interval_s(),
+            longest_tau_s: self.points.last().map_or(0.0, |point| point.tau_s),
+        }
     }
 
     /// The unit that a fit counts variances in, and with them squared coefficients. What is taken off a

@@ -11,12 +11,12 @@ mod covariance;
 mod cross_sums;
 mod curve;
 pub mod demonstration;
-mod diagnosis;
+pub mod diagnosis;
 pub mod effect;
 #[cfg(feature = "storage")]
 mod envelope;
 mod error;
-mod fit;
+pub mod fit;
 #[cfg(feature = "flash")]
 mod flash;
 mod gate;
@@ -30,11 +30,11 @@ mod model;
 mod nnls;
 mod observability;
 mod octave;
+mod profile;
 pub mod queue;
 mod real;
 #[cfg(feature = "storage")]
 mod record;
-mod search;
 pub mod self_test;
 pub mod sensor;
 pub mod simulated;
@@ -48,12 +48,7 @@ pub use comparison::{ComparedOctave, Comparison, Stretch};
 pub use covariance::curve_covariance;
 pub use cross_sums::{CrossCurve, CrossPoint, CrossSums};
 pub use curve::{Curve, Point, Scale};
-pub use diagnosis::{
-    Addition, Candidate, Diagnosis, Evidence, Follows, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap,
-    Verdict,
-};
 pub use error::Error;
-pub use fit::{Correlations, Fit, Method, Settings, ShapeEstimate, fit};
 #[cfg(feature = "flash")]
 pub use flash::{SnapshotStore, StoreError};
 pub use gate::Gate;

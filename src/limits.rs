@@ -29,3 +29,7 @@ pub(crate) const ONE_SIDED_95: f64 = 1.644_854;
 /// χ² with one degree of freedom lies below this with a probability of 95 %: the square of
 /// [`TWO_SIDED_95`] (Abramowitz & Stegun 1964, table 26.8).
 pub(crate) const CHI_SQUARED_95: f64 = 3.841_459;
+
+/// A model whose p-value is lower is not adequate: a χ² as large would come out in one of a hundred
+/// records if the model were true. Fit, comparison and diagnosis share this threshold.
+pub(crate) const ADEQUATE_P: f64 = 0.01;

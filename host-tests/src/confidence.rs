@@ -1,7 +1,7 @@
 //! Confidence limits of a curve, octave by octave.
 
 use crate::log::OCTAVES;
-use allanite::{Curve, Fit, Model, curve_covariance};
+use allanite::{Curve, Model, curve_covariance, fit::Fit};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Probability below the lower limit, and above the upper one: 95 % lie between them.

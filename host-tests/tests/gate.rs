@@ -1,7 +1,8 @@
 //! Samples that are left out, and samples that are lost on the way: counted, and never averaged over.
 
 use allanite::{
-    Accumulator, Curve, Gate, Integrity, Model, Scale, Settings, fit,
+    Accumulator, Curve, Gate, Integrity, Model, Scale,
+    fit::{Options, fit},
     queue::{self, Queued},
 };
 use heapless::spsc::Queue;
@@ -21,7 +22,7 @@ fn rest() -> Vec<i32> {
 
 fn angle_random_walk(accumulator: &Accumulator<16>) -> f64 {
     let curve: Curve<16> = accumulator.curve(Scale::new(UNIT, RATE_HZ).unwrap());
-    let fit = fit(&curve, &Model::ieee_952(), Settings::default()).unwrap();
+    let fit = fit(&curve, &Model::ieee_952(), Options::default()).unwrap();
     assert!(fit.p_value > 1e-3, "{}", fit.p_value);
     fit.coefficients[1].value
 }

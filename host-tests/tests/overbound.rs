@@ -1,6 +1,6 @@
 //! Models above a curve: above everywhere, and no higher than they must be.
 
-use allanite::{Curve, Model, Settings};
+use allanite::{Curve, Model, fit::Options};
 use host_tests::{
     confidence::{Limits, limits},
     curve_file::CurveFile,
@@ -20,7 +20,7 @@ fn curves() -> Vec<(Curve<OCTAVES>, Vec<Limits>)> {
     let axes = files.into_iter().flat_map(|file| file.unwrap().axes);
     let with_limits = axes.map(|axis| {
         let curve = axis.curve().unwrap();
-        let fit = allanite::fit(&curve, &model, Settings::default()).unwrap();
+        let fit = allanite::fit::fit(&curve, &model, Options::default()).unwrap();
         let limits = limits(&curve, &model, &fit);
         (curve, limits)
     });
@@ -116,7 +116,7 @@ fn white_noise_alone_needs_no_random_walk() {
 fn equivalent_process_differs_least_and_says_by_how_much() {
     let model = Model::ieee_952();
     for (curve, _) in curves() {
-        let fit = allanite::fit(&curve, &model, Settings::default()).unwrap();
+        let fit = allanite::fit::fit(&curve, &model, Options::default()).unwrap();
         let squares = fit.squares();
         let flicker = fit.coefficients[2].value;
         let Some(found) = Equivalent::of(&curve, &model, &squares, flicker) else {

@@ -6,10 +6,11 @@ mod factory;
 mod sealed;
 
 use allanite::{
-    Curve, EffectCode, Error, Model, RateUnit, Reason, Record, RecordedState, Settings, State,
-    Verdict, curve_covariance,
+    Curve, EffectCode, Error, Model, RateUnit, Reason, Record, RecordedState, State,
+    curve_covariance,
+    diagnosis::Verdict,
     effect::{AngleRandomWalk, BiasInstability, CATALOGUE, RateRandomWalk},
-    fit,
+    fit::{Options, fit},
 };
 use factory::{SINUSOID, axis, encoded, record};
 use sealed::sealed;
@@ -43,7 +44,7 @@ fn record_keeps_what_fit_and_diagnosis_said() {
 fn numbers_of_a_fit_are_kept_in_single_precision() {
     let curve = factory::counts(None, 1).curve(allanite::Scale::new(0.01, 100.0).unwrap());
     let model = Model::ieee_952();
-    let fit = fit(&curve, &model, Settings::default()).unwrap();
+    let fit = fit(&curve, &model, Options::default()).unwrap();
     let axis = allanite::AxisRecord::new(&curve, &model, &fit).unwrap();
     assert_eq!(axis.chi_squared, fit.chi_squared);
     assert_eq!(axis.p_value, fit.p_value);
@@ -84,7 +85,7 @@ fn covariance_is_that_of_errors_propagated_through_the_fit() {
         })
     };
     let curve = |changed, step| Curve::<15>::new(100.0, octaves(changed, step)).unwrap();
-    let fitted = |curve: &Curve<15>| fit(curve, &model, Settings::default()).unwrap();
+    let fitted = |curve: &Curve<15>| fit(curve, &model, Options::default()).unwrap();
     let exact = curve(99, 0.0);
     let (best, scatter) = (fitted(&exact), curve_covariance(&exact, &model, &squares));
     let correlations = best.correlations(&exact, &model).unwrap();

@@ -5,7 +5,7 @@ use crate::{
     coefficient::Coefficient,
     curve::{Curve, Scale},
     error::Error,
-    fit::{Fit, Settings, fit},
+    fit::{Fit, Options, fit},
     model::Model,
     octave::Accumulator,
     real::Real,
@@ -41,7 +41,7 @@ impl Characterised {
     pub fn run(seed: u64) -> Result<Self, Error> {
         let scale = Scale::new(1.0 / 131.0, 100.0)?;
         let curve = accumulated(scale, seed);
-        let fit = fit(&curve, &Model::ieee_952(), Settings::default())?;
+        let fit = fit(&curve, &Model::ieee_952(), Options::default())?;
         Ok(Self {
             curve,
             fit,

@@ -5,7 +5,7 @@
 use super::AMPLITUDES;
 use crate::{
     curve::Scale,
-    diagnosis::{Diagnosis, Evidence, Step, Verdict},
+    diagnosis::{Diagnosis, Evidence, Options, Step, Verdict},
     effect::CATALOGUE,
     error::Error,
     integrity::Integrity,
@@ -82,7 +82,7 @@ pub fn diagnose(
         invalid: integrity.verdict(),
     };
     let model = Model::ieee_952();
-    Diagnosis::default().run(&curve, &evidence, &model, &CATALOGUE, report)
+    Diagnosis::new(curve, evidence, &model, &CATALOGUE, Options::default())?.run(report)
 }
 
 /// The seed of its noise, where there is no reason for another.

@@ -1,70 +1,93 @@
-//! The way not taken: a step with a candidate that was not added.
+//! The step that would have followed with a candidate that was not added.
 
-use super::{Candidate, Diagnosis, Step, standing::Standing, trial::Better};
+use super::{
+    judged::{Judged, Judging},
+    step::{Candidate, Step},
+    trial::{Fitted, Trial},
+};
 use crate::{
     curve::Curve,
     error::Error,
-    fit::{Problem, generalized::Solution},
+    fit::{Problem, Start, Tolerance, Work},
     model::{Model, Term},
     real::Real,
 };
 
-impl Diagnosis {
-    /// The step that would have followed `step` with another candidate of it: the model with the
-    /// candidate, all fitted shapes polished, and where it fails. It has no candidates of its own.
-    /// `before` is the step before, whose candidates tell the shape of what a
-    /// [`swap`](Candidate::swap) takes; `curve` is the one that `step` was judged on, without what
-    /// follows a covariate.
-    ///
-    /// # Errors
-    /// As of [`fit`](crate::fit); [`Error::TooManyEffects`] where the model has no room.
-    pub fn alternative<const K: usize>(
-        &self,
-        curve: &Curve<K>,
-        step: &Step<K>,
-        before: Option<&Step<K>>,
-        candidate: &Candidate,
-    ) -> Result<Step<K>, Error> {
-        let mut model = step.model.clone();
-        if let Some(swap) = candidate.swap {
-            let known = before.into_iter().flat_map(|before| &before.candidates);
-            let mut same = known.filter(|known| known.term.effect.name() == swap.taken.name());
-            let taken = same.next().map(|known| known.term);
-            model.exchange(swap.dropped, taken.unwrap_or(Term::fitted(swap.taken)))?;
-        }
-        if let Some(replaced) = candidate.term.effect.replaces() {
-            model.remove(replaced.name());
-        }
-        model.add(candidate.term)?;
-        self.polished(curve, model, candidate, step)
+/// The step that would have followed `step` with another candidate of it: the model with the candidate, all
+/// fitted shapes polished, and where it fails. It has no candidates of its own.
+///
+/// `before` is the step before, whose candidates tell the shape of what a [`swap`](Candidate::swap) takes.
+/// `curve` is the one that `step` was judged on, without what follows a covariate.
+///
+/// # Errors
+/// As of [`fit`](crate::fit::fit()); [`Error::TooManyEffects`] where the model has no room.
+pub fn alternative<const K: usize>(
+    curve: &Curve<K>,
+    step: &Step<K>,
+    before: Option<&Step<K>>,
+    candidate: &Candidate,
+) -> Result<Step<K>, Error> {
+    let mut model = step.model.clone();
+    if let Some(swap) = candidate.swap {
+        let known = before.into_iter().flat_map(|before| &before.candidates);
+        let mut same = known.filter(|known| known.term.effect.name() == swap.taken.name());
+        let taken = same.next().map(|known| known.term);
+        model.exchange(swap.dropped, taken.unwrap_or(Term::fitted(swap.taken)))?;
     }
+    if let Some(replaced) = candidate.term.effect.replaces() {
+        model.remove(replaced.name());
+    }
+    model.add(candidate.term)?;
+    let fitted = polished(curve, model, step.fit.tolerance, candidate)?;
+    let mut alternative = Step::of(&fitted.model);
+    alternative.covariate = step.covariate;
+    judged(curve, &fitted, step.fit.tolerance, &mut alternative)?;
+    Ok(alternative)
+}
 
-    fn polished<const K: usize>(
-        &self,
-        curve: &Curve<K>,
-        model: Model,
-        candidate: &Candidate,
-        step: &Step<K>,
-    ) -> Result<Step<K>, Error> {
-        let squares = {
-            let problem = Problem::new(curve, &model);
-            let mut solution = Solution::new(&problem);
-            solution.solve(self.tolerance)?;
-            solution.squares
-        };
-        let mut better = Better { model, squares };
-        // Infinitely much to gain: no round is hopeless.
-        better.fit(
-            curve,
-            self.tolerance,
-            Real::INFINITY,
-            &mut candidate.clone(),
-        )?;
-        let mut standing = Standing::at(&better.model);
-        standing.step.follows = step.follows;
-        standing.squares = better.squares;
-        standing.has_start = true;
-        self.judge(curve, &[], &mut standing)?;
-        Ok(standing.step)
+/// The model with its shapes polished.
+fn polished<const K: usize>(
+    curve: &Curve<K>,
+    model: Model,
+    tolerance: Real,
+    candidate: &Candidate,
+) -> Result<Fitted, Error> {
+    let mut work = Work::new();
+    work.begin_at(
+        curve,
+        &model,
+        Start::Independent,
+        Tolerance::Fixed(tolerance),
+    )?;
+    let problem = Problem::new(curve, &model, &work.columns);
+    while !work.solver.advance(&problem)? {}
+    let squares = work.solver.squares;
+    let mut trial = Trial::new(Fitted { model, squares });
+    let mut candidate = *candidate;
+    loop {
+        // Nothing is gained so far: no round is hopeless.
+        let (span, best) = (curve.span(), Real::INFINITY);
+        let completed = trial.advance(curve, &span, tolerance, best, &mut work, &mut candidate)?;
+        if let Some(completed) = completed {
+            return Ok(completed.fitted);
+        }
+    }
+}
+
+/// Judges a fitted model.
+fn judged<const K: usize>(
+    curve: &Curve<K>,
+    fitted: &Fitted,
+    tolerance: Real,
+    step: &mut Step<K>,
+) -> Result<Judged, Error> {
+    let mut work = Work::new();
+    let start = Start::Once(fitted.squares);
+    work.begin_at(curve, &step.model, start, Tolerance::Fixed(tolerance))?;
+    let mut judging = Judging::new();
+    loop {
+        if let Some(judged) = judging.advance(curve, &curve.span(), &mut work, step)? {
+            return Ok(judged);
+        }
     }
 }

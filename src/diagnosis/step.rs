@@ -15,7 +15,10 @@ pub const MAX_CANDIDATES: usize = 4;
 /// Names that a step calls ambiguous: two of every other candidate, and twins of two.
 pub const MAX_AMBIGUOUS: usize = 2 * MAX_CANDIDATES;
 
-/// An effect that a step tried.
+/// The candidates of a step, best first.
+pub(super) type Candidates = Vec<Candidate, MAX_CANDIDATES>;
+
+/// An effect that a step tried, and that improves the model.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
     /// The effect with its best shape.
@@ -78,10 +81,10 @@ impl core::fmt::Debug for Swap {
 /// A covariate that the rate follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Follows {
+pub struct FollowedCovariate {
     /// Its place among [`Evidence::covariates`](super::Evidence::covariates).
-    pub covariate: usize,
-    /// How.
+    pub index: usize,
+    /// How the rate follows it.
     pub slope: Slope,
 }
 
@@ -97,7 +100,7 @@ pub enum Addition {
     /// An effect of the list: the first candidate.
     Effect(Term),
     /// A covariate: what follows it is taken off the curve.
-    Covariate(Follows),
+    Covariate(FollowedCovariate),
 }
 
 /// A model on the way of a diagnosis.
@@ -105,14 +108,14 @@ pub enum Addition {
 pub struct Step<const K: usize> {
     /// The model so far.
     pub model: Model,
-    /// The covariate whose share has been taken off the curve.
-    pub follows: Option<Follows>,
+    /// The covariate whose share has been subtracted from the curve.
+    pub covariate: Option<FollowedCovariate>,
     /// The model's fit.
     pub fit: Fit,
     /// Where it fails.
     pub comparison: Comparison<K>,
     /// What was tried next, best first; none where the model is adequate.
-    pub candidates: Vec<Candidate, MAX_CANDIDATES>,
+    pub candidates: Candidates,
     /// What was added.
     pub added: Option<Addition>,
     /// Candidates that explain the curve about as well as the one that was added.
@@ -120,6 +123,26 @@ pub struct Step<const K: usize> {
 }
 
 impl<const K: usize> Step<K> {
+    /// A step of which only the model is known.
+    pub(super) fn of(model: &Model) -> Self {
+        Self {
+            model: model.clone(),
+            covariate: None,
+            fit: Fit::empty(),
+            comparison: Comparison::empty(),
+            candidates: Vec::new(),
+            added: None,
+            ambiguous: Vec::new(),
+        }
+    }
+
+    /// Clears what is known of the way from the model before.
+    pub(super) fn begin_report(&mut self) {
+        self.candidates.clear();
+        self.added = None;
+        self.ambiguous.clear();
+    }
+
     /// What else changes with the effect that is added.
     pub fn swap(&self) -> Option<Swap> {
         match self.added {

@@ -1,50 +1,45 @@
-//! A model with one more effect, fitted in full.
+//! A model with one more effect, fitted with its own covariance and its shapes polished.
 
-use super::{Candidate, scan::span};
+use super::step::Candidate;
 use crate::{
     curve::Curve,
     effect::Span,
     error::Error,
-    fit::{
-        Problem,
-        generalized::{Rounds, Solution},
-        shape::ShapeEquations,
-    },
+    fit::{Problem, ShapeEquations, Start, Tolerance, Work},
     limits::MAX_SHAPE,
     math,
     model::Model,
     nnls::Vector,
+    profile::Found,
     real::{Real, real, single},
-    search::Found,
 };
 use heapless::Vec;
 
-/// Rounds of fitting and polishing the shapes of a candidate.
-const ROUNDS: usize = 10;
+/// The most rounds of fitting and polishing the shapes of a candidate.
+const ROUNDS: u8 = 10;
 /// A change of `−2 ln L` that ends the rounds.
 const SETTLED: Real = 0.5;
 /// A lag of `−2 ln L` behind the best candidate that ends them too …
 const HOPELESS: Real = 60.0;
 /// … where a round makes up for less than this share of it.
 const CATCHING_UP: Real = 0.25;
-
 /// The longest step of a shape's logarithm.
 const STRIDE: Real = 0.2;
-/// Times that a step is halved because it led too far.
-const HALVINGS: u32 = 4;
+/// How often a step is halved because it led too far.
+const HALVINGS: u8 = 4;
 
-/// Changes of the logarithms of fitted shapes, by effect and parameter, in little room.
+/// Changes of the logarithms of fitted shapes, by effect and parameter.
 type Steps = Vec<(u8, u8, f32), MAX_SHAPE>;
 
-/// A model with one more effect, and its squared coefficients.
+/// A model and the squared coefficients that its covariance is taken at.
 #[derive(Clone, Debug)]
-pub(super) struct Better {
+pub(super) struct Fitted {
     pub(super) model: Model,
     pub(super) squares: Vector,
 }
 
-impl Better {
-    /// Of no effects yet.
+impl Fitted {
+    /// A model of no effects.
     pub(super) fn empty() -> Self {
         Self {
             model: Model::default(),
@@ -52,80 +47,29 @@ impl Better {
         }
     }
 
-    /// Becomes a model with an effect as a scan found it: in the place of what it replaces, or behind the
+    /// A model with one more effect, as a scan found it: in the place of what it replaces, or behind the
     /// others.
-    pub(super) fn begin(&mut self, model: &Model, found: &Found) -> Result<(), Error> {
-        self.model.clone_from(model);
-        self.squares = found.squares;
+    ///
+    /// # Errors
+    /// [`Error::TooManyEffects`].
+    pub(super) fn with(model: &Model, found: &Found) -> Result<Self, Error> {
+        let mut model = model.clone();
+        let mut squares = found.squares;
         let replaced = found.term.effect.replaces();
-        if let Some(place) = replaced.and_then(|effect| self.model.remove(effect.name())) {
-            for i in place..self.model.terms().len() {
-                let (one, other) = (self.squares[i], self.squares[i + 1]);
-                self.squares.put(i, other);
-                self.squares.put(i + 1, one);
+        if let Some(place) = replaced.and_then(|effect| model.remove(effect.name())) {
+            // The square of the effect goes to the end with it.
+            for i in place..model.terms().len() {
+                let (one, other) = (squares[i], squares[i.saturating_add(1)]);
+                squares.put(i, other);
+                squares.put(i.saturating_add(1), one);
             }
         }
-        self.model.add(found.term)
+        model.add(found.term)?;
+        Ok(Self { model, squares })
     }
 
-    /// Fits the model with its own covariance, and its shapes by the method of Gauss and Newton, until
-    /// the score settles or lags behind the `best` so far without catching up. `None` where a
-    /// coefficient has to be held at zero in every round.
-    #[inline(never)]
-    pub(super) fn fit<const K: usize>(
-        &mut self,
-        curve: &Curve<K>,
-        tolerance: Real,
-        best: Real,
-        candidate: &mut Candidate,
-    ) -> Result<Option<Real>, Error> {
-        let span = span(curve);
-        let mut trial = self.clone();
-        let mut tried = *candidate;
-        let mut kept: Option<Real> = None;
-        let mut before = Real::INFINITY;
-        let mut steps = Steps::new();
-        let mut halvings = 0_u32;
-        for _ in 0..ROUNDS {
-            let mut next = Steps::new();
-            let Some(now) = trial.round(curve, tolerance, &mut next, &mut tried)? else {
-                // Another model, with scores of its own.
-                before = Real::INFINITY;
-                continue;
-            };
-            let (gain, lag) = (before - now, now - best);
-            if kept.is_none_or(|score| now < score) {
-                kept = Some(now);
-                *candidate = tried;
-                self.clone_from(&trial);
-            }
-            if gain > -SETTLED {
-                if gain < SETTLED || (lag > HOPELESS && gain < CATCHING_UP * lag) {
-                    if kept == Some(now) {
-                        self.go(&next, 1.0, &span);
-                    }
-                    break;
-                }
-                before = now;
-                steps = next;
-                trial.go(&steps, 1.0, &span);
-            } else {
-                // Too far: half the way back.
-                halvings = halvings.saturating_add(1);
-                if halvings > HALVINGS {
-                    break;
-                }
-                for step in &mut steps {
-                    step.2 *= 0.5;
-                }
-                trial.go(&steps, -1.0, &span);
-            }
-        }
-        Ok(kept)
-    }
-
-    /// Changes shapes.
-    fn go(&mut self, steps: &Steps, sign: Real, span: &Span) {
+    /// Changes the logarithms of shapes, within their ranges.
+    fn change(&mut self, steps: &Steps, sign: Real, span: &Span) {
         for &(i, j, step) in steps {
             let (j, step) = (usize::from(j), real(step));
             let Some(term) = self.model.terms_mut().get_mut(usize::from(i)) else {
@@ -137,59 +81,193 @@ impl Better {
             term.set_parameter(j, changed.max(range.low).min(highest));
         }
     }
+}
 
-    /// One round: the score, the candidate without its improvement, and how the shapes ought to change.
-    /// `None` if a coefficient has to be held at zero first.
+/// The fit of a model with one more effect in progress: rounds of its covariance, its coefficients and its
+/// shapes by the method of Gauss and Newton, and at last the coefficients with the shapes at rest.
+pub(super) struct Trial {
+    present: Fitted,
+    /// The best so far, and its score.
+    kept: Option<(Fitted, Real)>,
+    before: Real,
+    steps: Steps,
+    halvings: u8,
+    round: u8,
+    stage: Stage,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    Begin,
+    Round,
+    Last,
+}
+
+/// A candidate that was fitted, the squares that its covariance was taken at, and its score.
+pub(super) struct Completed {
+    pub(super) fitted: Fitted,
+    pub(super) score: Real,
+}
+
+impl Trial {
+    /// Begins with a model.
+    pub(super) fn new(fitted: Fitted) -> Self {
+        Self {
+            present: fitted,
+            kept: None,
+            before: Real::INFINITY,
+            steps: Steps::new(),
+            halvings: 0,
+            round: 0,
+            stage: Stage::Begin,
+        }
+    }
+
+    /// Does one piece of work. Returns the fit when it is complete, and writes its effect, coefficient and χ²
+    /// to the candidate. The rounds end early when the score lags behind the `best` one of other candidates
+    /// without catching up.
+    ///
+    /// # Errors
+    /// Where the model cannot be fitted: the effect is no candidate then.
     #[inline(never)]
-    fn round<const K: usize>(
+    pub(super) fn advance<const K: usize>(
+        &mut self,
+        curve: &Curve<K>,
+        span: &Span,
+        tolerance: Real,
+        best: Real,
+        work: &mut Work<K>,
+        candidate: &mut Candidate,
+    ) -> Result<Option<Completed>, Error> {
+        if self.stage == Stage::Begin {
+            self.begin(curve, tolerance, work)?;
+            return Ok(None);
+        }
+        let problem = Problem::new(curve, &self.present.model, &work.columns);
+        if !work.solver.advance(&problem)? {
+            return Ok(None);
+        }
+        if self.stage == Stage::Last {
+            return Ok(Some(self.complete(&problem, work, candidate)));
+        }
+        let mut next = Steps::new();
+        let confused = polish(&problem, work, &mut next);
+        self.present.squares = work.solver.squares;
+        let now = work.solver.minus_two_log_likelihood();
+        let goes_on = match confused {
+            Some(confused) => {
+                // Another model, with scores of its own.
+                if let Some(term) = self.present.model.terms_mut().get_mut(confused) {
+                    term.held = true;
+                }
+                self.present.squares.put(confused, 0.0);
+                self.before = Real::INFINITY;
+                true
+            }
+            None => self.step(now, best, next, span),
+        };
+        self.round = self.round.saturating_add(1);
+        if goes_on && self.round < ROUNDS {
+            self.begin(curve, tolerance, work)?;
+        } else {
+            // The best round, with its shapes at rest.
+            let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
+            self.present = fitted;
+            self.stage = Stage::Last;
+            let start = Start::From(self.present.squares);
+            let tolerance = Tolerance::Fixed(tolerance);
+            work.begin_at(curve, &self.present.model, start, tolerance)?;
+        }
+        Ok(None)
+    }
+
+    /// Begins a round.
+    fn begin<const K: usize>(
         &mut self,
         curve: &Curve<K>,
         tolerance: Real,
-        steps: &mut Steps,
-        candidate: &mut Candidate,
-    ) -> Result<Option<Real>, Error> {
-        let problem = Problem::new(curve, &self.model);
-        let mut solution = Solution::new(&problem);
-        solution.converge(self.squares, tolerance, Rounds::One)?;
-        self.squares = solution.squares;
-        match judge(&problem, &solution, steps, candidate) {
-            None => Ok(Some(solution.minus_two_log_likelihood())),
-            Some(confused) => {
-                if let Some(term) = self.model.terms_mut().get_mut(confused) {
-                    term.held = true;
+        work: &mut Work<K>,
+    ) -> Result<(), Error> {
+        self.stage = Stage::Round;
+        let start = Start::Once(self.present.squares);
+        let tolerance = Tolerance::Fixed(tolerance);
+        work.begin_at(curve, &self.present.model, start, tolerance)
+    }
+
+    /// Keeps a round that is the best so far, and changes the shapes for the next one. Returns whether there
+    /// is a next one.
+    fn step(&mut self, now: Real, best: Real, next: Steps, span: &Span) -> bool {
+        let (gain, lag) = (self.before - now, now - best);
+        let is_best = self.kept.as_ref().is_none_or(|(_, score)| now < *score);
+        if is_best {
+            self.kept = Some((self.present.clone(), now));
+        }
+        if gain > -SETTLED {
+            if gain < SETTLED || (lag > HOPELESS && gain < CATCHING_UP * lag) {
+                if let Some((fitted, _)) = self.kept.as_mut().filter(|_| is_best) {
+                    fitted.change(&next, 1.0, span);
                 }
-                self.squares.put(confused, 0.0);
-                Ok(None)
+                return false;
             }
+            self.before = now;
+            self.steps = next;
+            self.present.change(&self.steps, 1.0, span);
+            return true;
+        }
+        // Too far: half the way back.
+        self.halvings = self.halvings.saturating_add(1);
+        if self.halvings > HALVINGS {
+            return false;
+        }
+        for step in &mut self.steps {
+            step.2 *= 0.5;
+        }
+        self.present.change(&self.steps, -1.0, span);
+        true
+    }
+
+    /// The fit with the shapes at rest.
+    fn complete<const K: usize>(
+        &self,
+        problem: &Problem<'_, K>,
+        work: &Work<K>,
+        candidate: &mut Candidate,
+    ) -> Completed {
+        let solver = &work.solver;
+        if let Some((last, others)) = problem.model.terms().split_last() {
+            let square = solver.squares[others.len()].max(0.0);
+            candidate.term = *last;
+            candidate.coefficient = math::sqrt(square * problem.variance_unit);
+        }
+        candidate.chi_squared = solver.chi_squared;
+        Completed {
+            fitted: Fitted {
+                model: self.present.model.clone(),
+                squares: solver.assumed,
+            },
+            score: solver.minus_two_log_likelihood(),
         }
     }
 }
 
-/// The candidate as it was fitted and how the shapes ought to change, or the effect that has to be held
-/// at zero for them to be determined.
+/// How the shapes ought to change, or the effect that has to be held at zero for them to be determined.
 #[inline(never)]
-fn judge<const K: usize>(
+fn polish<const K: usize>(
     problem: &Problem<'_, K>,
-    solution: &Solution<'_, '_, K>,
+    work: &Work<K>,
     steps: &mut Steps,
-    candidate: &mut Candidate,
 ) -> Option<usize> {
+    let solver = &work.solver;
     let mut shape = ShapeEquations::empty();
-    let told = shape.set(problem, &solution.weights, &solution.squares);
-    if told {
-        if let Some(confused) = solution.confused(&shape) {
-            return Some(confused);
-        }
-        shape.steps(&solution.free, |i, j, step| {
-            // As many as fitted shapes.
+    if !shape.set(problem, &solver.weights, &solver.squares) {
+        return None;
+    }
+    let confused = solver.confused(problem, &shape);
+    if confused.is_none() {
+        shape.steps(&solver.free, |i, j, step| {
+            // There is a place for each fitted shape.
             let _ = steps.push((i as u8, j as u8, single(step.clamp(-STRIDE, STRIDE))));
         });
     }
-    if let Some((last, others)) = problem.model.terms().split_last() {
-        candidate.term = *last;
-        candidate.coefficient =
-            math::sqrt(solution.squares[others.len()].max(0.0) * problem.variance_unit);
-    }
-    candidate.chi_squared = solution.chi_squared;
-    None
+    confused
 }

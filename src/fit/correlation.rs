@@ -1,6 +1,12 @@
 //! How the errors of fitted coefficients go together.
 
-use super::{Fit, Method, Problem, shape::ShapeEquations, weights::Weights};
+use super::{
+    method::Method,
+    problem::{Columns, Problem},
+    result::Fit,
+    shape::ShapeEquations,
+    weights::Weights,
+};
 use crate::{
     curve::Curve,
     error::Error,
@@ -84,7 +90,8 @@ impl Fit {
         if count != self.coefficients.len() {
             return Err(Error::Singular);
         }
-        let problem = Problem::new(curve, model);
+        let columns = Columns::new(curve, model);
+        let problem = Problem::new(curve, model, &columns);
         let squares = problem.squares_of(self);
         let free = Free::of(|i| i < MAX_EFFECTS && squares[i] > 0.0);
         let mut weights = Weights::empty();

@@ -1,6 +1,10 @@
 //! Fits that take octaves for independent: the paper's, and the start of ours.
 
-use super::{Fit, Method, Problem, relative_accuracy, squared};
+use super::{
+    method::Method,
+    problem::{Problem, relative_accuracy},
+    result::Fit,
+};
 use crate::{
     chi_squared::chi_squared_tail,
     coefficient::Coefficient,
@@ -33,14 +37,15 @@ pub(super) fn equations<const K: usize>(
 
 /// The inverse square of the standard error of an octave that was measured, `δσ̂²`.
 pub(super) fn by_relative_accuracy(point: &Point, measured: Real) -> Real {
-    1.0 / squared(relative_accuracy(point) * measured)
+    let error = relative_accuracy(point) * measured;
+    1.0 / (error * error)
 }
 
 /// An unconstrained fit.
 pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> Result<Fit, Error> {
     let weight = |point: &Point, measured: Real| match method {
         Method::Ordinary => 1.0,
-        Method::ClusterCount => 1.0 / squared(relative_accuracy(point)),
+        Method::ClusterCount => by_relative_accuracy(point, 1.0),
         _ => by_relative_accuracy(point, measured),
     };
     let mut equations = NormalEquations::empty();
@@ -49,7 +54,8 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
     let free = Free::of(|i| i < problem.count());
     let residuals = numbered(problem.points.iter()).map(|(k, point)| {
         let measured = problem.measured(k);
-        weight(point, measured) * squared(measured - problem.variance(k, &squares))
+        let residual = measured - problem.variance(k, &squares);
+        weight(point, measured) * residual * residual
     });
     let mut chi_squared: Real = residuals.sum();
     let degrees_of_freedom = problem.points.len().saturating_sub(problem.count());

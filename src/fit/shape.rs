@@ -1,6 +1,6 @@
 //! Uncertainty of fitted shapes, and what they add to that of the coefficients.
 
-use super::{Problem, weights::Weights};
+use super::{problem::Problem, weights::Weights};
 use crate::{
     algebra,
     limits::{MAX_SHAPE, TWO_SIDED_95},

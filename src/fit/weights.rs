@@ -1,10 +1,10 @@
 //! The covariance of a curve, factored: the units in which octaves are independent.
 
-use super::{Problem, squared};
+use super::problem::Problem;
 use crate::{
     algebra::{self, Square},
     cholesky,
-    covariance::covariance,
+    covariance::covariance_row,
     error::Error,
     limits::MAX_EFFECTS,
     math,
@@ -13,23 +13,28 @@ use crate::{
 };
 use heapless::Vec;
 
-/// How much of the correlations a covariance keeps, tried in turn until it is positive definite.
+/// Shares that the correlations lose, tried in turn until the covariance is positive definite.
 const SHRINKAGES: [Real; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
 
 /// The covariance of a curve relative to a model, factored.
 pub(crate) struct Weights<const K: usize> {
     /// The model's variances.
     pub(crate) model: algebra::Vector<K>,
-    /// Of the covariance relative to them; single precision is that of the covariance.
+    /// The Cholesky factor of the covariance relative to them; the covariance itself is no better than
+    /// single precision.
     factor: Square<K, f32>,
-    /// Of the covariance in rate units.
+    /// The logarithm of the determinant of the covariance, in rate units.
     pub(crate) log_determinant: Real,
     pub(crate) tolerance: Real,
     pub(crate) shrinkage: Real,
+    /// The next row of the covariance, and the attempt at a positive definite one: what
+    /// [`advance`](Self::advance) does next.
+    row: usize,
+    attempt: usize,
 }
 
 impl<const K: usize> Weights<K> {
-    /// Not yet of any model.
+    /// The weights of no model yet.
     pub(crate) fn empty() -> Self {
         Self {
             model: algebra::Vector::zeros(),
@@ -37,19 +42,34 @@ impl<const K: usize> Weights<K> {
             log_determinant: 0.0,
             tolerance: 0.0,
             shrinkage: 0.0,
+            row: 0,
+            attempt: 0,
         }
     }
 
-    /// Takes the covariance of a model with these squared coefficients.
-    #[inline(never)]
+    /// Computes the weights of a model with these squared coefficients in one go.
     pub(crate) fn set(
         &mut self,
         problem: &Problem<'_, K>,
         squares: &Vector,
         tolerance: Real,
     ) -> Result<(), Error> {
-        let n = problem.points.len().min(K);
-        for k in 0..n {
+        self.begin(problem, squares, tolerance)?;
+        while !self.advance(problem, squares)? {}
+        Ok(())
+    }
+
+    /// Begins with the weights of a model with these squared coefficients.
+    ///
+    /// # Errors
+    /// [`Error::Singular`] where the model has no variance in an octave.
+    pub(crate) fn begin(
+        &mut self,
+        problem: &Problem<'_, K>,
+        squares: &Vector,
+        tolerance: Real,
+    ) -> Result<(), Error> {
+        for k in 0..problem.points.len().min(K) {
             let variance = problem.variance(k, squares);
             if !(variance.is_finite() && variance > 0.0) {
                 return Err(Error::Singular);
@@ -57,43 +77,59 @@ impl<const K: usize> Weights<K> {
             self.model.put(k, variance);
         }
         self.tolerance = tolerance;
-        for shrinkage in SHRINKAGES {
-            self.shrinkage = shrinkage;
-            self.take_relative(problem, squares, 1.0 - shrinkage);
-            if cholesky::factor(&mut self.factor, n) {
-                self.log_determinant = (0..n)
-                    .map(|k| {
-                        2.0 * math::log(
-                            self.model[k] * problem.variance_unit / real(self.factor[(k, k)]),
-                        )
-                    })
-                    .sum();
-                return Ok(());
-            }
-        }
-        Err(Error::Singular)
+        self.row = 0;
+        self.attempt = 0;
+        Ok(())
     }
 
-    /// The covariance relative to the model, of which correlations keep a share.
-    fn take_relative(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: Real) {
-        let mut reciprocal = self.model;
-        for k in 0..problem.points.len().min(K) {
-            reciprocal.put(k, 1.0 / self.model[k]);
+    /// Computes one more row of the covariance, or factors it when all rows are there. Returns `true`
+    /// when the weights are complete.
+    ///
+    /// # Errors
+    /// [`Error::Singular`] where no shrinkage makes the covariance positive definite.
+    #[inline(never)]
+    pub(crate) fn advance(
+        &mut self,
+        problem: &Problem<'_, K>,
+        squares: &Vector,
+    ) -> Result<bool, Error> {
+        let n = problem.points.len().min(K);
+        let shrinkage = SHRINKAGES.get(self.attempt).copied();
+        self.shrinkage = shrinkage.ok_or(Error::Singular)?;
+        if self.row < n {
+            self.set_row(problem, squares, 1.0 - self.shrinkage);
+            self.row = self.row.saturating_add(1);
+            return Ok(false);
         }
-        let (factor, tolerance) = (&mut self.factor, self.tolerance);
-        covariance(
+        if !cholesky::factor(&mut self.factor, n) {
+            self.attempt = self.attempt.saturating_add(1);
+            self.row = 0;
+            return Ok(false);
+        }
+        let diagonal = |k: usize| self.model[k] * problem.variance_unit / real(self.factor[(k, k)]);
+        self.log_determinant = (0..n).map(|k| 2.0 * math::log(diagonal(k))).sum();
+        Ok(true)
+    }
+
+    /// Computes one row of the covariance relative to the model, of which the correlations keep a share.
+    fn set_row(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: Real) {
+        let (row, model, tolerance) = (self.row, &self.model, self.tolerance);
+        let factor = &mut self.factor;
+        let own = 1.0 / model[row];
+        covariance_row(
             problem.points,
             problem.model,
             squares.as_slice(),
             problem.interval_s,
-            &mut |k, j, covariance| {
-                let relative = covariance * reciprocal[j] * reciprocal[k];
-                let kept = if j == k {
-                    relative + squared(tolerance)
+            row,
+            &mut |k, covariance| {
+                let relative = covariance * own / model[k];
+                let kept = if k == row {
+                    relative + tolerance * tolerance
                 } else {
                     relative * keep
                 };
-                factor.put((k, j), single(kept));
+                factor.put((k, row), single(kept));
             },
         );
     }
@@ -101,9 +137,9 @@ impl<const K: usize> Weights<K> {
     /// Standard error of octave `k`, relative to the model's variance.
     pub(crate) fn relative_error(&self, k: usize) -> Real {
         let element = |j: usize| real(self.factor[(k, j)]);
-        let row = (0..k).map(|j| squared(element(j)));
+        let row = (0..k).map(|j| element(j) * element(j));
         let diagonal = 1.0 / element(k);
-        math::sqrt(row.sum::<Real>() + squared(diagonal))
+        math::sqrt(row.sum::<Real>() + diagonal * diagonal)
     }
 
     /// χ² of the curve beside the model with these squared coefficients.
@@ -154,7 +190,7 @@ impl<const K: usize> Weights<K> {
         whitened: &mut Whitened<K>,
     ) {
         whitened.columns.clear();
-        for column in &problem.columns {
+        for column in problem.columns() {
             // As many columns as effects.
             let _ = whitened
                 .columns

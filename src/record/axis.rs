@@ -2,9 +2,10 @@
 
 use super::EffectCode;
 use crate::{
-    Curve, Error, Fit, MAX_EFFECTS, Model, State, Verdict,
+    Curve, Error, MAX_EFFECTS, Model, State,
+    diagnosis::Verdict,
     effect::IEEE_952,
-    fit::Correlations,
+    fit::{Correlations, Fit},
     limits::MAX_PARAMETERS,
     real::{double, single},
 };

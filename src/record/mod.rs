@@ -16,7 +16,7 @@
 //! | – χ², p-value | 2 × f64 |
 //! | – degrees of freedom | u16 |
 //! | – tolerance that was granted | f32 |
-//! | – verdict: 0 none, 1 adequate, 2 improved, 3 unexplained, 4 invalid and why | u8, reason |
+//! | – verdict: 0 none, 1 adequate, 2 improved, 3 unexplained, 4 invalid and why, 5 too short | u8, reason |
 //! | – number of terms up to 8; of each term: | u8 |
 //! | – – [code](EffectCode) of the effect: 1 to 11, or 0 for one of somebody's own | u8 |
 //! | – – value, lower, upper, standard error of the square | 4 × f32 |
@@ -87,11 +87,11 @@ impl Conditions {
 /// # Example
 ///
 /// ```
-/// use allanite::{AxisRecord, Conditions, Curve, Model, RateUnit, Record, Settings, fit};
+/// use allanite::{AxisRecord, Conditions, Curve, Model, RateUnit, Record, fit::{Options, fit}};
 ///
 /// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / f64::from(1 << k)));
 /// let (curve, model) = (Curve::<10>::new(100.0, white)?, Model::ieee_952());
-/// let fit = fit(&curve, &model, Settings::default())?;
+/// let fit = fit(&curve, &model, Options::default())?;
 ///
 /// let conditions = Conditions {
 ///     temperature_c: Some((22.5, 24.0)),

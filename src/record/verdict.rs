@@ -1,6 +1,6 @@
 //! Verdicts as they are stored: apart from the public ones, which may be reordered.
 
-use crate::{Reason, Verdict};
+use crate::{Reason, diagnosis::Verdict};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
@@ -10,6 +10,7 @@ pub(super) enum WireVerdict {
     Improved,
     Unexplained,
     Invalid(WireReason),
+    TooShort,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -29,6 +30,7 @@ impl From<Option<Verdict>> for WireVerdict {
             Some(Verdict::Improved) => Self::Improved,
             Some(Verdict::Unexplained) => Self::Unexplained,
             Some(Verdict::Invalid(reason)) => Self::Invalid(reason.into()),
+            Some(Verdict::TooShort) => Self::TooShort,
         }
     }
 }
@@ -41,6 +43,7 @@ impl From<WireVerdict> for Option<Verdict> {
             WireVerdict::Improved => Some(Verdict::Improved),
             WireVerdict::Unexplained => Some(Verdict::Unexplained),
             WireVerdict::Invalid(reason) => Some(Verdict::Invalid(reason.into())),
+            WireVerdict::TooShort => Some(Verdict::TooShort),
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::{
     algebra::Choice,
     coefficient::{Coefficient, State},
     curve::Scale,
-    fit::{Fit, Problem, Settings, check, generalized::Solution},
+    fit::{Estimator, Fit, Options, Problem, Start, Tolerance, Work, check},
     integrity::{Integrity, Reason},
     list::numbered,
     model::Model,
@@ -197,10 +197,17 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let seconds = samples as Real / self.scale.rate_hz();
         let curve = self.accumulator.curve(self.scale);
         let model = Model::ieee_952();
-        let problem = Problem::new(&curve, &model);
-        let mut solution = Solution::new(&problem);
-        let solved =
-            check(curve.points(), 2).and_then(|()| solution.solve(Settings::default().tolerance));
+        let mut work = Work::new();
+        let tolerance = Tolerance::IfNeeded(Options::default().tolerance);
+        let solved = check(curve.points(), 2)
+            .and_then(|()| work.begin_at(&curve, &model, Start::Independent, tolerance))
+            .and_then(|()| {
+                let problem = Problem::new(&curve, &model, &work.columns);
+                while !work.solver.advance(&problem)? {}
+                Ok(())
+            });
+        let problem = Problem::new(&curve, &model, &work.columns);
+        let solver = &work.solver;
         if solved.is_err() {
             // Gaps may have left too few differences; the first limit stands for all.
             return if is_last {
@@ -210,7 +217,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             };
         }
         let mut fit = Fit::empty();
-        solution.report(&mut fit);
+        let mut estimator = Estimator::new(&problem, solver, &mut fit);
+        while !estimator.advance(&problem, solver, &mut fit) {}
         let spent = if is_last { 1.0 } else { 0.5 } * self.fail_left;
         self.fail_left -= spent;
         let fail = quantile(spent);
@@ -230,7 +238,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             let Some(coefficient) = fit.coefficients.get(at) else {
                 continue;
             };
-            let beside = solution.error_beside(at);
+            let beside = solver.error_beside(&problem, at);
             match side(coefficient, beside, limit.most, self.pass, fail) {
                 Side::Below => self.kept.add(i),
                 Side::Above => {

@@ -1,6 +1,6 @@
 //! The studies behind the README's figures: `cargo xtask study NAME`.
 
-use allanite::Settings;
+use allanite::fit::Options;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use host_tests::{
@@ -68,7 +68,7 @@ enum Study {
         #[arg(long, default_value_t = 1000)]
         records: u64,
         /// Model tolerance
-        #[arg(long, default_value_t = Settings::default().tolerance)]
+        #[arg(long, default_value_t = Options::default().tolerance)]
         tolerance: f64,
     },
 }
@@ -174,10 +174,10 @@ fn theory(records: u64) {
         "{:>10} {:>6} {:>7} {:>6} {:>6} {:>6}",
         "tolerance", "mean", "median", "90 %", "95 %", "99 %"
     );
-    for tolerance in [0.0, Settings::default().tolerance] {
-        let settings = Settings {
+    for tolerance in [0.0, Options::default().tolerance] {
+        let settings = Options {
             tolerance,
-            ..Settings::default()
+            ..Options::default()
         };
         let chi_squared =
             theory::chi_squared(Preset::Mems.coefficients(), 1 << 16, records, settings);
@@ -189,7 +189,7 @@ fn theory(records: u64) {
 fn accuracies(records: u64, tolerance: f64) {
     println!("mems, {records} records of 2^17 samples");
     for (name, method) in coefficients::METHODS {
-        let settings = Settings { method, tolerance };
+        let settings = Options { method, tolerance };
         let (accuracies, negative) =
             coefficients::accuracy(Preset::Mems.coefficients(), 1 << 17, records, settings);
         println!(

@@ -12,7 +12,10 @@ use crate::{
     failure::{Failure, Place},
     log::OCTAVES,
 };
-use allanite::{Comparison, Curve, Error, Fit, Model, Settings};
+use allanite::{
+    Comparison, Curve, Error, Model,
+    fit::{Fit, Options},
+};
 use clap::Args;
 use std::{
     io::{self, Write},
@@ -53,9 +56,9 @@ pub(super) struct HeldOut {
 
 impl Compared {
     fn new(axis: AxisCurve, model: &Model, held_out: Option<AxisCurve>) -> Result<Self, Error> {
-        let settings = Settings::default();
+        let settings = Options::default();
         let curve = axis.curve()?;
-        let fit = allanite::fit(&curve, model, settings)?;
+        let fit = allanite::fit::fit(&curve, model, settings)?;
         let fitted = Comparison::new(&curve, model, &fit)?;
         let (comparison, held_out) = match held_out {
             None => (fitted, None),

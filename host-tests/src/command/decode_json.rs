@@ -5,7 +5,7 @@ use super::{
     units,
 };
 use crate::unit::Unit;
-use allanite::{AxisRecord, Record, RecordedState, RecordedTerm, Verdict};
+use allanite::{AxisRecord, Record, RecordedState, RecordedTerm, diagnosis::Verdict};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::{
@@ -121,12 +121,7 @@ fn axis(name: String, axis: &AxisRecord, unit: Unit) -> Axis {
     let row = |i: usize| (0..=i).map(|j| axis.covariance(i, j)).collect();
     Axis {
         axis: name,
-        verdict: axis.verdict.map(|verdict| match verdict {
-            Verdict::Adequate => "adequate",
-            Verdict::Improved => "improved",
-            Verdict::Unexplained => "unexplained",
-            Verdict::Invalid(_) => "invalid",
-        }),
+        verdict: axis.verdict.map(Verdict::name),
         reason: match axis.verdict {
             Some(Verdict::Invalid(reason)) => Some(reason.to_string()),
             _ => None,

@@ -7,7 +7,8 @@ use super::{
 };
 use crate::unit::Unit;
 use allanite::{
-    AxisRecord, Record, RecordedShape, RecordedState, RecordedTerm, Verdict,
+    AxisRecord, Record, RecordedShape, RecordedState, RecordedTerm,
+    diagnosis::Verdict,
     effect::{Effect, IEEE_952, Parameter},
 };
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
@@ -99,7 +100,9 @@ fn judgement(axis: &AxisRecord) -> String {
         Some(Verdict::Improved) if found.is_empty() => "improved".into(),
         Some(Verdict::Improved) => format!("with {found}"),
         Some(Verdict::Unexplained) => "unexplained".into(),
+        Some(Verdict::TooShort) => "too short to judge".into(),
         Some(Verdict::Invalid(reason)) => format!("invalid, {reason}"),
+        Some(verdict) => verdict.name().into(),
     }
 }
 

@@ -6,7 +6,7 @@ use super::{
     model_json::{self, Effect, Worst},
 };
 use crate::{log::OCTAVES, unit::Unit};
-use allanite::{Candidate as Tried, Step as Taken, Verdict};
+use allanite::diagnosis::{Candidate as Tried, Step as Taken};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -78,12 +78,7 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             .iter()
             .map(|one| step(one, diagnosed, unit))
             .collect(),
-        verdict: match diagnosed.verdict {
-            Verdict::Adequate => "adequate",
-            Verdict::Improved => "improved",
-            Verdict::Unexplained => "unexplained",
-            Verdict::Invalid(_) => "invalid",
-        },
+        verdict: diagnosed.verdict.name(),
         missing: diagnosed.missing().collect(),
         ambiguous: names,
         notes: diagnosed.notes(),
@@ -91,9 +86,9 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
 }
 
 fn step(step: &Taken<OCTAVES>, diagnosed: &Diagnosed, unit: Unit) -> Step {
-    let follows = step.follows.as_ref();
+    let followed = step.covariate.as_ref();
     let covariate =
-        follows.map(|follows| model_json::covariate(follows, diagnosed.covariate(follows)));
+        followed.map(|followed| model_json::covariate(followed, diagnosed.covariate(followed)));
     Step {
         effects: covariate
             .into_iter()

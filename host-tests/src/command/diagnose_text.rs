@@ -6,7 +6,7 @@ use super::{
     fit_table, words,
 };
 use crate::{log::OCTAVES, plot::Plot};
-use allanite::{Candidate, Step};
+use allanite::diagnosis::{Candidate, Step};
 use std::io::{self, Write};
 
 /// Prints the way of every axis, from the five terms to the model that the diagnosis ends with.

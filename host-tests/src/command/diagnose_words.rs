@@ -7,7 +7,8 @@ use super::{
 };
 use crate::log::OCTAVES;
 use allanite::{
-    Addition, Candidate, Follows, Step, Swap, Term, Verdict,
+    Term,
+    diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
     effect::{Story, covariate, story},
 };
 
@@ -61,9 +62,9 @@ impl Finding {
         }
     }
 
-    fn covariate(diagnosed: &Diagnosed, follows: &Follows) -> Self {
-        let channel = diagnosed.covariate(follows);
-        let (slope, (lower, upper)) = (follows.slope, follows.slope.interval());
+    fn covariate(diagnosed: &Diagnosed, followed: &FollowedCovariate) -> Self {
+        let channel = diagnosed.covariate(followed);
+        let (slope, (lower, upper)) = (followed.slope, followed.slope.interval());
         let found = format!(
             "slope {} {} per unit of {channel} ({} … {}), 95 % interval; {:.1} standard errors",
             number::number(slope.value),
@@ -150,16 +151,16 @@ pub(super) fn verdict(diagnosed: &Diagnosed) -> String {
                                 effect was looked for."
             .into(),
         Verdict::Adequate => format!("the five terms are adequate (p {p}): no effect is missing."),
-        Verdict::Unexplained if !last.fit.p_value.is_finite() => {
+        Verdict::TooShort => {
             "there are too few octaves to judge the five terms: record longer.".into()
         }
         Verdict::Unexplained => format!(
             "the five terms are not adequate (p {p}), and no effect in the catalogue explains it."
         ),
-        Verdict::Improved => {
-            let names = diagnosed.missing().map(|name| match &last.follows {
-                Some(follows) if name == covariate::NAME => {
-                    format!("{name} {}", diagnosed.covariate(follows))
+        _ => {
+            let names = diagnosed.missing().map(|name| match &last.covariate {
+                Some(followed) if name == covariate::NAME => {
+                    format!("{name} {}", diagnosed.covariate(followed))
                 }
                 _ => words::plain(name),
             });
@@ -176,13 +177,13 @@ pub(super) fn verdict(diagnosed: &Diagnosed) -> String {
                 first.comparison.rms_percent,
                 last.comparison.rms_percent
             );
-            let lack = if first.fit.p_value >= diagnosed.diagnosis.adequate_p {
+            let lack = if first.fit.is_adequate() == Some(true) {
                 "the five terms explain the curve, and yet lack"
             } else {
                 "the five terms lack"
             };
             let missing = format!("{lack} {names}{alike}: {error}");
-            if last.fit.p_value >= diagnosed.diagnosis.adequate_p {
+            if last.fit.is_adequate() == Some(true) {
                 format!("{missing}; the model is adequate now (p {p}).")
             } else {
                 format!("{missing}; something small is left that no effect explains (p {p}).")

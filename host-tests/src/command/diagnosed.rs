@@ -10,7 +10,10 @@ use crate::{
     log::{CovariateChoice, Evidence, OCTAVES},
 };
 use allanite::{
-    Addition, Candidate, CrossCurve, Diagnosis, Error, Follows, Model, Step, Term, Verdict,
+    CrossCurve, Error, Model, Term,
+    diagnosis::{
+        Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
+    },
     effect::{CATALOGUE, covariate},
 };
 use clap::Args;
@@ -66,7 +69,7 @@ pub(super) struct Diagnosed {
     pub(super) steps: Vec<Step<OCTAVES>>,
     pub(super) verdict: Verdict,
     /// How effects were looked for.
-    pub(super) diagnosis: Diagnosis,
+    pub(super) options: Options,
     /// Names of the covariates, and what the axis shares with each.
     covariates: Vec<String>,
     cross: Vec<CrossCurve<OCTAVES>>,
@@ -74,13 +77,13 @@ pub(super) struct Diagnosed {
 
 impl Diagnosed {
     fn new(axis: AxisCurve, evidence: Evidence, max_effects: Option<usize>) -> Result<Self, Error> {
-        let default = Diagnosis::default();
-        let diagnosis = Diagnosis {
+        let default = Options::default();
+        let options = Options {
             max_effects: max_effects.unwrap_or(default.max_effects),
             ..default
         };
         let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
-        let evidence = allanite::Evidence {
+        let evidence = allanite::diagnosis::Evidence {
             kurtosis: Some(&evidence.kurtosis),
             covariates: &cross,
             invalid: evidence.invalid,
@@ -88,14 +91,13 @@ impl Diagnosed {
         let mut steps = Vec::new();
         let curve = axis.curve()?;
         let model = Model::ieee_952();
-        let verdict = diagnosis.run(&curve, &evidence, &model, &CATALOGUE, |step| {
-            steps.push(step.clone());
-        })?;
+        let diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options)?;
+        let verdict = diagnosis.run(|step| steps.push(step.clone()))?;
         Ok(Self {
             axis,
             steps,
             verdict,
-            diagnosis,
+            options,
             covariates,
             cross,
         })
@@ -111,7 +113,10 @@ impl Diagnosed {
         let Some(step) = self.steps.get(step) else {
             return String::new();
         };
-        let channel = step.follows.as_ref().map(|follows| self.covariate(follows));
+        let channel = step
+            .covariate
+            .as_ref()
+            .map(|followed| self.covariate(followed));
         let added = self
             .added_in(step)
             .map(|term| words::plain(term.effect.name()));
@@ -131,10 +136,10 @@ impl Diagnosed {
             .checked_sub(1)
             .and_then(|before| self.steps.get(before));
         let step = &self.steps[step];
-        if let Some(follows) = &step.follows {
-            self.cross[follows.covariate].correct(&mut curve, &follows.slope);
+        if let Some(followed) = &step.covariate {
+            self.cross[followed.index].correct(&mut curve, &followed.slope);
         }
-        self.diagnosis.alternative(&curve, step, before, candidate)
+        alternative(&curve, step, before, candidate)
     }
 
     /// The effects that were added and kept, without covariates, as the last model has them.
@@ -156,8 +161,8 @@ impl Diagnosed {
 
     /// Names of all that was added and kept.
     pub(super) fn missing(&self) -> impl Iterator<Item = &'static str> {
-        let follows = self.steps.last().and_then(|last| last.follows);
-        let covariate = follows.map(|_| covariate::NAME);
+        let followed = self.steps.last().and_then(|last| last.covariate);
+        let covariate = followed.map(|_| covariate::NAME);
         covariate
             .into_iter()
             .chain(self.added().map(|term| term.effect.name()))
@@ -180,8 +185,8 @@ impl Diagnosed {
     }
 
     /// The covariate that the rate follows, by name.
-    pub(super) fn covariate(&self, follows: &Follows) -> &str {
-        &self.covariates[follows.covariate]
+    pub(super) fn covariate(&self, followed: &FollowedCovariate) -> &str {
+        &self.covariates[followed.index]
     }
 
     /// What is worth knowing beside the figures, one line each.
@@ -190,7 +195,7 @@ impl Diagnosed {
             return Vec::new();
         };
         let mut notes = Vec::new();
-        if !first.fit.p_value.is_finite() {
+        if self.verdict == Verdict::TooShort {
             notes.push("there are too few octaves to judge the model: record longer".into());
         }
         if let Verdict::Invalid(reason) = self.verdict {
@@ -218,6 +223,6 @@ impl Diagnosed {
 pub(super) fn added_name(added: &Addition) -> &'static str {
     match added {
         Addition::Effect(term) => term.effect.name(),
-        Addition::Covariate(_) => covariate::NAME,
+        _ => covariate::NAME,
     }
 }

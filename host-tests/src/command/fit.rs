@@ -6,7 +6,10 @@ use super::{
     many::{self, FilesArguments, Findings},
 };
 use crate::{curve_file::AxisCurve, failure::Failure, log::OCTAVES};
-use allanite::{Curve, Fit, Method, Model, Settings};
+use allanite::{
+    Curve, Model,
+    fit::{Fit, Method, Options},
+};
 use clap::{Args, ValueEnum};
 use std::{
     io::{self, Write},
@@ -71,12 +74,12 @@ pub(super) struct Fitted {
 impl Fitted {
     /// Fits the five terms to an axis of a file.
     pub(super) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
-        let settings = Settings {
+        let settings = Options {
             method: method.method(),
-            ..Settings::default()
+            ..Options::default()
         };
         let fitted = axis.curve().and_then(|curve| {
-            let fit = allanite::fit(&curve, &Model::ieee_952(), settings)?;
+            let fit = allanite::fit::fit(&curve, &Model::ieee_952(), settings)?;
             Ok((curve, fit))
         });
         match fitted {

@@ -1,12 +1,8 @@
 //! Coefficients of many files for people: one table, a row an axis.
 
-use super::{
-    fit::Fitted,
-    fit_table::{LEAST_P_VALUE, customary},
-    many::shown,
-    number::probability,
-};
-use allanite::Fit;
+use super::{fit::Fitted, fit_table::customary, many::shown, number::probability};
+use allanite::fit::ADEQUATE_P;
+use allanite::fit::Fit;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::{
     io::{self, Write},
@@ -72,8 +68,8 @@ fn row(path: &Path, fitted: &Fitted) -> Vec<String> {
 
 fn adequate(fit: &Fit) -> &'static str {
     match fit.p_value {
-        p if p >= LEAST_P_VALUE => "yes",
-        p if p < LEAST_P_VALUE => "no",
+        p if p >= ADEQUATE_P => "yes",
+        p if p < ADEQUATE_P => "no",
         _ => "–",
     }
 }

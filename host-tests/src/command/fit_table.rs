@@ -6,12 +6,9 @@ use super::{
     units, words,
 };
 use crate::unit::Unit;
-use allanite::{Coefficient, Fit, State};
+use allanite::{Coefficient, State, fit::Fit};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
-
-/// Models with a smaller p-value are not adequate.
-pub(super) const LEAST_P_VALUE: f64 = 0.01;
 
 /// Prints a table an axis.
 pub(super) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
@@ -157,7 +154,7 @@ fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
         "There are too few octaves to judge the five-term model: record longer."
     } else if method == MethodName::RelativeAccuracy {
         "This method takes octaves for independent: judge the model with --method covariance."
-    } else if fit.p_value >= LEAST_P_VALUE {
+    } else if fit.is_adequate() == Some(true) {
         "The five-term model is adequate for this record."
     } else {
         "The five-term model is not adequate: something else is in this record, and the \

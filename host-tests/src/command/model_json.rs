@@ -2,7 +2,10 @@
 
 use super::{fit_json, words};
 use crate::{log::OCTAVES, unit::Unit};
-use allanite::{ComparedOctave, Comparison, Fit, Follows, Model, Term, effect::covariate};
+use allanite::{
+    ComparedOctave, Comparison, Model, Term, diagnosis::FollowedCovariate, effect::covariate,
+    fit::Fit,
+};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -16,11 +19,11 @@ pub(super) struct Effect {
     channel: Option<String>,
 }
 
-/// A covariate that the rate follows: its slope, and the slope's 95 % interval.
-pub(super) fn covariate(follows: &Follows, channel: &str) -> Effect {
-    let (lower, upper) = follows.slope.interval();
+/// A covariate that the rate followed: its slope, and the slope's 95 % interval.
+pub(super) fn covariate(followed: &FollowedCovariate, channel: &str) -> Effect {
+    let (lower, upper) = followed.slope.interval();
     let numbers = [
-        ("slope", follows.slope.value),
+        ("slope", followed.slope.value),
         ("slope_lower", lower),
         ("slope_upper", upper),
     ];

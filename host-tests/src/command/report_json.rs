@@ -12,7 +12,7 @@ use crate::{
     plot::{Figure, Frame},
     unit::Unit,
 };
-use allanite::{Addition, Candidate as Tried, Step};
+use allanite::diagnosis::{Addition, Candidate as Tried, Step};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

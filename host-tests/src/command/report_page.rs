@@ -2,7 +2,10 @@
 
 use super::{diagnose_words::lead, diagnosed::Diagnosed, words};
 use crate::plot;
-use allanite::{Diagnosis, Verdict};
+use allanite::{
+    diagnosis::{Options, Verdict},
+    fit::ADEQUATE_P,
+};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::{collections::BTreeSet, path::Path};
 
@@ -89,7 +92,9 @@ fn badge(diagnosed: &Diagnosed) -> (&'static str, &'static str) {
         Verdict::Adequate => ("good", "five terms suffice"),
         Verdict::Improved => ("found", "effects found"),
         Verdict::Unexplained => ("open", "unexplained"),
+        Verdict::TooShort => ("open", "too short to judge"),
         Verdict::Invalid(_) => ("open", "record invalid"),
+        _ => ("open", "unknown"),
     }
 }
 
@@ -134,11 +139,8 @@ fn axis(number: usize, diagnosed: &Diagnosed) -> Markup {
 
 /// All that it takes to make the page again.
 fn settings(content: &Content) -> Markup {
-    let default = Diagnosis::default();
-    let diagnosis = content
-        .diagnosed
-        .first()
-        .map_or(default, |one| one.diagnosis);
+    let default = Options::default();
+    let options = content.diagnosed.first().map_or(default, |one| one.options);
     let arguments = std::env::args_os().skip(1);
     let arguments = arguments.map(|argument| argument.to_string_lossy().into_owned());
     let words = std::iter::once("allanite".to_owned()).chain(arguments);
@@ -152,14 +154,14 @@ fn settings(content: &Content) -> Markup {
         ("version", format!("allanite {}", env!("CARGO_PKG_VERSION"))),
         (
             "tolerance of the model",
-            format!("{} %", 100.0 * diagnosis.tolerance),
+            format!("{} %", 100.0 * options.tolerance),
         ),
-        ("adequate from", format!("p = {}", diagnosis.adequate_p)),
-        ("effects at most", diagnosis.max_effects.to_string()),
+        ("adequate from", format!("p = {ADEQUATE_P}")),
+        ("effects at most", options.max_effects.to_string()),
     ];
     html! {
         section.settings {
-            h2 { "Settings" }
+            h2 { "Options" }
             dl {
                 @for (name, value) in &settings { dt { (name) } dd { (value) } }
             }

@@ -9,8 +9,10 @@ use crate::{
     unit::{Sensor, Unit},
 };
 use allanite::{
-    Coefficient, Fit, State, Step, Term,
+    Coefficient, State, Term,
+    diagnosis::Step,
     effect::{Effect, MAX_PARAMETERS, Parameter},
+    fit::Fit,
 };
 
 /// A name as people write it.

@@ -2,7 +2,10 @@
 
 use super::{curve, theory::squares};
 use crate::simulate::Coefficients;
-use allanite::{Method, Model, Settings, State, fit};
+use allanite::{
+    Model, State,
+    fit::{Method, Options, fit},
+};
 use rayon::prelude::*;
 
 /// How well one coefficient was found over many records.
@@ -26,7 +29,7 @@ pub fn accuracy(
     coefficients: Coefficients,
     samples: usize,
     records: u64,
-    settings: Settings,
+    settings: Options,
 ) -> ([Accuracy; 5], f64) {
     let truth = squares(coefficients).map(f64::sqrt);
     let fits: Vec<_> = (0..records)
@@ -41,8 +44,9 @@ pub fn accuracy(
         })
         .collect();
     let n = fits.len() as f64;
-    let share =
-        |f: &dyn Fn(&allanite::Fit) -> bool| fits.iter().filter(|fit| f(fit)).count() as f64 / n;
+    let share = |f: &dyn Fn(&allanite::fit::Fit) -> bool| {
+        fits.iter().filter(|fit| f(fit)).count() as f64 / n
+    };
     let accuracies = std::array::from_fn(|i| {
         let errors = fits
             .iter()

@@ -3,10 +3,10 @@
 use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
 use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
 use allanite::{
-    Addition, Comparison, Curve, Diagnosis, Evidence, Fit, FourthMoments, Model, Settings, Step,
-    Term, Verdict,
+    Comparison, Curve, FourthMoments, Model, Term,
+    diagnosis::{Addition, Diagnosis, Evidence, Step, Verdict},
     effect::{CATALOGUE, Effect, MAX_PARAMETERS},
-    fit,
+    fit::{Fit, Options, fit},
 };
 use rayon::prelude::*;
 
@@ -109,7 +109,7 @@ fn expected_chi_squared(hidden: &Hidden, base: Coefficients) -> f64 {
         (differences >= 6).then_some((m, differences, variance))
     });
     let curve = Curve::<OCTAVES>::new(RATE_HZ, octaves).expect("a model's curve");
-    fit(&curve, &model, Settings::default()).map_or(0.0, |fit| fit.chi_squared)
+    fit(&curve, &model, Options::default()).map_or(0.0, |fit| fit.chi_squared)
 }
 
 /// What a diagnosis made of one record.
@@ -141,23 +141,17 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
     let other = record(&mut simulator, base, samples, |_| ());
     let kurtosis = moments.kurtosis();
     let mut steps: Vec<Step<OCTAVES>> = Vec::new();
-    let verdict = Diagnosis::default()
-        .run(
-            &curve,
-            &Evidence {
-                kurtosis: Some(&kurtosis),
-                ..Evidence::NONE
-            },
-            &Model::ieee_952(),
-            &CATALOGUE,
-            |step| {
-                steps.push(step.clone());
-            },
-        )
+    let evidence = Evidence {
+        kurtosis: Some(&kurtosis),
+        ..Evidence::NONE
+    };
+    let (model, options) = (Model::ieee_952(), allanite::diagnosis::Options::default());
+    let verdict = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options)
+        .and_then(|diagnosis| diagnosis.run(|step| steps.push(step.clone())))
         .ok();
     let (first, last) = (&steps[0], &steps[steps.len() - 1]);
     let on_other = |step: &Step<OCTAVES>| {
-        let tolerance = Settings::default().tolerance;
+        let tolerance = Options::default().tolerance;
         let comparison = Comparison::held_out(&other, &step.model, &step.fit, tolerance);
         comparison.map_or((f64::NAN, f64::NAN), |c| (c.rms_percent, c.chi_squared))
     };

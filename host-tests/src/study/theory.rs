@@ -2,7 +2,10 @@
 
 use super::{OCTAVES, curve, quantile};
 use crate::simulate::Coefficients;
-use allanite::{Model, Settings, curve_covariance, fit};
+use allanite::{
+    Model, curve_covariance,
+    fit::{Options, fit},
+};
 use rayon::prelude::*;
 
 /// What theory and simulation say of one octave.
@@ -66,7 +69,7 @@ pub fn chi_squared(
     coefficients: Coefficients,
     samples: usize,
     records: u64,
-    settings: Settings,
+    settings: Options,
 ) -> Vec<f64> {
     let mut values: Vec<f64> = (0..records)
         .into_par_iter()

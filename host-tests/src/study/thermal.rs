@@ -3,7 +3,9 @@
 use super::{OCTAVES, quantum};
 use crate::simulate::{Coefficients, Course, Hidden, Preset, Simulator, Thermal};
 use allanite::{
-    Accumulator, Addition, CrossSums, Diagnosis, Evidence, Model, Scale, effect::CATALOGUE,
+    Accumulator, CrossSums, Model, Scale,
+    diagnosis::{Addition, Diagnosis, Evidence, Options},
+    effect::CATALOGUE,
 };
 use rayon::prelude::*;
 
@@ -79,19 +81,20 @@ pub fn diagnose(
     };
     let model = Model::ieee_952();
     let curve = gyro.curve(scale);
-    let report =
-        Diagnosis::default().run(&curve, &evidence, &model, &CATALOGUE, |step| {
-            match &step.added {
-                Some(Addition::Covariate(follows)) => {
-                    outcome.slope = Some((follows.slope.value, follows.slope.error));
+    let report = Diagnosis::new(curve, evidence, &model, &CATALOGUE, Options::default()).and_then(
+        |diagnosis| {
+            diagnosis.run(|step| match &step.added {
+                Some(Addition::Covariate(followed)) => {
+                    outcome.slope = Some((followed.slope.value, followed.slope.error));
                 }
                 Some(Addition::Effect(term)) => {
                     outcome.named.push(term.effect.name());
                     outcome.named.extend(step.ambiguous.iter());
                 }
-                None => {}
-            }
-        });
+                _ => {}
+            })
+        },
+    );
     report.expect("a curve to diagnose");
     outcome
 }

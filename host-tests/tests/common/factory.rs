@@ -1,8 +1,9 @@
 //! Records of simulated gyros, as a factory would write them.
 
 use allanite::{
-    Accumulator, AxisRecord, Conditions, Diagnosis, Evidence, Model, RateUnit, Record, Scale,
+    Accumulator, AxisRecord, Conditions, Model, RateUnit, Record, Scale,
     demonstration::AMPLITUDES,
+    diagnosis::{Diagnosis, Evidence, Options},
     effect::CATALOGUE,
     simulated::{Disturbance, SimulatedGyro},
 };
@@ -26,9 +27,11 @@ pub(crate) fn counts(disturbance: Option<Disturbance>, seed: u64) -> Counts {
 pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisRecord {
     let curve = counts(disturbance, seed).curve(Scale::new(1.0 / 131.0, 100.0).unwrap());
     let (mut last, model) = (None, Model::ieee_952());
-    let report = |step: &allanite::Step<17>| last = Some((step.model.clone(), step.fit.clone()));
-    let verdict = Diagnosis::default()
-        .run(&curve, &Evidence::NONE, &model, &CATALOGUE, report)
+    let report =
+        |step: &allanite::diagnosis::Step<17>| last = Some((step.model.clone(), step.fit.clone()));
+    let (evidence, options) = (Evidence::NONE, Options::default());
+    let verdict = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options)
+        .and_then(|diagnosis| diagnosis.run(report))
         .unwrap();
     let (model, fit) = last.unwrap();
     let mut axis = AxisRecord::new(&curve, &model, &fit).unwrap();

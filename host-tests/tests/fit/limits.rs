@@ -2,9 +2,9 @@
 
 use super::{ALL, METHODS, OCTAVES, RATE_HZ, assert_relative, changed, exact, settings};
 use allanite::{
-    Curve, Error, Method, Model, Settings, State,
+    Curve, Error, Model, State,
     effect::{AngleRandomWalk, Effect, RateRamp},
-    fit,
+    fit::{Method, Options, fit},
 };
 
 #[test]
@@ -28,7 +28,7 @@ fn too_few_octaves_are_refused_by_number() {
         );
     }
     let octave = Curve::<OCTAVES>::new(1.0, [(1, 100, 1.0)]).expect("possible");
-    let found = fit(&octave, &Model::ieee_952(), Settings::default());
+    let found = fit(&octave, &Model::ieee_952(), Options::default());
     assert_eq!(
         found,
         Err(Error::TooFewOctaves {
@@ -69,13 +69,13 @@ fn effects_that_cannot_be_told_apart_are_refused_or_not_observable() {
     ] {
         assert_eq!(fit(&curve, &model, settings(method)), Err(Error::Singular));
     }
-    let found = fit(&curve, &model, Settings::default()).expect("one of the two");
+    let found = fit(&curve, &model, Options::default()).expect("one of the two");
     let states: Vec<State> = [0, 2].map(|i| found.coefficients[i].state).to_vec();
     let not_observable = |state: &State| matches!(state, State::NotObservable { .. });
     assert!(states.iter().any(not_observable), "{states:?}");
     // Nothing to fit is nothing to tell.
     assert_eq!(
-        fit(&curve, &Model::default(), Settings::default()),
+        fit(&curve, &Model::default(), Options::default()),
         Err(Error::Singular)
     );
 }

@@ -4,7 +4,10 @@ mod limits;
 mod oracle;
 mod recovery;
 
-use allanite::{Curve, Fit, Method, Model, Settings, fit};
+use allanite::{
+    Curve, Model,
+    fit::{Fit, Method, Options, fit},
+};
 use host_tests::{simulate::Preset, study};
 
 const OCTAVES: usize = study::OCTAVES;
@@ -21,10 +24,10 @@ const METHODS: [Method; 4] = [
 /// Coefficients Q, N, B, K, R, all of which show in some octave of a three-hour record.
 const ALL: [f64; 5] = [2e-4, 5e-3, 4e-3, 3e-4, 3e-6];
 
-fn settings(method: Method) -> Settings {
-    Settings {
+fn settings(method: Method) -> Options {
+    Options {
         method,
-        ..Settings::default()
+        ..Options::default()
     }
 }
 
@@ -53,7 +56,7 @@ fn noisy(samples: usize, seed: u64) -> Curve<OCTAVES> {
     study::curve(Preset::Mems.coefficients(), samples, seed)
 }
 
-fn fitted(curve: &Curve<OCTAVES>, settings: Settings) -> Fit {
+fn fitted(curve: &Curve<OCTAVES>, settings: Options) -> Fit {
     fit(curve, &Model::ieee_952(), settings).expect("a curve to fit")
 }
 

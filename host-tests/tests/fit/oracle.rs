@@ -2,8 +2,9 @@
 
 use super::{OCTAVES, assert_relative, fitted, noisy, settings};
 use allanite::{
-    Curve, Method, Model, Settings, chi_squared_tail, curve_covariance,
+    Curve, Model, chi_squared_tail, curve_covariance,
     effect::{IEEE_952, Setting},
+    fit::{Method, Options},
 };
 
 /// `A_k`, the variances of unit coefficients.
@@ -171,9 +172,9 @@ fn the_covariance_fit_is_the_non_negative_optimum() {
     let (mut at_zero, mut above, mut slow) = (0, 0, 0);
     for (exponent, seed) in (0..12).flat_map(|seed| [10, 13, 16].map(|exponent| (exponent, seed))) {
         let curve = noisy(1 << exponent, seed);
-        let no_tolerance = Settings {
+        let no_tolerance = Options {
             tolerance: 0.0,
-            ..Settings::default()
+            ..Options::default()
         };
         let fit = fitted(&curve, no_tolerance);
         assert_eq!((fit.tolerance, fit.shrinkage), (0.0, 0.0));

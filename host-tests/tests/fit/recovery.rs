@@ -1,7 +1,11 @@
 //! Coefficients come back, with intervals.
 
 use super::{ALL, METHODS, RATE_HZ, assert_relative, changed, exact, fitted, noisy, settings};
-use allanite::{Coefficient, Curve, Fit, Settings, State, effect::IEEE_952};
+use allanite::{
+    Coefficient, Curve, State,
+    effect::IEEE_952,
+    fit::{Fit, Options},
+};
 use rayon::prelude::*;
 
 #[test]
@@ -18,7 +22,7 @@ fn coefficients_of_an_exact_curve_come_back_by_every_method() {
 
 #[test]
 fn every_term_of_a_long_record_is_measured_within_its_interval() {
-    let fit = fitted(&exact(ALL, 1 << 20, RATE_HZ), Settings::default());
+    let fit = fitted(&exact(ALL, 1 << 20, RATE_HZ), Options::default());
     for (coefficient, effect) in fit.coefficients.iter().zip(IEEE_952) {
         assert_eq!(coefficient.name, effect.name());
         assert_eq!(coefficient.symbol, effect.symbol());
@@ -72,7 +76,7 @@ fn fitted_without(absent: usize, exponent: u32) -> Fit {
     let mut coefficients = ALL;
     coefficients[absent] = 0.0;
     let curve = exact(coefficients, 1 << exponent, RATE_HZ);
-    fitted(&curve, Settings::default())
+    fitted(&curve, Options::default())
 }
 
 #[test]
@@ -120,7 +124,7 @@ fn a_record_of_the_length_that_is_told_measures_the_term() {
             }
             assumed[absent] = found.upper;
             let samples = (after_s * RATE_HZ).round() as u64;
-            let later = fitted(&exact(assumed, samples, RATE_HZ), Settings::default());
+            let later = fitted(&exact(assumed, samples, RATE_HZ), Options::default());
             let state = later.coefficients[absent].state;
             assert_eq!(state, State::Measured, "2^{exponent} samples, {found:?}");
         }
@@ -203,7 +207,7 @@ fn chi_squared_matches_its_degrees_of_freedom_over_many_records() {
     let ratios: Vec<f64> = (0..40)
         .into_par_iter()
         .map(|seed| {
-            let fit = fitted(&noisy(1 << 15, seed), Settings::default());
+            let fit = fitted(&noisy(1 << 15, seed), Options::default());
             fit.chi_squared / fit.degrees_of_freedom as f64
         })
         .collect();
@@ -223,7 +227,7 @@ fn longer_records_narrow_every_interval() {
     let widths = |exponent: u32| -> Vec<f64> {
         let fit = fitted(
             &exact(coefficients, 1 << exponent, RATE_HZ),
-            Settings::default(),
+            Options::default(),
         );
         fit.coefficients.iter().map(|c| c.upper - c.lower).collect()
     };
@@ -251,9 +255,9 @@ fn longer_records_narrow_every_interval() {
 fn the_tolerance_is_granted_only_where_scatter_does_not_explain_the_curve() {
     let curve = exact(ALL, 1 << 26, RATE_HZ);
     let dented = changed(&curve, |k| if k == 4 { 1.01 } else { 1.0 });
-    let tolerance = |tolerance| Settings {
+    let tolerance = |tolerance| Options {
         tolerance,
-        ..Settings::default()
+        ..Options::default()
     };
     let strict = fitted(&dented, tolerance(0.0));
     assert!(

@@ -5,7 +5,9 @@ use allanite::demonstration::AMPLITUDES;
 use allanite::effect::{CATALOGUE, Effect as _, Setting, Sinusoid};
 use allanite::simulated::{Random, SimulatedGyro};
 use allanite::{
-    Accumulator, Curve, Diagnosis, Error, Evidence, Fit, Model, Real, Settings, Verdict, fit,
+    Accumulator, Curve, Error, Model, Real,
+    diagnosis::{Diagnosis, Evidence, Verdict},
+    fit::{Fit, Options, fit},
 };
 use core::hint::black_box;
 
@@ -123,7 +125,7 @@ pub(crate) fn curve<const OCTAVES: usize>(amplitude: Real) -> Option<Curve<OCTAV
 
 #[inline(never)]
 pub(crate) fn characterise<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Result<Fit, Error> {
-    fit(curve, &Model::ieee_952(), Settings::default())
+    fit(curve, &Model::ieee_952(), Options::default())
 }
 
 /// Whether it finds something.

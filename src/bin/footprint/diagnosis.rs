@@ -8,7 +8,10 @@ fn main() {}
 #[cfg(target_os = "none")]
 mod image {
     use allanite::effect::CATALOGUE;
-    use allanite::{Accumulator, Diagnosis, Evidence, Model, Scale};
+    use allanite::{
+        Accumulator, Model, Scale,
+        diagnosis::{Diagnosis, Evidence},
+    };
     use core::hint::black_box;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]

@@ -12,8 +12,9 @@ mod image {
     use allanite::queue::{self, Queued};
     use allanite::self_test::{Plan, SelfTest};
     use allanite::{
-        Accumulator, CrossSums, Diagnosis, Evidence, FourthMoments, Gate, Integrity, Model, Scale,
-        Settings, fit,
+        Accumulator, CrossSums, FourthMoments, Gate, Integrity, Model, Scale,
+        diagnosis::{Diagnosis, Evidence},
+        fit::{Options, fit},
     };
     use core::hint::black_box;
     use heapless::{Vec, spsc::Queue};
@@ -65,7 +66,7 @@ mod image {
         };
         let verdict = Diagnosis::default().run(&curve, &evidence, &model, &CATALOGUE, report);
         let _ = black_box(verdict);
-        if let Ok(fit) = fit(&curve, &model, Settings::default()) {
+        if let Ok(fit) = fit(&curve, &model, Options::default()) {
             let _ = black_box(fit.correlations(&curve, &model));
         }
     }

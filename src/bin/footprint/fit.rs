@@ -7,7 +7,10 @@ fn main() {}
 
 #[cfg(target_os = "none")]
 mod image {
-    use allanite::{Accumulator, Model, Scale, Settings, fit};
+    use allanite::{
+        Accumulator, Model, Scale,
+        fit::{Options, fit},
+    };
     use core::hint::black_box;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
@@ -19,7 +22,7 @@ mod image {
         }
         let fit = Scale::new(1.0, 100.0)
             .map(|scale| accumulator.curve(scale))
-            .and_then(|curve| fit(&curve, &Model::ieee_952(), Settings::default()));
+            .and_then(|curve| fit(&curve, &Model::ieee_952(), Options::default()));
         black_box(&fit);
         semihosting::process::exit(0)
     }

@@ -2,13 +2,11 @@
 
 use super::{AxisNoise, Characterisation, decimal::decimal};
 use crate::{
-    command::{
-        fit_table::LEAST_P_VALUE,
-        number::{number, probability},
-    },
+    command::number::{number, probability},
     overbound::Overbound,
 };
 use allanite::Coefficient;
+use allanite::fit::ADEQUATE_P;
 
 /// The lines, without the marks of a comment. Names in them are quoted: no name can end a comment.
 pub(super) fn lines(known: &Characterisation) -> Vec<String> {
@@ -44,7 +42,7 @@ fn of_axis(axis: &AxisNoise) -> Vec<String> {
     for coefficient in &axis.coefficients {
         lines.push(of_coefficient(axis, coefficient));
     }
-    if axis.p_value < LEAST_P_VALUE {
+    if axis.p_value < ADEQUATE_P {
         lines.push(format!(
             "  not adequate: p {}: something else is in this record; the overbound is the safer choice",
             probability(axis.p_value)

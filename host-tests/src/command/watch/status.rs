@@ -3,10 +3,11 @@
 use super::recording::Recording;
 use crate::command::{
     fit::{Fitted, MethodName},
-    fit_table::{self, LEAST_P_VALUE},
+    fit_table,
     number::{duration, probability},
 };
-use allanite::{Coefficient, Fit, State};
+use allanite::fit::ADEQUATE_P;
+use allanite::{Coefficient, State, fit::Fit};
 use std::path::Path;
 
 /// Two-sided 95 % of a normal distribution, in standard errors.
@@ -97,8 +98,8 @@ impl Status {
 /// Whether the five terms are enough.
 pub(super) fn verdict(fit: &Fit) -> String {
     match fit.p_value {
-        p if p >= LEAST_P_VALUE => format!("adequate, p {}", probability(p)),
-        p if p < LEAST_P_VALUE => format!("not adequate, p {}", probability(p)),
+        p if p >= ADEQUATE_P => format!("adequate, p {}", probability(p)),
+        p if p < ADEQUATE_P => format!("not adequate, p {}", probability(p)),
         _ => "too few octaves to judge".into(),
     }
 }

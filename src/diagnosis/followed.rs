@@ -1,0 +1,112 @@
+//! Whether the rate follows a covariate: asked before any effect is looked for, because a covariate carries
+//! its own evidence.
+
+use super::{judged::Judged, step::FollowedCovariate};
+use crate::{
+    cross_sums::CrossCurve,
+    curve::Curve,
+    effect::covariate::Slope,
+    error::Error,
+    fit::{Problem, Start, Tolerance, Work},
+    model::Model,
+    nnls::Vector,
+    real::Real,
+};
+
+/// Rounds of a slope and of the noise that is left of the curve without what follows the covariate: as long
+/// as that is in the curve, the noise seems larger and the slope less sure.
+const ROUNDS: u8 = 5;
+
+/// The search in progress for the covariate of the surest slope.
+pub(super) struct Following<const K: usize> {
+    /// The curve without what follows the covariate.
+    corrected: Curve<K>,
+    /// The squares of the step's model, and those of the corrected curve's fit.
+    first: Vector,
+    squares: Vector,
+    slope: Option<Slope>,
+    covariate: usize,
+    round: u8,
+    solving: bool,
+    best: Option<FollowedCovariate>,
+}
+
+impl<const K: usize> Following<K> {
+    /// Begins with a model that was fitted to the curve.
+    pub(super) fn new(curve: &Curve<K>, squares: Vector) -> Self {
+        Self {
+            corrected: curve.clone(),
+            first: squares,
+            squares,
+            slope: None,
+            covariate: 0,
+            round: 0,
+            solving: false,
+            best: None,
+        }
+    }
+
+    /// Does one piece of work. When all covariates have been asked, returns the one of the surest slope, if
+    /// that is `least_z` standard errors or more.
+    ///
+    /// # Errors
+    /// As of a fit.
+    #[inline(never)]
+    pub(super) fn advance(
+        &mut self,
+        curve: &Curve<K>,
+        covariates: &[CrossCurve<K>],
+        model: &Model,
+        judged: &Judged,
+        least_z: Real,
+        work: &mut Work<K>,
+    ) -> Result<Option<Option<FollowedCovariate>>, Error> {
+        let Some(cross) = covariates.get(self.covariate) else {
+            let sure = |followed: &FollowedCovariate| square(followed.slope.z()) > square(least_z);
+            return Ok(Some(self.best.filter(sure)));
+        };
+        if self.solving {
+            let problem = Problem::new(&self.corrected, model, &work.columns);
+            if !work.solver.advance(&problem)? {
+                return Ok(None);
+            }
+            self.squares = work.solver.squares;
+            self.solving = false;
+        }
+        let problem = Problem::new(curve, model, &work.columns);
+        let noise = |k: usize| problem.variance(k, &self.squares) * problem.variance_unit;
+        self.slope = Slope::of(cross, curve.points(), noise);
+        self.round = self.round.saturating_add(1);
+        match self.slope.filter(|_| self.round < ROUNDS) {
+            Some(slope) => {
+                self.corrected.clone_from(curve);
+                cross.correct(&mut self.corrected, &slope);
+                let start = Start::From(self.squares);
+                let tolerance = Tolerance::Fixed(judged.tolerance);
+                work.begin_at(&self.corrected, model, start, tolerance)?;
+                self.solving = true;
+            }
+            None => self.next_covariate(),
+        }
+        Ok(None)
+    }
+
+    fn next_covariate(&mut self) {
+        if let Some(slope) = self.slope.take() {
+            let surest = self.best.map_or(0.0, |best| square(best.slope.z()));
+            if square(slope.z()) > surest {
+                self.best = Some(FollowedCovariate {
+                    index: self.covariate,
+                    slope,
+                });
+            }
+        }
+        self.covariate = self.covariate.saturating_add(1);
+        self.round = 0;
+        self.squares = self.first;
+    }
+}
+
+fn square(x: Real) -> Real {
+    x * x
+}

@@ -1,0 +1,172 @@
+//! First stage: a model is fitted, its shapes are bounded, and it is compared with the curve.
+
+use super::step::Step;
+use crate::{
+    comparison::Comparison,
+    curve::Curve,
+    effect::Span,
+    error::Error,
+    fit::{Estimator, Fit, Problem, Solver, Work},
+    model::Term,
+    nnls::Vector,
+    profile::{Evaluation, JointInterval, Profile},
+    real::Real,
+};
+
+/// What the later stages know of a judged model.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Judged {
+    /// The model's squared coefficients, and those that its covariance was taken at.
+    pub(super) squares: Vector,
+    pub(super) assumed: Vector,
+    /// Its score, `−2 ln L`.
+    pub(super) score: Real,
+    /// Whether it explains the curve; `None` where the curve is too short to say.
+    pub(super) adequate: Option<bool>,
+    /// The tolerance that it was granted.
+    pub(super) tolerance: Real,
+}
+
+impl Judged {
+    /// No judgement yet.
+    pub(super) fn none() -> Self {
+        Self {
+            squares: Vector::zeros(),
+            assumed: Vector::zeros(),
+            score: Real::NAN,
+            adequate: None,
+            tolerance: 0.0,
+        }
+    }
+}
+
+/// The judgement of a model in progress.
+// Large variants share their memory with those of other stages.
+#[expect(clippy::large_enum_variant)]
+pub(super) enum Judging<const K: usize> {
+    /// The model is being solved.
+    Solving,
+    /// Its coefficients are being estimated.
+    Estimating(Estimator),
+    /// The shape at this place in the fit is being bounded.
+    Bounding {
+        shape: usize,
+        interval: Option<JointInterval>,
+        profile: Profile<K>,
+    },
+}
+
+impl<const K: usize> Judging<K> {
+    /// Begins with a model that the solver has begun to solve.
+    pub(super) const fn new() -> Self {
+        Self::Solving
+    }
+
+    /// Does one piece of work on the step's model; returns the judgement when the step's fit and comparison
+    /// are complete.
+    ///
+    /// # Errors
+    /// As of a fit.
+    #[inline(never)]
+    pub(super) fn advance(
+        &mut self,
+        curve: &Curve<K>,
+        span: &Span,
+        work: &mut Work<K>,
+        step: &mut Step<K>,
+    ) -> Result<Option<Judged>, Error> {
+        let problem = Problem::new(curve, &step.model, &work.columns);
+        let solver = &mut work.solver;
+        match self {
+            Self::Solving => {
+                if solver.advance(&problem)? {
+                    *self = Self::Estimating(Estimator::new(&problem, solver, &mut step.fit));
+                }
+                Ok(None)
+            }
+            Self::Estimating(estimator) => {
+                if !estimator.advance(&problem, solver, &mut step.fit) {
+                    return Ok(None);
+                }
+                if step.fit.shape.is_empty() {
+                    return Ok(Some(compare(
+                        &problem,
+                        solver,
+                        &step.fit,
+                        &mut step.comparison,
+                    )));
+                }
+                let mut profile = Profile::empty();
+                profile.begin(&problem, &solver.weights, false);
+                *self = Self::Bounding {
+                    shape: 0,
+                    interval: None,
+                    profile,
+                };
+                Ok(None)
+            }
+            Self::Bounding {
+                shape,
+                interval,
+                profile,
+            } => {
+                let Some(estimate) = step.fit.shape.get_mut(*shape) else {
+                    return Ok(Some(compare(
+                        &problem,
+                        solver,
+                        &step.fit,
+                        &mut step.comparison,
+                    )));
+                };
+                if interval.is_none() {
+                    let Some((term, j)) = only_shape(&problem, estimate.term) else {
+                        *shape = shape.saturating_add(1);
+                        return Ok(None);
+                    };
+                    profile.choose(&problem, estimate.term, &solver.squares)?;
+                    profile.release();
+                    let mut evaluation = Evaluation::new(profile, &problem, &solver.weights);
+                    *interval = Some(JointInterval::new(&mut evaluation, term, j, span));
+                    return Ok(None);
+                }
+                let mut evaluation = Evaluation::new(profile, &problem, &solver.weights);
+                let bounded = interval.as_mut();
+                let bounded = bounded.and_then(|interval| interval.advance(&mut evaluation, span));
+                if let Some((lower, upper)) = bounded {
+                    (estimate.lower, estimate.upper) = (lower, upper);
+                    *shape = shape.saturating_add(1);
+                    *interval = None;
+                }
+                Ok(None)
+            }
+        }
+    }
+}
+
+/// The term at this place in the model and its fitted parameter, if that is its only one: others have no
+/// profile of their own.
+fn only_shape<const K: usize>(problem: &Problem<'_, K>, place: usize) -> Option<(Term, usize)> {
+    let term = problem.model.terms().get(place)?;
+    let mut parameters = term.fitted_parameters();
+    let first = parameters.next()?;
+    parameters.next().is_none().then_some((*term, first))
+}
+
+/// Compares a fitted model with the curve.
+#[inline(never)]
+fn compare<const K: usize>(
+    problem: &Problem<'_, K>,
+    solver: &Solver<K>,
+    fit: &Fit,
+    comparison: &mut Comparison<K>,
+) -> Judged {
+    let unknowns = problem.points.len().saturating_sub(fit.degrees_of_freedom);
+    comparison.set(problem, &solver.weights, &solver.squares, unknowns);
+    Judged {
+        squares: solver.squares,
+        assumed: solver.assumed,
+        score: solver.minus_two_log_likelihood(),
+        adequate: fit.is_adequate(),
+        tolerance: solver.weights.tolerance,
+    }
+}

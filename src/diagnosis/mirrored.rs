@@ -1,0 +1,74 @@
+//! Last stage: an effect that shares its Allan variance with another is told from it by the kurtosis, or
+//! both are named.
+
+use super::{
+    step::{Addition, Step},
+    trial::Fitted,
+};
+use crate::{
+    curve::Curve,
+    effect::Effect,
+    fit::{Columns, Problem},
+    kurtosis::Kurtosis,
+    list,
+};
+/// Names every effect's mirror beside it, unless the kurtosis speaks for one of the two that the best
+/// candidate may be: then that one is added.
+#[inline(never)]
+pub(super) fn tell_from_mirror<const K: usize>(
+    curve: &Curve<K>,
+    kurtosis: Option<&Kurtosis<K>>,
+    effects: &[&'static dyn Effect],
+    best: &mut Fitted,
+    step: &mut Step<K>,
+) {
+    let Step {
+        added,
+        ambiguous,
+        candidates,
+        ..
+    } = step;
+    // Behind a name comes that of its mirror: nothing has told them apart.
+    let mut at = 0_usize;
+    while let Some(name) = ambiguous.get(at) {
+        at = at.saturating_add(1);
+        if let Some(mirror) = mirror_of(name, effects) {
+            // There are as many places as candidates bring names, with their mirrors.
+            list::insert(ambiguous, at, mirror.name());
+            at = at.saturating_add(1);
+        }
+    }
+    let Some(Addition::Effect(term)) = added else {
+        return;
+    };
+    let Some(mirror) = mirror_of(term.effect.name(), effects) else {
+        return;
+    };
+    let place = best.model.terms().len().saturating_sub(1);
+    let columns = Columns::new(curve, &best.model);
+    let problem = Problem::new(curve, &best.model, &columns);
+    let share = |k: usize| problem.share(k, place, &best.squares);
+    let correlation_time_s = term.parameters[0];
+    let jumps = kurtosis.and_then(|kurtosis| kurtosis.jumps(curve, correlation_time_s, share));
+    match jumps {
+        Some(true) => {
+            term.effect = mirror;
+            if let Some(last) = best.model.terms_mut().last_mut() {
+                last.effect = mirror;
+            }
+            if let Some(first) = candidates.first_mut() {
+                first.term.effect = mirror;
+            }
+        }
+        Some(false) => {}
+        None => {
+            let _ = ambiguous.push(mirror.name());
+        }
+    }
+}
+
+/// The effect of a list that has the Allan variance of the one of that name.
+fn mirror_of(name: &str, effects: &[&'static dyn Effect]) -> Option<&'static dyn Effect> {
+    let is_mirror = |effect: &dyn Effect| effect.twin().is_some_and(|twin| twin.name() == name);
+    effects.iter().copied().find(|effect| is_mirror(*effect))
+}

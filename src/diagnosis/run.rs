@@ -1,0 +1,379 @@
+//! A diagnosis, in one go or in pieces: the stages one after the other, until the model is adequate or
+//! nothing helps.
+
+use super::{
+    chosen::choose,
+    evidence::Evidence,
+    followed::Following,
+    judged::{Judged, Judging},
+    mirrored::tell_from_mirror,
+    options::Options,
+    scanned::Scanning,
+    step::{Addition, Step},
+    swapped::{Preferred, Swapping},
+    trial::Fitted,
+    tried::{Contest, Trying},
+    verdict::Verdict,
+};
+use crate::{
+    curve::Curve,
+    effect::{Effect, Span},
+    error::Error,
+    fit::{Problem, Start, Tolerance, Work, check},
+    model::Model,
+};
+
+/// A diagnosis in progress: which effect is missing?
+///
+/// It looks for what a model lacks in a list of effects such as
+/// [`CATALOGUE`](crate::effect::CATALOGUE): it fits the model, compares it with the curve, tries every
+/// effect, adds the best one, and starts again, until the model is adequate or nothing helps. A covariate is
+/// tried first, because it carries its own evidence.
+///
+/// [`run`](Self::run) does all of it. [`advance`](Self::advance) does one piece and returns, so that a main
+/// loop feeds its watchdog and takes its samples in between: at most 2 million instructions on a Cortex-M4F
+/// in single precision, of some 100 million for a whole diagnosis of 20 octaves (`cargo xtask bench`
+/// measures both). To abort a diagnosis, drop it.
+///
+/// # Example
+///
+/// ```
+/// use allanite::{Accumulator, Model, Scale};
+/// use allanite::diagnosis::{Diagnosis, Evidence, Options, Progress, Verdict};
+/// use allanite::effect::CATALOGUE;
+///
+/// let mut gyro = Accumulator::<12>::new();
+/// let mut random = 1_u32;
+/// for _ in 0..10_000 {
+///     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+///     gyro.push((random >> 24) as i32);
+/// }
+/// let curve = gyro.curve(Scale::new(0.01, 100.0)?);
+/// let model = Model::ieee_952();
+/// let (evidence, options) = (Evidence::NONE, Options::default());
+/// let mut diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options)?;
+/// let verdict = loop {
+///     match diagnosis.advance()? {
+///         Progress::Working => {} // feed the watchdog, take the next samples
+///         Progress::Step(step) => assert!(step.fit.p_value > 0.01),
+///         Progress::Finished(verdict) => break verdict,
+///     }
+/// };
+/// assert_eq!(verdict, Verdict::Adequate);
+/// # Ok::<(), allanite::Error>(())
+/// ```
+pub struct Diagnosis<'a, const K: usize> {
+    /// The curve, without what follows a covariate.
+    curve: Curve<K>,
+    span: Span,
+    evidence: Evidence<'a, K>,
+    effects: &'a [&'static dyn Effect],
+    options: Options,
+    /// The present model, and what is reported of it.
+    step: Step<K>,
+    judged: Judged,
+    /// The model with the first of the step's candidates.
+    best: Fitted,
+    /// Effects and covariates added so far.
+    additions: usize,
+    /// The effect that was added last, and those that it was preferred to.
+    preferred: Option<Preferred>,
+    work: Work<K>,
+    stage: Stage<K>,
+}
+
+/// The stage that is in progress.
+// Large variants share their memory: a diagnosis lies in it once, and is never copied.
+#[expect(clippy::large_enum_variant)]
+enum Stage<const K: usize> {
+    /// The step's model is fitted and compared.
+    Judging(Judging<K>),
+    /// Covariates are asked whether the rate follows them.
+    Following(Following<K>),
+    /// The step's model is solved again, after the solver has worked on covariates.
+    Resolving,
+    /// Effects are scanned for their best shapes.
+    Scanning(Scanning<K>),
+    /// The best shapes are fitted in full.
+    Trying(Trying),
+    /// Pairs of effects are tried in the place of the one that was added last.
+    Swapping(Swapping<K>),
+    /// The step is reported, and what it adds is taken up next.
+    Reported,
+    /// There is nothing left to do.
+    Finished(Result<Verdict, Error>),
+}
+
+/// What one piece of a diagnosis has come to.
+#[derive(Debug)]
+pub enum Progress<'s, const K: usize> {
+    /// There is more to do.
+    Working,
+    /// A model has been judged, and what it lacks has been chosen.
+    Step(&'s Step<K>),
+    /// The diagnosis is complete.
+    Finished(Verdict),
+}
+
+impl<'a, const K: usize> Diagnosis<'a, K> {
+    /// Begins to look for what a model lacks.
+    ///
+    /// # Errors
+    /// [`Error::TooFewOctaves`] below two, [`Error::NoNoise`], [`Error::Singular`].
+    pub fn new(
+        curve: Curve<K>,
+        evidence: Evidence<'a, K>,
+        model: &Model,
+        effects: &'a [&'static dyn Effect],
+        options: Options,
+    ) -> Result<Self, Error> {
+        check(curve.points(), 2)?;
+        let mut diagnosis = Self {
+            span: curve.span(),
+            curve,
+            evidence,
+            effects,
+            options,
+            step: Step::of(model),
+            judged: Judged::none(),
+            best: Fitted::empty(),
+            additions: 0,
+            preferred: None,
+            work: Work::new(),
+            stage: Stage::Judging(Judging::new()),
+        };
+        diagnosis.judge(Start::Independent, Tolerance::IfNeeded(options.tolerance))?;
+        Ok(diagnosis)
+    }
+
+    /// Does the whole diagnosis, and hands every step to `report`, the last one included.
+    ///
+    /// # Errors
+    /// As of [`fit`](crate::fit::fit()).
+    pub fn run(mut self, mut report: impl FnMut(&Step<K>)) -> Result<Verdict, Error> {
+        loop {
+            match self.advance()? {
+                Progress::Working => {}
+                Progress::Step(step) => report(step),
+                Progress::Finished(verdict) => return Ok(verdict),
+            }
+        }
+    }
+
+    /// Does one piece of work.
+    ///
+    /// # Errors
+    /// As of [`fit`](crate::fit::fit()): the diagnosis ends with an error.
+    pub fn advance(&mut self) -> Result<Progress<'_, K>, Error> {
+        let advanced = match self.work() {
+            Ok(false) => Ok(()),
+            Ok(true) => self.go_on(),
+            Err(error) => Err(error),
+        };
+        if let Err(error) = advanced {
+            self.stage = Stage::Finished(Err(error));
+        }
+        match &self.stage {
+            Stage::Finished(verdict) => verdict.map(Progress::Finished),
+            Stage::Reported => Ok(Progress::Step(&self.step)),
+            _ => Ok(Progress::Working),
+        }
+    }
+
+    /// Does one piece of work on the present stage, and returns whether the stage is complete.
+    // Apart from what follows a stage, whose temporaries would lie on the stack below it.
+    #[inline(never)]
+    fn work(&mut self) -> Result<bool, Error> {
+        let contest = self.contest();
+        let Self {
+            curve,
+            span,
+            evidence,
+            effects,
+            options,
+            step,
+            judged,
+            best,
+            work,
+            stage,
+            ..
+        } = self;
+        match stage {
+            Stage::Judging(judging) => {
+                let complete = judging.advance(curve, span, work, step)?;
+                if let Some(complete) = complete {
+                    *judged = complete;
+                }
+                Ok(complete.is_some())
+            }
+            Stage::Following(following) => {
+                let covariates = evidence.covariates;
+                let (model, least_z) = (&step.model, options.covariate_z);
+                let complete =
+                    following.advance(curve, covariates, model, judged, least_z, work)?;
+                if let Some(followed) = complete {
+                    step.added = followed.map(Addition::Covariate);
+                }
+                Ok(complete.is_some())
+            }
+            Stage::Resolving => {
+                let problem = Problem::new(curve, &step.model, &work.columns);
+                work.solver.advance(&problem)
+            }
+            Stage::Scanning(scanning) => {
+                let problem = Problem::new(curve, &step.model, &work.columns);
+                Ok(scanning.advance(&problem, &work.solver, effects, span))
+            }
+            Stage::Trying(trying) => {
+                Ok(trying.advance(curve, &contest, work, &mut step.candidates, best))
+            }
+            Stage::Swapping(swapping) => {
+                Ok(swapping.advance(curve, effects, &contest, work, step, best))
+            }
+            Stage::Reported | Stage::Finished(_) => Ok(true),
+        }
+    }
+
+    /// Goes on to the stage that follows the present one, which is complete.
+    #[inline(never)]
+    fn go_on(&mut self) -> Result<(), Error> {
+        match &mut self.stage {
+            Stage::Judging(_) => {
+                self.step.begin_report();
+                if self.has_room()
+                    && self.step.covariate.is_none()
+                    && !self.evidence.covariates.is_empty()
+                {
+                    let following = Following::new(&self.curve, self.judged.squares);
+                    self.stage = Stage::Following(following);
+                    return Ok(());
+                }
+                self.scan_or_report();
+            }
+            Stage::Following(_) => {
+                if self.step.added.is_some() || self.judged.adequate != Some(false) {
+                    self.stage = Stage::Reported;
+                    return Ok(());
+                }
+                let start = Start::Once(self.judged.assumed);
+                let tolerance = Tolerance::Fixed(self.judged.tolerance);
+                let model = &self.step.model;
+                self.work.begin_at(&self.curve, model, start, tolerance)?;
+                self.stage = Stage::Resolving;
+            }
+            Stage::Resolving => self.scan_or_report(),
+            Stage::Scanning(scanning) => {
+                let shapes = scanning.shapes().clone();
+                let trying = Trying::new(shapes, self.step.model.clone(), None);
+                self.stage = Stage::Trying(trying);
+            }
+            Stage::Trying(_) => match self.preferred.take() {
+                Some(preferred) => self.stage = Stage::Swapping(Swapping::new(preferred)),
+                None => self.choose(),
+            },
+            Stage::Swapping(_) => self.choose(),
+            Stage::Reported => self.add()?,
+            Stage::Finished(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Begins to judge the step's model.
+    fn judge(&mut self, start: Start, tolerance: Tolerance) -> Result<(), Error> {
+        self.work
+            .begin_at(&self.curve, &self.step.model, start, tolerance)?;
+        self.stage = Stage::Judging(Judging::new());
+        Ok(())
+    }
+
+    /// Whether something may be added to the model.
+    fn has_room(&self) -> bool {
+        self.additions < self.options.max_effects && self.evidence.invalid.is_none()
+    }
+
+    /// Begins to scan the list of effects where the model is not adequate, or reports the step.
+    fn scan_or_report(&mut self) {
+        self.stage = if self.has_room() && self.judged.adequate == Some(false) {
+            let problem = Problem::new(&self.curve, &self.step.model, &self.work.columns);
+            Stage::Scanning(Scanning::new(&problem, &self.work.solver.weights))
+        } else {
+            Stage::Reported
+        };
+    }
+
+    /// What candidates are compared with.
+    const fn contest(&self) -> Contest {
+        Contest {
+            score: self.judged.score,
+            tolerance: self.judged.tolerance,
+            span: self.span,
+        }
+    }
+
+    /// Chooses from the step's candidates, and reports the step.
+    fn choose(&mut self) {
+        let Options {
+            threshold,
+            ambiguity,
+            ..
+        } = self.options;
+        let (step, best) = (&mut self.step, &mut self.best);
+        if let Some(chosen) = choose(&step.candidates, threshold, ambiguity) {
+            step.ambiguous = chosen.ambiguous;
+            step.added = step
+                .candidates
+                .first()
+                .map(|first| Addition::Effect(first.term));
+            tell_from_mirror(
+                &self.curve,
+                self.evidence.kurtosis,
+                self.effects,
+                best,
+                step,
+            );
+        }
+        self.stage = Stage::Reported;
+    }
+
+    /// Takes up what the step adds, and begins to judge the model with it; or finishes.
+    fn add(&mut self) -> Result<(), Error> {
+        match self.step.added {
+            Some(Addition::Covariate(followed)) => {
+                self.step.covariate = Some(followed);
+                if let Some(cross) = self.evidence.covariates.get(followed.index) {
+                    cross.correct(&mut self.curve, &followed.slope);
+                }
+                self.additions = self.additions.saturating_add(1);
+                let tolerance = if self.judged.tolerance > 0.0 {
+                    Tolerance::Fixed(self.judged.tolerance)
+                } else {
+                    // The curve is another one now: it is decided anew.
+                    Tolerance::IfNeeded(self.options.tolerance)
+                };
+                self.judge(Start::From(self.judged.squares), tolerance)
+            }
+            Some(Addition::Effect(_)) => {
+                let (candidates, threshold) = (&self.step.candidates, self.options.threshold);
+                self.preferred = Preferred::of(candidates, threshold);
+                self.step.model.clone_from(&self.best.model);
+                self.additions = self.additions.saturating_add(1);
+                let tolerance = Tolerance::Fixed(self.judged.tolerance);
+                self.judge(Start::Once(self.best.squares), tolerance)
+            }
+            None => {
+                self.stage = Stage::Finished(Ok(self.verdict()));
+                Ok(())
+            }
+        }
+    }
+
+    fn verdict(&self) -> Verdict {
+        match (self.evidence.invalid, self.additions, self.judged.adequate) {
+            (Some(reason), ..) => Verdict::Invalid(reason),
+            (_, 0, Some(true)) => Verdict::Adequate,
+            (_, 0, Some(false)) => Verdict::Unexplained,
+            (_, 0, None) => Verdict::TooShort,
+            _ => Verdict::Improved,
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Second stage: the best shape of every effect beside a model that is not adequate.
+
+use super::step::MAX_CANDIDATES;
+use crate::{
+    effect::{Effect, Span},
+    fit::{Problem, Solver, Weights},
+    list,
+    profile::{Evaluation, Found, GridSearch, Profile},
+};
+use heapless::Vec;
+
+/// The best shapes that a scan found, best first.
+pub(super) type Shapes = Vec<Found, MAX_CANDIDATES>;
+
+/// A scan in progress over the effects of a list, with the covariance of the model so far.
+pub(super) struct Scanning<const K: usize> {
+    profile: Profile<K>,
+    /// The effect that comes next, and the search for the shape of the present one with its place.
+    next: usize,
+    search: Option<(GridSearch, usize)>,
+    shapes: Shapes,
+}
+
+impl<const K: usize> Scanning<K> {
+    /// Begins to scan beside a solved model.
+    #[inline(never)]
+    pub(super) fn new(problem: &Problem<'_, K>, weights: &Weights<K>) -> Self {
+        let mut scanning = Self {
+            profile: Profile::empty(),
+            next: 0,
+            search: None,
+            shapes: Shapes::new(),
+        };
+        scanning.profile.begin(problem, weights, true);
+        scanning
+    }
+
+    /// The best shapes so far, best first.
+    pub(super) const fn shapes(&self) -> &Shapes {
+        &self.shapes
+    }
+
+    /// Does some evaluations, and returns whether all effects have been searched for.
+    #[inline(never)]
+    pub(super) fn advance(
+        &mut self,
+        problem: &Problem<'_, K>,
+        solver: &Solver<K>,
+        effects: &[&'static dyn Effect],
+        span: &Span,
+    ) -> bool {
+        if let Some((search, place)) = &mut self.search {
+            let mut evaluation = Evaluation::new(&mut self.profile, problem, &solver.weights);
+            if let Some(found) = search.advance(&mut evaluation) {
+                if found.squares[*place] > 0.0 {
+                    list::rank(&mut self.shapes, found, |other| {
+                        other.chi_squared > found.chi_squared
+                    });
+                }
+                self.search = None;
+            }
+            return false;
+        }
+        let Some(&effect) = effects.get(self.next) else {
+            return true;
+        };
+        self.next = self.next.saturating_add(1);
+        // An effect for which the model has no place is not searched for.
+        if let Some(place) = place(problem, effect)
+            && self.profile.choose(problem, place, &solver.squares).is_ok()
+        {
+            self.search = Some((GridSearch::new(effect, span), place));
+        }
+        false
+    }
+}
+
+/// The place that an effect would have in a model: that of the effect that it replaces, or the first behind
+/// the others. `None` for an effect that would add nothing: one of fixed shape that the model has, one whose
+/// counterpart the model lacks, or one that shares its Allan variance with another of the catalogue.
+fn place<const K: usize>(problem: &Problem<'_, K>, effect: &'static dyn Effect) -> Option<usize> {
+    let model = problem.model;
+    let present = model.position(effect.name()).is_some();
+    if effect.twin().is_some() || (present && effect.parameters().is_empty()) {
+        return None;
+    }
+    match effect.replaces() {
+        Some(replaced) => model.position(replaced.name()),
+        None => Some(problem.count()),
+    }
+}

@@ -1,0 +1,198 @@
+//! The stages of a diagnosis, one by one and together, on curves that are computed.
+
+use super::{
+    judged::{Judged, Judging},
+    run::{Diagnosis, Progress},
+    scanned::Scanning,
+    step::{Addition, Step},
+    trial::Fitted,
+    tried::{Contest, Trying},
+    *,
+};
+use crate::{
+    Curve, Model,
+    effect::{CATALOGUE, Effect, GaussMarkov, Setting, Sinusoid},
+    fit::{Problem, Start, Tolerance, Work},
+    real::{Real, real},
+};
+
+const OCTAVES: usize = 16;
+const INTERVAL_S: Real = 0.01;
+
+/// A curve of white and flicker noise with one more effect, every octave off by a fraction of its standard
+/// error.
+fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real) -> Curve<OCTAVES> {
+    let setting = Setting {
+        interval_s: INTERVAL_S,
+        parameters,
+    };
+    let octaves = (0..OCTAVES).map(|k| {
+        let m = 1_u32 << k;
+        let tau_s = real(m) * INTERVAL_S;
+        let noise = 2.5e-5 / tau_s + 7.1e-6 + 3.0e-8 * tau_s;
+        let extra = square * effect.variance(real(m), &setting);
+        let differences = (1_u64 << 18) / u64::from((m / 4).max(1)) - 7;
+        let off = [0.3, -0.5, 0.4, -0.2, -0.3][k % 5] / (0.2 * differences as Real + 9.0);
+        (m, differences, (noise + extra) * (1.0 + off))
+    });
+    Curve::new(1.0 / INTERVAL_S, octaves).unwrap()
+}
+
+fn with_sinusoid() -> Curve<OCTAVES> {
+    curve(&Sinusoid, [7.7, 0.0], 0.02 * 0.02)
+}
+
+fn without() -> Curve<OCTAVES> {
+    curve(&Sinusoid, [7.7, 0.0], 0.0)
+}
+
+fn judge(curve: &Curve<OCTAVES>, work: &mut Work<OCTAVES>, step: &mut Step<OCTAVES>) -> Judged {
+    let tolerance = Tolerance::IfNeeded(0.01);
+    work.begin_at(curve, &step.model, Start::Independent, tolerance)
+        .unwrap();
+    let mut judging = Judging::new();
+    loop {
+        let judged = judging.advance(curve, &curve.span(), work, step);
+        if let Some(judged) = judged.unwrap() {
+            return judged;
+        }
+    }
+}
+
+#[test]
+fn a_judgement_tells_an_adequate_model_from_one_that_is_not() {
+    let mut work = Work::new();
+    let mut step = Step::of(&Model::ieee_952());
+    let judged = judge(&without(), &mut work, &mut step);
+    assert_eq!(judged.adequate, Some(true));
+    assert_eq!(judged.tolerance, 0.0);
+    assert_eq!(step.fit.chi_squared, step.comparison.chi_squared);
+
+    let judged = judge(&with_sinusoid(), &mut work, &mut step);
+    assert_eq!(judged.adequate, Some(false));
+    // What the scatter does not explain is granted the tolerance.
+    assert_eq!(judged.tolerance, 0.01);
+    assert_eq!(judged.score, step.fit.minus_two_log_likelihood);
+}
+
+#[test]
+fn a_solution_is_found_again_at_the_squares_that_its_covariance_was_taken_at() {
+    let curve = with_sinusoid();
+    let mut work = Work::new();
+    let mut step = Step::of(&Model::ieee_952());
+    let judged = judge(&curve, &mut work, &mut step);
+    let tolerance = Tolerance::Fixed(judged.tolerance);
+    work.begin_at(&curve, &step.model, Start::Once(judged.assumed), tolerance)
+        .unwrap();
+    let problem = Problem::new(&curve, &step.model, &work.columns);
+    while !work.solver.advance(&problem).unwrap() {}
+    assert_eq!(work.solver.chi_squared, step.fit.chi_squared);
+    assert_eq!(work.solver.squares.as_slice(), judged.squares.as_slice());
+}
+
+#[test]
+fn a_scan_finds_the_hidden_shape_and_a_trial_its_size() {
+    let curve = with_sinusoid();
+    let span = curve.span();
+    let mut work = Work::new();
+    let mut step = Step::of(&Model::ieee_952());
+    let judged = judge(&curve, &mut work, &mut step);
+    let problem = Problem::new(&curve, &step.model, &work.columns);
+    let mut scanning = Scanning::new(&problem, &work.solver.weights);
+    let effects: [&'static dyn Effect; 2] = [&Sinusoid, &GaussMarkov];
+    while !scanning.advance(&problem, &work.solver, &effects, &span) {}
+    let shapes = scanning.shapes().clone();
+    assert_eq!(shapes.len(), 2);
+    assert_eq!(shapes[0].term.effect.name(), "sinusoid");
+    assert!((shapes[0].term.parameters[0] / 7.7 - 1.0).abs() < 0.05);
+    assert!(shapes[0].chi_squared <= shapes[1].chi_squared);
+
+    let mut trying = Trying::new(shapes, step.model.clone(), None);
+    let contest = Contest {
+        score: judged.score,
+        tolerance: judged.tolerance,
+        span,
+    };
+    let mut best = Fitted::empty();
+    while !trying.advance(&curve, &contest, &mut work, &mut step.candidates, &mut best) {}
+    let first = &step.candidates[0];
+    assert_eq!(first.term.effect.name(), "sinusoid");
+    assert!((first.term.parameters[0] / 7.7 - 1.0).abs() < 0.01);
+    assert!((first.coefficient / 0.02 - 1.0).abs() < 0.03, "{first:?}");
+    assert!(
+        step.candidates
+            .iter()
+            .all(|candidate| candidate.improvement > 0.0)
+    );
+    assert!(
+        step.candidates
+            .is_sorted_by(|a, b| a.improvement >= b.improvement)
+    );
+    assert_eq!(best.model.terms().last().unwrap().effect.name(), "sinusoid");
+}
+
+#[test]
+fn a_diagnosis_in_pieces_reports_what_one_in_one_go_reports() {
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let new = || Diagnosis::new(with_sinusoid(), Evidence::NONE, &model, &CATALOGUE, options);
+    let mut whole = heapless::Vec::<Step<OCTAVES>, 4>::new();
+    let verdict = new().unwrap().run(|step| whole.push(step.clone()).unwrap());
+    assert_eq!(verdict, Ok(Verdict::Improved));
+
+    let mut diagnosis = new().unwrap();
+    let mut at = 0;
+    let mut pieces = 0;
+    let verdict = loop {
+        match diagnosis.advance().unwrap() {
+            Progress::Working => pieces += 1,
+            Progress::Step(step) => {
+                let same = &whole[at];
+                assert_eq!((&step.fit, &step.comparison), (&same.fit, &same.comparison));
+                at += 1;
+            }
+            Progress::Finished(verdict) => break verdict,
+        }
+    };
+    assert_eq!((verdict, at), (Verdict::Improved, whole.len()));
+    assert!(pieces > 100, "{pieces} pieces");
+    // It stays finished.
+    assert!(matches!(diagnosis.advance(), Ok(Progress::Finished(_))));
+}
+
+#[test]
+fn the_list_of_candidates_shows_what_the_next_step_has() {
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let mut steps = heapless::Vec::<Step<OCTAVES>, 4>::new();
+    Diagnosis::new(with_sinusoid(), Evidence::NONE, &model, &CATALOGUE, options)
+        .unwrap()
+        .run(|step| steps.push(step.clone()).unwrap())
+        .unwrap();
+    let mut compared = 0;
+    for pair in steps.windows(2) {
+        let Some(Addition::Effect(added)) = pair[0].added else {
+            panic!("a step without an addition before the last one");
+        };
+        let first = &pair[0].candidates[0];
+        assert_eq!(first.term.effect.name(), added.effect.name());
+        assert_eq!(first.chi_squared, pair[1].fit.chi_squared);
+        compared += 1;
+    }
+    assert!(compared >= 1);
+}
+
+#[test]
+fn a_curve_of_two_octaves_is_too_short() {
+    let full = without();
+    let points = full.points().iter().take(2);
+    let octaves = points.map(|point| (point.m, point.differences, point.variance));
+    let short = Curve::<OCTAVES>::new(100.0, octaves).unwrap();
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let mut steps = 0;
+    let verdict = Diagnosis::new(short, Evidence::NONE, &model, &CATALOGUE, options)
+        .unwrap()
+        .run(|step| {
+            assert!(step.fit.p_value.is_nan());
+            steps += 1;
+        });
+    assert_eq!((verdict, steps), (Ok(Verdict::TooShort), 1));
+}

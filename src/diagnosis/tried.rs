@@ -1,0 +1,106 @@
+//! Third stage: the shapes that a scan found are fitted in full, and become candidates.
+
+use super::{
+    scanned::Shapes,
+    step::{Candidate, Candidates, Swap},
+    trial::{Fitted, Trial},
+};
+use crate::{curve::Curve, effect::Span, fit::Work, list, model::Model, real::Real};
+/// What candidates are compared with, and how.
+#[derive(Clone, Copy)]
+pub(super) struct Contest {
+    /// The score of the step's model.
+    pub(super) score: Real,
+    /// The tolerance that all models of the run have.
+    pub(super) tolerance: Real,
+    pub(super) span: Span,
+}
+
+/// Trials in progress, of one shape after the other.
+pub(super) struct Trying {
+    shapes: Shapes,
+    next: usize,
+    /// The model beside which the scan was made, and the swap that leads to it.
+    base: Model,
+    swap: Option<Swap>,
+    trial: Option<(Trial, Candidate)>,
+}
+
+impl Trying {
+    /// Begins to try shapes that were found beside a model: the step's own, or one with a swap.
+    pub(super) fn new(shapes: Shapes, base: Model, swap: Option<Swap>) -> Self {
+        Self {
+            shapes,
+            next: 0,
+            base,
+            swap,
+            trial: None,
+        }
+    }
+
+    /// Does one piece of work, and returns whether all shapes have been tried. What lowers the score becomes
+    /// a candidate; the model with the first of them is kept as the `best`.
+    #[inline(never)]
+    pub(super) fn advance<const K: usize>(
+        &mut self,
+        curve: &Curve<K>,
+        contest: &Contest,
+        work: &mut Work<K>,
+        candidates: &mut Candidates,
+        best: &mut Fitted,
+    ) -> bool {
+        let Some((trial, candidate)) = &mut self.trial else {
+            return self.begin_next(candidates);
+        };
+        let gained = candidates.first();
+        let least = contest.score - gained.map_or(0.0, |first| first.improvement);
+        let Contest {
+            score,
+            tolerance,
+            span,
+        } = contest;
+        let completed = match trial.advance(curve, span, *tolerance, least, work, candidate) {
+            Ok(None) => return false,
+            Ok(completed) => completed,
+            // An effect that cannot be fitted is no candidate.
+            Err(_) => None,
+        };
+        if let Some(completed) = completed {
+            let mut candidate = *candidate;
+            candidate.improvement = score - completed.score - 2.0 * candidate.cost();
+            if candidate.improvement > 0.0 {
+                let place = list::rank(candidates, candidate, |other| {
+                    other.improvement < candidate.improvement
+                });
+                if place == Some(0) {
+                    *best = completed.fitted;
+                }
+            }
+        }
+        self.trial = None;
+        false
+    }
+
+    /// Begins with the next shape; returns `true` if there is none.
+    fn begin_next(&mut self, candidates: &Candidates) -> bool {
+        let Some(found) = self.shapes.get(self.next) else {
+            return true;
+        };
+        self.next = self.next.saturating_add(1);
+        let candidate = Candidate {
+            term: found.term,
+            swap: self.swap,
+            coefficient: 0.0,
+            chi_squared: Real::NAN,
+            improvement: 0.0,
+        };
+        let mut others = candidates.iter();
+        if others.any(|other| other.brings_the_same(&candidate)) {
+            return false;
+        }
+        if let Ok(fitted) = Fitted::with(&self.base, found) {
+            self.trial = Some((Trial::new(fitted), candidate));
+        }
+        false
+    }
+}

@@ -1,0 +1,33 @@
+//! How a diagnosis ends.
+
+use crate::integrity::Reason;
+
+/// How a diagnosis ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Verdict {
+    /// The model that was asked about explains the curve.
+    Adequate,
+    /// With the effects that were added, the model explains the curve, or more of it.
+    Improved,
+    /// The model does not explain the curve, and no effect in the list helps.
+    Unexplained,
+    /// The curve has too few octaves to judge the model that was asked about.
+    TooShort,
+    /// The curve is not valid, and no effect was looked for.
+    Invalid(Reason),
+}
+
+impl Verdict {
+    /// Its name in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Adequate => "adequate",
+            Self::Improved => "improved",
+            Self::Unexplained => "unexplained",
+            Self::TooShort => "too_short",
+            Self::Invalid(_) => "invalid",
+        }
+    }
+}

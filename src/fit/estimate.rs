@@ -1,0 +1,163 @@
+//! From a solution to coefficients with intervals, bounds, and what a longer record would show.
+
+use super::{
+    method::Method,
+    problem::{Problem, clusters},
+    result::Fit,
+    shape::ShapeEquations,
+    solver::Solver,
+};
+use crate::{
+    coefficient::{Coefficient, State},
+    math,
+    model::Term,
+    nnls::NormalEquations,
+    observability::record_length_s,
+    real::{Real, real},
+};
+
+/// Rounds of a bound and the covariance that it implies.
+const BOUND_ROUNDS: usize = 2;
+
+/// The estimates of a solution, one coefficient a call.
+pub(crate) struct Estimator {
+    /// The equations of coefficients and fitted shapes, where the model has shapes and they can be told.
+    shape: Option<ShapeEquations>,
+    next: usize,
+}
+
+impl Estimator {
+    /// Begins with a solution. What belongs to the whole model is written to the fit at once.
+    #[inline(never)]
+    pub(crate) fn new<const K: usize>(
+        problem: &Problem<'_, K>,
+        solver: &Solver<K>,
+        fit: &mut Fit,
+    ) -> Self {
+        let mut shape = None;
+        if problem.model.terms().iter().any(|term| term.fitted) {
+            let mut equations = ShapeEquations::empty();
+            if equations.set(problem, &solver.weights, &solver.squares) {
+                shape = Some(equations);
+            }
+        }
+        fit.method = Method::Covariance;
+        fit.coefficients.clear();
+        fit.shape = match &shape {
+            Some(shape) => shape.estimates(&solver.free),
+            None => heapless::Vec::new(),
+        };
+        fit.chi_squared = solver.chi_squared;
+        fit.degrees_of_freedom = solver.degrees_of_freedom();
+        fit.p_value = solver.p_value();
+        fit.minus_two_log_likelihood = solver.minus_two_log_likelihood();
+        fit.tolerance = solver.weights.tolerance;
+        fit.shrinkage = solver.weights.shrinkage;
+        Self { shape, next: 0 }
+    }
+
+    /// Estimates one more coefficient and returns whether it was the last.
+    #[inline(never)]
+    pub(crate) fn advance<const K: usize>(
+        &mut self,
+        problem: &Problem<'_, K>,
+        solver: &Solver<K>,
+        fit: &mut Fit,
+    ) -> bool {
+        let Some(term) = problem.model.terms().get(self.next) else {
+            return true;
+        };
+        let coefficient = coefficient(problem, solver, self.next, term, self.shape.as_ref());
+        // There are as many places as a model has effects.
+        let _ = fit
+            .coefficients
+            .push(coefficient.in_unit(problem.variance_unit));
+        self.next = self.next.saturating_add(1);
+        self.next >= problem.count()
+    }
+}
+
+/// The coefficient of one effect, in the problem's variance unit.
+fn coefficient<const K: usize>(
+    problem: &Problem<'_, K>,
+    solver: &Solver<K>,
+    i: usize,
+    term: &Term,
+    shape: Option<&ShapeEquations>,
+) -> Coefficient {
+    if term.held {
+        return Coefficient::new(term.effect, 0.0, None);
+    }
+    let with = solver.free.with(i);
+    let linear = || solver.equations.variance(i, &with);
+    let variance = match shape {
+        Some(shape) => shape.variance(i, &with).or_else(linear),
+        None => linear(),
+    };
+    let coefficient = Coefficient::new(term.effect, solver.squares[i], variance);
+    if coefficient.state != State::UpperBound {
+        return coefficient;
+    }
+    let bound = bound(problem, solver, i, coefficient.upper * coefficient.upper);
+    let upper = math::sqrt(bound);
+    let state = if is_informative(problem, solver, i, bound) {
+        State::UpperBound
+    } else {
+        let last = problem.points.last();
+        let after_s = record_length_s(
+            i,
+            bound,
+            &solver.squares,
+            &solver.free,
+            problem.model,
+            problem.interval_s,
+            last.map_or(0.0, |point| clusters(point) * real(point.m)),
+        );
+        State::NotObservable { after_s }
+    };
+    Coefficient {
+        upper,
+        state,
+        ..coefficient
+    }
+}
+
+/// The one-sided 95 % bound of a square, with the covariance that the model would have at that bound:
+/// where an effect may add to an octave, it may also scatter it.
+#[inline(never)]
+fn bound<const K: usize>(
+    problem: &Problem<'_, K>,
+    solver: &Solver<K>,
+    i: usize,
+    first: Real,
+) -> Real {
+    let curve = |k: usize| problem.measured(k);
+    let weights = &solver.weights;
+    let mut equations = NormalEquations::empty();
+    let mut bound = first;
+    for _ in 0..BOUND_ROUNDS {
+        let scatter = |k: usize| 1.0 + bound * problem.unit(i, k) / weights.model[k];
+        let set = weights.equations(problem, &scatter, &[], &curve, &mut equations);
+        if set.is_err() {
+            break;
+        }
+        let (squares, mut free) = equations.solve_non_negative_near(&solver.free, &problem.held());
+        free.add(i);
+        let Some(variance) = equations.variance(i, &free) else {
+            break;
+        };
+        bound = Coefficient::one_sided_bound(squares[i], variance);
+    }
+    bound
+}
+
+/// Whether a bound says more than that the effect cannot exceed the whole curve.
+fn is_informative<const K: usize>(
+    problem: &Problem<'_, K>,
+    solver: &Solver<K>,
+    i: usize,
+    bound: Real,
+) -> bool {
+    let mut octaves = 0..problem.points.len();
+    octaves.all(|k| bound * problem.unit(i, k) < solver.weights.model[k])
+}

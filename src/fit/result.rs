@@ -1,0 +1,70 @@
+//! What a fit returns.
+
+use super::{
+    method::{ADEQUATE_P, Method},
+    shape::ShapeEstimate,
+};
+use crate::{
+    coefficient::Coefficient,
+    limits::{MAX_EFFECTS, MAX_SHAPE},
+    real::Real,
+};
+use heapless::Vec;
+
+/// Coefficients of a model, with what they are worth.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Fit {
+    /// How the octaves were weighted.
+    pub method: Method,
+    /// The coefficients, one for each effect of the model, in its order.
+    pub coefficients: Vec<Coefficient, MAX_EFFECTS>,
+    /// The shape parameters that were fitted.
+    pub shape: Vec<ShapeEstimate, MAX_SHAPE>,
+    /// χ²: squared residuals in units of their covariance. NaN for the methods without an error model,
+    /// `Ordinary` and `ClusterCount`; too large for `RelativeAccuracy`, which takes the octaves for
+    /// independent.
+    pub chi_squared: Real,
+    /// Number of octaves, less coefficients above zero and their fitted shapes.
+    pub degrees_of_freedom: usize,
+    /// Probability of a larger χ² if the model is true. NaN without χ² or degrees of freedom.
+    pub p_value: Real,
+    /// `−2 ln L = r'C⁻¹r + ln det C`, up to a constant: ranks models of one curve. NaN where χ² is.
+    pub minus_two_log_likelihood: Real,
+    /// The tolerance that was granted: [`Options::tolerance`](super::Options::tolerance) or 0.
+    pub tolerance: Real,
+    /// Share that the correlations had to lose for the covariance to be positive definite; usually 0.
+    pub shrinkage: Real,
+}
+
+impl Fit {
+    /// A fit of nothing yet.
+    pub(crate) const fn empty() -> Self {
+        Self {
+            method: Method::Covariance,
+            coefficients: Vec::new(),
+            shape: Vec::new(),
+            chi_squared: Real::NAN,
+            degrees_of_freedom: 0,
+            p_value: Real::NAN,
+            minus_two_log_likelihood: Real::NAN,
+            tolerance: 0.0,
+            shrinkage: 0.0,
+        }
+    }
+
+    /// Whether the model explains the curve: `Some(true)` where the p-value is [`ADEQUATE_P`] or more,
+    /// `None` where there is none, because the curve is too short or the method has no error model.
+    pub fn is_adequate(&self) -> Option<bool> {
+        (!self.p_value.is_nan()).then_some(self.p_value >= ADEQUATE_P)
+    }
+
+    /// The squared coefficients, for [`Model::variance`](crate::Model::variance).
+    pub fn squares(&self) -> [Real; MAX_EFFECTS] {
+        let mut squares = [0.0; MAX_EFFECTS];
+        for (square, coefficient) in squares.iter_mut().zip(&self.coefficients) {
+            *square = coefficient.square;
+        }
+        squares
+    }
+}

@@ -1,0 +1,73 @@
+//! The values of a shape parameter that a search tries first.
+
+use crate::{
+    effect::{Effect, Range, Span},
+    math,
+    real::{Real, real},
+};
+
+/// Values of a shape parameter at equal distances of the logarithm, or whole numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid {
+    pub(super) low: Real,
+    pub(super) high: Real,
+    /// The distance of the logarithms; zero for whole numbers.
+    pub(super) log_step: Real,
+    pub(super) steps: u32,
+}
+
+impl Grid {
+    /// The grid of a parameter that an effect does not have.
+    const SINGLE: Self = Self {
+        low: 0.0,
+        high: 0.0,
+        log_step: 0.0,
+        steps: 1,
+    };
+
+    /// The grid of a parameter, of a single step if the effect does not have it.
+    pub(super) fn of(effect: &dyn Effect, parameter: usize, span: &Span) -> Self {
+        if parameter >= effect.parameters().len() {
+            return Self::SINGLE;
+        }
+        let range = effect.range(parameter, span);
+        if effect.is_whole(parameter) {
+            return Self {
+                low: range.low,
+                high: range.high,
+                log_step: 0.0,
+                steps: ((range.high - range.low) as u32).saturating_add(1),
+            };
+        }
+        Self::new(range)
+    }
+
+    fn new(range: Range) -> Self {
+        let high = range.high.max(range.low);
+        let octaves = math::log2_roughly(high / range.low);
+        // A step more or less does not matter: the last is held at the upper end.
+        let steps = ((octaves * range.steps_per_octave) as u32).saturating_add(2);
+        Self {
+            low: range.low,
+            high,
+            log_step: math::log(high / range.low) / real(steps.saturating_sub(1)),
+            steps,
+        }
+    }
+
+    /// The value after so many steps.
+    pub(super) fn at(&self, step: u32) -> Real {
+        if step == 0 {
+            return self.low;
+        }
+        if self.log_step == 0.0 {
+            return self.low + real(step);
+        }
+        (self.low * math::exp(self.log_step * real(step))).min(self.high)
+    }
+
+    /// A value moved into the grid's range.
+    pub(super) fn clamp(&self, value: Real) -> Real {
+        value.max(self.low).min(self.high)
+    }
+}

@@ -125,10 +125,10 @@ impl Fit {
 /// # Example
 ///
 /// ```
-/// use allanite::{fit, Curve, Model, Settings};
+/// use allanite::{Curve, Model, Real, Settings, fit};
 ///
 /// // White noise of 1 count² at 100 Hz: σ²(τ) = N²/τ with N = 0.1.
-/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / f64::from(1 << k)));
+/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1 << k) as Real));
 /// let curve = Curve::<10>::new(100.0, white)?;
 /// let fit = fit(&curve, &Model::ieee_952(), Settings::default())?;
 /// assert!((fit.coefficients[1].value - 0.1).abs() < 1e-6);

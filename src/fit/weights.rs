@@ -2,7 +2,7 @@
 
 use super::{Problem, squared};
 use crate::{
-    algebra::{self, Square},
+    algebra::{self, Triangle},
     cholesky,
     covariance::covariance,
     error::Error,
@@ -21,7 +21,7 @@ pub(crate) struct Weights<const K: usize> {
     /// The model's variances.
     pub(crate) model: algebra::Vector<K>,
     /// Of the covariance relative to them; single precision is that of the covariance.
-    factor: Square<K, f32>,
+    factor: Triangle<K, K, f32>,
     /// Of the covariance in rate units.
     pub(crate) log_determinant: Real,
     pub(crate) tolerance: Real,
@@ -33,7 +33,7 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn empty() -> Self {
         Self {
             model: algebra::Vector::zeros(),
-            factor: Square::zeros(),
+            factor: Triangle::zeros(),
             log_determinant: 0.0,
             tolerance: 0.0,
             shrinkage: 0.0,
@@ -196,7 +196,7 @@ impl<const K: usize> Weights<K> {
         for k in 0..n {
             column.put(k, single(relative(k) / unit));
         }
-        cholesky::forward_single(&self.factor, n, &mut column);
+        cholesky::forward(&self.factor, n, &mut column);
         (column, unit)
     }
 }

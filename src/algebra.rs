@@ -161,3 +161,70 @@ impl Choice {
         Self(self.0 | Self::bit(i))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_random::Random;
+
+    #[test]
+    fn a_triangle_has_a_place_for_every_pair() {
+        let mut triangle = Triangle::<8, 3>::zeros();
+        let number = |i: usize, j: usize| (10 * i.max(j) + i.min(j) + 1) as Real;
+        for i in 0..6 {
+            for j in 0..=i {
+                assert_eq!(triangle[(i, j)], 0.0, "{i}, {j} is the place of another");
+                triangle.put((i, j), number(i, j));
+            }
+        }
+        for i in 0..6 {
+            for j in 0..6 {
+                assert_eq!(triangle[(i, j)], number(i, j));
+            }
+            let row = &triangle.rows()[row_start(i)..=row_start(i) + i];
+            assert!(row.iter().zip(0..).all(|(&x, j)| x == number(i, j)));
+        }
+        // 21 elements in 24 places.
+        assert!(triangle.rows()[21..].iter().all(|&x| x == 0.0));
+    }
+
+    #[test]
+    fn elements_of_a_vector_are_those_that_were_put() {
+        let mut vector = Vector::<5>::from_fn(|i| i as Real);
+        vector.put(3, -7.0);
+        assert_eq!(
+            [0, 1, 2, 3, 4].map(|i| vector[i]),
+            [0.0, 1.0, 2.0, -7.0, 4.0]
+        );
+    }
+
+    #[test]
+    #[cfg_attr(debug_assertions, should_panic)]
+    fn what_is_put_beyond_the_end_is_reported_in_a_debug_build_and_dropped_in_others() {
+        let mut vector = Vector::<2>::zeros();
+        vector.put(2, 1.0);
+        assert_eq!([vector[0], vector[1], vector[2]], [0.0; 3]);
+    }
+
+    #[test]
+    fn a_choice_has_what_was_added_and_not_dropped() {
+        let mut random = Random::new(41);
+        for _ in 0..100 {
+            let (mut choice, mut expected) = (Choice::default(), [false; 16]);
+            for _ in 0..30 {
+                let i = random.below(16);
+                match random.below(3) {
+                    0 => choice.drop(i),
+                    1 => choice.add(i),
+                    _ => choice = choice.with(i),
+                }
+                expected[i] = choice.has(i);
+                assert!((0..16).all(|i| choice.has(i) == expected[i]));
+            }
+            assert_eq!(Choice::of(|i| expected[i]), choice);
+        }
+        let mut none = Choice::default();
+        none.add(16);
+        assert_eq!(none, Choice::default(), "there are sixteen places");
+    }
+}

@@ -120,3 +120,6 @@ fn backward_rows<E: Number + AsPrimitive<X>, X: Number>(rows: &[E], n: usize, x:
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

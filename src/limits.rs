@@ -29,3 +29,19 @@ pub(crate) const ONE_SIDED_95: f64 = 1.644_854;
 /// χ² with one degree of freedom lies below this with a probability of 95 %: the square of
 /// [`TWO_SIDED_95`] (Abramowitz & Stegun 1964, table 26.8).
 pub(crate) const CHI_SQUARED_95: f64 = 3.841_459;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{chi_squared::chi_squared_tail, real::real};
+
+    #[test]
+    fn quantiles_leave_five_per_cent() {
+        // The probability of a normal variable beyond x standard errors is erfc(x/√2)/2.
+        let beyond = |x: f64| 0.5 * libm::erfc(x / core::f64::consts::SQRT_2);
+        assert!((2.0 * beyond(TWO_SIDED_95) - 0.05).abs() < 1e-7);
+        assert!((beyond(ONE_SIDED_95) - 0.05).abs() < 1e-7);
+        assert!((CHI_SQUARED_95 - TWO_SIDED_95 * TWO_SIDED_95).abs() < 2e-6);
+        assert!((chi_squared_tail(real(CHI_SQUARED_95), 1) - 0.05).abs() < 1e-6);
+    }
+}

@@ -257,3 +257,6 @@ impl NormalEquations {
         regular.then(|| (unit.component_mul(&self.scale) * self.scale[i]).into())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -68,3 +68,6 @@ pub(crate) fn record_length_s(
     }
     None
 }
+
+#[cfg(test)]
+mod tests;

@@ -213,12 +213,20 @@ mod tests {
             let (mut choice, mut expected) = (Choice::default(), [false; 16]);
             for _ in 0..30 {
                 let i = random.below(16);
-                match random.below(3) {
-                    0 => choice.drop(i),
-                    1 => choice.add(i),
-                    _ => choice = choice.with(i),
-                }
-                expected[i] = choice.has(i);
+                expected[i] = match random.below(3) {
+                    0 => {
+                        choice.drop(i);
+                        false
+                    }
+                    1 => {
+                        choice.add(i);
+                        true
+                    }
+                    _ => {
+                        choice = choice.with(i);
+                        true
+                    }
+                };
                 assert!((0..16).all(|i| choice.has(i) == expected[i]));
             }
             assert_eq!(Choice::of(|i| expected[i]), choice);

@@ -1,8 +1,19 @@
 //! The Cholesky factor `L` of a positive definite matrix `A = L L'`, and the solution of its equations.
 //!
 //! The rows of a [`Triangle`] are slices, so that one function serves triangles of every size.
-//! nalgebra's `Cholesky` is not used.
-//! TODO figures
+//!
+//! nalgebra's own `Cholesky` and triangular solutions take and return whole square matrices by value, and
+//! assert the sizes of the parts that they view. Tried in place of this module on a Cortex-M4F, in single
+//! precision, beside what this module takes:
+//!
+//! | nalgebra carries | flash of the fit | stack of the fit | of a diagnosis | its instructions | panics |
+//! |---|---|---|---|---|---|
+//! | the normal equations | + 560 bytes | + 2348 bytes | + 1756 bytes | + 25 % | `assert_failed` |
+//! | the curve's covariance | + 532 bytes | + 3152 bytes | + 3152 bytes | + 7 % | `assert_failed` |
+//! | only the storage of the normal equations, as a square | + 384 bytes | + 1048 bytes | + 456 bytes | − 5 % | none |
+//!
+//! The flash is that of the image `footprint_fit`, the rest is what the image `bench` prints, by
+//! `cargo xtask bench`. This module takes some 700 bytes of flash.
 
 use crate::{
     algebra::{Number, Triangle, Vector, row_start},

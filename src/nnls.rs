@@ -11,8 +11,11 @@ use crate::{
 
 /// `H` of normal equations `H β = b`.
 pub(crate) type Matrix = Triangle<{ UNKNOWNS + 1 }, { UNKNOWNS / 2 }>;
-const _: () = assert!(UNKNOWNS.is_multiple_of(2));
-/// One number an unknown.
+const _: () = assert!(
+    UNKNOWNS.is_multiple_of(2),
+    "an odd number of rows fills another rectangle"
+);
+/// One number for each unknown.
 pub(crate) type Vector = algebra::Vector<UNKNOWNS>;
 
 /// A pivot of the scaled equations below this is rounding, not information.

@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::{
-    effect::{AngleRandomWalk, GaussMarkov, LowPass, Quantization, RateRamp, Resonance, Sinusoid},
+    effect::{
+        AngleRandomWalk, DecimationFilter, GaussMarkov, LowPass, Quantization, RateRamp, Resonance,
+        Sinusoid,
+    },
     real::{by_precision, double},
 };
 
@@ -103,6 +106,11 @@ fn only_shapes_that_are_fitted_and_no_whole_numbers_are_parameters_of_the_fit() 
     assert!(Term::fitted(&Resonance).fitted_parameters().eq([0, 1]));
     assert!(Term::fitted(&GaussMarkov).fitted_parameters().eq([0]));
     assert!(!Term::fitted(&RateRamp).fitted);
+    // The width of a decimation filter is a whole number of samples.
+    assert_eq!(
+        Term::fitted(&DecimationFilter).fitted_parameters().count(),
+        0
+    );
 }
 
 #[test]

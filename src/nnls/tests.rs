@@ -89,10 +89,9 @@ impl Problem {
     /// pivots. `None` if a pivot is rounding.
     fn eliminated(&self, chosen: u32, right: impl Fn(usize) -> f64) -> Option<[f64; MOST]> {
         let places = || (0..self.count).filter(|i| chosen >> i & 1 == 1);
-        let mut rows = [[0.0; MOST + 1]; MOST];
-        for i in 0..self.count {
-            rows[i][i] = 1.0;
-        }
+        // The identity, where nothing is chosen.
+        let mut rows: [[f64; MOST + 1]; MOST] =
+            core::array::from_fn(|i| core::array::from_fn(|j| f64::from(u8::from(i == j))));
         for i in places() {
             for j in places() {
                 rows[i][j] = self.h[i][j] / (self.length(i) * self.length(j));

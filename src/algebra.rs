@@ -1,24 +1,25 @@
-//! Vectors and matrices that cannot be asked for too much.
+//! Vectors and triangles whose indices cannot panic.
 //!
-//! An index that may panic brings a way to panic into firmware, with its messages. Here, what lies beyond
-//! the end is zero, and what is put there is dropped; debug assertions tell of either.
+//! nalgebra stores the numbers and computes with whole vectors: sums, products, norms. Its own index
+//! panics beyond the end, and what may panic brings messages and a handler into firmware. Here an element
+//! beyond the end is zero, and a number that is put there is dropped; debug assertions report either.
 
 use crate::real::Real;
 use core::ops::{Deref, Index};
 use nalgebra::{RealField, SMatrix, SVector};
 
-/// A number to index: single or double precision.
+/// An element of a vector or a triangle: single or double precision.
 pub(crate) trait Number: RealField + Copy {
-    /// What lies beyond the end.
-    const NOTHING: &'static Self;
+    /// The element beyond the end.
+    const ZERO: &'static Self;
 }
 
 impl Number for f64 {
-    const NOTHING: &'static Self = &0.0;
+    const ZERO: &'static Self = &0.0;
 }
 
 impl Number for f32 {
-    const NOTHING: &'static Self = &0.0;
+    const ZERO: &'static Self = &0.0;
 }
 
 /// A column of numbers.
@@ -34,12 +35,16 @@ impl<const N: usize, E: Number> Vector<N, E> {
         Self(SVector::from_fn(|i, _| element(i)))
     }
 
-    /// Puts a number in its place.
+    /// Sets one element.
     pub(crate) fn put(&mut self, i: usize, value: E) {
         debug_assert!(i < N);
         if let Some(slot) = self.0.get_mut(i) {
             *slot = value;
         }
+    }
+
+    pub(crate) fn as_mut_slice(&mut self) -> &mut [E] {
+        self.0.as_mut_slice()
     }
 }
 
@@ -48,7 +53,7 @@ impl<const N: usize, E: Number> Index<usize> for Vector<N, E> {
 
     fn index(&self, i: usize) -> &E {
         debug_assert!(i < N);
-        self.0.get(i).unwrap_or(E::NOTHING)
+        self.0.get(i).unwrap_or(E::ZERO)
     }
 }
 
@@ -66,85 +71,56 @@ impl<const N: usize, E> From<SVector<E, N>> for Vector<N, E> {
     }
 }
 
-/// As many rows as columns.
+/// The lower triangle of a symmetric matrix, or its Cholesky factor: row by row, from the left to the
+/// diagonal, in the storage of an `A` by `B` matrix.
+///
+/// `n` rows need `n (n + 1)/2` places. A constant `n` has `A = n + 1` and `B = n/2`; a generic `n` has
+/// `A = B = n`, because no expression of a generic constant can be another one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Square<const N: usize, E = Real>(SMatrix<E, N, N>);
+pub(crate) struct Triangle<const A: usize, const B: usize, E = Real>(SMatrix<E, A, B>);
 
-impl<const N: usize, E: Number> Square<N, E> {
+impl<const A: usize, const B: usize, E: Number> Triangle<A, B, E> {
     pub(crate) fn zeros() -> Self {
         Self(SMatrix::zeros())
     }
 
-    /// Puts a number in its place.
-    pub(crate) fn put(&mut self, at: (usize, usize), value: E) {
-        debug_assert!(at.0 < N && at.1 < N);
-        if let Some(slot) = self.0.get_mut(at) {
-            *slot = value;
-        }
-    }
-}
-
-impl<const N: usize, E: Number> Index<(usize, usize)> for Square<N, E> {
-    type Output = E;
-
-    fn index(&self, at: (usize, usize)) -> &E {
-        debug_assert!(at.0 < N && at.1 < N);
-        self.0.get(at).unwrap_or(E::NOTHING)
-    }
-}
-
-/// A symmetric matrix or its factor: what is on the diagonal and below, row by row, in `LENGTH` places.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Triangle<const LENGTH: usize>([Real; LENGTH]);
-
-impl<const LENGTH: usize> Triangle<LENGTH> {
-    pub(crate) fn zeros() -> Self {
-        Self([0.0; LENGTH])
-    }
-
-    const fn place(i: usize, j: usize) -> usize {
+    const fn place((i, j): (usize, usize)) -> usize {
         let (row, column) = if i < j { (j, i) } else { (i, j) };
-        (row.saturating_mul(row.saturating_add(1)) / 2).saturating_add(column)
-    }
-}
-
-/// Elements by row and column.
-pub(crate) trait Elements {
-    type Element: Number;
-
-    fn at(&self, i: usize, j: usize) -> Self::Element;
-
-    fn put_at(&mut self, i: usize, j: usize, value: Self::Element);
-}
-
-impl<const LENGTH: usize> Elements for Triangle<LENGTH> {
-    type Element = Real;
-
-    fn at(&self, i: usize, j: usize) -> Real {
-        let element = self.0.get(Self::place(i, j));
-        debug_assert!(element.is_some());
-        element.copied().unwrap_or(0.0)
+        row_start(row).saturating_add(column)
     }
 
-    fn put_at(&mut self, i: usize, j: usize, value: Real) {
-        let slot = self.0.get_mut(Self::place(i, j));
+    /// Sets one element.
+    pub(crate) fn put(&mut self, at: (usize, usize), value: E) {
+        let slot = self.0.get_mut(Self::place(at));
         debug_assert!(slot.is_some());
         if let Some(slot) = slot {
             *slot = value;
         }
     }
+
+    /// Every row, one behind the other.
+    pub(crate) fn rows(&self) -> &[E] {
+        self.0.as_slice()
+    }
+
+    pub(crate) fn rows_mut(&mut self) -> &mut [E] {
+        self.0.as_mut_slice()
+    }
 }
 
-impl<const N: usize, E: Number> Elements for Square<N, E> {
-    type Element = E;
+impl<const A: usize, const B: usize, E: Number> Index<(usize, usize)> for Triangle<A, B, E> {
+    type Output = E;
 
-    fn at(&self, i: usize, j: usize) -> E {
-        self[(i, j)]
+    fn index(&self, at: (usize, usize)) -> &E {
+        let element = self.0.get(Self::place(at));
+        debug_assert!(element.is_some());
+        element.unwrap_or(E::ZERO)
     }
+}
 
-    fn put_at(&mut self, i: usize, j: usize, value: E) {
-        self.put((i, j), value);
-    }
+/// The place of a row's first element among the rows of a triangle.
+pub(crate) const fn row_start(row: usize) -> usize {
+    row.saturating_mul(row.saturating_add(1)) / 2
 }
 
 /// A choice among unknowns.
@@ -183,5 +159,80 @@ impl Choice {
     #[must_use]
     pub(crate) const fn with(self, i: usize) -> Self {
         Self(self.0 | Self::bit(i))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_random::Random;
+
+    #[test]
+    fn a_triangle_has_a_place_for_every_pair() {
+        let mut triangle = Triangle::<8, 3>::zeros();
+        let number = |i: usize, j: usize| (10 * i.max(j) + i.min(j) + 1) as Real;
+        for i in 0..6 {
+            for j in 0..=i {
+                assert_eq!(triangle[(i, j)], 0.0, "{i}, {j} is the place of another");
+                triangle.put((i, j), number(i, j));
+            }
+        }
+        for i in 0..6 {
+            for j in 0..6 {
+                assert_eq!(triangle[(i, j)], number(i, j));
+            }
+            let row = &triangle.rows()[row_start(i)..=row_start(i) + i];
+            assert!(row.iter().zip(0..).all(|(&x, j)| x == number(i, j)));
+        }
+        // 21 elements in 24 places.
+        assert!(triangle.rows()[21..].iter().all(|&x| x == 0.0));
+    }
+
+    #[test]
+    fn elements_of_a_vector_are_those_that_were_put() {
+        let mut vector = Vector::<5>::from_fn(|i| i as Real);
+        vector.put(3, -7.0);
+        assert_eq!(
+            [0, 1, 2, 3, 4].map(|i| vector[i]),
+            [0.0, 1.0, 2.0, -7.0, 4.0]
+        );
+    }
+
+    #[test]
+    #[cfg_attr(debug_assertions, should_panic)]
+    fn what_is_put_beyond_the_end_is_reported_in_a_debug_build_and_dropped_in_others() {
+        let mut vector = Vector::<2>::zeros();
+        vector.put(2, 1.0);
+        assert_eq!([vector[0], vector[1], vector[2]], [0.0; 3]);
+    }
+
+    #[test]
+    fn a_choice_has_what_was_added_and_not_dropped() {
+        let mut random = Random::new(41);
+        for _ in 0..100 {
+            let (mut choice, mut expected) = (Choice::default(), [false; 16]);
+            for _ in 0..30 {
+                let i = random.below(16);
+                expected[i] = match random.below(3) {
+                    0 => {
+                        choice.drop(i);
+                        false
+                    }
+                    1 => {
+                        choice.add(i);
+                        true
+                    }
+                    _ => {
+                        choice = choice.with(i);
+                        true
+                    }
+                };
+                assert!((0..16).all(|i| choice.has(i) == expected[i]));
+            }
+            assert_eq!(Choice::of(|i| expected[i]), choice);
+        }
+        let mut none = Choice::default();
+        none.add(16);
+        assert_eq!(none, Choice::default(), "there are sixteen places");
     }
 }

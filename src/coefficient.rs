@@ -19,7 +19,7 @@ pub enum State {
     /// than that it cannot exceed the whole curve.
     NotObservable {
         /// Length of a record, in seconds, that would measure it if it were at its bound; `None`
-        /// where no length up to 2^29 samples would.
+        /// where no length up to 2^30 samples would.
         after_s: Option<Real>,
     },
 }
@@ -102,5 +102,86 @@ impl Coefficient {
     /// One-sided 95 % bound of a square that cannot be negative.
     pub(crate) fn one_sided_bound(square: Real, variance: Real) -> Real {
         square.max(0.0) + real(ONE_SIDED_95) * math::sqrt(variance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        effect::{AngleRandomWalk, BiasInstability},
+        real::{by_precision, double},
+        test_random::Random,
+    };
+
+    /// What roots of squares may differ by, in rounding errors of the square.
+    const ROUNDING: f64 = if cfg!(feature = "double") {
+        1e-14
+    } else {
+        1e-6
+    };
+
+    fn assert_close(found: Real, expected: f64) {
+        let off = (double(found) - expected).abs();
+        assert!(off <= ROUNDING * expected.abs(), "{found}, not {expected}");
+    }
+
+    #[test]
+    fn a_coefficient_is_measured_where_its_square_exceeds_half_its_interval() {
+        let mut random = Random::new(51);
+        let mut measured = 0;
+        for _ in 0..1000 {
+            let (square, error) = (4.0 * random.signed(), 1.0 + random.signed());
+            let found = Coefficient::new(&AngleRandomWalk, real(square), Some(real(error * error)));
+            let half = 1.959_964 * error;
+            if (square / half - 1.0).abs() < 1e-4 {
+                continue;
+            }
+            if square > half {
+                assert_eq!(found.state, State::Measured);
+                // The difference has as many digits as the two have.
+                let below = double(found.lower) * double(found.lower);
+                assert!((below - (square - half)).abs() <= 4.0 * ROUNDING * square);
+                assert_close(found.upper, libm::sqrt(square + half));
+                measured += 1;
+            } else {
+                assert_eq!((found.state, found.lower), (State::UpperBound, 0.0));
+                let bound = square.max(0.0) + 1.644_854 * error;
+                assert_close(found.upper, libm::sqrt(bound));
+            }
+            assert_close(found.value, libm::sqrt(square.max(0.0)));
+            assert_close(found.square_error, error);
+            assert_eq!(found.square, real(square));
+        }
+        assert!((200..800).contains(&measured), "{measured}");
+    }
+
+    #[test]
+    fn a_coefficient_without_a_variance_is_not_observable() {
+        for square in [0.0, 3.0] {
+            let found = Coefficient::new(&BiasInstability, square, None);
+            assert_eq!(found.state, State::NotObservable { after_s: None });
+            assert_eq!((found.lower, found.upper), (0.0, Real::INFINITY));
+            assert_eq!(found.square_error, Real::INFINITY);
+            assert_eq!((found.name, found.symbol), ("bias_instability", "B"));
+        }
+    }
+
+    #[test]
+    fn units_of_the_variance_scale_squares_and_their_roots() {
+        let unit = by_precision(1e-20, 1e-10);
+        let plain = Coefficient::new(&AngleRandomWalk, 9.0, Some(4.0));
+        let scaled = plain.in_unit(unit);
+        let direct = Coefficient::new(&AngleRandomWalk, 9.0 * unit, Some(4.0 * unit * unit));
+        for (found, expected) in [
+            (scaled.value, direct.value),
+            (scaled.lower, direct.lower),
+            (scaled.upper, direct.upper),
+            (scaled.square, direct.square),
+            (scaled.square_error, direct.square_error),
+        ] {
+            assert!((found / expected - 1.0).abs() <= by_precision(1e-14, 1e-6));
+        }
+        assert_eq!(scaled.state, plain.state);
     }
 }

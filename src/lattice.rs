@@ -219,3 +219,6 @@ pub(crate) const fn stride(m: u32) -> u32 {
         _ => 1,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -41,6 +41,8 @@ pub mod simulated;
 #[cfg(feature = "storage")]
 mod snapshot;
 mod square_sum;
+#[cfg(test)]
+mod test_random;
 
 pub use chi_squared::chi_squared_tail;
 pub use coefficient::{Coefficient, State};

@@ -33,3 +33,19 @@ pub(crate) const CHI_SQUARED_95: f64 = 3.841_459;
 /// A model whose p-value is lower is not adequate: a χ² as large would come out in one of a hundred
 /// records if the model were true. Fit, comparison and diagnosis share this threshold.
 pub(crate) const ADEQUATE_P: f64 = 0.01;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{chi_squared::chi_squared_tail, real::real};
+
+    #[test]
+    fn quantiles_leave_five_per_cent() {
+        // The probability of a normal variable beyond x standard errors is erfc(x/√2)/2.
+        let beyond = |x: f64| 0.5 * libm::erfc(x / core::f64::consts::SQRT_2);
+        assert!((2.0 * beyond(TWO_SIDED_95) - 0.05).abs() < 1e-7);
+        assert!((beyond(ONE_SIDED_95) - 0.05).abs() < 1e-7);
+        assert!((CHI_SQUARED_95 - TWO_SIDED_95 * TWO_SIDED_95).abs() < 2e-6);
+        assert!((chi_squared_tail(real(CHI_SQUARED_95), 1) - 0.05).abs() < 1e-6);
+    }
+}

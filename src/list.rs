@@ -53,6 +53,7 @@ pub(crate) fn rank<T, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_random::Random;
 
     #[test]
     fn a_list_takes_what_fits() {
@@ -78,5 +79,42 @@ mod tests {
         assert_eq!(list, [3, 4, 5]);
         insert(&mut list, 1, 8);
         assert_eq!(list, [3, 4, 5], "full");
+    }
+
+    /// What an unlimited list would hold, sorted with earlier items first, and then cut.
+    #[test]
+    fn ranked_items_are_the_best_of_all_in_their_order() {
+        let mut random = Random::new(31);
+        for _ in 0..200 {
+            let mut list = Vec::<(usize, usize), 4>::new();
+            let mut all = Vec::<(usize, usize), 40>::new();
+            for order in 0..random.below(40) {
+                let item = (random.below(6), order);
+                let place = rank(&mut list, item, |other| other.0 > item.0);
+                all.push(item).expect("room");
+                all.sort_unstable();
+                assert_eq!(list, all[..all.len().min(4)]);
+                let expected = all.iter().position(|other| *other == item);
+                assert_eq!(place, expected.filter(|place| *place < 4));
+            }
+        }
+    }
+
+    #[test]
+    fn inserted_items_push_the_later_ones_on() {
+        for place in 0..6 {
+            let mut list = Vec::<u8, 4>::from([0, 1, 2]);
+            insert(&mut list, place, 9);
+            // Beyond the end is the end.
+            let (before, later) = [0, 1, 2].split_at(place.min(3));
+            assert_eq!(list[..before.len()], *before);
+            assert_eq!(list[before.len()], 9);
+            assert_eq!(list[before.len() + 1..], *later);
+        }
+    }
+
+    #[test]
+    fn items_have_the_numbers_of_their_places() {
+        assert!(numbered("abc".chars()).eq("abc".chars().enumerate()));
     }
 }

@@ -194,3 +194,6 @@ impl Model {
             .sum()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! Least squares with coefficients that cannot be negative, from the normal equations.
 
 use crate::{
-    algebra::{self, Choice, Elements as _, Triangle},
+    algebra::{self, Choice, Triangle},
     cholesky,
     error::Error,
     limits::UNKNOWNS,
@@ -10,8 +10,12 @@ use crate::{
 };
 
 /// `H` of normal equations `H β = b`.
-pub(crate) type Matrix = Triangle<{ UNKNOWNS * (UNKNOWNS + 1) / 2 }>;
-/// One number an unknown.
+pub(crate) type Matrix = Triangle<{ UNKNOWNS + 1 }, { UNKNOWNS / 2 }>;
+const _: () = assert!(
+    UNKNOWNS.is_multiple_of(2),
+    "an odd number of rows fills another rectangle"
+);
+/// One number for each unknown.
 pub(crate) type Vector = algebra::Vector<UNKNOWNS>;
 
 /// A pivot of the scaled equations below this is rounding, not information.
@@ -64,7 +68,7 @@ impl NormalEquations {
             self.right.put(i, right * self.scale[i]);
             for j in 0..=i {
                 let scaled = own[j] * self.scale[i] * self.scale[j];
-                self.scaled.put_at(i, j, scaled);
+                self.scaled.put((i, j), scaled);
             }
         }
         Ok(())
@@ -88,7 +92,7 @@ impl NormalEquations {
         self.right.put(place, right * self.scale[place]);
         for j in 0..self.count {
             let scaled = entry(j) * self.scale[place] * self.scale[j];
-            self.scaled.put_at(place, j, scaled);
+            self.scaled.put((place, j), scaled);
         }
         Ok(())
     }
@@ -104,16 +108,16 @@ impl NormalEquations {
         for i in 0..self.count {
             for j in 0..=i {
                 let element = match (i == j, free.has(i) && free.has(j)) {
-                    (_, true) => self.scaled.at(i, j),
+                    (_, true) => self.scaled[(i, j)],
                     (true, false) => 1.0,
                     (false, false) => 0.0,
                 };
-                factor.put_at(i, j, element);
+                factor.put((i, j), element);
             }
         }
         // The diagonal holds reciprocals.
         cholesky::factor(factor, self.count)
-            && (0..self.count).all(|i| factor.at(i, i) * factor.at(i, i) * LEAST_PIVOT < 1.0)
+            && (0..self.count).all(|i| factor[(i, i)] * factor[(i, i)] * LEAST_PIVOT < 1.0)
     }
 
     /// Solves the scaled equations of the free unknowns for any right side.
@@ -141,7 +145,7 @@ impl NormalEquations {
     fn gradient(&self, scaled: &Vector) -> Vector {
         let mut gradient = Vector::zeros();
         for i in 0..self.count {
-            let row = (0..self.count).map(|j| self.scaled.at(i, j) * scaled[j]);
+            let row = (0..self.count).map(|j| self.scaled[(i, j)] * scaled[j]);
             gradient.put(i, self.right[i] - row.sum::<Real>());
         }
         gradient
@@ -256,3 +260,6 @@ impl NormalEquations {
         regular.then(|| (unit.component_mul(&self.scale) * self.scale[i]).into())
     }
 }
+
+#[cfg(test)]
+mod tests;

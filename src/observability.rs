@@ -1,7 +1,6 @@
 //! How long a record must be for an effect to show.
 
 use crate::{
-    algebra::Elements as _,
     limits::CHI_SQUARED_95,
     list::numbered,
     model::Model,
@@ -48,15 +47,15 @@ pub(crate) fn record_length_s(
             for a in 0..count {
                 for b in 0..=a {
                     let share = weight * row[a] * row[b];
-                    growing.put_at(a, b, growing.at(a, b) + share / m);
-                    fixed.put_at(a, b, fixed.at(a, b) + share);
+                    growing.put((a, b), growing[(a, b)] + share / m);
+                    fixed.put((a, b), fixed[(a, b)] + share);
                 }
             }
             m *= 2.0;
         }
         let set = equations.set(count, &|a, row| {
             for b in 0..=a {
-                row.put(b, samples * growing.at(a, b) - fixed.at(a, b));
+                row.put(b, samples * growing[(a, b)] - fixed[(a, b)]);
             }
             0.0
         });
@@ -69,3 +68,6 @@ pub(crate) fn record_length_s(
     }
     None
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,17 +2,23 @@
 
 use num_traits::AsPrimitive;
 
-/// A number of a curve, a fit, a comparison or a diagnosis: double precision with the feature `double`,
-/// which is on unless default features are off; single precision without.
+/// The type of the numbers of a curve, a fit, a comparison and a diagnosis: `f64`, because the feature
+/// `double` is on.
 ///
-/// Without, a core with single precision in hardware fits in a third of the time, and any core in two
-/// thirds of the flash. What comes out differs by some 10⁻⁴ of the standard errors. One program has one
-/// precision: whatever asks for `double` gives it to all.
+/// The feature is for final programs on a workstation only. A library must not ask for it: cargo builds
+/// this crate once for a whole program, so that the type changes for every other crate in the build.
 #[cfg(feature = "double")]
 pub type Real = f64;
 
-/// A number of a curve, a fit, a comparison or a diagnosis: single precision, as the feature `double` is
-/// off.
+/// The type of the numbers of a curve, a fit, a comparison and a diagnosis: `f32`, because the feature
+/// `double` is off.
+///
+/// Single precision needs two thirds of the flash of double precision, and a third of the time for a fit
+/// on a core that computes single precision in hardware. The results differ by some 10⁻⁴ of their
+/// standard errors. The feature `double` changes this type to `f64`. It is for final programs on a
+/// workstation only. A library must not ask for it: cargo builds this crate once for a whole program, so
+/// that the type changes for every other crate in the build. Code that shall compile with either type
+/// writes `Real`.
 #[cfg(not(feature = "double"))]
 pub type Real = f32;
 

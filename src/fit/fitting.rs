@@ -22,7 +22,7 @@ use crate::{curve::Curve, error::Error, model::Model};
 /// use allanite::{Curve, Model, Real, fit::{Options, fit}};
 ///
 /// // White noise of 1 count² at 100 Hz: σ²(τ) = N²/τ with N = 0.1.
-/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1_u16 << k) as Real));
+/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1 << k) as Real));
 /// let curve = Curve::<10>::new(100.0, white)?;
 /// let fit = fit(&curve, &Model::ieee_952(), Options::default())?;
 /// assert!((fit.coefficients[1].value - 0.1).abs() < 1e-6);
@@ -50,7 +50,7 @@ pub fn fit<const K: usize>(
 /// ```
 /// use allanite::{Curve, Model, Real, fit::{Fitting, Options}};
 ///
-/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1_u16 << k) as Real));
+/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1 << k) as Real));
 /// let curve = Curve::<10>::new(100.0, white)?;
 /// let mut fitting = Fitting::new(curve, Model::ieee_952(), Options::default())?;
 /// let fit = loop {

@@ -2,7 +2,7 @@
 
 use super::problem::Problem;
 use crate::{
-    algebra::{self, Square},
+    algebra::{self, Triangle},
     cholesky,
     covariance::covariance_row,
     error::Error,
@@ -22,7 +22,7 @@ pub(crate) struct Weights<const K: usize> {
     pub(crate) model: algebra::Vector<K>,
     /// The Cholesky factor of the covariance relative to them; the covariance itself is no better than
     /// single precision.
-    factor: Square<K, f32>,
+    factor: Triangle<K, K, f32>,
     /// The logarithm of the determinant of the covariance, in rate units.
     pub(crate) log_determinant: Real,
     pub(crate) tolerance: Real,
@@ -38,7 +38,7 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn empty() -> Self {
         Self {
             model: algebra::Vector::zeros(),
-            factor: Square::zeros(),
+            factor: Triangle::zeros(),
             log_determinant: 0.0,
             tolerance: 0.0,
             shrinkage: 0.0,
@@ -232,7 +232,7 @@ impl<const K: usize> Weights<K> {
         for k in 0..n {
             column.put(k, single(relative(k) / unit));
         }
-        cholesky::forward_single(&self.factor, n, &mut column);
+        cholesky::forward(&self.factor, n, &mut column);
         (column, unit)
     }
 }

@@ -87,9 +87,9 @@ impl Conditions {
 /// # Example
 ///
 /// ```
-/// use allanite::{AxisRecord, Conditions, Curve, Model, RateUnit, Record, fit::{Options, fit}};
+/// use allanite::{AxisRecord, Conditions, Curve, Model, RateUnit, Real, Record, fit::{Options, fit}};
 ///
-/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / f64::from(1 << k)));
+/// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1 << k) as Real));
 /// let (curve, model) = (Curve::<10>::new(100.0, white)?, Model::ieee_952());
 /// let fit = fit(&curve, &model, Options::default())?;
 ///

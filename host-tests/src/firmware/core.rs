@@ -24,9 +24,9 @@ pub struct Core {
 /// What curves, fits and diagnoses are computed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
-    /// Single: the library without default features, as firmware is best.
+    /// Single precision, the library's default.
     Single,
-    /// Double, the library's default.
+    /// Double precision, the library's feature `double`.
     Double,
 }
 
@@ -45,8 +45,8 @@ impl Precision {
     /// Arguments of cargo that choose it.
     pub fn arguments(self) -> &'static [&'static str] {
         match self {
-            Self::Double => &[],
-            Self::Single => &["--no-default-features"],
+            Self::Single => &[],
+            Self::Double => &["--features", "double"],
         }
     }
 }

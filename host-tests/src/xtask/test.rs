@@ -5,11 +5,7 @@ use crate::firmware::{CORTEX_M4F, REMEDY, RISCV, Toolchain, cargo};
 use anyhow::{Context as _, Result};
 
 /// Every feature but double precision.
-const SINGLE: [&str; 3] = [
-    "--no-default-features",
-    "--features",
-    "defmt,storage,flash,firmware",
-];
+const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash,firmware"];
 
 pub(super) fn run() -> Result<()> {
     println!("== set-up");
@@ -47,16 +43,14 @@ pub(super) fn run() -> Result<()> {
             .args(["doc", "--workspace", "--no-deps", "--all-features"])
             .env("RUSTDOCFLAGS", "-D warnings"),
     )?;
-    step(
-        "the library with every feature, on the host",
-        cargo().args(["test", "--package", "allanite", "--all-features"]),
-    )?;
-    step(
-        "the library in single precision, on the host",
-        cargo()
-            .args(["test", "--package", "allanite", "--lib"])
-            .args(SINGLE),
-    )?;
+    for (precision, features) in [("single", &SINGLE[..]), ("double", &["--all-features"])] {
+        step(
+            &format!("the library and its examples in {precision} precision, on the host"),
+            cargo()
+                .args(["test", "--package", "allanite"])
+                .args(features),
+        )?;
+    }
     step(
         "the images on every core, in QEMU",
         cargo().args(["test", "--package", "host-tests", "--test", "firmware"]),

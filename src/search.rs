@@ -1,7 +1,7 @@
 //! The shape of an effect that would explain a curve best.
 
 use crate::{
-    effect::{Effect, MAX_PARAMETERS, Range, Span},
+    effect::{Effect, MAX_PARAMETERS, SearchRange, Span},
     error::Error,
     fit::{
         Problem,
@@ -318,10 +318,9 @@ impl Grid {
 
     /// Of a parameter; a single step for one that the effect does not have.
     fn of(effect: &dyn Effect, parameter: usize, span: &Span) -> Self {
-        if parameter >= effect.parameters().len() {
+        let Some(range) = effect.search_range(parameter, span) else {
             return Self::SINGLE;
-        }
-        let range = effect.range(parameter, span);
+        };
         if effect.is_whole(parameter) {
             return Self {
                 low: range.low,
@@ -333,7 +332,7 @@ impl Grid {
         Self::new(range)
     }
 
-    fn new(range: Range) -> Self {
+    fn new(range: SearchRange) -> Self {
         let high = range.high.max(range.low);
         let octaves = math::log2_roughly(high / range.low);
         // A step more or less does not matter: the last is held at the upper end.

@@ -2,12 +2,12 @@
 
 mod alternative;
 mod follow;
+mod mirror;
 mod revise;
 mod scan;
 mod standing;
 mod step;
 mod trial;
-mod twins;
 
 pub use step::{Addition, Candidate, Follows, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap};
 
@@ -161,7 +161,7 @@ impl Diagnosis {
             self.try_all(curve, None, standing);
             self.revise(curve, effects, standing);
             self.choose(&mut standing.step);
-            twins::tell(curve, evidence.kurtosis, effects, standing);
+            mirror::tell(curve, evidence.kurtosis, effects, standing);
         }
         report(&standing.step);
         match standing.step.added {

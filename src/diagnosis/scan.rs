@@ -48,7 +48,7 @@ pub(super) fn scan<const K: usize>(
         let present = model.position(effect.name()).is_some();
         let replaced = effect.replaces().map(|other| model.position(other.name()));
         let nothing_to_replace = replaced == Some(None);
-        if effect.twin().is_some() || nothing_to_replace {
+        if effect.mirror().is_some() || nothing_to_replace {
             continue;
         }
         if present && effect.parameters().is_empty() {

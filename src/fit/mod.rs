@@ -211,9 +211,9 @@ impl<'a, const K: usize> Problem<'a, K> {
         let mut column = algebra::Vector::<K>::zeros();
         let mut k = 0_usize;
         let mut factors = self.points.iter().map(|point| real(point.m));
-        let setting = term.setting(self.interval_s);
+        let shape = term.sampled_shape(self.interval_s);
         term.effect
-            .variances(&mut factors, &setting, &mut |variance| {
+            .variances(&mut factors, &shape, &mut |variance| {
                 column.put(k, variance);
                 k = k.saturating_add(1);
             });

@@ -15,14 +15,14 @@ pub(super) fn tell<const K: usize>(
     let Standing {
         step, best: better, ..
     } = standing;
-    // Behind a name comes its twin: nobody has told them apart.
+    // Behind a name comes its mirror: nobody has told them apart.
     let mut at = 0_usize;
     while let Some(name) = step.ambiguous.get(at) {
         at = at.saturating_add(1);
-        let twin = effects.iter().find(|effect| is_twin(**effect, name));
-        if let Some(twin) = twin {
-            // As many names as candidates bring, with their twins.
-            list::insert(&mut step.ambiguous, at, twin.name());
+        let mirror = effects.iter().find(|effect| is_mirror(**effect, name));
+        if let Some(mirror) = mirror {
+            // As many names as candidates bring, with their mirrors.
+            list::insert(&mut step.ambiguous, at, mirror.name());
             at = at.saturating_add(1);
         }
     }
@@ -30,7 +30,7 @@ pub(super) fn tell<const K: usize>(
         return;
     };
     let name = added.effect.name();
-    let Some(&twin) = effects.iter().find(|effect| is_twin(**effect, name)) else {
+    let Some(&mirror) = effects.iter().find(|effect| is_mirror(**effect, name)) else {
         return;
     };
     let at = better.model.terms().len().saturating_sub(1);
@@ -39,21 +39,21 @@ pub(super) fn tell<const K: usize>(
     let correlation_time_s = added.parameters[0];
     match kurtosis.map(|kurtosis| kurtosis.jumps(curve, correlation_time_s, share)) {
         Some(Some(true)) => {
-            added.effect = twin;
+            added.effect = mirror;
             if let Some(last) = better.model.terms_mut().last_mut() {
-                last.effect = twin;
+                last.effect = mirror;
             }
             if let Some(first) = step.candidates.first_mut() {
-                first.term.effect = twin;
+                first.term.effect = mirror;
             }
         }
         Some(Some(false)) => {}
         _ => {
-            let _ = step.ambiguous.push(twin.name());
+            let _ = step.ambiguous.push(mirror.name());
         }
     }
 }
 
-fn is_twin(effect: &dyn Effect, name: &str) -> bool {
-    effect.twin().is_some_and(|twin| twin.name() == name)
+fn is_mirror(effect: &dyn Effect, name: &str) -> bool {
+    effect.mirror().is_some_and(|mirror| mirror.name() == name)
 }

@@ -38,7 +38,7 @@ impl Strength {
 /// The effects and shapes that are hidden: the typical shapes of every effect of the catalogue beyond
 /// the five terms.
 pub fn cases() -> impl Iterator<Item = (&'static str, [f64; MAX_PARAMETERS])> {
-    let is_term = |name| IEEE_952.iter().any(|term| term.name() == name);
+    let is_term = |name: &str| IEEE_952.iter().any(|term| term.name() == name);
     let effects = EXPLAINED
         .into_iter()
         .map(|effect| (effect.description().name, effect.typical_shapes()));

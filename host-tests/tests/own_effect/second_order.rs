@@ -14,7 +14,7 @@ use allanite::{
 /// The autocovariance is `r(n) = s² (1 + an) zⁿ` with `a = τ₀/T` and `z = e^(−a)` (Gelb, Applied
 /// Optimal Estimation, 1974, table 2.2-1). With the kernel `P(z)` of one real pole, whose
 /// autocovariance is `zⁿ`, it is `G = P + a z ∂P/∂z`.
-pub struct SecondOrderGaussMarkov;
+pub(crate) struct SecondOrderGaussMarkov;
 
 impl Effect for SecondOrderGaussMarkov {
     fn description(&self) -> &'static Description {

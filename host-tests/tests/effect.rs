@@ -88,13 +88,15 @@ fn octaves(last: u32) -> impl Iterator<Item = f64> {
     (0..=last).map(|k| f64::from(1_u32 << k))
 }
 
-/// What rounding leaves where kernels up to lag `lag` cancel, as a share of the largest (at many lags,
-/// because a kernel may have a zero): 5e-13, and for an oscillation what a phase of so many turns has
-/// lost.
+/// What rounding leaves where kernels up to lag `lag` cancel: 5e-13 of the largest, and for an
+/// oscillation what a phase of so many turns has lost. The largest is sought at several lags, because a
+/// kernel may have a zero, and is at least that of white noise of the same variance, because an
+/// oscillation near half the sample rate leaves little of its own terms.
 fn rounding(effect: &dyn Effect, lag: f64, shape: &SampledShape) -> f64 {
     let lags = [0.0, 0.13, 0.29, 0.5, 0.8, 1.0].map(|share| (share * lag).round());
     let sizes = lags.map(|lag| effect.kernel(lag, shape).abs());
-    2048.0 * f64::EPSILON * (1.0 + 0.01 * lag) * sizes.iter().sum::<f64>()
+    let white = lag * effect.second_difference(0.0, 1.0, shape).abs();
+    2048.0 * f64::EPSILON * (1.0 + 0.01 * lag) * (white + sizes.iter().sum::<f64>())
 }
 
 fn assert_relative(found: f64, expected: f64, tolerance: f64, what: &str) {

@@ -43,6 +43,19 @@ impl Effect for BiasInstability {
         t * t * math::log(t) / (2.0 * PI)
     }
 
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        if x < 32.0 * m {
+            let apart = if x < m { m - x } else { x - m };
+            return self.kernel(x + m, shape) - 2.0 * self.kernel(x, shape)
+                + self.kernel(apart, shape);
+        }
+        // The three terms would cancel, so that this takes the Taylor series of their sum in m/x.
+        let (tau_s, ratio) = (m * shape.interval_s, m / x);
+        let square = ratio * ratio;
+        let series = square * (1.0 / 6.0 + square * (1.0 / 30.0 + square / 84.0));
+        tau_s * tau_s * (2.0 * math::log(x * shape.interval_s) + 3.0 - series) / (2.0 * PI)
+    }
+
     fn variance(&self, _: Real, _: &SampledShape) -> Real {
         2.0 * LN_2 / PI
     }

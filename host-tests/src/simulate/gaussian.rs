@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// The shortest and the longest moving average, in samples.
 const SHORTEST: usize = 1 << 10;
-const LONGEST: usize = 1 << 22;
+const LONGEST: usize = 1 << 21;
 
 /// Beyond the moving average, the autocovariance changes by less than this share of the variance.
 const FORGOTTEN: f64 = 1e-9;
@@ -19,9 +19,9 @@ const FORGOTTEN: f64 = 1e-9;
 /// 1997). Weights that are even, and die away before they meet on the far side of the circle, make the
 /// same noise on a line: it never ends and does not repeat.
 ///
-/// An effect whose autocovariance does not die away, as that of a random walk, is known up to a
-/// constant only. The constant that lets it vanish half-way round the circle is taken, so that its
-/// differences are right over lags that are small against two million samples.
+/// The autocovariance of an effect that does not forget, such as a random walk, is known up to a
+/// constant only. A constant is chosen that lets it vanish half-way round the circle, so that the
+/// noise is right over lags that are small against a million samples.
 pub(super) struct Gaussian {
     /// Transform of the weights, padded with as many zeros.
     transfer: Vec<Complex<f64>>,
@@ -138,7 +138,9 @@ fn weights(effect: &dyn Effect, shape: &SampledShape) -> Vec<f64> {
     }
     planner.plan_fft_inverse(length).process(&mut circle);
     circle.rotate_right(half);
-    circle.iter().map(|weight| weight.re).collect()
+    // The weights of a random walk do not vanish on the far side: a constant takes away the jump.
+    let jump = if length == LONGEST { circle[0].re } else { 0.0 };
+    circle.iter().map(|weight| weight.re - jump).collect()
 }
 
 /// The number of weights: a power of two, over the last quarters of which the autocovariance no longer

@@ -9,7 +9,8 @@ use std::sync::Arc;
 const SHORTEST: usize = 1 << 10;
 const LONGEST: usize = 1 << 21;
 
-/// Beyond the moving average, the autocovariance changes by less than this share of the variance.
+/// Beyond a fifth of the moving average, the autocovariance changes by less than this share of the
+/// variance.
 const FORGOTTEN: f64 = 1e-9;
 
 /// Gaussian noise of a given autocovariance: a moving average over white noise.
@@ -20,8 +21,9 @@ const FORGOTTEN: f64 = 1e-9;
 /// same noise on a line: it never ends and does not repeat.
 ///
 /// The autocovariance of an effect that does not forget, such as a random walk, is known up to a
-/// constant only. A constant is chosen that lets it vanish half-way round the circle, so that the
-/// noise is right over lags that are small against a million samples.
+/// constant only. The constant is chosen so that it vanishes at a fifth of the circle, from where on it
+/// is taken for zero: the differences of the noise are right over lags up to 400 000 samples. What is
+/// convex and falls to zero, as that of a random walk or of flicker noise, remains an autocovariance.
 pub(super) struct Gaussian {
     /// Transform of the weights, padded with as many zeros.
     transfer: Vec<Complex<f64>>,
@@ -123,13 +125,14 @@ impl Source for Gaussian {
 /// The weights of the moving average, for a coefficient of one; the largest is in the middle.
 fn weights(effect: &dyn Effect, shape: &SampledShape) -> Vec<f64> {
     let length = length(effect, shape);
-    let half = length / 2;
-    let end = autocovariance(effect, shape, half);
-    let row = (0..length).map(|n| {
-        let lag = n.min(length - n);
-        Complex::new(autocovariance(effect, shape, lag) - end, 0.0)
-    });
-    let mut circle: Vec<Complex<f64>> = row.collect();
+    let end = end(length);
+    let least = autocovariance(effect, shape, end);
+    let mut circle = vec![Complex::default(); length];
+    for lag in 0..end {
+        let value = Complex::new(autocovariance(effect, shape, lag) - least, 0.0);
+        circle[lag] = value;
+        circle[(length - lag) % length] = value;
+    }
     let mut planner = FftPlanner::new();
     planner.plan_fft_forward(length).process(&mut circle);
     for value in &mut circle {
@@ -137,22 +140,27 @@ fn weights(effect: &dyn Effect, shape: &SampledShape) -> Vec<f64> {
         *value = Complex::new(value.re.max(0.0).sqrt() / length as f64, 0.0);
     }
     planner.plan_fft_inverse(length).process(&mut circle);
-    circle.rotate_right(half);
+    circle.rotate_right(length / 2);
     // The weights of a random walk do not vanish on the far side: a constant takes away the jump.
     let jump = if length == LONGEST { circle[0].re } else { 0.0 };
     circle.iter().map(|weight| weight.re - jump).collect()
 }
 
-/// The number of weights: a power of two, over the last quarters of which the autocovariance no longer
-/// changes.
+/// The lag at which the autocovariance ends for a number of weights. Weights have kinks at multiples of
+/// it, so that it is no whole part of half the circle, where they should be smooth.
+fn end(length: usize) -> usize {
+    length / 5
+}
+
+/// The number of weights: a power of two, beyond a fifth of which the autocovariance no longer changes.
 fn length(effect: &dyn Effect, shape: &SampledShape) -> usize {
     let variance = autocovariance(effect, shape, 0) - autocovariance(effect, shape, LONGEST / 2);
     let forgets = |&length: &usize| {
-        let end = autocovariance(effect, shape, length / 2);
+        let last = autocovariance(effect, shape, length / 2);
         // An odd step meets an oscillation in many phases.
-        let mut lags = (length / 4..length / 2).step_by((length / 512) | 1);
+        let mut lags = (end(length)..length / 2).step_by((length / 512) | 1);
         lags.all(|lag| {
-            (autocovariance(effect, shape, lag) - end).abs() <= FORGOTTEN * variance.abs()
+            (autocovariance(effect, shape, lag) - last).abs() <= FORGOTTEN * variance.abs()
         })
     };
     let mut lengths = std::iter::successors(Some(SHORTEST), |length| Some(2 * length));

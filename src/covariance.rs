@@ -97,10 +97,10 @@ pub(crate) fn covariance_row(
     let m_j = real(shorter.m);
     let mut random = SecondDifferences::zero(shorter.m, reach);
     for (term, &square) in present() {
-        let setting = term.setting(interval_s);
-        if term.effect.response(m_j, &setting).is_none() {
+        let shape = term.sampled_shape(interval_s);
+        if term.effect.response(m_j, &shape).is_none() {
             term.effect
-                .add_second_differences(m_j, square, &setting, &mut random);
+                .add_second_differences(m_j, square, &shape, &mut random);
         }
     }
     let random = random.rounded();
@@ -108,7 +108,7 @@ pub(crate) fn covariance_row(
     let mut turns = Vec::<Turn, TABLES>::new();
     let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
     for (term, &square) in present() {
-        if let Some(short) = term.effect.response(m_j, &term.setting(interval_s)) {
+        if let Some(short) = term.effect.response(m_j, &term.sampled_shape(interval_s)) {
             let phase = 0.25 * m_j * short.phase;
             // As many as effects: there is always room.
             let _ = waves.push(Wave {
@@ -129,8 +129,8 @@ pub(crate) fn covariance_row(
             continue;
         }
         for wave in &mut waves {
-            let setting = wave.term.setting(interval_s);
-            let long = wave.term.effect.response(real(longer.m), &setting);
+            let shape = wave.term.sampled_shape(interval_s);
+            let long = wave.term.effect.response(real(longer.m), &shape);
             wave.product = long.map_or(0.0, |long| single(wave.size * long.amplitude));
             wave.now = START;
         }

@@ -1,7 +1,7 @@
 //! A model: the effects that make up a curve.
 
 use crate::{
-    effect::{Effect, IEEE_952, Setting},
+    effect::{Effect, IEEE_952, SampledShape},
     error::Error,
     limits::{MAX_EFFECTS, MAX_PARAMETERS},
     list,
@@ -70,9 +70,9 @@ impl Term {
         parameters.get(j).map_or("", |parameter| parameter.name)
     }
 
-    /// Where it is evaluated for samples `interval_s` apart.
-    pub fn setting(&self, interval_s: Real) -> Setting {
-        Setting {
+    /// Its shape for samples that lie `interval_s` seconds apart.
+    pub fn sampled_shape(&self, interval_s: Real) -> SampledShape {
+        SampledShape {
             interval_s,
             parameters: self.parameters,
         }
@@ -190,7 +190,12 @@ impl Model {
     pub fn variance(&self, squares: &[Real], m: u32, interval_s: Real) -> Real {
         let shares = self.terms.iter().zip(squares);
         shares
-            .map(|(term, square)| square * term.effect.variance(real(m), &term.setting(interval_s)))
+            .map(|(term, square)| {
+                square
+                    * term
+                        .effect
+                        .variance(real(m), &term.sampled_shape(interval_s))
+            })
             .sum()
     }
 }

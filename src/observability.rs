@@ -39,7 +39,7 @@ pub(crate) fn record_length_s(
         while samples / m >= 4.0 {
             let mut row: Vector = Vector::zeros();
             for (j, term) in numbered(model.terms().iter()) {
-                row.put(j, term.effect.variance(m, &term.setting(interval_s)));
+                row.put(j, term.effect.variance(m, &term.sampled_shape(interval_s)));
             }
             let variance = row.dot(&assumed);
             // Relative variance of a variance from N/m clusters: 2/(N/m − 1).

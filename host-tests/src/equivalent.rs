@@ -6,11 +6,11 @@
 
 use crate::{
     log::OCTAVES,
-    overbound::{GaussMarkovProcess, correlation_times, setting},
+    overbound::{GaussMarkovProcess, correlation_times, gauss_markov_shape},
 };
 use allanite::{
     Curve, Model,
-    effect::{BiasInstability, Effect, GaussMarkov, Setting},
+    effect::{BiasInstability, Effect, GaussMarkov, SampledShape},
 };
 
 /// A Gauss–Markov process in place of flicker noise, and what that does to the model's deviation.
@@ -35,12 +35,12 @@ impl Equivalent {
         squares: &[f64],
         bias_instability: f64,
     ) -> Option<Self> {
-        let flicker = model.position(BiasInstability.name())?;
+        let flicker = model.position(BiasInstability.description().name)?;
         let mut rest = squares.to_vec();
         *rest.get_mut(flicker)? = 0.0;
         let interval_s = curve.interval_s();
-        let floor =
-            bias_instability.powi(2) * BiasInstability.variance(1.0, &Setting::new(interval_s));
+        let floor = bias_instability.powi(2)
+            * BiasInstability.variance(1.0, &SampledShape::new(interval_s));
         let octaves: Vec<(u32, f64, f64)> = curve
             .points()
             .iter()
@@ -71,10 +71,10 @@ fn closest(
     correlation_time_s: f64,
     interval_s: f64,
 ) -> (GaussMarkovProcess, f64) {
-    let setting = setting(correlation_time_s, interval_s);
+    let shape = gauss_markov_shape(correlation_time_s, interval_s);
     let pairs = octaves.iter().map(|&(m, floor, rest)| {
         let total = floor + rest;
-        let unit = GaussMarkov.variance(f64::from(m), &setting);
+        let unit = GaussMarkov.variance(f64::from(m), &shape);
         (unit / total, floor / total)
     });
     let pairs: Vec<(f64, f64)> = pairs.collect();

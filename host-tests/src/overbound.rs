@@ -24,7 +24,7 @@
 use crate::{confidence::Limits, log::OCTAVES};
 use allanite::{
     Curve,
-    effect::{AngleRandomWalk, Effect, GaussMarkov, RateRandomWalk, Setting},
+    effect::{AngleRandomWalk, Effect, GaussMarkov, RateRandomWalk, SampledShape},
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -60,8 +60,8 @@ pub struct GaussMarkovProcess {
 impl GaussMarkovProcess {
     /// Allan variance at an averaging factor, in rate units squared.
     pub fn variance(&self, m: u32, interval_s: f64) -> f64 {
-        let setting = setting(self.correlation_time_s, interval_s);
-        self.sigma * self.sigma * GaussMarkov.variance(f64::from(m), &setting)
+        let shape = gauss_markov_shape(self.correlation_time_s, interval_s);
+        self.sigma * self.sigma * GaussMarkov.variance(f64::from(m), &shape)
     }
 }
 
@@ -69,8 +69,8 @@ impl Overbound {
     /// The least white noise and random walk above a curve's upper limits. `None` without octaves, or
     /// where a limit is not finite.
     pub fn of(curve: &Curve<OCTAVES>, limits: &[Limits]) -> Option<Self> {
-        let plain = Setting::new(curve.interval_s());
-        let effects: [(&dyn Effect, Setting); 2] =
+        let plain = SampledShape::new(curve.interval_s());
+        let effects: [(&dyn Effect, SampledShape); 2] =
             [(&AngleRandomWalk, plain), (&RateRandomWalk, plain)];
         let [white, walk, _] = least(curve, limits, &effects)?.coefficients;
         Some(Self {
@@ -82,12 +82,12 @@ impl Overbound {
 
     /// The same with a Gauss–Markov process.
     pub fn with_gauss_markov(curve: &Curve<OCTAVES>, limits: &[Limits]) -> Option<Self> {
-        let plain = Setting::new(curve.interval_s());
+        let plain = SampledShape::new(curve.interval_s());
         let candidates = correlation_times(curve).filter_map(|time_s| {
-            let effects: [(&dyn Effect, Setting); MOST] = [
+            let effects: [(&dyn Effect, SampledShape); MOST] = [
                 (&AngleRandomWalk, plain),
                 (&RateRandomWalk, plain),
-                (&GaussMarkov, setting(time_s, curve.interval_s())),
+                (&GaussMarkov, gauss_markov_shape(time_s, curve.interval_s())),
             ];
             Some((time_s, least(curve, limits, &effects)?))
         });
@@ -106,7 +106,7 @@ impl Overbound {
 
     /// Allan variance at an averaging factor, in rate units squared.
     pub fn variance(&self, m: u32, interval_s: f64) -> f64 {
-        let plain = Setting::new(interval_s);
+        let plain = SampledShape::new(interval_s);
         let m_samples = f64::from(m);
         let of_process = |process: GaussMarkovProcess| process.variance(m, interval_s);
         self.noise_density.powi(2) * AngleRandomWalk.variance(m_samples, &plain)
@@ -139,10 +139,10 @@ pub(crate) fn correlation_times(curve: &Curve<OCTAVES>) -> impl Iterator<Item = 
 }
 
 /// Where a Gauss–Markov process is evaluated.
-pub(crate) fn setting(correlation_time_s: f64, interval_s: f64) -> Setting {
-    let mut setting = Setting::new(interval_s);
-    setting.parameters[0] = correlation_time_s;
-    setting
+pub(crate) fn gauss_markov_shape(correlation_time_s: f64, interval_s: f64) -> SampledShape {
+    let mut shape = SampledShape::new(interval_s);
+    shape.parameters[0] = correlation_time_s;
+    shape
 }
 
 /// A solution of the linear program.
@@ -156,14 +156,14 @@ struct Least {
 fn least(
     curve: &Curve<OCTAVES>,
     limits: &[Limits],
-    effects: &[(&dyn Effect, Setting)],
+    effects: &[(&dyn Effect, SampledShape)],
 ) -> Option<Least> {
     // Row k: what each effect reaches of the limit, per squared coefficient; columns scaled to one.
     let mut rows = vec![[0.0; MOST]; curve.points().len().min(limits.len())];
     let mut scales = [1.0; MOST];
-    for (i, (effect, setting)) in effects.iter().enumerate() {
+    for (i, (effect, shape)) in effects.iter().enumerate() {
         for ((row, point), limit) in rows.iter_mut().zip(curve.points()).zip(limits) {
-            row[i] = effect.variance(f64::from(point.m), setting) / limit.upper;
+            row[i] = effect.variance(f64::from(point.m), shape) / limit.upper;
         }
         scales[i] = rows.iter().map(|row| row[i]).fold(0.0, f64::max);
         if !(scales[i].is_finite() && scales[i] > 0.0) {

@@ -2,7 +2,7 @@
 
 use allanite::{
     Curve, Model, curve_covariance,
-    effect::{IEEE_952, Setting},
+    effect::{IEEE_952, SampledShape},
 };
 
 /// Octaves of every curve here; a record of so few samples has fewer.
@@ -100,7 +100,7 @@ fn covariance(short: &Octave, long: &Octave, pairs: &Pairs, kernel: &[f64], ramp
 
 /// `G(n)` of the random effects.
 fn kernel(squares: &Squares, longest: usize) -> Vec<f64> {
-    let setting = Setting::new(INTERVAL_S);
+    let shape = SampledShape::new(INTERVAL_S);
     let random = || {
         IEEE_952
             .iter()
@@ -110,7 +110,7 @@ fn kernel(squares: &Squares, longest: usize) -> Vec<f64> {
     };
     let at = |lag| {
         random()
-            .map(|(effect, square)| square * effect.kernel(lag, &setting))
+            .map(|(effect, square)| square * effect.kernel(lag, &shape))
             .sum()
     };
     (0..longest).map(|lag| at(lag as f64)).collect()

@@ -69,6 +69,6 @@ pub(super) fn tell_from_mirror<const K: usize>(
 
 /// The effect of a list that has the Allan variance of the one of that name.
 fn mirror_of(name: &str, effects: &[&'static dyn Effect]) -> Option<&'static dyn Effect> {
-    let is_mirror = |effect: &dyn Effect| effect.twin().is_some_and(|twin| twin.name() == name);
+    let is_mirror = |effect: &dyn Effect| effect.mirror().is_some_and(|other| other.name() == name);
     effects.iter().copied().find(|effect| is_mirror(*effect))
 }

@@ -81,7 +81,7 @@ impl<const K: usize> Scanning<K> {
 fn place<const K: usize>(problem: &Problem<'_, K>, effect: &'static dyn Effect) -> Option<usize> {
     let model = problem.model;
     let present = model.position(effect.name()).is_some();
-    if effect.twin().is_some() || (present && effect.parameters().is_empty()) {
+    if effect.mirror().is_some() || (present && effect.parameters().is_empty()) {
         return None;
     }
     match effect.replaces() {

@@ -12,7 +12,7 @@ use heapless::Vec;
 /// Candidates that a step fits in full and reports.
 pub const MAX_CANDIDATES: usize = 4;
 
-/// Names that a step calls ambiguous: two of every other candidate, and twins of two.
+/// Names that a step calls ambiguous: two of every other candidate, and mirrors of two.
 pub const MAX_AMBIGUOUS: usize = 2 * MAX_CANDIDATES;
 
 /// The candidates of a step, best first.

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     Curve, Model,
-    effect::{CATALOGUE, Effect, GaussMarkov, Setting, Sinusoid},
+    effect::{CATALOGUE, Effect, GaussMarkov, SampledShape, Sinusoid},
     fit::{Problem, Start, Tolerance, Work},
     real::{Real, real},
 };
@@ -22,7 +22,7 @@ const INTERVAL_S: Real = 0.01;
 /// A curve of white and flicker noise with one more effect, every octave off by a fraction of its standard
 /// error.
 fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real) -> Curve<OCTAVES> {
-    let setting = Setting {
+    let shape = SampledShape {
         interval_s: INTERVAL_S,
         parameters,
     };
@@ -30,7 +30,7 @@ fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real) -> Curve<OCTA
         let m = 1_u32 << k;
         let tau_s = real(m) * INTERVAL_S;
         let noise = 2.5e-5 / tau_s + 7.1e-6 + 3.0e-8 * tau_s;
-        let extra = square * effect.variance(real(m), &setting);
+        let extra = square * effect.variance(real(m), &shape);
         let differences = (1_u64 << 18) / u64::from((m / 4).max(1)) - 7;
         let off = [0.3, -0.5, 0.4, -0.2, -0.3][k % 5] / (0.2 * differences as Real + 9.0);
         (m, differences, (noise + extra) * (1.0 + off))

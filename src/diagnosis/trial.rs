@@ -75,7 +75,9 @@ impl Fitted {
             let Some(term) = self.model.terms_mut().get_mut(usize::from(i)) else {
                 continue;
             };
-            let range = term.effect.range(j, span);
+            let Some(range) = term.effect.search_range(j, span) else {
+                continue;
+            };
             let changed = term.parameter(j) * math::exp(sign * step);
             let highest = range.high.max(range.low);
             term.set_parameter(j, changed.max(range.low).min(highest));

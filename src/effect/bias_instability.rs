@@ -1,4 +1,4 @@
-use super::{Effect, Explain, Setting, Story};
+use super::{Description, Distribution, Effect, Explain, Explanation, SampledShape};
 use crate::lattice::{self, SecondDifferences};
 use crate::math;
 use crate::real::{
@@ -6,40 +6,57 @@ use crate::real::{
     consts::{LN_2, PI},
 };
 
-/// Bias instability, coefficient B in rate: flicker noise, of spectral density `B²/(2πf)`, averaged
-/// over each sample interval.
+/// Bias instability, which is flicker noise of the rate, averaged over each sample interval. The
+/// coefficient is `B` in rate units; the spectral density of the rate is `B²/(2πf)`.
 ///
-/// `G(n) = (nτ₀)² ln(nτ₀)/2π`; `σ² = (2 ln 2/π) B² = (0.664 B)²` at every τ (IEEE Std 952-1997,
-/// eq. C.17, for τ beyond its cut-off; Allan 1966 for the kernel of flicker frequency noise).
+/// `G(n) = (nτ₀)² ln(nτ₀)/2π`, 0 at `n = 0`, and `σ² = (2 ln 2/π) B² = (0.664 B)²` at every τ (IEEE
+/// Std 952-1997, eq. C.17, for τ beyond its cut-off; Allan 1966 for the kernel of flicker frequency
+/// noise).
 ///
-/// The kernel is scale-free: but for a constant, which cancels, its second differences are `m²`
-/// times a function of `x/m`. That function stands in a table, so that no logarithm is taken on a
-/// target.
+/// The kernel has no time scale: up to a constant, its second differences are `m²` times a function
+/// of `x/m`. A table holds that function, so that a target takes no logarithm.
 #[derive(Clone, Copy, Debug)]
 pub struct BiasInstability;
 
+pub(super) const DESCRIPTION: Description = Description {
+    name: "bias_instability",
+    symbol: "B",
+    coefficient: "bias_instability",
+    half_seconds: 0,
+    parameters: &[],
+    code: 3,
+    replaces: None,
+    mirror: None,
+    distribution: Distribution::Gaussian,
+};
+
 impl Effect for BiasInstability {
-    fn name(&self) -> &'static str {
-        "bias_instability"
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn symbol(&self) -> &'static str {
-        "B"
-    }
-
-    fn half_seconds(&self) -> i8 {
-        0
-    }
-
-    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
         if lag == 0.0 {
             return 0.0;
         }
-        let t = lag * setting.interval_s;
+        let t = lag * shape.interval_s;
         t * t * math::log(t) / (2.0 * PI)
     }
 
-    fn variance(&self, _: Real, _: &Setting) -> Real {
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        if x < 32.0 * m {
+            let apart = if x < m { m - x } else { x - m };
+            return self.kernel(x + m, shape) - 2.0 * self.kernel(x, shape)
+                + self.kernel(apart, shape);
+        }
+        // The three terms would cancel, so that this takes the Taylor series of their sum in m/x.
+        let (tau_s, ratio) = (m * shape.interval_s, m / x);
+        let square = ratio * ratio;
+        let series = square * (1.0 / 6.0 + square * (1.0 / 30.0 + square / 84.0));
+        tau_s * tau_s * (2.0 * math::log(x * shape.interval_s) + 3.0 - series) / (2.0 * PI)
+    }
+
+    fn variance(&self, _: Real, _: &SampledShape) -> Real {
         2.0 * LN_2 / PI
     }
 
@@ -47,17 +64,17 @@ impl Effect for BiasInstability {
         &self,
         m: Real,
         weight: Real,
-        setting: &Setting,
+        shape: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        let tau_s = m * setting.interval_s;
+        let tau_s = m * shape.interval_s;
         sum.add_scaled(weight * tau_s * tau_s / (2.0 * PI), &SCALE_FREE);
     }
 }
 
 impl Explain for BiasInstability {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "bias instability: flicker noise of the rate",
             origin: "1/f noise of the electronics, discharge in a laser gyro, surface charge in MEMS",
             check: "compare with the datasheet; does chopping or another bias current change it?",
@@ -82,7 +99,7 @@ const fn scale_free(position: u32) -> f64 {
         (square_log(position + 4) - 2.0 * square_log(position) + square_log(position.abs_diff(4)))
             / 16.0
     } else {
-        // The same by its Taylor series: the three terms would cancel.
+        // The three terms would cancel, so that this takes the Taylor series of their sum.
         let i2 = i * i;
         2.0 * math::log_of_integer(position) + 3.0 - 8.0 / (3.0 * i2) - 128.0 / (15.0 * i2 * i2)
     }

@@ -14,7 +14,7 @@
 //! `∫ sin⁴u/u⁴ du = π/3` over `(2 ln 2/π) B²`. What a gyro may follow is slow, so that flicker's is
 //! taken: on the cautious side above white noise.
 
-use super::Story;
+use super::Explanation;
 use crate::{
     cross_sums::CrossCurve,
     curve::Point,
@@ -29,7 +29,7 @@ use crate::{
 pub const NAME: &str = "covariate";
 
 /// What to tell somebody whose gyro follows a covariate.
-pub const STORY: Story = Story {
+pub const EXPLANATION: Explanation = Explanation {
     what: "the rate follows something that was recorded alongside, such as the temperature",
     origin: "thermal expansion and the temperature of the drive's electronics; acceleration \
              through the suspension; a supply that feeds the reference",

@@ -1,26 +1,28 @@
 use super::{
-    AngleRandomWalk, Effect, Explain, Parameter, Range, SecondDifferences, Setting, Span, Story,
+    AngleRandomWalk, Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS,
+    Parameter, SampledShape, SearchRange, SecondDifferences,
 };
 use crate::math;
 use crate::real::Real;
 
-/// Angle random walk behind a decimation filter of `stages` boxcars, coefficient N in rate · √s:
-/// takes the place of [`AngleRandomWalk`]. One stage is a moving average, two are a Bartlett
+/// Angle random walk behind a decimation filter, which takes the place of [`AngleRandomWalk`]. The
+/// coefficient is `N` in rate · √s; the shape parameters are the width of the filter in seconds, up to
+/// 64 samples, and the number of its stages. One stage is a moving average, two are a Bartlett
 /// (triangular) window.
 ///
-/// `width` is that of the one boxcar that spreads a pulse as far: each of the stages is
-/// `w = width/√stages` long. Where a filter reaches over few samples, this much can be told, and not
-/// the stages.
+/// The width is that of the one boxcar which spreads a pulse as far as all stages together: each stage
+/// is a boxcar of length `w = width/√stages`. So the width is known even where the filter reaches over
+/// so few samples that the number of stages is not.
 ///
-/// The rate's autocovariance is the B-spline of order `2 · stages`, sampled: `r_i ∝ B(iτ₀/w)` with
-/// `τ₀ Σ r_i = N²`, and `G(n) = −½ τ₀² [n r₀ + 2 Σ_{i<n} (n−i) r_i]`.
+/// The autocovariance of the rate is a sampled B-spline of order `2 · stages`, `r_i ∝ B(iτ₀/w)` with
+/// `τ₀ Σ r_i = N²`, and `G(n) = −½ τ₀² [n r₀ + 2 Σ_{0<i<n} (n−i) r_i]`.
 #[derive(Clone, Copy, Debug)]
 pub struct DecimationFilter;
 
-/// Widths up to so many samples: the sums over the autocovariance stay short.
+/// The largest width in samples, which bounds the sums over the autocovariance.
 const WIDEST: Real = 64.0;
 
-/// The autocovariance at a lag of `x` widths, up to a factor, and the lag from which it is zero.
+/// The autocovariance at a lag of `x` lengths of a stage, up to a factor.
 fn spline(x: Real, stages: Real) -> Real {
     if stages < 1.5 {
         return (1.0 - x).max(0.0);
@@ -35,22 +37,24 @@ fn spline(x: Real, stages: Real) -> Real {
     }
 }
 
-/// The sampled autocovariance, normalised.
+/// The sampled autocovariance `r_i`, scaled so that its sum over all lags is 1.
 struct Filter {
+    /// Reciprocal of a stage's length in samples.
     per_sample: Real,
+    /// Number of stages.
     stages: Real,
-    /// Lags from which on it is zero.
+    /// The lag in samples from which on the autocovariance is zero.
     support: Real,
-    /// 1/Σ r_i.
+    /// The factor that scales the spline.
     scale: Real,
     /// 2 Σ_{i>0} i r_i.
     moment: Real,
 }
 
 impl Filter {
-    fn new(setting: &Setting) -> Self {
-        let [width_s, stages] = setting.parameters;
-        let width = width_s / (setting.interval_s * math::sqrt(stages.max(1.0)));
+    fn new(shape: &SampledShape) -> Self {
+        let [width_s, stages] = shape.parameters;
+        let width = width_s / (shape.interval_s * math::sqrt(stages.max(1.0)));
         let width = width.clamp(1e-3, WIDEST);
         let mut filter = Self {
             per_sample: 1.0 / width,
@@ -72,11 +76,12 @@ impl Filter {
         filter
     }
 
+    /// `r_i`.
     fn at(&self, i: Real) -> Real {
         self.scale * spline(i * self.per_sample, self.stages)
     }
 
-    /// `n r₀ + 2 Σ_{i<n} (n−i) r_i`.
+    /// `n r₀ + 2 Σ_{0<i<n} (n−i) r_i`.
     fn sum(&self, n: Real) -> Real {
         if n >= self.support {
             return n - self.moment;
@@ -90,7 +95,7 @@ impl Filter {
         sum
     }
 
-    /// A second difference of the sums.
+    /// The second difference of [`sum`](Self::sum).
     fn second_difference(&self, x: Real, m: Real) -> Real {
         if x >= m + self.support {
             return 0.0;
@@ -100,74 +105,59 @@ impl Filter {
     }
 }
 
-impl Effect for DecimationFilter {
-    fn name(&self) -> &'static str {
-        "decimation_filter"
-    }
-
-    fn symbol(&self) -> &'static str {
-        "N"
-    }
-
-    fn coefficient(&self) -> &'static str {
-        "angle_random_walk"
-    }
-
-    fn half_seconds(&self) -> i8 {
-        1
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &[
-            Parameter {
-                name: "width_s",
-                unit: "s",
-            },
-            Parameter {
-                name: "stages",
-                unit: "",
-            },
-        ]
-    }
-
-    fn range(&self, parameter: usize, span: &Span) -> Range {
-        match parameter {
-            0 => Range {
+pub(super) const DESCRIPTION: Description = Description {
+    name: "decimation_filter",
+    symbol: "N",
+    coefficient: "angle_random_walk",
+    half_seconds: 1,
+    parameters: &[
+        Parameter {
+            name: "width_s",
+            unit: "s",
+            is_whole: false,
+            search_range: |span| SearchRange {
                 low: 0.6 * span.interval_s,
                 high: (32.0 * span.interval_s).min(0.1 * span.longest_tau_s),
                 steps_per_octave: 4.0,
             },
-            _ => Range {
+        },
+        Parameter {
+            name: "stages",
+            unit: "",
+            is_whole: true,
+            search_range: |_| SearchRange {
                 low: 1.0,
                 high: 2.0,
                 steps_per_octave: 1.0,
             },
-        }
+        },
+    ],
+    code: 10,
+    replaces: Some(&AngleRandomWalk),
+    mirror: None,
+    distribution: Distribution::Gaussian,
+};
+
+impl Effect for DecimationFilter {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn is_whole(&self, parameter: usize) -> bool {
-        parameter == 1
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        -0.5 * shape.interval_s * Filter::new(shape).sum(lag)
     }
 
-    fn replaces(&self) -> Option<&'static dyn Effect> {
-        Some(&AngleRandomWalk)
-    }
-
-    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
-        -0.5 * setting.interval_s * Filter::new(setting).sum(lag)
-    }
-
-    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
-        -0.5 * setting.interval_s * Filter::new(setting).second_difference(x, m)
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        -0.5 * shape.interval_s * Filter::new(shape).second_difference(x, m)
     }
 
     fn variances(
         &self,
         factors: &mut dyn Iterator<Item = Real>,
-        setting: &Setting,
+        shape: &SampledShape,
         each: &mut dyn FnMut(Real),
     ) {
-        let filter = Filter::new(setting);
+        let filter = Filter::new(shape);
         let mut last: Option<(Real, Real)> = None;
         for m in factors {
             let own = match last {
@@ -176,8 +166,8 @@ impl Effect for DecimationFilter {
             };
             let double = filter.sum(2.0 * m);
             last = Some((2.0 * m, double));
-            // 3 G(0) − 4 G(m) + G(2m), over τ².
-            each(0.5 * (4.0 * own - double) / (m * m * setting.interval_s));
+            // σ² = [3 G(0) − 4 G(m) + G(2m)]/τ².
+            each(0.5 * (4.0 * own - double) / (m * m * shape.interval_s));
         }
     }
 
@@ -185,11 +175,11 @@ impl Effect for DecimationFilter {
         &self,
         m: Real,
         weight: Real,
-        setting: &Setting,
+        shape: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        let filter = Filter::new(setting);
-        let weight = -0.5 * setting.interval_s * weight;
+        let filter = Filter::new(shape);
+        let weight = -0.5 * shape.interval_s * weight;
         sum.add_below(m, m + filter.support, |x| {
             weight * filter.second_difference(x, m)
         });
@@ -197,11 +187,15 @@ impl Effect for DecimationFilter {
 }
 
 impl Explain for DecimationFilter {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "a decimation filter: white noise is averaged over longer than a sample interval",
             origin: "the sensor's own digital filter, a moving average or a Bartlett window, set to fewer hertz than the output rate carries",
             check: "read the sensor's filter register and its group delay; open the filter and see the deficit at short averaging times go",
         }
+    }
+
+    fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
+        &[[0.03, 1.0], [0.03, 2.0]]
     }
 }

@@ -1,99 +1,94 @@
 use super::{
-    Effect, Explain, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole,
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
+    SampledShape, SearchRange, SecondDifferences, pole::Pole,
 };
 use crate::real::Real;
 
-/// Exponentially correlated noise, coefficient its rms in rate, correlation time T_c: one real pole.
+/// Exponentially correlated noise, which is a Gauss–Markov process of first order. The coefficient is
+/// its rms `s` in rate units, the shape parameter its correlation time `T_c` in seconds, above zero.
 ///
-/// `σ²(τ) ≈ (2 s² T_c/τ) [1 − (T_c/2τ)(3 − 4e^(−τ/T_c) + e^(−2τ/T_c))]`, which peaks at 0.617 s at
-/// 1.89 T_c (IEEE Std 952-1997, eq. C.20, for a sampled rate).
+/// The autocovariance is `r(n) = s² zⁿ` with the real pole `z = e^(−τ₀/T_c)`. For `τ ≫ τ₀` the Allan
+/// variance is `σ²(τ) = (2 s² T_c/τ) [1 − (T_c/2τ)(3 − 4e^(−τ/T_c) + e^(−2τ/T_c))]`, whose root peaks
+/// at 0.617 s where `τ = 1.89 T_c` (IEEE Std 952-1997, eq. C.20); the functions here are exact for a
+/// sampled rate.
 #[derive(Clone, Copy, Debug)]
 pub struct GaussMarkov;
 
-/// The parameter of both kinds of exponentially correlated noise.
-pub(super) const PARAMETERS: &[Parameter] = &[Parameter {
-    name: "correlation_time_s",
-    unit: "s",
-}];
-
-fn pole(setting: &Setting) -> Pole {
-    Pole::new(setting.parameters[0], 0.0, setting.interval_s)
+fn pole(shape: &SampledShape) -> Pole {
+    Pole::new(shape.parameters[0], 0.0, shape.interval_s)
 }
 
+pub(super) const DESCRIPTION: Description = Description {
+    name: "gauss_markov",
+    symbol: "s",
+    coefficient: "rms",
+    half_seconds: 0,
+    parameters: &[Parameter {
+        name: "correlation_time_s",
+        unit: "s",
+        is_whole: false,
+        // The curve has its peak at 1.89 T_c, which has to lie within the octaves.
+        search_range: |span| SearchRange {
+            low: span.interval_s,
+            high: 0.5 * span.longest_tau_s,
+            steps_per_octave: 2.0,
+        },
+    }],
+    code: 6,
+    replaces: None,
+    mirror: None,
+    distribution: Distribution::Gaussian,
+};
+
 impl Effect for GaussMarkov {
-    fn name(&self) -> &'static str {
-        "gauss_markov"
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn symbol(&self) -> &'static str {
-        "s"
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        squared(shape.interval_s) * pole(shape).kernel(lag)
     }
 
-    fn coefficient(&self) -> &'static str {
-        "rms"
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        squared(shape.interval_s) * pole(shape).second_difference(x, m)
     }
 
-    fn half_seconds(&self) -> i8 {
-        0
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        PARAMETERS
-    }
-
-    fn range(&self, _: usize, span: &Span) -> Range {
-        correlation_times(span)
-    }
-
-    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
-        squared(setting.interval_s) * pole(setting).kernel(lag)
-    }
-
-    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
-        squared(setting.interval_s) * pole(setting).second_difference(x, m)
-    }
-
-    fn variance(&self, m: Real, setting: &Setting) -> Real {
-        pole(setting).variance(m)
+    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
+        pole(shape).variance(m)
     }
 
     fn variances(
         &self,
         factors: &mut dyn Iterator<Item = Real>,
-        setting: &Setting,
+        shape: &SampledShape,
         each: &mut dyn FnMut(Real),
     ) {
-        pole(setting).variances(factors, each);
+        pole(shape).variances(factors, each);
     }
 
     fn add_second_differences(
         &self,
         m: Real,
         weight: Real,
-        setting: &Setting,
+        shape: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        let weight = weight * squared(setting.interval_s);
-        pole(setting).add_second_differences(m, weight, sum);
+        let weight = weight * squared(shape.interval_s);
+        pole(shape).add_second_differences(m, weight, sum);
     }
 }
 
 impl Explain for GaussMarkov {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "exponentially correlated noise: a disturbance that forgets itself after its correlation time",
             origin: "temperature control loops, charge trapping in the sense electronics, slow mechanical relaxation of the package",
             check: "log temperature and supply beside the rate; does the correlation time change with either?",
         }
     }
-}
 
-/// Correlation times that a curve can show: their peaks, at 1.89 T_c, within it.
-pub(super) fn correlation_times(span: &Span) -> Range {
-    Range {
-        low: span.interval_s,
-        high: 0.5 * span.longest_tau_s,
-        steps_per_octave: 2.0,
+    fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
+        &[[0.1, 0.0], [1.0, 0.0]]
     }
 }
 

@@ -1,28 +1,32 @@
-use super::{Effect, Explain, Setting, Story};
+use super::{Description, Distribution, Effect, Explain, Explanation, SampledShape};
 use crate::lattice::SecondDifferences;
 use crate::real::Real;
 
-/// Quantization noise, coefficient Q in rate · s (an angle): the angle is rounded, or jitters, by an
-/// amount that is independent from sample to sample.
+/// Quantization noise: the angle carries an error that is independent from sample to sample. The
+/// coefficient is `Q`, the rms of that error, in rate · s (an angle).
 ///
-/// `G(n) = 1` at `n = 0`, else 0; `σ²(τ) = 3Q²/τ²` (IEEE Std 952-1997, eq. C.16).
+/// `G(n)` is 1 at `n = 0` and 0 elsewhere, and `σ²(τ) = 3Q²/τ²` (IEEE Std 952-1997, eq. C.16).
 #[derive(Clone, Copy, Debug)]
 pub struct Quantization;
 
+pub(super) const DESCRIPTION: Description = Description {
+    name: "quantization",
+    symbol: "Q",
+    coefficient: "quantization",
+    half_seconds: 2,
+    parameters: &[],
+    code: 1,
+    replaces: None,
+    mirror: None,
+    distribution: Distribution::Gaussian,
+};
+
 impl Effect for Quantization {
-    fn name(&self) -> &'static str {
-        "quantization"
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn symbol(&self) -> &'static str {
-        "Q"
-    }
-
-    fn half_seconds(&self) -> i8 {
-        2
-    }
-
-    fn kernel(&self, lag: Real, _: &Setting) -> Real {
+    fn kernel(&self, lag: Real, _: &SampledShape) -> Real {
         if lag == 0.0 { 1.0 } else { 0.0 }
     }
 
@@ -30,18 +34,18 @@ impl Effect for Quantization {
         &self,
         _: Real,
         weight: Real,
-        _: &Setting,
+        _: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        // G(0) is met at x = 0, twice and negative, and at x = m.
+        // The second difference contains G(0) where x = 0, with weight −2, and where x = m.
         sum.add_at(0, -2.0 * weight);
         sum.add_at(4, weight);
     }
 }
 
 impl Explain for Quantization {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "quantization noise: the angle is rounded, or its sampling instant jitters",
             origin: "the resolution of an angle-integrating output, jitter of the sample clock, readout of a laser gyro's fringe count",
             check: "does it change with the output's resolution or the clock? a rate-output gyro has little of it",

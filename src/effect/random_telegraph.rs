@@ -1,84 +1,77 @@
 use super::{
-    Effect, Explain, GaussMarkov, Parameter, Range, SecondDifferences, Setting, Span, Story,
-    gauss_markov::{PARAMETERS, correlation_times},
+    Description, Distribution, Effect, Explain, Explanation, GaussMarkov, MAX_PARAMETERS,
+    SampledShape, SecondDifferences, gauss_markov,
 };
 use crate::real::Real;
 
-/// Random telegraph noise, coefficient its rms in rate, correlation time T_c: the rate jumps
-/// between two levels, `2 rms` apart, on average every `2 T_c` (Machlup 1954).
+/// Random telegraph noise: the rate jumps between two levels. The coefficient is its rms in rate
+/// units, the shape parameter its correlation time `T_c` in seconds, above zero.
 ///
-/// Its autocovariance, and so its Allan variance, is that of [`GaussMarkov`] noise: only the
-/// kurtosis of the differences at `τ ≲ T_c` tells the two apart.
+/// The levels lie `2 rms` apart, and the rate stays at one of them for `2 T_c` on average
+/// (Machlup 1954). The autocovariance, and with it the Allan variance, is that of [`GaussMarkov`]
+/// noise, so that only the kurtosis of the differences at `τ ≲ T_c` tells the two apart.
 #[derive(Clone, Copy, Debug)]
 pub struct RandomTelegraph;
 
+pub(super) const DESCRIPTION: Description = Description {
+    name: "random_telegraph",
+    symbol: "s",
+    coefficient: "rms",
+    half_seconds: 0,
+    parameters: gauss_markov::DESCRIPTION.parameters,
+    code: 11,
+    replaces: None,
+    mirror: Some(&GaussMarkov),
+    distribution: Distribution::TwoLevels,
+};
+
 impl Effect for RandomTelegraph {
-    fn name(&self) -> &'static str {
-        "random_telegraph"
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn symbol(&self) -> &'static str {
-        "s"
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        GaussMarkov.kernel(lag, shape)
     }
 
-    fn coefficient(&self) -> &'static str {
-        "rms"
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        GaussMarkov.second_difference(x, m, shape)
     }
 
-    fn half_seconds(&self) -> i8 {
-        0
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        PARAMETERS
-    }
-
-    fn range(&self, _: usize, span: &Span) -> Range {
-        correlation_times(span)
-    }
-
-    fn twin(&self) -> Option<&'static dyn Effect> {
-        Some(&GaussMarkov)
-    }
-
-    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
-        GaussMarkov.kernel(lag, setting)
-    }
-
-    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
-        GaussMarkov.second_difference(x, m, setting)
-    }
-
-    fn variance(&self, m: Real, setting: &Setting) -> Real {
-        GaussMarkov.variance(m, setting)
+    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
+        GaussMarkov.variance(m, shape)
     }
 
     fn variances(
         &self,
         factors: &mut dyn Iterator<Item = Real>,
-        setting: &Setting,
+        shape: &SampledShape,
         each: &mut dyn FnMut(Real),
     ) {
-        GaussMarkov.variances(factors, setting, each);
+        GaussMarkov.variances(factors, shape, each);
     }
 
     fn add_second_differences(
         &self,
         m: Real,
         weight: Real,
-        setting: &Setting,
+        shape: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        GaussMarkov.add_second_differences(m, weight, setting, sum);
+        GaussMarkov.add_second_differences(m, weight, shape, sum);
     }
 }
 
 impl Explain for RandomTelegraph {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "random telegraph noise: the rate jumps between two levels",
             origin: "a single defect in the sense electronics that captures and releases charge (popcorn noise), a stick-slip contact in the package",
             check: "plot the rate averaged over a fifth of the correlation time: are there two levels? exchange the amplifier or cool it",
         }
+    }
+
+    fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
+        &[[0.1, 0.0], [1.0, 0.0]]
     }
 }

@@ -1,40 +1,45 @@
-use super::{Effect, Explain, Response, Setting, Story};
+use super::{Description, Distribution, Effect, Explain, Explanation, Response, SampledShape};
 use crate::real::Real;
 
-/// Rate ramp, coefficient R in rate / s: the rate drifts steadily, the same in every difference.
+/// Rate ramp: the rate drifts steadily, so that all differences are the same. The coefficient is `R`
+/// in rate / s.
 ///
-/// `G(n) = τ₀⁴ n⁴/24`; `σ²(τ) = R²τ²/2` (IEEE Std 952-1997, eq. C.22).
+/// `G(n) = τ₀⁴ n⁴/24` and `σ²(τ) = R²τ²/2` (IEEE Std 952-1997, eq. C.22).
 #[derive(Clone, Copy, Debug)]
 pub struct RateRamp;
 
+pub(super) const DESCRIPTION: Description = Description {
+    name: "rate_ramp",
+    symbol: "R",
+    coefficient: "rate_ramp",
+    half_seconds: -2,
+    parameters: &[],
+    code: 5,
+    replaces: None,
+    mirror: None,
+    distribution: Distribution::Deterministic,
+};
+
 impl Effect for RateRamp {
-    fn name(&self) -> &'static str {
-        "rate_ramp"
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn symbol(&self) -> &'static str {
-        "R"
-    }
-
-    fn half_seconds(&self) -> i8 {
-        -2
-    }
-
-    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
-        let t2 = setting.interval_s * setting.interval_s;
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        let t2 = shape.interval_s * shape.interval_s;
         let n2 = lag * lag;
         t2 * t2 * n2 * n2 / 24.0
     }
 
-    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
-        let t2 = setting.interval_s * setting.interval_s;
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        let t2 = shape.interval_s * shape.interval_s;
         let m2 = m * m;
         t2 * t2 * m2 * (0.5 * x * x + m2 / 12.0)
     }
 
-    fn response(&self, m: Real, setting: &Setting) -> Option<Response> {
+    fn response(&self, m: Real, shape: &SampledShape) -> Option<Response> {
         // Every difference is Rτ, wherever it lies.
-        let tau_s = m * setting.interval_s;
+        let tau_s = m * shape.interval_s;
         Some(Response {
             amplitude: tau_s * tau_s,
             phase: 0.0,
@@ -43,8 +48,8 @@ impl Effect for RateRamp {
 }
 
 impl Explain for RateRamp {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "rate ramp: the rate drifts steadily",
             origin: "warming up after power-on, a steady temperature gradient, a slow turn of the mount",
             check: "let the sensor warm up before recording; log temperature beside the rate",

@@ -1,58 +1,66 @@
-use super::{Effect, Explain, SecondDifferences, Setting, Story};
+use super::{
+    Description, Distribution, Effect, Explain, Explanation, SampledShape, SecondDifferences,
+};
 use crate::real::Real;
 
-/// Rate random walk, coefficient K in rate / √s: the rate is a walk, stepped once a sample.
+/// Rate random walk: the rate takes a random step once a sample. The coefficient is `K` in
+/// rate / √s; a step has the variance `K²τ₀`.
 ///
-/// `G(n) = τ₀³ (n³ − n)/12`; `σ² = K²τ₀ (2m² + 1)/6m`, the `K²τ/3` of IEEE Std 952-1997, eq. C.19,
-/// for a sampled walk.
+/// `G(n) = τ₀³ (n³ − n)/12` and `σ² = K²τ₀ (2m² + 1)/6m`, which for `m ≫ 1` is the `K²τ/3` of IEEE
+/// Std 952-1997, eq. C.19.
 #[derive(Clone, Copy, Debug)]
 pub struct RateRandomWalk;
 
+pub(super) const DESCRIPTION: Description = Description {
+    name: "rate_random_walk",
+    symbol: "K",
+    coefficient: "rate_random_walk",
+    half_seconds: -1,
+    parameters: &[],
+    code: 4,
+    replaces: None,
+    mirror: None,
+    distribution: Distribution::Gaussian,
+};
+
 impl Effect for RateRandomWalk {
-    fn name(&self) -> &'static str {
-        "rate_random_walk"
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn symbol(&self) -> &'static str {
-        "K"
-    }
-
-    fn half_seconds(&self) -> i8 {
-        -1
-    }
-
-    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
-        let t = setting.interval_s;
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        let t = shape.interval_s;
         t * t * t * lag * (lag * lag - 1.0) / 12.0
     }
 
-    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
-        let t = setting.interval_s;
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        let t = shape.interval_s;
         let cubic = if x < m {
-            // 2m³ + 6mx² − 2x³, less 2(m − x) for the linear part of the kernel.
+            // The cubic part of the kernel gives 2m³ + 6mx² − 2x³, the linear part −2(m − x).
             (m * (m * m + 3.0 * x * x - 1.0) - x * (x * x - 1.0)) / 6.0
         } else {
             0.5 * x * m * m
         };
         t * t * t * cubic
     }
+
     fn add_second_differences(
         &self,
         m: Real,
         weight: Real,
-        setting: &Setting,
+        shape: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        sum.add_below(m, m, |x| weight * self.second_difference(x, m, setting));
-        let t = setting.interval_s;
+        sum.add_below(m, m, |x| weight * self.second_difference(x, m, shape));
+        let t = shape.interval_s;
         let slope = 0.5 * weight * t * t * t * m * m;
         sum.add_from(m, |x| slope * x);
     }
 }
 
 impl Explain for RateRandomWalk {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "rate random walk: the rate itself wanders",
             origin: "ageing, slow temperature drift, creep of the package's stress",
             check: "log temperature beside the rate and record for longer",

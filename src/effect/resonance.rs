@@ -1,109 +1,109 @@
 use super::{
-    Effect, Explain, Parameter, Range, SecondDifferences, Setting, Span, Story, pole::Pole,
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
+    SampledShape, SearchRange, SecondDifferences, pole::Pole, sinusoid::frequencies,
 };
 use crate::real::{Real, consts::PI};
 
-/// A lightly damped mode driven by noise, coefficient its rms in rate: a complex pole of frequency
-/// `f` and quality factor `quality`, with time constant `T = quality/(πf)`.
+/// Resonance: a lightly damped mode that noise drives. The coefficient is its rms `s` in rate units;
+/// the shape parameters are its frequency `f` in Hz and its quality factor, both above zero.
 ///
-/// A frequency above half the sample rate is seen at its alias.
+/// The autocovariance is `r(n) = s² Re zⁿ` with the complex pole `z = e^(−τ₀/T + 2πi f τ₀)` and the
+/// time constant `T = quality/(πf)`: one coordinate of a circular process that decays and turns
+/// (Gillespie 1996 for the real pole). A frequency above half the sample rate appears at its alias.
 #[derive(Clone, Copy, Debug)]
 pub struct Resonance;
 
-fn pole(setting: &Setting) -> Pole {
-    let [frequency_hz, quality] = setting.parameters;
+fn pole(shape: &SampledShape) -> Pole {
+    let [frequency_hz, quality] = shape.parameters;
     Pole::new(
         quality / (PI * frequency_hz),
         frequency_hz,
-        setting.interval_s,
+        shape.interval_s,
     )
 }
 
-impl Effect for Resonance {
-    fn name(&self) -> &'static str {
-        "resonance"
-    }
-
-    fn symbol(&self) -> &'static str {
-        "s"
-    }
-
-    fn coefficient(&self) -> &'static str {
-        "rms"
-    }
-
-    fn half_seconds(&self) -> i8 {
-        0
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &[
-            Parameter {
-                name: "frequency_hz",
-                unit: "Hz",
-            },
-            Parameter {
-                name: "quality",
-                unit: "",
-            },
-        ]
-    }
-
-    fn range(&self, parameter: usize, span: &Span) -> Range {
-        match parameter {
-            // Broader than a line, and its sides are smooth.
-            0 => Range {
+pub(super) const DESCRIPTION: Description = Description {
+    name: "resonance",
+    symbol: "s",
+    coefficient: "rms",
+    half_seconds: 0,
+    parameters: &[
+        Parameter {
+            name: "frequency_hz",
+            unit: "Hz",
+            is_whole: false,
+            // A resonance is broader than a line, so that a coarser grid finds it.
+            search_range: |span| SearchRange {
                 steps_per_octave: 3.0,
-                ..super::sinusoid::frequencies(span)
+                ..frequencies(span)
             },
-            _ => Range {
+        },
+        Parameter {
+            name: "quality",
+            unit: "",
+            is_whole: false,
+            search_range: |_| SearchRange {
                 low: 1.0,
                 high: 32.0,
                 steps_per_octave: 0.5,
             },
-        }
+        },
+    ],
+    code: 8,
+    replaces: None,
+    mirror: None,
+    distribution: Distribution::Gaussian,
+};
+
+impl Effect for Resonance {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
-        squared(setting.interval_s) * pole(setting).kernel(lag)
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        squared(shape.interval_s) * pole(shape).kernel(lag)
     }
 
-    fn second_difference(&self, x: Real, m: Real, setting: &Setting) -> Real {
-        squared(setting.interval_s) * pole(setting).second_difference(x, m)
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        squared(shape.interval_s) * pole(shape).second_difference(x, m)
     }
 
-    fn variance(&self, m: Real, setting: &Setting) -> Real {
-        pole(setting).variance(m)
+    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
+        pole(shape).variance(m)
     }
 
     fn variances(
         &self,
         factors: &mut dyn Iterator<Item = Real>,
-        setting: &Setting,
+        shape: &SampledShape,
         each: &mut dyn FnMut(Real),
     ) {
-        pole(setting).variances(factors, each);
+        pole(shape).variances(factors, each);
     }
 
     fn add_second_differences(
         &self,
         m: Real,
         weight: Real,
-        setting: &Setting,
+        shape: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        let weight = weight * squared(setting.interval_s);
-        pole(setting).add_second_differences(m, weight, sum);
+        let weight = weight * squared(shape.interval_s);
+        pole(shape).add_second_differences(m, weight, sum);
     }
 }
 
 impl Explain for Resonance {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "a resonance: an oscillation with a phase that wanders",
             origin: "a mode of the board, the mount or the proof mass excited by vibration; an alias of the drive or of its beat with another gyro's",
             check: "tap the board; change the mount's stiffness; change the sample rate a little: an alias moves, a mechanical mode stays",
         }
+    }
+
+    fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
+        &[[3.0, 3.0]]
     }
 }
 

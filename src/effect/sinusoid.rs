@@ -1,78 +1,77 @@
-use super::{Effect, Explain, Parameter, Range, Response, Setting, Span, Story};
+use super::{
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter, Response,
+    SampledShape, SearchRange, Span,
+};
 use crate::math;
 use crate::real::{
     Real,
     consts::{PI, SQRT_2},
 };
 
-/// A sinusoidal rate, coefficient its amplitude Ω₀ in rate, of frequency `f`.
+/// A sinusoidal rate. The coefficient is its amplitude `Ω₀` in rate units, the shape parameter its
+/// frequency `f` in Hz, above zero and not a multiple of the sample rate.
 ///
-/// `G(n) = −¼ τ₀² sin²(πfτ₀n)/sin²(πfτ₀)`; `σ² = Ω₀² sin⁴(πfτ)/(m sin πfτ₀)²`, the
-/// `Ω₀² (sin²(πfτ)/πfτ)²` of IEEE Std 952-1997, eq. C.21, for a sampled rate. A frequency above half
-/// the sample rate is seen at its alias.
+/// `G(n) = −¼ τ₀² sin²(πfτ₀n)/sin²(πfτ₀)` and `σ² = Ω₀² sin⁴(πfτ)/(m sin πfτ₀)²`, which for `fτ₀ ≪ 1`
+/// is the `Ω₀² (sin²(πfτ)/πfτ)²` of IEEE Std 952-1997, eq. C.21. A frequency above half the sample
+/// rate appears at its alias.
 #[derive(Clone, Copy, Debug)]
 pub struct Sinusoid;
 
-/// `sin(π x)` of a number of half turns, however large.
+/// `sin(π x)`, also for large `x`.
 fn sine_of_turns(x: Real) -> Real {
     math::sincos_of_turns(0.5 * x).0
 }
 
 /// `sin²(πfτ₀n)/sin(πfτ₀)`.
-fn kernel_root(n: Real, setting: &Setting) -> Real {
-    let cycles = setting.parameters[0] * setting.interval_s;
+fn kernel_root(n: Real, shape: &SampledShape) -> Real {
+    let cycles = shape.parameters[0] * shape.interval_s;
     let sine = sine_of_turns(cycles * n);
     sine * sine / sine_of_turns(cycles)
 }
 
+pub(super) const DESCRIPTION: Description = Description {
+    name: "sinusoid",
+    symbol: "Ω",
+    coefficient: "amplitude",
+    half_seconds: 0,
+    parameters: &[Parameter {
+        name: "frequency_hz",
+        unit: "Hz",
+        is_whole: false,
+        search_range: frequencies,
+    }],
+    code: 7,
+    replaces: None,
+    mirror: None,
+    distribution: Distribution::Deterministic,
+};
+
 impl Effect for Sinusoid {
-    fn name(&self) -> &'static str {
-        "sinusoid"
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
     }
 
-    fn symbol(&self) -> &'static str {
-        "Ω"
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        let cycles = shape.parameters[0] * shape.interval_s;
+        -0.25 * squared(shape.interval_s) * kernel_root(lag, shape) / sine_of_turns(cycles)
     }
 
-    fn coefficient(&self) -> &'static str {
-        "amplitude"
-    }
-
-    fn half_seconds(&self) -> i8 {
-        0
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &[Parameter {
-            name: "frequency_hz",
-            unit: "Hz",
-        }]
-    }
-
-    fn range(&self, _: usize, span: &Span) -> Range {
-        frequencies(span)
-    }
-
-    fn kernel(&self, lag: Real, setting: &Setting) -> Real {
-        let cycles = setting.parameters[0] * setting.interval_s;
-        -0.25 * squared(setting.interval_s) * kernel_root(lag, setting) / sine_of_turns(cycles)
-    }
-
-    fn variance(&self, m: Real, setting: &Setting) -> Real {
-        squared(kernel_root(m, setting) / m)
+    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
+        squared(kernel_root(m, shape) / m)
     }
 
     fn variances(
         &self,
         factors: &mut dyn Iterator<Item = Real>,
-        setting: &Setting,
+        shape: &SampledShape,
         each: &mut dyn FnMut(Real),
     ) {
-        let cycles = setting.parameters[0] * setting.interval_s;
+        let cycles = shape.parameters[0] * shape.interval_s;
         let per_sample = 1.0 / sine_of_turns(cycles);
         let mut last: Option<(Real, Real)> = None;
         for m in factors {
-            // sin²2x = 4 sin²x (1 − sin²x) from octave to octave, each of which doubles an error of 1e-16.
+            // From one octave to the next, sin²2x = 4 sin²x (1 − sin²x). Each step doubles the
+            // relative error, which begins at that of rounding.
             let square = match last {
                 Some((before, square)) if m == 2.0 * before => 4.0 * square * (1.0 - square),
                 _ => squared(sine_of_turns(cycles * m)),
@@ -82,31 +81,36 @@ impl Effect for Sinusoid {
         }
     }
 
-    fn response(&self, m: Real, setting: &Setting) -> Option<Response> {
-        // The mean product of two sines is half the product of their amplitudes.
+    fn response(&self, m: Real, shape: &SampledShape) -> Option<Response> {
+        // The mean product of two sines in phase is half the product of their amplitudes, and
+        // the amplitude of a difference, times τ, is twice that of the kernel's root.
         let half = SQRT_2;
-        let turns = setting.parameters[0] * setting.interval_s;
+        let turns = shape.parameters[0] * shape.interval_s;
         Some(Response {
-            amplitude: half * setting.interval_s * kernel_root(m, setting),
+            amplitude: half * shape.interval_s * kernel_root(m, shape),
             phase: 2.0 * PI * (turns - math::floor(turns)),
         })
     }
 }
 
 impl Explain for Sinusoid {
-    fn story(&self) -> Story {
-        Story {
+    fn explanation(&self) -> Explanation {
+        Explanation {
             what: "a sinusoid: a steady oscillation of one frequency",
             origin: "mains hum, a fan or a turntable's drive, the dither of a laser gyro, an alias of the drive frequency",
             check: "switch off motors and supplies one by one; change the sample rate a little: an alias moves, a true line stays",
         }
     }
+
+    fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
+        &[[0.3, 0.0], [7.7, 0.0]]
+    }
 }
 
-/// Frequencies that a curve can show: from a period of three of the longest averaging times to half
-/// the sample rate.
-pub(super) fn frequencies(span: &Span) -> Range {
-    Range {
+/// The frequencies that a curve can show: from a period of three of the longest averaging times to
+/// half the sample rate.
+pub(super) fn frequencies(span: &Span) -> SearchRange {
+    SearchRange {
         low: 0.33 / span.longest_tau_s,
         high: 0.495 / span.interval_s,
         steps_per_octave: 6.0,

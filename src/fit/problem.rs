@@ -44,9 +44,9 @@ fn column<const K: usize>(curve: &Curve<K>, term: &Term) -> algebra::Vector<K> {
     let mut column = algebra::Vector::<K>::zeros();
     let mut k = 0_usize;
     let mut factors = curve.points().iter().map(|point| real(point.m));
-    let setting = term.setting(curve.interval_s());
+    let shape = term.sampled_shape(curve.interval_s());
     term.effect
-        .variances(&mut factors, &setting, &mut |variance| {
+        .variances(&mut factors, &shape, &mut |variance| {
             column.put(k, variance);
             k = k.saturating_add(1);
         });

@@ -121,7 +121,7 @@ fn parameters_beyond_the_last_are_zero_and_stay_so() {
         [0.0, 12.0, 0.0]
     );
     assert_eq!(term.parameter_name(MAX_PARAMETERS), "");
-    assert_eq!(term.setting(0.5).parameters, term.parameters);
+    assert_eq!(term.sampled_shape(0.5).parameters, term.parameters);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{
-    effect::{Effect, Setting},
+    effect::{Effect, SampledShape},
     real::{double, real},
     test_random::Random,
 };
@@ -24,7 +24,7 @@ fn variance(i: usize, squares: &[f64; 5], free: u32, model: &Model, samples: u64
     while samples / m >= 4 {
         let unit = |a: usize| {
             let effect: &dyn Effect = model.terms()[a].effect;
-            double(effect.variance(real(m), &Setting::new(real(INTERVAL_S))))
+            double(effect.variance(real(m), &SampledShape::new(real(INTERVAL_S))))
         };
         let model: f64 = (0..5).map(|a| squares[a] * unit(a)).sum();
         let weight = 0.5 * (samples as f64 / m as f64 - 1.0) / (model * model);

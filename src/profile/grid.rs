@@ -1,7 +1,7 @@
 //! The values of a shape parameter that a search tries first.
 
 use crate::{
-    effect::{Effect, Range, Span},
+    effect::{Effect, SearchRange, Span},
     math,
     real::{Real, real},
 };
@@ -27,10 +27,9 @@ impl Grid {
 
     /// The grid of a parameter, of a single step if the effect does not have it.
     pub(super) fn of(effect: &dyn Effect, parameter: usize, span: &Span) -> Self {
-        if parameter >= effect.parameters().len() {
+        let Some(range) = effect.search_range(parameter, span) else {
             return Self::SINGLE;
-        }
-        let range = effect.range(parameter, span);
+        };
         if effect.is_whole(parameter) {
             return Self {
                 low: range.low,
@@ -42,7 +41,7 @@ impl Grid {
         Self::new(range)
     }
 
-    fn new(range: Range) -> Self {
+    fn new(range: SearchRange) -> Self {
         let high = range.high.max(range.low);
         let octaves = math::log2_roughly(high / range.low);
         // A step more or less does not matter: the last is held at the upper end.

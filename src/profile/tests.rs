@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     Curve, Model,
-    effect::{DecimationFilter, Effect, Setting, Sinusoid},
+    effect::{DecimationFilter, Effect, SampledShape, Sinusoid},
     fit::{Columns, Problem, Solver, Start, Tolerance},
     math,
     model::Term,
@@ -15,7 +15,7 @@ const INTERVAL_S: Real = 0.01;
 
 /// White noise as an effect leaves it, and flicker noise, with a known scatter.
 fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real, white: Real) -> Curve<OCTAVES> {
-    let setting = Setting {
+    let shape = SampledShape {
         interval_s: INTERVAL_S,
         parameters,
     };
@@ -25,7 +25,7 @@ fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real, white: Real) 
         let noise = white / tau_s + 7.1e-6;
         let differences = (1_u64 << 16) / u64::from((m / 4).max(1)) - 7;
         let off = [0.4, -0.3, -0.2, 0.5][k % 4] / math::sqrt(differences as Real);
-        let variance = noise + square * effect.variance(real(m), &setting);
+        let variance = noise + square * effect.variance(real(m), &shape);
         (m, differences, variance * (1.0 + off))
     });
     Curve::new(1.0 / INTERVAL_S, octaves).unwrap()
@@ -163,7 +163,7 @@ fn an_interval_joins_the_whole_numbers_that_explain_a_curve_as_well() {
     for (stages, step) in (1..=4).flat_map(|stages| (0..200).map(move |step| (stages, step))) {
         let term = shape(stages, step);
         if evaluation.found(term).chi_squared < best.chi_squared + 3.8 {
-            let (margin, width_s) = (1.05, term.parameters[0]);
+            let (margin, width_s) = (1.1, term.parameters[0]);
             assert!(
                 lower / margin < width_s && width_s < upper * margin,
                 "{stages} {width_s} not in {lower} … {upper}"

@@ -132,7 +132,7 @@ fn term(model: &Model, fit: &Fit, i: usize) -> Option<RecordedTerm> {
         }
     });
     Some(RecordedTerm {
-        effect: EffectCode::of(term.effect.name()),
+        effect: EffectCode::of(term.effect),
         value: single(coefficient.value),
         lower: single(coefficient.lower),
         upper: single(coefficient.upper),

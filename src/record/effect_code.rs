@@ -1,59 +1,59 @@
-//! Effects as numbers that stay.
+//! The number that stands for an effect in a record.
 
-use crate::effect::{CATALOGUE, Effect};
+use crate::effect::{CATALOGUE, CODES, Effect, FIRST_OWN_CODE};
 
-/// The names of the codes from 1 on; a name that has a code keeps it in every version.
-const NAMES: [&str; 11] = [
-    "quantization",
-    "angle_random_walk",
-    "bias_instability",
-    "rate_random_walk",
-    "rate_ramp",
-    "gauss_markov",
-    "sinusoid",
-    "resonance",
-    "low_pass",
-    "decimation_filter",
-    "random_telegraph",
-];
-
-/// An effect in a record.
+/// An effect in a record: the [`code`](crate::effect::Description::code) of its description.
+///
+/// Codes from 1 to 127 belong to the catalogue, those from 128 on to effects outside of it, and 0
+/// stands for an effect that has no code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EffectCode(u8);
 
 impl EffectCode {
-    /// An effect of somebody's own.
+    /// An effect that has no code.
     pub const OTHER: Self = Self(0);
 
-    /// The code of a name; [`OTHER`](Self::OTHER) of one that the catalogue does not have.
-    pub fn of(name: &str) -> Self {
-        let place = NAMES.iter().position(|known| *known == name);
-        Self(place.map_or(0, |place| place as u8 + 1))
+    /// The code of an effect; [`OTHER`](Self::OTHER) for one outside of the catalogue that claims a
+    /// code of the catalogue.
+    pub fn of(effect: &dyn Effect) -> Self {
+        let description = effect.description();
+        let known = CODES.contains(&(description.code, description.name));
+        if known || description.code >= FIRST_OWN_CODE {
+            Self(description.code)
+        } else {
+            Self::OTHER
+        }
     }
 
-    /// The effect of a code that is known.
+    /// The effect that a record has under a number; `None` for a number of the catalogue that this
+    /// version does not know.
     pub(super) fn from_number(number: u8) -> Option<Self> {
-        (usize::from(number) <= NAMES.len()).then_some(Self(number))
+        let known = CODES.iter().any(|&(code, _)| code == number);
+        let is_own = number == Self::OTHER.0 || number >= FIRST_OWN_CODE;
+        (known || is_own).then_some(Self(number))
     }
 
-    /// The code.
+    /// The number in the record.
     pub const fn number(self) -> u8 {
         self.0
     }
 
-    /// The effect's name; `other` for one that is not in the catalogue.
+    /// The effect's name; `other` for one outside of the catalogue.
     pub fn name(self) -> &'static str {
-        let place = usize::from(self.0).checked_sub(1);
-        place
-            .and_then(|place| NAMES.get(place))
-            .copied()
-            .unwrap_or("other")
+        let known = CODES.iter().find(|(code, _)| *code == self.0);
+        known.map_or("other", |(_, name)| name)
     }
 
-    /// The effect itself, with its units and what there is to say of it.
+    /// The effect of the catalogue that has the code; `None` for one outside of it.
     pub fn effect(self) -> Option<&'static dyn Effect> {
-        let mut known = CATALOGUE.iter().copied();
-        known.find(|effect| effect.name() == self.name())
+        self.effect_of(&CATALOGUE)
+    }
+
+    /// The effect of a list that has the code, for a list that holds effects outside of the catalogue.
+    /// `None` for [`OTHER`](Self::OTHER), and where the list has no effect with the code.
+    pub fn effect_of(self, effects: &[&'static dyn Effect]) -> Option<&'static dyn Effect> {
+        let mut effects = effects.iter().copied();
+        effects.find(|effect| self != Self::OTHER && Self::of(*effect) == self)
     }
 }

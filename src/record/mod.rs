@@ -18,7 +18,7 @@
 //! | – tolerance that was granted | f32 |
 //! | – verdict: 0 none, 1 adequate, 2 improved, 3 unexplained, 4 invalid and why, 5 too short | u8, reason |
 //! | – number of terms up to 8; of each term: | u8 |
-//! | – – [code](EffectCode) of the effect: 1 to 11, or 0 for one of somebody's own | u8 |
+//! | – – [code](EffectCode) of the effect, 0 for one that has none | u8 |
 //! | – – value, lower, upper, standard error of the square | 4 × f32 |
 //! | – – state: 0 measured, 1 upper bound, 2 not observable and the length in s that would do | u8, option of f32 |
 //! | – – number of shape parameters up to 2; of each: value, lower, upper | u8, 3 × f32 |

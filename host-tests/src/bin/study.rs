@@ -7,7 +7,7 @@ use host_tests::{
     simulate::{Coefficients, Preset},
     study::{
         coefficients,
-        hidden_effect::{CASES, Strength, both_found, false_alarms, hide, study},
+        hidden_effect::{Strength, both_found, cases, false_alarms, hide, study},
         precision, quantile,
         self_test::{self, Looks},
         theory, thermal,
@@ -242,10 +242,7 @@ fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) 
         "falls"
     );
     for preset in presets() {
-        for (name, parameters) in CASES
-            .into_iter()
-            .filter(|(name, _)| effect.is_none_or(|e| e == *name))
-        {
+        for (name, parameters) in cases().filter(|(name, _)| effect.is_none_or(|e| e == *name)) {
             for strength in Strength::ALL {
                 let Some(hidden) = hide(name, parameters, preset, strength) else {
                     continue;

@@ -143,8 +143,8 @@ const LEAST_VARIANCE: f64 = 1e-15;
 /// cannot be fitted.
 fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
     for term in model.terms() {
-        let setting = term.setting(curve.interval_s());
-        let variance = |m: u32| term.effect.variance(f64::from(m), &setting);
+        let shape = term.sampled_shape(curve.interval_s());
+        let variance = |m: u32| term.effect.variance(f64::from(m), &shape);
         let mut octaves = curve.points().iter().map(|point| variance(point.m));
         let finite = octaves.clone().all(f64::is_finite);
         if !(finite && octaves.any(|variance| variance > LEAST_VARIANCE)) {

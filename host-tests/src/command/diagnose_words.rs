@@ -9,7 +9,7 @@ use crate::log::OCTAVES;
 use allanite::{
     Term,
     diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
-    effect::{Story, covariate, story},
+    effect::{Explanation, covariate, explanation},
 };
 
 /// What a step of a diagnosis added, and why.
@@ -18,7 +18,7 @@ pub(super) struct Finding {
     pub(super) name: String,
     /// Its shape and its size, with intervals.
     pub(super) found: Option<String>,
-    story: Option<Story>,
+    explanation: Option<Explanation>,
     /// What it changes in the model or in the curve.
     change: Option<(&'static str, String)>,
     /// What cannot be told from it.
@@ -56,7 +56,7 @@ impl Finding {
         Self {
             name,
             found: found(after, effect.name(), diagnosed),
-            story: story(effect.name()),
+            explanation: explanation(effect.name()),
             change: change.map(|change| ("in the model", change)),
             ambiguous: None,
         }
@@ -77,7 +77,7 @@ impl Finding {
         Self {
             name: format!("{} {channel}", words::plain(covariate::NAME)),
             found: Some(found),
-            story: Some(covariate::STORY),
+            explanation: Some(covariate::EXPLANATION),
             change: Some(("in the curve", change)),
             ambiguous: None,
         }
@@ -85,16 +85,16 @@ impl Finding {
 
     /// What it is, where it comes from, what to check, and what it changes: each with its label.
     pub(super) fn lines(&self) -> Vec<(&'static str, &str)> {
-        let story = self.story.map(|story| {
+        let explanation = self.explanation.map(|explanation| {
             [
-                ("what it is", story.what),
-                ("where it comes from", story.origin),
-                ("what to check", story.check),
+                ("what it is", explanation.what),
+                ("where it comes from", explanation.origin),
+                ("what to check", explanation.check),
             ]
         });
         let change = self.change.as_ref();
         let change = change.map(|(label, text)| (*label, text.as_str()));
-        story.into_iter().flatten().chain(change).collect()
+        explanation.into_iter().flatten().chain(change).collect()
     }
 }
 

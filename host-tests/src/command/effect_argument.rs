@@ -63,7 +63,7 @@ impl<'a> EffectArgument<'a> {
         catalogue
             .find(|effect| effect.name() == self.name)
             .ok_or_else(|| {
-                let names = CATALOGUE.map(Effect::name).join(", ");
+                let names = CATALOGUE.map(|effect| effect.name()).join(", ");
                 Failure::option(
                     format!(
                         "{} {}: no such effect",
@@ -114,9 +114,9 @@ impl<'a> EffectArgument<'a> {
         };
         let mut shape = [0.0; MAX_PARAMETERS];
         for (i, parameter) in effect.parameters().iter().enumerate() {
-            shape[i] = if effect.is_whole(i) {
+            shape[i] = if parameter.is_whole {
                 let value = self.take(parameter.name).unwrap_or(1.0);
-                let range = effect.range(i, &ANY);
+                let range = (parameter.search_range)(&ANY);
                 if value.fract() != 0.0 || !(range.low..=range.high).contains(&value) {
                     let remedy = format!("give a whole number, {} to {}", range.low, range.high);
                     let what = format!("{}={value} is impossible", parameter.name);
@@ -169,7 +169,7 @@ mod tests {
         );
         assert_eq!(shape("decimation_filter:width_s=0.02"), Ok([0.02, 1.0]));
         assert_eq!(shape("rate_ramp"), Ok([0.0, 0.0]));
-        assert_eq!(DecimationFilter.parameters()[0].name, "width_s");
+        assert_eq!(DecimationFilter.description().parameters[0].name, "width_s");
     }
 
     #[test]

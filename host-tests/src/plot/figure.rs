@@ -89,12 +89,12 @@ impl Figure {
     }
 }
 
-/// An effect's place in the catalogue without twins and without those that replace another: these have
+/// An effect's place in the catalogue without mirrors and without those that replace another: these have
 /// the other's.
 fn colour(effect: &dyn Effect) -> usize {
-    let shown = effect.replaces().or(effect.twin());
+    let shown = effect.replaces().or(effect.mirror());
     let name = shown.map_or(effect.name(), |shown| shown.name());
-    let own = |effect: &&&dyn Effect| effect.replaces().is_none() && effect.twin().is_none();
+    let own = |effect: &&&dyn Effect| effect.replaces().is_none() && effect.mirror().is_none();
     let mut effects = CATALOGUE.iter().filter(own);
     effects.position(|other| other.name() == name).unwrap_or(0)
 }

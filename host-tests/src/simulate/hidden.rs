@@ -1,16 +1,19 @@
 //! Effects beyond the five terms, hidden in a simulated record.
 
 use super::{
-    Random, Source,
-    correlated::{Filtered, Pole, Sinusoid, Telegraph},
+    Random, Source, deterministic::Deterministic, gaussian::Gaussian, two_levels::TwoLevels,
 };
-use allanite::effect::{CATALOGUE, Effect, MAX_PARAMETERS};
-use std::f64::consts::PI;
+use allanite::effect::{
+    AngleRandomWalk, CATALOGUE, Distribution, Effect, MAX_PARAMETERS, SampledShape,
+};
 
 /// An effect with its shape and its coefficient, in the rate unit of the record.
+///
+/// Any effect can be hidden, also one outside of the catalogue: its kernel and its
+/// [`Distribution`] tell how to draw it.
 #[derive(Clone, Copy)]
 pub struct Hidden {
-    /// Which effect.
+    /// The effect.
     pub effect: &'static dyn Effect,
     /// Its shape parameters.
     pub parameters: [f64; MAX_PARAMETERS],
@@ -19,7 +22,7 @@ pub struct Hidden {
 }
 
 impl Hidden {
-    /// An effect of the catalogue beyond the five terms, by name.
+    /// The effect of the catalogue that has a name; `None` if there is none.
     pub fn new(name: &str, parameters: [f64; MAX_PARAMETERS], coefficient: f64) -> Option<Self> {
         let effect = CATALOGUE.into_iter().find(|effect| effect.name() == name)?;
         Some(Self {
@@ -29,35 +32,42 @@ impl Hidden {
         })
     }
 
-    /// Its source; `None` for an effect that the simulator has no generator of.
-    pub(super) fn source(&self, interval_s: f64, random: &mut Random) -> Option<Box<dyn Source>> {
-        let (c, [first, second]) = (self.coefficient, self.parameters);
-        Some(match self.effect.name() {
-            "gauss_markov" => Box::new(Pole::new(c, first, 0.0, interval_s, random)),
-            "resonance" => {
-                let time_s = second / (PI * first);
-                Box::new(Pole::new(c, time_s, first, interval_s, random))
+    /// What draws a realisation of it.
+    pub(super) fn source(&self, interval_s: f64, random: &mut Random) -> Box<dyn Source> {
+        let (effect, coefficient) = (self.effect, self.coefficient);
+        let shape = SampledShape {
+            interval_s,
+            parameters: self.parameters,
+        };
+        if let Some(response) = effect.response(1.0, &shape) {
+            return Box::new(Deterministic::new(
+                response,
+                coefficient,
+                interval_s,
+                random,
+            ));
+        }
+        match effect.description().distribution {
+            Distribution::TwoLevels => {
+                Box::new(TwoLevels::new(effect, &shape, coefficient, random))
             }
-            "low_pass" => {
-                let z = (-interval_s / first).exp();
-                let rms = c * ((1.0 - z) / ((1.0 + z) * interval_s)).sqrt();
-                Box::new(Pole::new(rms, first, 0.0, interval_s, random))
+            Distribution::Gaussian | Distribution::Deterministic => {
+                Box::new(Gaussian::new(effect, &shape, coefficient, random))
             }
-            "decimation_filter" => {
-                let stages = if second < 1.5 { 1 } else { 2 };
-                let length_s = first / (stages as f64).sqrt();
-                Box::new(Filtered::new(c, length_s, stages, interval_s, random))
-            }
-            "sinusoid" => Box::new(Sinusoid::new(c, first, interval_s, random)),
-            "random_telegraph" => Box::new(Telegraph::new(c, first, interval_s, random)),
-            _ => return None,
-        })
+        }
     }
 
     /// Whether it takes the place of the white noise of the record.
     pub fn replaces_white_noise(&self) -> bool {
-        self.effect
-            .replaces()
-            .is_some_and(|effect| effect.name() == "angle_random_walk")
+        let white = AngleRandomWalk.description().name;
+        let replaced = self.effect.replaces();
+        replaced.is_some_and(|effect| effect.name() == white)
     }
+}
+
+/// The autocovariance of the rate at a lag in samples, for a coefficient of one, up to a constant:
+/// the second difference of the kernel over single samples, with the opposite sign.
+pub(super) fn autocovariance(effect: &dyn Effect, shape: &SampledShape, lag: usize) -> f64 {
+    let square = shape.interval_s * shape.interval_s;
+    -effect.second_difference(lag as f64, 1.0, shape) / square
 }

@@ -1,16 +1,19 @@
 //! Simulated gyros: rates with noise of known coefficients.
 
-mod correlated;
+mod deterministic;
 mod flicker;
+mod gaussian;
 mod hidden;
 mod ieee_952;
 mod preset;
 mod thermal;
+mod two_levels;
 
 pub use hidden::Hidden;
 pub use preset::Preset;
 pub use thermal::{Course, Thermal};
 
+use hidden::autocovariance;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -66,7 +69,7 @@ impl Simulator {
         let mut simulator = Self::new(coefficients, rate_hz, seed);
         for effect in hidden {
             let source = effect.source(1.0 / rate_hz, &mut simulator.random);
-            simulator.sources.extend(source);
+            simulator.sources.push(source);
         }
         simulator
     }

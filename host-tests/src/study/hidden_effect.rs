@@ -5,7 +5,7 @@ use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
 use allanite::{
     Comparison, Curve, FourthMoments, Model, Term,
     diagnosis::{Addition, Diagnosis, Evidence, Step, Verdict},
-    effect::{CATALOGUE, Effect, MAX_PARAMETERS},
+    effect::{CATALOGUE, EXPLAINED, Effect, IEEE_952, MAX_PARAMETERS},
     fit::{Fit, Options, fit},
 };
 use rayon::prelude::*;
@@ -35,19 +35,17 @@ impl Strength {
     }
 }
 
-/// The effects and shapes that are hidden.
-pub const CASES: [(&str, [f64; MAX_PARAMETERS]); 10] = [
-    ("sinusoid", [0.3, 0.0]),
-    ("sinusoid", [7.7, 0.0]),
-    ("gauss_markov", [0.1, 0.0]),
-    ("gauss_markov", [1.0, 0.0]),
-    ("resonance", [3.0, 3.0]),
-    ("low_pass", [f64::NAN, 0.0]),
-    ("decimation_filter", [f64::NAN, 1.0]),
-    ("decimation_filter", [f64::NAN, 2.0]),
-    ("random_telegraph", [0.1, 0.0]),
-    ("random_telegraph", [1.0, 0.0]),
-];
+/// The effects and shapes that are hidden: the typical shapes of every effect of the catalogue beyond
+/// the five terms.
+pub fn cases() -> impl Iterator<Item = (&'static str, [f64; MAX_PARAMETERS])> {
+    let is_term = |name: &str| IEEE_952.iter().any(|term| term.name() == name);
+    let effects = EXPLAINED
+        .into_iter()
+        .map(|effect| (effect.description().name, effect.typical_shapes()));
+    effects
+        .filter(move |(name, _)| !is_term(name))
+        .flat_map(|(name, shapes)| shapes.iter().map(move |shape| (name, *shape)))
+}
 
 /// The effect of a case, as strong as asked for: its amplitude, or for an effect that replaces white
 /// noise its first shape parameter, is what makes the five-term χ² so large. `None` where no size
@@ -100,11 +98,11 @@ fn expected_chi_squared(hidden: &Hidden, base: Coefficients) -> f64 {
         parameters: hidden.parameters,
         ..Term::new(hidden.effect)
     };
-    let setting = term.setting(1.0 / RATE_HZ);
+    let shape = term.sampled_shape(1.0 / RATE_HZ);
     let octaves = (0..OCTAVES as u32).map(|k| 1_u32 << k).map_while(|m| {
         let differences =
             (SAMPLES.checked_sub(2 * m as usize)? / (m as usize / 4).max(1)) as u64 + 1;
-        let effect = hidden.effect.variance(f64::from(m), &setting) * hidden.coefficient.powi(2);
+        let effect = hidden.effect.variance(f64::from(m), &shape) * hidden.coefficient.powi(2);
         let variance = model.variance(&squares, m, 1.0 / RATE_HZ) + effect;
         (differences >= 6).then_some((m, differences, variance))
     });
@@ -334,12 +332,7 @@ pub fn false_alarms(preset: Preset, records: u64) -> (f64, Vec<(&'static str, us
 pub fn both_found(preset: Preset, records: u64) -> Option<f64> {
     let base = preset.coefficients();
     let one = hide("sinusoid", [7.7, 0.0], preset, Strength::Strong)?;
-    let other = hide(
-        "decimation_filter",
-        [f64::NAN, 2.0],
-        preset,
-        Strength::Strong,
-    )?;
+    let other = hide("decimation_filter", [0.03, 2.0], preset, Strength::Strong)?;
     let both = |&seed: &u64| {
         let outcome = diagnose(base, &[one, other], SAMPLES, seed);
         let named = |hidden: &Hidden| {

@@ -1,8 +1,9 @@
 //! Everything that must hold before a change lands.
 
 use super::{setup, step::step};
-use crate::firmware::{CORTEX_M4F, REMEDY, RISCV, Toolchain, cargo};
+use crate::firmware::{CORTEX_M4F, REMEDY, RISCV, Toolchain, cargo, workspace};
 use anyhow::{Context as _, Result};
+use std::path::PathBuf;
 
 /// Every feature but double precision.
 const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash,firmware"];
@@ -10,7 +11,12 @@ const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash,firmware"];
 pub(super) fn run() -> Result<()> {
     println!("== set-up");
     setup::run()?;
-    step("format", cargo().args(["fmt", "--all", "--", "--check"]))?;
+    step(
+        "format",
+        cargo()
+            .args(["fmt", "--all", "--", "--check"])
+            .args(effects()?),
+    )?;
     step(
         "lints, on the host",
         cargo()
@@ -63,4 +69,12 @@ pub(super) fn run() -> Result<()> {
     )?;
     println!("\nall passed");
     Ok(())
+}
+
+/// The files of the effects. A macro declares these modules, so that the formatter does not find them.
+fn effects() -> Result<Vec<PathBuf>> {
+    let folder = workspace().join("src/effect");
+    let files =
+        std::fs::read_dir(&folder).and_then(|files| files.map(|file| Ok(file?.path())).collect());
+    files.with_context(|| format!("reading {}", folder.display()))
 }

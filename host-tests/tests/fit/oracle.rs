@@ -3,16 +3,16 @@
 use super::{OCTAVES, assert_relative, fitted, noisy, settings};
 use allanite::{
     Curve, Model, chi_squared_tail, curve_covariance,
-    effect::{IEEE_952, Setting},
+    effect::{IEEE_952, SampledShape},
     fit::{Method, Options},
 };
 
 /// `A_k`, the variances of unit coefficients.
 fn columns(curve: &Curve<OCTAVES>) -> Vec<[f64; 5]> {
-    let setting = Setting::new(curve.interval_s());
+    let shape = SampledShape::new(curve.interval_s());
     let points = curve.points().iter();
     points
-        .map(|p| IEEE_952.map(|effect| effect.variance(f64::from(p.m), &setting)))
+        .map(|p| IEEE_952.map(|effect| effect.variance(f64::from(p.m), &shape)))
         .collect()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::clock::Clock;
 use allanite::demonstration::AMPLITUDES;
-use allanite::effect::{CATALOGUE, Effect as _, Setting, Sinusoid};
+use allanite::effect::{CATALOGUE, Effect as _, SampledShape, Sinusoid};
 use allanite::simulated::{Random, SimulatedGyro};
 use allanite::{
     Accumulator, Curve, Error, Model, Real,
@@ -110,11 +110,11 @@ pub(crate) fn curve<const OCTAVES: usize>(amplitude: Real) -> Option<Curve<OCTAV
             + 7.1e-6
             + 3.0e-8 * tau_s
             + 1.3e-11 * tau_s * tau_s;
-        let setting = Setting {
+        let shape = SampledShape {
             parameters: [7.7, 0.0],
-            ..Setting::new(0.01)
+            ..SampledShape::new(0.01)
         };
-        let wave = amplitude * amplitude * Sinusoid.variance(averaged, &setting);
+        let wave = amplitude * amplitude * Sinusoid.variance(averaged, &shape);
         let smooth = smooth + wave;
         let differences = (2_u64 << OCTAVES) / u64::from((m / 4).max(1)) - 7;
         let off = [0.3, -0.5, 0.9, -0.2, -0.7][k % 5] / (differences as Real * 0.2 + 9.0);

@@ -1,0 +1,226 @@
+//! Gaussian noise of any autocovariance.
+
+use super::{Random, Source, autocovariance, ieee_952::normal};
+use allanite::effect::{Effect, SampledShape};
+use rustfft::{Fft, FftPlanner, num_complex::Complex};
+use std::sync::Arc;
+
+/// The shortest and the longest moving average, in samples.
+const SHORTEST: usize = 1 << 10;
+const LONGEST: usize = 1 << 21;
+
+/// Beyond a fifth of the moving average, the autocovariance changes by less than this share of the
+/// variance.
+const FORGOTTEN: f64 = 1e-9;
+
+/// Gaussian noise of a given autocovariance: a moving average over white noise.
+///
+/// The weights are the inverse Fourier transform of the root of the spectrum, which is the transform
+/// of the autocovariance on a circle (circulant embedding: Davies & Harte 1987; Dietrich & Newsam
+/// 1997). Weights that are even, and die away before they meet on the far side of the circle, make the
+/// same noise on a line: it never ends and does not repeat.
+///
+/// The autocovariance of an effect that does not forget, such as a random walk, is known up to a
+/// constant only. The constant is chosen so that it vanishes at a fifth of the circle, from where on it
+/// is taken for zero: the differences of the noise are right over lags up to 400 000 samples. What is
+/// convex and falls to zero, as that of a random walk or of flicker noise, remains an autocovariance.
+pub(super) struct Gaussian {
+    /// Transform of the weights, padded with as many zeros.
+    transfer: Vec<Complex<f64>>,
+    forward: Arc<dyn Fft<f64>>,
+    inverse: Arc<dyn Fft<f64>>,
+    /// Two blocks of noise, one in the real and one in the imaginary part, and what they leave to the
+    /// next block.
+    work: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+    carried: Vec<f64>,
+    /// Samples that are ready, and the place of the next.
+    ready: Vec<f64>,
+    at: usize,
+}
+
+impl Gaussian {
+    /// The noise of an effect for a coefficient of `coefficient`.
+    pub(super) fn new(
+        effect: &dyn Effect,
+        shape: &SampledShape,
+        coefficient: f64,
+        random: &mut Random,
+    ) -> Self {
+        let weights = weights(effect, shape);
+        let length = 2 * weights.len();
+        let mut planner = FftPlanner::new();
+        let (forward, inverse) = (
+            planner.plan_fft_forward(length),
+            planner.plan_fft_inverse(length),
+        );
+        let scale = coefficient / length as f64;
+        let mut transfer: Vec<Complex<f64>> = weights
+            .iter()
+            .map(|weight| Complex::new(weight * scale, 0.0))
+            .collect();
+        transfer.resize(length, Complex::default());
+        forward.process(&mut transfer);
+        let scratch = forward
+            .get_inplace_scratch_len()
+            .max(inverse.get_inplace_scratch_len());
+        let mut gaussian = Self {
+            transfer,
+            forward,
+            inverse,
+            work: vec![Complex::default(); length],
+            scratch: vec![Complex::default(); scratch],
+            carried: vec![0.0; length / 2],
+            ready: Vec::with_capacity(length),
+            at: 0,
+        };
+        // The first block lacks the noise before it.
+        gaussian.fill(random);
+        gaussian
+    }
+
+    /// Makes two blocks of samples.
+    fn fill(&mut self, random: &mut Random) {
+        let block = self.carried.len();
+        let (noise, padding) = self.work.split_at_mut(block);
+        for value in noise {
+            *value = Complex::new(normal(random), normal(random));
+        }
+        padding.fill(Complex::default());
+        self.forward
+            .process_with_scratch(&mut self.work, &mut self.scratch);
+        for (value, transfer) in self.work.iter_mut().zip(&self.transfer) {
+            *value *= transfer;
+        }
+        self.inverse
+            .process_with_scratch(&mut self.work, &mut self.scratch);
+        let (first, second) = self.work.split_at(block);
+        self.ready.clear();
+        let carried = self.carried.iter();
+        self.ready.extend(
+            first
+                .iter()
+                .zip(carried)
+                .map(|(own, before)| own.re + before),
+        );
+        let both = first.iter().zip(second);
+        self.ready
+            .extend(both.map(|(own, before)| own.im + before.re));
+        self.carried.clear();
+        self.carried.extend(second.iter().map(|value| value.im));
+        self.at = 0;
+    }
+}
+
+impl Source for Gaussian {
+    fn next(&mut self, random: &mut Random) -> f64 {
+        if self.at == self.ready.len() {
+            self.fill(random);
+        }
+        self.at += 1;
+        self.ready[self.at - 1]
+    }
+}
+
+/// The weights of the moving average, for a coefficient of one; the largest is in the middle.
+fn weights(effect: &dyn Effect, shape: &SampledShape) -> Vec<f64> {
+    let length = length(effect, shape);
+    let end = end(length);
+    let least = autocovariance(effect, shape, end);
+    let mut circle = vec![Complex::default(); length];
+    for lag in 0..end {
+        let value = Complex::new(autocovariance(effect, shape, lag) - least, 0.0);
+        circle[lag] = value;
+        circle[(length - lag) % length] = value;
+    }
+    let mut planner = FftPlanner::new();
+    planner.plan_fft_forward(length).process(&mut circle);
+    for value in &mut circle {
+        // Rounding leaves a spectrum slightly negative where it is zero.
+        *value = Complex::new(value.re.max(0.0).sqrt() / length as f64, 0.0);
+    }
+    planner.plan_fft_inverse(length).process(&mut circle);
+    circle.rotate_right(length / 2);
+    // The weights of a random walk do not vanish on the far side: a constant takes away the jump.
+    let jump = if length == LONGEST { circle[0].re } else { 0.0 };
+    circle.iter().map(|weight| weight.re - jump).collect()
+}
+
+/// The lag at which the autocovariance ends for a number of weights. Weights have kinks at multiples of
+/// it, so that it is no whole part of half the circle, where they should be smooth.
+fn end(length: usize) -> usize {
+    length / 5
+}
+
+/// The number of weights: a power of two, beyond a fifth of which the autocovariance no longer changes.
+fn length(effect: &dyn Effect, shape: &SampledShape) -> usize {
+    let variance = autocovariance(effect, shape, 0) - autocovariance(effect, shape, LONGEST / 2);
+    let forgets = |&length: &usize| {
+        let last = autocovariance(effect, shape, length / 2);
+        // An odd step meets an oscillation in many phases.
+        let mut lags = (end(length)..length / 2).step_by((length / 512) | 1);
+        lags.all(|lag| {
+            (autocovariance(effect, shape, lag) - last).abs() <= FORGOTTEN * variance.abs()
+        })
+    };
+    let mut lengths = std::iter::successors(Some(SHORTEST), |length| Some(2 * length));
+    lengths
+        .find(|length| *length >= LONGEST || forgets(length))
+        .unwrap_or(LONGEST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use allanite::effect::{Distribution, EXPLAINED, IEEE_952};
+
+    /// Autocovariance of the moving average.
+    fn of(weights: &[f64], lag: usize) -> f64 {
+        let pairs = weights.iter().zip(&weights[lag..]);
+        pairs.map(|(one, other)| one * other).sum()
+    }
+
+    /// `σ² = Σ_{|i|<m} (m − |i|) [r(i) − r(i + m)]/m²`.
+    fn allan_variance(autocovariance: &[f64], m: usize) -> f64 {
+        let at = |lag: isize| autocovariance[lag.unsigned_abs()];
+        let m = m as isize;
+        let sum: f64 = (1 - m..m)
+            .map(|i| (m - i.abs()) as f64 * (at(i) - at(i + m)))
+            .sum();
+        sum / (m * m) as f64
+    }
+
+    #[test]
+    fn every_gaussian_effect_is_simulated_with_its_own_allan_variance() {
+        let mut tried = 0;
+        for effect in EXPLAINED {
+            if effect.description().distribution != Distribution::Gaussian {
+                continue;
+            }
+            for &parameters in effect.typical_shapes() {
+                let shape = SampledShape {
+                    interval_s: 0.01,
+                    parameters,
+                };
+                let effect: &dyn Effect = effect;
+                let weights = weights(effect, &shape);
+                let autocovariance: Vec<f64> = (0..256).map(|lag| of(&weights, lag)).collect();
+                for m in [1_usize, 2, 8, 100] {
+                    let simulated = allan_variance(&autocovariance, m);
+                    let expected = effect.variance(m as f64, &shape);
+                    // The terms with infinite variance have simulators of their own in use; here
+                    // their memory is cut off.
+                    let is_term = IEEE_952.iter().any(|term| term.name() == effect.name());
+                    let tolerance = if is_term { 1e-3 } else { 1e-6 };
+                    assert!(
+                        (simulated / expected - 1.0).abs() < tolerance,
+                        "{} {parameters:?}, m = {m}: {simulated:e}, not {expected:e}",
+                        effect.name()
+                    );
+                    tried += 1;
+                }
+            }
+        }
+        assert!(tried >= 40, "{tried}");
+    }
+}

@@ -1,13 +1,14 @@
 //! `plot`: a record beside a model, as a picture.
 
-use super::{
-    diagnose_words::shown_p,
-    diagnosed::{Diagnosed, DiagnosisArguments},
-    examples,
-    output_file::OutputFile,
-    words,
-};
 use crate::{
+    command::{
+        diagnose::{
+            diagnosed::{Diagnosed, DiagnosisArguments},
+            words::shown_p,
+        },
+        examples,
+        output::{file::OutputFile, words},
+    },
     failure::{Failure, Place, quoted},
     plot::{Drawing, Figure, Frame, png, svg},
 };

@@ -1,6 +1,6 @@
 //! Noise with memory: poles, telegraph noise, filtered white noise.
 
-use super::{Random, Source, ieee_952::normal};
+use super::{Random, Source, random::normal};
 use rand::RngExt;
 use std::f64::consts::PI;
 

@@ -1,10 +1,10 @@
 //! Which file names the items of which others.
 
-use crate::source::{Crate, Module, ModulePath};
+use crate::source::{Crate, File, Module, ModulePath};
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
 use syn::{
-    ItemMod, ItemUse, Macro, MetaList, Path,
+    ItemMod, ItemUse, Macro, MetaList, Path, Visibility,
     visit::{self, Visit},
 };
 
@@ -14,55 +14,60 @@ pub type Graph = BTreeMap<String, BTreeSet<String>>;
 /// A path through more re-exports than this leads nowhere.
 const LONGEST_WAY: usize = 16;
 
-/// The graph of a crate. Signposts have no edges.
+/// The graph of a crate.
 pub fn graph(of: &Crate) -> Graph {
-    let mut graph = Graph::new();
-    for (name, file) in &of.files {
-        let mut imported = BTreeSet::new();
-        if !file.is_signpost {
-            let mut paths = Paths {
-                module: file.path.clone(),
-                found: Vec::new(),
-                globs: Vec::new(),
-            };
-            for item in &file.items {
-                paths.visit_item(item);
-            }
-            for (module, path) in paths.found {
-                match leads_to(of, &module, &path, LONGEST_WAY) {
-                    Some(Place::Item(file)) => {
-                        imported.insert(file);
-                    }
-                    // What is named in the module counts, where it is named.
-                    Some(Place::Module(_)) => {}
-                    None => assert!(!is_own(&path[0]), "{name}: {path:?} leads nowhere"),
-                }
-            }
-            for (module, glob) in paths.globs {
-                if let Some(Place::Module(file)) = leads_to(of, &module, &glob, LONGEST_WAY) {
-                    let is_signpost = of.files[&file].is_signpost;
-                    assert!(!is_signpost, "{name}: {glob:?} hides what is imported");
-                    imported.insert(file);
-                }
-            }
-            imported.remove(name);
-        }
-        graph.insert(name.clone(), imported);
-    }
-    graph
+    let files = of.files.iter();
+    files
+        .map(|(name, file)| (name.clone(), imported(of, name, file)))
+        .collect()
 }
 
-/// Paths of several names, and the modules in which they stand.
+/// The other files whose items a file names.
+fn imported(of: &Crate, name: &str, file: &File) -> BTreeSet<String> {
+    let mut paths = Paths {
+        module: file.path.clone(),
+        found: Vec::new(),
+    };
+    for item in &file.items {
+        paths.visit_item(item);
+    }
+    let mut imported = BTreeSet::new();
+    for Found { module, path, glob } in paths.found {
+        match leads_to(of, &module, &path, LONGEST_WAY) {
+            Some(Place::Item(file)) => {
+                imported.insert(file);
+            }
+            // The items that are named in it count, where they are named.
+            Some(Place::Module) => assert!(!glob, "{name}: {path:?}::* hides what is imported"),
+            None => assert!(!is_own(&path[0]), "{name}: {path:?} leads nowhere"),
+        }
+    }
+    imported.remove(name);
+    imported
+}
+
+/// A path, and the module in which it stands.
+struct Found {
+    module: ModulePath,
+    path: ModulePath,
+    /// Whether `::*` follows.
+    glob: bool,
+}
+
+/// Every path in a file.
 struct Paths {
     module: ModulePath,
-    found: Vec<(ModulePath, ModulePath)>,
-    globs: Vec<(ModulePath, ModulePath)>,
+    found: Vec<Found>,
 }
 
 impl Paths {
     fn add(&mut self, path: ModulePath) {
-        if path.len() > 1 {
-            self.found.push((self.module.clone(), path));
+        if !path.is_empty() {
+            self.found.push(Found {
+                module: self.module.clone(),
+                path,
+                glob: false,
+            });
         }
     }
 
@@ -101,14 +106,21 @@ impl<'ast> Visit<'ast> for Paths {
     }
 
     fn visit_item_use(&mut self, import: &'ast ItemUse) {
+        // A name that is passed on is no import; where this file uses it as well, it is met again.
+        if !matches!(import.vis, Visibility::Inherited) {
+            return;
+        }
         let mut module = Module::default();
         module.import(&import.tree, &mut ModulePath::new());
-        let here = |path| (self.module.clone(), path);
-        let names = module.imports.into_values().map(here);
-        let globs = module.globs.into_iter().map(here);
-        let (names, globs): (Vec<_>, Vec<_>) = (names.collect(), globs.collect());
-        self.found.extend(names);
-        self.globs.extend(globs);
+        for path in module.imports.into_values() {
+            self.add(path);
+        }
+        let globs = module.globs.into_iter().map(|path| Found {
+            module: self.module.clone(),
+            path,
+            glob: true,
+        });
+        self.found.extend(globs);
     }
 
     fn visit_path(&mut self, path: &'ast Path) {
@@ -136,8 +148,8 @@ fn is_own(first: &str) -> bool {
 enum Place {
     /// An item that this file defines.
     Item(String),
-    /// A module of this file.
-    Module(String),
+    /// A module.
+    Module,
 }
 
 /// What a path names, seen from a module; nothing if that is another crate's.
@@ -168,7 +180,7 @@ fn leads_to(of: &Crate, module: &[String], path: &[String], ways: usize) -> Opti
 fn below(of: &Crate, module: &[String], path: &[String], ways: usize) -> Option<Place> {
     let here = of.modules.get(module)?;
     let Some((first, rest)) = path.split_first() else {
-        return Some(Place::Module(here.file.clone()));
+        return Some(Place::Module);
     };
     let child = [module, &path[..1]].concat();
     if of.modules.contains_key(&child) {

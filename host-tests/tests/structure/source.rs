@@ -5,7 +5,7 @@ use std::{
     fs,
     path::Path,
 };
-use syn::{Attribute, Item, ItemUse, UseTree, Visibility};
+use syn::{Attribute, Item, UseTree};
 
 /// The names on the way from the root of the crate.
 pub type ModulePath = Vec<String>;
@@ -21,8 +21,6 @@ pub struct Crate {
 pub struct File {
     pub path: ModulePath,
     pub items: Vec<Item>,
-    /// Whether it only declares modules and exports their names.
-    pub is_signpost: bool,
 }
 
 /// A module: a file, or a part of one between braces.
@@ -55,13 +53,7 @@ impl Crate {
             let items = without_tests(parsed.items);
             let path = module_path(name);
             of.declare(name, &path, &items);
-            let is_signpost = items.iter().all(only_points);
-            let file = File {
-                path,
-                items,
-                is_signpost,
-            };
-            of.files.insert(name.to_owned(), file);
+            of.files.insert(name.to_owned(), File { path, items });
         }
         of
     }
@@ -175,16 +167,6 @@ fn is_test(item: &Item) -> bool {
         let argument = attribute.parse_args::<syn::Ident>();
         attribute.path().is_ident("cfg") && argument.is_ok_and(|word| word == "test")
     })
-}
-
-/// Declarations of modules in files of their own, and names that are passed on.
-fn only_points(item: &Item) -> bool {
-    match item {
-        Item::Mod(module) => module.content.is_none(),
-        Item::Use(ItemUse { vis, .. }) => !matches!(vis, Visibility::Inherited),
-        Item::ExternCrate(_) => true,
-        _ => false,
-    }
 }
 
 fn defined_name(item: &Item) -> Option<String> {

@@ -1,10 +1,10 @@
 //! What stands in the comments of every format: where the numbers come from, axis by axis.
 
-use super::{AxisNoise, Characterisation, decimal::decimal};
+use super::{axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal};
 use crate::{
     command::{
-        fit_table::LEAST_P_VALUE,
-        number::{number, probability},
+        fit::table::LEAST_P_VALUE,
+        output::number::{number, probability},
     },
     overbound::Overbound,
 };

@@ -9,8 +9,12 @@ mod screen;
 mod source;
 mod status;
 
-use super::{examples, fit_table, input, output_file::OutputFile, progress};
 use crate::{
+    command::{
+        examples, fit,
+        input::record,
+        output::{file::OutputFile, progress},
+    },
     curve_file::CurveFile,
     failure::{Failure, Place, one_line},
     unit::Unit,
@@ -93,7 +97,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let save_every = seconds("--save-every", arguments.save_every)?;
     let print_every = seconds("--print-every", arguments.print_every)?;
     if let Some(path) = &arguments.output {
-        if !input::is_curve(path) {
+        if !record::is_curve(path) {
             return Err(Place::file(path)
                 .failure("a curve file's extension is .json", "name the output so"));
         }
@@ -287,7 +291,7 @@ impl Watch<'_> {
             .into_iter()
             .filter_map(|axis| axis.fitted)
             .collect();
-        let printed = fit_table::print(&fitted, output);
+        let printed = fit::table::print(&fitted, output);
         printed.map_err(|error| Failure::standard_output(&error))
     }
 }

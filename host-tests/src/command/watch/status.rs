@@ -2,9 +2,12 @@
 
 use super::recording::Recording;
 use crate::command::{
-    fit::{Fitted, MethodName},
-    fit_table::{self, LEAST_P_VALUE},
-    number::{duration, probability},
+    fit::{
+        self,
+        fitted::{Fitted, MethodName},
+        table::LEAST_P_VALUE,
+    },
+    output::number::{duration, probability},
 };
 use allanite::{Coefficient, Fit, State};
 use std::path::Path;
@@ -77,7 +80,7 @@ impl Status {
                 None => format!("{}: nothing to fit yet", axis.name),
                 Some(fitted) => {
                     let coefficients = fitted.fit.coefficients.iter().map(|one| {
-                        let value = fit_table::customary(one, fitted.axis.unit);
+                        let value = fit::table::customary(one, fitted.axis.unit);
                         format!("{} {value}", one.symbol)
                     });
                     let coefficients: Vec<String> = coefficients.collect();

@@ -1,0 +1,71 @@
+//! The five terms fitted to an axis.
+
+use crate::{command::input::record, curve_file::AxisCurve, failure::Failure, log::OCTAVES};
+use allanite::{Curve, Fit, Method, Model, Settings};
+use clap::ValueEnum;
+use std::path::Path;
+
+/// The weights by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum MethodName {
+    /// Unweighted least squares, unconstrained: the baseline
+    Ordinary,
+    /// Each octave by its relative accuracy times its value, unconstrained
+    RelativeAccuracy,
+    /// Each octave by its number of clusters, unconstrained: for comparison only
+    ClusterCount,
+    /// The covariance of the curve, coefficients not negative
+    Covariance,
+}
+
+impl MethodName {
+    const fn method(self) -> Method {
+        match self {
+            Self::Ordinary => Method::Ordinary,
+            Self::RelativeAccuracy => Method::RelativeAccuracy,
+            Self::ClusterCount => Method::ClusterCount,
+            Self::Covariance => Method::Covariance,
+        }
+    }
+
+    /// The method as the option spells it.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Ordinary => "ordinary",
+            Self::RelativeAccuracy => "relative-accuracy",
+            Self::ClusterCount => "cluster-count",
+            Self::Covariance => "covariance",
+        }
+    }
+}
+
+/// One axis with its fit.
+pub(super) struct Fitted {
+    pub(super) axis: AxisCurve,
+    pub(super) curve: Curve<OCTAVES>,
+    pub(super) method: MethodName,
+    pub(super) fit: Fit,
+}
+
+impl Fitted {
+    /// Fits the five terms to an axis of a file.
+    pub(super) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
+        let settings = Settings {
+            method: method.method(),
+            ..Settings::default()
+        };
+        let fitted = axis.curve().and_then(|curve| {
+            let fit = allanite::fit(&curve, &Model::ieee_952(), settings)?;
+            Ok((curve, fit))
+        });
+        match fitted {
+            Ok((curve, fit)) => Ok(Self {
+                axis,
+                curve,
+                method,
+                fit,
+            }),
+            Err(error) => Err(record::library_failure(path, &axis.axis, error)),
+        }
+    }
+}

@@ -4,6 +4,7 @@ mod compare;
 mod completions;
 mod decode;
 mod diagnose;
+mod effect_argument;
 mod examples;
 mod export;
 mod fit;

@@ -1,7 +1,9 @@
 //! A log, read by the reader that its extension names.
 
+#[cfg(feature = "bags")]
+use super::bag;
 use super::{
-    Axis, CovariateChoice, Log, Options, bag, csv, npy, reading::read_table, source::Format, ulog,
+    Axis, CovariateChoice, Log, Options, csv, npy, reading::read_table, source::Format, ulog,
 };
 use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;
@@ -67,6 +69,9 @@ fn read_parts(
     match format {
         Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, parts, progress),
         Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
+        #[cfg(not(feature = "bags"))]
+        Format::Mcap => Err(Failure::not_built_in("reading .mcap files")),
+        #[cfg(feature = "bags")]
         Format::Mcap => {
             let bag = bag::Bag::open(path, options, progress)?;
             read_table(&bag, path, options, parts, progress)

@@ -48,6 +48,7 @@
 //! a finite number ends the reading with its row.
 
 mod accumulate;
+#[cfg(feature = "bags")]
 mod bag;
 mod clock;
 mod columns;
@@ -55,6 +56,7 @@ mod covariate;
 mod csv;
 mod field;
 mod file;
+#[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
 mod metadata;

@@ -4,7 +4,7 @@ use crate::import::Graph;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 /// A shortest cycle through each group of files that reach each other: from a file back to itself.
-pub fn shortest(graph: &Graph) -> Vec<Vec<&str>> {
+pub(crate) fn shortest(graph: &Graph) -> Vec<Vec<&str>> {
     let mut told = BTreeSet::new();
     let mut cycles = Vec::new();
     for file in graph.keys() {

@@ -9,13 +9,13 @@ use syn::{
 };
 
 /// Files, and those that each names.
-pub type Graph = BTreeMap<String, BTreeSet<String>>;
+pub(crate) type Graph = BTreeMap<String, BTreeSet<String>>;
 
 /// A path through more re-exports than this leads nowhere.
 const LONGEST_WAY: usize = 16;
 
 /// The graph of a crate.
-pub fn graph(of: &Crate) -> Graph {
+pub(crate) fn graph(of: &Crate) -> Graph {
     let files = of.files.iter();
     files
         .map(|(name, file)| (name.clone(), imported(of, name, file)))

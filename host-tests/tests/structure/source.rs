@@ -8,24 +8,24 @@ use std::{
 use syn::{Attribute, Item, UseTree};
 
 /// The names on the way from the root of the crate.
-pub type ModulePath = Vec<String>;
+pub(crate) type ModulePath = Vec<String>;
 
 /// A crate's files by their names, and its modules by their paths.
 #[derive(Default)]
-pub struct Crate {
+pub(crate) struct Crate {
     pub files: BTreeMap<String, File>,
     pub modules: BTreeMap<ModulePath, Module>,
 }
 
 /// A source file without its test modules.
-pub struct File {
+pub(crate) struct File {
     pub path: ModulePath,
     pub items: Vec<Item>,
 }
 
 /// A module: a file, or a part of one between braces.
 #[derive(Default)]
-pub struct Module {
+pub(crate) struct Module {
     pub file: String,
     /// Names of the items that it defines.
     pub defined: BTreeSet<String>,
@@ -39,14 +39,14 @@ pub struct Module {
 
 impl Crate {
     /// The crate whose root is in this folder. Programs are crates of their own and left out.
-    pub fn read(root: &Path) -> Self {
+    pub(crate) fn read(root: &Path) -> Self {
         let mut files = Vec::new();
         collect(root, root, &mut files);
         Self::of(files.iter().map(|(name, text)| (&**name, &**text)))
     }
 
     /// The crate that consists of these files.
-    pub fn of<'a>(files: impl Iterator<Item = (&'a str, &'a str)>) -> Self {
+    pub(crate) fn of<'a>(files: impl Iterator<Item = (&'a str, &'a str)>) -> Self {
         let mut of = Self::default();
         for (name, text) in files {
             let parsed = syn::parse_file(text).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -82,7 +82,7 @@ impl Crate {
 
 impl Module {
     /// Takes in the names that a `use` declaration brings.
-    pub fn import(&mut self, tree: &UseTree, before: &mut ModulePath) {
+    pub(crate) fn import(&mut self, tree: &UseTree, before: &mut ModulePath) {
         match tree {
             UseTree::Path(path) => {
                 before.push(path.ident.to_string());

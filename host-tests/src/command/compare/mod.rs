@@ -17,8 +17,9 @@ use crate::{
     failure::{Failure, Place},
     log::OCTAVES,
 };
-use allanite::{Comparison, Curve, Error, Fit, Model, Settings};
+use allanite::{Curve, Model};
 use clap::Args;
+use compared::Compared;
 use model::ModelArguments;
 use std::{
     io::{self, Write},

@@ -1,7 +1,7 @@
 //! The model that `compare` is asked about: the five terms, with and without effects.
 
 use crate::{
-    command::input::effect_argument::EffectArgument,
+    command::effect_argument::EffectArgument,
     failure::{Failure, quoted},
 };
 use allanite::{MAX_EFFECTS, Model, Term};

@@ -8,8 +8,9 @@ use crate::{
     command::{examples, input::many},
     failure::{Failure, Place},
 };
-use allanite::{Error, OctaveSum, Record, Snapshot};
+use allanite::{Error, Record, Snapshot};
 use clap::Args;
+use decoded::{Decoded, Stored, StoredSnapshot};
 use std::{
     fs::File,
     io::{self, Read, Write},

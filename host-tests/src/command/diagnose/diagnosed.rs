@@ -18,23 +18,23 @@ use std::path::{Path, PathBuf};
 
 /// What to diagnose, and how.
 #[derive(Debug, Args)]
-pub(super) struct DiagnosisArguments {
+pub(crate) struct DiagnosisArguments {
     /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
-    pub(super) input: PathBuf,
+    pub(crate) input: PathBuf,
     #[command(flatten)]
     settings: DiagnosisSettings,
 }
 
 impl DiagnosisArguments {
     /// Diagnoses every axis.
-    pub(super) fn diagnosed(&self) -> Result<Vec<Diagnosed>, Failure> {
+    pub(crate) fn diagnosed(&self) -> Result<Vec<Diagnosed>, Failure> {
         self.settings.diagnosed(&self.input)
     }
 }
 
 /// How to diagnose.
 #[derive(Debug, Args)]
-pub(super) struct DiagnosisSettings {
+pub(crate) struct DiagnosisSettings {
     /// Most effects to add [default: 3]
     #[arg(long, value_name = "N")]
     max_effects: Option<usize>,
@@ -48,7 +48,7 @@ pub(super) struct DiagnosisSettings {
 
 impl DiagnosisSettings {
     /// Diagnoses every axis of a record.
-    pub(super) fn diagnosed(&self, path: &Path) -> Result<Vec<Diagnosed>, Failure> {
+    pub(crate) fn diagnosed(&self, path: &Path) -> Result<Vec<Diagnosed>, Failure> {
         let diagnose = |(axis, evidence): (AxisCurve, Evidence)| {
             let name = axis.axis.clone();
             Diagnosed::new(axis, evidence, self.max_effects)
@@ -60,13 +60,13 @@ impl DiagnosisSettings {
 }
 
 /// One axis, and the way from the five terms to what explains it.
-pub(super) struct Diagnosed {
-    pub(super) axis: AxisCurve,
+pub(crate) struct Diagnosed {
+    pub(crate) axis: AxisCurve,
     /// At least one: the last is the model that the diagnosis ends with.
-    pub(super) steps: Vec<Step<OCTAVES>>,
-    pub(super) verdict: Verdict,
+    pub(crate) steps: Vec<Step<OCTAVES>>,
+    pub(crate) verdict: Verdict,
     /// How effects were looked for.
-    pub(super) diagnosis: Diagnosis,
+    pub(crate) diagnosis: Diagnosis,
     /// Names of the covariates, and what the axis shares with each.
     covariates: Vec<String>,
     cross: Vec<CrossCurve<OCTAVES>>,
@@ -102,12 +102,12 @@ impl Diagnosed {
     }
 
     /// The model that was asked about, and the one that the diagnosis ends with.
-    pub(super) fn ends(&self) -> Option<(&Step<OCTAVES>, &Step<OCTAVES>)> {
+    pub(crate) fn ends(&self) -> Option<(&Step<OCTAVES>, &Step<OCTAVES>)> {
         self.steps.first().zip(self.steps.last())
     }
 
     /// The model of a step in words: `five terms + sinusoid`.
-    pub(super) fn model_name(&self, step: usize) -> String {
+    pub(crate) fn model_name(&self, step: usize) -> String {
         let Some(step) = self.steps.get(step) else {
             return String::new();
         };
@@ -121,7 +121,7 @@ impl Diagnosed {
     }
 
     /// The step that would have followed a step's candidate, had it been added.
-    pub(super) fn alternative(
+    pub(crate) fn alternative(
         &self,
         step: usize,
         candidate: &Candidate,
@@ -155,7 +155,7 @@ impl Diagnosed {
     }
 
     /// Names of all that was added and kept.
-    pub(super) fn missing(&self) -> impl Iterator<Item = &'static str> {
+    pub(crate) fn missing(&self) -> impl Iterator<Item = &'static str> {
         let follows = self.steps.last().and_then(|last| last.follows);
         let covariate = follows.map(|_| covariate::NAME);
         covariate
@@ -165,7 +165,7 @@ impl Diagnosed {
 
     /// What every step added, with the effects that explain its curve about as well: without steps whose
     /// addition was dropped later.
-    pub(super) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
+    pub(crate) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
         let swaps = self.steps.iter().skip(1).map(|next| next.swap().is_some());
         let kept = self
             .steps
@@ -180,12 +180,12 @@ impl Diagnosed {
     }
 
     /// The covariate that the rate follows, by name.
-    pub(super) fn covariate(&self, follows: &Follows) -> &str {
+    pub(crate) fn covariate(&self, follows: &Follows) -> &str {
         &self.covariates[follows.covariate]
     }
 
     /// What is worth knowing beside the figures, one line each.
-    pub(super) fn notes(&self) -> Vec<String> {
+    pub(crate) fn notes(&self) -> Vec<String> {
         let Some((first, last)) = self.ends() else {
             return Vec::new();
         };
@@ -215,7 +215,7 @@ impl Diagnosed {
 }
 
 /// What was added, by its name in files.
-pub(super) fn added_name(added: &Addition) -> &'static str {
+pub(crate) fn added_name(added: &Addition) -> &'static str {
     match added {
         Addition::Effect(term) => term.effect.name(),
         Addition::Covariate(_) => covariate::NAME,

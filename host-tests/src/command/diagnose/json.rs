@@ -15,7 +15,7 @@ use serde_json::{Map, Value};
 
 /// What a command prints of one file.
 #[derive(Serialize)]
-pub(super) struct Document<'a> {
+pub(crate) struct Document<'a> {
     axes: Vec<Axis<'a>>,
 }
 
@@ -60,7 +60,7 @@ struct Swap {
 }
 
 /// The diagnoses as one document.
-pub(super) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
+pub(crate) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
     Document {
         axes: diagnosed.iter().map(axis).collect(),
     }

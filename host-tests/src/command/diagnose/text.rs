@@ -13,7 +13,7 @@ use allanite::{Candidate, Step};
 use std::io::{self, Write};
 
 /// Prints the way of every axis, from the five terms to the model that the diagnosis ends with.
-pub(super) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
     for (i, diagnosed) in diagnosed.iter().enumerate() {
         if i > 0 {
             writeln!(output)?;

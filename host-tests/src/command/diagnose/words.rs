@@ -14,21 +14,21 @@ use allanite::{
 };
 
 /// What a step of a diagnosis added, and why.
-pub(super) struct Finding {
+pub(crate) struct Finding {
     /// The effect or the covariate.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// Its shape and its size, with intervals.
-    pub(super) found: Option<String>,
+    pub(crate) found: Option<String>,
     story: Option<Story>,
     /// What it changes in the model or in the curve.
     change: Option<(&'static str, String)>,
     /// What cannot be told from it.
-    pub(super) ambiguous: Option<String>,
+    pub(crate) ambiguous: Option<String>,
 }
 
 impl Finding {
     /// Between a step and the next; `None` where nothing was added.
-    pub(super) fn new(
+    pub(crate) fn new(
         diagnosed: &Diagnosed,
         before: &Step<OCTAVES>,
         after: &Step<OCTAVES>,
@@ -85,7 +85,7 @@ impl Finding {
     }
 
     /// What it is, where it comes from, what to check, and what it changes: each with its label.
-    pub(super) fn lines(&self) -> Vec<(&'static str, &str)> {
+    pub(crate) fn lines(&self) -> Vec<(&'static str, &str)> {
         let story = self.story.map(|story| {
             [
                 ("what it is", story.what),
@@ -100,7 +100,7 @@ impl Finding {
 }
 
 /// Shape and coefficient of an effect in a step, with their intervals.
-pub(super) fn found(step: &Step<OCTAVES>, effect: &str, diagnosed: &Diagnosed) -> Option<String> {
+pub(crate) fn found(step: &Step<OCTAVES>, effect: &str, diagnosed: &Diagnosed) -> Option<String> {
     let at = step.model.position(effect)?;
     let term = step.model.terms().get(at)?;
     let mut found = words::shape(term, Some((&step.fit, at)));
@@ -121,7 +121,7 @@ fn instead(swap: Option<Swap>) -> String {
 }
 
 /// An effect that was tried, with its shape and what else changes with it.
-pub(super) fn candidate_name(candidate: &Candidate) -> String {
+pub(crate) fn candidate_name(candidate: &Candidate) -> String {
     let shape = words::shape(&candidate.term, None);
     let name = words::plain(candidate.term.effect.name());
     let instead = instead(candidate.swap);
@@ -133,7 +133,7 @@ pub(super) fn candidate_name(candidate: &Candidate) -> String {
 }
 
 /// A probability with its relation, where there is one.
-pub(super) fn shown_p(p: f64) -> String {
+pub(crate) fn shown_p(p: f64) -> String {
     if p.is_finite() {
         probability(p)
     } else {
@@ -142,7 +142,7 @@ pub(super) fn shown_p(p: f64) -> String {
 }
 
 /// What the diagnosis ends with, in a sentence.
-pub(super) fn verdict(diagnosed: &Diagnosed) -> String {
+pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
     let Some((first, last)) = diagnosed.ends() else {
         return String::new();
     };
@@ -195,7 +195,7 @@ pub(super) fn verdict(diagnosed: &Diagnosed) -> String {
 
 /// The whole diagnosis in one sentence: where the five terms fail, what they lack, how far the error
 /// falls.
-pub(super) fn lead(diagnosed: &Diagnosed) -> String {
+pub(crate) fn lead(diagnosed: &Diagnosed) -> String {
     let verdict = verdict(diagnosed);
     let Some((first, _)) = diagnosed.ends() else {
         return verdict;

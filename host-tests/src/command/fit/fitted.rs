@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// The weights by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum MethodName {
+pub(crate) enum MethodName {
     /// Unweighted least squares, unconstrained: the baseline
     Ordinary,
     /// Each octave by its relative accuracy times its value, unconstrained
@@ -29,7 +29,7 @@ impl MethodName {
     }
 
     /// The method as the option spells it.
-    pub(super) const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Ordinary => "ordinary",
             Self::RelativeAccuracy => "relative-accuracy",
@@ -40,16 +40,16 @@ impl MethodName {
 }
 
 /// One axis with its fit.
-pub(super) struct Fitted {
-    pub(super) axis: AxisCurve,
-    pub(super) curve: Curve<OCTAVES>,
-    pub(super) method: MethodName,
-    pub(super) fit: Fit,
+pub(crate) struct Fitted {
+    pub(crate) axis: AxisCurve,
+    pub(crate) curve: Curve<OCTAVES>,
+    pub(crate) method: MethodName,
+    pub(crate) fit: Fit,
 }
 
 impl Fitted {
     /// Fits the five terms to an axis of a file.
-    pub(super) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
+    pub(crate) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
         let settings = Settings {
             method: method.method(),
             ..Settings::default()

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// What a command prints of one file.
 #[derive(Serialize)]
-pub(super) struct Document<'a> {
+pub(crate) struct Document<'a> {
     axes: Vec<Axis<'a>>,
 }
 
@@ -34,7 +34,7 @@ struct Octave {
 
 /// A coefficient in the log's unit; infinite ends of an interval are `null`.
 #[derive(Serialize)]
-pub(super) struct Term {
+pub(crate) struct Term {
     effect: &'static str,
     symbol: &'static str,
     value: f64,
@@ -45,7 +45,7 @@ pub(super) struct Term {
 }
 
 /// What to print.
-pub(super) fn document(fitted: &[Fitted]) -> Document<'_> {
+pub(crate) fn document(fitted: &[Fitted]) -> Document<'_> {
     Document {
         axes: fitted.iter().map(axis).collect(),
     }
@@ -86,7 +86,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
 }
 
 /// One coefficient.
-pub(super) fn term(coefficient: &Coefficient, unit: Unit) -> Term {
+pub(crate) fn term(coefficient: &Coefficient, unit: Unit) -> Term {
     Term {
         effect: coefficient.name,
         symbol: coefficient.symbol,

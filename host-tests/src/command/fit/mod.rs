@@ -13,12 +13,10 @@ use crate::{
             record::{self, LogArguments},
         },
     },
-    curve_file::AxisCurve,
     failure::Failure,
-    log::OCTAVES,
 };
-use allanite::{Curve, Fit, Method, Model, Settings};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use fitted::{Fitted, MethodName};
 use std::{
     io::{self, Write},
     path::Path,

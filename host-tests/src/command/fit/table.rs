@@ -13,10 +13,10 @@ use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
 /// Models with a smaller p-value are not adequate.
-pub(super) const LEAST_P_VALUE: f64 = 0.01;
+pub(crate) const LEAST_P_VALUE: f64 = 0.01;
 
 /// Prints a table an axis.
-pub(super) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
+pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
     for (i, fitted) in fitted.iter().enumerate() {
         if i > 0 {
             writeln!(output)?;
@@ -42,7 +42,7 @@ pub(super) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
 }
 
 /// The coefficients of a fit.
-pub(super) fn table(fit: &Fit, unit: Unit) -> Table {
+pub(crate) fn table(fit: &Fit, unit: Unit) -> Table {
     let mut table = Table::new();
     table.load_style(NOTHING);
     table.set_header([
@@ -81,12 +81,12 @@ fn customary_unit(coefficient: &Coefficient, unit: Unit) -> (f64, &'static str) 
 }
 
 /// The same in the customary unit.
-pub(super) fn customary(coefficient: &Coefficient, unit: Unit) -> String {
+pub(crate) fn customary(coefficient: &Coefficient, unit: Unit) -> String {
     shown(coefficient, customary_unit(coefficient, unit).0)
 }
 
 /// The 95 % interval in the customary unit.
-pub(super) fn interval(coefficient: &Coefficient, unit: Unit) -> String {
+pub(crate) fn interval(coefficient: &Coefficient, unit: Unit) -> String {
     scaled_interval(coefficient, customary_unit(coefficient, unit).0)
 }
 
@@ -117,7 +117,7 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
 }
 
 /// What the record says of a coefficient.
-pub(super) fn state(coefficient: &Coefficient) -> String {
+pub(crate) fn state(coefficient: &Coefficient) -> String {
     match coefficient.state {
         State::Measured => "measured".into(),
         State::UpperBound => "upper bound".into(),

@@ -20,21 +20,21 @@ const ON_THE_WAY: usize = 64;
 
 /// What to work on, and how to print it.
 #[derive(Debug, Args)]
-pub(super) struct FilesArguments {
+pub(crate) struct FilesArguments {
     /// Logs (.csv, .csv.gz, .npy, .mcap, .ulg), or curve files (.json) that `measure` wrote
     #[arg(required = true, value_name = "INPUT")]
-    pub(super) inputs: Vec<PathBuf>,
+    pub(crate) inputs: Vec<PathBuf>,
     /// Print the result as JSON
     #[arg(long, conflicts_with = "json_lines")]
-    pub(super) json: bool,
+    pub(crate) json: bool,
     /// Print one JSON object a line for each file, as soon as it and all before it are done
     #[arg(long)]
-    pub(super) json_lines: bool,
+    pub(crate) json_lines: bool,
 }
 
 impl FilesArguments {
     /// The only file, where one stands for itself: an option that several could not share.
-    pub(super) fn single(&self) -> Option<&Path> {
+    pub(crate) fn single(&self) -> Option<&Path> {
         match self.inputs.as_slice() {
             [only] => Some(only),
             _ => None,
@@ -43,7 +43,7 @@ impl FilesArguments {
 }
 
 /// What a command finds in a file, axis by axis.
-pub(super) trait Findings: Sized + Send {
+pub(crate) trait Findings: Sized + Send {
     /// For programs: a struct with named fields.
     type Document<'a>: Serialize
     where
@@ -69,7 +69,7 @@ pub(super) trait Findings: Sized + Send {
 }
 
 /// A file's name without line breaks.
-pub(super) fn shown(path: &Path) -> String {
+pub(crate) fn shown(path: &Path) -> String {
     one_line(&path.to_string_lossy())
 }
 
@@ -108,7 +108,7 @@ impl<D: Serialize> Outcome<D> {
 
 /// Does `work` on every file and prints what it finds. Files that fail are named on standard error, one
 /// line each, and stop nothing; the last of them is what this returns.
-pub(super) fn run<F: Findings>(
+pub(crate) fn run<F: Findings>(
     files: &FilesArguments,
     work: impl Fn(&Path) -> Result<F, Failure> + Sync,
     output: &mut impl Write,
@@ -189,7 +189,7 @@ fn print<F: Findings>(
 ///
 /// # Errors
 /// Of `done` only, which ends the work early.
-pub(super) fn each<'a, T: Send>(
+pub(crate) fn each<'a, T: Send>(
     files: &'a [PathBuf],
     work: impl Fn(&Path) -> Result<T, Failure> + Sync,
     mut done: impl FnMut(&'a Path, Result<T, Failure>) -> Result<(), Failure>,
@@ -229,7 +229,7 @@ pub(super) fn each<'a, T: Send>(
 }
 
 /// What several failures end with: one line each, and the last one as the command's own.
-pub(super) fn failed(mut failures: Vec<Failure>) -> Result<(), Failure> {
+pub(crate) fn failed(mut failures: Vec<Failure>) -> Result<(), Failure> {
     let Some(last) = failures.pop() else {
         return Ok(());
     };

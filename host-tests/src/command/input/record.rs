@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// What to know about a log.
 #[derive(Debug, Args)]
-pub(super) struct LogArguments {
+pub(crate) struct LogArguments {
     /// Samples per second [default: the log's own comment `# rate_hz=…`, else by its time stamps]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     rate: Option<f64>,
@@ -61,7 +61,7 @@ impl LogArguments {
 }
 
 /// Measures the curves of a log.
-pub(super) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
+pub(crate) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
     let bar = progress::reading(path);
     let log = log::read(path, &arguments.options(), &bar);
     bar.finish_and_clear();
@@ -72,7 +72,7 @@ pub(super) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisC
 
 /// The curves of a log with all that it tells beside them, or those of a curve file, which tells no
 /// more.
-pub(super) fn read_with_evidence(
+pub(crate) fn read_with_evidence(
     path: &Path,
     arguments: &LogArguments,
     covariates: &[CovariateChoice],
@@ -98,7 +98,7 @@ pub(super) fn read_with_evidence(
 }
 
 /// Measures the curves of a log's first part and those of the rest, which is this share of it.
-pub(super) fn measure_in_two(
+pub(crate) fn measure_in_two(
     path: &Path,
     arguments: &LogArguments,
     share: f64,
@@ -128,7 +128,7 @@ fn curves(log: &Log) -> Result<Vec<AxisCurve>, Failure> {
 }
 
 /// The curves of a log, or of a curve file by its extension `.json`.
-pub(super) fn read(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
+pub(crate) fn read(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
     if !is_curve(path) {
         return measure(path, arguments);
     }
@@ -142,13 +142,13 @@ pub(super) fn read(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurv
 }
 
 /// Whether the extension is that of a curve file.
-pub(super) fn is_curve(path: &Path) -> bool {
+pub(crate) fn is_curve(path: &Path) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
 /// What the library has against an axis; its errors read `what: remedy`.
-pub(super) fn library_failure(path: &Path, axis: &str, error: allanite::Error) -> Failure {
+pub(crate) fn library_failure(path: &Path, axis: &str, error: allanite::Error) -> Failure {
     let text = error.to_string();
     let (what, remedy) = text.rsplit_once(": ").unwrap_or((&text, "record longer"));
     Place::file(path).failure(format!("axis {axis}: {what}"), remedy)

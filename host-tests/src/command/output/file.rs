@@ -9,14 +9,14 @@ use tempfile::{Builder, NamedTempFile};
 
 /// A file under construction: beside its final place until [`commit`](Self::commit), gone if that
 /// never comes.
-pub(super) struct OutputFile {
+pub(crate) struct OutputFile {
     path: PathBuf,
     temporary: NamedTempFile,
 }
 
 impl OutputFile {
     /// Starts a file.
-    pub(super) fn create(path: &Path) -> Result<Self, Failure> {
+    pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
         if path.is_dir() {
             return Err(Place::file(path).failure("is a directory", "name a file in it"));
         }
@@ -45,7 +45,7 @@ impl OutputFile {
     }
 
     /// Puts the file in its place, over one that was there.
-    pub(super) fn commit(mut self) -> Result<(), Failure> {
+    pub(crate) fn commit(mut self) -> Result<(), Failure> {
         let fail = |error: &io::Error| Place::file(&self.path).io(error);
         self.temporary.flush().map_err(|error| fail(&error))?;
         self.temporary

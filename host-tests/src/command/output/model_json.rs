@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 /// An effect of a model, with its shape and its amplitude.
 #[derive(Serialize)]
-pub(super) struct Effect {
+pub(crate) struct Effect {
     name: &'static str,
     parameters: Map<String, Value>,
     /// Of a covariate: its column.
@@ -17,7 +17,7 @@ pub(super) struct Effect {
 }
 
 /// A covariate that the rate follows: its slope, and the slope's 95 % interval.
-pub(super) fn covariate(follows: &Follows, channel: &str) -> Effect {
+pub(crate) fn covariate(follows: &Follows, channel: &str) -> Effect {
     let (lower, upper) = follows.slope.interval();
     let numbers = [
         ("slope", follows.slope.value),
@@ -36,14 +36,14 @@ pub(super) fn covariate(follows: &Follows, channel: &str) -> Effect {
 
 /// The octave that disagrees most.
 #[derive(Serialize)]
-pub(super) struct Worst {
+pub(crate) struct Worst {
     tau_s: f64,
     z: f64,
     percent: f64,
 }
 
 /// A shape with its coefficient, by name; numbers that are not finite are `null`.
-pub(super) fn parameters(term: &Term, coefficient: f64) -> Map<String, Value> {
+pub(crate) fn parameters(term: &Term, coefficient: f64) -> Map<String, Value> {
     words::parameters(term, Some(coefficient))
         .into_iter()
         .map(|(name, value)| (name.to_owned(), Value::from(value)))
@@ -51,7 +51,7 @@ pub(super) fn parameters(term: &Term, coefficient: f64) -> Map<String, Value> {
 }
 
 /// The effects of a model.
-pub(super) fn effects(model: &Model, fit: &Fit) -> Vec<Effect> {
+pub(crate) fn effects(model: &Model, fit: &Fit) -> Vec<Effect> {
     let terms = model.terms().iter().zip(&fit.coefficients);
     terms
         .map(|(term, coefficient)| Effect {
@@ -63,13 +63,13 @@ pub(super) fn effects(model: &Model, fit: &Fit) -> Vec<Effect> {
 }
 
 /// The coefficients, as `fit --json` prints them.
-pub(super) fn coefficients(fit: &Fit, unit: Unit) -> Vec<fit::json::Term> {
+pub(crate) fn coefficients(fit: &Fit, unit: Unit) -> Vec<fit::json::Term> {
     let coefficients = fit.coefficients.iter();
     coefficients.map(|one| fit::json::term(one, unit)).collect()
 }
 
 /// The worst octave of a comparison.
-pub(super) fn worst(comparison: &Comparison<OCTAVES>) -> Option<Worst> {
+pub(crate) fn worst(comparison: &Comparison<OCTAVES>) -> Option<Worst> {
     let worst = |octave: &ComparedOctave| Worst {
         tau_s: octave.tau_s,
         z: octave.z,

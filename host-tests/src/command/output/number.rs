@@ -1,7 +1,7 @@
 //! Numbers as people read them.
 
 /// Four significant digits.
-pub(super) fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
@@ -17,7 +17,7 @@ pub(super) fn number(value: f64) -> String {
 }
 
 /// A p-value, with its relation.
-pub(super) fn probability(p: f64) -> String {
+pub(crate) fn probability(p: f64) -> String {
     if p >= 0.001 {
         format!("= {p:.3}")
     } else if p > 0.0 {
@@ -29,7 +29,7 @@ pub(super) fn probability(p: f64) -> String {
 }
 
 /// A length of time in the unit that suits it.
-pub(super) fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{s:.3} s"),
         s if s < 7200.0 => format!("{:.1} min", s / 60.0),

@@ -19,27 +19,27 @@ const BYTES_OF_A_MOMENT: u64 = 1 << 24;
 const SAMPLES_OF_A_MOMENT: u64 = 1 << 22;
 
 /// Shows nothing from now on.
-pub(super) fn be_quiet() {
+pub(crate) fn be_quiet() {
     QUIET.store(true, Relaxed);
 }
 
 /// Whether to say nothing that was not asked for.
-pub(super) fn is_quiet() -> bool {
+pub(crate) fn is_quiet() -> bool {
     QUIET.load(Relaxed)
 }
 
 /// Leaves the terminal to the bar over files from now on.
-pub(super) fn share_terminal() {
+pub(crate) fn share_terminal() {
     SHARED.store(true, Relaxed);
 }
 
 /// A bar over files.
-pub(super) fn files(number: u64) -> ProgressBar {
+pub(crate) fn files(number: u64) -> ProgressBar {
     styled(number, "{wide_bar} {pos}/{len} files {eta}")
 }
 
 /// A bar over the bytes of a file.
-pub(super) fn reading(path: &Path) -> ProgressBar {
+pub(crate) fn reading(path: &Path) -> ProgressBar {
     let length = path.metadata().map_or(0, |metadata| metadata.len());
     if length < BYTES_OF_A_MOMENT || SHARED.load(Relaxed) {
         return ProgressBar::hidden();
@@ -51,7 +51,7 @@ pub(super) fn reading(path: &Path) -> ProgressBar {
 }
 
 /// A bar over simulated samples.
-pub(super) fn simulating(samples: u64) -> ProgressBar {
+pub(crate) fn simulating(samples: u64) -> ProgressBar {
     if samples < SAMPLES_OF_A_MOMENT {
         return ProgressBar::hidden();
     }

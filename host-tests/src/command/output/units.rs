@@ -5,7 +5,7 @@ use crate::unit::{Sensor, Unit};
 const SECONDS_PER_HOUR: f64 = 3600.0;
 
 /// The unit of a coefficient, rate unit · s^(half_seconds/2), as it is usually written.
-pub(super) fn unit(unit: Unit, half_seconds: i8) -> String {
+pub(crate) fn unit(unit: Unit, half_seconds: i8) -> String {
     // The unit times a second, and divided by one.
     let (integral, derivative) = match unit {
         Unit::DegreesPerSecond => ("deg", "deg/s²"),
@@ -26,7 +26,7 @@ pub(super) fn unit(unit: Unit, half_seconds: i8) -> String {
 /// The factor to a coefficient's customary unit, and that unit: of a gyro arc seconds for an angle,
 /// else degrees and hours; of an accelerometer metres per second for a velocity, else thousandths
 /// and millionths of g. `None` for a power of time that has no custom.
-pub(super) fn customary(unit: Unit, half_seconds: i8) -> Option<(f64, &'static str)> {
+pub(crate) fn customary(unit: Unit, half_seconds: i8) -> Option<(f64, &'static str)> {
     let in_g = Unit::StandardGravity.in_usual().recip();
     let (factor, name) = match (unit.sensor(), half_seconds) {
         (Sensor::Gyro, 2) => (SECONDS_PER_HOUR, "arcsec"),

@@ -14,12 +14,12 @@ use allanite::{
 };
 
 /// A name as people write it.
-pub(super) fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     name.replace('_', " ")
 }
 
 /// A coefficient's name as people write it, of an accelerometer by what it is of there.
-pub(super) fn of_sensor(name: &str, unit: Unit) -> String {
+pub(crate) fn of_sensor(name: &str, unit: Unit) -> String {
     match (unit.sensor(), name) {
         (Sensor::Accelerometer, "angle_random_walk") => "velocity random walk".into(),
         (Sensor::Accelerometer, "rate_random_walk") => "acceleration random walk".into(),
@@ -29,12 +29,12 @@ pub(super) fn of_sensor(name: &str, unit: Unit) -> String {
 }
 
 /// Names as a list in a sentence.
-pub(super) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     list_of(names.into_iter().map(plain).collect())
 }
 
 /// The same of what people read already.
-pub(super) fn list_of(names: Vec<String>) -> String {
+pub(crate) fn list_of(names: Vec<String>) -> String {
     match names.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         _ => names.concat(),
@@ -42,7 +42,7 @@ pub(super) fn list_of(names: Vec<String>) -> String {
 }
 
 /// A shape: `frequency 19.6 Hz (19.5 … 19.7), quality 4`, with intervals where a fit gives them.
-pub(super) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
+pub(crate) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
     let parameters = term.effect.parameters().iter().zip(term.parameters);
     let one = |(parameter, value): (&Parameter, f64)| {
         let mut text = shape_value(parameter, value);
@@ -62,7 +62,7 @@ pub(super) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
 }
 
 /// A shape parameter and its value: `frequency 19.6 Hz`.
-pub(super) fn shape_value(parameter: &Parameter, value: f64) -> String {
+pub(crate) fn shape_value(parameter: &Parameter, value: f64) -> String {
     // The unit stands behind the value.
     let suffix = format!("_{}", parameter.unit.to_lowercase());
     let name = plain(
@@ -87,7 +87,7 @@ fn short(value: f64) -> String {
 }
 
 /// A coefficient and what it is: `angle random walk 1.95 °/√h (1.93 … 1.97)`.
-pub(super) fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: Unit) -> String {
+pub(crate) fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: Unit) -> String {
     let name = of_sensor(effect.coefficient(), unit);
     // Amplitudes are rates, and not the drifts that hours are the unit for.
     let (factor, unit) = match effect.coefficient() {
@@ -117,7 +117,7 @@ fn customary(unit: Unit, half_seconds: i8) -> (f64, String) {
 
 /// An effect's shape parameters and, where it is not called like the effect itself, its
 /// coefficient: by the names that options have.
-pub(super) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static str, f64)> {
+pub(crate) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static str, f64)> {
     let shape = term.effect.parameters().iter().take(MAX_PARAMETERS);
     let mut named: Vec<_> = shape
         .zip(term.parameters)
@@ -131,7 +131,7 @@ pub(super) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static
 }
 
 /// What a frequency may be instead of itself.
-pub(super) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
+pub(crate) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
     let mut parameters = term.effect.parameters().iter().zip(term.parameters);
     let (_, frequency_hz) = parameters.find(|(parameter, _)| parameter.name == "frequency_hz")?;
     Some(format!(
@@ -145,7 +145,7 @@ pub(super) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
 }
 
 /// What the effects that were missing had done to the coefficients.
-pub(super) fn damage(first: &Step<OCTAVES>, last: &Step<OCTAVES>, unit: Unit) -> Vec<String> {
+pub(crate) fn damage(first: &Step<OCTAVES>, last: &Step<OCTAVES>, unit: Unit) -> Vec<String> {
     let before = first.model.terms().iter().zip(&first.fit.coefficients);
     let same = |name: &str| {
         let mut after = last.model.terms().iter().zip(&last.fit.coefficients);
@@ -193,7 +193,7 @@ fn changed(name: &str, was: &Coefficient, is: &Coefficient, unit: Unit) -> Optio
 }
 
 /// `1000000 samples at 100 Hz (2.8 h), 18 octaves`.
-pub(super) fn record(samples: u64, rate_hz: f64, octaves: usize) -> String {
+pub(crate) fn record(samples: u64, rate_hz: f64, octaves: usize) -> String {
     let length = duration(samples as f64 / rate_hz);
     format!("{samples} samples at {rate_hz} Hz ({length}), {octaves} octaves")
 }

@@ -11,11 +11,11 @@ use allanite::{Diagnosis, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::{collections::BTreeSet, path::Path};
 
-const STYLE: &str = include_str!("../report/page.css");
+const STYLE: &str = include_str!("../../report/page.css");
 /// Draws a figure, walks through the steps.
 const SCRIPTS: [&str; 2] = [
-    include_str!("../report/figure.js"),
-    include_str!("../report/page.js"),
+    include_str!("../../report/figure.js"),
+    include_str!("../../report/page.js"),
 ];
 /// The page takes nothing from anywhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";

@@ -1,7 +1,7 @@
 //! What `simulate --effect` hides in a record.
 
 use crate::{
-    command::input::effect_argument::EffectArgument,
+    command::effect_argument::EffectArgument,
     failure::Failure,
     simulate::{Coefficients, Course, Hidden, Thermal},
 };

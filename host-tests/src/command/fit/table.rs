@@ -86,6 +86,7 @@ pub(crate) fn customary(coefficient: &Coefficient, unit: Unit) -> String {
 }
 
 /// The 95 % interval in the customary unit.
+#[cfg(feature = "watch")]
 pub(crate) fn interval(coefficient: &Coefficient, unit: Unit) -> String {
     scaled_interval(coefficient, customary_unit(coefficient, unit).0)
 }

@@ -95,6 +95,14 @@ impl Failure {
         Place::default().failure(what, remedy)
     }
 
+    /// A part of the program that was left out when it was built.
+    pub fn not_built_in(part: &str) -> Self {
+        Self::option(
+            format!("{part} is not built in"),
+            "run `cargo allanite-full` in place of `cargo allanite`: its first build takes minutes longer",
+        )
+    }
+
     /// A failure to print results.
     pub fn standard_output(error: &io::Error) -> Self {
         if error.kind() == ErrorKind::BrokenPipe {

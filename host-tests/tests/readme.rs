@@ -1,7 +1,7 @@
 //! The README shows what its reader will see.
 
 use host_tests::firmware::{
-    Precision,
+    Precision, Way,
     budgets::{self, target},
     figures,
 };
@@ -62,21 +62,30 @@ fn commands_print_what_is_shown() {
 #[test]
 fn figures_are_those_of_the_budgets() {
     let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
-    let shown = figures::readme(&budgets::committed().unwrap()).unwrap();
+    let shown = figures::readme(&budgets::committed(Way::Rustup).unwrap()).unwrap();
     assert!(shown.lines().count() > 20);
     assert!(readme.contains(&shown), "the README lacks:\n{shown}");
 }
 
 #[test]
 fn memory_that_is_promised_is_enough() {
-    let budgets = budgets::committed().unwrap();
+    for way in Way::ALL {
+        promised(way);
+    }
+}
+
+fn promised(way: Way) {
+    let budgets = budgets::committed(way).unwrap();
     for core in budgets["cores"].as_array().unwrap() {
         let ram = core["ram_bytes"].as_u64().unwrap();
-        assert!(core["core"] != "Cortex-M0" || ram < 16 * 1024, "{core}");
+        assert!(
+            core["core"] != "Cortex-M0" || ram < 16 * 1024,
+            "{way}: {core}"
+        );
     }
     let most = |precision, figure: &str, kibibytes: u64| {
         let bytes = budgets[target(precision)][figure].as_u64().unwrap();
-        assert!(bytes <= kibibytes * 1024, "{figure}: {bytes}");
+        assert!(bytes <= kibibytes * 1024, "{way}: {figure}: {bytes}");
     };
     for precision in Precision::ALL {
         most(precision, "ram_bytes_three_axes_20_with_diagnosis", 32);

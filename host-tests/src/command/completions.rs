@@ -1,8 +1,7 @@
 //! `completions`: what a shell needs to complete commands and options.
 
-use super::{CommandLine, examples};
-use crate::failure::Failure;
-use clap::{Args, CommandFactory};
+use crate::{command::examples, failure::Failure};
+use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 use std::io::Write;
 
@@ -15,8 +14,11 @@ pub(super) struct Arguments {
 }
 
 /// Runs the command.
-pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let mut command = CommandLine::command();
+pub(super) fn run(
+    arguments: &Arguments,
+    mut command: Command,
+    output: &mut impl Write,
+) -> Result<(), Failure> {
     // Generating cannot fail into memory; a pipe can be closed.
     let mut script = Vec::new();
     generate(arguments.shell, &mut command, "allanite", &mut script);

@@ -1,13 +1,14 @@
 //! `measure`: from a log to its curves.
 
-use super::{
-    examples,
-    input::{self, LogArguments},
-    many,
-    number::number,
-    output_file::OutputFile,
-};
 use crate::{
+    command::{
+        examples,
+        input::{
+            many,
+            record::{self, LogArguments},
+        },
+        output::{file::OutputFile, number::number},
+    },
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place},
 };
@@ -46,7 +47,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         let place = places.get(log).unwrap_or(&arguments.output);
         // First, so that a place that cannot be written to costs no measurement.
         let mut file = OutputFile::create(place)?;
-        let mut curves = input::measure(log, &arguments.about_log)?;
+        let mut curves = record::measure(log, &arguments.about_log)?;
         for curve in &mut curves {
             curve.source.clone_from(&arguments.source);
             curve.licence.clone_from(&arguments.licence);
@@ -81,7 +82,7 @@ fn places(logs: &[PathBuf], output: &Path) -> Result<HashMap<PathBuf, PathBuf>, 
                 "make the folder first",
             ));
         }
-        if !input::is_curve(output) {
+        if !record::is_curve(output) {
             return Err(Place::file(output)
                 .failure("a curve file's extension is .json", "name the output so"));
         }

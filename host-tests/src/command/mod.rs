@@ -1,44 +1,24 @@
 //! The commands of `allanite`.
 
 mod compare;
-mod compare_json;
-mod compare_text;
-mod compared_model;
 mod completions;
 mod decode;
-mod decode_json;
-mod decode_text;
 mod diagnose;
-mod diagnose_json;
-mod diagnose_text;
-mod diagnose_words;
-mod diagnosed;
 mod effect_argument;
 mod examples;
 mod export;
 mod fit;
-mod fit_json;
-mod fit_summary;
-mod fit_table;
-mod hidden_effects;
 mod input;
-mod many;
 mod measure;
-mod model_json;
-mod number;
-mod output_file;
+mod output;
 mod plot;
-mod progress;
 mod report;
-mod report_json;
-mod report_page;
 mod simulate;
-mod units;
 mod watch;
-mod words;
 
 use crate::failure::Failure;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use output::progress;
 use std::io::{self, BufWriter, Write};
 
 /// Noise coefficients of gyros and accelerometers, from recorded logs or from curves.
@@ -94,7 +74,9 @@ impl CommandLine {
             Command::Report(arguments) => report::run(arguments),
             Command::Plot(arguments) => plot::run(arguments),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
-            Command::Completions(arguments) => completions::run(arguments, &mut output),
+            Command::Completions(arguments) => {
+                completions::run(arguments, Self::command(), &mut output)
+            }
         }?;
         output
             .flush()

@@ -1,15 +1,16 @@
 //! `plot`: a record beside a model, as a picture.
 
-use super::{
-    diagnose_words::shown_p,
-    diagnosed::{Diagnosed, DiagnosisArguments},
-    examples,
-    output_file::OutputFile,
-    words,
-};
 use crate::{
+    command::{
+        diagnose::{
+            diagnosed::{Diagnosed, DiagnosisArguments},
+            words::shown_p,
+        },
+        examples,
+        output::{file::OutputFile, words},
+    },
     failure::{Failure, Place, quoted},
-    plot::{Drawing, Figure, Frame, png, svg},
+    plot::{Drawing, Figure, Frame, svg},
 };
 use clap::Args;
 use std::{io::Write, path::Path, path::PathBuf};
@@ -31,6 +32,9 @@ pub(super) struct Arguments {
     step: Option<usize>,
 }
 
+/// What can be left out of the program.
+const PNG: &str = "drawing .png pictures";
+
 #[derive(Clone, Copy)]
 enum Format {
     Svg,
@@ -42,7 +46,8 @@ impl Format {
         let extension = path.extension().and_then(|extension| extension.to_str());
         match extension.map(str::to_ascii_lowercase).as_deref() {
             Some("svg") => Ok(Self::Svg),
-            Some("png") => Ok(Self::Png),
+            Some("png") if cfg!(feature = "pictures") => Ok(Self::Png),
+            Some("png") => Err(Failure::not_built_in(PNG)),
             _ => Err(Place::file(path).failure(
                 "a picture's extension is .svg or .png",
                 "name the output so",
@@ -66,12 +71,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let place = || Place::file(&arguments.output);
     let bytes = match format {
         Format::Svg => drawing.into_bytes(),
-        Format::Png => png(&drawing)
-            .map_err(|error| place().failure(error, "draw one axis with --axis, or an .svg"))?,
+        Format::Png => png(&drawing, place())?,
     };
     let written = file.write_all(&bytes);
     written.map_err(|error| place().io(&error))?;
     file.commit()
+}
+
+#[cfg(feature = "pictures")]
+fn png(drawing: &str, place: Place) -> Result<Vec<u8>, Failure> {
+    crate::plot::png(drawing)
+        .map_err(|error| place.failure(error, "draw one axis with --axis, or an .svg"))
+}
+
+#[cfg(not(feature = "pictures"))]
+fn png(_: &str, _: Place) -> Result<Vec<u8>, Failure> {
+    Err(Failure::not_built_in(PNG))
 }
 
 /// The axes that were asked for.

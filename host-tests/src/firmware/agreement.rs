@@ -1,7 +1,7 @@
 //! Whether an image and this host compute the same bits.
 
 use super::{
-    Core, Image, Precision, REMEDY, cargo, run_with,
+    Core, Heartbeat, Image, Precision, REMEDY, cargo, run_with,
     toolchain::{exclusive, target_directory},
 };
 use anyhow::{Context as _, Result, ensure};
@@ -46,10 +46,14 @@ pub fn told(core: &Core, image: &str, arguments: &[&str]) -> Result<Vec<String>>
 /// # Errors
 /// If it cannot be built or run, or ends with a failure.
 pub fn told_here(precision: Precision, image: &str, arguments: &[&str]) -> Result<Vec<String>> {
+    let _heartbeat = Heartbeat::new(format!(
+        "{image} on this host, {} precision",
+        precision.name()
+    ));
     // Both precisions have one path.
     let _lock = exclusive()?;
     let output = cargo()
-        .args(["run", "--quiet", "--package", "allanite", "--bin", image])
+        .args(["run", "--package", "allanite", "--bin", image])
         .args(["--features", "firmware"])
         .args(precision.arguments())
         // The cargo that runs this program may hold the lock of the usual one.

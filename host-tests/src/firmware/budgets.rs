@@ -1,6 +1,9 @@
 //! What the library may cost on each core: `host-tests/budgets.json`, and whether it is kept.
+//!
+//! The file has a column of budgets for each [`Way`] to build: under the way's name, the figures of the
+//! Cortex-M4F in detail and those of every core.
 
-use super::{CORTEX_M4F, Core, Precision, measure, workspace};
+use super::{CORTEX_M4F, Core, Precision, Way, measure, workspace};
 use anyhow::{Context as _, Result, ensure};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -48,24 +51,42 @@ pub fn path() -> PathBuf {
     workspace().join("host-tests/budgets.json")
 }
 
-/// Its content.
+/// The column of a way.
 ///
 /// # Errors
-/// If it cannot be read.
-pub fn committed() -> Result<Value> {
+/// If the file cannot be read, or lacks the column.
+pub fn committed(way: Way) -> Result<Value> {
     let path = path();
-    let read = || -> Result<Value> { Ok(serde_json::from_slice(&std::fs::read(&path)?)?) };
-    read().with_context(|| format!("reading {}: {UPDATE}", path.display()))
+    let mut columns = columns().with_context(|| format!("reading {}: {UPDATE}", path.display()))?;
+    let column = columns.remove(way.name());
+    column.with_context(|| {
+        format!(
+            "{} lacks the column {}: {UPDATE}",
+            path.display(),
+            way.name()
+        )
+    })
 }
 
-/// Writes it.
+fn columns() -> Result<Map<String, Value>> {
+    Ok(serde_json::from_slice(&std::fs::read(path())?)?)
+}
+
+/// Writes the column of a way, and keeps the other.
 ///
 /// # Errors
 /// If that fails.
-pub fn update(measured: &Value) -> Result<()> {
+pub fn update(measured: &Value, way: Way) -> Result<()> {
     let path = path();
-    std::fs::write(&path, format!("{measured:#}\n"))
-        .with_context(|| format!("writing {}", path.display()))
+    let written = || -> Result<()> {
+        let mut columns = columns()?;
+        columns.insert(way.name().into(), measured.clone());
+        Ok(std::fs::write(
+            &path,
+            format!("{:#}\n", Value::from(columns)),
+        )?)
+    };
+    written().with_context(|| format!("writing {}", path.display()))
 }
 
 /// Compares what was measured with the budgets.

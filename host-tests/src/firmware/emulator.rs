@@ -1,6 +1,6 @@
 //! An image run in QEMU, and what it logged.
 
-use super::{Image, REMEDY};
+use super::{Heartbeat, Image, REMEDY};
 use anyhow::{Context as _, Result, bail};
 use defmt_decoder::{DecodeError, Table};
 use std::{
@@ -37,6 +37,8 @@ pub fn run(image: &Image) -> Result<Run> {
 /// As of [`run`].
 pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
     let mut child = start(image, arguments)?;
+    let name = image.path.file_name().unwrap_or_default();
+    let _heartbeat = Heartbeat::new(format!("{} on {} in QEMU", name.display(), image.core));
     let mut stdout = child.stdout.take().context("no output to read")?;
     let reader = thread::spawn(move || {
         let mut log = Vec::new();

@@ -1,7 +1,7 @@
 //! One image, built.
 
 use super::{
-    CORTEX_M4F, Core, REMEDY, Toolchain,
+    CORTEX_M4F, Core, Heartbeat, REMEDY, Toolchain,
     toolchain::{exclusive, target_directory},
 };
 use anyhow::{Context as _, Result, bail, ensure};
@@ -57,11 +57,11 @@ impl Image {
     /// As of [`build`](Self::build).
     pub fn build_with(name: &str, core: &Core, profile: &str) -> Result<Self> {
         let target = core.target;
-        let toolchain = Toolchain::find(core)
-            .with_context(|| format!("no compiler for {target} is installed: {REMEDY}"))?;
-        let mut command = toolchain.cargo("build");
+        let toolchain = Toolchain::find(core)?;
+        let _heartbeat = Heartbeat::new(format!("the build of {name} for {core}"));
+        let mut command = toolchain.cargo("build")?;
         command
-            .args(["--quiet", "--package", "allanite", "--bin", name])
+            .args(["--package", "allanite", "--bin", name])
             .args(["--features", "firmware", "--profile", profile])
             .args(core.precision.arguments());
         // Both precisions' images have one path, and others may be building.

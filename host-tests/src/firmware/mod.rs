@@ -5,14 +5,16 @@ pub mod budgets;
 pub mod core;
 pub mod emulator;
 pub mod figures;
+mod heartbeat;
 pub mod image;
 pub mod measure;
 pub mod toolchain;
 
 pub use core::{CORES, CORTEX_M4F, Core, Precision, RISCV};
 pub use emulator::{Run, run, run_with, start};
+pub use heartbeat::{Heartbeat, PERIOD};
 pub use image::Image;
-pub use toolchain::Toolchain;
+pub use toolchain::{Toolchain, Way};
 
 /// What every failure to build or run an image ends with.
 pub const REMEDY: &str = "`cargo xtask setup` installs what is missing";

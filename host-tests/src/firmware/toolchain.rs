@@ -1,8 +1,12 @@
-//! Which compiler can build for the target.
+//! Which compiler builds for the cores, and where its `core` comes from.
+//!
+//! rustup brings `core` compiled for speed; by Debian's way cargo compiles it for size. The same image
+//! has other sizes by the two ways, so all cores are built the same way, and budgets belong to a way.
 
-use super::{Core, cargo};
-use anyhow::{Context as _, Result};
+use super::{CORES, Core, REMEDY, cargo};
+use anyhow::{Context as _, Result, bail};
 use std::{
+    fmt,
     fs::File,
     path::{Path, PathBuf},
     process::Command,
@@ -16,54 +20,127 @@ const DEBIAN_CLIPPY: &str = "/usr/bin/cargo-clippy";
 /// The oldest that compiles this package: `rust-version` in its `Cargo.toml`.
 const OLDEST_MINOR: u32 = 95;
 
-/// A way to build for a core.
+/// The variable that forces a way: its value is a way's name.
+const VARIABLE: &str = "ALLANITE_TOOLCHAIN";
+
+/// A way to get a compiler and `core` for every core.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// The compiler in use, with the `core` that `rustup target add` installs.
+    Rustup,
+    /// Debian's compiler, which builds `core` from Debian's sources.
+    Debian,
+}
+
+impl Way {
+    /// Both, the preferred one first.
+    pub const ALL: [Self; 2] = [Self::Rustup, Self::Debian];
+
+    /// Its name, in `ALLANITE_TOOLCHAIN` and in the file of budgets.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rustup => "rustup",
+            Self::Debian => "debian",
+        }
+    }
+
+    /// The ways that may be gone: the one that `ALLANITE_TOOLCHAIN` names, or both.
+    ///
+    /// # Errors
+    /// If the variable names no way.
+    pub fn allowed() -> Result<Vec<Self>> {
+        match std::env::var_os(VARIABLE) {
+            Some(name) => Ok(vec![Self::named(&name.to_string_lossy())?]),
+            None => Ok(Self::ALL.to_vec()),
+        }
+    }
+
+    fn named(name: &str) -> Result<Self> {
+        let mut ways = Self::ALL.into_iter();
+        let way = ways.find(|way| way.name() == name);
+        way.with_context(|| {
+            format!("{VARIABLE}={name:?} names no toolchain: set rustup or debian, or unset it")
+        })
+    }
+
+    /// The way by which images are built on this machine: the first that may be gone and is ready for
+    /// every core.
+    ///
+    /// # Errors
+    /// If there is none, or `ALLANITE_TOOLCHAIN` names none.
+    pub fn in_use() -> Result<Self> {
+        let mut ways = Self::allowed()?.into_iter();
+        let way = ways.find(|way| way.is_ready());
+        way.with_context(|| format!("no compiler for every core is installed: {REMEDY}"))
+    }
+
+    /// Whether a compiler, `core` and a linker are there for every core.
+    pub fn is_ready(self) -> bool {
+        match self {
+            Self::Rustup => self.missing_targets().is_empty(),
+            Self::Debian => debian_has_sources() && linker().is_some(),
+        }
+    }
+
+    /// The targets that `rustup target add` has yet to install. Debian's way needs none.
+    pub fn missing_targets(self) -> Vec<&'static str> {
+        let mut targets: Vec<_> = CORES.iter().map(|core| core.target).collect();
+        targets.dedup();
+        targets.retain(|target| self == Self::Rustup && !has_target(target));
+        targets
+    }
+
+    /// Whether its lints are there.
+    pub fn has_clippy(self) -> bool {
+        match self {
+            Self::Rustup => answer("cargo", &["clippy", "--version"]).is_some(),
+            Self::Debian => Path::new(DEBIAN_CLIPPY).exists(),
+        }
+    }
+}
+
+impl fmt::Display for Way {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Rustup => "rustup's (core compiled for speed)",
+            Self::Debian => "Debian's (core compiled for size)",
+        })
+    }
+}
+
+/// A way, gone for one core.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     core: Core,
-    origin: Origin,
-}
-
-/// Where a compiler comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// The compiler in use has the target's libraries: those of `rustup target add`.
-    Installed,
-    /// Debian's compiler builds the target's libraries from Debian's sources.
-    Debian {
-        /// The linker.
-        linker: PathBuf,
-    },
+    way: Way,
 }
 
 impl Toolchain {
-    /// The first that this machine has.
-    pub fn find(core: &Core) -> Option<Self> {
-        let of = |origin| Self {
-            core: *core,
-            origin,
-        };
-        if has_target(core.target) {
-            return Some(of(Origin::Installed));
-        }
-        let linker = linker()?;
-        debian_has_sources().then(|| of(Origin::Debian { linker }))
-    }
-
-    /// Where it comes from.
-    pub fn origin(&self) -> &Origin {
-        &self.origin
+    /// The one in use.
+    ///
+    /// # Errors
+    /// As of [`Way::in_use`].
+    pub fn find(core: &Core) -> Result<Self> {
+        let way = Way::in_use()?;
+        Ok(Self { core: *core, way })
     }
 
     /// A cargo command such as `build` or `clippy` for the target, with artefacts apart from those
     /// of the host: the cargo that runs this program may hold the lock of the others.
-    pub fn cargo(&self, subcommand: &str) -> Command {
-        let mut command = match &self.origin {
-            Origin::Installed => {
+    ///
+    /// # Errors
+    /// If the linker has gone.
+    pub fn cargo(&self, subcommand: &str) -> Result<Command> {
+        let mut command = match self.way {
+            Way::Rustup => {
                 let mut command = cargo();
                 command.arg(subcommand);
                 command
             }
-            Origin::Debian { linker } => self.debian(subcommand, linker),
+            Way::Debian => match linker() {
+                Some(linker) => self.debian(subcommand, &linker),
+                None => bail!("no linker: {REMEDY}"),
+            },
         };
         // Any of these would replace what `.cargo/config.toml` says.
         for variable in [
@@ -83,7 +160,7 @@ impl Toolchain {
             .arg("--target-dir")
             .arg(target_directory())
             .env("DEFMT_LOG", "info");
-        command
+        Ok(command)
     }
 
     fn debian(&self, subcommand: &str, linker: &Path) -> Command {
@@ -103,14 +180,6 @@ impl Toolchain {
             .env("CARGO_UNSTABLE_BUILD_STD", "core")
             .env(variable(self.core.target, "LINKER"), linker);
         command
-    }
-
-    /// Whether its lints are there.
-    pub fn has_clippy(&self) -> bool {
-        match &self.origin {
-            Origin::Installed => true,
-            Origin::Debian { .. } => Path::new(DEBIAN_CLIPPY).exists(),
-        }
     }
 }
 
@@ -204,6 +273,18 @@ mod tests {
         );
         assert_eq!(minor_version("rustc 1.63.0"), Some(63));
         assert_eq!(minor_version("error"), None);
+    }
+
+    #[test]
+    fn ways_are_named_and_others_refused_in_one_line() {
+        for way in Way::ALL {
+            assert_eq!(Way::named(way.name()).unwrap(), way);
+        }
+        for name in ["", "Debian", "nightly\n"] {
+            let said = Way::named(name).unwrap_err().to_string();
+            assert!(said.contains("rustup or debian"), "{said}");
+            assert!(!said.contains('\n'), "{said}");
+        }
     }
 
     #[test]

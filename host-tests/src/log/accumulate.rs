@@ -1,10 +1,11 @@
 //! The passes over a log: into counts, and where that cannot be, through the range into counts.
 
 use super::{
-    AxisColumn, Ended, Field, Stop, Table, Visitor,
     clock::{Clock, Tick},
-    field::Stamp,
+    columns::AxisColumn,
+    field::{Field, Stamp},
     quantum::{self, Quantum, Range},
+    table::{Ended, Stop, Table, Visitor},
     time_column::TimeColumn,
     worker::{Batches, Plan, Sums},
 };

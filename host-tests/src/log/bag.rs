@@ -5,10 +5,12 @@
 //! of a chunk is verified before any message of it is taken.
 
 use super::{
-    AxisColumn, Ended, Metadata, Options, Stop, Table, Visitor,
-    columns::{Columns, Look},
+    Options,
+    columns::{AxisColumn, Columns, Look},
     imu_message::{COLUMNS, Encoding, ImuMessage},
+    metadata::Metadata,
     source,
+    table::{Ended, Stop, Table, Visitor},
 };
 use crate::failure::{Failure, Place, quoted};
 use indicatif::ProgressBar;

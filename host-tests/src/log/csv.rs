@@ -1,12 +1,13 @@
 //! Logs as text: values between commas, a row a sample.
 
 use super::{
-    AxisColumn, Ended, Metadata, Stop, Table, Visitor,
-    columns::{Columns, Look},
+    columns::{AxisColumn, Columns, Look},
     field::{Field, Text},
     lines::Lines,
+    metadata::Metadata,
     records::{LONGEST_ROW, Records},
     source::{self, Format},
+    table::{Ended, Stop, Table, Visitor},
 };
 use crate::failure::{Failure, Place, quoted};
 use csv::ByteRecord;

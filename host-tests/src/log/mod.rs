@@ -48,12 +48,15 @@
 //! a finite number ends the reading with its row.
 
 mod accumulate;
+#[cfg(feature = "bags")]
 mod bag;
 mod clock;
 mod columns;
 mod covariate;
 mod csv;
 mod field;
+mod file;
+#[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
 mod metadata;
@@ -65,26 +68,18 @@ mod reading;
 mod records;
 mod scaling;
 mod source;
+mod table;
 mod time_column;
 mod ulog;
 mod ulog_format;
 mod ulog_messages;
 mod worker;
 
-use crate::{
-    failure::{Failure, Place},
-    unit::{Sensor, Unit},
-};
+use crate::unit::{Sensor, Unit};
 use allanite::{Accumulator, CrossCurve, Kurtosis, Reason};
-use columns::{AxisColumn, Columns};
 pub use covariate::CovariateChoice;
-use field::{Field, Flaw};
-use indicatif::ProgressBar;
-use metadata::Metadata;
+pub use file::{read, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
-use reading::read_table;
-use source::Format;
-use std::path::Path;
 
 /// Octaves that the host accumulates: all that cannot overflow, for records of years.
 pub const OCTAVES: usize = 30;
@@ -172,140 +167,4 @@ pub struct Evidence {
     pub covariates: Vec<(String, CrossCurve<OCTAVES>)>,
     /// Why the curve cannot mean what it says.
     pub invalid: Option<Reason>,
-}
-
-/// Reads a log; `progress` follows the bytes of its file.
-///
-/// # Errors
-/// Of every kind of bad input, the file, the row and the remedy.
-pub fn read(path: &Path, options: &Options, progress: &ProgressBar) -> Result<Log, Failure> {
-    read_parts(path, options, None, None, progress).map(|(log, _)| log)
-}
-
-/// Reads a log, and beside the curves kurtosis, integrity and what the axes share with covariates.
-///
-/// # Errors
-/// As of [`read`], and where a covariate is no column or an axis.
-pub fn read_with_evidence(
-    path: &Path,
-    options: &Options,
-    covariates: &[CovariateChoice],
-    progress: &ProgressBar,
-) -> Result<Log, Failure> {
-    let (log, _) = read_parts(path, options, None, Some(covariates), progress)?;
-    Ok(log)
-}
-
-/// Reads a log whose last `share` is kept apart: as two logs. It is read twice, first for its
-/// length.
-///
-/// # Errors
-/// As of [`read`], for both parts.
-pub fn read_in_two(
-    path: &Path,
-    options: &Options,
-    share: f64,
-    progress: &ProgressBar,
-) -> Result<(Log, Log), Failure> {
-    let whole = read(path, options, progress)?;
-    let samples = whole.axes.iter().map(|axis| axis.accumulator.samples());
-    let first = samples.max().unwrap_or(0) as f64 * (1.0 - share);
-    let (log, rest) = read_parts(path, options, Some(first.round() as u64), None, progress)?;
-    let rest = Log {
-        axes: rest,
-        ..log.clone()
-    };
-    Ok((log, rest))
-}
-
-/// The first rows of a log, and the axes of the rest; all rows, and no axes.
-fn read_parts(
-    path: &Path,
-    options: &Options,
-    first: Option<u64>,
-    watch: Option<&[CovariateChoice]>,
-    progress: &ProgressBar,
-) -> Result<(Log, Vec<Axis>), Failure> {
-    let parts = (first, watch);
-    let format = Format::of(path)?;
-    if !format.has_topics() && options.topic.is_some() {
-        return Err(Place::file(path).failure("has no topics", "leave --topic"));
-    }
-    match format {
-        Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, parts, progress),
-        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
-        Format::Mcap => {
-            let bag = bag::Bag::open(path, options, progress)?;
-            read_table(&bag, path, options, parts, progress)
-        }
-        Format::Ulog => {
-            let log = ulog::Ulog::open(path, options, progress)?;
-            read_table(&log, path, options, parts, progress)
-        }
-    }
-}
-
-/// A log's file, known by its first rows and ready to be gone through.
-trait Table {
-    fn metadata(&self) -> &Metadata;
-    fn columns(&self) -> &Columns;
-
-    /// Whether a pass shows rows one after the other, the columns of each in the order asked for.
-    fn by_rows(&self) -> bool {
-        true
-    }
-
-    /// What was found that is not as it should be, known after a pass.
-    fn notes(&self) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// Shows every value of the given columns to a visitor; of each column in the order of rows.
-    fn pass<V: Visitor>(
-        &self,
-        axes: &[AxisColumn],
-        visitor: &mut V,
-        progress: &ProgressBar,
-    ) -> Result<Ended, Failure>;
-}
-
-/// What a pass over a table is made for.
-trait Visitor {
-    fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop>;
-
-    /// Samples are missing before the next row.
-    fn gap(&mut self) {}
-}
-
-/// Why a visitor wants no more.
-enum Stop {
-    /// A value is not a count: come again and ask for numbers.
-    NotCounts,
-    /// A value is no finite number either.
-    Flaw(Flaw),
-    /// The row does not follow the one before.
-    Clock(Flaw),
-}
-
-impl Stop {
-    /// The failure that a value of a column was met with.
-    fn failure(&self, column: &AxisColumn, place: Place) -> Failure {
-        match self {
-            Self::Flaw(flaw) => {
-                place.failure(format!("axis {}: {}", column.axis, flaw.what), flaw.remedy)
-            }
-            Self::Clock(flaw) => flaw.at(place),
-            // Met by a visitor that takes numbers as well, so never seen.
-            Self::NotCounts => place.failure(
-                format!("axis {}: not a count", column.axis),
-                "correct the value",
-            ),
-        }
-    }
-}
-
-/// How a pass ended that found nothing wrong.
-enum Ended {
-    AtTheLastRow,
-    NotCounts,
 }

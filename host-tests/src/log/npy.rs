@@ -1,10 +1,12 @@
 //! Logs as NumPy arrays: rows are samples, columns are axes.
 
 use super::{
-    AxisColumn, Ended, Field, Metadata, Stop, Table, Visitor,
-    columns::{Columns, Look},
+    columns::{AxisColumn, Columns, Look},
+    field::Field,
+    metadata::Metadata,
     npy_header::{Header, Kind},
     source,
+    table::{Ended, Stop, Table, Visitor},
 };
 use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;

@@ -1,12 +1,13 @@
 //! From a table to its curves.
 
 use super::{
-    Axis, CovariateChoice, Evidence, Log, Options, Table,
+    Axis, CovariateChoice, Evidence, Log, Options,
     accumulate::{self, Passes},
     clock::Clock,
     columns::Taken,
     quantum,
     scaling::{self, Origin, Scaling},
+    table::Table,
     time_column::TimeColumn,
     worker,
 };

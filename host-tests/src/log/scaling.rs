@@ -1,6 +1,6 @@
 //! What one count of a log is: from options, comments and the names of columns, in this order.
 
-use super::{Axis, AxisColumn, Options, Table};
+use super::{Axis, Options, columns::AxisColumn, table::Table};
 use crate::{
     failure::{Failure, Place},
     unit::{Sensor, Unit},

@@ -1,9 +1,9 @@
 //! Which column of a log is its time, and in which unit.
 
 use super::{
-    AxisColumn, Options,
+    Options,
     clock::Pace,
-    columns::{Columns, Look},
+    columns::{AxisColumn, Columns, Look},
     names::{self, TimeUnit},
 };
 use crate::failure::{Failure, Place, quoted};

@@ -1,9 +1,11 @@
 //! Logs of PX4: a table of the messages of one topic's instance.
 
 use super::{
-    AxisColumn, Ended, Metadata, Options, Stop, Table, Visitor,
-    columns::{Columns, Look},
+    Options,
+    columns::{AxisColumn, Columns, Look},
+    metadata::Metadata,
     names, scaling, source,
+    table::{Ended, Stop, Table, Visitor},
     ulog_format::{Field, Value},
     ulog_messages::{Error, Message, Messages, Subscription},
 };

@@ -1,6 +1,6 @@
 //! Flicker noise as a sum of relaxations.
 
-use super::{Random, Source, ieee_952::normal};
+use super::{Random, Source, random::normal};
 use std::f64::consts::PI;
 
 /// Ratio of neighbouring relaxation rates. The sum's spectrum ripples around 1/f by

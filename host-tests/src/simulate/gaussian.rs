@@ -1,6 +1,10 @@
 //! Gaussian noise of any autocovariance.
 
-use super::{Random, Source, autocovariance, ieee_952::normal};
+use super::{
+    Source,
+    kernel::autocovariance,
+    random::{Random, normal},
+};
 use allanite::effect::{Effect, SampledShape};
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
 use std::sync::Arc;

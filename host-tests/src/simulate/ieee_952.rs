@@ -1,8 +1,6 @@
 //! The five terms of IEEE Std 952.
 
-use super::{Coefficients, Random, Source, flicker::Flicker};
-use rand::RngExt;
-use rand_distr::StandardNormal;
+use super::{Coefficients, Random, Source, flicker::Flicker, random::normal};
 
 /// The terms whose coefficients are not zero.
 pub(super) fn sources(
@@ -37,11 +35,6 @@ pub(super) fn sources(
         sources.push(Box::new(Ramp { step, samples: 0 }));
     }
     sources
-}
-
-/// A standard normal number (ziggurat of `rand_distr`).
-pub(super) fn normal(random: &mut Random) -> f64 {
-    random.sample(StandardNormal)
 }
 
 /// An error of the angle, independent from sample to sample, differenced.

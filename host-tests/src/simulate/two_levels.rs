@@ -1,6 +1,6 @@
 //! A rate that jumps between two levels.
 
-use super::{Random, Source, autocovariance};
+use super::{Random, Source, kernel::autocovariance};
 use allanite::effect::{Effect, SampledShape};
 use rand::RngExt;
 

@@ -1,7 +1,9 @@
 //! What the library costs, on the target and on the host.
 
 use super::{setup, step::shown};
-use crate::firmware::{Core, Precision, agreement, budgets, cargo, figures, measure};
+use crate::firmware::{
+    Core, Heartbeat, Precision, Way, agreement, budgets, cargo, figures, measure,
+};
 use anyhow::{Context as _, Result, bail};
 use comfy_table::{Table, presets};
 use serde_json::{Map, Value};
@@ -86,11 +88,18 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
     if !json {
         setup::run()?;
     }
+    let way = Way::in_use()?;
     let mut measured = budgets::measured()?;
     if update_budgets {
-        budgets::update(&measured)?;
-        println!("written: {}", budgets::path().display());
-        println!("for the README:\n\n{}", figures::readme(&measured)?);
+        budgets::update(&measured, way)?;
+        println!(
+            "written: {}, column {}",
+            budgets::path().display(),
+            way.name()
+        );
+        if way == Way::Rustup {
+            println!("for the README:\n\n{}", figures::readme(&measured)?);
+        }
         return Ok(());
     }
     let host = host()?;
@@ -101,6 +110,7 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
         for precision in Precision::ALL {
             measured[budgets::target(precision)]["note"] = NOTE.into();
         }
+        measured["toolchain"] = way.name().into();
         measured["host"] = host.into();
         println!("{measured:#}");
         return Ok(());
@@ -119,14 +129,16 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
         let single = single.with_context(|| format!("{name} was not measured"))?;
         table.add_row([name, &single, &double.unwrap_or_default(), unit, of]);
     }
-    println!("Cortex-M4F and this host\n{table}\n");
+    println!("toolchain: {way}\n\nCortex-M4F and this host\n{table}\n");
     println!("every core\n{}\n{NOTE}.", core_table(&mut measured));
     Ok(())
 }
 
-/// Measures again, and compares with what the library may cost.
+/// Measures again, and compares with what the library may cost as the toolchain in use builds it.
 pub(super) fn check_budgets() -> Result<()> {
-    budgets::check(&budgets::measured()?, &budgets::committed()?)
+    let way = Way::in_use()?;
+    println!("\n== budgets of every core, by the toolchain {way}");
+    budgets::check(&budgets::measured()?, &budgets::committed(way)?)
 }
 
 fn entries(measured: &mut Value) -> impl Iterator<Item = &mut Value> {
@@ -157,14 +169,8 @@ fn shown_number(value: &Value) -> String {
 /// What `host-tests/benches/accumulator.rs` tells.
 fn host() -> Result<Map<String, Value>> {
     let mut command = cargo();
-    command.args([
-        "bench",
-        "--quiet",
-        "--package",
-        "host-tests",
-        "--bench",
-        "accumulator",
-    ]);
+    command.args(["bench", "--package", "host-tests", "--bench", "accumulator"]);
+    let _heartbeat = Heartbeat::new("the bench on this host".into());
     let output = command
         .stderr(std::process::Stdio::inherit())
         .output()

@@ -53,7 +53,8 @@ impl CommandLine {
             Task::Test => test::run(),
             Task::Study { arguments } => {
                 let mut study = cargo();
-                study.args(["run", "--quiet", "--release", "--package", "host-tests"]);
+                study.args(["run", "--release", "--package", "host-tests"]);
+                study.args(["--no-default-features", "--features", "chores"]);
                 study.args(["--bin", "study", "--"]).args(arguments);
                 step::step("the study", &mut study)
             }

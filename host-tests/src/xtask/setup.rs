@@ -2,10 +2,13 @@
 //! asks nothing.
 
 use super::step::run as run_command;
-use crate::firmware::{CORES, Core, Toolchain, toolchain::Origin};
+use crate::firmware::Way;
 use anyhow::{Context as _, Result, bail};
 use std::process::{Command, Stdio};
 
+/// What to do where nothing can be installed.
+const BY_HAND: &str =
+    "install it by hand: `rustup target add`, or Debian's packages rustc-web rust-web-src lld";
 /// Debian's newer compiler, its library sources and its lints.
 const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clippy"];
 /// Its linker, where rustup brings none.
@@ -20,56 +23,68 @@ const PROGRAMS: [(&str, &str); 3] = [
 pub const CHROMIUM: &str = "chromium";
 
 pub(super) fn run() -> Result<()> {
-    for core in &CORES {
-        compiler(core)?;
-    }
+    compiler()?;
     for (name, package) in PROGRAMS {
         program(name, package)?;
     }
     Ok(())
 }
 
-fn compiler(core: &Core) -> Result<()> {
-    let target = core.target;
-    match Toolchain::find(core) {
-        Some(toolchain) if toolchain.has_clippy() => {
-            println!("compiler for {target}: {}", name(&toolchain));
-            return Ok(());
-        }
-        Some(_) => {}
-        None => {
-            println!("compiler for {target}: missing, asking rustup for it");
-            let mut rustup = Command::new("rustup");
-            match run_command(rustup.args(["target", "add", target])) {
-                Ok(()) if Toolchain::find(core).is_some() => return Ok(()),
-                Ok(()) => println!("rustup added it to another toolchain than the one in use"),
-                Err(error) => println!("{error:#}"),
+/// A compiler for every core, by the first way that can be gone.
+fn compiler() -> Result<()> {
+    let mut troubles = Vec::new();
+    for way in Way::allowed()? {
+        match prepare(way) {
+            Ok(()) => {
+                println!("compiler for every core: {way}");
+                return Ok(());
+            }
+            Err(error) => {
+                println!("not {way}: {error:#}");
+                troubles.push(way.name());
             }
         }
     }
-    let packages = DEBIAN_COMPILER.join(" ");
-    println!("compiler for {target}: installing Debian's packages {packages}");
-    let installed = apt_get(&DEBIAN_COMPILER).and_then(|()| {
-        if Toolchain::find(core).is_some() {
-            return Ok(());
-        }
-        println!("linker: installing Debian's package {DEBIAN_LINKER}");
-        apt_get(&[DEBIAN_LINKER])
-    });
-    let by_hand = format!(
-        "install it by hand: `rustup target add {target}`, or Debian's packages {packages} {DEBIAN_LINKER}"
-    );
-    installed.with_context(|| format!("no compiler for {target}; {by_hand}"))?;
-    match Toolchain::find(core) {
-        Some(_) => Ok(()),
-        None => bail!("no compiler for {target} that is new enough; {by_hand}"),
-    }
+    bail!(
+        "no compiler for every core by way of {}; {BY_HAND}",
+        troubles.join(" or ")
+    )
 }
 
-fn name(toolchain: &Toolchain) -> &'static str {
-    match toolchain.origin() {
-        Origin::Installed => "there, with the toolchain in use",
-        Origin::Debian { .. } => "there, Debian's with its library sources",
+/// Installs what a way lacks.
+fn prepare(way: Way) -> Result<()> {
+    match way {
+        Way::Rustup => {
+            let targets = way.missing_targets();
+            if !targets.is_empty() {
+                println!("compiler for {}: asking rustup for it", targets.join(", "));
+                run_command(
+                    Command::new("rustup")
+                        .args(["target", "add"])
+                        .args(&targets),
+                )?;
+            }
+            if !way.has_clippy() {
+                println!("lints: asking rustup for them");
+                run_command(Command::new("rustup").args(["component", "add", "clippy"]))?;
+            }
+        }
+        Way::Debian => {
+            if !(way.is_ready() && way.has_clippy()) {
+                let packages = DEBIAN_COMPILER.join(" ");
+                println!("compiler: installing Debian's packages {packages}");
+                apt_get(&DEBIAN_COMPILER)?;
+            }
+            if !way.is_ready() {
+                println!("linker: installing Debian's package {DEBIAN_LINKER}");
+                apt_get(&[DEBIAN_LINKER])?;
+            }
+        }
+    }
+    match way.is_ready() {
+        true => Ok(()),
+        false if way == Way::Rustup => bail!("rustup serves another toolchain than the one in use"),
+        false => bail!("Debian's compiler is too old, or lacks its sources"),
     }
 }
 

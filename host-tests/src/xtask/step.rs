@@ -1,7 +1,21 @@
 //! One command of a task.
 
+use crate::firmware::PERIOD;
 use anyhow::{Context as _, Result, bail};
-use std::process::Command;
+use std::{
+    io::{self, IsTerminal as _, Read, Write},
+    process::{Command, Stdio},
+    sync::{Mutex, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+use wait_timeout::ChildExt as _;
+
+/// Cargo's variable for colours: it takes a pipe for a file otherwise.
+const COLOURS: &str = "CARGO_TERM_COLOR";
+
+/// How often silence is looked for.
+const MOMENT: Duration = Duration::from_millis(500);
 
 /// Runs a command under a heading.
 pub(super) fn step(heading: &str, command: &mut Command) -> Result<()> {
@@ -9,16 +23,53 @@ pub(super) fn step(heading: &str, command: &mut Command) -> Result<()> {
     run(command)
 }
 
-/// Runs a command; one that fails is named in full.
+/// Runs a command and passes on what it writes. Where it is silent for long, a line says that it goes on;
+/// one that fails is named in full.
 pub(super) fn run(command: &mut Command) -> Result<()> {
     let shown = shown(command);
-    let status = command
-        .status()
-        .with_context(|| format!("`{shown}` did not start"))?;
+    if io::stderr().is_terminal() && std::env::var_os(COLOURS).is_none() {
+        command.env(COLOURS, "always");
+    }
+    let child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let mut child = child.with_context(|| format!("`{shown}` did not start"))?;
+    let sign = Mutex::new(Instant::now());
+    let begun = Instant::now();
+    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+    let status = thread::scope(|scope| {
+        scope.spawn(|| pass_on(stdout, io::stdout(), &sign));
+        scope.spawn(|| pass_on(stderr, io::stderr(), &sign));
+        loop {
+            if let Some(status) = child.wait_timeout(MOMENT)? {
+                return Ok::<_, io::Error>(status);
+            }
+            let mut sign = sign.lock().unwrap_or_else(PoisonError::into_inner);
+            if sign.elapsed() >= PERIOD {
+                eprintln!(
+                    "      Still at it, {} s: {shown}",
+                    begun.elapsed().as_secs()
+                );
+                *sign = Instant::now();
+            }
+        }
+    })?;
     if !status.success() {
         bail!("`{shown}` failed ({status})");
     }
     Ok(())
+}
+
+/// Copies until the command has closed its end; notes when it gave a sign.
+fn pass_on(from: Option<impl Read>, mut to: impl Write, sign: &Mutex<Instant>) {
+    let Some(mut from) = from else { return };
+    let mut chunk = [0; 4096];
+    while let Ok(length @ 1..) = from.read(&mut chunk) {
+        // Whoever has closed this program's output is not told.
+        let _ = to.write_all(&chunk[..length]).and_then(|()| to.flush());
+        *sign.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+    }
 }
 
 /// The command as one could type it, with the variables that were set for it.

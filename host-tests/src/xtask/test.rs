@@ -1,7 +1,7 @@
 //! Everything that must hold before a change lands.
 
 use super::{setup, step::step};
-use crate::firmware::{CORTEX_M4F, REMEDY, RISCV, Toolchain, cargo, workspace};
+use crate::firmware::{CORTEX_M4F, RISCV, Toolchain, cargo, workspace};
 use anyhow::{Context as _, Result};
 use std::path::PathBuf;
 
@@ -31,12 +31,12 @@ pub(super) fn run() -> Result<()> {
             .args(["--", "-D", "warnings"]),
     )?;
     for core in [&CORTEX_M4F, &RISCV] {
-        let toolchain = Toolchain::find(core).with_context(|| format!("no compiler: {REMEDY}"))?;
+        let toolchain = Toolchain::find(core)?;
         for (precision, features) in [("single", &SINGLE[..]), ("double", &["--all-features"])] {
             step(
                 &format!("lints, on {}, {precision} precision", core.name),
                 toolchain
-                    .cargo("clippy")
+                    .cargo("clippy")?
                     .args(["--package", "allanite", "--lib", "--bins"])
                     .args(features)
                     .args(["--", "-D", "warnings"]),
@@ -61,7 +61,6 @@ pub(super) fn run() -> Result<()> {
         "the images on every core, in QEMU",
         cargo().args(["test", "--package", "host-tests", "--test", "firmware"]),
     )?;
-    println!("\n== budgets of every core");
     super::bench::check_budgets()?;
     step(
         "tests on the host, examples in the documentation",

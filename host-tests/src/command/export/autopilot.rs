@@ -13,7 +13,10 @@
 //! and `K/√dt` in rad/s². Both autopilots' defaults are far larger than any gyro's own noise: they
 //! stand for vibration and for what the filter's model lacks.
 
-use super::{Arguments, Characterisation, Given, decimal::decimal, summary};
+use super::{
+    arguments::Arguments, characterisation::Characterisation, decimal::decimal, given::Given,
+    summary,
+};
 use std::fmt::Write;
 
 /// One autopilot's names and ways.

@@ -2,7 +2,7 @@
 
 use super::given::Given;
 use crate::{
-    command::{fit::Fitted, number::duration},
+    command::{fit::fitted::Fitted, output::number::duration},
     confidence::{Limits, limits},
     equivalent::Equivalent,
     overbound::Overbound,

@@ -1,6 +1,9 @@
 //! A C header: every number a macro, its unit beside it.
 
-use super::{AxisNoise, Characterisation, Given, decimal::decimal, summary};
+use super::{
+    axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal, given::Given,
+    summary,
+};
 use crate::overbound::{GaussMarkovProcess, Overbound};
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! The curve as a table: deviations in rad/s.
 
-use super::Characterisation;
+use super::characterisation::Characterisation;
 use csv::{QuoteStyle, WriterBuilder};
 
 /// What the columns are, for people.

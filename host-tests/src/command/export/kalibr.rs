@@ -5,7 +5,13 @@
 //! walk coefficient K (Kalibr's wiki, "IMU Noise Model"). Kalibr refuses a density that is missing, or
 //! not above zero: what a record does not give is left out, with the reason.
 
-use super::{Arguments, Characterisation, Choice, Given, decimal::decimal, summary};
+use super::{
+    arguments::Arguments,
+    characterisation::{Characterisation, Choice},
+    decimal::decimal,
+    given::Given,
+    summary,
+};
 use std::fmt::Write;
 
 /// What has to be filled in by whoever measured the accelerometer.

@@ -5,7 +5,10 @@
 //! The part of the gyro's name is the best fit, `NAME_overbound` the overbound; what JSON has no comments
 //! for is in `NAME_notes`, which loadparams does not look at.
 
-use super::{Arguments, AxisNoise, Characterisation, Given, summary};
+use super::{
+    arguments::Arguments, axis_noise::AxisNoise, characterisation::Characterisation, given::Given,
+    summary,
+};
 use serde_json::{Map, Value, json};
 
 /// What a part gets wrong if nobody knows it.

@@ -1,8 +1,8 @@
 //! What stands in the comments of every format: where the numbers come from, axis by axis.
 
-use super::{AxisNoise, Characterisation, decimal::decimal};
+use super::{axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal};
 use crate::{
-    command::number::{number, probability},
+    command::output::number::{number, probability},
     overbound::Overbound,
 };
 use allanite::Coefficient;

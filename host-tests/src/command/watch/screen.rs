@@ -2,9 +2,11 @@
 
 use super::status::{AxisStatus, Status, verdict, waiting};
 use crate::command::{
-    fit_table,
-    number::{duration, number},
-    units,
+    fit,
+    output::{
+        number::{duration, number},
+        units,
+    },
 };
 use crossterm::{
     cursor::{Hide, Show},
@@ -186,9 +188,9 @@ fn table(frame: &mut Frame<'_>, area: Rect, axis: &AxisStatus, colour: Color, le
             Row::new([
                 one.name.replace('_', " "),
                 one.symbol.to_owned(),
-                fit_table::customary(one, unit),
+                fit::table::customary(one, unit),
                 customary_unit.to_owned(),
-                fit_table::interval(one, unit),
+                fit::table::interval(one, unit),
                 waiting(one, length_s),
             ])
         })

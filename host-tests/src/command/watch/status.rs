@@ -2,9 +2,11 @@
 
 use super::recording::Recording;
 use crate::command::{
-    fit::{Fitted, MethodName},
-    fit_table,
-    number::{duration, probability},
+    fit::{
+        self,
+        fitted::{Fitted, MethodName},
+    },
+    output::number::{duration, probability},
 };
 use allanite::fit::ADEQUATE_P;
 use allanite::{Coefficient, State, fit::Fit};
@@ -78,7 +80,7 @@ impl Status {
                 None => format!("{}: nothing to fit yet", axis.name),
                 Some(fitted) => {
                     let coefficients = fitted.fit.coefficients.iter().map(|one| {
-                        let value = fit_table::customary(one, fitted.axis.unit);
+                        let value = fit::table::customary(one, fitted.axis.unit);
                         format!("{} {value}", one.symbol)
                     });
                     let coefficients: Vec<String> = coefficients.collect();

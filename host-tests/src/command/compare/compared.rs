@@ -1,0 +1,56 @@
+//! A model fitted to an axis, and where it fails.
+
+use crate::{curve_file::AxisCurve, log::OCTAVES};
+use allanite::{
+    Comparison, Error, Model,
+    fit::{Fit, Options, fit},
+};
+
+/// One axis, the model that was fitted to it, and where that fails.
+pub(super) struct Compared {
+    pub(super) axis: AxisCurve,
+    pub(super) model: Model,
+    pub(super) fit: Fit,
+    /// With what was fitted; with what was held out, where something was.
+    pub(super) comparison: Comparison<OCTAVES>,
+    pub(super) held_out: Option<HeldOut>,
+}
+
+/// The part of a record that no coefficient was fitted to.
+pub(super) struct HeldOut {
+    pub(super) axis: AxisCurve,
+    /// Rms misfit, in percent, in the part that was fitted.
+    pub(super) fitted_rms_percent: f64,
+}
+
+impl Compared {
+    pub(super) fn new(
+        axis: AxisCurve,
+        model: &Model,
+        held_out: Option<AxisCurve>,
+    ) -> Result<Self, Error> {
+        let options = Options::default();
+        let curve = axis.curve()?;
+        let fit = fit(&curve, model, options)?;
+        let fitted = Comparison::new(&curve, model, &fit)?;
+        let (comparison, held_out) = match held_out {
+            None => (fitted, None),
+            Some(axis) => {
+                let tolerance = options.tolerance;
+                let comparison = Comparison::held_out(&axis.curve()?, model, &fit, tolerance)?;
+                let held_out = HeldOut {
+                    axis,
+                    fitted_rms_percent: fitted.rms_percent,
+                };
+                (comparison, Some(held_out))
+            }
+        };
+        Ok(Self {
+            axis,
+            model: model.clone(),
+            fit,
+            comparison,
+            held_out,
+        })
+    }
+}

@@ -1,0 +1,68 @@
+//! The model that `compare` is asked about: the five terms, with and without effects.
+
+use crate::{
+    command::effect_argument::EffectArgument,
+    failure::{Failure, quoted},
+};
+use allanite::{MAX_EFFECTS, Model, Term};
+use clap::Args;
+
+/// Effects to add and to leave out.
+#[derive(Debug, Args)]
+pub(super) struct ModelArguments {
+    /// Add an effect with its shape, such as `sinusoid:frequency_hz=0.3` or
+    /// `decimation_filter:width_s=0.014,stages=2`; its coefficient is fitted. One that replaces a
+    /// term takes its place
+    #[arg(long, value_name = "EFFECT[:parameter=value,…]")]
+    with: Vec<String>,
+    /// Leave out a term, such as `rate_ramp`
+    #[arg(long, value_name = "EFFECT")]
+    without: Vec<String>,
+}
+
+impl ModelArguments {
+    /// The model.
+    pub(super) fn model(&self) -> Result<Model, Failure> {
+        let mut model = Model::ieee_952();
+        for name in &self.without {
+            if model.position(name).is_none() {
+                let names = model.terms().iter().map(|term| term.effect.name());
+                return Err(Failure::option(
+                    format!("--without {}: not in the model", quoted(name.as_bytes())),
+                    format!("choose from {}", names.collect::<Vec<_>>().join(", ")),
+                ));
+            }
+            model = model.without(name);
+        }
+        for text in &self.with {
+            let mut argument = EffectArgument::parse("--with", text)?;
+            let effect = argument.effect()?;
+            if model.position(effect.name()).is_some() {
+                return Err(argument.failure("is in the model already", "leave it away"));
+            }
+            let mut term = Term::new(effect);
+            term.parameters = argument.shape(effect)?;
+            if argument.take(effect.coefficient()).is_some() {
+                let what = format!("{} is fitted, not given", effect.coefficient());
+                return Err(argument.failure(what, "give the shape alone"));
+            }
+            if let Some(replaced) = effect.replaces() {
+                model = model.without(replaced.name());
+            }
+            model.add(term).map_err(|_| {
+                argument.failure(
+                    format!("more than {MAX_EFFECTS} effects"),
+                    "leave some out with --without",
+                )
+            })?;
+            argument.finish()?;
+        }
+        if model.terms().is_empty() {
+            return Err(Failure::option(
+                "no effects are left",
+                "leave fewer --without",
+            ));
+        }
+        Ok(model)
+    }
+}

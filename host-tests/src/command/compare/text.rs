@@ -1,0 +1,116 @@
+//! A comparison for people.
+
+use super::compared::Compared;
+use crate::{
+    command::{
+        fit,
+        output::{
+            number::{duration, number, probability},
+            words,
+        },
+    },
+    plot::Plot,
+};
+use allanite::State;
+use comfy_table::{CellAlignment, Table, presets::NOTHING};
+use std::io::{self, Write};
+
+/// A share below this is not worth a number.
+const LEAST_SHARE: f32 = 0.005;
+
+/// Prints a table and a plot an axis.
+pub(super) fn print(compared: &[Compared], output: &mut impl Write) -> io::Result<()> {
+    for (i, compared) in compared.iter().enumerate() {
+        if i > 0 {
+            writeln!(output)?;
+        }
+        print_axis(compared, output)?;
+    }
+    Ok(())
+}
+
+fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
+    let Compared {
+        axis,
+        model,
+        fit,
+        comparison,
+        held_out,
+    } = compared;
+    let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
+    let part = held_out.as_ref().map_or("", |_| "fitted to the first ");
+    writeln!(output, "{}: {part}{record}", axis.axis)?;
+    for (term, _) in model.terms().iter().zip(&fit.coefficients) {
+        let shape = words::shape(term, None);
+        if !shape.is_empty() {
+            writeln!(output, "with {}: {shape}", words::plain(term.effect.name()))?;
+        }
+    }
+    writeln!(output, "{}", fit::table::table(fit, axis.unit).trim_fmt())?;
+    if let Some(held_out) = held_out {
+        writeln!(
+            output,
+            "\nin what was fitted: χ² {:.1}, {} degrees of freedom, misfit {:.1} % rms",
+            fit.chi_squared, fit.degrees_of_freedom, held_out.fitted_rms_percent
+        )?;
+        let rest = &held_out.axis;
+        let record = words::record(rest.samples, rest.rate_hz, rest.octaves.len());
+        writeln!(output, "compared with the last {record}, held out")?;
+    }
+    writeln!(output)?;
+    writeln!(output, "{}", octaves(compared).trim_fmt())?;
+    writeln!(output)?;
+    let against = held_out
+        .as_ref()
+        .map_or("the record", |_| "what was held out");
+    let title = format!(
+        "{}: Allan deviation of {against} and of the model",
+        axis.axis
+    );
+    write!(output, "{}", Plot::new(&title, axis.unit, comparison))?;
+    let p = match comparison.p_value {
+        p if p.is_finite() => format!(", p {}", probability(p)),
+        _ => String::new(),
+    };
+    writeln!(
+        output,
+        "\n{}: χ² {:.1}, {} degrees of freedom{p}, misfit {:.1} % rms",
+        axis.axis, comparison.chi_squared, comparison.degrees_of_freedom, comparison.rms_percent
+    )?;
+    writeln!(output, "{}: {comparison}", axis.axis)
+}
+
+/// The octaves: measured, model, difference, and who makes up the model.
+fn octaves(compared: &Compared) -> Table {
+    let unit = compared.axis.unit;
+    // Effects that are not there have no column.
+    let coefficients = compared.fit.coefficients.iter().enumerate();
+    let shown: Vec<(usize, &'static str)> = coefficients
+        .filter(|(_, coefficient)| coefficient.square > 0.0 || coefficient.state == State::Measured)
+        .map(|(i, coefficient)| (i, coefficient.symbol))
+        .collect();
+    let mut table = Table::new();
+    table.load_style(NOTHING);
+    let header = ["τ", "measured", "model", "difference", "z"].map(String::from);
+    let shares = shown.iter().map(|(_, symbol)| format!("{symbol} %"));
+    table.set_header(header.into_iter().chain(shares));
+    for octave in &compared.comparison.octaves {
+        let row = [
+            duration(octave.tau_s),
+            format!("{} {unit}", number(octave.measured.sqrt())),
+            format!("{} {unit}", number(octave.model.sqrt())),
+            format!("{:+.1} %", octave.percent()),
+            format!("{:+.1}", octave.z),
+        ];
+        let share = |&(i, _): &(usize, &str)| match octave.shares.get(i) {
+            Some(&share) if share >= LEAST_SHARE => format!("{:.0}", 100.0 * share),
+            _ => "·".into(),
+        };
+        table.add_row(row.into_iter().chain(shown.iter().map(share)));
+    }
+    for column in table.column_iter_mut() {
+        column.set_padding((0, 2));
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}

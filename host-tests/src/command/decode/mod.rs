@@ -1,0 +1,84 @@
+//! `decode`: from stored bytes to what they say.
+
+mod decoded;
+mod json;
+mod text;
+
+use crate::{
+    command::{examples, input::many},
+    failure::{Failure, Place},
+};
+use allanite::{Error, Record, Snapshot};
+use clap::Args;
+use decoded::{Decoded, Stored, StoredSnapshot};
+use std::{
+    fs::File,
+    io::{self, Read, Write},
+    path::{Path, PathBuf},
+};
+
+/// An envelope is shorter; beyond this it is something else.
+const LARGEST: u64 = 1 << 17;
+
+/// Decode factory records and snapshots that a gyro stored
+#[derive(Debug, Args)]
+#[command(after_help = examples::DECODE)]
+pub(super) struct Arguments {
+    /// Files of one record or snapshot each; several records make one table
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command: what can be decoded is printed, whatever the others are.
+pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
+    let (mut decoded, mut failures) = (Vec::new(), Vec::new());
+    for file in &arguments.files {
+        match decode(file) {
+            Ok(stored) => decoded.push(Decoded {
+                file: file.clone(),
+                stored,
+            }),
+            Err(failure) => failures.push(failure),
+        }
+    }
+    if !decoded.is_empty() {
+        let printed = if arguments.json {
+            json::print(&decoded, output)
+        } else {
+            text::print(&decoded, output)
+        };
+        let printed = printed.and_then(|()| output.flush());
+        printed.map_err(|error| Failure::standard_output(&error))?;
+    }
+    many::failed(failures)
+}
+
+fn decode(path: &Path) -> Result<Stored, Failure> {
+    let bytes = read(path).map_err(|error| Place::file(path).io(&error))?;
+    let stored = match Record::decode(&bytes) {
+        Ok(record) => Ok(Stored::Record(Box::new(record))),
+        Err(Error::OtherKind { .. }) => Snapshot::open(&bytes).map(|snapshot| {
+            Stored::Snapshot(StoredSnapshot {
+                samples: snapshot.samples(),
+                gaps: snapshot.gaps(),
+                octaves: snapshot.octaves().collect(),
+            })
+        }),
+        Err(error) => Err(error),
+    };
+    stored.map_err(|error| {
+        // The library's errors read `what: remedy`.
+        let text = error.to_string();
+        let (what, remedy) = text.rsplit_once(": ").unwrap_or((&text, "store it again"));
+        Place::file(path).failure(what, remedy)
+    })
+}
+
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(LARGEST).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}

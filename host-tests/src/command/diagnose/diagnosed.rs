@@ -1,0 +1,228 @@
+//! A record and the way of its diagnosis: what `diagnose` prints, `report` shows and `plot` draws.
+
+use crate::{
+    command::{
+        input::record::{self, LogArguments},
+        output::words,
+    },
+    curve_file::AxisCurve,
+    failure::Failure,
+    log::{CovariateChoice, Evidence, OCTAVES},
+};
+use allanite::{
+    CrossCurve, Error, Model, Term,
+    diagnosis::{
+        Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
+    },
+    effect::{CATALOGUE, covariate},
+};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// What to diagnose, and how.
+#[derive(Debug, Args)]
+pub(crate) struct DiagnosisArguments {
+    /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
+    pub(crate) input: PathBuf,
+    #[command(flatten)]
+    settings: DiagnosisSettings,
+}
+
+impl DiagnosisArguments {
+    /// Diagnoses every axis.
+    pub(crate) fn diagnosed(&self) -> Result<Vec<Diagnosed>, Failure> {
+        self.settings.diagnosed(&self.input)
+    }
+}
+
+/// How to diagnose.
+#[derive(Debug, Args)]
+pub(crate) struct DiagnosisSettings {
+    /// Most effects to add [default: 3]
+    #[arg(long, value_name = "N")]
+    max_effects: Option<usize>,
+    /// Columns of the log that the rate may follow, or their rates of change, such as
+    /// `temp_C,rate(temp_C)`
+    #[arg(long, value_delimiter = ',', value_name = "COLUMN,…")]
+    covariates: Vec<CovariateChoice>,
+    #[command(flatten)]
+    about_log: LogArguments,
+}
+
+impl DiagnosisSettings {
+    /// Diagnoses every axis of a record.
+    pub(crate) fn diagnosed(&self, path: &Path) -> Result<Vec<Diagnosed>, Failure> {
+        let diagnose = |(axis, evidence): (AxisCurve, Evidence)| {
+            let name = axis.axis.clone();
+            Diagnosed::new(axis, evidence, self.max_effects)
+                .map_err(|error| record::library_failure(path, &name, error))
+        };
+        let axes = record::read_with_evidence(path, &self.about_log, &self.covariates)?;
+        axes.into_iter().map(diagnose).collect()
+    }
+}
+
+/// One axis, and the way from the five terms to what explains it.
+pub(crate) struct Diagnosed {
+    pub(crate) axis: AxisCurve,
+    /// At least one: the last is the model that the diagnosis ends with.
+    pub(crate) steps: Vec<Step<OCTAVES>>,
+    pub(crate) verdict: Verdict,
+    /// How effects were looked for.
+    pub(crate) options: Options,
+    /// Names of the covariates, and what the axis shares with each.
+    covariates: Vec<String>,
+    cross: Vec<CrossCurve<OCTAVES>>,
+}
+
+impl Diagnosed {
+    fn new(axis: AxisCurve, evidence: Evidence, max_effects: Option<usize>) -> Result<Self, Error> {
+        let default = Options::default();
+        let options = Options {
+            max_effects: max_effects.unwrap_or(default.max_effects),
+            ..default
+        };
+        let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
+        let evidence = allanite::diagnosis::Evidence {
+            kurtosis: Some(&evidence.kurtosis),
+            covariates: &cross,
+            invalid: evidence.invalid,
+        };
+        let mut steps = Vec::new();
+        let curve = axis.curve()?;
+        let model = Model::ieee_952();
+        let diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options)?;
+        let verdict = diagnosis.run(|step| steps.push(step.clone()))?;
+        Ok(Self {
+            axis,
+            steps,
+            verdict,
+            options,
+            covariates,
+            cross,
+        })
+    }
+
+    /// The model that was asked about, and the one that the diagnosis ends with.
+    pub(crate) fn ends(&self) -> Option<(&Step<OCTAVES>, &Step<OCTAVES>)> {
+        self.steps.first().zip(self.steps.last())
+    }
+
+    /// The model of a step in words: `five terms + sinusoid`.
+    pub(crate) fn model_name(&self, step: usize) -> String {
+        let Some(step) = self.steps.get(step) else {
+            return String::new();
+        };
+        let channel = step
+            .covariate
+            .as_ref()
+            .map(|followed| self.covariate(followed));
+        let added = self
+            .added_in(step)
+            .map(|term| words::plain(term.effect.name()));
+        let parts = std::iter::once("five terms".to_owned());
+        let parts = parts.chain(channel.map(str::to_owned)).chain(added);
+        parts.collect::<Vec<_>>().join(" + ")
+    }
+
+    /// The step that would have followed a step's candidate, had it been added.
+    pub(crate) fn alternative(
+        &self,
+        step: usize,
+        candidate: &Candidate,
+    ) -> Result<Step<OCTAVES>, Error> {
+        let mut curve = self.axis.curve()?;
+        let before = step
+            .checked_sub(1)
+            .and_then(|before| self.steps.get(before));
+        let step = &self.steps[step];
+        if let Some(followed) = &step.covariate {
+            self.cross[followed.index].correct(&mut curve, &followed.slope);
+        }
+        alternative(&curve, step, before, candidate)
+    }
+
+    /// The effects that were added and kept, without covariates, as the last model has them.
+    fn added(&self) -> impl Iterator<Item = &Term> {
+        self.steps
+            .last()
+            .into_iter()
+            .flat_map(|last| self.added_in(last))
+    }
+
+    /// The effects of a step that the model that was asked about has not.
+    fn added_in<'a>(&'a self, step: &'a Step<OCTAVES>) -> impl Iterator<Item = &'a Term> {
+        let asked = self.steps.first();
+        step.model.terms().iter().filter(move |term| {
+            let asked = asked.map(|asked| asked.model.position(term.effect.name()));
+            asked.flatten().is_none()
+        })
+    }
+
+    /// Names of all that was added and kept.
+    pub(crate) fn missing(&self) -> impl Iterator<Item = &'static str> {
+        let followed = self.steps.last().and_then(|last| last.covariate);
+        let covariate = followed.map(|_| covariate::NAME);
+        covariate
+            .into_iter()
+            .chain(self.added().map(|term| term.effect.name()))
+    }
+
+    /// What every step added, with the effects that explain its curve about as well: without steps whose
+    /// addition was dropped later.
+    pub(crate) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
+        let swaps = self.steps.iter().skip(1).map(|next| next.swap().is_some());
+        let kept = self
+            .steps
+            .iter()
+            .zip(swaps)
+            .filter(|&(_, dropped)| !dropped);
+        kept.filter_map(|(step, _)| {
+            let others = step.ambiguous.as_slice();
+            let added = step.added.as_ref().filter(|_| !others.is_empty())?;
+            Some((added_name(added), others))
+        })
+    }
+
+    /// The covariate that the rate follows, by name.
+    pub(crate) fn covariate(&self, followed: &FollowedCovariate) -> &str {
+        &self.covariates[followed.index]
+    }
+
+    /// What is worth knowing beside the figures, one line each.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let Some((first, last)) = self.ends() else {
+            return Vec::new();
+        };
+        let mut notes = Vec::new();
+        if self.verdict == Verdict::TooShort {
+            notes.push("there are too few octaves to judge the model: record longer".into());
+        }
+        if let Verdict::Invalid(reason) = self.verdict {
+            notes.push(reason.to_string());
+        }
+        for (added, others) in self.ambiguous() {
+            notes.push(format!(
+                "{} is ambiguous: {} explains this curve as well",
+                words::plain(added),
+                words::list(others.iter().copied())
+            ));
+        }
+        if self.missing().count() > 0 {
+            notes.extend(words::damage(first, last, self.axis.unit));
+        }
+        let aliases = self
+            .added()
+            .filter_map(|term| words::alias(term, self.axis.rate_hz));
+        notes.extend(aliases);
+        notes
+    }
+}
+
+/// What was added, by its name in files.
+pub(crate) fn added_name(added: &Addition) -> &'static str {
+    match added {
+        Addition::Effect(term) => term.effect.name(),
+        _ => covariate::NAME,
+    }
+}

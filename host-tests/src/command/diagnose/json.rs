@@ -1,0 +1,122 @@
+//! A diagnosis for programs.
+
+use super::diagnosed::{Diagnosed, added_name};
+use crate::{
+    command::{
+        fit,
+        output::model_json::{self, Effect, Worst},
+    },
+    log::OCTAVES,
+    unit::Unit,
+};
+use allanite::diagnosis::{Candidate as Tried, Step as Taken};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// What a command prints of one file.
+#[derive(Serialize)]
+pub(crate) struct Document<'a> {
+    axes: Vec<Axis<'a>>,
+}
+
+#[derive(Serialize)]
+struct Axis<'a> {
+    axis: &'a str,
+    steps: Vec<Step>,
+    verdict: &'static str,
+    missing: Vec<&'static str>,
+    ambiguous: Vec<&'static str>,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Step {
+    effects: Vec<Effect>,
+    coefficients: Vec<fit::json::Term>,
+    chi2: f64,
+    dof: usize,
+    p_value: f64,
+    rms_percent: f64,
+    worst: Option<Worst>,
+    candidates: Vec<Candidate>,
+    added: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct Candidate {
+    effect: &'static str,
+    parameters: Map<String, Value>,
+    chi2: f64,
+    improvement: f64,
+    /// What else changes if it is added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    swap: Option<Swap>,
+}
+
+#[derive(Serialize)]
+struct Swap {
+    dropped: &'static str,
+    taken: &'static str,
+}
+
+/// The diagnoses as one document.
+pub(crate) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
+    Document {
+        axes: diagnosed.iter().map(axis).collect(),
+    }
+}
+
+fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
+    let unit = diagnosed.axis.unit;
+    let mut names: Vec<&'static str> = diagnosed
+        .ambiguous()
+        .flat_map(|(_, others)| others.iter().copied())
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    Axis {
+        axis: &diagnosed.axis.axis,
+        steps: diagnosed
+            .steps
+            .iter()
+            .map(|one| step(one, diagnosed, unit))
+            .collect(),
+        verdict: diagnosed.verdict.name(),
+        missing: diagnosed.missing().collect(),
+        ambiguous: names,
+        notes: diagnosed.notes(),
+    }
+}
+
+fn step(step: &Taken<OCTAVES>, diagnosed: &Diagnosed, unit: Unit) -> Step {
+    let followed = step.covariate.as_ref();
+    let covariate =
+        followed.map(|followed| model_json::covariate(followed, diagnosed.covariate(followed)));
+    Step {
+        effects: covariate
+            .into_iter()
+            .chain(model_json::effects(&step.model, &step.fit))
+            .collect(),
+        coefficients: model_json::coefficients(&step.fit, unit),
+        chi2: step.fit.chi_squared,
+        dof: step.fit.degrees_of_freedom,
+        p_value: step.fit.p_value,
+        rms_percent: step.comparison.rms_percent,
+        worst: model_json::worst(&step.comparison),
+        candidates: step.candidates.iter().map(candidate).collect(),
+        added: step.added.as_ref().map(added_name),
+    }
+}
+
+fn candidate(tried: &Tried) -> Candidate {
+    Candidate {
+        effect: tried.term.effect.name(),
+        parameters: model_json::parameters(&tried.term, tried.coefficient),
+        chi2: tried.chi_squared,
+        improvement: tried.improvement,
+        swap: tried.swap.map(|swap| Swap {
+            dropped: swap.dropped.name(),
+            taken: swap.taken.name(),
+        }),
+    }
+}

@@ -1,0 +1,129 @@
+//! A diagnosis for people.
+
+use super::{
+    diagnosed::Diagnosed,
+    words::{Finding, candidate_name, shown_p, verdict},
+};
+use crate::{
+    command::{fit, output::words},
+    log::OCTAVES,
+    plot::Plot,
+};
+use allanite::diagnosis::{Candidate, Step};
+use std::io::{self, Write};
+
+/// Prints the way of every axis, from the five terms to the model that the diagnosis ends with.
+pub(crate) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
+    for (i, diagnosed) in diagnosed.iter().enumerate() {
+        if i > 0 {
+            writeln!(output)?;
+        }
+        print_axis(diagnosed, output)?;
+    }
+    Ok(())
+}
+
+fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> {
+    let axis = &diagnosed.axis;
+    let Some((first, last)) = diagnosed.ends() else {
+        return Ok(());
+    };
+    let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
+    writeln!(output, "{}: {record}", axis.axis)?;
+    writeln!(
+        output,
+        "five terms: χ² {:.1}, {} degrees of freedom, p {}; misfit {:.1} % rms",
+        first.fit.chi_squared,
+        first.fit.degrees_of_freedom,
+        shown_p(first.fit.p_value),
+        first.comparison.rms_percent
+    )?;
+    writeln!(output, "  {}", first.comparison)?;
+    for (number, pair) in diagnosed.steps.windows(2).enumerate() {
+        let [before, after] = pair else { continue };
+        if let Some(finding) = Finding::new(diagnosed, before, after) {
+            print_step(number + 1, before, after, &finding, output)?;
+        }
+    }
+    if last.added.is_none() && !last.candidates.is_empty() {
+        writeln!(output, "\nnothing in the catalogue helps further; tried:")?;
+        print_candidates(last, output)?;
+    }
+    let notes = diagnosed.notes();
+    if !notes.is_empty() {
+        writeln!(output, "\nto note:")?;
+    }
+    for note in notes {
+        writeln!(output, "  {note}")?;
+    }
+    writeln!(output)?;
+    for (at, term) in last.model.terms().iter().enumerate() {
+        let shape = words::shape(term, Some((&last.fit, at)));
+        if !shape.is_empty() {
+            writeln!(output, "{}: {shape}", words::plain(term.effect.name()))?;
+        }
+    }
+    writeln!(
+        output,
+        "{}",
+        fit::table::table(&last.fit, axis.unit).trim_fmt()
+    )?;
+    writeln!(output)?;
+    let title = format!(
+        "{}: Allan deviation of the record and of the model",
+        axis.axis
+    );
+    write!(output, "{}", Plot::new(&title, axis.unit, &last.comparison))?;
+    writeln!(output)?;
+    writeln!(output, "{}: {}", axis.axis, verdict(diagnosed))
+}
+
+/// One line “error before → after”, then what was added and why.
+fn print_step(
+    number: usize,
+    before: &Step<OCTAVES>,
+    after: &Step<OCTAVES>,
+    finding: &Finding,
+    output: &mut impl Write,
+) -> io::Result<()> {
+    writeln!(
+        output,
+        "\n{number}. + {}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p {}",
+        finding.name,
+        before.fit.chi_squared,
+        after.fit.chi_squared,
+        before.comparison.rms_percent,
+        after.comparison.rms_percent,
+        shown_p(after.fit.p_value)
+    )?;
+    if let Some(found) = &finding.found {
+        writeln!(output, "  {found}")?;
+    }
+    let labelled = |(label, text): &(&str, &str)| format!("  {:<22}{text}", format!("{label}:"));
+    for line in finding.lines().iter().map(labelled) {
+        writeln!(output, "{line}")?;
+    }
+    if !before.candidates.is_empty() {
+        writeln!(output, "  candidates, best first:")?;
+        print_candidates(before, output)?;
+    }
+    if let Some(ambiguous) = &finding.ambiguous {
+        writeln!(output, "  ambiguous: {ambiguous}")?;
+    }
+    writeln!(output, "  now {}", after.comparison)
+}
+
+fn print_candidates(step: &Step<OCTAVES>, output: &mut impl Write) -> io::Result<()> {
+    let line = |candidate: &Candidate| {
+        format!(
+            "χ² {:>8.1}, improvement {:>8.1}: {}",
+            candidate.chi_squared,
+            candidate.improvement,
+            candidate_name(candidate)
+        )
+    };
+    for candidate in &step.candidates {
+        writeln!(output, "    {}", line(candidate))?;
+    }
+    Ok(())
+}

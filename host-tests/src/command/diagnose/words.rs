@@ -1,0 +1,213 @@
+//! A diagnosis in words: those that `diagnose` prints and the page of `report` shows.
+
+use super::diagnosed::Diagnosed;
+use crate::{
+    command::output::{
+        number::{self, probability},
+        words,
+    },
+    log::OCTAVES,
+};
+use allanite::{
+    Term,
+    diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
+    effect::{Explanation, covariate, explanation},
+};
+
+/// What a step of a diagnosis added, and why.
+pub(crate) struct Finding {
+    /// The effect or the covariate.
+    pub(crate) name: String,
+    /// Its shape and its size, with intervals.
+    pub(crate) found: Option<String>,
+    explanation: Option<Explanation>,
+    /// What it changes in the model or in the curve.
+    change: Option<(&'static str, String)>,
+    /// What cannot be told from it.
+    pub(crate) ambiguous: Option<String>,
+}
+
+impl Finding {
+    /// Between a step and the next; `None` where nothing was added.
+    pub(crate) fn new(
+        diagnosed: &Diagnosed,
+        before: &Step<OCTAVES>,
+        after: &Step<OCTAVES>,
+    ) -> Option<Self> {
+        let mut finding = match before.added.as_ref()? {
+            Addition::Effect(added) => Self::effect(diagnosed, before, after, added),
+            Addition::Covariate(follows) => Self::covariate(diagnosed, follows),
+        };
+        if !before.ambiguous.is_empty() {
+            let others = words::list(before.ambiguous.iter().copied());
+            finding.ambiguous = Some(format!("{others} cannot be told from it on this curve"));
+        }
+        Some(finding)
+    }
+
+    fn effect(
+        diagnosed: &Diagnosed,
+        before: &Step<OCTAVES>,
+        after: &Step<OCTAVES>,
+        added: &Term,
+    ) -> Self {
+        let effect = added.effect;
+        let name = words::plain(effect.name()) + &instead(before.swap());
+        let place = |replaced: &str| format!("takes the place of {}", words::plain(replaced));
+        let change = effect.replaces().map(|replaced| place(replaced.name()));
+        Self {
+            name,
+            found: found(after, effect.name(), diagnosed),
+            explanation: explanation(effect.name()),
+            change: change.map(|change| ("in the model", change)),
+            ambiguous: None,
+        }
+    }
+
+    fn covariate(diagnosed: &Diagnosed, followed: &FollowedCovariate) -> Self {
+        let channel = diagnosed.covariate(followed);
+        let (slope, (lower, upper)) = (followed.slope, followed.slope.interval());
+        let found = format!(
+            "slope {} {} per unit of {channel} ({} … {}), 95 % interval; {:.1} standard errors",
+            number::number(slope.value),
+            diagnosed.axis.unit,
+            number::number(lower),
+            number::number(upper),
+            slope.z()
+        );
+        let change = format!("what follows {channel} is taken off, here and below");
+        Self {
+            name: format!("{} {channel}", words::plain(covariate::NAME)),
+            found: Some(found),
+            explanation: Some(covariate::EXPLANATION),
+            change: Some(("in the curve", change)),
+            ambiguous: None,
+        }
+    }
+
+    /// What it is, where it comes from, what to check, and what it changes: each with its label.
+    pub(crate) fn lines(&self) -> Vec<(&'static str, &str)> {
+        let explanation = self.explanation.map(|explanation| {
+            [
+                ("what it is", explanation.what),
+                ("where it comes from", explanation.origin),
+                ("what to check", explanation.check),
+            ]
+        });
+        let change = self.change.as_ref();
+        let change = change.map(|(label, text)| (*label, text.as_str()));
+        explanation.into_iter().flatten().chain(change).collect()
+    }
+}
+
+/// Shape and coefficient of an effect in a step, with their intervals.
+pub(crate) fn found(step: &Step<OCTAVES>, effect: &str, diagnosed: &Diagnosed) -> Option<String> {
+    let at = step.model.position(effect)?;
+    let term = step.model.terms().get(at)?;
+    let mut found = words::shape(term, Some((&step.fit, at)));
+    if !found.is_empty() {
+        found += "; ";
+    }
+    let coefficient = step.fit.coefficients.get(at)?;
+    found += &words::coefficient(term.effect, coefficient, diagnosed.axis.unit);
+    Some(found + ", 95 % intervals")
+}
+
+/// What else changes with an addition: `, sinusoid instead of resonance`.
+fn instead(swap: Option<Swap>) -> String {
+    swap.map_or(String::new(), |swap| {
+        let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| words::plain(effect.name()));
+        format!(", {taken} instead of {dropped}")
+    })
+}
+
+/// An effect that was tried, with its shape and what else changes with it.
+pub(crate) fn candidate_name(candidate: &Candidate) -> String {
+    let shape = words::shape(&candidate.term, None);
+    let name = words::plain(candidate.term.effect.name());
+    let instead = instead(candidate.swap);
+    if shape.is_empty() {
+        name + &instead
+    } else {
+        format!("{name} ({shape}){instead}")
+    }
+}
+
+/// A probability with its relation, where there is one.
+pub(crate) fn shown_p(p: f64) -> String {
+    if p.is_finite() {
+        probability(p)
+    } else {
+        "unknown".into()
+    }
+}
+
+/// What the diagnosis ends with, in a sentence.
+pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
+    let Some((first, last)) = diagnosed.ends() else {
+        return String::new();
+    };
+    let p = shown_p(last.fit.p_value);
+    match diagnosed.verdict {
+        Verdict::Invalid(_) => "the record is invalid: its curve cannot mean what it says, and no \
+                                effect was looked for."
+            .into(),
+        Verdict::Adequate => format!("the five terms are adequate (p {p}): no effect is missing."),
+        Verdict::TooShort => {
+            "there are too few octaves to judge the five terms: record longer.".into()
+        }
+        Verdict::Unexplained => format!(
+            "the five terms are not adequate (p {p}), and no effect in the catalogue explains it."
+        ),
+        _ => {
+            let names = diagnosed.missing().map(|name| match &last.covariate {
+                Some(followed) if name == covariate::NAME => {
+                    format!("{name} {}", diagnosed.covariate(followed))
+                }
+                _ => words::plain(name),
+            });
+            let names = words::list_of(names.collect());
+            let alike = if diagnosed.ambiguous().next().is_some() {
+                " (or what is ambiguous with it)"
+            } else {
+                ""
+            };
+            let error = format!(
+                "χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms",
+                first.fit.chi_squared,
+                last.fit.chi_squared,
+                first.comparison.rms_percent,
+                last.comparison.rms_percent
+            );
+            let lack = if first.fit.is_adequate() == Some(true) {
+                "the five terms explain the curve, and yet lack"
+            } else {
+                "the five terms lack"
+            };
+            let missing = format!("{lack} {names}{alike}: {error}");
+            if last.fit.is_adequate() == Some(true) {
+                format!("{missing}; the model is adequate now (p {p}).")
+            } else {
+                format!("{missing}; something small is left that no effect explains (p {p}).")
+            }
+        }
+    }
+}
+
+/// The whole diagnosis in one sentence: where the five terms fail, what they lack, how far the error
+/// falls.
+pub(crate) fn lead(diagnosed: &Diagnosed) -> String {
+    let verdict = verdict(diagnosed);
+    let Some((first, _)) = diagnosed.ends() else {
+        return verdict;
+    };
+    if matches!(diagnosed.verdict, Verdict::Adequate) {
+        return verdict;
+    }
+    // The worst octave comes first, in `measured is 59 % above the model at τ = 20.0 ms (58 σ); …`.
+    let failure = first.comparison.to_string();
+    let worst = failure.split(';').next().unwrap_or_default();
+    let worst = worst.replace("the model", "the five-term model");
+    let worst = worst.replace(" σ)", " standard errors)");
+    format!("{worst}; {verdict}")
+}

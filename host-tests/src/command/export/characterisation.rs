@@ -1,0 +1,104 @@
+//! What is known of a gyro, for other programs.
+
+use super::{arguments::Arguments, axis_noise::AxisNoise, given::Given};
+use crate::{
+    command::{
+        fit::fitted::{Fitted, MethodName},
+        input::record,
+    },
+    failure::{Failure, Place},
+    unit::Sensor,
+};
+
+/// What is known of the gyro, in radians and seconds.
+pub(super) struct Characterisation {
+    pub(super) axes: Vec<AxisNoise>,
+    pub(super) rate_hz: f64,
+}
+
+impl Characterisation {
+    /// What a format takes that has one number for all axes: the largest.
+    pub(super) fn common(&self, of_axis: impl Fn(&AxisNoise) -> Given) -> Given {
+        Given::largest(
+            self.axes
+                .iter()
+                .map(|axis| (axis.name.as_str(), of_axis(axis))),
+        )
+    }
+
+    /// White noise and random walk as the best fit has them.
+    pub(super) fn best(&self) -> Pair {
+        Pair {
+            noise_density: self.common(|axis| axis.best("N")),
+            random_walk: self.common(|axis| axis.best("K")),
+        }
+    }
+
+    /// Those of the overbound.
+    pub(super) fn overbound(&self) -> Pair {
+        Pair {
+            noise_density: self.common(AxisNoise::overbound_density),
+            random_walk: self.common(AxisNoise::overbound_walk),
+        }
+    }
+
+    /// What the filter is to take, and what stands beside it in comments.
+    pub(super) fn chosen(&self, overbound: bool) -> (Choice, Choice) {
+        let best = Choice {
+            name: "best fit",
+            pair: self.best(),
+        };
+        let above = Choice {
+            name: "overbound",
+            pair: self.overbound(),
+        };
+        if overbound {
+            (above, best)
+        } else {
+            (best, above)
+        }
+    }
+}
+
+/// What most filters know of a gyro, continuous-time.
+pub(super) struct Pair {
+    /// In rad/s/√Hz.
+    pub(super) noise_density: Given,
+    /// In rad/s²/√Hz.
+    pub(super) random_walk: Given,
+}
+
+/// One of the two kinds of numbers.
+pub(super) struct Choice {
+    pub(super) name: &'static str,
+    pub(super) pair: Pair,
+}
+
+/// Reads, fits and bounds every axis.
+pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Failure> {
+    let path = &arguments.input;
+    let mut axes = Vec::new();
+    for axis in record::read(path, &arguments.about_log)? {
+        if axis.unit.sensor() != Sensor::Gyro {
+            let what = format!("axis {} is an accelerometer's, in {}", axis.axis, axis.unit);
+            let remedy = "export a gyro; `fit` prints the coefficients of an accelerometer";
+            return Err(Place::file(path).failure(what, remedy));
+        }
+        let fitted = Fitted::new(path, axis, MethodName::Covariance)?;
+        let name = fitted.axis.axis.clone();
+        let noise = AxisNoise::of(fitted).ok_or_else(|| {
+            let what = format!("axis {name}: its curve has no finite confidence limits");
+            Place::file(path).failure(what, "record longer")
+        })?;
+        axes.push(noise);
+    }
+    // Logs have one rate; a curve file could have several.
+    let rate_hz = axes
+        .first()
+        .map_or(f64::NAN, |axis: &AxisNoise| axis.rate_hz);
+    if let Some(other) = axes.iter().find(|axis| axis.rate_hz != rate_hz) {
+        let what = format!("axes of {rate_hz} Hz and {} Hz", other.rate_hz);
+        return Err(Place::file(path).failure(what, "export axes of one rate at a time"));
+    }
+    Ok(Characterisation { axes, rate_hz })
+}

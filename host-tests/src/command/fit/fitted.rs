@@ -1,0 +1,74 @@
+//! The five terms fitted to an axis.
+
+use crate::{command::input::record, curve_file::AxisCurve, failure::Failure, log::OCTAVES};
+use allanite::{
+    Curve, Model,
+    fit::{Fit, Method, Options, fit},
+};
+use clap::ValueEnum;
+use std::path::Path;
+
+/// The weights by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodName {
+    /// Unweighted least squares, unconstrained: the baseline
+    Ordinary,
+    /// Each octave by its relative accuracy times its value, unconstrained
+    RelativeAccuracy,
+    /// Each octave by its number of clusters, unconstrained: for comparison only
+    ClusterCount,
+    /// The covariance of the curve, coefficients not negative
+    Covariance,
+}
+
+impl MethodName {
+    const fn method(self) -> Method {
+        match self {
+            Self::Ordinary => Method::Ordinary,
+            Self::RelativeAccuracy => Method::RelativeAccuracy,
+            Self::ClusterCount => Method::ClusterCount,
+            Self::Covariance => Method::Covariance,
+        }
+    }
+
+    /// The method as the option spells it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Ordinary => "ordinary",
+            Self::RelativeAccuracy => "relative-accuracy",
+            Self::ClusterCount => "cluster-count",
+            Self::Covariance => "covariance",
+        }
+    }
+}
+
+/// One axis with its fit.
+pub(crate) struct Fitted {
+    pub(crate) axis: AxisCurve,
+    pub(crate) curve: Curve<OCTAVES>,
+    pub(crate) method: MethodName,
+    pub(crate) fit: Fit,
+}
+
+impl Fitted {
+    /// Fits the five terms to an axis of a file.
+    pub(crate) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
+        let options = Options {
+            method: method.method(),
+            ..Options::default()
+        };
+        let fitted = axis.curve().and_then(|curve| {
+            let fit = fit(&curve, &Model::ieee_952(), options)?;
+            Ok((curve, fit))
+        });
+        match fitted {
+            Ok((curve, fit)) => Ok(Self {
+                axis,
+                curve,
+                method,
+                fit,
+            }),
+            Err(error) => Err(record::library_failure(path, &axis.axis, error)),
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Coefficients for programs.
+
+use super::fitted::Fitted;
+use crate::{command::output::units, unit::Unit};
+use allanite::{Coefficient, State};
+use serde::Serialize;
+
+/// What a command prints of one file.
+#[derive(Serialize)]
+pub(crate) struct Document<'a> {
+    axes: Vec<Axis<'a>>,
+}
+
+#[derive(Serialize)]
+struct Axis<'a> {
+    axis: &'a str,
+    rate_hz: f64,
+    unit: Unit,
+    octaves: Vec<Octave>,
+    method: &'static str,
+    coefficients: Vec<Term>,
+    chi2: Option<f64>,
+    dof: Option<usize>,
+    p_value: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Octave {
+    m: u32,
+    tau_s: f64,
+    differences: u64,
+    variance: f64,
+}
+
+/// A coefficient in the log's unit; infinite ends of an interval are `null`.
+#[derive(Serialize)]
+pub(crate) struct Term {
+    effect: &'static str,
+    symbol: &'static str,
+    value: f64,
+    lower: f64,
+    upper: f64,
+    state: &'static str,
+    unit: String,
+}
+
+/// What to print.
+pub(crate) fn document(fitted: &[Fitted]) -> Document<'_> {
+    Document {
+        axes: fitted.iter().map(axis).collect(),
+    }
+}
+
+fn axis(fitted: &Fitted) -> Axis<'_> {
+    let Fitted {
+        axis,
+        curve,
+        method,
+        fit,
+    } = fitted;
+    let finite = |value: f64| value.is_finite().then_some(value);
+    Axis {
+        axis: &axis.axis,
+        rate_hz: axis.rate_hz,
+        unit: axis.unit,
+        octaves: curve
+            .points()
+            .iter()
+            .map(|point| Octave {
+                m: point.m,
+                tau_s: point.tau_s,
+                differences: point.differences,
+                variance: point.variance,
+            })
+            .collect(),
+        method: method.name(),
+        coefficients: fit
+            .coefficients
+            .iter()
+            .map(|one| term(one, axis.unit))
+            .collect(),
+        chi2: finite(fit.chi_squared),
+        dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
+        p_value: finite(fit.p_value),
+    }
+}
+
+/// One coefficient.
+pub(crate) fn term(coefficient: &Coefficient, unit: Unit) -> Term {
+    Term {
+        effect: coefficient.name,
+        symbol: coefficient.symbol,
+        value: coefficient.value,
+        lower: coefficient.lower,
+        upper: coefficient.upper,
+        state: match coefficient.state {
+            State::Measured => "measured",
+            State::UpperBound => "upper_bound",
+            State::NotObservable { .. } => "not_observable",
+        },
+        unit: units::unit(unit, coefficient.half_seconds),
+    }
+}

@@ -1,0 +1,167 @@
+//! Coefficients for people.
+
+use super::fitted::{Fitted, MethodName};
+use crate::{
+    command::output::{
+        number::{duration, number, probability},
+        units, words,
+    },
+    unit::Unit,
+};
+use allanite::{Coefficient, State, fit::Fit};
+use comfy_table::{CellAlignment, Table, presets::NOTHING};
+use std::io::{self, Write};
+
+/// Prints a table an axis.
+pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
+    for (i, fitted) in fitted.iter().enumerate() {
+        if i > 0 {
+            writeln!(output)?;
+        }
+        let axis = &fitted.axis;
+        let length_s = axis.samples as f64 / axis.rate_hz;
+        writeln!(
+            output,
+            "{}: {} samples at {} Hz ({}), {} octaves, method {}",
+            axis.axis,
+            axis.samples,
+            axis.rate_hz,
+            duration(length_s),
+            axis.octaves.len(),
+            fitted.method.name()
+        )?;
+        writeln!(output, "{}", table(&fitted.fit, axis.unit).trim_fmt())?;
+        for line in verdict(&fitted.fit, fitted.method) {
+            writeln!(output, "{line}")?;
+        }
+    }
+    Ok(())
+}
+
+/// The coefficients of a fit.
+pub(crate) fn table(fit: &Fit, unit: Unit) -> Table {
+    let mut table = Table::new();
+    table.load_style(NOTHING);
+    table.set_header([
+        "effect",
+        "",
+        "value",
+        "95 % interval",
+        "unit",
+        "customary",
+        "",
+        "state",
+    ]);
+    for coefficient in &fit.coefficients {
+        table.add_row(row(coefficient, unit));
+    }
+    for (i, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, 2));
+        if [2, 5].contains(&i) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+/// A value, a bound, or a dash.
+fn shown(coefficient: &Coefficient, factor: f64) -> String {
+    match coefficient.state {
+        State::Measured => number(factor * coefficient.value),
+        State::UpperBound => format!("< {}", number(factor * coefficient.upper)),
+        State::NotObservable { .. } => "–".into(),
+    }
+}
+
+fn customary_unit(coefficient: &Coefficient, unit: Unit) -> (f64, &'static str) {
+    units::customary(unit, coefficient.half_seconds).unwrap_or((1.0, ""))
+}
+
+/// The same in the customary unit.
+pub(crate) fn customary(coefficient: &Coefficient, unit: Unit) -> String {
+    shown(coefficient, customary_unit(coefficient, unit).0)
+}
+
+/// The 95 % interval in the customary unit.
+#[cfg(feature = "watch")]
+pub(crate) fn interval(coefficient: &Coefficient, unit: Unit) -> String {
+    scaled_interval(coefficient, customary_unit(coefficient, unit).0)
+}
+
+fn scaled_interval(coefficient: &Coefficient, factor: f64) -> String {
+    match coefficient.state {
+        State::Measured => format!(
+            "{} … {}",
+            number(factor * coefficient.lower),
+            number(factor * coefficient.upper)
+        ),
+        State::UpperBound => "0 inside".into(),
+        State::NotObservable { .. } => "–".into(),
+    }
+}
+
+fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
+    let (_, customary_unit) = customary_unit(coefficient, unit);
+    [
+        words::of_sensor(coefficient.name, unit),
+        coefficient.symbol.into(),
+        shown(coefficient, 1.0),
+        scaled_interval(coefficient, 1.0),
+        units::unit(unit, coefficient.half_seconds),
+        customary(coefficient, unit),
+        customary_unit.into(),
+        state(coefficient),
+    ]
+}
+
+/// What the record says of a coefficient.
+pub(crate) fn state(coefficient: &Coefficient) -> String {
+    match coefficient.state {
+        State::Measured => "measured".into(),
+        State::UpperBound => "upper bound".into(),
+        State::NotObservable { after_s: None } => "not observable".into(),
+        State::NotObservable {
+            after_s: Some(after_s),
+        } => {
+            let length = duration(after_s);
+            format!("not observable; a record of {length} would show it")
+        }
+    }
+}
+
+/// χ² and what it says, one line each.
+fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
+    if !fit.chi_squared.is_finite() {
+        return vec![
+            "This method has no error model, so no χ²: judge the model with --method covariance."
+                .into(),
+        ];
+    }
+    let mut first = format!(
+        "χ² {:.1}, {} degrees of freedom",
+        fit.chi_squared, fit.degrees_of_freedom
+    );
+    if fit.p_value.is_finite() {
+        first += &format!(", p {}", probability(fit.p_value));
+    }
+    if fit.tolerance > 0.0 {
+        first += &format!(", a tolerance of {} % granted", 100.0 * fit.tolerance);
+    }
+    if fit.shrinkage > 0.0 {
+        first += &format!(
+            ", correlations shrunk by {} %",
+            number(100.0 * fit.shrinkage)
+        );
+    }
+    let judgement = if !fit.p_value.is_finite() {
+        "There are too few octaves to judge the five-term model: record longer."
+    } else if method == MethodName::RelativeAccuracy {
+        "This method takes octaves for independent: judge the model with --method covariance."
+    } else if fit.is_adequate() == Some(true) {
+        "The five-term model is adequate for this record."
+    } else {
+        "The five-term model is not adequate: something else is in this record, and the \
+         coefficients carry its mark."
+    };
+    vec![first, judgement.into()]
+}

@@ -1,0 +1,240 @@
+//! Many files at once: every core at work, results in the order of the arguments.
+
+use crate::{
+    command::output::progress,
+    failure::{Failure, one_line},
+};
+use clap::Args;
+use rayon::iter::{ParallelBridge, ParallelIterator};
+use serde::Serialize;
+use std::{
+    collections::BTreeMap,
+    io::{self, Write},
+    path::{Path, PathBuf},
+    sync::mpsc::sync_channel,
+    thread,
+};
+
+/// Results on their way to be put in order.
+const ON_THE_WAY: usize = 64;
+
+/// What to work on, and how to print it.
+#[derive(Debug, Args)]
+pub(crate) struct FilesArguments {
+    /// Logs (.csv, .csv.gz, .npy, .mcap, .ulg), or curve files (.json) that `measure` wrote
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long, conflicts_with = "json_lines")]
+    pub(crate) json: bool,
+    /// Print one JSON object a line for each file, as soon as it and all before it are done
+    #[arg(long)]
+    pub(crate) json_lines: bool,
+}
+
+impl FilesArguments {
+    /// The only file, where one stands for itself: an option that several could not share.
+    pub(crate) fn single(&self) -> Option<&Path> {
+        match self.inputs.as_slice() {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
+}
+
+/// What a command finds in a file, axis by axis.
+pub(crate) trait Findings: Sized + Send {
+    /// For programs: a struct with named fields.
+    type Document<'a>: Serialize
+    where
+        Self: 'a;
+
+    /// For programs.
+    fn document(&self) -> Self::Document<'_>;
+
+    /// For people.
+    fn print(&self, output: &mut impl Write) -> io::Result<()>;
+
+    /// For people, of several files: one after the other under their names, unless there is better.
+    fn print_many(found: &[(&Path, Self)], output: &mut impl Write) -> io::Result<()> {
+        for (i, (path, one)) in found.iter().enumerate() {
+            if i > 0 {
+                writeln!(output)?;
+            }
+            writeln!(output, "{}", shown(path))?;
+            one.print(output)?;
+        }
+        Ok(())
+    }
+}
+
+/// A file's name without line breaks.
+pub(crate) fn shown(path: &Path) -> String {
+    one_line(&path.to_string_lossy())
+}
+
+/// A file with what was found, or what is wrong with it.
+#[derive(Serialize)]
+struct Outcome<D: Serialize> {
+    file: String,
+    #[serde(flatten)]
+    result: Found<D>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Found<D: Serialize> {
+    Axes(D),
+    Failed { error: String },
+}
+
+impl<D: Serialize> Outcome<D> {
+    fn found(path: &Path, document: D) -> Self {
+        Self {
+            file: path.to_string_lossy().into_owned(),
+            result: Found::Axes(document),
+        }
+    }
+
+    fn failed(path: &Path, failure: &Failure) -> Self {
+        Self {
+            file: path.to_string_lossy().into_owned(),
+            result: Found::Failed {
+                error: failure.to_string(),
+            },
+        }
+    }
+}
+
+/// Does `work` on every file and prints what it finds. Files that fail are named on standard error, one
+/// line each, and stop nothing; the last of them is what this returns.
+pub(crate) fn run<F: Findings>(
+    files: &FilesArguments,
+    work: impl Fn(&Path) -> Result<F, Failure> + Sync,
+    output: &mut impl Write,
+) -> Result<(), Failure> {
+    let (mut found, mut failures) = (Vec::new(), Vec::new());
+    each(&files.inputs, work, |path, result| {
+        if files.json_lines {
+            let line = match &result {
+                Ok(one) => serde_json::to_string(&Outcome::found(path, one.document())),
+                Err(failure) => {
+                    serde_json::to_string(&Outcome::<F::Document<'_>>::failed(path, failure))
+                }
+            };
+            let printed = line.map_err(io::Error::from);
+            let printed = printed.and_then(|line| writeln!(output, "{line}"));
+            let flushed = printed.and_then(|()| output.flush());
+            flushed.map_err(|error| Failure::standard_output(&error))?;
+            failures.extend(result.err().map(|failure| (path, failure)));
+        } else {
+            match result {
+                Ok(one) => found.push((path, one)),
+                Err(failure) => failures.push((path, failure)),
+            }
+        }
+        Ok(())
+    })?;
+    if !files.json_lines {
+        let printed = print(files, &found, &failures, output);
+        let printed = printed.and_then(|()| output.flush());
+        printed.map_err(|error| Failure::standard_output(&error))?;
+    }
+    failed(failures.into_iter().map(|(_, failure)| failure).collect())
+}
+
+/// Prints what was found: of one file by itself, of several together.
+fn print<F: Findings>(
+    files: &FilesArguments,
+    found: &[(&Path, F)],
+    failures: &[(&Path, Failure)],
+    output: &mut impl Write,
+) -> io::Result<()> {
+    if files.single().is_some() {
+        let Some((_, only)) = found.first() else {
+            return Ok(());
+        };
+        if !files.json {
+            return only.print(output);
+        }
+        serde_json::to_writer(&mut *output, &only.document())?;
+        return writeln!(output);
+    }
+    if !files.json {
+        return F::print_many(found, output);
+    }
+    // In the order of the arguments, of which each comes once in one of the two.
+    let (mut found, mut failures) = (found.iter().peekable(), failures.iter());
+    let outcomes: Vec<Outcome<F::Document<'_>>> = files
+        .inputs
+        .iter()
+        .filter_map(
+            |input| match found.next_if(|(path, _)| std::ptr::eq(*path, input.as_path())) {
+                Some((path, one)) => Some(Outcome::found(path, one.document())),
+                None => failures
+                    .next()
+                    .map(|(path, failure)| Outcome::failed(path, failure)),
+            },
+        )
+        .collect();
+    #[derive(Serialize)]
+    struct Together<O> {
+        files: Vec<O>,
+    }
+    serde_json::to_writer(&mut *output, &Together { files: outcomes })?;
+    writeln!(output)
+}
+
+/// Does `work` on every file, on all cores, and hands the results over in the order of the files.
+///
+/// # Errors
+/// Of `done` only, which ends the work early.
+pub(crate) fn each<'a, T: Send>(
+    files: &'a [PathBuf],
+    work: impl Fn(&Path) -> Result<T, Failure> + Sync,
+    mut done: impl FnMut(&'a Path, Result<T, Failure>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    if let [only] = files {
+        return done(only, work(only));
+    }
+    progress::share_terminal();
+    let bar = progress::files(files.len() as u64);
+    let (results, incoming) = sync_channel(ON_THE_WAY);
+    let work = &work;
+    let outcome = thread::scope(|scope| {
+        scope.spawn(move || {
+            // One after the other as cores become free: early files are done early. Whoever takes
+            // the results gone, nothing more is begun.
+            let _ = files
+                .iter()
+                .enumerate()
+                .par_bridge()
+                .try_for_each_with(results, |results, (i, file)| results.send((i, work(file))));
+        });
+        let mut waiting = BTreeMap::new();
+        let mut next = 0;
+        // Dropped with an early end, which lets the workers go.
+        for (i, result) in incoming {
+            waiting.insert(i, result);
+            while let Some(result) = waiting.remove(&next) {
+                done(&files[next], result)?;
+                next += 1;
+                bar.inc(1);
+            }
+        }
+        Ok(())
+    });
+    bar.finish_and_clear();
+    outcome
+}
+
+/// What several failures end with: one line each, and the last one as the command's own.
+pub(crate) fn failed(mut failures: Vec<Failure>) -> Result<(), Failure> {
+    let Some(last) = failures.pop() else {
+        return Ok(());
+    };
+    for failure in failures {
+        eprintln!("allanite: {failure}");
+    }
+    Err(last)
+}

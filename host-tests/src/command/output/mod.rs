@@ -1,0 +1,8 @@
+//! What commands give: whole files, progress, and the words, numbers and units of tables and JSON.
+
+pub(super) mod file;
+pub(super) mod model_json;
+pub(super) mod number;
+pub(super) mod progress;
+pub(super) mod units;
+pub(super) mod words;

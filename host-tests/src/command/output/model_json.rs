@@ -1,0 +1,82 @@
+//! Models and how they fail, for programs.
+
+use super::words;
+use crate::{command::fit, log::OCTAVES, unit::Unit};
+use allanite::{
+    ComparedOctave, Comparison, Model, Term, diagnosis::FollowedCovariate, effect::covariate,
+    fit::Fit,
+};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// An effect of a model, with its shape and its amplitude.
+#[derive(Serialize)]
+pub(crate) struct Effect {
+    name: &'static str,
+    parameters: Map<String, Value>,
+    /// Of a covariate: its column.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    channel: Option<String>,
+}
+
+/// A covariate that the rate follows: its slope, and the slope's 95 % interval.
+pub(crate) fn covariate(followed: &FollowedCovariate, channel: &str) -> Effect {
+    let (lower, upper) = followed.slope.interval();
+    let numbers = [
+        ("slope", followed.slope.value),
+        ("slope_lower", lower),
+        ("slope_upper", upper),
+    ];
+    Effect {
+        name: covariate::NAME,
+        parameters: numbers
+            .map(|(name, x)| (name.into(), x.into()))
+            .into_iter()
+            .collect(),
+        channel: Some(channel.to_owned()),
+    }
+}
+
+/// The octave that disagrees most.
+#[derive(Serialize)]
+pub(crate) struct Worst {
+    tau_s: f64,
+    z: f64,
+    percent: f64,
+}
+
+/// A shape with its coefficient, by name; numbers that are not finite are `null`.
+pub(crate) fn parameters(term: &Term, coefficient: f64) -> Map<String, Value> {
+    words::parameters(term, Some(coefficient))
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), Value::from(value)))
+        .collect()
+}
+
+/// The effects of a model.
+pub(crate) fn effects(model: &Model, fit: &Fit) -> Vec<Effect> {
+    let terms = model.terms().iter().zip(&fit.coefficients);
+    terms
+        .map(|(term, coefficient)| Effect {
+            name: term.effect.name(),
+            parameters: parameters(term, coefficient.value),
+            channel: None,
+        })
+        .collect()
+}
+
+/// The coefficients, as `fit --json` prints them.
+pub(crate) fn coefficients(fit: &Fit, unit: Unit) -> Vec<fit::json::Term> {
+    let coefficients = fit.coefficients.iter();
+    coefficients.map(|one| fit::json::term(one, unit)).collect()
+}
+
+/// The worst octave of a comparison.
+pub(crate) fn worst(comparison: &Comparison<OCTAVES>) -> Option<Worst> {
+    let worst = |octave: &ComparedOctave| Worst {
+        tau_s: octave.tau_s,
+        z: octave.z,
+        percent: octave.percent(),
+    };
+    comparison.worst().map(worst)
+}

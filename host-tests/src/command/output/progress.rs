@@ -1,0 +1,74 @@
+//! How far long work has come: on standard error, and on a terminal only.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::{
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering::Relaxed},
+};
+
+/// Whether nothing is to be shown, nor noted.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Whether several files are read at once, so that each by itself shows nothing.
+static SHARED: AtomicBool = AtomicBool::new(false);
+
+/// A file that is read in a moment needs no bar.
+const BYTES_OF_A_MOMENT: u64 = 1 << 24;
+
+/// Nor do samples that are simulated in one.
+const SAMPLES_OF_A_MOMENT: u64 = 1 << 22;
+
+/// Shows nothing from now on.
+pub(crate) fn be_quiet() {
+    QUIET.store(true, Relaxed);
+}
+
+/// Whether to say nothing that was not asked for.
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Relaxed)
+}
+
+/// Leaves the terminal to the bar over files from now on.
+pub(crate) fn share_terminal() {
+    SHARED.store(true, Relaxed);
+}
+
+/// A bar over files.
+pub(crate) fn files(number: u64) -> ProgressBar {
+    styled(number, "{wide_bar} {pos}/{len} files {eta}")
+}
+
+/// A bar over the bytes of a file.
+pub(crate) fn reading(path: &Path) -> ProgressBar {
+    let length = path.metadata().map_or(0, |metadata| metadata.len());
+    if length < BYTES_OF_A_MOMENT || SHARED.load(Relaxed) {
+        return ProgressBar::hidden();
+    }
+    styled(
+        length,
+        "{wide_bar} {bytes}/{total_bytes} {bytes_per_sec} {eta}",
+    )
+}
+
+/// A bar over simulated samples.
+pub(crate) fn simulating(samples: u64) -> ProgressBar {
+    if samples < SAMPLES_OF_A_MOMENT {
+        return ProgressBar::hidden();
+    }
+    styled(
+        samples,
+        "{wide_bar} {human_pos}/{human_len} samples {per_sec} {eta}",
+    )
+}
+
+fn styled(length: u64, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template);
+    // Hidden by itself where standard error is no terminal.
+    let target = if is_quiet() {
+        ProgressDrawTarget::hidden()
+    } else {
+        ProgressDrawTarget::stderr()
+    };
+    ProgressBar::with_draw_target(Some(length), target)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

@@ -1,0 +1,201 @@
+//! What is said of effects: to people in tables and sentences, to programs as notes.
+
+use super::{
+    number::{duration, number},
+    units,
+};
+use crate::{
+    log::OCTAVES,
+    unit::{Sensor, Unit},
+};
+use allanite::{
+    Coefficient, State, Term,
+    diagnosis::Step,
+    effect::{Effect, MAX_PARAMETERS, Parameter},
+    fit::Fit,
+};
+
+/// A name as people write it.
+pub(crate) fn plain(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// A coefficient's name as people write it, of an accelerometer by what it is of there.
+pub(crate) fn of_sensor(name: &str, unit: Unit) -> String {
+    match (unit.sensor(), name) {
+        (Sensor::Accelerometer, "angle_random_walk") => "velocity random walk".into(),
+        (Sensor::Accelerometer, "rate_random_walk") => "acceleration random walk".into(),
+        (Sensor::Accelerometer, "rate_ramp") => "acceleration ramp".into(),
+        _ => plain(name),
+    }
+}
+
+/// Names as a list in a sentence.
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    list_of(names.into_iter().map(plain).collect())
+}
+
+/// The same of what people read already.
+pub(crate) fn list_of(names: Vec<String>) -> String {
+    match names.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => names.concat(),
+    }
+}
+
+/// A shape: `frequency 19.6 Hz (19.5 … 19.7), quality 4`, with intervals where a fit gives them.
+pub(crate) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
+    let parameters = term.effect.parameters().iter().zip(term.parameters);
+    let one = |(parameter, value): (&Parameter, f64)| {
+        let mut text = shape_value(parameter, value);
+        let estimate = fit.and_then(|(fit, at)| {
+            let mut shape = fit.shape.iter();
+            shape.find(|one| one.term == at && one.name == parameter.name)
+        });
+        if let Some(estimate) = estimate {
+            text += &match estimate.upper.is_finite() {
+                true => format!(" ({} … {})", short(estimate.lower), short(estimate.upper)),
+                false => " (any value)".into(),
+            };
+        }
+        text
+    };
+    parameters.map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// A shape parameter and its value: `frequency 19.6 Hz`.
+pub(crate) fn shape_value(parameter: &Parameter, value: f64) -> String {
+    // The unit stands behind the value.
+    let suffix = format!("_{}", parameter.unit.to_lowercase());
+    let name = plain(
+        parameter
+            .name
+            .strip_suffix(&suffix)
+            .unwrap_or(parameter.name),
+    );
+    match parameter.unit {
+        "" => format!("{name} {}", short(value)),
+        unit => format!("{name} {} {unit}", short(value)),
+    }
+}
+
+/// Four digits, whole numbers without a fraction.
+fn short(value: f64) -> String {
+    if value.fract() == 0.0 && value.abs() < 1e4 {
+        format!("{value}")
+    } else {
+        number(value)
+    }
+}
+
+/// A coefficient and what it is: `angle random walk 1.95 °/√h (1.93 … 1.97)`.
+pub(crate) fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: Unit) -> String {
+    let name = of_sensor(effect.coefficient(), unit);
+    // Amplitudes are rates, and not the drifts that hours are the unit for.
+    let (factor, unit) = match effect.coefficient() {
+        "amplitude" | "rms" => (1.0, units::unit(unit, coefficient.half_seconds)),
+        _ => customary(unit, coefficient.half_seconds),
+    };
+    let value = |value: f64| number(factor * value);
+    match coefficient.state {
+        State::Measured => format!(
+            "{name} {} {unit} ({} … {})",
+            value(coefficient.value),
+            value(coefficient.lower),
+            value(coefficient.upper)
+        ),
+        State::UpperBound => format!("{name} < {} {unit}", value(coefficient.upper)),
+        State::NotObservable { .. } => format!("{name} not observable"),
+    }
+}
+
+/// The customary unit where there is one.
+fn customary(unit: Unit, half_seconds: i8) -> (f64, String) {
+    match units::customary(unit, half_seconds) {
+        Some((factor, name)) => (factor, name.into()),
+        None => (1.0, units::unit(unit, half_seconds)),
+    }
+}
+
+/// An effect's shape parameters and, where it is not called like the effect itself, its
+/// coefficient: by the names that options have.
+pub(crate) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static str, f64)> {
+    let shape = term.effect.parameters().iter().take(MAX_PARAMETERS);
+    let mut named: Vec<_> = shape
+        .zip(term.parameters)
+        .map(|(parameter, value)| (parameter.name, value))
+        .collect();
+    let name = term.effect.coefficient();
+    if name != term.effect.name() {
+        named.extend(coefficient.map(|value| (name, value)));
+    }
+    named
+}
+
+/// What a frequency may be instead of itself.
+pub(crate) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
+    let mut parameters = term.effect.parameters().iter().zip(term.parameters);
+    let (_, frequency_hz) = parameters.find(|(parameter, _)| parameter.name == "frequency_hz")?;
+    Some(format!(
+        "{}: sampled at {rate_hz} Hz, {} Hz may be the alias of {} Hz, {} Hz or any other k × {rate_hz} Hz ± {} Hz",
+        plain(term.effect.name()),
+        short(frequency_hz),
+        short(rate_hz - frequency_hz),
+        short(rate_hz + frequency_hz),
+        short(frequency_hz),
+    ))
+}
+
+/// What the effects that were missing had done to the coefficients.
+pub(crate) fn damage(first: &Step<OCTAVES>, last: &Step<OCTAVES>, unit: Unit) -> Vec<String> {
+    let before = first.model.terms().iter().zip(&first.fit.coefficients);
+    let same = |name: &str| {
+        let mut after = last.model.terms().iter().zip(&last.fit.coefficients);
+        after.find(|(term, _)| term.effect.coefficient() == name)
+    };
+    let sentence = |(term, was): (&Term, &Coefficient)| {
+        let (_, is) = same(term.effect.coefficient())?;
+        changed(&of_sensor(term.effect.coefficient(), unit), was, is, unit)
+    };
+    before.filter_map(sentence).collect()
+}
+
+fn changed(name: &str, was: &Coefficient, is: &Coefficient, unit: Unit) -> Option<String> {
+    let (factor, unit) = customary(unit, is.half_seconds);
+    let shown = |value: f64| format!("{} {unit}", number(factor * value));
+    let measured = |one: &Coefficient| one.state == State::Measured;
+    if measured(was) && measured(is) {
+        let inside = (is.lower..=is.upper).contains(&was.value);
+        let side = if was.value > is.value { "high" } else { "low" };
+        let difference = shown((was.value - is.value).abs());
+        return (!inside).then(|| {
+            format!(
+                "{name} was {difference} too {side}: {} instead of {}",
+                shown(was.value),
+                shown(is.value)
+            )
+        });
+    }
+    if measured(was) {
+        return match is.state {
+            State::UpperBound if was.value > is.upper => Some(format!(
+                "{name} was at least {} too high: {}, where there are at most {}",
+                shown(was.value - is.upper),
+                shown(was.value),
+                shown(is.upper)
+            )),
+            State::NotObservable { .. } => Some(format!(
+                "{name} was claimed to be {}: this record does not tell it",
+                shown(was.value)
+            )),
+            _ => None,
+        };
+    }
+    measured(is).then(|| format!("{name} was not seen: it is {}", shown(is.value)))
+}
+
+/// `1000000 samples at 100 Hz (2.8 h), 18 octaves`.
+pub(crate) fn record(samples: u64, rate_hz: f64, octaves: usize) -> String {
+    let length = duration(samples as f64 / rate_hz);
+    format!("{samples} samples at {rate_hz} Hz ({length}), {octaves} octaves")
+}

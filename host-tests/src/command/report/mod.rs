@@ -1,0 +1,57 @@
+//! `report`: a diagnosis as a page.
+
+mod json;
+mod page;
+
+use crate::{
+    command::{
+        diagnose::{self, diagnosed::DiagnosisArguments},
+        examples,
+        output::file::OutputFile,
+    },
+    failure::{Failure, Place},
+};
+use clap::Args;
+use std::{
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+/// Write the diagnosis as a page to walk through: one HTML file that needs nothing else
+#[derive(Debug, Args)]
+#[command(after_help = examples::REPORT)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    diagnosis: DiagnosisArguments,
+    /// The page to write: .html
+    #[arg(long, short, value_name = "REPORT.html")]
+    output: PathBuf,
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let place = || Place::file(&arguments.output);
+    if !is_page(&arguments.output) {
+        return Err(place().failure("a page's extension is .html", "name the output so"));
+    }
+    // First, so that a place that cannot be written to costs no diagnosis.
+    let mut file = OutputFile::create(&arguments.output)?;
+    let diagnosed = arguments.diagnosis.diagnosed()?;
+    let fail = |error: io::Error| place().io(&error);
+    let pictured = json::document(&diagnosed);
+    let mut text = Vec::new();
+    diagnose::text::print(&diagnosed, &mut text).map_err(fail)?;
+    let page = page::page(&page::Content {
+        input: &arguments.diagnosis.input,
+        diagnosed: &diagnosed,
+        json: &serde_json::to_string(&pictured).map_err(|error| fail(error.into()))?,
+        text: &String::from_utf8_lossy(&text),
+    });
+    file.write_all(page.as_bytes()).map_err(fail)?;
+    file.commit()
+}
+
+fn is_page(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("html"))
+}

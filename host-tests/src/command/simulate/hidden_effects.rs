@@ -1,0 +1,132 @@
+//! What `simulate --effect` hides in a record.
+
+use crate::{
+    command::effect_argument::EffectArgument,
+    failure::Failure,
+    simulate::{Coefficients, Course, Hidden, Thermal},
+};
+use allanite::effect::{CATALOGUE, Effect, IEEE_952};
+use clap::Args;
+
+/// The name of the effect that no curve alone shows.
+const THERMAL: &str = "thermal";
+
+/// Effects to hide.
+#[derive(Debug, Args)]
+pub(super) struct HiddenArguments {
+    /// Hide an effect, such as `sinusoid:frequency_hz=0.3,amplitude=0.005`,
+    /// `gauss_markov:correlation_time_s=5,rms=0.01`, `decimation_filter:width_s=0.02,stages=2`, or a
+    /// temperature that the rate follows: `thermal:slope=0.01,kelvin=10,time_s=600` for a warm-up,
+    /// `thermal:slope=0.01,kelvin=5,period_s=1200` for a cycle
+    #[arg(long = "effect", value_name = "NAME:parameter=value,…")]
+    effects: Vec<String>,
+}
+
+/// Effects of a record beyond the five terms.
+#[derive(Default)]
+pub(super) struct HiddenEffects {
+    pub(super) hidden: Vec<Hidden>,
+    pub(super) thermal: Option<Thermal>,
+}
+
+impl HiddenArguments {
+    /// Whether nothing is hidden.
+    pub(super) fn is_empty(&self) -> bool {
+        self.effects.is_empty()
+    }
+
+    /// The options' texts.
+    pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
+        self.effects.iter().map(String::as_str)
+    }
+
+    /// The effects; a filter on white noise has the record's own unless it is given.
+    pub(super) fn effects(&self, coefficients: Coefficients) -> Result<HiddenEffects, Failure> {
+        let mut effects = HiddenEffects::default();
+        for text in &self.effects {
+            let mut argument = EffectArgument::parse("--effect", text)?;
+            if argument.name == THERMAL {
+                if effects.thermal.is_some() {
+                    return Err(argument.failure("is given twice", "a record has one temperature"));
+                }
+                effects.thermal = Some(thermal(&mut argument)?);
+            } else {
+                let hidden = hidden(&mut argument, coefficients)?;
+                let twice =
+                    |other: &Hidden| other.replaces_white_noise() && hidden.replaces_white_noise();
+                if effects.hidden.iter().any(twice) {
+                    return Err(argument.failure(
+                        "two filters take the place of the same white noise",
+                        "hide one of them",
+                    ));
+                }
+                effects.hidden.push(hidden);
+            }
+            argument.finish()?;
+        }
+        Ok(effects)
+    }
+}
+
+fn hidden(
+    argument: &mut EffectArgument<'_>,
+    coefficients: Coefficients,
+) -> Result<Hidden, Failure> {
+    let is_term = |effect: &&dyn Effect| effect.name() == argument.name;
+    if IEEE_952.iter().any(is_term) {
+        let remedy = format!("give --{}", argument.name.replace('_', "-"));
+        return Err(argument.failure("is one of the five terms", &remedy));
+    }
+    if !CATALOGUE.iter().any(is_term) {
+        let beyond = CATALOGUE.iter().map(|effect| effect.name());
+        let beyond = beyond.filter(|name| !IEEE_952.iter().any(|term| term.name() == *name));
+        let names: Vec<&str> = beyond.chain([THERMAL]).collect();
+        return Err(argument.failure(
+            "no such effect",
+            &format!("choose from {}", names.join(", ")),
+        ));
+    }
+    let effect = argument.effect()?;
+    let parameters = argument.shape(effect)?;
+    let white = coefficients.angle_random_walk;
+    let coefficient = match argument.take_positive(effect.coefficient())? {
+        Some(coefficient) => coefficient,
+        None if effect.replaces().is_some() && white > 0.0 => white,
+        None => argument.require(effect.coefficient())?,
+    };
+    Ok(Hidden {
+        effect,
+        parameters,
+        coefficient,
+    })
+}
+
+fn thermal(argument: &mut EffectArgument<'_>) -> Result<Thermal, Failure> {
+    // A rate may fall as the temperature rises, and some do not follow it at all.
+    let slope = argument.take("slope").ok_or_else(|| {
+        argument.failure(
+            "slope is missing",
+            "write thermal:slope=VALUE, in rate units per kelvin",
+        )
+    })?;
+    let kelvin = argument.require("kelvin")?;
+    let times = (
+        argument.take_positive("time_s")?,
+        argument.take_positive("period_s")?,
+    );
+    let course = match times {
+        (Some(time_s), None) => Course::WarmUp { time_s },
+        (None, Some(period_s)) => Course::Cycle { period_s },
+        _ => {
+            return Err(argument.failure(
+                "a temperature has one course",
+                "give time_s for a warm-up or period_s for a cycle",
+            ));
+        }
+    };
+    Ok(Thermal {
+        slope,
+        kelvin,
+        course,
+    })
+}

@@ -1,0 +1,251 @@
+//! A recording on its way: read, accumulated, shown and saved.
+//!
+//! A thread reads what arrives; the main thread accumulates it, and once a moment fits and shows. At
+//! the end of the input, on SIGINT (Ctrl-C) or SIGTERM, whatever has been read is accumulated, the curve
+//! is saved and the last fit is printed. It is also saved from time to time, each time as a whole.
+
+use super::{
+    arguments::Arguments,
+    recording::Recording,
+    screen::Screen,
+    source::{Received, Source},
+    status::Status,
+};
+use crate::{
+    command::{
+        fit,
+        input::record,
+        output::{file::OutputFile, progress},
+    },
+    curve_file::CurveFile,
+    failure::{Failure, Place, one_line},
+};
+use console::Term;
+use std::{
+    io::{self, Write},
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering::Relaxed},
+        mpsc::{Receiver, RecvTimeoutError},
+    },
+    time::{Duration, Instant},
+};
+
+/// How long input is waited for before signals and the clock are looked at.
+const MOMENT: Duration = Duration::from_millis(50);
+
+/// On an interruption, input that arrives with no longer pauses has been received before it …
+const PAUSE: Duration = Duration::from_millis(20);
+/// … but a source that never pauses is not listened to for longer.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// How often the screen is drawn anew.
+const FRAME: Duration = Duration::from_millis(1000);
+
+/// Runs the command.
+pub(in crate::command) fn run(
+    arguments: &Arguments,
+    output: &mut impl Write,
+) -> Result<(), Failure> {
+    let save_every = seconds("--save-every", arguments.save_every)?;
+    let print_every = seconds("--print-every", arguments.print_every)?;
+    if let Some(path) = &arguments.output {
+        if !record::is_curve(path) {
+            return Err(Place::file(path)
+                .failure("a curve file's extension is .json", "name the output so"));
+        }
+        // Dropped at once: a place that cannot be written to is to be known before hours of recording.
+        drop(OutputFile::create(path)?);
+    }
+    let Arguments {
+        rate, scale, unit, ..
+    } = *arguments;
+    let recording = Recording::new(rate, scale, unit, arguments.axes.clone())?;
+    let source = match &arguments.port {
+        Some(port) => Source::SerialPort {
+            port: port.clone(),
+            baud: arguments.baud,
+        },
+        None if arguments.image => Source::Image,
+        None => Source::StandardInput,
+    };
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = interrupted.clone();
+    ctrlc::set_handler(move || flag.store(true, Relaxed)).map_err(|error| {
+        Failure::option(
+            format!("signals cannot be caught: {error}"),
+            "start it elsewhere",
+        )
+    })?;
+    let received = source.listen()?;
+    let screen = if Term::stdout().is_term() && !progress::is_quiet() {
+        Some(Screen::open().map_err(|error| Failure::standard_output(&error))?)
+    } else {
+        None
+    };
+    let mut watch = Watch {
+        recording,
+        received,
+        interrupted,
+        path: arguments.output.as_deref(),
+        saved: None,
+        trouble: None,
+        screen,
+    };
+    let every = if watch.screen.is_some() {
+        FRAME
+    } else {
+        print_every
+    };
+    let ended = watch.follow(every, save_every, output);
+    // Whatever happened: what was received is kept, and the terminal is as it was.
+    watch.screen = None;
+    let saved = watch.save();
+    ended?;
+    saved?;
+    watch.finish(output)
+}
+
+/// A length of time.
+fn seconds(option: &str, value: f64) -> Result<Duration, Failure> {
+    let valid = Duration::try_from_secs_f64(value).ok();
+    valid.filter(|time| !time.is_zero()).ok_or_else(|| {
+        Failure::option(
+            format!("{option} {value} is impossible"),
+            "give a positive number of seconds",
+        )
+    })
+}
+
+/// A recording on its way.
+struct Watch<'a> {
+    recording: Recording,
+    received: Receiver<Received>,
+    interrupted: Arc<AtomicBool>,
+    path: Option<&'a Path>,
+    saved: Option<Instant>,
+    /// Why the last saving on the way failed.
+    trouble: Option<String>,
+    screen: Option<Screen>,
+}
+
+impl Watch<'_> {
+    /// Records and shows until the input ends or somebody interrupts.
+    fn follow(
+        &mut self,
+        show_every: Duration,
+        save_every: Duration,
+        output: &mut impl Write,
+    ) -> Result<(), Failure> {
+        let (mut shown, mut saved) = (Instant::now(), Instant::now());
+        loop {
+            let ended = self.receive(MOMENT)?;
+            if self.interrupted.load(Relaxed) {
+                return self.drain();
+            }
+            if ended {
+                return Ok(());
+            }
+            if saved.elapsed() >= save_every {
+                self.trouble = self.save().err().map(|failure| failure.to_string());
+                saved = Instant::now();
+            }
+            if shown.elapsed() >= show_every {
+                self.show(output)?;
+                shown = Instant::now();
+            }
+        }
+    }
+
+    /// Takes what arrives next, if it does within a time; true when nothing more will.
+    fn receive(&mut self, time: Duration) -> Result<bool, Failure> {
+        match self.received.recv_timeout(time) {
+            Ok(Received::Bytes(bytes)) => {
+                self.recording.take(&bytes);
+                Ok(false)
+            }
+            Ok(Received::Failure(failure)) => Err(failure),
+            Err(RecvTimeoutError::Timeout) => Ok(false),
+            Err(RecvTimeoutError::Disconnected) => Ok(true),
+        }
+    }
+
+    /// Takes what had arrived when somebody interrupted.
+    fn drain(&mut self) -> Result<(), Failure> {
+        let begun = Instant::now();
+        while begun.elapsed() < PATIENCE {
+            match self.received.recv_timeout(PAUSE) {
+                Ok(Received::Bytes(bytes)) => self.recording.take(&bytes),
+                Ok(Received::Failure(failure)) => return Err(failure),
+                Err(_) => break,
+            }
+        }
+        Ok(())
+    }
+
+    fn show(&mut self, output: &mut impl Write) -> Result<(), Failure> {
+        let status = self.status();
+        let shown = match &mut self.screen {
+            Some(screen) => screen.draw(&status),
+            None => writeln!(output, "{}", status.line()).and_then(|()| output.flush()),
+        };
+        shown.map_err(|error| Failure::standard_output(&error))
+    }
+
+    fn status(&self) -> Status {
+        let saving = match (&self.trouble, self.path, self.saved) {
+            (Some(trouble), ..) => format!("not saved: {trouble}"),
+            (None, None, _) => "not saved: no --output given".into(),
+            (None, Some(path), None) => format!("{} not saved yet", path.display()),
+            (None, Some(path), Some(at)) => {
+                format!("{} saved {} s ago", path.display(), at.elapsed().as_secs())
+            }
+        };
+        Status::of(&self.recording, one_line(&saving))
+    }
+
+    /// Puts the curve in its place, as a whole.
+    fn save(&mut self) -> Result<(), Failure> {
+        let Some(path) = self.path else {
+            return Ok(());
+        };
+        // Too short for a curve: later, perhaps; `finish` says so at the end.
+        let Some(curves) = self.recording.curves()? else {
+            return Ok(());
+        };
+        let fail = |error: io::Error| Place::file(path).io(&error);
+        let json = CurveFile::new(curves).to_json();
+        let json = json.map_err(|error| fail(error.into()))?;
+        let mut file = OutputFile::create(path)?;
+        file.write_all(json.as_bytes()).map_err(fail)?;
+        file.commit()?;
+        self.saved = Some(Instant::now());
+        Ok(())
+    }
+
+    /// The last fit, as `fit` prints it.
+    fn finish(&self, output: &mut impl Write) -> Result<(), Failure> {
+        if self.recording.curves()?.is_none() {
+            return Err(Failure::option(
+                format!(
+                    "{} samples and {} lines that are none; a curve needs 9 samples",
+                    self.recording.samples(),
+                    self.recording.garbled()
+                ),
+                "record longer, and check that a line is one whole number an axis",
+            ));
+        }
+        let status = self.status();
+        if self.recording.garbled() > 0 && !progress::is_quiet() {
+            eprintln!("allanite: {}", status.losses());
+        }
+        let fitted: Vec<_> = status
+            .axes
+            .into_iter()
+            .filter_map(|axis| axis.fitted)
+            .collect();
+        let printed = fit::table::print(&fitted, output);
+        printed.map_err(|error| Failure::standard_output(&error))
+    }
+}

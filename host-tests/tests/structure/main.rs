@@ -1,0 +1,121 @@
+//! No two files of a crate import each other, not even by way of others.
+//!
+//! A node of the graph is a file. An edge leads from a file to every file whose items it names, in a `use`
+//! declaration or anywhere else: to the file that defines the item, whatever re-exports lie between. A
+//! re-export (`pub use`) alone is no edge, nor is the declaration of a module. So the file of a folder,
+//! `mod.rs`, may define what its children use and pass on what they define, but not use it itself. Test
+//! modules are left out.
+
+mod cycle;
+mod import;
+mod source;
+
+use source::Crate;
+use std::path::Path;
+
+const HOST: &str = env!("CARGO_MANIFEST_DIR");
+
+/// One line for each group of files that import each other.
+fn cycles(of: &Crate) -> Vec<String> {
+    let graph = import::graph(of);
+    let cycles = cycle::shortest(&graph).into_iter();
+    cycles.map(|files| files.join(" → ")).collect()
+}
+
+fn assert_no_cycles(root: &Path) {
+    let of = Crate::read(root);
+    let graph = import::graph(&of);
+    assert!(
+        graph.len() > 20,
+        "{} files in {}",
+        graph.len(),
+        root.display()
+    );
+    let edges: usize = graph.values().map(|imported| imported.len()).sum();
+    assert!(edges > 2 * graph.len(), "{edges} imports");
+    let cycles = cycles(&of);
+    assert!(
+        cycles.is_empty(),
+        "files of {} import each other:\n{}",
+        root.display(),
+        cycles.join("\n")
+    );
+}
+
+#[test]
+fn the_host_tools_have_no_import_cycles() {
+    assert_no_cycles(&Path::new(HOST).join("src"));
+}
+
+#[test]
+fn the_library_has_no_import_cycles() {
+    assert_no_cycles(&Path::new(HOST).join("../src"));
+}
+
+/// The cycles of a crate that consists of these files.
+fn cycles_of(files: &[(&str, &str)]) -> Vec<String> {
+    cycles(&Crate::of(files.iter().copied()))
+}
+
+#[test]
+fn files_that_import_each_other_are_found() {
+    let found = cycles_of(&[
+        ("lib.rs", "mod egg; mod hen; mod nest;"),
+        (
+            "hen.rs",
+            "use crate::egg::Egg; pub struct Hen(Egg); pub fn lay() {}",
+        ),
+        ("egg.rs", "pub struct Egg; fn laid() { super::hen::lay() }"),
+        ("nest.rs", "use crate::{egg::Egg, hen};"),
+    ]);
+    assert_eq!(found, ["egg.rs → hen.rs → egg.rs"]);
+}
+
+#[test]
+fn a_cycle_by_way_of_a_third_file_or_a_macro_is_found() {
+    let found = cycles_of(&[
+        ("lib.rs", "mod a; mod b; mod c;"),
+        ("a.rs", "use crate::b; fn f() { b::f() }"),
+        ("b.rs", "pub fn f() { println!(\"{}\", crate::c::NUMBER) }"),
+        (
+            "c.rs",
+            "pub const NUMBER: u8 = self::inner::N; mod inner { pub const N: u8 = 1; fn g() { super::super::a::f() } }",
+        ),
+    ]);
+    assert_eq!(found, ["a.rs → b.rs → c.rs → a.rs"]);
+}
+
+#[test]
+fn a_reexport_leads_to_the_file_that_defines() {
+    let mut files = [
+        ("lib.rs", "pub mod log; pub use log::{Log, Record};"),
+        (
+            "log/mod.rs",
+            "mod record; mod reader; pub use record::*; pub use reader::Reader; pub struct Log(Record);",
+        ),
+        ("log/record.rs", "pub struct Record;"),
+        (
+            "log/reader.rs",
+            "use super::{Log, Record}; use crate::log; pub struct Reader(log::Record);",
+        ),
+    ];
+    assert_eq!(cycles_of(&files), [""; 0]);
+    // The same folder, whose parent uses what it passes on.
+    let parent = "mod record; mod reader; pub use record::*; pub use reader::Reader; pub struct Log(Reader);";
+    files[1].1 = parent;
+    let expected = ["log/mod.rs → log/reader.rs → log/mod.rs"];
+    assert_eq!(cycles_of(&files), expected);
+}
+
+#[test]
+fn tests_may_import_what_they_like() {
+    let found = cycles_of(&[
+        ("lib.rs", "mod a; mod b;"),
+        (
+            "a.rs",
+            "pub fn f() {} #[cfg(test)] mod tests { use crate::b::g; }",
+        ),
+        ("b.rs", "use crate::a::f; pub fn g() {}"),
+    ]);
+    assert_eq!(found, [""; 0]);
+}

@@ -2,9 +2,8 @@
 
 use super::{Addition, Diagnosis, Evidence, Follows, standing::Standing};
 use crate::{
-    cross_sums::CrossCurve,
+    covariate::{CrossCurve, Slope},
     curve::Curve,
-    effect::covariate::Slope,
     error::Error,
     fit::{
         Problem,

@@ -12,7 +12,7 @@ mod twins;
 pub use step::{Addition, Candidate, Follows, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap};
 
 use crate::{
-    cross_sums::CrossCurve, curve::Curve, effect::Effect, error::Error, fit::check,
+    covariate::CrossCurve, curve::Curve, effect::Effect, error::Error, fit::check,
     integrity::Reason, kurtosis::Kurtosis, model::Model, real::Real,
 };
 use standing::Standing;

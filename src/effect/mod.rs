@@ -7,7 +7,6 @@
 
 mod angle_random_walk;
 mod bias_instability;
-pub mod covariate;
 mod decimation_filter;
 mod gauss_markov;
 mod low_pass;

@@ -1,12 +1,13 @@
 //! Generalised least squares: octaves weighted by the covariance of the curve.
 
 use super::{
-    Fit, Method, Problem, clusters, independent, shape::ShapeEquations, squared, weights::Weights,
+    Fit, Method, Problem, independent, shape::ShapeEquations, squared, weights::Weights,
 };
 use crate::{
     algebra,
     chi_squared::chi_squared_tail,
     coefficient::{Coefficient, State},
+    curve::clusters,
     effect::Span,
     error::Error,
     list::numbered,

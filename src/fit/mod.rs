@@ -15,7 +15,7 @@ pub use shape::{MAX_SHAPE, ShapeEstimate};
 use crate::{
     algebra,
     coefficient::Coefficient,
-    curve::{Curve, Point},
+    curve::{Curve, Point, clusters},
     error::Error,
     math,
     model::{MAX_EFFECTS, Model, Term},
@@ -264,12 +264,6 @@ impl<'a, const K: usize> Problem<'a, K> {
             .map(|i| self.unit(i, k) * squares[i])
             .sum()
     }
-}
-
-/// Clusters `N/m` in the record, from an octave's number of differences as of a contiguous one.
-pub(crate) fn clusters(point: &Point) -> Real {
-    let m = real(point.m);
-    point.differences.saturating_sub(1) as Real * (0.25 * m).max(1.0) / m + 2.0
 }
 
 /// Relative accuracy of an octave as of Lv, Liu, Lai & Huang 2015: `δ = 1/√(2(N/m − 1))`.

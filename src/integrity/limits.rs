@@ -33,7 +33,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    pub(super) const DEFAULT: Self = Self {
+    /// What every field says its default is.
+    pub const DEFAULT: Self = Self {
         rails: [i16::MIN as i32, i16::MAX as i32, i32::MIN, i32::MAX],
         rail_per_mille: 1,
         run_factor: 128,

@@ -4,7 +4,7 @@ use super::{
     cluster::Cluster,
     rails::Rails,
     runs::Runs,
-    watch::{Fate, Rule, Watch},
+    watch::{Fate, Rule, Watch, square},
 };
 
 /// How many samples a cluster has whose mean shows motion: 0.64 s and 10 s at 100 Hz, 8 ms and
@@ -14,6 +14,7 @@ pub(super) const CLUSTERS: [u16; 2] = [64, 1024];
 /// Everything but the configuration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct State {
     pub(super) samples: u64,
     pub(super) missing: u64,
@@ -53,7 +54,7 @@ impl State {
     /// once the scale is known.
     #[inline(always)]
     pub(super) fn push_neighbour(&mut self, count: i32, factor: u16) -> (bool, Option<i32>) {
-        let (fate, square) = self
+        let (fate, difference) = self
             .neighbours
             .push(count.into(), &Rule::neighbours(factor));
         match fate {
@@ -62,15 +63,14 @@ impl State {
             Fate::Learnt { outlier } => self.add_spike(outlier),
             Fate::Start | Fate::Ordinary => {}
             Fate::Out { .. } => {
-                self.pending_squares = self.pending_squares.saturating_add(square);
+                self.pending_squares = self.with_pending(difference);
                 return (true, Some(self.neighbours.reference() as i32));
             }
             Fate::Back => {
-                let squares = self.pending_squares.saturating_add(square);
-                self.add_spike(squares);
+                self.add_spike(self.with_pending(difference));
             }
             Fate::Accepted => {
-                let squares = self.pending_squares.saturating_add(square);
+                let squares = self.with_pending(difference);
                 self.step_squares = self.step_squares.saturating_add(squares);
                 self.steps = self.steps.saturating_add(1);
                 self.pending_squares = 0;
@@ -80,6 +80,12 @@ impl State {
         (false, Some(count))
     }
 
+    fn with_pending(&self, difference: u64) -> u128 {
+        self.pending_squares.saturating_add(square(difference))
+    }
+
+    #[cold]
+    #[inline(never)]
     pub(super) fn add_spike(&mut self, squares: u128) {
         self.spikes = self.spikes.saturating_add(1);
         self.spike_squares = self.spike_squares.saturating_add(squares);
@@ -96,17 +102,18 @@ impl State {
             let rule = Rule::clusters(factor, long_length);
             long.judge(&rule.with_least(&short.watch, long_length / short_length));
         }
-        short.sum = short.sum.saturating_add(count.into());
-        short.filled = short.filled.saturating_add(1);
+        // 1024 counts of 32 bits are far from 64.
+        short.sum = short.sum.wrapping_add(count.into());
+        short.filled = short.filled.wrapping_add(1);
         if short.filled == short_length {
-            long.sum = long.sum.saturating_add(short.sum);
-            long.filled = long.filled.saturating_add(short_length);
+            long.sum = long.sum.wrapping_add(short.sum);
+            long.filled = long.filled.wrapping_add(short_length);
             short.judge(&Rule::clusters(factor, short_length));
         }
     }
 
     pub(super) fn gap(&mut self) {
-        self.runs.present = 0;
+        (self.runs.present, self.runs.value) = (0, 0);
         self.neighbours.gap();
         self.pending_squares = 0;
         for cluster in &mut self.clusters {
@@ -114,6 +121,17 @@ impl State {
             cluster.filled = 0;
             cluster.watch.gap();
         }
+    }
+
+    /// Whether a record can have left this behind a gap.
+    #[cfg(feature = "storage")]
+    pub(super) fn is_possible(&self) -> bool {
+        let clusters = self.clusters.iter();
+        let empty = |cluster: &Cluster| cluster.sum == 0 && cluster.filled == 0;
+        self.runs.present == 0
+            && self.pending_squares == 0
+            && self.neighbours.is_possible()
+            && clusters.clone().all(|cluster| empty(cluster) && cluster.watch.is_possible())
     }
 
     pub(super) fn merge(&mut self, other: &Self) {

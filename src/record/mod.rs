@@ -35,6 +35,7 @@ mod wire;
 
 pub use axis::{AxisRecord, RecordedShape, RecordedState, RecordedTerm};
 pub use effect_code::EffectCode;
+pub(crate) use verdict::WireReason;
 
 use crate::error::Error;
 use heapless::Vec;

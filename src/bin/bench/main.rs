@@ -10,6 +10,11 @@ fn main() {}
 #[cfg(target_os = "none")]
 mod clock;
 #[cfg(target_os = "none")]
+#[path = "../demonstration/mod.rs"]
+// Every image uses some of it.
+#[allow(dead_code, unreachable_pub)]
+mod demonstration;
+#[cfg(target_os = "none")]
 mod stack;
 #[cfg(target_os = "none")]
 mod work;

@@ -1,9 +1,11 @@
 //! What is measured.
 
 use crate::clock::Clock;
-use allanite::demonstration::AMPLITUDES;
+use crate::demonstration::{
+    AMPLITUDES,
+    simulated::{Random, SimulatedGyro},
+};
 use allanite::effect::{CATALOGUE, Effect as _, Setting, Sinusoid};
-use allanite::simulated::{Random, SimulatedGyro};
 use allanite::{
     Accumulator, Curve, Diagnosis, Error, Evidence, Fit, Model, Real, Settings, Verdict, fit,
 };

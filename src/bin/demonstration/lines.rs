@@ -1,11 +1,8 @@
-//! What images log and the host prints, with the bits of every number: equal lines, equal bits.
+//! The lines that images log and the host prints. They hold the bits of every number, so that equal lines
+//! mean equal bits.
 
-use super::{characterise::Characterised, diagnose::OCTAVES};
-use crate::{
-    curve::Curve,
-    diagnosis::{Addition, Step},
-    real::{Real, double},
-};
+use super::{characterise::Characterised, double};
+use allanite::{Addition, Curve, Real, Step};
 use core::fmt::{self, Arguments, Display, Formatter};
 
 /// A number, and the bits that it has in double precision.
@@ -51,7 +48,7 @@ pub fn characterised(test: &Characterised, mut line: impl FnMut(Arguments<'_>)) 
 }
 
 /// A step of a diagnosis: error by octave, what was fitted, what was tried, what was added.
-pub fn step(step: &Step<OCTAVES>, mut line: impl FnMut(Arguments<'_>)) {
+pub fn step<const K: usize>(step: &Step<K>, mut line: impl FnMut(Arguments<'_>)) {
     for octave in &step.comparison.octaves {
         line(format_args!(
             "octave m {} measured {:e} model {:e} z {}",

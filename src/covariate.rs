@@ -120,10 +120,9 @@ impl<const K: usize> CrossCurve<K> {
     /// the curve rises from the start, and also where it never rises and all of it is noise that the
     /// rate might follow.
     fn first_octave(&self) -> usize {
-        let by_variance =
-            |(_, a): &(usize, &CrossPoint), (_, b): &(usize, &CrossPoint)| {
-                a.variance.total_cmp(&b.variance)
-            };
+        let by_variance = |(_, a): &(usize, &CrossPoint), (_, b): &(usize, &CrossPoint)| {
+            a.variance.total_cmp(&b.variance)
+        };
         let least = numbered(self.points.iter()).min_by(by_variance);
         let Some((at, least)) = least.filter(|&(at, _)| at > 0) else {
             return 0;

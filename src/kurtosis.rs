@@ -1,11 +1,6 @@
 //! Evidence beyond the curve: whether the differences are Gaussian.
 
-use crate::{
-    curve::Curve,
-    list::numbered,
-    octave::Accumulator,
-    real::Real,
-};
+use crate::{curve::Curve, list::numbered, octave::Accumulator, real::Real};
 use heapless::Vec;
 
 /// Σ D⁴ of every octave of an accumulator, over the differences that the accumulator squares.

@@ -1,12 +1,9 @@
 //! The images on every core and the same computation here agree to the bit.
 
-use allanite::{
-    Accumulator, Scale,
-    demonstration::{AMPLITUDES, diagnose::HIDDEN, stream::SEED, tell},
-    simulated::SimulatedGyro,
-};
+use allanite::{Accumulator, Scale};
 use host_tests::{
     curve_file::{AxisCurve, CurveFile},
+    demonstration::{AMPLITUDES, diagnose::HIDDEN, lines, simulated::SimulatedGyro, stream::SEED},
     firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run},
     log::Axis,
     program::command,
@@ -178,12 +175,12 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
         let run = run.unwrap_or_else(|error| panic!("{error:#}"));
         println!("{}", run.lines.join("\n"));
         assert!(run.status.success(), "the image ended with {}", run.status);
-        let lines = |kind: &str| -> Vec<&str> {
+        let told = |kind: &str| -> Vec<&str> {
             let start = format!("info {kind} ");
             let lines = run.lines.iter();
             lines.filter_map(|line| line.strip_prefix(&start)).collect()
         };
-        let [record, total] = ["record", "total"].map(|kind| lines(kind)[0]);
+        let [record, total] = ["record", "total"].map(|kind| told(kind)[0]);
         let [seed, octaves] = numbers(record, ["seed", "octaves"]);
         let [made, taken, lost] = numbers(total, ["made", "taken", "lost"]);
         assert_eq!(taken + lost, made);
@@ -193,7 +190,7 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
         let mut accumulator = Accumulator::<12>::new();
         assert_eq!(octaves, 12);
         let (mut taken_here, mut lost_here) = (0, 0);
-        let gaps = lines("gap");
+        let gaps = told("gap");
         for line in &gaps {
             let [after, lost] = numbers(line, ["after", "lost"]);
             for count in gyro.by_ref().take((after - taken_here) as usize) {
@@ -214,7 +211,7 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
         );
         let curve = accumulator.curve(Scale::new(1.0 / 131.0, 100.0).unwrap());
         let mut here = Vec::new();
-        tell::curve(&curve, |line| here.push(format!("info {line}")));
+        lines::curve(&curve, |line| here.push(format!("info {line}")));
         let octaves = run.lines.iter();
         let there = octaves.filter(|line| line.starts_with("info octave"));
         assert!(there.eq(&here), "{:?}, here {here:?}", run.lines);

@@ -89,7 +89,10 @@ where
         let all = self.kept.axes.iter().map(|axis| &axis.integrity);
         let moved = |reason: &Reason| matches!(reason, Reason::Moved { .. });
         let others = all.filter_map(verdict).find(moved);
-        let left_out = self.gate.gate().and_then(|gate| self.left_out_too_much(gate));
+        let left_out = self
+            .gate
+            .gate()
+            .and_then(|gate| self.left_out_too_much(gate));
         own.and_then(verdict).or(others).or(left_out)
     }
 

@@ -1,8 +1,6 @@
 //! Generalised least squares: octaves weighted by the covariance of the curve.
 
-use super::{
-    Fit, Method, Problem, independent, shape::ShapeEquations, squared, weights::Weights,
-};
+use super::{Fit, Method, Problem, independent, shape::ShapeEquations, squared, weights::Weights};
 use crate::{
     algebra,
     chi_squared::chi_squared_tail,

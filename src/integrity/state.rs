@@ -131,7 +131,9 @@ impl State {
         self.runs.present == 0
             && self.pending_squares == 0
             && self.neighbours.is_possible()
-            && clusters.clone().all(|cluster| empty(cluster) && cluster.watch.is_possible())
+            && clusters
+                .clone()
+                .all(|cluster| empty(cluster) && cluster.watch.is_possible())
     }
 
     pub(super) fn merge(&mut self, other: &Self) {

@@ -25,8 +25,8 @@
 //! | – correlations of the squares, lower triangle row by row without diagonal | f32 each |
 //!
 //! A reason is 0 stuck (longest run u32, changes u64, samples u64), 1 railed (hits u64, samples u64),
-//! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8) or 4 missing
-//! (missing u64, sent u64).
+//! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8), 4 missing (missing u64,
+//! sent u64) or 5 left out (left out u64, samples u64).
 
 mod axis;
 mod effect_code;

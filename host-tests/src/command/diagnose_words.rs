@@ -7,8 +7,8 @@ use super::{
 };
 use crate::log::OCTAVES;
 use allanite::{
-    Addition, Candidate, Follows, Step, Swap, Term, Verdict,
-    effect::{Story, covariate, story},
+    Addition, Candidate, Follows, Step, Swap, Term, Verdict, covariate,
+    effect::{Story, story},
 };
 
 /// What a step of a diagnosis added, and why.

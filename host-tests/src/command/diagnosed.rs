@@ -11,7 +11,7 @@ use crate::{
 };
 use allanite::{
     Addition, Candidate, CrossCurve, Diagnosis, Error, Follows, Model, Step, Term, Verdict,
-    effect::{CATALOGUE, covariate},
+    covariate, effect::CATALOGUE,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 
 use super::{fit_json, words};
 use crate::{log::OCTAVES, unit::Unit};
-use allanite::{ComparedOctave, Comparison, Fit, Follows, Model, Term, effect::covariate};
+use allanite::{ComparedOctave, Comparison, Fit, Follows, Model, Term, covariate};
 use serde::Serialize;
 use serde_json::{Map, Value};
 

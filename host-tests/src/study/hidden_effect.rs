@@ -3,7 +3,7 @@
 use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
 use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
 use allanite::{
-    Addition, Comparison, Curve, Diagnosis, Evidence, Fit, FourthMoments, Model, Settings, Step,
+    Addition, Axis, Comparison, Curve, Diagnosis, Evidence, Fit, Model, Scale, Settings, Step,
     Term, Verdict,
     effect::{CATALOGUE, Effect, MAX_PARAMETERS},
     fit,
@@ -134,18 +134,19 @@ pub struct Outcome {
 /// Diagnoses a simulated record, and judges the result on a second record of the same gyro.
 pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64) -> Outcome {
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
-    let mut moments = FourthMoments::<OCTAVES>::new();
+    let mut gyro = Axis::<OCTAVES, 0, ()>::new();
     let curve = record(&mut simulator, base, samples, |counts| {
-        moments.push_slice(counts);
+        counts.iter().for_each(|&count| gyro.push(count));
     });
     let other = record(&mut simulator, base, samples, |_| ());
-    let kurtosis = moments.kurtosis();
+    let scale = Scale::new(1.0, RATE_HZ).expect("positive");
+    let kurtosis = gyro.evidence(0, scale, []).expect("one axis").kurtosis;
     let mut steps: Vec<Step<OCTAVES>> = Vec::new();
     let verdict = Diagnosis::default()
         .run(
             &curve,
             &Evidence {
-                kurtosis: Some(&kurtosis),
+                kurtosis: kurtosis.as_ref(),
                 ..Evidence::NONE
             },
             &Model::ieee_952(),

@@ -2,9 +2,7 @@
 
 use super::{OCTAVES, quantum};
 use crate::simulate::{Coefficients, Course, Hidden, Preset, Simulator, Thermal};
-use allanite::{
-    Accumulator, Addition, CrossSums, Diagnosis, Evidence, Model, Scale, effect::CATALOGUE,
-};
+use allanite::{Addition, Axis, Diagnosis, Evidence, Model, Scale, effect::CATALOGUE};
 use rayon::prelude::*;
 
 /// The sample rate of these records, in Hz: 55 minutes of 2^16 samples.
@@ -57,20 +55,18 @@ pub fn diagnose(
     };
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
     let unit = quantum(base, RATE_HZ);
-    let mut gyro = Accumulator::<OCTAVES>::new();
-    let mut cross = CrossSums::<OCTAVES>::new();
+    let mut gyro = Axis::<OCTAVES, 1, (), ()>::new();
     for n in 0..SAMPLES {
         let time_s = n as f64 / RATE_HZ;
         let rate = simulator.next().unwrap_or_default() + thermal.rate_at(time_s);
         let count = (rate / unit).round() as i32;
         let celsius = (thermal.celsius_at(time_s) / KELVIN).round() as i32;
-        gyro.push(count);
-        cross.push(count, celsius);
+        gyro.push((count, [celsius]));
     }
     let scale = Scale::new(unit, RATE_HZ).expect("positive");
-    let covariates = [cross.curve(&gyro, scale, KELVIN).expect("pushed together")];
+    let record = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
     let evidence = Evidence {
-        covariates: &covariates,
+        covariates: &record.covariates,
         ..Evidence::NONE
     };
     let mut outcome = Outcome {
@@ -78,10 +74,13 @@ pub fn diagnose(
         named: Vec::new(),
     };
     let model = Model::ieee_952();
-    let curve = gyro.curve(scale);
     let report =
-        Diagnosis::default().run(&curve, &evidence, &model, &CATALOGUE, |step| {
-            match &step.added {
+        Diagnosis::default().run(
+            &record.curve,
+            &evidence,
+            &model,
+            &CATALOGUE,
+            |step| match &step.added {
                 Some(Addition::Covariate(follows)) => {
                     outcome.slope = Some((follows.slope.value, follows.slope.error));
                 }
@@ -90,8 +89,8 @@ pub fn diagnose(
                     outcome.named.extend(step.ambiguous.iter());
                 }
                 None => {}
-            }
-        });
+            },
+        );
     report.expect("a curve to diagnose");
     outcome
 }

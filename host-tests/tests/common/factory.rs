@@ -2,8 +2,10 @@
 
 use allanite::{
     Accumulator, AxisRecord, Conditions, Diagnosis, Evidence, Model, RateUnit, Record, Scale,
-    demonstration::AMPLITUDES,
     effect::CATALOGUE,
+};
+use host_tests::demonstration::{
+    AMPLITUDES,
     simulated::{Disturbance, SimulatedGyro},
 };
 

@@ -14,7 +14,6 @@ pub const SEED: u64 = 952;
 
 /// What came out.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Characterised {
     /// The Allan curve, in °/s.
     pub curve: Curve<OCTAVES>,

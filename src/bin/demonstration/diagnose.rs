@@ -61,7 +61,13 @@ pub fn diagnose(
 ) -> Result<Verdict, Error> {
     let record = recorded(disturbance, seed)?;
     let (diagnosis, model) = (Diagnosis::default(), Model::ieee_952());
-    diagnosis.run(&record.curve, &record.evidence(), &model, &CATALOGUE, report)
+    diagnosis.run(
+        &record.curve,
+        &record.evidence(),
+        &model,
+        &CATALOGUE,
+        report,
+    )
 }
 
 /// A call of its own: gyro and record leave the stack to the diagnosis.

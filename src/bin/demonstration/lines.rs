@@ -2,7 +2,7 @@
 //! mean equal bits.
 
 use super::{characterise::Characterised, double};
-use allanite::{Addition, Curve, Real, Step};
+use allanite::{Addition, AxisEvidence, Curve, Real, Step};
 use core::fmt::{self, Arguments, Display, Formatter};
 
 /// A number, and the bits that it has in double precision.
@@ -24,6 +24,26 @@ pub fn curve<const K: usize>(curve: &Curve<K>, mut line: impl FnMut(Arguments<'_
             Exact(point.variance)
         ));
     }
+}
+
+/// The curve of an axis, and all that a diagnosis takes beside it.
+pub fn evidence<const K: usize, const C: usize>(
+    axis: &AxisEvidence<K, C>,
+    mut line: impl FnMut(Arguments<'_>),
+) {
+    curve(&axis.curve, &mut line);
+    for point in axis.kurtosis.iter().flat_map(|kurtosis| &kurtosis.points) {
+        let excess = Exact(point.excess);
+        line(format_args!("kurtosis m {} excess {excess}", point.m));
+    }
+    for point in axis.covariates.iter().flat_map(|cross| cross.points()) {
+        let [covariance, variance] = [point.covariance, point.variance].map(Exact);
+        line(format_args!(
+            "covariate m {} covariance {covariance} variance {variance}",
+            point.m
+        ));
+    }
+    line(format_args!("invalid {:?}", axis.invalid));
 }
 
 /// The curve, a line a coefficient, and one of the fit.
@@ -84,8 +104,15 @@ pub fn step<const K: usize>(step: &Step<K>, mut line: impl FnMut(Arguments<'_>))
     for name in &step.ambiguous {
         line(format_args!("ambiguous {name}"));
     }
-    if let Some(Addition::Effect(term)) = &step.added {
-        let first = Exact(term.parameters[0]);
-        line(format_args!("added {} first {first}", term.effect.name()));
+    match &step.added {
+        Some(Addition::Effect(term)) => {
+            let first = Exact(term.parameters[0]);
+            line(format_args!("added {} first {first}", term.effect.name()));
+        }
+        Some(Addition::Covariate(follows)) => {
+            let slope = Exact(follows.slope.value);
+            line(format_args!("added covariate slope {slope}"));
+        }
+        None => {}
     }
 }

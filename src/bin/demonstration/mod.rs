@@ -4,6 +4,7 @@
 pub mod characterise;
 pub mod diagnose;
 pub mod lines;
+pub mod product;
 
 pub mod simulated;
 pub mod stream;

@@ -17,7 +17,6 @@ const POLES: usize = 24;
 
 /// Amplitudes of the five terms of IEEE Std 952, in 2^-24 counts: up to 256 counts each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Amplitudes {
     /// Standard deviation of the angle's jitter, in count · samples. The rounding of the angle to
     /// whole counts comes on top, with a variance of 1/12.

@@ -108,6 +108,13 @@ pub struct Observation {
 }
 
 impl Observation {
+    const USUAL: Self = Self {
+        stuck: false,
+        railed: false,
+        outlying: false,
+        moving: false,
+    };
+
     /// Whether anything is odd.
     pub const fn is_odd(self) -> bool {
         self.stuck || self.railed || self.outlying || self.moving
@@ -186,30 +193,13 @@ impl Integrity {
     #[inline]
     pub fn push(&mut self, count: i32) -> Observation {
         let (limits, state) = (self.limits(), &mut self.state);
-        state.samples = state.samples.saturating_add(1);
-        let repeated = state.runs.present > 0 && state.runs.value == count;
-        if repeated {
-            state.repeats = state.repeats.saturating_add(1);
-        } else if state.runs.present > 0 {
-            state.changes = state.changes.saturating_add(1);
+        if state.push_usual(count, limits) {
+            return Observation {
+                moving: state.moving,
+                ..Observation::USUAL
+            };
         }
-        let stuck = state.runs.push(count, limits.run_factor);
-        let railed = state.rails.push(count, &limits.rails);
-        let mut outlying = false;
-        // What is stuck says nothing of the noise.
-        if !stuck {
-            let ordinary;
-            (outlying, ordinary) = state.push_neighbour(count, limits.spike_factor);
-            if let Some(count) = ordinary {
-                state.push_clusters(count, limits.motion_factor);
-            }
-        }
-        Observation {
-            stuck,
-            railed,
-            outlying,
-            moving: state.clusters.iter().any(|c| c.watch.is_outside()),
-        }
+        state.push(count, limits)
     }
 
     /// This many samples were lost at this place: counts them, and is a [`gap`](Self::gap).
@@ -247,7 +237,7 @@ impl Integrity {
         let state = &self.state;
         let motions = state.clusters.iter().map(|c| c.motions).max();
         Tally {
-            samples: state.samples,
+            samples: state.samples(),
             missing: state.missing,
             repeats: state.repeats,
             longest_run: state.runs.longest,
@@ -265,7 +255,7 @@ impl Integrity {
     /// spikes, missing samples.
     pub fn verdict(&self) -> Option<Reason> {
         let (limits, state) = (self.limits(), &self.state);
-        let samples = state.samples;
+        let samples = state.samples();
         let hits = state.rails.hits();
         if exceeds(hits.into(), samples.into(), limits.rail_per_mille) {
             return Some(Reason::Railed { hits, samples });
@@ -300,7 +290,7 @@ impl Integrity {
     /// By the mean run of the whole record, which a run that happened early did not know.
     fn stuck(&self) -> Option<Reason> {
         let (limits, state) = (self.limits(), &self.state);
-        let (samples, runs) = (state.samples, &state.runs);
+        let (samples, runs) = (state.samples(), &state.runs);
         let pairs = state.repeats.saturating_add(state.changes);
         let changes = u128::from(state.changes) * 1000;
         let frozen =

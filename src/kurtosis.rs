@@ -258,6 +258,14 @@ mod tests {
         assert_eq!(moments.sums[1], STOPPED);
     }
 
+    struct Completed([Option<i64>; 4]);
+
+    impl crate::octave::Observer for Completed {
+        fn observe(&mut self, octave: usize, difference: i64) {
+            self.0[octave] = Some(difference);
+        }
+    }
+
     #[test]
     fn excess_is_that_of_the_differences() {
         let mut accumulator = Accumulator::<4>::new();
@@ -266,10 +274,14 @@ mod tests {
         let mut random = 1_u32;
         for _ in 0..2005 {
             random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            accumulator.push_observed((random >> 20) as i32, |octave, difference| {
-                moments.add(octave, difference);
-                all[octave].push(difference);
-            });
+            let mut completed = Completed([None; 4]);
+            accumulator.push_observed((random >> 20) as i32, &mut completed);
+            for (octave, difference) in numbered(completed.0) {
+                if let Some(difference) = difference {
+                    moments.add(octave, difference);
+                    all[octave].push(difference);
+                }
+            }
         }
         for (k, all) in all.iter_mut().enumerate() {
             all.extend(accumulator.pending_difference(k));

@@ -13,6 +13,18 @@ const FIRST: usize = 2;
 /// Where `number` goes on from when it is exhausted.
 const LAP: u32 = 1 << 31;
 
+/// Watches the differences that an accumulator completes.
+pub(crate) trait Observer {
+    /// A difference of octave `octave` is complete.
+    fn observe(&mut self, octave: usize, difference: i64);
+}
+
+/// Nobody watches.
+impl Observer for () {
+    #[inline(always)]
+    fn observe(&mut self, _: usize, _: i64) {}
+}
+
 /// What is kept of one block length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Level {
@@ -150,15 +162,15 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// Adds one count.
     #[inline]
     pub fn push(&mut self, count: i32) {
-        self.push_observed(count, |_, _| {});
+        self.push_observed(count, &mut ());
     }
 
-    /// Adds one count, and calls `observe(k, difference)` for every difference of an octave `k` that
-    /// it completes: one of octaves 0, 1 and 2 each, and one of at most one other. Accumulators that
+    /// Adds one count, and shows an observer every difference that it completes: one of octaves 0, 1
+    /// and 2 each, and one of at most one other. Accumulators that
     /// take the same samples and gaps complete the same octaves at the same sample, so their
     /// differences can be multiplied.
     #[inline(always)]
-    pub(crate) fn push_observed(&mut self, count: i32, mut observe: impl FnMut(usize, i64)) {
+    pub(crate) fn push_observed(&mut self, count: i32, observer: &mut impl Observer) {
         let n = self.next_number();
         let i = n as usize % RING;
         let before = self.angle;
@@ -170,42 +182,42 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         if n >= RING as u32 {
             let difference = second_difference(angle, before, two_before);
             self.short[0].add_square(difference);
-            observe(0, difference);
+            observer.observe(0, difference);
             let four_before = base.ring[i ^ 4];
             let difference = second_difference(angle, two_before, four_before);
             self.short[1].add_square(difference);
-            observe(1, difference);
+            observer.observe(1, difference);
             if OCTAVES > FIRST {
                 let eight_before = base.ring[i];
                 let difference = second_difference(angle, four_before, eight_before);
                 base.sum.add_square(difference);
-                observe(FIRST, difference);
+                observer.observe(FIRST, difference);
             }
             base.ring[i] = angle;
         } else {
-            self.push_early(before, two_before, &mut observe);
+            self.push_early(before, two_before, observer);
         }
         if let Some((octave, difference)) = self.complete_scheduled(n) {
-            observe(octave, difference);
+            observer.observe(octave, difference);
         }
     }
 
     /// What a full ring allows [`push`](Self::push) to do without questions.
     #[cold]
     #[inline(never)]
-    fn push_early(&mut self, before: u64, two_before: u64, observe: &mut impl FnMut(usize, i64)) {
+    fn push_early(&mut self, before: u64, two_before: u64, observer: &mut impl Observer) {
         let angle = self.angle;
         let n = self.number as usize;
         let four_before = self.levels[0].ring[(n % RING) ^ 4];
         if n >= 2 {
             let difference = second_difference(angle, before, two_before);
             self.short[0].add_square(difference);
-            observe(0, difference);
+            observer.observe(0, difference);
         }
         if n >= 4 {
             let difference = second_difference(angle, two_before, four_before);
             self.short[1].add_square(difference);
-            observe(1, difference);
+            observer.observe(1, difference);
         }
         self.levels[0].ring[n % RING] = angle;
     }

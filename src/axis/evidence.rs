@@ -81,8 +81,8 @@ where
     ///
     /// The verdict is that of [`Integrity`] on the record that is kept. Motion in any axis makes all of them
     /// invalid, because a gyro that turns about one axis was not at rest about another. A record of which
-    /// the gate left out more than the share that may be missing, one sample in ten by default, is invalid
-    /// too.
+    /// the gate left out more than [`left_out_per_mille`](crate::Limits::left_out_per_mille), one sample in
+    /// four by default, is invalid too.
     pub fn verdict(&self, axis: usize) -> Option<Reason> {
         let verdict = |integrity: &Integrity| integrity.verdict();
         let own = self.kept.axes.get(axis).map(|axis| &axis.integrity);
@@ -99,7 +99,7 @@ where
     fn left_out_too_much(&self, gate: &Gate<AXES, COVARIATES>) -> Option<Reason> {
         let left_out = gate.left_out();
         let samples = self.samples().saturating_add(left_out);
-        let most = self.limits().missing_per_mille;
+        let most = self.limits().left_out_per_mille;
         exceeds(left_out.into(), samples.into(), most)
             .then_some(Reason::LeftOut { left_out, samples })
     }

@@ -1,13 +1,13 @@
 //! What is kept of a record, behind the gate.
 
 use super::{
-    part::{MomentPart, MomentSums as _},
+    part::{MomentPart, MomentSums},
     sample::Sample,
 };
 use crate::{
     covariate::CrossSums,
     integrity::{Integrity, InvalidLimit, Limits},
-    octave::Accumulator,
+    octave::{Accumulator, Observer},
 };
 
 /// The sums of all axes and covariates. They all take the same samples and gaps, so that everything that
@@ -32,12 +32,43 @@ pub(super) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M: Mom
 }
 
 /// Differences of a covariate that a sample completes: of octaves 0, 1 and 2, and of one other.
-type Completed = [i64; 4];
+#[derive(Clone, Copy)]
+struct Completed([i64; 4]);
 
-/// The place in [`Completed`] of an octave's difference.
-#[inline(always)]
-fn place(octave: usize) -> usize {
-    octave.min(3)
+impl Completed {
+    /// The difference of an octave.
+    #[inline(always)]
+    fn of(&self, octave: usize) -> i64 {
+        self.0[octave.min(3)]
+    }
+}
+
+impl Observer for Completed {
+    #[inline(always)]
+    fn observe(&mut self, octave: usize, difference: i64) {
+        self.0[octave.min(3)] = difference;
+    }
+}
+
+/// What is summed beside the accumulator of an axis, while it takes a sample.
+struct Beside<'a, S, const OCTAVES: usize, const COVARIATES: usize> {
+    moments: &'a mut S,
+    cross: &'a mut [CrossSums<OCTAVES>; COVARIATES],
+    completed: &'a [Completed; COVARIATES],
+}
+
+impl<S, const OCTAVES: usize, const COVARIATES: usize> Observer
+    for Beside<'_, S, OCTAVES, COVARIATES>
+where
+    S: MomentSums<OCTAVES>,
+{
+    #[inline(always)]
+    fn observe(&mut self, octave: usize, difference: i64) {
+        self.moments.add(octave, difference);
+        for (cross, completed) in self.cross.iter_mut().zip(self.completed) {
+            cross.add(octave, difference, completed.of(octave));
+        }
+    }
 }
 
 impl<const OCTAVES: usize, const COVARIATES: usize, M> AxisSums<OCTAVES, COVARIATES, M>
@@ -60,12 +91,12 @@ where
             cross,
         } = self;
         integrity.push(count);
-        accumulator.push_observed(count, |octave, difference| {
-            moments.add(octave, difference);
-            for (cross, completed) in cross.iter_mut().zip(completed) {
-                cross.add(octave, difference, completed[place(octave)]);
-            }
-        });
+        let mut beside = Beside {
+            moments,
+            cross,
+            completed,
+        };
+        accumulator.push_observed(count, &mut beside);
     }
 
     /// Adds what the accumulators still have pending, which they lose at a gap.
@@ -104,12 +135,10 @@ where
 
     #[inline(always)]
     pub(super) fn push(&mut self, sample: &Sample<AXES, COVARIATES>) {
-        let mut completed = [[0; 4]; COVARIATES];
+        let mut completed = [Completed([0; 4]); COVARIATES];
         let covariates = self.covariates.iter_mut().zip(&sample.covariates);
         for ((covariate, &count), completed) in covariates.zip(&mut completed) {
-            covariate.push_observed(count, |octave, difference| {
-                completed[place(octave)] = difference;
-            });
+            covariate.push_observed(count, completed);
         }
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
             axis.push(count, &completed);

@@ -7,12 +7,13 @@
 //! |---|---|
 //! | number of octaves, axes, covariates, self-tests | 4 × u8 |
 //! | parts: 1 for a gate, 2 for fourth moments, 3 for both | u8 |
-//! | samples; gaps, one for the end of the snapshot included; losses | 3 × u64 |
+//! | samples; gaps, one for the end of the snapshot included | 2 × u64 |
 //! | of each octave, `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
 //! | of each axis, then of each covariate: Σ D² of each octave in counts², lowest limb first | 3 × u64 |
 //! | of each axis: its integrity, as the structure `integrity::State` has it | |
 //! | of each axis, with fourth moments: Σ D⁴ of each octave, lowest limb first | 3 × u64 |
 //! | of each axis, of each covariate, of each octave: Σ D_g D_x as `low + 2^64 · upper` | i64, i128 |
+//! | losses | u64 |
 //! | with a gate: samples left out, and of each axis the integrity of what it saw | u64, … |
 //! | of each self-test: plan, next look, probability left, limits kept, verdict | |
 
@@ -52,7 +53,6 @@ struct Parts {
 struct Counts {
     samples: u64,
     gaps: u64,
-    losses: u64,
 }
 
 /// What is yet to be read.
@@ -151,6 +151,7 @@ where
                 }
             }
         }
+        writer.push(&self.losses)?;
         if let Some(gate) = self.gate.gate() {
             writer.push(&gate.left_out())?;
             for seen in gate.integrity() {
@@ -174,7 +175,6 @@ where
         writer.push(&Counts {
             samples: first.samples(),
             gaps: first.ended_gaps(),
-            losses: self.losses,
         })?;
         for octave in first.octaves() {
             writer.push(&octave.differences)?;
@@ -247,6 +247,7 @@ where
                 *sum = ProductSum::from_parts(low, upper);
             }
         }
+        self.losses = reader.take()?;
         if let Some(gate) = self.gate.gate_mut() {
             let (seen, left_out) = gate.state_mut();
             *left_out = reader.take()?;
@@ -261,15 +262,10 @@ where
     }
 
     fn read_sums(&mut self, reader: &mut Reader<'_>) -> Result<(), Error> {
-        let Counts {
-            samples,
-            gaps,
-            losses,
-        } = reader.take()?;
+        let Counts { samples, gaps } = reader.take()?;
         if !has_possible_gaps(samples, gaps) {
             return Err(Error::Impossible);
         }
-        self.losses = losses;
         let mut octaves = [OctaveSum {
             m: 0,
             differences: 0,

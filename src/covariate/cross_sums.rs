@@ -31,7 +31,7 @@ impl ProductSum {
     fn add_product(&mut self, one: i64, other: i64) {
         let (short, other_short) = (one as i32, other as i32);
         // The path of a gyro at rest: one multiplication, one limb.
-        if i64::from(short) == one && i64::from(other_short) == other {
+        if is_short(one) && is_short(other) {
             let product = i64::from(short) * i64::from(other_short);
             if let Some(low) = self.low.checked_add(product) {
                 self.low = low;
@@ -85,6 +85,12 @@ impl ProductSum {
             upper: [upper as u64, (upper >> 64) as u64],
         }
     }
+}
+
+/// Whether a number fits 32 bits: in this form the compiler multiplies what is short as such.
+#[inline(always)]
+const fn is_short(x: i64) -> bool {
+    (x >> 32) as i32 == (x as i32) >> 31
 }
 
 impl<const OCTAVES: usize> CrossSums<OCTAVES> {

@@ -25,6 +25,13 @@ impl Cluster {
         motions: 0,
     };
 
+    /// Adds a count.
+    #[inline(always)]
+    pub(super) fn add(&mut self, count: i32) {
+        self.sum = self.sum.wrapping_add(count.into());
+        self.filled = self.filled.wrapping_add(1);
+    }
+
     /// The cluster is full.
     #[inline(never)]
     pub(super) fn judge(&mut self, rule: &Rule) {

@@ -30,6 +30,8 @@ pub struct Limits {
     pub motion_per_mille: u16,
     /// Share of samples that may be missing. Default 100.
     pub missing_per_mille: u16,
+    /// Share of samples that a gate may leave out. Default 250.
+    pub left_out_per_mille: u16,
 }
 
 impl Limits {
@@ -45,6 +47,7 @@ impl Limits {
         motion_factor: 64,
         motion_per_mille: 50,
         missing_per_mille: 100,
+        left_out_per_mille: 250,
     };
 
     pub(super) const fn check(&self) -> Result<(), InvalidLimit> {
@@ -58,6 +61,7 @@ impl Limits {
             ("motion_factor", self.motion_factor, FACTOR),
             ("motion_per_mille", self.motion_per_mille, SHARE),
             ("missing_per_mille", self.missing_per_mille, SHARE),
+            ("left_out_per_mille", self.left_out_per_mille, SHARE),
         ];
         let mut i = 0;
         while i < ranges.len() {

@@ -22,19 +22,18 @@ impl Rails {
         highest_hits: 0,
     };
 
-    /// Whether the count is a rail and the record's extreme.
+    /// Whether the count is no extreme of the record, and so no hit of a rail either. No count is between the
+    /// zeros that an empty record has.
     #[inline(always)]
-    pub(super) fn push(&mut self, count: i32, rails: &[i32; 4]) -> bool {
-        // No count is between the zeros that an empty record has.
-        if count > self.lowest && count < self.highest {
-            return false;
-        }
-        self.push_extreme(count, rails)
+    pub(super) fn is_between(&self, count: i32) -> bool {
+        count > self.lowest && count < self.highest
     }
 
-    #[cold]
-    #[inline(never)]
-    fn push_extreme(&mut self, count: i32, rails: &[i32; 4]) -> bool {
+    /// Whether the count is a rail and the record's extreme.
+    pub(super) fn push(&mut self, count: i32, rails: &[i32; 4]) -> bool {
+        if self.is_between(count) {
+            return false;
+        }
         let hit = rails.contains(&count);
         if count < self.lowest || !self.begun {
             (self.lowest, self.lowest_hits) = (count, 0);

@@ -33,13 +33,19 @@ impl Runs {
         stuck_samples: 0,
     };
 
+    /// The count differs from the one before, which belongs to the same stretch.
+    #[inline(always)]
+    pub(super) fn change(&mut self, count: i32) {
+        self.end();
+        self.value = count;
+        self.present = 1;
+    }
+
     /// Whether the present run is implausibly long.
     #[inline(always)]
     pub(super) fn push(&mut self, count: i32, factor: u16) -> bool {
         if self.present == 0 || self.value != count {
-            self.end();
-            self.value = count;
-            self.present = 1;
+            self.change(count);
             self.longest = self.longest.max(1);
             return false;
         }

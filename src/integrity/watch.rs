@@ -24,6 +24,9 @@ pub(super) struct Watch {
     outside: u8,
     /// Whether `previous` and `reference` are values of this stretch.
     running: bool,
+    /// Whether the scale is known and the last value was ordinary: `previous` is the reference, and
+    /// `reference` is out of date.
+    steady: bool,
 }
 
 /// How a sequence is judged.
@@ -112,7 +115,36 @@ impl Watch {
         learnt: 0,
         outside: 0,
         running: false,
+        steady: false,
     };
+
+    /// Adds a value if it is as usual, and returns whether it is: the way of nearly every sample, in 32 bits.
+    /// Where something may be odd or a number is long, nothing is added, and [`push`](Self::push) is to
+    /// decide.
+    #[inline(always)]
+    pub(super) fn push_usual(&mut self, value: i32, rule: &Rule) -> bool {
+        let scale = self.scale as u32;
+        if !self.steady || self.scale >= 1 << 30 {
+            return false;
+        }
+        let difference = value.abs_diff(self.previous as i32);
+        let usual = scale.wrapping_add(rule.floor as u32);
+        let long = u64::from(difference) << FRACTION;
+        if long > u64::from(usual) * u64::from(rule.factor) {
+            return false;
+        }
+        let [low, _] = &mut self.total;
+        let Some(sum) = low.checked_add(u64::from(difference) * u64::from(difference)) else {
+            return false;
+        };
+        *low = sum;
+        // No more than 2^31.
+        let new = long.min(u64::from(usual.wrapping_mul(CUT as u32))) as u32;
+        let scale = scale.wrapping_sub(scale.wrapping_shr(rule.span));
+        self.scale = scale.wrapping_add(new.wrapping_shr(rule.span)).into();
+        self.previous = value.into();
+        true
+    }
 
     /// Adds a value within ±2^41, and returns the magnitude of its difference from the one before.
     #[inline(always)]
@@ -126,6 +158,9 @@ impl Watch {
                 Fate::Start
             };
             return (fate, 0);
+        }
+        if self.steady {
+            self.reference = self.previous;
         }
         let difference = value.abs_diff(self.previous);
         self.previous = value;
@@ -171,7 +206,8 @@ impl Watch {
 
     #[inline(always)]
     fn judge(&mut self, value: i64, far: bool, patience: u8) -> Fate {
-        if far && self.outside < patience {
+        self.steady = !far || self.outside >= patience;
+        if !self.steady {
             self.outside = self.outside.saturating_add(1);
             return Fate::Out {
                 first: self.outside == 1,
@@ -221,7 +257,7 @@ impl Watch {
 
     /// The next value does not adjoin the last.
     pub(super) fn gap(&mut self) {
-        self.running = false;
+        (self.running, self.steady) = (false, false);
         self.outside = 0;
         (self.previous, self.reference) = (0, 0);
     }
@@ -238,7 +274,11 @@ impl Watch {
 
     /// The last ordinary value.
     pub(super) fn reference(&self) -> i64 {
-        self.reference
+        if self.steady {
+            self.previous
+        } else {
+            self.reference
+        }
     }
 
     /// Whether the last value was far from the last ordinary one.
@@ -255,7 +295,7 @@ impl Watch {
     /// Whether a sequence can have left this state behind a gap.
     #[cfg(feature = "storage")]
     pub(super) const fn is_possible(&self) -> bool {
-        let quiet = !self.running && self.outside == 0;
+        let quiet = !self.running && !self.steady && self.outside == 0;
         quiet && self.learnt <= 64 && self.scale < 1 << 55 && self.block < 1 << 48
     }
 }

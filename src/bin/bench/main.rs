@@ -23,7 +23,7 @@ mod work;
 mod image {
     use crate::clock::Clock;
     use crate::{stack, work};
-    use allanite::{Accumulator, Curve, Model};
+    use allanite::{Accumulator, Axes, Curve, Gated, Model, Moments};
     use core::hint::black_box;
     #[cfg(target_arch = "arm")]
     use cortex_m as _;
@@ -47,8 +47,7 @@ mod image {
                 fit::<SMALL>(&clock)
             }
             "full" => {
-                samples(&clock);
-                slices(&clock);
+                axes(&clock);
                 worst::<12>(&clock, LATE);
                 worst::<24>(&clock, LATE);
                 worst::<30>(&clock, LATE);
@@ -78,6 +77,38 @@ mod image {
             "ram_bytes_per_axis_24 {=usize}",
             size_of::<Accumulator<24>>()
         );
+    }
+
+    /// Three axes with every part of the library, and a covariate.
+    #[inline(never)]
+    fn axes(clock: &Clock) {
+        use core::fmt::Write as _;
+        use semihosting::io::Write as _;
+        let mut out = semihosting::io::stderr().unwrap();
+        let mut say = |name: &str, x: f64| {
+            let mut line = heapless::String::<64>::new();
+            let _ = writeln!(line, "{name} {x:.1}");
+            let _ = out.write_all(line.as_bytes());
+        };
+        say(
+            "push24",
+            work::mean(clock, work::push) - work::mean(clock, work::nothing),
+        );
+        say("all", work::mean_of_axes::<1, Gated, Moments>(clock));
+        say("000", work::mean_of_axes::<0, (), ()>(clock));
+        say("0_M", work::mean_of_axes::<0, (), Moments>(clock));
+        say("1_M", work::mean_of_axes::<1, (), Moments>(clock));
+        say("0G_", work::mean_of_axes::<0, Gated, ()>(clock));
+        say("size", (size_of::<Axes<USUAL, 1>>() / 3) as f64);
+        say("integrity", size_of::<allanite::Integrity>() as f64);
+        let mut integrity = allanite::Integrity::new();
+        let n = clock.instructions(|| {
+            for i in 0..65536_i32 {
+                integrity.push(black_box((i * 7919) % 31));
+            }
+        });
+        say("integrity push", n / 65536.0);
+        semihosting::process::exit(0);
     }
 
     #[inline(never)]

@@ -7,7 +7,8 @@ use crate::demonstration::{
 };
 use allanite::effect::{CATALOGUE, Effect as _, Setting, Sinusoid};
 use allanite::{
-    Accumulator, Curve, Diagnosis, Error, Evidence, Fit, Model, Real, Settings, Verdict, fit,
+    Accumulator, Axes, Curve, Diagnosis, Error, Evidence, Fit, GatePart, Model, MomentPart, Real,
+    Settings, Verdict, fit,
 };
 use core::hint::black_box;
 
@@ -45,6 +46,24 @@ pub(crate) fn mean(clock: &Clock, work: fn(&mut Accumulator<24>, i32)) -> f64 {
             }
         }
     });
+    total / SAMPLES
+}
+
+/// Mean instructions of a sample of three axes, with or without some parts, the loop around it included.
+pub(crate) fn mean_of_axes<const COVARIATES: usize, G: GatePart, M: MomentPart>(
+    clock: &Clock,
+) -> f64 {
+    let counts = counts();
+    let mut axes = Axes::<20, COVARIATES, G, M>::new();
+    let mut round = |n: i32| {
+        for (i, &count) in (0..).zip(&counts) {
+            let at = |behind: usize| counts[(i + behind) % LENGTH];
+            axes.push(([count, at(1), at(2)], [n + i as i32 / 64; COVARIATES]));
+        }
+    };
+    round(0);
+    let total = clock.instructions(|| (1..=ROUNDS as i32).for_each(&mut round));
+    black_box(&axes);
     total / SAMPLES
 }
 

@@ -32,17 +32,17 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
         let Some(sum) = self.sums.get_mut(octave) else {
             return;
         };
-        let magnitude = difference.unsigned_abs();
         // The path of a gyro at rest: two multiplications, one limb.
-        if magnitude < 1 << 16 {
-            let square = (magnitude as u32).wrapping_mul(magnitude as u32);
+        let short = difference as i16;
+        if i64::from(short) == difference {
+            let square = i32::from(short).wrapping_mul(i32::from(short)) as u32;
             let fourth = u64::from(square) * u64::from(square);
             if let Some(low) = sum[0].checked_add(fourth) {
                 sum[0] = low;
                 return;
             }
         }
-        add_large(sum, magnitude);
+        add_large(sum, difference.unsigned_abs());
     }
 
     /// Adds the sums of another record.

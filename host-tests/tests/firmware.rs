@@ -151,6 +151,38 @@ fn image_finds_hidden_effects_as_the_host_does_to_the_bit() {
     }
 }
 
+#[test]
+fn a_whole_product_finds_on_every_core_what_the_host_finds_to_the_bit() {
+    let cores = [
+        CORTEX_M4F,
+        CORTEX_M4F.with(Precision::Double),
+        RISCV.with(Precision::Single),
+    ];
+    for core in cores {
+        let told = |lines: Result<Vec<String>, anyhow::Error>| {
+            lines.unwrap_or_else(|error| panic!("{core}: {error:#}"))
+        };
+        let there = told(agreement::told(&core, "product", &[]));
+        println!("{core}\n{}", there.join("\n"));
+        let here = told(agreement::told_here(core.precision, "product", &[]));
+        assert_eq!(agreement::first_difference(&here, &there), None, "{core}");
+        let starts = |start: &str| there.iter().filter(|line| line.starts_with(start)).count();
+        assert!(starts("look ") >= 3 && starts("covariate ") > 20 && starts("kurtosis ") > 20);
+        assert_eq!(
+            (
+                starts("snapshot "),
+                starts("restored "),
+                starts("invalid None")
+            ),
+            (1, 1, 3)
+        );
+        assert_eq!(starts("added covariate "), 1);
+        let image = Image::build_for("product", &core);
+        let section = image.and_then(|image| image.section_of("::GYRO"));
+        assert_eq!(section.unwrap_or_else(|error| panic!("{error:#}")), ".bss");
+    }
+}
+
 /// χ² of a line on a fit.
 fn chi_squared(line: &str) -> Option<f64> {
     let (_, rest) = line.split_once(" chi_squared ")?;

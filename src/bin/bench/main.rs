@@ -47,6 +47,8 @@ mod image {
                 fit::<SMALL>(&clock)
             }
             "full" => {
+                samples(&clock);
+                slices(&clock);
                 axes(&clock);
                 worst::<12>(&clock, LATE);
                 worst::<24>(&clock, LATE);
@@ -82,33 +84,10 @@ mod image {
     /// Three axes with every part of the library, and a covariate.
     #[inline(never)]
     fn axes(clock: &Clock) {
-        use core::fmt::Write as _;
-        use semihosting::io::Write as _;
-        let mut out = semihosting::io::stderr().unwrap();
-        let mut say = |name: &str, x: f64| {
-            let mut line = heapless::String::<64>::new();
-            let _ = writeln!(line, "{name} {x:.1}");
-            let _ = out.write_all(line.as_bytes());
-        };
-        say(
-            "push24",
-            work::mean(clock, work::push) - work::mean(clock, work::nothing),
-        );
-        say("all", work::mean_of_axes::<1, Gated, Moments>(clock));
-        say("000", work::mean_of_axes::<0, (), ()>(clock));
-        say("0_M", work::mean_of_axes::<0, (), Moments>(clock));
-        say("1_M", work::mean_of_axes::<1, (), Moments>(clock));
-        say("0G_", work::mean_of_axes::<0, Gated, ()>(clock));
-        say("size", (size_of::<Axes<USUAL, 1>>() / 3) as f64);
-        say("integrity", size_of::<allanite::Integrity>() as f64);
-        let mut integrity = allanite::Integrity::new();
-        let n = clock.instructions(|| {
-            for i in 0..65536_i32 {
-                integrity.push(black_box((i * 7919) % 31));
-            }
-        });
-        say("integrity push", n / 65536.0);
-        semihosting::process::exit(0);
+        let mean = work::mean_of_axes::<1, Gated, Moments>(clock);
+        defmt::info!("instructions_per_sample_three_axes {=f64}", mean);
+        let axis = size_of::<Axes<USUAL, 1>>() / 3;
+        defmt::info!("ram_bytes_per_axis_20_with_all_parts {=usize}", axis);
     }
 
     #[inline(never)]

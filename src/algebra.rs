@@ -139,6 +139,18 @@ impl Choice {
         choice
     }
 
+    /// Those of these bits.
+    #[cfg(feature = "storage")]
+    pub(crate) const fn from_bits(bits: u16) -> Self {
+        Self(bits)
+    }
+
+    /// A bit for each.
+    #[cfg(feature = "storage")]
+    pub(crate) const fn bits(self) -> u16 {
+        self.0
+    }
+
     const fn bit(i: usize) -> u16 {
         if i < u16::BITS as usize { 1 << i } else { 0 }
     }

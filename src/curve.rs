@@ -159,7 +159,13 @@ impl<const K: usize> Curve<K> {
     }
 }
 
-/// That near the least variance above zero; 1 of none.
+/// Clusters `N/m` in the record, from an octave's number of differences as of a contiguous one.
+pub(crate) fn clusters(point: &Point) -> Real {
+    let m = real(point.m);
+    point.differences.saturating_sub(1) as Real * (0.25 * m).max(1.0) / m + 2.0
+}
+
+/// The power of four nearest to the smallest positive variance, or 1 if there is none.
 fn power_of_four(points: &[Point]) -> Real {
     let positive = points.iter().map(|point| point.variance);
     let least = positive

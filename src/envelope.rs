@@ -26,7 +26,7 @@ const TAIL: usize = 4;
 pub(crate) const OVERHEAD: usize = HEAD + TAIL;
 
 /// Without a table: what is stored is short, and flash is dear.
-const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+pub(crate) const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// What a payload is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +93,18 @@ impl<'b> Writer<'b> {
 
 /// The payload of an intact envelope of this kind and version.
 pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> {
+    let (version, payload) = open_any(bytes, kind)?;
+    if version != known {
+        return Err(Error::OtherVersion {
+            found: version,
+            known,
+        });
+    }
+    Ok(payload)
+}
+
+/// The version and the payload of an intact envelope of this kind.
+pub(crate) fn open_any(bytes: &[u8], kind: Kind) -> Result<(u8, &[u8]), Error> {
     let (head, _) = bytes.split_at(bytes.len().min(MAGIC.len()));
     if !MAGIC.starts_with(head) {
         return Err(Error::Foreign);
@@ -123,11 +135,5 @@ pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> 
             wanted: kind as u8,
         });
     }
-    if version != known {
-        return Err(Error::OtherVersion {
-            found: version,
-            known,
-        });
-    }
-    Ok(payload)
+    Ok((version, payload))
 }

@@ -38,12 +38,12 @@ pub enum Error {
         /// How many it has room for.
         capacity: usize,
     },
-    /// A covariate's sums are of other samples or gaps than the gyro's.
-    Misaligned {
-        /// Differences in an octave of the gyro.
-        gyro: u64,
-        /// Differences in the same octave of the covariate.
-        covariate: u64,
+    /// An axis that the record does not have.
+    UnknownAxis {
+        /// The axis that was asked for, counted from 0.
+        axis: usize,
+        /// How many axes the record has.
+        axes: usize,
     },
     /// Samples came at another rate than the configured one: the curve would be shifted along τ.
     RateContradicted {
@@ -92,6 +92,11 @@ pub enum Error {
         /// Octaves of the accumulator that was to be restored.
         wanted: usize,
     },
+    /// A snapshot of other axes, covariates or parts than those that were to be restored, or of another
+    /// number of self-tests.
+    OtherParts,
+    /// A snapshot of a self-test by another plan.
+    OtherPlan,
     /// A device's identity of more bytes than a record has room for.
     DeviceTooLong {
         /// How many it has.
@@ -134,11 +139,9 @@ impl core::fmt::Display for Error {
             Self::TooManyEffects { capacity } => {
                 write!(f, "more than {capacity} effects in one model: remove one")
             }
-            Self::Misaligned { gyro, covariate } => write!(
-                f,
-                "{covariate} differences of a covariate beside {gyro} of the gyro: push both, and \
-                 their gaps, together"
-            ),
+            Self::UnknownAxis { axis, axes } => {
+                write!(f, "axis {axis} of {axes}: axes count from 0")
+            }
             Self::RateContradicted {
                 configured_hz,
                 measured_hz,
@@ -185,7 +188,16 @@ impl core::fmt::Display for Error {
             ),
             Self::OtherOctaves { found, wanted } => write!(
                 f,
-                "a snapshot of {found} octaves, not {wanted}: restore Accumulator::<{found}>"
+                "a snapshot of {found} octaves, not {wanted}: restore it into one of {found} octaves"
+            ),
+            Self::OtherParts => write!(
+                f,
+                "a snapshot of other axes, covariates, parts or self-tests: restore it into the type \
+                 that stored it"
+            ),
+            Self::OtherPlan => write!(
+                f,
+                "a snapshot of a self-test by another plan: start the test again"
             ),
             Self::DeviceTooLong { length, capacity } => write!(
                 f,

@@ -72,12 +72,15 @@ impl<E: core::fmt::Debug> core::fmt::Display for StoreError<E> {
 
 impl<E: core::fmt::Debug> core::error::Error for StoreError<E> {}
 
-/// What the map writes.
-struct Stored<'a, const OCTAVES: usize>(&'a Accumulator<OCTAVES>);
+/// What the map writes: whatever a function puts into a buffer.
+struct Stored<W>(W);
 
-impl<'d, const OCTAVES: usize> Value<'d> for Stored<'_, OCTAVES> {
+impl<'d, W> Value<'d> for Stored<W>
+where
+    W: for<'b> Fn(&'b mut [u8]) -> Result<&'b [u8], Error>,
+{
     fn serialize_into(&self, buffer: &mut [u8]) -> Result<usize, SerializationError> {
-        let bytes = self.0.snapshot(buffer);
+        let bytes = (self.0)(buffer);
         bytes
             .map(<[u8]>::len)
             .map_err(|_| SerializationError::BufferTooSmall)
@@ -102,6 +105,37 @@ impl<F: NorFlash> SnapshotStore<F> {
         Ok(Self { map })
     }
 
+    /// Writes the snapshot that `write` puts into a buffer, such as that of [`Axes`](crate::Axes), under a
+    /// number: `store.save_with(0, |buffer| axes.snapshot(&tests, buffer), &mut buffer)`. The buffer is one
+    /// byte longer than the snapshot, rounded up to what the flash writes at once. The snapshot fits into
+    /// a page of the flash.
+    ///
+    /// # Errors
+    /// [`StoreError::Flash`]: what was stored before is still there.
+    pub async fn save_with(
+        &mut self,
+        number: u8,
+        write: impl for<'b> Fn(&'b mut [u8]) -> Result<&'b [u8], Error>,
+        buffer: &mut [u8],
+    ) -> Result<(), StoreError<F::Error>> {
+        let stored = self.map.store_item(buffer, &number, &Stored(write)).await;
+        stored.map_err(StoreError::Flash)
+    }
+
+    /// Reads the newest snapshot under a number, for [`Axes::restore`](crate::Axes::restore); `None` where
+    /// there never was one. The buffer is as large as to [`save_with`](Self::save_with).
+    ///
+    /// # Errors
+    /// [`StoreError::Flash`].
+    pub async fn load_bytes<'b>(
+        &mut self,
+        number: u8,
+        buffer: &'b mut [u8],
+    ) -> Result<Option<&'b [u8]>, StoreError<F::Error>> {
+        let fetched = self.map.fetch_item::<&[u8]>(buffer, &number).await;
+        fetched.map_err(StoreError::Flash)
+    }
+
     /// Writes an axis' snapshot. The buffer takes [`Accumulator::SNAPSHOT_BYTES`] and one byte more,
     /// rounded up to what the flash writes at once.
     ///
@@ -113,11 +147,8 @@ impl<F: NorFlash> SnapshotStore<F> {
         accumulator: &Accumulator<OCTAVES>,
         buffer: &mut [u8],
     ) -> Result<(), StoreError<F::Error>> {
-        let stored = self
-            .map
-            .store_item(buffer, &axis, &Stored(accumulator))
-            .await;
-        stored.map_err(StoreError::Flash)
+        self.save_with(axis, |buffer| accumulator.snapshot(buffer), buffer)
+            .await
     }
 
     /// Restores an axis' newest snapshot; `None` where there never was one. The buffer is as large as
@@ -130,8 +161,7 @@ impl<F: NorFlash> SnapshotStore<F> {
         axis: u8,
         buffer: &mut [u8],
     ) -> Result<Option<Accumulator<OCTAVES>>, StoreError<F::Error>> {
-        let fetched = self.map.fetch_item::<&[u8]>(buffer, &axis).await;
-        let Some(bytes) = fetched.map_err(StoreError::Flash)? else {
+        let Some(bytes) = self.load_bytes(axis, buffer).await? else {
             return Ok(None);
         };
         let restored = Accumulator::restore(bytes).map_err(StoreError::Snapshot)?;

@@ -66,7 +66,7 @@ use state::{CLUSTERS, State};
 /// # Cost
 ///
 /// Integers only, no division: a handful of comparisons, additions and multiplications a sample, once
-/// in 64 samples those of a cluster besides. The state, with limits, takes 496 bytes.
+/// in 64 samples those of a cluster besides. The state takes at most 480 bytes.
 ///
 /// # Example
 ///
@@ -81,10 +81,14 @@ use state::{CLUSTERS, State};
 /// assert_eq!(integrity.tally().spikes, 1);
 /// assert!(matches!(integrity.verdict(), Some(Reason::Spiked { .. })));
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// The limits are configuration and lie apart, in flash: an empty state is all zero, and a `static` that
+/// holds one takes no flash for its initial value.
+#[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Integrity {
-    limits: Limits,
+    /// `None` stands for the default limits.
+    limits: Option<&'static Limits>,
     state: State,
 }
 
@@ -104,9 +108,27 @@ pub struct Observation {
 }
 
 impl Observation {
+    const USUAL: Self = Self {
+        stuck: false,
+        railed: false,
+        outlying: false,
+        moving: false,
+    };
+
     /// Whether anything is odd.
     pub const fn is_odd(self) -> bool {
         self.stuck || self.railed || self.outlying || self.moving
+    }
+
+    /// What is odd about either of two samples.
+    #[inline(always)]
+    pub(crate) const fn or(self, other: Self) -> Self {
+        Self {
+            stuck: self.stuck | other.stuck,
+            railed: self.railed | other.railed,
+            outlying: self.outlying | other.outlying,
+            moving: self.moving | other.moving,
+        }
     }
 }
 
@@ -137,14 +159,22 @@ pub struct Tally {
 }
 
 impl Integrity {
+    /// Watches with the default limits.
+    pub const fn new() -> Self {
+        Self {
+            limits: None,
+            state: State::NEW,
+        }
+    }
+
     /// Watches with these limits.
     ///
     /// # Errors
     /// Where a limit is outside the range that its field documents.
-    pub const fn new(limits: Limits) -> Result<Self, InvalidLimit> {
+    pub const fn with_limits(limits: &'static Limits) -> Result<Self, InvalidLimit> {
         match limits.check() {
             Ok(()) => Ok(Self {
-                limits,
+                limits: Some(limits),
                 state: State::NEW,
             }),
             Err(error) => Err(error),
@@ -152,46 +182,37 @@ impl Integrity {
     }
 
     /// The limits.
-    pub const fn limits(&self) -> &Limits {
-        &self.limits
+    pub const fn limits(&self) -> &'static Limits {
+        match self.limits {
+            Some(limits) => limits,
+            None => &Limits::DEFAULT,
+        }
     }
 
     /// Adds one count and says what is odd about it.
     #[inline]
     pub fn push(&mut self, count: i32) -> Observation {
-        let (limits, state) = (&self.limits, &mut self.state);
-        state.samples = state.samples.saturating_add(1);
-        let repeated = state.runs.present > 0 && state.runs.value == count;
-        if repeated {
-            state.repeats = state.repeats.saturating_add(1);
-        } else if state.runs.present > 0 {
-            state.changes = state.changes.saturating_add(1);
+        let (limits, state) = (self.limits(), &mut self.state);
+        if state.push_usual(count, limits) {
+            return Observation {
+                moving: state.moving,
+                ..Observation::USUAL
+            };
         }
-        let stuck = state.runs.push(count, limits.run_factor);
-        let railed = state.rails.push(count, &limits.rails);
-        let mut outlying = false;
-        // What is stuck says nothing of the noise.
-        if !stuck {
-            let ordinary;
-            (outlying, ordinary) = state.push_neighbour(count, limits.spike_factor);
-            if let Some(count) = ordinary {
-                state.push_clusters(count, limits.motion_factor);
-            }
-        }
-        Observation {
-            stuck,
-            railed,
-            outlying,
-            moving: state.clusters.iter().any(|c| c.watch.is_outside()),
-        }
+        state.push(count, limits)
     }
 
     /// This many samples were lost at this place: counts them, and is a [`gap`](Self::gap).
     pub fn missing(&mut self, samples: u64) {
         if samples > 0 {
-            self.state.missing = self.state.missing.saturating_add(samples);
+            self.add_missing(samples);
             self.gap();
         }
+    }
+
+    /// Counts samples that were lost, at a place that a [`gap`](Self::gap) marks.
+    pub(crate) fn add_missing(&mut self, samples: u64) {
+        self.state.missing = self.state.missing.saturating_add(samples);
     }
 
     /// The samples that follow do not adjoin those before: no run, difference or cluster will span
@@ -216,7 +237,7 @@ impl Integrity {
         let state = &self.state;
         let motions = state.clusters.iter().map(|c| c.motions).max();
         Tally {
-            samples: state.samples,
+            samples: state.samples(),
             missing: state.missing,
             repeats: state.repeats,
             longest_run: state.runs.longest,
@@ -233,8 +254,8 @@ impl Integrity {
     /// several reasons the one that may have caused the others: rails, stuck values, motion,
     /// spikes, missing samples.
     pub fn verdict(&self) -> Option<Reason> {
-        let (limits, state) = (&self.limits, &self.state);
-        let samples = state.samples;
+        let (limits, state) = (self.limits(), &self.state);
+        let samples = state.samples();
         let hits = state.rails.hits();
         if exceeds(hits.into(), samples.into(), limits.rail_per_mille) {
             return Some(Reason::Railed { hits, samples });
@@ -268,8 +289,8 @@ impl Integrity {
 
     /// By the mean run of the whole record, which a run that happened early did not know.
     fn stuck(&self) -> Option<Reason> {
-        let (limits, state) = (&self.limits, &self.state);
-        let (samples, runs) = (state.samples, &state.runs);
+        let (limits, state) = (self.limits(), &self.state);
+        let (samples, runs) = (state.samples(), &state.runs);
         let pairs = state.repeats.saturating_add(state.changes);
         let changes = u128::from(state.changes) * 1000;
         let frozen =
@@ -288,15 +309,41 @@ impl Integrity {
 impl Default for Integrity {
     /// With the default limits.
     fn default() -> Self {
-        Self {
-            limits: Limits::DEFAULT,
-            state: State::NEW,
+        Self::new()
+    }
+}
+
+impl PartialEq for Integrity {
+    fn eq(&self, other: &Self) -> bool {
+        self.limits() == other.limits() && self.state == other.state
+    }
+}
+
+impl Eq for Integrity {}
+
+#[cfg(feature = "storage")]
+impl Integrity {
+    /// What a snapshot holds: all but the limits, as behind a gap.
+    pub(crate) fn stored(&self) -> impl serde::Serialize + use<> {
+        let mut state = self.state.clone();
+        state.gap();
+        state
+    }
+
+    /// Reads what was [stored](Self::stored), and returns the bytes behind it; `None` where no record
+    /// leaves that.
+    pub(crate) fn restore<'b>(&mut self, bytes: &'b [u8]) -> Option<&'b [u8]> {
+        let (state, rest) = postcard::take_from_bytes::<State>(bytes).ok()?;
+        if !state.is_possible() {
+            return None;
         }
+        self.state = state;
+        Some(rest)
     }
 }
 
 /// Whether a part is more than so many thousandths of the whole.
-fn exceeds(part: u128, whole: u128, per_mille: u16) -> bool {
+pub(crate) fn exceeds(part: u128, whole: u128, per_mille: u16) -> bool {
     part.saturating_mul(1000) > whole.saturating_mul(per_mille.into())
 }
 

@@ -1,149 +1,131 @@
-//! Evidence beyond the curve: are the differences Gaussian?
+//! Evidence beyond the curve: whether the differences are Gaussian.
 
-use crate::curve::Curve;
-use crate::list::numbered;
-use crate::real::Real;
+use crate::{curve::Curve, list::numbered, octave::Accumulator, real::Real};
 use heapless::Vec;
 
-/// Fourth moments of the differences, octave by octave, beside an
-/// [`Accumulator`](crate::Accumulator) that takes the same counts.
+/// Σ D⁴ of every octave of an accumulator, over the differences that the accumulator squares.
 ///
 /// An Allan variance does not know Gauss–Markov noise from random telegraph noise. The kurtosis of
-/// the differences `D_s = θ_{s+2m} − 2θ_{s+m} + θ_s` does: 3 for any Gaussian noise, more where a rate
-/// jumps. Starts advance by a whole cluster, which is enough for a moment that few events decide.
+/// the differences `D_s = θ_{s+2m} − 2θ_{s+m} + θ_s` does: it is 3 for any Gaussian noise, and more
+/// where a rate jumps. The fourth powers are those of the same quarter-overlapping differences whose
+/// squares the accumulator sums, so that nothing else is kept: 24 bytes an octave.
 ///
-/// Integers only. Every sample touches octave 0 and at most one other, as in the accumulator: sample
-/// `n` completes a cluster of the octaves up to its trailing zeros, and all but the first of them
-/// wait for a sample of their own. `56 · OCTAVES + 16` bytes.
+/// The sums are integers of 192 bits that stop at their largest value. A difference of 2^48 or more
+/// stops its octave at once; a converter of 16 bits stays below that in any octave.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FourthMoments<const OCTAVES: usize> {
-    position: u64,
-    angle: u64,
-    octaves: [Octave; OCTAVES],
+    sums: [[u64; 3]; OCTAVES],
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Octave {
-    /// Angles at the last two boundaries, the newest at the parity of its number.
-    boundaries: [u64; 2],
-    differences: u64,
-    squares: u128,
-    fourth: u128,
-}
-
-impl Octave {
-    const EMPTY: Self = Self {
-        boundaries: [0; 2],
-        differences: 0,
-        squares: 0,
-        fourth: 0,
-    };
-
-    /// The boundary of number `block`.
-    fn push(&mut self, block: u64, angle: u64) {
-        let [even, odd] = self.boundaries;
-        let (oldest, middle) = if block & 1 == 0 {
-            (even, odd)
-        } else {
-            (odd, even)
-        };
-        self.boundaries[(block & 1) as usize] = angle;
-        if block < 2 {
-            return;
-        }
-        let difference = angle
-            .wrapping_sub(middle)
-            .wrapping_sub(middle.wrapping_sub(oldest)) as i64;
-        // Differences beyond 2^31 saturate, and so do the sums: no gyro of 16 bits has them at rest.
-        let magnitude = difference.unsigned_abs().min(1 << 31);
-        let square = u128::from(magnitude * magnitude);
-        self.differences = self.differences.saturating_add(1);
-        self.squares = self.squares.saturating_add(square);
-        self.fourth = self.fourth.saturating_add(square * square);
-    }
-}
+/// A sum that has stopped.
+const STOPPED: [u64; 3] = [u64::MAX; 3];
 
 impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
-    /// Nothing yet.
-    pub const fn new() -> Self {
-        const {
-            assert!(OCTAVES >= 1 && OCTAVES <= 30, "1 to 30 octaves");
+    /// Nothing summed yet.
+    pub(crate) const NEW: Self = Self {
+        sums: [[0; 3]; OCTAVES],
+    };
+
+    /// Adds the fourth power of a difference of an octave.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, octave: usize, difference: i64) {
+        let Some(sum) = self.sums.get_mut(octave) else {
+            return;
+        };
+        // The path of a gyro at rest: two multiplications, one limb.
+        let short = difference as i16;
+        if i64::from(short) == difference {
+            let square = i32::from(short).wrapping_mul(i32::from(short)) as u32;
+            let fourth = u64::from(square) * u64::from(square);
+            if let Some(low) = sum[0].checked_add(fourth) {
+                sum[0] = low;
+                return;
+            }
         }
-        Self {
-            position: 0,
-            angle: 0,
-            octaves: [Octave::EMPTY; OCTAVES],
+        add_large(sum, difference.unsigned_abs());
+    }
+
+    /// Adds the sums of another record.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        for (own, other) in self.sums.iter_mut().zip(&other.sums) {
+            add_limbs(own, *other);
         }
     }
 
-    /// Adds one count.
-    pub fn push(&mut self, count: i32) {
-        self.angle = self.angle.wrapping_add_signed(i64::from(count));
-        self.position = self.position.wrapping_add(1);
-        let n = self.position;
-        self.octaves[0].push(n, self.angle);
-        // Octave k ≥ 1 takes the boundary at n − 2^(k−1) from the octave below, which has it as its
-        // last but one or its last.
-        let k = n.trailing_zeros() as usize + 1;
-        if k < OCTAVES {
-            let block = n >> k;
-            // At octave k − 1 the boundary has twice the number, which is even.
-            let boundary = self.octaves[k - 1].boundaries[0];
-            self.octaves[k].push(block, boundary);
+    /// The sum of octave `k` as of now, lowest limb first, with the difference that `accumulator` still has
+    /// pending.
+    pub(crate) fn read(&self, k: usize, accumulator: &Accumulator<OCTAVES>) -> [u64; 3] {
+        let mut sum = self.sums.get(k).copied().unwrap_or([0; 3]);
+        if let Some(difference) = accumulator.pending_difference(k) {
+            add_large(&mut sum, difference.unsigned_abs());
         }
+        sum
     }
 
-    /// Adds counts, one by one.
-    pub fn push_slice(&mut self, counts: &[i32]) {
-        for &count in counts {
-            self.push(count);
-        }
+    /// The sums, to be restored.
+    #[cfg(feature = "storage")]
+    pub(crate) fn sums_mut(&mut self) -> &mut [[u64; 3]; OCTAVES] {
+        &mut self.sums
     }
 
-    /// Samples were lost: no difference spans this moment.
-    pub fn gap(&mut self) {
-        self.position = 0;
-        self.angle = 0;
-        for octave in &mut self.octaves {
-            octave.boundaries = [0; 2];
-        }
-    }
-
-    /// Adds another record of the same sensor.
-    pub fn merge(&mut self, other: &Self) {
-        self.gap();
-        for (own, more) in self.octaves.iter_mut().zip(&other.octaves) {
-            own.differences = own.differences.saturating_add(more.differences);
-            own.squares = own.squares.saturating_add(more.squares);
-            own.fourth = own.fourth.saturating_add(more.fourth);
-        }
-    }
-
-    /// Excess kurtosis of every octave with at least 30 differences that are not all zero, and whose
-    /// fourth powers fit into 128 bits: give it counts no finer than a hundredth of the noise.
-    pub fn kurtosis(&self) -> Kurtosis<OCTAVES> {
+    /// Excess kurtosis of every octave of `accumulator`, whose differences these are, with at least 30
+    /// differences that are not all zero, and whose sum has not stopped.
+    pub(crate) fn kurtosis(&self, accumulator: &Accumulator<OCTAVES>) -> Kurtosis<OCTAVES> {
         let mut points = Vec::new();
-        for (k, octave) in numbered(self.octaves.iter()) {
-            let saturated = octave.fourth == u128::MAX;
-            if octave.differences < 30 || octave.squares == 0 || saturated {
+        for (k, octave) in numbered(accumulator.octaves()) {
+            let fourth = self.read(k, accumulator);
+            let squares = octave.sum.to_real();
+            if octave.differences < 30 || squares == 0.0 || fourth == STOPPED {
                 continue;
             }
+            // In units of the mean square, so that single precision has room for it.
             let n = octave.differences as Real;
-            let (squares, fourth) = (octave.squares as Real, octave.fourth as Real);
-            // As many points as octaves.
+            let mean_square = squares / n;
+            let [low, middle, high] = fourth.map(|limb| limb as Real / mean_square / mean_square);
+            let mean = ((high / n) * LIMB + middle / n) * LIMB + low / n;
+            // There are as many points as octaves.
             let _ = points.push(KurtosisPoint {
-                m: 1_u32.wrapping_shl(k as u32),
+                m: octave.m,
                 differences: octave.differences,
-                excess: (fourth / squares) * (n / squares) - 3.0,
+                excess: mean - 3.0,
             });
         }
         Kurtosis { points }
     }
 }
 
-impl<const OCTAVES: usize> Default for FourthMoments<OCTAVES> {
-    fn default() -> Self {
-        Self::new()
+const LIMB: Real = 18_446_744_073_709_551_616.0; // 2^64
+
+/// Adds the fourth power of a difference of any size.
+#[cold]
+#[inline(never)]
+fn add_large(sum: &mut [u64; 3], magnitude: u64) {
+    if magnitude >= 1 << 48 {
+        *sum = STOPPED;
+        return;
+    }
+    // A square of 96 bits, split so that its square needs no more than 128 at a time.
+    let square = u128::from(magnitude) * u128::from(magnitude);
+    let (upper, lower) = ((square >> 64) as u64, square as u64);
+    let low = u128::from(lower) * u128::from(lower);
+    // 2 · upper · lower is below 2^97, and upper² below 2^64.
+    let cross = (u128::from(upper) * u128::from(lower)) << 1;
+    let middle = (low >> 64) + (cross & u128::from(u64::MAX));
+    let high = (cross >> 64) + u128::from(upper) * u128::from(upper) + (middle >> 64);
+    add_limbs(sum, [low as u64, middle as u64, high as u64]);
+}
+
+/// Adds 192 bits to 192 bits, and stops at the largest value.
+fn add_limbs(sum: &mut [u64; 3], limbs: [u64; 3]) {
+    let mut carry = false;
+    for (own, limb) in sum.iter_mut().zip(limbs) {
+        let (once, first) = own.overflowing_add(limb);
+        let (twice, second) = once.overflowing_add(u64::from(carry));
+        *own = twice;
+        carry = first || second;
+    }
+    if carry {
+        *sum = STOPPED;
     }
 }
 
@@ -155,8 +137,26 @@ pub struct KurtosisPoint {
     pub m: u32,
     /// Differences behind it.
     pub differences: u64,
-    /// Kurtosis less 3: zero for Gaussian noise.
+    /// Kurtosis less 3, `n Σ D⁴ / (Σ D²)² − 3`: zero for Gaussian noise.
     pub excess: Real,
+}
+
+impl KurtosisPoint {
+    /// Variance of the excess that Gaussian noise shows.
+    ///
+    /// It is `24 Σ_ℓ ρ_ℓ⁴ / n`, where `ρ_ℓ` is the correlation of differences that are `ℓ` starts apart
+    /// (the term of order four in the Hermite expansion of the excess; Lomnicki 1961). Starts advance
+    /// by a quarter of a cluster, or by half of one at `m = 2`, or by one at `m = 1`. `Σ ρ⁴` is then
+    /// 1.49, 1.14 and 1.13 for white noise of the rate, and 3.06, 1.54 and 1.01 for a random walk, which
+    /// noise is like whose correlation time exceeds a cluster. The larger of both is taken.
+    pub fn variance(&self) -> Real {
+        let correlated = match self.m {
+            1 => 1.13,
+            2 => 1.54,
+            _ => 3.06,
+        };
+        24.0 * correlated / self.differences as Real
+    }
 }
 
 /// Excess kurtosis by octave, shortest averaging time first.
@@ -187,8 +187,7 @@ impl<const K: usize> Kurtosis<K> {
             };
             let share = share(k);
             let expected = share * share * telegraph_excess(octave.tau_s / correlation_time_s);
-            // Variance of the excess of Gaussian differences, half of each shared with the next.
-            let variance = 27.0 / point.differences as Real;
+            let variance = point.variance();
             product += expected * point.excess / variance;
             weight += expected * expected / variance;
         }
@@ -207,4 +206,94 @@ const DECISIVE: Real = 6.0;
 /// `1.8/x − 1.6` to a fifth for `x ≤ 1`; zero is close beyond.
 pub(crate) fn telegraph_excess(x: Real) -> Real {
     (1.8 / x - 1.6).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+
+    /// Σ D⁴ in 128 bits, for differences whose sum they hold.
+    fn direct(differences: &[i64]) -> [u64; 3] {
+        let fourth = differences.iter().map(|&difference| {
+            let square = u128::from(difference.unsigned_abs()).pow(2);
+            square * square
+        });
+        let sum: u128 = fourth.sum();
+        [sum as u64, (sum >> 64) as u64, 0]
+    }
+
+    #[test]
+    fn sums_are_exact_and_carry() {
+        let differences = [3, -65_535, 65_536, -(1 << 31), 1 << 31, -1, 65_535];
+        let mut moments = FourthMoments::<2>::NEW;
+        for _ in 0..3 {
+            differences.iter().for_each(|&d| moments.add(1, d));
+        }
+        assert_eq!(moments.sums, [[0; 3], direct(&differences.repeat(3))]);
+        let mut merged = moments.clone();
+        merged.merge(&moments);
+        assert_eq!(merged.sums[1], direct(&differences.repeat(6)));
+        // (2^48 − 1)⁴ = 2^192 − 2^146 + 6·2^96 − 2^50 + 1.
+        let mut large = FourthMoments::<1>::NEW;
+        large.add(0, (1 << 48) - 1);
+        let high = u64::MAX - (1 << 18) + 1;
+        assert_eq!(
+            large.sums[0],
+            [u64::MAX - (1 << 50) + 2, (6 << 32) - 1, high]
+        );
+    }
+
+    #[test]
+    fn a_sum_that_would_overflow_stops_for_good() {
+        let mut moments = FourthMoments::<2>::NEW;
+        moments.add(0, 1 << 48);
+        assert_eq!(moments.sums[0], STOPPED);
+        moments.add(0, 1);
+        moments.merge(&FourthMoments::NEW);
+        assert_eq!(moments.sums[0], STOPPED);
+        let largest = (1 << 48) - 1;
+        moments.add(1, largest);
+        moments.add(1, largest);
+        assert_eq!(moments.sums[1], STOPPED);
+    }
+
+    struct Completed([Option<i64>; 4]);
+
+    impl crate::octave::Observer for Completed {
+        fn observe(&mut self, octave: usize, difference: i64) {
+            self.0[octave] = Some(difference);
+        }
+    }
+
+    #[test]
+    fn excess_is_that_of_the_differences() {
+        let mut accumulator = Accumulator::<4>::new();
+        let mut moments = FourthMoments::<4>::NEW;
+        let mut all = [const { std::vec::Vec::new() }; 4];
+        let mut random = 1_u32;
+        for _ in 0..2005 {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let mut completed = Completed([None; 4]);
+            accumulator.push_observed((random >> 20) as i32, &mut completed);
+            for (octave, difference) in numbered(completed.0) {
+                if let Some(difference) = difference {
+                    moments.add(octave, difference);
+                    all[octave].push(difference);
+                }
+            }
+        }
+        for (k, all) in all.iter_mut().enumerate() {
+            all.extend(accumulator.pending_difference(k));
+        }
+        let kurtosis = moments.kurtosis(&accumulator);
+        assert_eq!(kurtosis.points.len(), 4);
+        for (point, all) in kurtosis.points.iter().zip(&all) {
+            let n = all.len() as Real;
+            let mean = |power| all.iter().map(|&d| (d as Real).powi(power)).sum::<Real>() / n;
+            let expected = mean(4) / mean(2).powi(2) - 3.0;
+            assert_eq!(point.differences, all.len() as u64);
+            assert!((point.excess - expected).abs() < 1e-4, "{point:?}");
+        }
+    }
 }

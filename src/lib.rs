@@ -3,14 +3,14 @@
 #![forbid(unsafe_code)]
 
 mod algebra;
+mod axis;
 mod chi_squared;
 mod cholesky;
 mod coefficient;
 mod comparison;
 mod covariance;
-mod cross_sums;
+pub mod covariate;
 mod curve;
-pub mod demonstration;
 pub mod diagnosis;
 pub mod effect;
 #[cfg(feature = "storage")]
@@ -19,7 +19,6 @@ mod error;
 pub mod fit;
 #[cfg(feature = "flash")]
 mod flash;
-mod gate;
 mod integrity;
 mod kurtosis;
 mod lattice;
@@ -37,25 +36,24 @@ mod real;
 mod record;
 pub mod self_test;
 pub mod sensor;
-pub mod simulated;
 #[cfg(feature = "storage")]
 mod snapshot;
 mod square_sum;
 #[cfg(test)]
 mod test_random;
 
+pub use axis::{Axes, Axis, AxisEvidence, GatePart, Gated, MomentPart, Moments, Sample};
 pub use chi_squared::chi_squared_tail;
 pub use coefficient::{Coefficient, State};
 pub use comparison::{ComparedOctave, Comparison, Stretch};
 pub use covariance::curve_covariance;
-pub use cross_sums::{CrossCurve, CrossPoint, CrossSums};
+pub use covariate::{CrossCurve, CrossPoint};
 pub use curve::{Curve, Point, Scale};
 pub use error::Error;
 #[cfg(feature = "flash")]
 pub use flash::{SnapshotStore, StoreError};
-pub use gate::Gate;
 pub use integrity::{Integrity, InvalidLimit, Limits, Observation, Reason, Tally};
-pub use kurtosis::{FourthMoments, Kurtosis, KurtosisPoint};
+pub use kurtosis::{Kurtosis, KurtosisPoint};
 pub use limits::{MAX_EFFECTS, MAX_SHAPE};
 pub use model::{Model, Term};
 pub use octave::{Accumulator, OctaveSum};

@@ -13,6 +13,18 @@ const FIRST: usize = 2;
 /// Where `number` goes on from when it is exhausted.
 const LAP: u32 = 1 << 31;
 
+/// Watches the differences that an accumulator completes.
+pub(crate) trait Observer {
+    /// A difference of octave `octave` is complete.
+    fn observe(&mut self, octave: usize, difference: i64);
+}
+
+/// Nobody watches.
+impl Observer for () {
+    #[inline(always)]
+    fn observe(&mut self, _: usize, _: i64) {}
+}
+
 /// What is kept of one block length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Level {
@@ -28,16 +40,18 @@ impl Level {
         sum: SquareSum::ZERO,
     };
 
-    /// The angle at boundary `block` has become known.
+    /// Takes the angle at boundary `block`, and returns the difference that it completes.
     #[inline(always)]
-    fn push(&mut self, block: u32, angle: u64) {
+    fn push(&mut self, block: u32, angle: u64) -> Option<i64> {
         let i = block as usize % RING;
         let (oldest, middle) = (self.ring[i], self.ring[i ^ 4]);
         self.ring[i] = angle;
-        if block >= RING as u32 {
-            self.sum
-                .add_square(second_difference(angle, middle, oldest));
+        if block < RING as u32 {
+            return None;
         }
+        let difference = second_difference(angle, middle, oldest);
+        self.sum.add_square(difference);
+        Some(difference)
     }
 }
 
@@ -148,6 +162,15 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// Adds one count.
     #[inline]
     pub fn push(&mut self, count: i32) {
+        self.push_observed(count, &mut ());
+    }
+
+    /// Adds one count, and shows an observer every difference that it completes: one of octaves 0, 1
+    /// and 2 each, and one of at most one other. Accumulators that
+    /// take the same samples and gaps complete the same octaves at the same sample, so their
+    /// differences can be multiplied.
+    #[inline(always)]
+    pub(crate) fn push_observed(&mut self, count: i32, observer: &mut impl Observer) {
         let n = self.next_number();
         let i = n as usize % RING;
         let before = self.angle;
@@ -157,33 +180,44 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         let base = &mut self.levels[0];
         let two_before = base.ring[i.wrapping_sub(2) % RING];
         if n >= RING as u32 {
-            self.short[0].add_square(second_difference(angle, before, two_before));
+            let difference = second_difference(angle, before, two_before);
+            self.short[0].add_square(difference);
+            observer.observe(0, difference);
             let four_before = base.ring[i ^ 4];
-            self.short[1].add_square(second_difference(angle, two_before, four_before));
+            let difference = second_difference(angle, two_before, four_before);
+            self.short[1].add_square(difference);
+            observer.observe(1, difference);
             if OCTAVES > FIRST {
                 let eight_before = base.ring[i];
-                base.sum
-                    .add_square(second_difference(angle, four_before, eight_before));
+                let difference = second_difference(angle, four_before, eight_before);
+                base.sum.add_square(difference);
+                observer.observe(FIRST, difference);
             }
             base.ring[i] = angle;
         } else {
-            self.push_early(before, two_before);
+            self.push_early(before, two_before, observer);
         }
-        self.complete_scheduled(n);
+        if let Some((octave, difference)) = self.complete_scheduled(n) {
+            observer.observe(octave, difference);
+        }
     }
 
     /// What a full ring allows [`push`](Self::push) to do without questions.
     #[cold]
     #[inline(never)]
-    fn push_early(&mut self, before: u64, two_before: u64) {
+    fn push_early(&mut self, before: u64, two_before: u64, observer: &mut impl Observer) {
         let angle = self.angle;
         let n = self.number as usize;
         let four_before = self.levels[0].ring[(n % RING) ^ 4];
         if n >= 2 {
-            self.short[0].add_square(second_difference(angle, before, two_before));
+            let difference = second_difference(angle, before, two_before);
+            self.short[0].add_square(difference);
+            observer.observe(0, difference);
         }
         if n >= 4 {
-            self.short[1].add_square(second_difference(angle, two_before, four_before));
+            let difference = second_difference(angle, two_before, four_before);
+            self.short[1].add_square(difference);
+            observer.observe(1, difference);
         }
         self.levels[0].ring[n % RING] = angle;
     }
@@ -204,17 +238,19 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     }
 
     /// Updates the one level above 0 whose turn it is at sample `n`: level `L` has its turn half
-    /// a block after each of its block boundaries, when level `L − 1` has long passed them.
+    /// a block after each of its block boundaries, when level `L − 1` has long passed them. Returns
+    /// its octave and the difference that this completes.
     #[inline(always)]
-    fn complete_scheduled(&mut self, n: u32) {
+    fn complete_scheduled(&mut self, n: u32) -> Option<(usize, i64)> {
         let level = n.trailing_zeros() as usize + 1;
         if level + FIRST >= OCTAVES {
-            return;
+            return None;
         }
         // Of the boundary at n − 2^(level−1): its number at this level and at the one below.
         let block = n >> level;
         let new = self.levels[level - 1].ring[(2 * block) as usize % RING];
-        self.levels[level].push(block, new);
+        let difference = self.levels[level].push(block, new)?;
+        Some((level + FIRST, difference))
     }
 
     /// Samples were lost, or the gyro was disturbed: no difference will span this moment. What was
@@ -318,10 +354,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             None => served.sum,
         };
         let block = self.position().wrapping_shr(level as u32);
-        if self.is_pending(level) && block >= RING as u64 {
-            let i = block as usize % RING;
-            let [middle, oldest] = [served.ring[i ^ 4], served.ring[i]];
-            sum.add_square(second_difference(self.boundary(level), middle, oldest));
+        if let Some(difference) = self.pending_difference(k) {
+            sum.add_square(difference);
         }
         // Blocks so far, less those that the first difference needs.
         let running = block.saturating_sub(match k {
@@ -334,6 +368,19 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             differences: self.counted(k).saturating_add(running),
             sum,
         }
+    }
+
+    /// The difference of octave `k` that is complete and still waits for its turn in the schedule.
+    pub(crate) fn pending_difference(&self, k: usize) -> Option<i64> {
+        let level = k.saturating_sub(FIRST);
+        let served = self.levels.get(level)?;
+        let block = self.position().wrapping_shr(level as u32);
+        if !self.is_pending(level) || block < RING as u64 {
+            return None;
+        }
+        let i = block as usize % RING;
+        let [middle, oldest] = [served.ring[i ^ 4], served.ring[i]];
+        Some(second_difference(self.boundary(level), middle, oldest))
     }
 
     fn sum_mut(&mut self, k: usize) -> &mut SquareSum {

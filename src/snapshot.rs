@@ -1,7 +1,7 @@
-//! Snapshots: an accumulator's sums as bytes that survive a restart.
+//! Snapshots of an accumulator alone: its sums as bytes that survive a restart.
 //!
 //! The payload of the [envelope](crate::envelope), version 1, as postcard writes it: numbers of more
-//! than a byte are varints, seven bits a byte, lowest first.
+//! than a byte are varints, seven bits a byte, lowest first. [`Axes`](crate::Axes) write version 2.
 //!
 //! | content | type |
 //! |---|---|
@@ -23,10 +23,11 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-const VERSION: u8 = 1;
+/// The version of an accumulator alone.
+pub(crate) const VERSION: u8 = 1;
 
 /// Bytes of the longest varint of 64 bits.
-const LONGEST: usize = 10;
+pub(crate) const LONGEST: usize = 10;
 
 #[derive(Serialize, Deserialize)]
 struct Head {
@@ -72,40 +73,19 @@ impl<'b> Snapshot<'b> {
             gaps: head.gaps,
             sums,
         };
-        let ends = snapshot.gaps <= snapshot.samples;
-        let begun = (snapshot.gaps == 0) == (snapshot.samples == 0);
-        if !(2..=30).contains(&snapshot.octaves) || !ends || !begun {
+        let possible = has_possible_gaps(head.samples, head.gaps);
+        if !(2..=30).contains(&snapshot.octaves) || !possible {
             return Err(Error::Impossible);
         }
         let mut rest = sums;
         for k in 0..usize::from(snapshot.octaves) {
             let (octave, after) = take(k, rest).ok_or(Error::Impossible)?;
-            if !snapshot.allows(k, &octave) {
+            if !is_possible(head.samples, head.gaps, k, &octave) {
                 return Err(Error::Impossible);
             }
             rest = after;
         }
         rest.is_empty().then_some(snapshot).ok_or(Error::Impossible)
-    }
-
-    /// Whether so many samples can have left this.
-    fn allows(&self, k: usize, octave: &OctaveSum) -> bool {
-        let (level, first) = match k {
-            0 => (0, 1),
-            1 => (0, 3),
-            _ => (k - 2, 7),
-        };
-        let most = (self.samples >> level).saturating_sub(first);
-        let possible = match self.gaps {
-            0 | 1 => octave.differences == most,
-            // Merged without end, the counters stop at their ends.
-            _ => octave.differences <= most || self.samples == u64::MAX,
-        };
-        // |D| < 2^32 m: above its lowest limb, a sum is less than differences · m².
-        let [low, middle, high] = octave.sum.limbs();
-        let above = u128::from(high) << 64 | u128::from(middle);
-        let bound = u128::from(octave.differences) << (2 * k);
-        possible && (above < bound || (above, low, bound) == (0, 0, 0))
     }
 
     /// Samples of the record.
@@ -134,6 +114,31 @@ impl<'b> Snapshot<'b> {
             },
         })
     }
+}
+
+/// Whether a record of so many samples can have so many gaps, that at its end included.
+pub(crate) const fn has_possible_gaps(samples: u64, gaps: u64) -> bool {
+    gaps <= samples && (gaps == 0) == (samples == 0)
+}
+
+/// Whether so many samples and gaps can have left this in octave `k`, which is below 30.
+pub(crate) fn is_possible(samples: u64, gaps: u64, k: usize, octave: &OctaveSum) -> bool {
+    let (level, first) = match k {
+        0 => (0, 1),
+        1 => (0, 3),
+        _ => (k.wrapping_sub(2), 7),
+    };
+    let most = samples.wrapping_shr(level as u32).saturating_sub(first);
+    let possible = match gaps {
+        0 | 1 => octave.differences == most,
+        // Merged without end, the counters stop at their ends.
+        _ => octave.differences <= most || samples == u64::MAX,
+    };
+    // |D| < 2^32 m: above its lowest limb, a sum is less than differences · m².
+    let [low, middle, high] = octave.sum.limbs();
+    let above = u128::from(high) << 64 | u128::from(middle);
+    let bound = u128::from(octave.differences).wrapping_shl(2 * k as u32);
+    possible && (above < bound || (above, low, bound) == (0, 0, 0))
 }
 
 /// Octave `k` and what stands behind it.

@@ -114,34 +114,6 @@ impl SquareSum {
         (high == 0).then(|| u128::from(middle) << 64 | u128::from(low))
     }
 
-    /// This sum less two others, rounded; exact where it is small.
-    pub(crate) fn excess(&self, one: &Self, other: &Self) -> Real {
-        let mut both = *one;
-        both.add_sum(other);
-        match (self.less(&both), both.less(self)) {
-            (Some(above), _) => above.to_real(),
-            (None, Some(below)) => -below.to_real(),
-            (None, None) => 0.0,
-        }
-    }
-
-    /// The difference, if it is not negative.
-    fn less(&self, other: &Self) -> Option<Self> {
-        let low = self.low.wrapping_sub(other.low);
-        let middle = self
-            .middle
-            .wrapping_sub(other.middle)
-            .wrapping_sub(low >> 63);
-        let high = u64::from(self.high)
-            .checked_sub(u64::from(other.high))?
-            .checked_sub(middle >> 63)?;
-        Some(Self {
-            low: low & DIGIT,
-            middle: middle & DIGIT,
-            high: high as u32,
-        })
-    }
-
     /// The sum, rounded to within one unit in the last place.
     pub fn to_real(&self) -> Real {
         const LIMB: Real = 18_446_744_073_709_551_616.0; // 2^64

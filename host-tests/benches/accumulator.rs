@@ -1,8 +1,7 @@
 //! Time a sample of the accumulator on this host: `cargo xtask bench` reads it.
 
 use allanite::Accumulator;
-use allanite::demonstration::AMPLITUDES;
-use allanite::simulated::SimulatedGyro;
+use host_tests::demonstration::{AMPLITUDES, simulated::SimulatedGyro};
 use std::{hint::black_box, time::Instant};
 
 const SAMPLES: usize = 1 << 22;

@@ -3,6 +3,8 @@
 pub mod command;
 pub mod confidence;
 pub mod curve_file;
+#[path = "../../src/bin/demonstration/mod.rs"]
+pub mod demonstration;
 pub mod equivalent;
 pub mod failure;
 #[cfg(feature = "firmware")]

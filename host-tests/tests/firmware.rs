@@ -1,12 +1,9 @@
 //! The images on every core and the same computation here agree to the bit.
 
-use allanite::{
-    Accumulator, Scale,
-    demonstration::{AMPLITUDES, diagnose::HIDDEN, stream::SEED, tell},
-    simulated::SimulatedGyro,
-};
+use allanite::{Accumulator, Scale};
 use host_tests::{
     curve_file::{AxisCurve, CurveFile},
+    demonstration::{AMPLITUDES, diagnose::HIDDEN, lines, simulated::SimulatedGyro, stream::SEED},
     firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run},
     log::Axis,
     program::command,
@@ -154,6 +151,38 @@ fn image_finds_hidden_effects_as_the_host_does_to_the_bit() {
     }
 }
 
+#[test]
+fn a_whole_product_finds_on_every_core_what_the_host_finds_to_the_bit() {
+    let cores = [
+        CORTEX_M4F,
+        CORTEX_M4F.with(Precision::Double),
+        RISCV.with(Precision::Single),
+    ];
+    for core in cores {
+        let told = |lines: Result<Vec<String>, anyhow::Error>| {
+            lines.unwrap_or_else(|error| panic!("{core}: {error:#}"))
+        };
+        let there = told(agreement::told(&core, "product", &[]));
+        println!("{core}\n{}", there.join("\n"));
+        let here = told(agreement::told_here(core.precision, "product", &[]));
+        assert_eq!(agreement::first_difference(&here, &there), None, "{core}");
+        let starts = |start: &str| there.iter().filter(|line| line.starts_with(start)).count();
+        assert!(starts("look ") >= 3 && starts("covariate ") > 20 && starts("kurtosis ") > 20);
+        assert_eq!(
+            (
+                starts("snapshot "),
+                starts("restored "),
+                starts("invalid None")
+            ),
+            (1, 1, 3)
+        );
+        assert_eq!(starts("added covariate "), 1);
+        let image = Image::build_for("product", &core);
+        let section = image.and_then(|image| image.section_of("::GYRO"));
+        assert_eq!(section.unwrap_or_else(|error| panic!("{error:#}")), ".bss");
+    }
+}
+
 /// χ² of a line on a fit.
 fn chi_squared(line: &str) -> Option<f64> {
     let (_, rest) = line.split_once(" chi_squared ")?;
@@ -178,12 +207,12 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
         let run = run.unwrap_or_else(|error| panic!("{error:#}"));
         println!("{}", run.lines.join("\n"));
         assert!(run.status.success(), "the image ended with {}", run.status);
-        let lines = |kind: &str| -> Vec<&str> {
+        let told = |kind: &str| -> Vec<&str> {
             let start = format!("info {kind} ");
             let lines = run.lines.iter();
             lines.filter_map(|line| line.strip_prefix(&start)).collect()
         };
-        let [record, total] = ["record", "total"].map(|kind| lines(kind)[0]);
+        let [record, total] = ["record", "total"].map(|kind| told(kind)[0]);
         let [seed, octaves] = numbers(record, ["seed", "octaves"]);
         let [made, taken, lost] = numbers(total, ["made", "taken", "lost"]);
         assert_eq!(taken + lost, made);
@@ -193,7 +222,7 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
         let mut accumulator = Accumulator::<12>::new();
         assert_eq!(octaves, 12);
         let (mut taken_here, mut lost_here) = (0, 0);
-        let gaps = lines("gap");
+        let gaps = told("gap");
         for line in &gaps {
             let [after, lost] = numbers(line, ["after", "lost"]);
             for count in gyro.by_ref().take((after - taken_here) as usize) {
@@ -214,7 +243,7 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
         );
         let curve = accumulator.curve(Scale::new(1.0 / 131.0, 100.0).unwrap());
         let mut here = Vec::new();
-        tell::curve(&curve, |line| here.push(format!("info {line}")));
+        lines::curve(&curve, |line| here.push(format!("info {line}")));
         let octaves = run.lines.iter();
         let there = octaves.filter(|line| line.starts_with("info octave"));
         assert!(there.eq(&here), "{:?}, here {here:?}", run.lines);

@@ -1,7 +1,7 @@
 //! The self-test: verdicts, looks, and plans that are refused.
 
 use allanite::{
-    Integrity, Limits, Reason, Scale,
+    Axis, Limits, Reason, Scale,
     self_test::{Failure, InvalidPlan, Limit, Plan, SelfTest, Status},
 };
 use host_tests::{
@@ -28,12 +28,23 @@ fn scale() -> Scale {
     Scale::new(UNIT, RATE_HZ).unwrap()
 }
 
+/// A record as it is, without a gate.
+type Gyro = Axis<16, 0, (), ()>;
+
+fn look(test: &mut SelfTest<16>, gyro: &Gyro) -> Status {
+    if !test.is_due(gyro.samples()) {
+        return test.status(gyro.samples());
+    }
+    let record = gyro.evidence(0, scale(), []).unwrap();
+    test.look(record.samples, &record.curve, record.invalid)
+}
+
 /// Pushes a consumer gyro's counts, changed by `change(index, count)`, until the verdict.
-fn verdict(test: &mut SelfTest<16>, change: impl Fn(u64, i32) -> i32) -> Status {
+fn verdict(test: &mut SelfTest<16>, gyro: &mut Gyro, change: impl Fn(u64, i32) -> i32) -> Status {
     for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7) {
         let count = (rate / UNIT).round() as i32;
-        test.push(change(test.accumulator().samples(), count));
-        let status = test.status();
+        gyro.push(change(gyro.samples(), count));
+        let status = look(test, gyro);
         if !matches!(status, Status::Running { .. }) {
             return status;
         }
@@ -42,9 +53,9 @@ fn verdict(test: &mut SelfTest<16>, change: impl Fn(u64, i32) -> i32) -> Status 
 }
 
 fn run(plan: Plan) -> (Status, u64) {
-    let mut test = SelfTest::new(plan, scale()).unwrap();
-    let status = verdict(&mut test, |_, count| count);
-    (status, test.accumulator().samples())
+    let (mut test, mut gyro) = (SelfTest::new(plan, scale()).unwrap(), Gyro::new());
+    let status = verdict(&mut test, &mut gyro, |_, count| count);
+    (status, gyro.samples())
 }
 
 #[test]
@@ -83,17 +94,17 @@ fn a_gyro_at_its_limit_is_undecided_and_told_how_long_it_would_take() {
 #[test]
 fn looks_are_taken_once_an_octave_and_progress_is_told() {
     let mut test = SelfTest::<16>::new(plan("angle_random_walk", 0.00495), scale()).unwrap();
-    let (mut changes, mut last) = (Vec::new(), None);
+    let (mut gyro, mut changes, mut last) = (Gyro::new(), Vec::new(), None);
     for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7).take(31_999) {
-        test.push((rate / UNIT).round() as i32);
+        gyro.push((rate / UNIT).round() as i32);
+        let samples = gyro.samples();
         let Status::Running {
             progress,
             expected_s,
-        } = test.status()
+        } = look(&mut test, &gyro)
         else {
-            panic!("{:?}", test.status());
+            panic!("{:?}", test.status(samples));
         };
-        let samples = test.accumulator().samples();
         assert_eq!(progress, (samples as f64 / 32_000.0) as f32);
         if last.replace(expected_s) != Some(expected_s) {
             changes.push(samples);
@@ -118,19 +129,19 @@ fn a_gyro_that_is_moved_or_hangs_is_invalid_with_the_reason() {
         }
     };
     assert!(matches!(
-        verdict(&mut test, moved),
+        verdict(&mut test, &mut Gyro::new(), moved),
         Status::Invalid(Reason::Moved { .. })
     ));
     let stuck = |at, count| if at < 500 { count } else { 5 };
     // Its own limits can be given, such as the rails of 16 bits at another place.
-    let limits = Limits {
+    static LIMITS: Limits = Limits {
         rails: [-1, 1, 0, 0],
-        ..Limits::default()
+        ..Limits::DEFAULT
     };
-    let test = SelfTest::new(plan("angle_random_walk", 0.00495), scale()).unwrap();
-    let mut test = test.with_integrity(Integrity::new(limits).unwrap());
+    let mut test = SelfTest::new(plan("angle_random_walk", 0.00495), scale()).unwrap();
+    let mut gyro = Gyro::with_limits(&LIMITS).unwrap();
     assert!(matches!(
-        verdict(&mut test, stuck),
+        verdict(&mut test, &mut gyro, stuck),
         Status::Invalid(Reason::Stuck { .. })
     ));
 }
@@ -146,7 +157,7 @@ fn a_curve_that_the_five_terms_do_not_explain_fails_where_that_is_asked() {
         ..plan("rate_ramp", 1.0)
     };
     let mut test = SelfTest::new(asked, scale()).unwrap();
-    let status = verdict(&mut test, wave);
+    let status = verdict(&mut test, &mut Gyro::new(), wave);
     assert!(
         matches!(status, Status::Failed(Failure::Misfit { p_value }) if p_value < 1e-3),
         "{status:?}"

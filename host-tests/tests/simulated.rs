@@ -1,7 +1,7 @@
 //! The integer gyro against the Allan variance of each of its terms.
 
-use allanite::simulated::{Amplitudes, SimulatedGyro};
 use allanite::{Accumulator, Scale};
+use host_tests::demonstration::simulated::{Amplitudes, SimulatedGyro};
 
 const SILENT: Amplitudes = Amplitudes {
     quantization: 0,

@@ -4,10 +4,15 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+#[path = "demonstration/mod.rs"]
+// Every image uses some of it.
+#[allow(dead_code, unreachable_pub)]
+mod demonstration;
+
 /// The arguments are seeds to characterise gyros with, instead of the image's.
 #[cfg(not(target_os = "none"))]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    use allanite::demonstration::{characterise, tell};
+    use crate::demonstration::{characterise, lines};
 
     let seeds = std::env::args().skip(1).map(|seed| seed.parse());
     let mut seeds = seeds.collect::<Result<Vec<u64>, _>>()?;
@@ -16,14 +21,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     for seed in seeds {
         let test = characterise::Characterised::run(seed)?;
-        tell::characterised(&test, |line| println!("{line}"));
+        lines::characterised(&test, |line| println!("{line}"));
     }
     Ok(())
 }
 
 #[cfg(target_os = "none")]
 mod image {
-    use allanite::demonstration::{characterise, tell};
+    use crate::demonstration::{characterise, lines};
     // Critical sections of a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;
@@ -41,7 +46,7 @@ mod image {
                 semihosting::process::exit(1);
             }
         };
-        tell::characterised(&test, |line| {
+        lines::characterised(&test, |line| {
             defmt::info!("{}", defmt::Display2Format(&line));
         });
         if test.passed() {

@@ -5,10 +5,15 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+#[path = "demonstration/mod.rs"]
+// Every image uses some of it.
+#[allow(dead_code, unreachable_pub)]
+mod demonstration;
+
 /// Behind the name there may be seeds to diagnose gyros with, instead of the image's.
 #[cfg(not(target_os = "none"))]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    use allanite::demonstration::{diagnose, tell};
+    use crate::demonstration::{diagnose, lines};
 
     let disturbance = diagnose::hidden(&std::env::args().nth(1).unwrap_or_default());
     let seeds = std::env::args().skip(2).map(|seed| seed.parse());
@@ -17,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         seeds.push(diagnose::SEED);
     }
     for seed in seeds {
-        let step = |step: &_| tell::step(step, |line| println!("{line}"));
+        let step = |step: &_| lines::step(step, |line| println!("{line}"));
         let verdict = diagnose::diagnose(disturbance, seed, step)?;
         println!("verdict {verdict:?}");
     }
@@ -26,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 #[cfg(target_os = "none")]
 mod image {
-    use allanite::demonstration::{diagnose, tell};
+    use crate::demonstration::{diagnose, lines};
     // Critical sections of a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;
@@ -44,7 +49,7 @@ mod image {
         // The first is the image's own name.
         let name = (&arguments).nth(1).and_then(Result::ok).unwrap_or("");
         let step = |step: &_| {
-            tell::step(step, |line| {
+            lines::step(step, |line| {
                 defmt::info!("{}", defmt::Display2Format(&line));
             });
         };

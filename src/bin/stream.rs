@@ -7,10 +7,14 @@
 fn main() {}
 
 #[cfg(target_os = "none")]
+#[path = "demonstration/mod.rs"]
+// Every image uses some of it.
+#[allow(dead_code, unreachable_pub)]
+mod demonstration;
+
+#[cfg(target_os = "none")]
 mod image {
-    use allanite::demonstration::AMPLITUDES;
-    use allanite::demonstration::stream::SEED;
-    use allanite::simulated::SimulatedGyro;
+    use crate::demonstration::{AMPLITUDES, simulated::SimulatedGyro, stream::SEED};
     use core::fmt::Write as _;
     use heapless::String;
     use semihosting::io::{self, Write as _};

@@ -1,6 +1,6 @@
 //! What is known of a record beside its curve.
 
-use crate::{cross_sums::CrossCurve, integrity::Reason, kurtosis::Kurtosis};
+use crate::{covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis};
 
 /// What is known of a record beside its curve: all of it optional.
 #[derive(Clone, Copy, Debug)]

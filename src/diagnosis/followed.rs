@@ -3,9 +3,8 @@
 
 use super::{judged::Judged, step::FollowedCovariate};
 use crate::{
-    cross_sums::CrossCurve,
+    covariate::{CrossCurve, Slope},
     curve::Curve,
-    effect::covariate::Slope,
     error::Error,
     fit::{Problem, Start, Tolerance, Work},
     model::Model,

@@ -2,7 +2,8 @@
 
 use crate::{
     comparison::Comparison,
-    effect::{Effect, covariate::Slope},
+    covariate::Slope,
+    effect::Effect,
     fit::Fit,
     model::{Model, Term},
     real::Real,

@@ -11,7 +11,6 @@
 //! a firmware's own takes the same file anywhere and a place in the list that the firmware hands to
 //! [`Diagnosis`](crate::Diagnosis).
 
-pub mod covariate;
 mod description;
 mod explanation;
 mod pole;

@@ -1,14 +1,9 @@
 //! From a solution to coefficients with intervals, bounds, and what a longer record would show.
 
-use super::{
-    method::Method,
-    problem::{Problem, clusters},
-    result::Fit,
-    shape::ShapeEquations,
-    solver::Solver,
-};
+use super::{method::Method, problem::Problem, result::Fit, shape::ShapeEquations, solver::Solver};
 use crate::{
     coefficient::{Coefficient, State},
+    curve::clusters,
     math,
     model::Term,
     nnls::NormalEquations,

@@ -24,7 +24,7 @@ pub use shape::ShapeEstimate;
 
 pub(crate) use estimate::Estimator;
 pub(crate) use fitting::Work;
-pub(crate) use problem::{Columns, Problem, check, clusters};
+pub(crate) use problem::{Columns, Problem, check};
 pub(crate) use shape::ShapeEquations;
 pub(crate) use solver::{Solver, Start, Tolerance};
 pub(crate) use weights::{Weights, Whitened};

@@ -3,7 +3,7 @@
 use super::result::Fit;
 use crate::{
     algebra,
-    curve::{Curve, Point},
+    curve::{Curve, Point, clusters},
     error::Error,
     limits::MAX_EFFECTS,
     list, math,
@@ -151,13 +151,6 @@ pub(crate) fn check(points: &[Point], needed: usize) -> Result<(), Error> {
         return Err(Error::NoNoise { m: point.m });
     }
     Ok(())
-}
-
-/// The number of clusters `N/m` in a record, from an octave's number of differences as if the record
-/// were contiguous.
-pub(crate) fn clusters(point: &Point) -> Real {
-    let m = real(point.m);
-    point.differences.saturating_sub(1) as Real * (0.25 * m).max(1.0) / m + 2.0
 }
 
 /// The relative accuracy of an octave after Lv, Liu, Lai & Huang 2015: `δ = 1/√(2(N/m − 1))`.

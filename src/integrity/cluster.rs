@@ -1,10 +1,11 @@
 //! Means of clusters, which show motion.
 
-use super::watch::{Fate, Rule, Watch};
+use super::watch::{Fate, Rule, Watch, square};
 
 /// Clusters of one length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Cluster {
     pub(super) sum: i64,
     /// Samples in the sum.
@@ -24,17 +25,24 @@ impl Cluster {
         motions: 0,
     };
 
+    /// Adds a count.
+    #[inline(always)]
+    pub(super) fn add(&mut self, count: i32) {
+        self.sum = self.sum.wrapping_add(count.into());
+        self.filled = self.filled.wrapping_add(1);
+    }
+
     /// The cluster is full.
     #[inline(never)]
     pub(super) fn judge(&mut self, rule: &Rule) {
-        let (fate, square) = self.watch.push(self.sum, rule);
+        let (fate, difference) = self.watch.push(self.sum, rule);
         self.sum = 0;
         self.filled = 0;
         let (squares, motions) = match fate {
             Fate::Start | Fate::Learning | Fate::Ordinary => (0, 0),
             Fate::Learnt { outlier } => (outlier, u64::from(outlier > 0)),
-            Fate::Out { first } => (square, u64::from(first)),
-            Fate::Back | Fate::Accepted => (square, 0),
+            Fate::Out { first } => (square(difference), u64::from(first)),
+            Fate::Back | Fate::Accepted => (square(difference), 0),
         };
         self.squares = self.squares.saturating_add(squares);
         self.motions = self.motions.saturating_add(motions);

@@ -30,10 +30,13 @@ pub struct Limits {
     pub motion_per_mille: u16,
     /// Share of samples that may be missing. Default 100.
     pub missing_per_mille: u16,
+    /// Share of samples that a gate may leave out. Default 250.
+    pub left_out_per_mille: u16,
 }
 
 impl Limits {
-    pub(super) const DEFAULT: Self = Self {
+    /// What every field says its default is.
+    pub const DEFAULT: Self = Self {
         rails: [i16::MIN as i32, i16::MAX as i32, i32::MIN, i32::MAX],
         rail_per_mille: 1,
         run_factor: 128,
@@ -44,6 +47,7 @@ impl Limits {
         motion_factor: 64,
         motion_per_mille: 50,
         missing_per_mille: 100,
+        left_out_per_mille: 250,
     };
 
     pub(super) const fn check(&self) -> Result<(), InvalidLimit> {
@@ -57,6 +61,7 @@ impl Limits {
             ("motion_factor", self.motion_factor, FACTOR),
             ("motion_per_mille", self.motion_per_mille, SHARE),
             ("missing_per_mille", self.missing_per_mille, SHARE),
+            ("left_out_per_mille", self.left_out_per_mille, SHARE),
         ];
         let mut i = 0;
         while i < ranges.len() {

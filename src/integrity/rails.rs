@@ -3,7 +3,10 @@
 /// Hits of the record's extremes where they are rails.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Rails {
+    /// Whether there was a count, so that `lowest` and `highest` are some.
+    begun: bool,
     lowest: i32,
     highest: i32,
     lowest_hits: u64,
@@ -12,25 +15,33 @@ pub(super) struct Rails {
 
 impl Rails {
     pub(super) const NEW: Self = Self {
-        lowest: i32::MAX,
-        highest: i32::MIN,
+        begun: false,
+        lowest: 0,
+        highest: 0,
         lowest_hits: 0,
         highest_hits: 0,
     };
 
-    /// Whether the count is a rail and the record's extreme.
+    /// Whether the count is no extreme of the record, and so no hit of a rail either. No count is between the
+    /// zeros that an empty record has.
     #[inline(always)]
+    pub(super) fn is_between(&self, count: i32) -> bool {
+        count > self.lowest && count < self.highest
+    }
+
+    /// Whether the count is a rail and the record's extreme.
     pub(super) fn push(&mut self, count: i32, rails: &[i32; 4]) -> bool {
-        if count > self.lowest && count < self.highest {
+        if self.is_between(count) {
             return false;
         }
         let hit = rails.contains(&count);
-        if count < self.lowest {
+        if count < self.lowest || !self.begun {
             (self.lowest, self.lowest_hits) = (count, 0);
         }
-        if count > self.highest {
+        if count > self.highest || !self.begun {
             (self.highest, self.highest_hits) = (count, 0);
         }
+        self.begun = true;
         if hit && count == self.lowest {
             self.lowest_hits = self.lowest_hits.saturating_add(1);
         }
@@ -49,6 +60,13 @@ impl Rails {
     }
 
     pub(super) fn merge(&mut self, other: &Self) {
+        if !other.begun {
+            return;
+        }
+        if !self.begun {
+            *self = other.clone();
+            return;
+        }
         if other.lowest < self.lowest {
             (self.lowest, self.lowest_hits) = (other.lowest, other.lowest_hits);
         } else if other.lowest == self.lowest {

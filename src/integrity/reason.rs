@@ -44,6 +44,13 @@ pub enum Reason {
         /// Samples that the sensor must have sent.
         sent: u64,
     },
+    /// A gate left out too many samples that were odd.
+    LeftOut {
+        /// How many.
+        left_out: u64,
+        /// Samples of the record, those that were left out included.
+        samples: u64,
+    },
 }
 
 impl core::fmt::Display for Reason {
@@ -81,6 +88,11 @@ impl core::fmt::Display for Reason {
             Self::Missing { missing, sent } => write!(
                 f,
                 "missing: {missing} of {sent} samples lost; read faster or record at a lower rate"
+            ),
+            Self::LeftOut { left_out, samples } => write!(
+                f,
+                "left out: {left_out} of {samples} samples were odd (moved, stuck, railed or \
+                 spiked); record again at rest, untouched"
             ),
         }
     }

@@ -3,9 +3,13 @@
 /// Changes of value after which the mean run is known well enough to judge a run by it.
 const KNOWN: u32 = 16;
 
+/// Samples that a mean is over at most: half of what 32 bits hold.
+const HALF: u32 = 1 << 31;
+
 /// Runs of equal values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Runs {
     /// Samples of the present run; 0 after a gap.
     pub(super) present: u32,
@@ -29,13 +33,19 @@ impl Runs {
         stuck_samples: 0,
     };
 
+    /// The count differs from the one before, which belongs to the same stretch.
+    #[inline(always)]
+    pub(super) fn change(&mut self, count: i32) {
+        self.end();
+        self.value = count;
+        self.present = 1;
+    }
+
     /// Whether the present run is implausibly long.
     #[inline(always)]
     pub(super) fn push(&mut self, count: i32, factor: u16) -> bool {
         if self.present == 0 || self.value != count {
-            self.end();
-            self.value = count;
-            self.present = 1;
+            self.change(count);
             self.longest = self.longest.max(1);
             return false;
         }
@@ -60,7 +70,20 @@ impl Runs {
         }
     }
 
+    #[inline(always)]
     fn add_ended(&mut self, samples: u32, runs: u32) {
+        let sum = self.ended_samples.wrapping_add(samples);
+        if samples < HALF && sum < HALF {
+            self.ended_samples = sum;
+            self.ended = self.ended.wrapping_add(runs);
+        } else {
+            self.fade(samples, runs);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn fade(&mut self, samples: u32, runs: u32) {
         // The mean is kept, what is older than 2^31 samples fades.
         let sum = u64::from(self.ended_samples) + u64::from(samples);
         let fade = sum.checked_ilog2().unwrap_or(0).saturating_sub(30);

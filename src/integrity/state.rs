@@ -1,10 +1,11 @@
 //! What has been seen of a record, whatever the limits.
 
 use super::{
+    Limits, Observation,
     cluster::Cluster,
     rails::Rails,
     runs::Runs,
-    watch::{Fate, Rule, Watch},
+    watch::{Fate, Rule, Watch, square},
 };
 
 /// How many samples a cluster has whose mean shows motion: 0.64 s and 10 s at 100 Hz, 8 ms and
@@ -14,8 +15,10 @@ pub(super) const CLUSTERS: [u16; 2] = [64, 1024];
 /// Everything but the configuration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct State {
-    pub(super) samples: u64,
+    /// Samples that begin a stretch: the others either repeat the one before or change.
+    pub(super) firsts: u64,
     pub(super) missing: u64,
     pub(super) repeats: u64,
     pub(super) changes: u64,
@@ -30,11 +33,13 @@ pub(super) struct State {
     /// Of the excursion that goes on.
     pub(super) pending_squares: u128,
     pub(super) clusters: [Cluster; CLUSTERS.len()],
+    /// Whether the last cluster of either length lay far from the ordinary ones.
+    pub(super) moving: bool,
 }
 
 impl State {
     pub(super) const NEW: Self = Self {
-        samples: 0,
+        firsts: 0,
         missing: 0,
         repeats: 0,
         changes: 0,
@@ -47,13 +52,71 @@ impl State {
         step_squares: 0,
         pending_squares: 0,
         clusters: [Cluster::NEW, Cluster::NEW],
+        moving: false,
     };
+
+    /// Samples seen.
+    pub(super) fn samples(&self) -> u64 {
+        let others = self.repeats.saturating_add(self.changes);
+        self.firsts.saturating_add(others)
+    }
+
+    /// Adds a count to which nothing happens that is worth a closer look, and returns whether that was so:
+    /// the way of nearly every sample. Otherwise nothing is added.
+    #[inline(always)]
+    pub(super) fn push_usual(&mut self, count: i32, limits: &Limits) -> bool {
+        let [short, long] = &mut self.clusters;
+        let [short_length, long_length] = CLUSTERS;
+        // A longer cluster that is full is judged at the sample after. A repeated value is looked at.
+        let repeats = self.runs.value == count;
+        if !self.rails.is_between(count) || long.filled == long_length || repeats {
+            return false;
+        }
+        let rule = Rule::neighbours(limits.spike_factor);
+        if !self.neighbours.push_usual(count, &rule) {
+            return false;
+        }
+        self.changes = self.changes.saturating_add(1);
+        self.runs.change(count);
+        short.add(count);
+        if short.filled == short_length {
+            self.end_short_cluster(limits.motion_factor);
+        }
+        true
+    }
+
+    /// Adds any count; what is odd about it.
+    #[inline(never)]
+    pub(super) fn push(&mut self, count: i32, limits: &Limits) -> Observation {
+        let counter = match (self.runs.present, self.runs.value == count) {
+            (0, _) => &mut self.firsts,
+            (_, true) => &mut self.repeats,
+            (_, false) => &mut self.changes,
+        };
+        *counter = counter.saturating_add(1);
+        let stuck = self.runs.push(count, limits.run_factor);
+        let railed = self.rails.push(count, &limits.rails);
+        let mut outlying = false;
+        // What is stuck says nothing of the noise.
+        if !stuck {
+            let ordinary;
+            (outlying, ordinary) = self.push_neighbour(count, limits.spike_factor);
+            if let Some(count) = ordinary {
+                self.push_clusters(count, limits.motion_factor);
+            }
+        }
+        Observation {
+            stuck,
+            railed,
+            outlying,
+            moving: self.moving,
+        }
+    }
 
     /// Whether the count is far from the last ordinary one, and what clusters take in its place,
     /// once the scale is known.
-    #[inline(always)]
-    pub(super) fn push_neighbour(&mut self, count: i32, factor: u16) -> (bool, Option<i32>) {
-        let (fate, square) = self
+    fn push_neighbour(&mut self, count: i32, factor: u16) -> (bool, Option<i32>) {
+        let (fate, difference) = self
             .neighbours
             .push(count.into(), &Rule::neighbours(factor));
         match fate {
@@ -62,15 +125,14 @@ impl State {
             Fate::Learnt { outlier } => self.add_spike(outlier),
             Fate::Start | Fate::Ordinary => {}
             Fate::Out { .. } => {
-                self.pending_squares = self.pending_squares.saturating_add(square);
+                self.pending_squares = self.with_pending(difference);
                 return (true, Some(self.neighbours.reference() as i32));
             }
             Fate::Back => {
-                let squares = self.pending_squares.saturating_add(square);
-                self.add_spike(squares);
+                self.add_spike(self.with_pending(difference));
             }
             Fate::Accepted => {
-                let squares = self.pending_squares.saturating_add(square);
+                let squares = self.with_pending(difference);
                 self.step_squares = self.step_squares.saturating_add(squares);
                 self.steps = self.steps.saturating_add(1);
                 self.pending_squares = 0;
@@ -80,6 +142,12 @@ impl State {
         (false, Some(count))
     }
 
+    fn with_pending(&self, difference: u64) -> u128 {
+        self.pending_squares.saturating_add(square(difference))
+    }
+
+    #[cold]
+    #[inline(never)]
     pub(super) fn add_spike(&mut self, squares: u128) {
         self.spikes = self.spikes.saturating_add(1);
         self.spike_squares = self.spike_squares.saturating_add(squares);
@@ -88,25 +156,34 @@ impl State {
 
     /// At most one length is judged at a sample, the shorter at the end of its cluster, the longer
     /// at the sample after.
-    #[inline(always)]
-    pub(super) fn push_clusters(&mut self, count: i32, factor: u16) {
+    fn push_clusters(&mut self, count: i32, factor: u16) {
         let [short, long] = &mut self.clusters;
         let [short_length, long_length] = CLUSTERS;
         if long.filled == long_length {
             let rule = Rule::clusters(factor, long_length);
             long.judge(&rule.with_least(&short.watch, long_length / short_length));
+            self.moving = short.watch.is_outside() || long.watch.is_outside();
         }
-        short.sum = short.sum.saturating_add(count.into());
-        short.filled = short.filled.saturating_add(1);
+        short.add(count);
         if short.filled == short_length {
-            long.sum = long.sum.saturating_add(short.sum);
-            long.filled = long.filled.saturating_add(short_length);
-            short.judge(&Rule::clusters(factor, short_length));
+            self.end_short_cluster(factor);
         }
     }
 
+    #[cold]
+    #[inline(never)]
+    fn end_short_cluster(&mut self, factor: u16) {
+        let [short, long] = &mut self.clusters;
+        let [short_length, _] = CLUSTERS;
+        // 1024 counts of 32 bits are far from 64.
+        long.sum = long.sum.wrapping_add(short.sum);
+        long.filled = long.filled.wrapping_add(short_length);
+        short.judge(&Rule::clusters(factor, short_length));
+        self.moving = short.watch.is_outside() || long.watch.is_outside();
+    }
+
     pub(super) fn gap(&mut self) {
-        self.runs.present = 0;
+        (self.runs.present, self.runs.value) = (0, 0);
         self.neighbours.gap();
         self.pending_squares = 0;
         for cluster in &mut self.clusters {
@@ -114,12 +191,27 @@ impl State {
             cluster.filled = 0;
             cluster.watch.gap();
         }
+        self.moving = false;
+    }
+
+    /// Whether a record can have left this behind a gap.
+    #[cfg(feature = "storage")]
+    pub(super) fn is_possible(&self) -> bool {
+        let clusters = self.clusters.iter();
+        let empty = |cluster: &Cluster| cluster.sum == 0 && cluster.filled == 0;
+        self.runs.present == 0
+            && !self.moving
+            && self.pending_squares == 0
+            && self.neighbours.is_possible()
+            && clusters
+                .clone()
+                .all(|cluster| empty(cluster) && cluster.watch.is_possible())
     }
 
     pub(super) fn merge(&mut self, other: &Self) {
         self.gap();
         let add = |sum: &mut u64, other: u64| *sum = sum.saturating_add(other);
-        add(&mut self.samples, other.samples);
+        add(&mut self.firsts, other.firsts);
         add(&mut self.missing, other.missing);
         add(&mut self.repeats, other.repeats);
         add(&mut self.changes, other.changes);

@@ -3,9 +3,11 @@
 /// A sequence of values, the scale of its neighbours' differences, and where it left its level.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Watch {
     /// Running mean of absolute differences, each cut at [`CUT`] times the mean, in 2^−12. While it
-    /// is learnt, the least of the blocks' means.
+    /// is learnt, the least of the blocks' means. It stays below 2^55, since a difference stays below
+    /// 2^42.
     scale: u64,
     /// Σ of absolute differences in the present block, while the scale is learnt.
     block: u64,
@@ -14,14 +16,17 @@ pub(super) struct Watch {
     previous: i64,
     /// The last value that was not far from the one before it.
     reference: i64,
-    /// Σ D² of all.
-    total: u128,
+    /// Σ D² of all, lower limb first: a carry is rare.
+    total: [u64; 2],
     /// Differences learnt from.
     learnt: u8,
     /// Values since the last ordinary one.
     outside: u8,
     /// Whether `previous` and `reference` are values of this stretch.
     running: bool,
+    /// Whether the scale is known and the last value was ordinary: `previous` is the reference, and
+    /// `reference` is out of date.
+    steady: bool,
 }
 
 /// How a sequence is judged.
@@ -93,7 +98,7 @@ impl Rule {
     /// The same, and no mean is expected to be steadier than that of clusters `times` shorter.
     pub(super) const fn with_least(self, shorter: &Watch, times: u16) -> Self {
         Self {
-            least: shorter.scale.saturating_mul(times as u64),
+            least: shorter.scale.wrapping_mul(times as u64),
             ..self
         }
     }
@@ -101,20 +106,49 @@ impl Rule {
 
 impl Watch {
     pub(super) const NEW: Self = Self {
-        scale: u64::MAX,
+        scale: 0,
         block: 0,
         largest: 0,
         previous: 0,
         reference: 0,
-        total: 0,
+        total: [0; 2],
         learnt: 0,
         outside: 0,
         running: false,
+        steady: false,
     };
 
-    /// Adds a value within ±2^41, and returns the square of its difference from the one before.
+    /// Adds a value if it is as usual, and returns whether it is: the way of nearly every sample, in 32 bits.
+    /// Where something may be odd or a number is long, nothing is added, and [`push`](Self::push) is to
+    /// decide.
     #[inline(always)]
-    pub(super) fn push(&mut self, value: i64, rule: &Rule) -> (Fate, u128) {
+    pub(super) fn push_usual(&mut self, value: i32, rule: &Rule) -> bool {
+        let scale = self.scale as u32;
+        if !self.steady || self.scale >= 1 << 30 {
+            return false;
+        }
+        let difference = value.abs_diff(self.previous as i32);
+        let usual = scale.wrapping_add(rule.floor as u32);
+        let long = u64::from(difference) << FRACTION;
+        if long > u64::from(usual) * u64::from(rule.factor) {
+            return false;
+        }
+        let [low, _] = &mut self.total;
+        let Some(sum) = low.checked_add(u64::from(difference) * u64::from(difference)) else {
+            return false;
+        };
+        *low = sum;
+        // No more than 2^31.
+        let new = long.min(u64::from(usual.wrapping_mul(CUT as u32))) as u32;
+        let scale = scale.wrapping_sub(scale.wrapping_shr(rule.span));
+        self.scale = scale.wrapping_add(new.wrapping_shr(rule.span)).into();
+        self.previous = value.into();
+        true
+    }
+
+    /// Adds a value within ±2^41, and returns the magnitude of its difference from the one before.
+    #[inline(always)]
+    pub(super) fn push(&mut self, value: i64, rule: &Rule) -> (Fate, u64) {
         if !self.running {
             self.running = true;
             (self.previous, self.reference) = (value, value);
@@ -125,28 +159,55 @@ impl Watch {
             };
             return (fate, 0);
         }
+        if self.steady {
+            self.reference = self.previous;
+        }
         let difference = value.abs_diff(self.previous);
         self.previous = value;
-        let square = square(difference);
-        self.total = self.total.saturating_add(square);
+        self.add_to_total(difference);
         if self.is_learning(rule) {
             self.reference = value;
-            return (self.learn(difference, rule), square);
+            return (self.learn(difference, rule), difference);
         }
+        // Below 2^56, and so below 2^64 with the largest factor.
         let usual = self.usual(rule);
-        let far =
-            value.abs_diff(self.reference) << FRACTION > usual.saturating_mul(rule.factor.into());
-        let new = (difference << FRACTION).min(usual.saturating_mul(CUT));
+        let limit = usual.wrapping_mul(rule.factor.into());
+        let far = value.abs_diff(self.reference) << FRACTION > limit;
+        let new = (difference << FRACTION).min(usual.wrapping_mul(CUT));
         self.scale = self
             .scale
-            .saturating_sub(self.scale.wrapping_shr(rule.span))
-            .saturating_add(new.wrapping_shr(rule.span));
-        (self.judge(value, far, rule.patience), square)
+            .wrapping_sub(self.scale.wrapping_shr(rule.span))
+            .wrapping_add(new.wrapping_shr(rule.span));
+        (self.judge(value, far, rule.patience), difference)
+    }
+
+    #[inline(always)]
+    fn add_to_total(&mut self, difference: u64) {
+        let short = difference as u32;
+        if u64::from(short) == difference {
+            let [low, _] = &mut self.total;
+            if let Some(sum) = low.checked_add(u64::from(short) * u64::from(short)) {
+                *low = sum;
+                return;
+            }
+        }
+        self.add_long_to_total(difference);
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn add_long_to_total(&mut self, difference: u64) {
+        self.set_total(self.total().saturating_add(square(difference)));
+    }
+
+    fn set_total(&mut self, total: u128) {
+        self.total = [total as u64, (total >> 64) as u64];
     }
 
     #[inline(always)]
     fn judge(&mut self, value: i64, far: bool, patience: u8) -> Fate {
-        if far && self.outside < patience {
+        self.steady = !far || self.outside >= patience;
+        if !self.steady {
             self.outside = self.outside.saturating_add(1);
             return Fate::Out {
                 first: self.outside == 1,
@@ -163,7 +224,7 @@ impl Watch {
     }
 
     fn usual(&self, rule: &Rule) -> u64 {
-        self.scale.max(rule.least).saturating_add(rule.floor)
+        self.scale.max(rule.least).wrapping_add(rule.floor)
     }
 
     fn is_learning(&self, rule: &Rule) -> bool {
@@ -177,9 +238,9 @@ impl Watch {
         self.block = self.block.saturating_add(difference);
         self.learnt = self.learnt.saturating_add(1);
         if self.learnt.trailing_zeros() >= rule.block {
-            self.scale = self
-                .scale
-                .min((self.block << FRACTION).wrapping_shr(rule.block));
+            let mean = (self.block << FRACTION).wrapping_shr(rule.block);
+            let is_first = self.learnt == 1_u8.wrapping_shl(rule.block);
+            self.scale = if is_first { mean } else { self.scale.min(mean) };
             self.block = 0;
         }
         if self.is_learning(rule) {
@@ -196,23 +257,28 @@ impl Watch {
 
     /// The next value does not adjoin the last.
     pub(super) fn gap(&mut self) {
-        self.running = false;
+        (self.running, self.steady) = (false, false);
         self.outside = 0;
+        (self.previous, self.reference) = (0, 0);
     }
 
     /// Adds the sums of another sequence; its scale is taken by one that knows less.
     pub(super) fn merge(&mut self, other: &Self) {
-        let total = self.total.saturating_add(other.total);
+        let total = self.total().saturating_add(other.total());
         if other.learnt > self.learnt {
             *self = other.clone();
             self.gap();
         }
-        self.total = total;
+        self.set_total(total);
     }
 
     /// The last ordinary value.
     pub(super) fn reference(&self) -> i64 {
-        self.reference
+        if self.steady {
+            self.previous
+        } else {
+            self.reference
+        }
     }
 
     /// Whether the last value was far from the last ordinary one.
@@ -221,15 +287,19 @@ impl Watch {
     }
 
     /// Σ D² of neighbours.
-    pub(super) fn total(&self) -> u128 {
-        self.total
+    pub(super) const fn total(&self) -> u128 {
+        let [low, high] = self.total;
+        low as u128 | (high as u128) << 64
+    }
+
+    /// Whether a sequence can have left this state behind a gap.
+    #[cfg(feature = "storage")]
+    pub(super) const fn is_possible(&self) -> bool {
+        let quiet = !self.running && !self.steady && self.outside == 0;
+        quiet && self.learnt <= 64 && self.scale < 1 << 55 && self.block < 1 << 48
     }
 }
 
-#[inline(always)]
-fn square(difference: u64) -> u128 {
-    match u32::try_from(difference) {
-        Ok(short) => u128::from(u64::from(short) * u64::from(short)),
-        Err(_) => u128::from(difference) * u128::from(difference),
-    }
+pub(super) fn square(difference: u64) -> u128 {
+    u128::from(difference) * u128::from(difference)
 }

@@ -25,8 +25,8 @@
 //! | – correlations of the squares, lower triangle row by row without diagonal | f32 each |
 //!
 //! A reason is 0 stuck (longest run u32, changes u64, samples u64), 1 railed (hits u64, samples u64),
-//! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8) or 4 missing
-//! (missing u64, sent u64).
+//! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8), 4 missing (missing u64,
+//! sent u64) or 5 left out (left out u64, samples u64).
 
 mod axis;
 mod effect_code;
@@ -35,6 +35,7 @@ mod wire;
 
 pub use axis::{AxisRecord, RecordedShape, RecordedState, RecordedTerm};
 pub use effect_code::EffectCode;
+pub(crate) use verdict::WireReason;
 
 use crate::error::Error;
 use heapless::Vec;

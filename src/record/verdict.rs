@@ -14,12 +14,13 @@ pub(super) enum WireVerdict {
 }
 
 #[derive(Serialize, Deserialize)]
-pub(super) enum WireReason {
+pub(crate) enum WireReason {
     Stuck(u32, u64, u64),
     Railed(u64, u64),
     Spiked(u64, u8),
     Moved(u64, u16, u8),
     Missing(u64, u64),
+    LeftOut(u64, u64),
 }
 
 impl From<Option<Verdict>> for WireVerdict {
@@ -64,6 +65,7 @@ impl From<Reason> for WireReason {
                 percent,
             } => Self::Moved(motions, cluster, percent),
             Reason::Missing { missing, sent } => Self::Missing(missing, sent),
+            Reason::LeftOut { left_out, samples } => Self::LeftOut(left_out, samples),
         }
     }
 }
@@ -84,6 +86,7 @@ impl From<WireReason> for Reason {
                 percent,
             },
             WireReason::Missing(missing, sent) => Self::Missing { missing, sent },
+            WireReason::LeftOut(left_out, samples) => Self::LeftOut { left_out, samples },
         }
     }
 }

@@ -1,19 +1,23 @@
-//! A self-test with limits: samples go in, a verdict comes out as soon as the record bears one.
+//! A self-test with limits: it looks at a growing record, and gives a verdict as soon as the record bears one.
 
 mod decide;
 mod plan;
+#[cfg(feature = "storage")]
+mod stored;
+
+#[cfg(feature = "storage")]
+pub(crate) use stored::LONGEST;
 
 pub use plan::{InvalidPlan, Limit, Plan};
 
 use crate::{
     algebra::Choice,
     coefficient::{Coefficient, State},
-    curve::Scale,
+    curve::{Curve, Scale},
     fit::{Estimator, Fit, Options, Problem, Start, Tolerance, Work, check},
-    integrity::{Integrity, Reason},
+    integrity::Reason,
     list::numbered,
     model::Model,
-    octave::Accumulator,
     real::{Real, real, single},
 };
 use decide::{Side, quantile, side};
@@ -74,10 +78,16 @@ pub enum Failure {
 /// of a false fail also among the limits; a false pass needs the coefficient that lies above its limit,
 /// whatever the others do. A decision stands: later looks do not ask again.
 ///
+/// # How it is used
+///
+/// The test owns no samples. It says at every sample whether a look [is due](Self::is_due), which takes a
+/// comparison, and takes the [look](Self::look) at a curve when the caller has time for a
+/// [`fit`](crate::fit()). Nothing is lost by looking late.
+///
 /// # Example
 ///
 /// ```
-/// use allanite::{Scale, self_test::{Limit, Plan, SelfTest, Status}};
+/// use allanite::{Axis, Scale, self_test::{Limit, Plan, SelfTest, Status}};
 ///
 /// let plan = Plan {
 ///     limits: [Limit { effect: "angle_random_walk", most: 0.02 }].into_iter().collect(),
@@ -88,40 +98,54 @@ pub enum Failure {
 ///     longest_s: 600.0,
 /// };
 /// // 131 counts per °/s, 100 Hz.
-/// let mut test = SelfTest::<16>::new(plan, Scale::new(1.0 / 131.0, 100.0)?)?;
+/// let scale = Scale::new(1.0 / 131.0, 100.0)?;
+/// let mut gyro = Axis::<16>::new();
+/// let mut test = SelfTest::<16>::new(plan, scale)?;
 /// let mut random = 1_u32;
 /// let verdict = loop {
 ///     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-///     test.push((random >> 28) as i32);
-///     match test.status() {
-///         Status::Running { .. } => continue,
-///         verdict => break verdict,
+///     gyro.push((random >> 28) as i32);
+///     if test.is_due(gyro.samples()) {
+///         let record = gyro.evidence(0, scale, [])?;
+///         match test.look(record.samples, &record.curve, record.invalid) {
+///             Status::Running { .. } => continue,
+///             verdict => break verdict,
+///         }
 ///     }
 /// };
 /// assert_eq!(verdict, Status::Passed);
-/// assert!(test.accumulator().samples() < 1000); // ten seconds instead of ten minutes
+/// assert!(gyro.samples() < 1000); // ten seconds instead of ten minutes
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SelfTest<const OCTAVES: usize> {
-    accumulator: Accumulator<OCTAVES>,
-    integrity: Integrity,
     plan: Plan,
     scale: Scale,
+    /// Samples at the last look.
     last: u64,
-    next: u64,
     /// Standard errors that pass a gyro.
     pass: Real,
+    /// Looks that the plan has.
+    looks: u32,
+    progress: Progress,
+}
+
+/// What changes while a test runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Progress {
+    /// Samples at the next look.
+    next: u64,
     /// Probability of a false fail that is left for the looks to come: each spends half of it, the last
     /// one all. Early looks have most need of it, and a gyro that is far off fails at one.
     fail_left: Real,
-    looks: u32,
+    /// Limits that are known to be kept.
     kept: Choice,
+    /// As of the last look.
     status: Status,
 }
 
 impl<const OCTAVES: usize> SelfTest<OCTAVES> {
-    /// Ready for samples.
+    /// A test of a record with so many octaves.
     ///
     /// # Errors
     /// [`InvalidPlan`].
@@ -130,83 +154,82 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let looks = 1 + last.div_ceil(first).next_power_of_two().ilog2();
         let limits = plan.limits.len().max(1) as Real;
         Ok(Self {
-            accumulator: Accumulator::new(),
-            integrity: Integrity::default(),
             scale,
             last,
-            next: first,
             pass: quantile(plan.false_pass / real(looks)),
-            fail_left: plan.false_fail / limits,
             looks,
-            kept: Choice::default(),
-            status: Status::Running {
-                progress: 0.0,
-                expected_s: last as Real / scale.rate_hz(),
+            progress: Progress {
+                next: first,
+                fail_left: plan.false_fail / limits,
+                kept: Choice::default(),
+                status: Status::Running {
+                    progress: 0.0,
+                    expected_s: last as Real / scale.rate_hz(),
+                },
             },
             plan,
         })
     }
 
-    /// With limits of what a record must be like to be believed.
-    #[must_use]
-    pub fn with_integrity(mut self, integrity: Integrity) -> Self {
-        self.integrity = integrity;
-        self
+    /// Whether the test runs and a [`look`](Self::look) is due, at this number of samples.
+    #[inline]
+    pub fn is_due(&self, samples: u64) -> bool {
+        samples >= self.progress.next && matches!(self.progress.status, Status::Running { .. })
     }
 
-    /// Adds a count: the accumulator's work and that of the integrity, no more.
-    pub fn push(&mut self, count: i32) {
-        self.accumulator.push(count);
-        self.integrity.push(count);
+    /// How the test stands as of the last look, at this number of samples.
+    pub fn status(&self, samples: u64) -> Status {
+        match self.progress.status {
+            Status::Running { expected_s, .. } => Status::Running {
+                progress: self.share(samples),
+                expected_s,
+            },
+            verdict => verdict,
+        }
     }
 
-    /// Samples were lost.
-    pub fn gap(&mut self) {
-        self.accumulator.gap();
-        self.integrity.gap();
-    }
-
-    /// The record so far.
-    pub fn accumulator(&self) -> &Accumulator<OCTAVES> {
-        &self.accumulator
-    }
-
-    /// How the test stands. Where a look is due it takes that of a [`fit`](crate::fit()), otherwise next to
-    /// nothing; nothing is lost by asking late.
-    pub fn status(&mut self) -> Status {
-        let samples = self.accumulator.samples();
-        if let Status::Running { progress, .. } = &mut self.status {
-            *progress = single((samples as Real / self.last as Real).min(1.0));
-            if samples >= self.next {
-                self.status = self.look(samples);
-                while self.next <= samples {
-                    let twice = self.next.saturating_mul(2);
-                    self.next = twice.min(self.last.max(samples.saturating_add(1)));
-                }
+    /// Takes a look at the curve of a record of so many samples, where one [is due](Self::is_due), and says
+    /// how the test stands. `invalid` is why the curve is not valid, as of
+    /// [`Axes::verdict`](crate::Axes::verdict). It takes a [`fit`](crate::fit()).
+    pub fn look(
+        &mut self,
+        samples: u64,
+        curve: &Curve<OCTAVES>,
+        invalid: Option<Reason>,
+    ) -> Status {
+        if self.is_due(samples) {
+            self.progress.status = match invalid {
+                Some(reason) => Status::Invalid(reason),
+                None => self.judge(samples, curve),
+            };
+            while self.progress.next <= samples {
+                let twice = self.progress.next.saturating_mul(2);
+                self.progress.next = twice.min(self.last.max(samples.saturating_add(1)));
             }
         }
-        self.status
+        self.status(samples)
+    }
+
+    /// Share of the longest record that is there.
+    fn share(&self, samples: u64) -> f32 {
+        single((samples as Real / self.last as Real).min(1.0))
     }
 
     #[inline(never)]
-    fn look(&mut self, samples: u64) -> Status {
-        if let Some(reason) = self.integrity.verdict() {
-            return Status::Invalid(reason);
-        }
+    fn judge(&mut self, samples: u64, curve: &Curve<OCTAVES>) -> Status {
         let is_last = samples >= self.last;
         let seconds = samples as Real / self.scale.rate_hz();
-        let curve = self.accumulator.curve(self.scale);
         let model = Model::ieee_952();
         let mut work = Work::new();
         let tolerance = Tolerance::IfNeeded(Options::default().tolerance);
         let solved = check(curve.points(), 2)
-            .and_then(|()| work.begin_at(&curve, &model, Start::Independent, tolerance))
+            .and_then(|()| work.begin_at(curve, &model, Start::Independent, tolerance))
             .and_then(|()| {
-                let problem = Problem::new(&curve, &model, &work.columns);
+                let problem = Problem::new(curve, &model, &work.columns);
                 while !work.solver.advance(&problem)? {}
                 Ok(())
             });
-        let problem = Problem::new(&curve, &model, &work.columns);
+        let problem = Problem::new(curve, &model, &work.columns);
         let solver = &work.solver;
         if solved.is_err() {
             // Gaps may have left too few differences; the first limit stands for all.
@@ -219,8 +242,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let mut fit = Fit::empty();
         let mut estimator = Estimator::new(&problem, solver, &mut fit);
         while !estimator.advance(&problem, solver, &mut fit) {}
-        let spent = if is_last { 1.0 } else { 0.5 } * self.fail_left;
-        self.fail_left -= spent;
+        let spent = if is_last { 1.0 } else { 0.5 } * self.progress.fail_left;
+        self.progress.fail_left -= spent;
         let fail = quantile(spent);
         if fit.p_value < self.plan.least_p / real(self.looks) {
             return Status::Failed(Failure::Misfit {
@@ -229,7 +252,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         }
         let mut open: Option<(usize, Real)> = None;
         for (i, limit) in numbered(self.plan.limits.iter()) {
-            if self.kept.has(i) {
+            if self.progress.kept.has(i) {
                 continue;
             }
             let Some(at) = model.position(limit.effect) else {
@@ -240,7 +263,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             };
             let beside = solver.error_beside(&problem, at);
             match side(coefficient, beside, limit.most, self.pass, fail) {
-                Side::Below => self.kept.add(i),
+                Side::Below => self.progress.kept.add(i),
                 Side::Above => {
                     return Status::Failed(Failure::Limit {
                         limit: *limit,
@@ -293,12 +316,12 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
 
     /// The look after that many seconds, or the last.
     fn running(&self, samples: u64, needed_s: Real) -> Status {
-        let mut look = self.next;
+        let mut look = self.progress.next;
         while look < self.last && (look as Real) < needed_s * self.scale.rate_hz() {
             look = look.saturating_mul(2).min(self.last);
         }
         Status::Running {
-            progress: single(samples as Real / self.last as Real),
+            progress: self.share(samples),
             expected_s: look.saturating_sub(samples) as Real / self.scale.rate_hz(),
         }
     }

@@ -90,7 +90,7 @@ impl<B: Registers> Imu<B> {
     ///
     /// # Errors
     /// [`Error::Bus`]. The sensor stays usable: reading on is all that is needed, and
-    /// [`Axes::record`](super::Axes::record) makes it a gap.
+    /// [`Axes::record`](crate::Axes::record) makes it a gap.
     pub fn read(&mut self) -> Result<Option<Reading>, Error<B::Error>> {
         let status = self.description.status;
         let flags = self.register(status.register)?;

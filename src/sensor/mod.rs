@@ -2,12 +2,12 @@
 //!
 //! Most IMUs look alike: an identity register, a flag that says when a sample waits, three
 //! consecutive counts of 16 bits and a temperature. So a sensor is a value, a [`Description`];
-//! [`CATALOGUE`] holds some, one's own is one more. An [`Imu`] reads it, [`Axes`] makes a gap of
+//! [`CATALOGUE`] holds some, one's own is one more. An [`Imu`] reads it, [`Axes`](crate::Axes) makes a gap of
 //! whatever was lost, and [`Pace`] finds the samples that a sensor does not say were lost, and a
 //! configured rate that is not the true one.
 //!
 //! ```
-//! use allanite::sensor::{Axes, Error, ICM_42688_P, Imu, Pace, SpiBus};
+//! use allanite::{Axes, sensor::{Error, ICM_42688_P, Imu, Pace, SpiBus}};
 //! use embedded_hal::{delay::DelayNs, spi::SpiDevice};
 //!
 //! fn characterise<SPI: SpiDevice>(
@@ -23,7 +23,7 @@
 //!         if let Ok(Some(reading)) = &mut outcome {
 //!             reading.overrun |= pace.stamp(micros()) > 1;
 //!         }
-//!         axes.record(&outcome); // a sample, or a gap if the bus failed
+//!         axes.record(&outcome, |_| []); // a sample, or a gap if the bus failed
 //!         if pace.check().is_err() {
 //!             break; // not the rate that the curve would be drawn with
 //!         }
@@ -33,9 +33,8 @@
 //! ```
 //!
 //! What this is not: a driver for all that a sensor can do. Samples of any other driver go into
-//! [`Axes::push`], or each into an [`Accumulator`](crate::Accumulator).
+//! [`Axes::push`](crate::Axes::push).
 
-mod axes;
 mod bmi160;
 mod bus;
 mod description;
@@ -47,8 +46,8 @@ mod lsm6dso;
 mod mpu_6050;
 mod mpu_6500;
 mod pace;
+mod record;
 
-pub use axes::Axes;
 pub use bmi160::BMI160;
 pub use bus::{I2cBus, Registers, SpiBus};
 pub use description::{ByteOrder, Description, Interface, Status, Temperature, Write};

@@ -114,6 +114,23 @@ impl Image {
         Ok(names)
     }
 
+    /// The section that holds a static of the image, such as `.bss` for one that is all zero at first.
+    ///
+    /// # Errors
+    /// If the file is no ELF file, or has no static whose name ends so.
+    pub fn section_of(&self, name: &str) -> Result<String> {
+        let file = self.file()?;
+        let is_named = |symbol: &object::Symbol<'_, '_>| {
+            let name_there = symbol.name().unwrap_or_default();
+            let name_there = format!("{:#}", rustc_demangle::demangle(name_there));
+            symbol.kind() == SymbolKind::Data && name_there.ends_with(name)
+        };
+        let symbol = file.symbols().find(is_named);
+        let index = symbol.and_then(|symbol| symbol.section_index());
+        let index = index.with_context(|| format!("there is no static {name}"))?;
+        Ok(file.section_by_index(index)?.name()?.to_owned())
+    }
+
     fn file(&self) -> Result<object::File<'_>> {
         object::File::parse(&*self.elf).with_context(|| format!("reading {}", self.path.display()))
     }

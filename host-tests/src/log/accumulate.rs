@@ -4,7 +4,7 @@ use super::{
     clock::{Clock, Tick},
     columns::AxisColumn,
     field::{Field, Stamp},
-    quantum::{self, Quantum, Range},
+    quantum::{Quantum, Range},
     table::{Ended, Stop, Table, Visitor},
     time_column::TimeColumn,
     worker::{Batches, Plan, Sums},
@@ -118,10 +118,7 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
         .collect::<Result<Vec<_>, _>>()?;
 
     let mut rounded = Rounded {
-        batches: Batches::new(Plan {
-            fineness: quantum::FINENESS,
-            ..plan.clone()
-        }),
+        batches: Batches::new(plan.clone()),
         quanta,
         steps: vec![Steps::default(); columns.len()],
     };
@@ -147,7 +144,7 @@ fn finish(
     clock: Option<Clock>,
 ) -> Result<Measured, Failure> {
     let sums = batches.finish();
-    if sums.iter().any(|axis| axis.accumulator.samples() == 0) {
+    if sums.iter().any(|axis| axis.accumulator().samples() == 0) {
         return Err(Place::file(path).failure("no rows", "record some samples"));
     }
     let (axes, covariates) = quanta.split_at(sums.len());

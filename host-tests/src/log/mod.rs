@@ -73,6 +73,7 @@ mod time_column;
 mod ulog;
 mod ulog_format;
 mod ulog_messages;
+mod watched;
 mod worker;
 
 use crate::unit::{Sensor, Unit};

@@ -26,9 +26,6 @@ impl Range {
     }
 }
 
-/// Bits of a count beyond those of the usual converter, 16.
-pub(super) const FINENESS: u32 = 30 - 16;
-
 /// How one axis' floats become counts: `count = round(value / step) − origin`.
 ///
 /// The step is a power of two between 2^-30 and 2^-29 of the range: division by it is exact, and

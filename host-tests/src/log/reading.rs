@@ -9,6 +9,7 @@ use super::{
     scaling::{self, Origin, Scaling},
     table::Table,
     time_column::TimeColumn,
+    watched::{self, WatchedAxis},
     worker,
 };
 use crate::failure::{Failure, Place};
@@ -42,6 +43,12 @@ pub(super) fn read_table(
     let axis_columns = taken.axes;
     let scaling = Scaling::settle(table, path, options, &axis_columns, taken.sensor)?;
     let covariates = watch.unwrap_or_default();
+    if covariates.len() > watched::MOST {
+        return Err(Failure::option(
+            format!("--covariates: {} of them", covariates.len()),
+            format!("name {} at most", watched::MOST),
+        ));
+    }
     let mut columns = axis_columns.clone();
     columns.extend(
         table
@@ -52,7 +59,6 @@ pub(super) fn read_table(
         axes: axis_columns.len(),
         first: first.unwrap_or(u64::MAX),
         watch: watch.map(<[_]>::to_vec),
-        fineness: 0,
     };
     let passes = Passes {
         table,
@@ -79,21 +85,21 @@ pub(super) fn read_table(
         let mut axis = Axis {
             name: column.axis,
             rate_per_count: scaling.scale * quantum.step(),
-            accumulator: sums.accumulator,
+            accumulator: sums.accumulator().clone(),
             evidence: None,
         };
-        if first.is_some() {
+        if let (Some(_), worker::Sums::InTwo { rest: behind, .. }) = (first, &sums) {
             let behind = Axis {
-                accumulator: sums.rest,
+                accumulator: (**behind).clone(),
                 ..axis.clone()
             };
             check_axis(path, &behind)?;
             rest.push(behind);
         }
         check_axis(path, &axis)?;
-        if let Some(watched) = sums.watched {
+        if let worker::Sums::Watched(watched) = &sums {
             let named = covariates.iter().zip(&measured.covariates);
-            axis.evidence = Some(evidence(path, &axis, *watched, named, rate_hz)?);
+            axis.evidence = Some(evidence(path, &axis, &**watched, named, rate_hz)?);
         }
         if quantum == quantum::Quantum::WHOLE && !scaling.scale_is_told {
             notes.push(format!(
@@ -171,7 +177,7 @@ fn said(
 fn evidence<'a>(
     path: &Path,
     axis: &Axis,
-    watched: worker::Watched,
+    watched: &dyn WatchedAxis,
     covariates: impl Iterator<Item = (&'a CovariateChoice, &'a quantum::Quantum)>,
     rate_hz: f64,
 ) -> Result<Evidence, Failure> {
@@ -179,17 +185,18 @@ fn evidence<'a>(
         Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
     };
     let scale = Scale::new(axis.rate_per_count, rate_hz).map_err(fail)?;
-    let mut shared = Vec::new();
-    for ((choice, quantum), cross) in covariates.zip(&watched.cross) {
-        // A rate of change is counted in quanta a sample.
-        let per_count = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
-        let curve = cross.curve(&axis.accumulator, scale, per_count);
-        shared.push((choice.to_string(), curve.map_err(fail)?));
-    }
+    // A rate of change is counted in quanta a sample.
+    let (names, units): (Vec<String>, Vec<f64>) = covariates
+        .map(|(choice, quantum)| {
+            let unit = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
+            (choice.to_string(), unit)
+        })
+        .unzip();
+    let told = watched.evidence(scale, &units).map_err(fail)?;
     Ok(Evidence {
-        kurtosis: watched.moments.kurtosis(),
-        covariates: shared,
-        invalid: watched.integrity.verdict(),
+        kurtosis: told.kurtosis,
+        covariates: names.into_iter().zip(told.covariates).collect(),
+        invalid: told.invalid,
     })
 }
 

@@ -1,7 +1,11 @@
 //! The thread that accumulates, while another cuts and parses text.
 
-use super::{CovariateChoice, OCTAVES, covariate::Derived};
-use allanite::{Accumulator, CrossSums, FourthMoments, Integrity};
+use super::{
+    CovariateChoice, OCTAVES,
+    covariate::Derived,
+    watched::{self, WatchedAxis},
+};
+use allanite::Accumulator;
 use std::{
     collections::VecDeque,
     mem::replace,
@@ -14,31 +18,34 @@ use std::{
 const BATCH: usize = 1 << 13;
 
 /// What becomes of one axis.
-pub(super) struct Sums {
-    pub(super) accumulator: Accumulator<OCTAVES>,
-    /// What lies behind the part that was asked for.
-    pub(super) rest: Accumulator<OCTAVES>,
-    pub(super) watched: Option<Box<Watched>>,
+pub(super) enum Sums {
+    /// The curve of the part that was asked for, and that of what lies behind it.
+    InTwo {
+        accumulator: Box<Accumulator<OCTAVES>>,
+        rest: Box<Accumulator<OCTAVES>>,
+    },
+    /// All that is kept beside the curve.
+    Watched(Box<dyn WatchedAxis>),
 }
 
-/// What is kept beside the curve.
-pub(super) struct Watched {
-    pub(super) moments: FourthMoments<OCTAVES>,
-    pub(super) integrity: Integrity,
-    /// With each covariate.
-    pub(super) cross: Vec<CrossSums<OCTAVES>>,
+impl Sums {
+    /// That of the part that was asked for.
+    pub(super) fn accumulator(&self) -> &Accumulator<OCTAVES> {
+        match self {
+            Self::InTwo { accumulator, .. } => accumulator,
+            Self::Watched(axis) => axis.accumulator(),
+        }
+    }
 }
 
 /// What to make of the columns: axes, and behind them covariates.
 #[derive(Clone)]
 pub(super) struct Plan {
     pub(super) axes: usize,
-    /// The axes' samples behind these are accumulated apart.
+    /// The axes' samples behind these are accumulated apart, where no more than the curve is kept.
     pub(super) first: u64,
     /// Whether to keep more than the curve, and which covariates.
     pub(super) watch: Option<Vec<CovariateChoice>>,
-    /// How much finer counts are than fourth powers have room for, in bits.
-    pub(super) fineness: u32,
 }
 
 impl Plan {
@@ -51,15 +58,12 @@ impl Plan {
     }
 
     fn sums(&self) -> Sums {
-        let watched = || Watched {
-            moments: FourthMoments::new(),
-            integrity: Integrity::default(),
-            cross: vec![CrossSums::new(); self.covariates().len()],
-        };
-        Sums {
-            accumulator: Accumulator::new(),
-            rest: Accumulator::new(),
-            watched: self.watch.is_some().then(|| Box::new(watched())),
+        match &self.watch {
+            Some(covariates) => Sums::Watched(watched::axis(covariates.len())),
+            None => Sums::InTwo {
+                accumulator: Box::default(),
+                rest: Box::default(),
+            },
         }
     }
 }
@@ -172,7 +176,7 @@ impl Worker {
 
     fn take(&mut self, column: usize, batch: Vec<i32>, mut done: impl FnMut(Vec<i32>)) {
         if self.derived.is_empty() {
-            self.accumulate(column, &batch);
+            self.accumulate(column, &batch, &[]);
             return done(batch);
         }
         self.waiting[column].push_back(batch);
@@ -192,14 +196,7 @@ impl Worker {
             }
         }
         for (axis, counts) in axes.iter().enumerate() {
-            self.accumulate(axis, counts);
-            let watched = self.sums[axis].watched.iter_mut();
-            let cross = watched.flat_map(|watched| &mut watched.cross);
-            for (cross, covariate) in cross.zip(covariates.iter()) {
-                for (&count, &covariate) in counts.iter().zip(covariate) {
-                    cross.push(count, covariate);
-                }
-            }
+            self.accumulate(axis, counts, covariates);
         }
         rows.into_iter().for_each(done);
     }
@@ -209,31 +206,29 @@ impl Worker {
             derived.gap();
         }
         for sums in &mut self.sums {
-            if sums.accumulator.samples() >= self.plan.first {
-                sums.rest.gap();
-                continue;
-            }
-            sums.accumulator.gap();
-            if let Some(watched) = &mut sums.watched {
-                watched.moments.gap();
-                watched.integrity.gap();
-                watched.cross.iter_mut().for_each(CrossSums::gap);
+            match sums {
+                Sums::InTwo { accumulator, rest } => {
+                    if accumulator.samples() >= self.plan.first {
+                        rest.gap();
+                    } else {
+                        accumulator.gap();
+                    }
+                }
+                Sums::Watched(axis) => axis.gap(),
             }
         }
     }
 
-    fn accumulate(&mut self, axis: usize, counts: &[i32]) {
-        let sums = &mut self.sums[axis];
-        let room = self.plan.first - sums.accumulator.samples();
-        let room = usize::try_from(room).unwrap_or(usize::MAX);
-        let (of_start, of_rest) = counts.split_at(room.min(counts.len()));
-        sums.accumulator.push_slice(of_start);
-        sums.rest.push_slice(of_rest);
-        if let Some(watched) = &mut sums.watched {
-            for &count in of_start {
-                watched.moments.push(count >> self.plan.fineness);
-                watched.integrity.push(count);
+    fn accumulate(&mut self, axis: usize, counts: &[i32], covariates: &[Vec<i32>]) {
+        match &mut self.sums[axis] {
+            Sums::InTwo { accumulator, rest } => {
+                let room = self.plan.first - accumulator.samples();
+                let room = usize::try_from(room).unwrap_or(usize::MAX);
+                let (of_start, of_rest) = counts.split_at(room.min(counts.len()));
+                accumulator.push_slice(of_start);
+                rest.push_slice(of_rest);
             }
+            Sums::Watched(axis) => axis.push(counts, covariates),
         }
     }
 }

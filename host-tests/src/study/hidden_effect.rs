@@ -3,7 +3,7 @@
 use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
 use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
 use allanite::{
-    Comparison, Curve, FourthMoments, Model, Term,
+    Axis, Comparison, Curve, Model, Scale, Term,
     diagnosis::{Addition, Diagnosis, Evidence, Step, Verdict},
     effect::{CATALOGUE, EXPLAINED, Effect, IEEE_952, MAX_PARAMETERS},
     fit::{Fit, Options, fit},
@@ -132,15 +132,16 @@ pub struct Outcome {
 /// Diagnoses a simulated record, and judges the result on a second record of the same gyro.
 pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64) -> Outcome {
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
-    let mut moments = FourthMoments::<OCTAVES>::new();
+    let mut gyro = Axis::<OCTAVES, 0, ()>::new();
     let curve = record(&mut simulator, base, samples, |counts| {
-        moments.push_slice(counts);
+        counts.iter().for_each(|&count| gyro.push(count));
     });
     let other = record(&mut simulator, base, samples, |_| ());
-    let kurtosis = moments.kurtosis();
+    let scale = Scale::new(1.0, RATE_HZ).expect("positive");
+    let kurtosis = gyro.evidence(0, scale, []).expect("one axis").kurtosis;
     let mut steps: Vec<Step<OCTAVES>> = Vec::new();
     let evidence = Evidence {
-        kurtosis: Some(&kurtosis),
+        kurtosis: kurtosis.as_ref(),
         ..Evidence::NONE
     };
     let (model, options) = (Model::ieee_952(), allanite::diagnosis::Options::default());

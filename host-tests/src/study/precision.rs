@@ -1,7 +1,9 @@
 //! What single precision makes of the same records, beside double.
 
-use crate::firmware::{Precision, agreement::told_here};
-use allanite::demonstration::diagnose::HIDDEN;
+use crate::{
+    demonstration::diagnose::HIDDEN,
+    firmware::{Precision, agreement::told_here},
+};
 use anyhow::{Context as _, Result};
 
 /// Differences between single and double precision over many records.

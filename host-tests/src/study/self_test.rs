@@ -3,7 +3,7 @@
 use super::{OCTAVES, RATE_HZ, quantile, quantum};
 use crate::simulate::{Coefficients, Preset, Simulator};
 use allanite::{
-    Scale,
+    Axis, Scale,
     self_test::{Limit, Plan, SelfTest, Status},
 };
 use rayon::prelude::*;
@@ -111,11 +111,16 @@ fn test(case: Case, factor: f64, seed: u64, looks: Looks) -> (Status, f64) {
     let unit = quantum(base, RATE_HZ);
     let scale = Scale::new(unit, RATE_HZ).expect("positive");
     let mut test = SelfTest::<OCTAVES>::new(plan, scale).expect("a plan");
+    let mut gyro = Axis::<OCTAVES, 0, (), ()>::new();
     for rate in Simulator::new(base, RATE_HZ, seed) {
-        test.push((rate / unit).round() as i32);
-        let status = test.status();
+        gyro.push((rate / unit).round() as i32);
+        if !test.is_due(gyro.samples()) {
+            continue;
+        }
+        let record = gyro.evidence(0, scale, []).expect("one axis");
+        let status = test.look(record.samples, &record.curve, record.invalid);
         if !matches!(status, Status::Running { .. }) {
-            return (status, test.accumulator().samples() as f64 / RATE_HZ);
+            return (status, record.samples as f64 / RATE_HZ);
         }
     }
     unreachable!("a simulator never ends")

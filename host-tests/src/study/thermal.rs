@@ -3,7 +3,7 @@
 use super::{OCTAVES, quantum};
 use crate::simulate::{Coefficients, Course, Hidden, Preset, Simulator, Thermal};
 use allanite::{
-    Accumulator, CrossSums, Model, Scale,
+    Axis, Model, Scale,
     diagnosis::{Addition, Diagnosis, Evidence, Options},
     effect::CATALOGUE,
 };
@@ -59,20 +59,18 @@ pub fn diagnose(
     };
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
     let unit = quantum(base, RATE_HZ);
-    let mut gyro = Accumulator::<OCTAVES>::new();
-    let mut cross = CrossSums::<OCTAVES>::new();
+    let mut gyro = Axis::<OCTAVES, 1, (), ()>::new();
     for n in 0..SAMPLES {
         let time_s = n as f64 / RATE_HZ;
         let rate = simulator.next().unwrap_or_default() + thermal.rate_at(time_s);
         let count = (rate / unit).round() as i32;
         let celsius = (thermal.celsius_at(time_s) / KELVIN).round() as i32;
-        gyro.push(count);
-        cross.push(count, celsius);
+        gyro.push((count, [celsius]));
     }
     let scale = Scale::new(unit, RATE_HZ).expect("positive");
-    let covariates = [cross.curve(&gyro, scale, KELVIN).expect("pushed together")];
+    let record = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
     let evidence = Evidence {
-        covariates: &covariates,
+        covariates: &record.covariates,
         ..Evidence::NONE
     };
     let mut outcome = Outcome {
@@ -80,21 +78,20 @@ pub fn diagnose(
         named: Vec::new(),
     };
     let model = Model::ieee_952();
-    let curve = gyro.curve(scale);
-    let report = Diagnosis::new(curve, evidence, &model, &CATALOGUE, Options::default()).and_then(
-        |diagnosis| {
-            diagnosis.run(|step| match &step.added {
-                Some(Addition::Covariate(followed)) => {
-                    outcome.slope = Some((followed.slope.value, followed.slope.error));
-                }
-                Some(Addition::Effect(term)) => {
-                    outcome.named.push(term.effect.name());
-                    outcome.named.extend(step.ambiguous.iter());
-                }
-                _ => {}
-            })
-        },
-    );
+    let options = Options::default();
+    let diagnosis = Diagnosis::new(record.curve, evidence, &model, &CATALOGUE, options);
+    let report = diagnosis.and_then(|diagnosis| {
+        diagnosis.run(|step| match &step.added {
+            Some(Addition::Covariate(followed)) => {
+                outcome.slope = Some((followed.slope.value, followed.slope.error));
+            }
+            Some(Addition::Effect(term)) => {
+                outcome.named.push(term.effect.name());
+                outcome.named.extend(step.ambiguous.iter());
+            }
+            _ => {}
+        })
+    });
     report.expect("a curve to diagnose");
     outcome
 }

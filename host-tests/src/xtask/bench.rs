@@ -9,7 +9,7 @@ use comfy_table::{Table, presets};
 use serde_json::{Map, Value};
 
 /// A figure of the Cortex-M4F or of this host, its unit and what it counts.
-const FIGURES: [(&str, &str, &str); 18] = [
+const FIGURES: [(&str, &str, &str); 20] = [
     (
         "instructions_per_sample",
         "instructions",
@@ -44,6 +44,16 @@ const FIGURES: [(&str, &str, &str); 18] = [
         "ram_bytes_per_axis_24",
         "bytes",
         "one accumulator of 24 octaves",
+    ),
+    (
+        "instructions_per_sample_three_axes",
+        "instructions",
+        "gate, integrity, accumulator, moments, a covariate; 20 octaves",
+    ),
+    (
+        "ram_bytes_per_axis_20_with_all_parts",
+        "bytes",
+        "a third of three axes with all of these",
     ),
     (
         "flash_bytes",

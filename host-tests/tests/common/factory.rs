@@ -2,9 +2,11 @@
 
 use allanite::{
     Accumulator, AxisRecord, Conditions, Model, RateUnit, Record, Scale,
-    demonstration::AMPLITUDES,
     diagnosis::{Diagnosis, Evidence, Options},
     effect::CATALOGUE,
+};
+use host_tests::demonstration::{
+    AMPLITUDES,
     simulated::{Disturbance, SimulatedGyro},
 };
 

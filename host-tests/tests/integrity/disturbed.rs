@@ -194,7 +194,7 @@ fn the_rails_of_other_sensors_are_configured() {
         rails: [-8192, 8191, i32::MIN, i32::MAX],
         ..Limits::default()
     };
-    let mut integrity = Integrity::new(limits).expect("valid limits");
+    let mut integrity = Integrity::with_limits(Box::leak(Box::new(limits))).expect("valid limits");
     for count in mems(3) {
         integrity.push((count + 8190).min(8191));
     }

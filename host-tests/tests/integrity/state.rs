@@ -5,6 +5,11 @@ use super::{disturb, integrity, mems};
 use allanite::{Integrity, Limits, Observation};
 use proptest::{collection::vec, prelude::*};
 
+/// Limits that last as long as the program, as those in a product's flash.
+fn leaked(limits: Limits) -> &'static Limits {
+    Box::leak(Box::new(limits))
+}
+
 #[test]
 fn an_observation_tells_the_odd_sample() {
     let mut counts = mems(6);
@@ -37,7 +42,11 @@ fn an_observation_tells_the_odd_sample() {
 
 #[test]
 fn contradictory_limits_are_refused_by_name() {
-    let refuse = |limits| Integrity::new(limits).expect_err("refused").to_string();
+    let refuse = |limits| {
+        Integrity::with_limits(leaked(limits))
+            .expect_err("refused")
+            .to_string()
+    };
     let limits = Limits::default();
     assert_eq!(
         refuse(Limits {
@@ -53,7 +62,10 @@ fn contradictory_limits_are_refused_by_name() {
         }),
         "missing_per_mille = 1001: choose 0 to 1000"
     );
-    assert_eq!(Integrity::new(limits), Ok(Integrity::default()));
+    assert_eq!(
+        Integrity::with_limits(leaked(limits)),
+        Ok(Integrity::default())
+    );
 }
 
 #[test]
@@ -74,7 +86,7 @@ fn reset_forgets_all_but_the_limits() {
         run_factor: 200,
         ..Limits::default()
     };
-    let fresh = Integrity::new(limits).expect("valid limits");
+    let fresh = Integrity::with_limits(leaked(limits)).expect("valid limits");
     let mut used = fresh.clone();
     used.push(3);
     used.missing(4);
@@ -165,7 +177,7 @@ proptest! {
             motion_factor: factor,
             ..Limits::default()
         };
-        play(&mut Integrity::new(limits).expect("valid limits"), &events);
+        play(&mut Integrity::with_limits(leaked(limits)).expect("valid limits"), &events);
     }
 }
 
@@ -191,7 +203,7 @@ proptest! {
         let mut counts = mems(seed);
         counts[3000] = 2000;
         let limits = Limits { rails: [i32::MIN, i32::MAX, i32::MIN, i32::MAX], ..Limits::default() };
-        let mut plain = Integrity::new(limits).expect("valid limits");
+        let mut plain = Integrity::with_limits(leaked(limits)).expect("valid limits");
         let mut shifted = plain.clone();
         for &count in &counts[..8000] {
             prop_assert_eq!(plain.push(count), shifted.push(count + offset));

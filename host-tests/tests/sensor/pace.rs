@@ -1,8 +1,9 @@
 //! Timestamps: skipped samples, and a rate that is not the configured one.
 
 use crate::sheet::{Sheet, start};
+use allanite::Axes;
 use allanite::Error;
-use allanite::sensor::{Axes, ICM_42688_P, Pace};
+use allanite::sensor::{ICM_42688_P, Pace};
 
 /// The number of samples behind which there is a verdict: one more than intervals.
 const WINDOW: u32 = 257;
@@ -125,13 +126,13 @@ fn samples_that_were_read_too_late_become_a_gap() {
     let turns = (0..40).flat_map(|n| sheet.i2c_sample(sheet.ready, [late(n) as i16; 3]));
     let (mut imu, mut mock) = start(sheet, turns);
     let mut pace = Pace::new(imu.description().rate_hz).unwrap();
-    let mut axes = Axes::<8>::new();
+    let mut axes = Axes::<8, 0, (), ()>::new();
     for n in 0..40 {
         let mut outcome = imu.read();
         if let Ok(Some(reading)) = &mut outcome {
             reading.overrun |= pace.stamp(late(n) * 10_000) > 1;
         }
-        axes.record(&outcome);
+        axes.record(&outcome, |_| []);
     }
     mock.done();
     let [x, _, _] = axes.accumulators();

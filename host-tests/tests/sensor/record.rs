@@ -1,10 +1,13 @@
 //! From samples to accumulators: flags, overruns, failing buses, other drivers.
 
 use crate::sheet::{Sheet, start};
-use allanite::Accumulator;
-use allanite::sensor::{Axes, BMI160, Error, L3GD20, MPU_6050, Reading};
+use allanite::sensor::{BMI160, Error, L3GD20, MPU_6050};
+use allanite::{Accumulator, Axes};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use embedded_hal_mock::eh1::i2c::Mock as I2cMock;
+
+/// Three axes as they are read.
+type Three = Axes<8, 0, (), ()>;
 
 #[test]
 fn no_sample_is_read_before_the_flag_is_up() {
@@ -14,9 +17,9 @@ fn no_sample_is_read_before_the_flag_is_up() {
     let (mut imu, mut mock) = start(sheet, [turn]);
     let outcome = imu.read();
     assert_eq!(outcome, Ok(None));
-    let mut axes = Axes::<8>::new();
-    assert!(!axes.record(&outcome));
-    assert_eq!(axes, Axes::new());
+    let mut axes = Three::new();
+    assert!(!axes.record(&outcome, |_| []));
+    assert_eq!(axes, Three::new());
     mock.done();
 }
 
@@ -26,9 +29,9 @@ fn an_overrun_is_a_gap_before_the_sample() {
     let samples = [(0x08, 5), (0x08, 7), (0x88, 100), (0x08, 101)];
     let turns = samples.map(|(flags, count)| sheet.i2c_sample(flags, [count; 3]));
     let (mut imu, mut mock) = start(sheet, turns.into_iter().flatten());
-    let (mut axes, mut expected) = (Axes::<8>::new(), Accumulator::<8>::new());
+    let (mut axes, mut expected) = (Three::new(), Accumulator::<8>::new());
     for (flags, count) in samples {
-        assert!(axes.record(&imu.read()));
+        assert!(axes.record(&imu.read(), |_| []));
         if flags & 0x80 != 0 {
             expected.gap();
         }
@@ -38,7 +41,7 @@ fn an_overrun_is_a_gap_before_the_sample() {
     assert_eq!(axes.losses(), 1);
     // Not a difference spans the gap: (7 − 5)² + (101 − 100)².
     assert_eq!(expected.octave(0).unwrap().differences, 2);
-    assert_eq!(axes.accumulators(), &[(); 3].map(|()| expected.clone()));
+    assert_eq!(axes.accumulators(), [(); 3].map(|()| &expected));
 }
 
 #[test]
@@ -57,20 +60,20 @@ fn a_bus_error_amid_a_record_costs_a_gap_and_nothing_else() {
         }
     }
     let (mut imu, mut mock) = start(sheet, turns);
-    let mut axes = Axes::<8>::new();
+    let mut axes = Three::new();
     let mut expected = [(); 3].map(|()| Accumulator::<8>::new());
     for n in 0..60 {
-        let before = axes.accumulators().clone();
+        let before = axes.accumulators().map(Clone::clone);
         let outcome = imu.read();
         let failed = match n {
             20 => Some((0x3A, nack)),
             40 | 41 => Some((0x41, ErrorKind::Bus)),
             _ => None,
         };
-        assert_eq!(axes.record(&outcome), failed.is_none());
+        assert_eq!(axes.record(&outcome, |_| []), failed.is_none());
         if let Some((register, error)) = failed {
             assert_eq!(outcome, Err(Error::Bus { register, error }));
-            for (now, before) in axes.accumulators().iter().zip(&before) {
+            for (now, before) in axes.accumulators().into_iter().zip(&before) {
                 assert!(now.octaves().eq(before.octaves()), "what was summed stays");
                 assert_eq!(now.samples(), before.samples());
             }
@@ -83,7 +86,7 @@ fn a_bus_error_amid_a_record_costs_a_gap_and_nothing_else() {
         }
     }
     mock.done();
-    assert_eq!(axes.accumulators(), &expected);
+    assert_eq!(axes.accumulators(), expected.each_ref());
     assert_eq!(axes.losses(), 3);
     let [x, _, _] = axes.accumulators();
     assert_eq!((x.samples(), x.gaps()), (57, 2));
@@ -98,7 +101,7 @@ fn samples_of_another_driver_are_pushed_by_hand() {
     let turns: Vec<_> = (0..50).map(|n| sheet.i2c_read(0x0C, bytes(n))).collect();
     let mut driver = Bmi160::new_with_i2c(I2cMock::new(&turns), SlaveAddr::default());
 
-    let (mut x, mut axes) = (Accumulator::<8>::new(), Axes::<8>::new());
+    let (mut x, mut axes) = (Accumulator::<8>::new(), Three::new());
     for _ in 0..50 {
         let gyro = driver
             .data(SensorSelector::new().gyro())
@@ -106,11 +109,7 @@ fn samples_of_another_driver_are_pushed_by_hand() {
             .gyro
             .unwrap();
         x.push(gyro.x.into());
-        axes.push(&Reading {
-            gyro: [gyro.x, gyro.y, gyro.z].map(i32::from),
-            temperature: None,
-            overrun: false,
-        });
+        axes.push([gyro.x, gyro.y, gyro.z].map(i32::from));
     }
     driver.destroy().done();
 
@@ -121,5 +120,5 @@ fn samples_of_another_driver_are_pushed_by_hand() {
         }
     }
     assert_eq!(x, expected[0]);
-    assert_eq!(axes.accumulators(), &expected);
+    assert_eq!(axes.accumulators(), expected.each_ref());
 }

@@ -1,13 +1,18 @@
 //! What is measured.
 
 use crate::clock::Clock;
-use allanite::demonstration::AMPLITUDES;
-use allanite::effect::{CATALOGUE, Effect as _, SampledShape, Sinusoid};
-use allanite::simulated::{Random, SimulatedGyro};
+use crate::demonstration::{
+    AMPLITUDES,
+    simulated::{Random, SimulatedGyro},
+};
+use allanite::effect::{
+    CATALOGUE, DecimationFilter, Effect, GaussMarkov, LowPass, RandomTelegraph, Resonance,
+    SampledShape, Sinusoid,
+};
 use allanite::{
-    Accumulator, Curve, Error, Model, Real,
-    diagnosis::{Diagnosis, Evidence, Verdict},
-    fit::{Fit, Options, fit},
+    Accumulator, Axes, Curve, Error, GatePart, Model, MomentPart, Real,
+    diagnosis::{self, Diagnosis, Evidence, Progress, Verdict},
+    fit::{Fit, Fitting, Options, fit},
 };
 use core::hint::black_box;
 
@@ -45,6 +50,24 @@ pub(crate) fn mean(clock: &Clock, work: fn(&mut Accumulator<24>, i32)) -> f64 {
             }
         }
     });
+    total / SAMPLES
+}
+
+/// Mean instructions of a sample of three axes, with or without some parts, the loop around it included.
+pub(crate) fn mean_of_axes<const COVARIATES: usize, G: GatePart, M: MomentPart>(
+    clock: &Clock,
+) -> f64 {
+    let counts = counts();
+    let mut axes = Axes::<20, COVARIATES, G, M>::new();
+    let mut round = |n: i32| {
+        for (i, &count) in (0..).zip(&counts) {
+            let at = |behind: usize| counts[(i + behind) % LENGTH];
+            axes.push(([count, at(1), at(2)], [n + i as i32 / 64; COVARIATES]));
+        }
+    };
+    round(0);
+    let total = clock.instructions(|| (1..=ROUNDS as i32).for_each(&mut round));
+    black_box(&axes);
     total / SAMPLES
 }
 
@@ -98,24 +121,64 @@ pub(crate) fn worst<const OCTAVES: usize>(clock: &Clock, deepest: u32) -> u64 {
     (instructions / f64::from(REPETITIONS) + 0.5) as u64
 }
 
-/// Octaves of a gyro with all five terms, each off by a few per cent, and an oscillation at 7.7 Hz of
-/// some amplitude.
-pub(crate) fn curve<const OCTAVES: usize>(amplitude: Real) -> Option<Curve<OCTAVES>> {
+/// An effect that is hidden in a curve: its shape and its coefficient.
+pub(crate) type Hidden = (&'static dyn Effect, [Real; 2], Real);
+
+/// The cases of the study of hidden effects, and the name of each in the figures.
+pub(crate) const HIDDEN: [(&str, &[Hidden]); 11] = [
+    ("nothing", &[]),
+    ("sinusoid_0_3_hz", &[(&Sinusoid, [0.3, 0.0], 0.005)]),
+    ("sinusoid_7_7_hz", &[SINUSOID]),
+    ("gauss_markov_0_1_s", &[(&GaussMarkov, [0.1, 0.0], 0.02)]),
+    ("gauss_markov_1_s", &[(&GaussMarkov, [1.0, 0.0], 0.01)]),
+    ("resonance_3_hz", &[(&Resonance, [3.0, 3.0], 0.02)]),
+    ("low_pass", &[(&LowPass, [0.02, 0.0], 0.005)]),
+    (
+        "decimation_filter_1",
+        &[(&DecimationFilter, [0.03, 1.0], 0.005)],
+    ),
+    (
+        "decimation_filter_2",
+        &[(&DecimationFilter, [0.03, 2.0], 0.005)],
+    ),
+    (
+        "random_telegraph_0_1_s",
+        &[(&RandomTelegraph, [0.1, 0.0], 0.02)],
+    ),
+    (
+        "sinusoid_and_filter",
+        &[SINUSOID, (&DecimationFilter, [0.03, 2.0], 0.005)],
+    ),
+];
+
+/// An oscillation at 7.7 Hz.
+pub(crate) const SINUSOID: Hidden = (&Sinusoid, [7.7, 0.0], 0.02);
+
+/// Octaves of a gyro with all five terms, each off by a few per cent, and hidden effects.
+pub(crate) fn curve<const OCTAVES: usize>(hidden: &[Hidden]) -> Option<Curve<OCTAVES>> {
+    let is_filter = |(effect, ..): &Hidden| effect.replaces().is_some();
+    let white = if hidden.iter().any(is_filter) {
+        0.0
+    } else {
+        2.5e-5
+    };
     let octaves = (0..OCTAVES).map(|k| {
         let m = 1_u32 << k;
         let averaged = (1_u64 << k) as Real;
         let tau_s = averaged / 100.0;
         let smooth = 1.2e-7 / (tau_s * tau_s)
-            + 2.5e-5 / tau_s
+            + white / tau_s
             + 7.1e-6
             + 3.0e-8 * tau_s
             + 1.3e-11 * tau_s * tau_s;
-        let shape = SampledShape {
-            parameters: [7.7, 0.0],
-            ..SampledShape::new(0.01)
-        };
-        let wave = amplitude * amplitude * Sinusoid.variance(averaged, &shape);
-        let smooth = smooth + wave;
+        let more = hidden.iter().map(|&(effect, parameters, coefficient)| {
+            let shape = SampledShape {
+                interval_s: 0.01,
+                parameters,
+            };
+            coefficient * coefficient * effect.variance(averaged, &shape)
+        });
+        let smooth = smooth + more.sum::<Real>();
         let differences = (2_u64 << OCTAVES) / u64::from((m / 4).max(1)) - 7;
         let off = [0.3, -0.5, 0.9, -0.2, -0.7][k % 5] / (differences as Real * 0.2 + 9.0);
         (m, differences, smooth * (1.0 + off))
@@ -131,9 +194,66 @@ pub(crate) fn characterise<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Resu
 /// Whether it finds something.
 #[inline(never)]
 pub(crate) fn diagnose<const OCTAVES: usize>(curve: &Curve<OCTAVES>, model: &Model) -> bool {
-    let evidence = Evidence::NONE;
-    let verdict = Diagnosis::default().run(curve, &evidence, model, &CATALOGUE, |step| {
-        black_box(step);
+    let verdict = begin(curve, model).and_then(|diagnosis| {
+        diagnosis.run(|step| {
+            black_box(step);
+        })
     });
     verdict == Ok(Verdict::Improved)
+}
+
+fn begin<'a, const OCTAVES: usize>(
+    curve: &Curve<OCTAVES>,
+    model: &Model,
+) -> Result<Diagnosis<'a, OCTAVES>, Error> {
+    let options = diagnosis::Options::default();
+    Diagnosis::new(curve.clone(), Evidence::NONE, model, &CATALOGUE, options)
+}
+
+/// The most instructions that a diagnosis takes before it returns, its begin included. `None` where it fails.
+#[inline(never)]
+pub(crate) fn longest_stretch_of_diagnosis<const OCTAVES: usize>(
+    clock: &Clock,
+    curve: &Curve<OCTAVES>,
+    model: &Model,
+) -> Option<f64> {
+    let mut begun = None;
+    let mut longest = clock.instructions(|| begun = begin(curve, model).ok());
+    let mut diagnosis = begun?;
+    let mut going_on = true;
+    while going_on {
+        let mut failed = false;
+        let stretch = clock.instructions(|| match diagnosis.advance() {
+            Ok(Progress::Finished(_)) => going_on = false,
+            Ok(_) => {}
+            Err(_) => failed = true,
+        });
+        if failed {
+            return None;
+        }
+        longest = longest.max(stretch);
+    }
+    Some(longest)
+}
+
+/// The most instructions that a fit takes before it returns: a look of the self-test is one.
+#[inline(never)]
+pub(crate) fn longest_stretch_of_fit<const OCTAVES: usize>(
+    clock: &Clock,
+    curve: &Curve<OCTAVES>,
+    model: &Model,
+) -> Option<f64> {
+    let mut begun = None;
+    let begin = || Fitting::new(curve.clone(), model.clone(), Options::default());
+    let mut longest = clock.instructions(|| begun = begin().ok());
+    let mut fitting = begun?;
+    loop {
+        let mut outcome = None;
+        let stretch =
+            clock.instructions(|| outcome = fitting.advance().ok().map(|fit| fit.is_some()));
+        longest = longest.max(stretch);
+        if outcome? {
+            return Some(longest);
+        }
+    }
 }

@@ -10,7 +10,7 @@ mod image {
     use allanite::effect::CATALOGUE;
     use allanite::{
         Accumulator, Model, Scale,
-        diagnosis::{Diagnosis, Evidence},
+        diagnosis::{Diagnosis, Evidence, Options},
     };
     use core::hint::black_box;
 
@@ -27,7 +27,14 @@ mod image {
             let report = |step: &_| {
                 black_box(step);
             };
-            Diagnosis::default().run(&curve, &Evidence::NONE, &model, &CATALOGUE, report)
+            Diagnosis::new(
+                curve,
+                Evidence::NONE,
+                &model,
+                &CATALOGUE,
+                Options::default(),
+            )?
+            .run(report)
         });
         black_box(&verdict);
         semihosting::process::exit(0)

@@ -2,7 +2,7 @@
 //!
 //! A timer is the sensor's data-ready interrupt: it makes a sample of the simulated gyro and hands it to
 //! the queue. Some reads fail, and now and then the main loop is late, so that the queue overflows.
-//! Whatever is lost becomes a gap of the accumulator, and is logged with its place, so that a host can
+//! Whatever is lost becomes a gap of the record, and is logged with its place, so that a host can
 //! repeat it. The exit status tells whether taken and lost samples add up to those made.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -14,12 +14,16 @@ fn main() {}
 mod timer;
 
 #[cfg(target_os = "none")]
+#[path = "../demonstration/mod.rs"]
+// Every image uses some of it.
+#[allow(dead_code, unreachable_pub)]
+mod demonstration;
+
+#[cfg(target_os = "none")]
 mod image {
-    use allanite::demonstration::AMPLITUDES;
-    use allanite::demonstration::tell;
+    use crate::demonstration::{AMPLITUDES, lines, simulated::SimulatedGyro};
     use allanite::queue::{self, Queued, Receiver, Sender};
-    use allanite::simulated::SimulatedGyro;
-    use allanite::{Accumulator, Scale};
+    use allanite::{Axis, Scale};
     use core::cell::RefCell;
     #[cfg(target_arch = "arm")]
     use cortex_m::singleton;
@@ -97,7 +101,7 @@ mod image {
 
     /// The main loop; whether every sample that was made is accounted for.
     fn take_all(mut receiver: Receiver<'static, i32>) -> bool {
-        let mut accumulator = Accumulator::<OCTAVES>::new();
+        let mut gyro = Axis::<OCTAVES, 0, (), ()>::new();
         let mut late = LATE.iter().copied();
         let mut next_late = late.next();
         let mut taken = 0;
@@ -112,10 +116,10 @@ mod image {
                 continue;
             };
             if lost > 0 {
-                accumulator.gap();
+                gyro.missing(lost.into());
                 defmt::info!("gap after {=u32} taken, lost {=u32}", taken, lost);
             }
-            accumulator.push(sample);
+            gyro.push(sample);
             taken += 1;
             if let Some((_, more)) = next_late.filter(|&(when, _)| when == taken) {
                 next_late = late.next();
@@ -134,7 +138,8 @@ mod image {
         let Ok(scale) = Scale::new(1.0 / 131.0, 100.0) else {
             return false;
         };
-        tell::curve(&accumulator.curve(scale), |line| {
+        let [accumulator] = gyro.accumulators();
+        lines::curve(&accumulator.curve(scale), |line| {
             defmt::info!("{}", defmt::Display2Format(&line));
         });
         accumulator.samples() == u64::from(taken) && u64::from(taken) + lost == u64::from(made())

@@ -10,11 +10,11 @@ use crate::{
     log::{CovariateChoice, Evidence, OCTAVES},
 };
 use allanite::{
-    CrossCurve, Error, Model, Term,
+    CrossCurve, Error, Model, Term, covariate,
     diagnosis::{
         Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
     },
-    effect::{CATALOGUE, covariate},
+    effect::CATALOGUE,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};

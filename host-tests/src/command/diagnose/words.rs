@@ -9,9 +9,9 @@ use crate::{
     log::OCTAVES,
 };
 use allanite::{
-    Term,
+    Term, covariate,
     diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
-    effect::{Explanation, covariate, explanation},
+    effect::{Explanation, explanation},
 };
 
 /// What a step of a diagnosis added, and why.

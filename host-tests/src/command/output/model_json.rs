@@ -3,8 +3,7 @@
 use super::words;
 use crate::{command::fit, log::OCTAVES, unit::Unit};
 use allanite::{
-    ComparedOctave, Comparison, Model, Term, diagnosis::FollowedCovariate, effect::covariate,
-    fit::Fit,
+    ComparedOctave, Comparison, Model, Term, covariate, diagnosis::FollowedCovariate, fit::Fit,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};

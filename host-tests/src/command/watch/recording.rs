@@ -6,10 +6,13 @@ use crate::{
     log::{Axis, OCTAVES},
     unit::Unit,
 };
-use allanite::Accumulator;
+use allanite::Axis as Record;
 
 /// A line longer than this is none.
 const LONGEST_LINE: usize = 4096;
+
+/// An axis without a gate: what is sent is watched as it is.
+type Gyro = Record<OCTAVES, 0, (), ()>;
 
 /// What has been recorded.
 pub(super) struct Recording {
@@ -18,7 +21,7 @@ pub(super) struct Recording {
     unit: Unit,
     names: Option<Vec<String>>,
     /// Known from the first sample on.
-    accumulators: Vec<Accumulator<OCTAVES>>,
+    axes: Vec<Gyro>,
     /// What has come of the next line.
     line: Vec<u8>,
     counts: Vec<i32>,
@@ -55,7 +58,7 @@ impl Recording {
             rate_per_count,
             unit,
             names,
-            accumulators: Vec::new(),
+            axes: Vec::new(),
             line: Vec::new(),
             counts: Vec::new(),
             garbled: 0,
@@ -98,31 +101,31 @@ impl Recording {
                 }
                 Err(_) => false,
             });
-        let number = self
-            .names
-            .as_ref()
-            .map_or(self.accumulators.len(), Vec::len);
+        let number = self.names.as_ref().map_or(self.axes.len(), Vec::len);
         if !read || (number > 0 && self.counts.len() != number) || self.counts.is_empty() {
             self.garbled += 1;
-            self.accumulators.iter_mut().for_each(Accumulator::gap);
+            self.axes.iter_mut().for_each(Gyro::gap);
             return;
         }
-        if self.accumulators.is_empty() {
-            self.accumulators = vec![Accumulator::new(); self.counts.len()];
+        if self.axes.is_empty() {
+            self.axes = vec![Gyro::new(); self.counts.len()];
         }
-        for (accumulator, &count) in self.accumulators.iter_mut().zip(&self.counts) {
-            accumulator.push(count);
+        for (axis, &count) in self.axes.iter_mut().zip(&self.counts) {
+            axis.push(count);
         }
     }
 
     /// Samples of an axis so far.
     pub(super) fn samples(&self) -> u64 {
-        self.accumulators.first().map_or(0, Accumulator::samples)
+        self.axes.first().map_or(0, Gyro::samples)
     }
 
     /// Ends of contiguous stretches so far.
     pub(super) fn gaps(&self) -> u64 {
-        self.accumulators.first().map_or(0, Accumulator::gaps)
+        self.axes.first().map_or(0, |axis| {
+            let [accumulator] = axis.accumulators();
+            accumulator.gaps()
+        })
     }
 
     /// Lines that were no samples.
@@ -137,7 +140,8 @@ impl Recording {
 
     /// The curves as of now; `None` as long as they have not two octaves.
     pub(super) fn curves(&self) -> Result<Option<Vec<AxisCurve>>, Failure> {
-        let of_axis = |(i, accumulator): (usize, &Accumulator<OCTAVES>)| {
+        let of_axis = |(i, axis): (usize, &Gyro)| {
+            let [accumulator] = axis.accumulators();
             let axis = Axis {
                 name: self.name(i),
                 rate_per_count: self.rate_per_count,
@@ -146,14 +150,14 @@ impl Recording {
             };
             AxisCurve::of(&axis, self.rate_hz, self.unit)
         };
-        let curves = self.accumulators.iter().enumerate().map(of_axis);
+        let curves = self.axes.iter().enumerate().map(of_axis);
         let curves = curves.collect::<Result<Vec<_>, _>>()?;
         let long = !curves.is_empty() && curves.iter().all(|curve| curve.octaves.len() >= 2);
         Ok(long.then_some(curves))
     }
 
     fn name(&self, i: usize) -> String {
-        match (&self.names, self.accumulators.len()) {
+        match (&self.names, self.axes.len()) {
             (Some(names), _) => names[i].clone(),
             (None, 1) => "gyro".into(),
             (None, 2 | 3) => ["x", "y", "z"][i].into(),
@@ -190,10 +194,7 @@ mod tests {
             text.as_bytes()
                 .chunks(piece)
                 .for_each(|piece| pieces.take(piece));
-            assert!(
-                pieces.accumulators == whole.accumulators,
-                "pieces of {piece}"
-            );
+            assert!(pieces.axes == whole.axes, "pieces of {piece}");
         }
     }
 

@@ -1,10 +1,10 @@
-//! What images log and the host prints, with the bits of every number: equal lines, equal bits.
+//! The lines that images log and the host prints. They hold the bits of every number, so that equal lines
+//! mean equal bits.
 
-use super::{characterise::Characterised, diagnose::OCTAVES};
-use crate::{
-    curve::Curve,
+use super::{characterise::Characterised, double};
+use allanite::{
+    AxisEvidence, Curve, Real,
     diagnosis::{Addition, Step},
-    real::{Real, double},
 };
 use core::fmt::{self, Arguments, Display, Formatter};
 
@@ -29,6 +29,26 @@ pub fn curve<const K: usize>(curve: &Curve<K>, mut line: impl FnMut(Arguments<'_
     }
 }
 
+/// The curve of an axis, and all that a diagnosis takes beside it.
+pub fn evidence<const K: usize, const C: usize>(
+    axis: &AxisEvidence<K, C>,
+    mut line: impl FnMut(Arguments<'_>),
+) {
+    curve(&axis.curve, &mut line);
+    for point in axis.kurtosis.iter().flat_map(|kurtosis| &kurtosis.points) {
+        let excess = Exact(point.excess);
+        line(format_args!("kurtosis m {} excess {excess}", point.m));
+    }
+    for point in axis.covariates.iter().flat_map(|cross| cross.points()) {
+        let [covariance, variance] = [point.covariance, point.variance].map(Exact);
+        line(format_args!(
+            "covariate m {} covariance {covariance} variance {variance}",
+            point.m
+        ));
+    }
+    line(format_args!("invalid {:?}", axis.invalid));
+}
+
 /// The curve, a line a coefficient, and one of the fit.
 pub fn characterised(test: &Characterised, mut line: impl FnMut(Arguments<'_>)) {
     curve(&test.curve, &mut line);
@@ -51,7 +71,7 @@ pub fn characterised(test: &Characterised, mut line: impl FnMut(Arguments<'_>)) 
 }
 
 /// A step of a diagnosis: error by octave, what was fitted, what was tried, what was added.
-pub fn step(step: &Step<OCTAVES>, mut line: impl FnMut(Arguments<'_>)) {
+pub fn step<const K: usize>(step: &Step<K>, mut line: impl FnMut(Arguments<'_>)) {
     for octave in &step.comparison.octaves {
         line(format_args!(
             "octave m {} measured {:e} model {:e} z {}",
@@ -87,8 +107,15 @@ pub fn step(step: &Step<OCTAVES>, mut line: impl FnMut(Arguments<'_>)) {
     for name in &step.ambiguous {
         line(format_args!("ambiguous {name}"));
     }
-    if let Some(Addition::Effect(term)) = &step.added {
-        let first = Exact(term.parameters[0]);
-        line(format_args!("added {} first {first}", term.effect.name()));
+    match &step.added {
+        Some(Addition::Effect(term)) => {
+            let first = Exact(term.parameters[0]);
+            line(format_args!("added {} first {first}", term.effect.name()));
+        }
+        Some(Addition::Covariate(follows)) => {
+            let slope = Exact(follows.slope.value);
+            line(format_args!("added covariate slope {slope}"));
+        }
+        None => {}
     }
 }

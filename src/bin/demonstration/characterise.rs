@@ -1,15 +1,9 @@
 //! From counts to coefficients.
 
-use super::AMPLITUDES;
-use crate::{
-    coefficient::Coefficient,
-    curve::{Curve, Scale},
-    error::Error,
+use super::{AMPLITUDES, double, simulated::SimulatedGyro};
+use allanite::{
+    Axis, Coefficient, Curve, Error, Model, Scale,
     fit::{Fit, Options, fit},
-    model::Model,
-    octave::Accumulator,
-    real::Real,
-    simulated::SimulatedGyro,
 };
 
 /// Octaves of averaging time.
@@ -23,14 +17,13 @@ pub const SEED: u64 = 952;
 
 /// What came out.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Characterised {
     /// The Allan curve, in °/s.
     pub curve: Curve<OCTAVES>,
     /// The five coefficients, in °/s and seconds.
     pub fit: Fit,
     /// The simulated coefficients.
-    pub truth: [Real; 5],
+    pub truth: [f64; 5],
 }
 
 impl Characterised {
@@ -52,20 +45,21 @@ impl Characterised {
     /// Whether the curve is explained (p > 0.1 %), and every coefficient within four standard
     /// errors of the simulated one.
     pub fn passed(&self) -> bool {
-        let within = |(coefficient, truth): (&Coefficient, &Real)| {
-            let square = truth * truth;
-            (coefficient.square - square).abs() <= 4.0 * coefficient.square_error
+        let within = |(coefficient, truth): (&Coefficient, &f64)| {
+            let square = double(coefficient.square);
+            (square - truth * truth).abs() <= 4.0 * double(coefficient.square_error)
         };
         self.fit.p_value > 1e-3 && self.fit.coefficients.iter().zip(&self.truth).all(within)
     }
 }
 
-/// A call of its own: on a core of 16 KiB of RAM, gyro and accumulator leave the stack to the fit.
+/// A call of its own: on a core of 16 KiB of RAM, gyro and record leave the stack to the fit.
 #[inline(never)]
 fn accumulated(scale: Scale, seed: u64) -> Curve<OCTAVES> {
-    let mut accumulator = Accumulator::<OCTAVES>::new();
+    let mut gyro = Axis::<OCTAVES, 0, (), ()>::new();
     for count in SimulatedGyro::new(AMPLITUDES, seed).take(SAMPLES) {
-        accumulator.push(count);
+        gyro.push(count);
     }
+    let [accumulator] = gyro.accumulators();
     accumulator.curve(scale)
 }

@@ -4,7 +4,6 @@ use super::{FRACTION, Pole, Random, rounded};
 
 /// An effect that hides in a simulated gyro, in integers too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Disturbance {
     /// A sinusoid.
     Sinusoid {

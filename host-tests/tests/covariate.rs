@@ -1,9 +1,12 @@
 //! What a gyro shares with a covariate, against direct computation.
 
-use allanite::{Accumulator, CrossSums, Error, Scale};
+use allanite::{Axis, Error, Scale};
 use proptest::prelude::*;
 
 const OCTAVES: usize = 10;
+
+/// A gyro beside one covariate, and no more.
+type Gyro = Axis<OCTAVES, 1, (), ()>;
 
 /// Second differences of windows of `m` samples, a quarter window apart, in one stretch.
 fn differences(counts: &[i32], m: usize) -> Vec<i128> {
@@ -24,29 +27,21 @@ proptest! {
         stretches in proptest::collection::vec(record(), 1..4),
         merged in any::<bool>(),
     ) {
-        let (mut gyro, mut cross) = (Accumulator::<OCTAVES>::new(), CrossSums::<OCTAVES>::new());
+        let mut gyro = Gyro::new();
         for stretch in &stretches {
-            if merged {
-                let (mut more, mut more_cross) = (Accumulator::new(), CrossSums::new());
-                for &(count, covariate) in stretch {
-                    more.push(count);
-                    more_cross.push(count, covariate);
-                }
-                gyro.merge(&more);
-                cross.merge(&more_cross);
-            } else {
-                gyro.gap();
-                cross.gap();
-                for &(count, covariate) in stretch {
-                    gyro.push(count);
-                    cross.push(count, covariate);
-                }
+            let mut more = Gyro::new();
+            let record = if merged { &mut more } else { &mut gyro };
+            record.gap();
+            for &(count, covariate) in stretch {
+                record.push((count, [covariate]));
             }
+            gyro.merge(&more);
         }
         let (per_count, kelvin) = (0.01, 1.0 / 256.0);
         let scale = Scale::new(per_count, 100.0).unwrap();
-        let curve = cross.curve(&gyro, scale, kelvin).unwrap();
-        prop_assert_eq!(curve.points().len(), gyro.curve(scale).points().len());
+        let record = gyro.evidence(0, scale, [kelvin]).unwrap();
+        let [curve] = &record.covariates[..] else { panic!("one covariate") };
+        prop_assert_eq!(curve.points().len(), record.curve.points().len());
         for point in curve.points() {
             let (mut product, mut square, mut number) = (0_i128, 0_i128, 0_u32);
             for stretch in &stretches {
@@ -69,26 +64,17 @@ proptest! {
 }
 
 #[test]
-fn sums_of_other_samples_are_refused() {
-    let (mut gyro, mut cross) = (Accumulator::<OCTAVES>::new(), CrossSums::<OCTAVES>::new());
+fn units_and_axes_that_are_none_are_refused() {
+    let mut gyro = Gyro::new();
     for n in 0..100 {
-        gyro.push(n * n % 17);
-        cross.push(n * n % 17, n);
+        gyro.push((n * n % 17, [n]));
     }
     let scale = Scale::new(1.0, 100.0).unwrap();
-    assert!(cross.curve(&gyro, scale, 1.0).is_ok());
-    assert!(matches!(
-        cross.curve(&gyro, scale, 0.0),
-        Err(Error::InvalidScale { .. })
-    ));
-    gyro.push(1);
-    assert!(matches!(
-        cross.curve(&gyro, scale, 1.0),
-        Err(Error::Misaligned {
-            gyro: 100,
-            covariate: 99
-        })
-    ));
-    cross.reset();
-    assert_eq!(cross, CrossSums::new());
+    let units = [0.0, -1.0, f64::NAN, f64::INFINITY];
+    for unit in units {
+        let refused = gyro.evidence(0, scale, [unit]).unwrap_err();
+        assert!(matches!(refused, Error::InvalidScale { .. }), "{unit}");
+    }
+    let refused = gyro.evidence(1, scale, [1.0]).unwrap_err();
+    assert_eq!(refused, Error::UnknownAxis { axis: 1, axes: 1 });
 }

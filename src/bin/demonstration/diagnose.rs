@@ -1,19 +1,14 @@
-//! A hidden effect found with no host: counts of a simulated gyro that has more than the five terms,
-//! accumulated, fitted, compared and diagnosed. What an image computes on the target, and the host again,
-//! to compare the bits.
+//! From counts to a hidden effect: a simulated gyro that has more than the five terms is recorded and
+//! diagnosed. An image computes this on the target, and the host computes it again, to compare the bits.
 
-use super::AMPLITUDES;
-use crate::{
-    curve::Scale,
-    diagnosis::{Diagnosis, Evidence, Options, Step, Verdict},
-    effect::CATALOGUE,
-    error::Error,
-    integrity::Integrity,
-    kurtosis::FourthMoments,
-    model::Model,
-    octave::Accumulator,
-    real::Real,
+use super::{
+    AMPLITUDES,
     simulated::{Disturbance, SimulatedGyro},
+};
+use allanite::{
+    Axis, AxisEvidence, Error, Model, Real, Scale,
+    diagnosis::{Diagnosis, Options, Step, Verdict},
+    effect::CATALOGUE,
 };
 
 /// Octaves of averaging time.
@@ -66,23 +61,21 @@ pub fn diagnose(
     seed: u64,
     report: impl FnMut(&Step<OCTAVES>),
 ) -> Result<Verdict, Error> {
-    let mut accumulator = Accumulator::<OCTAVES>::new();
-    let mut moments = FourthMoments::<OCTAVES>::new();
-    let mut integrity = Integrity::default();
+    let record = recorded(disturbance, seed)?;
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let curve = record.curve.clone();
+    Diagnosis::new(curve, record.evidence(), &model, &CATALOGUE, options)?.run(report)
+}
+
+/// A call of its own: gyro and record leave the stack to the diagnosis.
+#[inline(never)]
+fn recorded(disturbance: Option<Disturbance>, seed: u64) -> Result<AxisEvidence<OCTAVES>, Error> {
+    let mut gyro = Axis::<OCTAVES>::new();
     for count in SimulatedGyro::disturbed(AMPLITUDES, disturbance, seed).take(SAMPLES) {
-        accumulator.push(count);
-        moments.push(count);
-        integrity.push(count);
+        gyro.push(count);
     }
-    let curve = accumulator.curve(Scale::new(1.0 / 131.0, RATE_HZ)?);
-    let kurtosis = moments.kurtosis();
-    let evidence = Evidence {
-        kurtosis: Some(&kurtosis),
-        covariates: &[],
-        invalid: integrity.verdict(),
-    };
-    let model = Model::ieee_952();
-    Diagnosis::new(curve, evidence, &model, &CATALOGUE, Options::default())?.run(report)
+    gyro.release();
+    gyro.evidence(0, Scale::new(1.0 / 131.0, RATE_HZ)?, [])
 }
 
 /// The seed of its noise, where there is no reason for another.

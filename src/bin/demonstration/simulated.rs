@@ -4,15 +4,9 @@ mod disturbance;
 
 pub use disturbance::Disturbance;
 
-use crate::{
-    curve::Scale,
-    math,
-    real::{
-        Real,
-        consts::{LN_2, PI},
-        real,
-    },
-};
+use super::double;
+use allanite::Scale;
+use core::f64::consts::{LN_2, PI};
 use disturbance::Source;
 
 /// Fraction bits of every amplitude.
@@ -23,7 +17,6 @@ const POLES: usize = 24;
 
 /// Amplitudes of the five terms of IEEE Std 952, in 2^-24 counts: up to 256 counts each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Amplitudes {
     /// Standard deviation of the angle's jitter, in count · samples. The rounding of the angle to
     /// whole counts comes on top, with a variance of 1/12.
@@ -46,17 +39,18 @@ impl Amplitudes {
     /// ```text
     /// Q = u τ₀ √(a² + 1/12)      N = u √τ₀ a      B = u √(π/ln 2) a      K = u a/√τ₀      R = u a/τ₀
     /// ```
-    pub fn coefficients(&self, scale: Scale) -> [Real; 5] {
-        let counts = |amplitude: u32| real(amplitude) / real(1 << FRACTION);
-        let rate = scale.rate_per_count();
-        let interval_s = 1.0 / scale.rate_hz();
+    pub fn coefficients(&self, scale: Scale) -> [f64; 5] {
+        let one = f64::from(1 << FRACTION);
+        let counts = |amplitude: u32| f64::from(amplitude) / one;
+        let rate = double(scale.rate_per_count());
+        let interval_s = 1.0 / double(scale.rate_hz());
         let jitter = counts(self.quantization);
         [
-            rate * interval_s * math::sqrt(jitter * jitter + 1.0 / 12.0),
-            rate * math::sqrt(interval_s) * counts(self.white),
-            rate * math::sqrt(PI / LN_2) * counts(self.flicker),
-            rate / math::sqrt(interval_s) * counts(self.walk),
-            rate / interval_s * real(self.ramp) / real(1 << FRACTION),
+            rate * interval_s * libm::sqrt(jitter * jitter + 1.0 / 12.0),
+            rate * libm::sqrt(interval_s) * counts(self.white),
+            rate * libm::sqrt(PI / LN_2) * counts(self.flicker),
+            rate / libm::sqrt(interval_s) * counts(self.walk),
+            rate / interval_s * f64::from(self.ramp) / one,
         ]
     }
 }
@@ -77,14 +71,6 @@ impl Amplitudes {
 /// Normal numbers are the number of ones in 32 random bits, plus a uniform one, scaled to unit
 /// variance: excess kurtosis −0.06, none beyond 5.8 standard deviations. Random bits come from
 /// xoshiro128++ (Blackman & Vigna 2021), seeded by SplitMix64.
-///
-/// ```
-/// use allanite::simulated::{Amplitudes, SimulatedGyro};
-///
-/// let white = Amplitudes { quantization: 0, white: 5 << 24, flicker: 0, walk: 0, ramp: 0 };
-/// let square_sum: i32 = SimulatedGyro::new(white, 1).take(1000).map(|count| count * count).sum();
-/// assert!((20_000..30_000).contains(&square_sum));
-/// ```
 #[derive(Clone, Debug)]
 pub struct SimulatedGyro {
     amplitudes: Amplitudes,

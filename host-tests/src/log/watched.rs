@@ -1,0 +1,73 @@
+//! An axis of a log with all that is kept beside its curve, and any number of covariates.
+
+use super::OCTAVES;
+use allanite::{Accumulator, Axis, CrossCurve, Error, Kurtosis, Reason, Scale};
+
+/// The most covariates that a log is read with.
+pub(super) const MOST: usize = 8;
+
+/// What an axis tells beside its curve.
+pub(super) struct Told {
+    pub(super) kurtosis: Kurtosis<OCTAVES>,
+    pub(super) covariates: Vec<CrossCurve<OCTAVES>>,
+    pub(super) invalid: Option<Reason>,
+}
+
+/// An axis of the library beside a number of covariates that its type knows.
+pub(super) trait WatchedAxis: Send {
+    /// Adds the counts of some rows, and those of every covariate.
+    fn push(&mut self, counts: &[i32], covariates: &[Vec<i32>]);
+
+    /// Samples are missing here.
+    fn gap(&mut self);
+
+    fn accumulator(&self) -> &Accumulator<OCTAVES>;
+
+    /// What it tells, with the unit of every covariate per count.
+    fn evidence(&self, scale: Scale, units: &[f64]) -> Result<Told, Error>;
+}
+
+/// An axis without a gate: a log is judged as it is.
+type Watched<const COVARIATES: usize> = Axis<OCTAVES, COVARIATES, ()>;
+
+impl<const COVARIATES: usize> WatchedAxis for Watched<COVARIATES> {
+    fn push(&mut self, counts: &[i32], covariates: &[Vec<i32>]) {
+        for (row, &count) in counts.iter().enumerate() {
+            let beside: [i32; COVARIATES] = std::array::from_fn(|i| covariates[i][row]);
+            self.push((count, beside));
+        }
+    }
+
+    fn gap(&mut self) {
+        self.gap();
+    }
+
+    fn accumulator(&self) -> &Accumulator<OCTAVES> {
+        let [accumulator] = self.accumulators();
+        accumulator
+    }
+
+    fn evidence(&self, scale: Scale, units: &[f64]) -> Result<Told, Error> {
+        let told = self.evidence(0, scale, std::array::from_fn(|i| units[i]))?;
+        Ok(Told {
+            kurtosis: told.kurtosis.unwrap_or_default(),
+            covariates: told.covariates.into_iter().collect(),
+            invalid: told.invalid,
+        })
+    }
+}
+
+/// An empty axis beside so many covariates, [`MOST`] at most.
+pub(super) fn axis(covariates: usize) -> Box<dyn WatchedAxis> {
+    match covariates {
+        0 => Box::new(Watched::<0>::new()),
+        1 => Box::new(Watched::<1>::new()),
+        2 => Box::new(Watched::<2>::new()),
+        3 => Box::new(Watched::<3>::new()),
+        4 => Box::new(Watched::<4>::new()),
+        5 => Box::new(Watched::<5>::new()),
+        6 => Box::new(Watched::<6>::new()),
+        7 => Box::new(Watched::<7>::new()),
+        _ => Box::new(Watched::<MOST>::new()),
+    }
+}

@@ -1,0 +1,442 @@
+//! Axes: one record of samples and gaps behind everything, whatever was left out, lost, merged or restored.
+
+#[path = "common/seeded.rs"]
+mod seeded;
+
+use allanite::{
+    Axes, Axis, Error, GatePart, Integrity, Limits, Model, MomentPart, Reason, Scale,
+    fit::{Options, fit},
+    self_test::{Limit, Plan, SelfTest, Status},
+};
+use host_tests::simulate::{Preset, Simulator};
+use proptest::{collection::vec, prelude::*};
+use seeded::seeded;
+
+const OCTAVES: usize = 12;
+const RATE_HZ: f64 = 100.0;
+/// °/s a count.
+const UNIT: f64 = 1e-3;
+const SAMPLES: usize = 1 << 16;
+
+fn scale() -> Scale {
+    Scale::new(UNIT, RATE_HZ).unwrap()
+}
+
+type Counts = ([i32; 3], [i32; 1]);
+
+/// Three axes at rest beside a temperature.
+fn rest() -> Vec<Counts> {
+    let mut axes = [3, 4, 5].map(|seed| Simulator::new(Preset::Mems.coefficients(), RATE_HZ, seed));
+    let mut sample = |n: usize| {
+        let counts = axes.each_mut().map(|axis| {
+            let rate = axis.next().unwrap();
+            (rate / UNIT).round() as i32
+        });
+        (counts, [(n as i32 / 50) % 900])
+    };
+    (0..SAMPLES).map(&mut sample).collect()
+}
+
+/// The same with three spikes, one in each axis, and a motion about the second.
+fn disturbed() -> Vec<Counts> {
+    let mut samples = rest();
+    samples[9000].0[0] = 32_767;
+    samples[25_000].0[1] = -20_000;
+    samples[33_000].0[2] = 5000;
+    for (i, (counts, _)) in samples[40_000..40_500].iter_mut().enumerate() {
+        counts[1] += (3000.0 * (i as f64 / 40.0).sin().abs()) as i32;
+    }
+    samples
+}
+
+/// What is kept of a record: the places of samples, and `None` for gaps.
+///
+/// It says in other words what the gate does: what is odd in any axis is a gap; motion and stuck values take
+/// the 128 places before them with them, and motion the 64 samples after it.
+struct Cleaning {
+    seen: [Integrity; 3],
+    /// Let go already.
+    kept: Vec<Option<usize>>,
+    held: Vec<Option<usize>>,
+    behind: usize,
+}
+
+impl Cleaning {
+    fn new() -> Self {
+        Self {
+            seen: [(); 3].map(|()| Integrity::default()),
+            kept: Vec::new(),
+            held: Vec::new(),
+            behind: 0,
+        }
+    }
+
+    fn push(&mut self, at: usize, counts: [i32; 3]) {
+        let seen = [0, 1, 2].map(|axis| self.seen[axis].push(counts[axis]));
+        let moving = seen.iter().any(|axis| axis.moving);
+        if moving || seen.iter().any(|axis| axis.stuck) {
+            self.held.clear();
+        }
+        let is_odd = self.behind > 0 || seen.iter().any(|axis| axis.is_odd());
+        self.behind = if moving {
+            64
+        } else {
+            self.behind.saturating_sub(1)
+        };
+        let place = (!is_odd).then_some(at);
+        if place.is_some() || self.held.last() != Some(&None) {
+            self.held.push(place);
+        }
+        if self.held.len() > 128 {
+            self.kept.push(self.held.remove(0));
+        }
+    }
+
+    /// The power fails: what is held back is lost.
+    fn cut(&mut self) {
+        self.held = vec![None];
+        self.behind = 0;
+        self.seen.iter_mut().for_each(Integrity::gap);
+    }
+}
+
+fn plan() -> Plan {
+    Plan {
+        limits: [Limit {
+            effect: "angle_random_walk",
+            most: 0.00495,
+        }]
+        .into_iter()
+        .collect(),
+        least_p: 0.0,
+        false_pass: 0.01,
+        false_fail: 0.01,
+        shortest_s: 10.0,
+        longest_s: 300.0,
+    }
+}
+
+/// Takes a look at the first axis where one is due.
+fn look<G: GatePart, M: MomentPart>(
+    axes: &Axes<OCTAVES, 1, G, M>,
+    test: &mut SelfTest<OCTAVES>,
+    looks: &mut Vec<(u64, Status)>,
+) {
+    if test.is_due(axes.samples()) {
+        let x = axes.evidence(0, scale(), [0.01]).unwrap();
+        looks.push((x.samples, test.look(x.samples, &x.curve, x.invalid)));
+    }
+}
+
+#[test]
+fn spikes_a_motion_and_a_power_loss_leave_what_the_cleaned_record_leaves() {
+    type Gyro = Axes<OCTAVES, 1>;
+    let samples = disturbed();
+    let new_test = || SelfTest::<OCTAVES>::new(plan(), scale()).unwrap();
+    let (mut gyro, mut test, mut looks) = (Gyro::new(), new_test(), Vec::new());
+    let mut cleaning = Cleaning::new();
+    let mut buffer = vec![0; Gyro::snapshot_bytes(1)];
+    for (n, &sample) in samples.iter().enumerate() {
+        // The power fails a while after a snapshot, and the product starts again.
+        if n == 20_000 {
+            let length = gyro
+                .snapshot(std::slice::from_ref(&test), &mut buffer)
+                .unwrap()
+                .len();
+            buffer.truncate(length);
+            (gyro, test) = (Gyro::new(), new_test());
+            gyro.restore(std::slice::from_mut(&mut test), &buffer)
+                .unwrap();
+            cleaning.cut();
+        }
+        if (20_000..21_000).contains(&n) {
+            continue;
+        }
+        gyro.push(sample);
+        cleaning.push(n, sample.0);
+        look(&gyro, &mut test, &mut looks);
+    }
+    gyro.release();
+    look(&gyro, &mut test, &mut looks);
+
+    // The cleaned record, without a gate, and a self-test that was never interrupted.
+    let mut places = cleaning.kept;
+    places.extend(cleaning.held);
+    let mut clean = Axes::<OCTAVES, 1, ()>::new();
+    let (mut clean_test, mut clean_looks) = (new_test(), Vec::new());
+    for place in places {
+        match place {
+            Some(at) => clean.push(samples[at]),
+            None => clean.gap(),
+        }
+        look(&clean, &mut clean_test, &mut clean_looks);
+    }
+
+    assert_eq!(gyro.accumulators(), clean.accumulators());
+    assert_eq!(gyro.integrity(), clean.integrity());
+    for axis in 0..3 {
+        let [one, other] = [
+            gyro.evidence(axis, scale(), [0.01]),
+            clean.evidence(axis, scale(), [0.01]),
+        ];
+        let one = one.unwrap();
+        assert_eq!((one.invalid, one.kurtosis.is_some()), (None, true));
+        assert_eq!(one.covariates.len(), 1);
+        assert_eq!(one, other.unwrap());
+    }
+    assert!(looks.len() >= 5, "{looks:?}");
+    assert_eq!(looks, clean_looks);
+    // 9 bytes of envelope and parts before what is kept, and behind it losses and checksum.
+    let (mut buffer, mut clean_buffer) = ([0; 16_384], [0; 16_384]);
+    let stored = gyro.snapshot(&[], &mut buffer).unwrap();
+    let of_clean = clean.snapshot(&[], &mut clean_buffer).unwrap();
+    let kept = 13..of_clean.len() - 4 - 1;
+    assert!(kept.len() > 500);
+    assert_eq!(stored[kept.clone()], of_clean[kept]);
+    // Three spikes with the cluster of none of them, the motion, and the clusters of 1024 that it ends in.
+    assert!(
+        (600..4000).contains(&gyro.left_out()),
+        "{}",
+        gyro.left_out()
+    );
+    let seen = gyro.seen().map(|seen| seen.tally());
+    assert_eq!(seen.map(|tally| tally.spikes), [1, 1, 1]);
+    assert!(seen[1].motions > 0);
+}
+
+#[test]
+fn a_gyro_that_is_moved_and_hit_now_and_then_keeps_its_noise() {
+    let mut counts: Vec<i32> = rest().iter().map(|(counts, _)| counts[0]).collect();
+    for at in [9000, 30_000, 50_000] {
+        for (i, count) in counts[at..at + 500].iter_mut().enumerate() {
+            *count += (3000.0 * (i as f64 / 40.0).sin().abs()) as i32;
+        }
+    }
+    counts[20_000] = 32_767;
+    counts[25_000] = -20_000;
+    let (mut gated, mut plain) = (Axis::<16>::new(), Axis::<16, 0, (), ()>::new());
+    for &count in &counts {
+        gated.push(count);
+        plain.push(count);
+    }
+    gated.release();
+    assert!(plain.verdict(0).is_some(), "without a gate it is invalid");
+    assert_eq!(gated.verdict(0), None);
+    let left_out = gated.left_out();
+    assert!((1502..8000).contains(&left_out), "{left_out}");
+    assert_eq!(gated.samples() + left_out, SAMPLES as u64);
+    let record = gated.evidence(0, scale(), []).unwrap();
+    let fit = fit(&record.curve, &Model::ieee_952(), Options::default()).unwrap();
+    assert!(fit.p_value > 1e-3, "{}", fit.p_value);
+    let value = fit.coefficients[1].value;
+    assert!((value / 0.005 - 1.0).abs() < 0.03, "{value}");
+}
+
+#[test]
+fn a_record_of_which_too_much_is_left_out_is_invalid_and_says_so() {
+    let mut gyro = Axis::<OCTAVES>::new();
+    for (n, (counts, _)) in rest().iter().take(20_000).enumerate() {
+        let hangs = (5000..12_000).contains(&n);
+        gyro.push(if hangs { 5 } else { counts[0] });
+    }
+    gyro.release();
+    let Some(Reason::LeftOut { left_out, samples }) = gyro.verdict(0) else {
+        panic!("{:?}", gyro.verdict(0));
+    };
+    assert_eq!((left_out, samples), (gyro.left_out(), 20_000));
+    assert!((6900..7100).contains(&left_out), "{left_out}");
+}
+
+#[test]
+fn values_that_are_stuck_are_left_out_to_the_first() {
+    let mut samples = rest();
+    let value = samples[20_000].0[0];
+    for (counts, _) in &mut samples[20_000..20_500] {
+        counts[0] = value;
+    }
+    let mut gyro = Axes::<OCTAVES, 1>::new();
+    samples.iter().for_each(|&sample| gyro.push(sample));
+    gyro.release();
+    assert!((490..520).contains(&gyro.left_out()), "{}", gyro.left_out());
+    let longest = gyro.integrity().map(|axis| axis.tally().longest_run);
+    assert!(longest[0] < 20, "{longest:?}");
+    assert_eq!(gyro.verdict(0), None);
+}
+
+#[test]
+fn motion_about_one_axis_makes_all_of_them_invalid() {
+    let mut axes = Axes::<OCTAVES, 1, (), ()>::new();
+    let (still, moved) = (rest(), disturbed());
+    for (n, sample) in still.into_iter().enumerate() {
+        let turned = (39_000..42_000).contains(&n);
+        axes.push(if turned { moved[n] } else { sample });
+    }
+    for axis in 0..3 {
+        let verdict = axes.verdict(axis);
+        assert!(matches!(verdict, Some(Reason::Moved { .. })), "{verdict:?}");
+    }
+}
+
+#[test]
+fn three_axes_at_rest_are_three_single_axes() {
+    let mut axes = Axes::<OCTAVES, 1>::new();
+    let mut single = [(); 3].map(|()| Axis::<OCTAVES, 1>::new());
+    for (n, &(counts, covariates)) in rest().iter().enumerate() {
+        if n % 20_000 == 19_999 {
+            axes.missing(3);
+            single.iter_mut().for_each(|axis| axis.missing(3));
+        }
+        axes.push((counts, covariates));
+        for (axis, count) in single.iter_mut().zip(counts) {
+            axis.push((count, covariates));
+        }
+    }
+    axes.release();
+    assert_eq!((axes.left_out(), axes.losses()), (0, 3));
+    for (i, axis) in single.iter_mut().enumerate() {
+        axis.release();
+        assert_eq!(
+            axes.evidence(i, scale(), [0.01]),
+            axis.evidence(0, scale(), [0.01])
+        );
+    }
+}
+
+#[test]
+fn limits_are_kept_when_all_else_is_forgotten() {
+    static LIMITS: Limits = Limits {
+        spike_factor: 200,
+        ..Limits::DEFAULT
+    };
+    let mut axes = Axes::<OCTAVES, 1>::with_limits(&LIMITS).unwrap();
+    let fresh = axes.clone();
+    rest()
+        .iter()
+        .take(500)
+        .for_each(|&sample| axes.push(sample));
+    axes.reset();
+    assert_eq!((&axes, axes.limits()), (&fresh, &LIMITS));
+    static IMPOSSIBLE: Limits = Limits {
+        spike_factor: 2,
+        ..Limits::DEFAULT
+    };
+    assert!(Axes::<OCTAVES>::with_limits(&IMPOSSIBLE).is_err());
+}
+
+#[test]
+fn snapshots_of_other_parts_and_plans_are_refused_and_leave_nothing() {
+    let mut gyro = Axes::<OCTAVES, 1>::new();
+    rest()
+        .iter()
+        .take(5000)
+        .for_each(|&sample| gyro.push(sample));
+    let test = SelfTest::<OCTAVES>::new(plan(), scale()).unwrap();
+    let mut buffer = [0; 16_384];
+    let stored = gyro
+        .snapshot(std::slice::from_ref(&test), &mut buffer)
+        .unwrap();
+
+    let mut other = Axes::<OCTAVES, 1>::new();
+    assert_eq!(other.restore(&mut [], stored), Err(Error::OtherParts));
+    let longer = Plan {
+        longest_s: 200.0,
+        ..plan()
+    };
+    let mut tests = [SelfTest::<OCTAVES>::new(longer, scale()).unwrap()];
+    assert_eq!(other.restore(&mut tests, stored), Err(Error::OtherPlan));
+    assert_eq!(other, Axes::new());
+    let mut tests = [test];
+    let mut without = Axes::<OCTAVES, 1, ()>::new();
+    assert_eq!(without.restore(&mut tests, stored), Err(Error::OtherParts));
+    let mut without = Axes::<OCTAVES, 0>::new();
+    assert_eq!(without.restore(&mut tests, stored), Err(Error::OtherParts));
+    let mut fewer = Axes::<10, 1>::new();
+    let refused = fewer.restore(&mut [], stored).unwrap_err();
+    let octaves = Error::OtherOctaves {
+        found: OCTAVES,
+        wanted: 10,
+    };
+    assert_eq!(refused, octaves);
+    for length in 0..stored.len() {
+        assert!(other.restore(&mut tests, &stored[..length]).is_err());
+    }
+    assert_eq!(other.restore(&mut tests, stored), Ok(()));
+}
+
+#[test]
+fn snapshot_of_an_accumulator_alone_is_restored_into_an_axis_without_more() {
+    let mut accumulator = allanite::Accumulator::<OCTAVES>::new();
+    accumulator.push_slice(&[3, 1, -2, 4, 0, 7, 2, 2]);
+    let mut buffer = [0; 1000];
+    let stored = accumulator.snapshot(&mut buffer).unwrap();
+    let mut axis = Axis::<OCTAVES, 0, (), ()>::new();
+    axis.restore(&mut [], stored).unwrap();
+    accumulator.gap();
+    assert_eq!(axis.accumulators(), [&accumulator]);
+    let mut more = Axis::<OCTAVES>::new();
+    assert_eq!(more.restore(&mut [], stored), Err(Error::OtherParts));
+}
+
+/// Stretches of three axes and a covariate, of any counts.
+fn stretches() -> impl Strategy<Value = Vec<Vec<Counts>>> {
+    let count = || prop_oneof![4 => -100..100, 1 => any::<i32>(), 1 => Just(i32::MIN)];
+    let sample = ([count(), count(), count()], [count()]);
+    vec(vec(sample, 0..300), 1..4)
+}
+
+proptest! {
+    #![proptest_config(seeded(60))]
+
+    #[test]
+    fn merging_and_restoring_are_gaps(stretches in stretches(), gated in any::<bool>()) {
+        if gated {
+            merge_and_restore::<allanite::Gated>(&stretches)?;
+        } else {
+            merge_and_restore::<()>(&stretches)?;
+        }
+    }
+}
+
+fn merge_and_restore<G: GatePart>(stretches: &[Vec<Counts>]) -> Result<(), TestCaseError> {
+    type Gyro<G> = Axes<OCTAVES, 1, G>;
+    let mut batch = Gyro::<G>::new();
+    let mut merged = Gyro::<G>::new();
+    let mut restored = Gyro::<G>::new();
+    let mut buffer = vec![0; Gyro::<G>::snapshot_bytes(0)];
+    for stretch in stretches {
+        let mut part = Gyro::<G>::new();
+        for &sample in stretch {
+            batch.push(sample);
+            part.push(sample);
+            restored.push(sample);
+        }
+        batch.release();
+        batch.gap();
+        merged.merge(&part);
+        restored.release();
+        let stored = restored.snapshot(&[], &mut buffer).unwrap();
+        let mut next = Gyro::<G>::new();
+        next.restore(&mut [], stored).unwrap();
+        restored = next;
+    }
+    batch.release();
+    merged.release();
+    prop_assert_eq!(restored.accumulators(), batch.accumulators());
+    prop_assert_eq!(restored.integrity(), batch.integrity());
+    prop_assert_eq!(restored.left_out(), batch.left_out());
+    for axis in 0..3 {
+        let expected = batch.evidence(axis, scale(), [0.01]).unwrap();
+        let after = restored.evidence(axis, scale(), [0.01]).unwrap();
+        prop_assert_eq!(&after, &expected);
+        // What a record that is merged has learnt of its noise comes late to another.
+        if std::mem::size_of::<G>() == 0 && merged.left_out() == batch.left_out() {
+            let merged = merged.evidence(axis, scale(), [0.01]).unwrap();
+            if merged.samples == expected.samples {
+                prop_assert_eq!(merged.curve, expected.curve);
+                prop_assert_eq!(merged.covariates, expected.covariates);
+                prop_assert_eq!(merged.kurtosis, expected.kurtosis);
+            }
+        }
+    }
+    Ok(())
+}

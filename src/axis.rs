@@ -1,0 +1,246 @@
+//! An axis, or several that are recorded together: everything that is kept of a record, behind one `push`.
+
+mod evidence;
+mod gate;
+mod kept;
+mod part;
+mod sample;
+#[cfg(feature = "storage")]
+mod snapshot;
+
+pub use evidence::AxisEvidence;
+pub use part::{GatePart, Gated, MomentPart, Moments};
+pub use sample::Sample;
+
+use crate::{
+    integrity::{Integrity, InvalidLimit, Limits},
+    octave::Accumulator,
+};
+use kept::Kept;
+use part::{Passed, Passing as _};
+
+/// One axis: [`Axes`] of a gyro of which one axis is recorded.
+pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = Moments> =
+    Axes<OCTAVES, COVARIATES, G, M, 1>;
+
+/// Everything that is kept of a record of three axes, or of as many as `AXES` says.
+///
+/// A sample goes this way, in integers only:
+///
+/// ```text
+/// counts + covariates ─► gate ─► integrity, accumulator, fourth moments, products with covariates
+/// ```
+///
+/// The gate sees every sample, and lets those go that belong to a gyro at rest; a gap takes the place of
+/// the others. What lies behind it sees one and the same record of samples and gaps. So the curve, the
+/// evidence for a diagnosis, the snapshot and the verdict on the record's integrity all tell of the record
+/// that is kept, and none of the samples that were left out.
+///
+/// # Parts
+///
+/// | parameter | stands for | default |
+/// |---|---|---|
+/// | `OCTAVES` | octaves of averaging time, 2 to 30 | – |
+/// | `COVARIATES` | covariates, sampled with every count: a temperature, a supply voltage | 0 |
+/// | `G` | [`Gated`], or `()`: every sample is kept | [`Gated`] |
+/// | `M` | [`Moments`], or `()`: a diagnosis cannot tell telegraph noise from Gauss–Markov noise | [`Moments`] |
+/// | `AXES` | axes that share the gate's decision and the covariates; see [`Axis`] for one | 3 |
+///
+/// What is left out takes no memory, no flash and no time. An [`Accumulator`] alone is the least that
+/// makes a curve.
+///
+/// # Cost
+///
+/// With every part, 20 octaves and one covariate, three axes take 5.2 KiB an axis on a 32-bit core. An
+/// empty state is all zero, so that a `static` lies in `.bss`. `cargo xtask bench` measures both this and
+/// the instructions a sample.
+///
+/// # Example
+///
+/// ```
+/// use allanite::{Axes, Model, Scale, effect::CATALOGUE, diagnosis::{Diagnosis}};
+///
+/// // Three axes of 12 octaves, beside a temperature.
+/// static EMPTY: Axes<12, 1> = Axes::new();
+/// let mut axes = EMPTY.clone();
+/// let mut random = 1_u32;
+/// let mut noise = || {
+///     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+///     (random >> 27) as i32
+/// };
+/// for n in 0..10_000_i32 {
+///     let spike = if n == 5000 { 20_000 } else { 0 };
+///     axes.push(([noise() + spike, noise(), noise()], [n / 100]));
+/// }
+/// axes.release();
+/// assert_eq!((axes.left_out(), axes.samples()), (1, 9999));
+///
+/// // 131 counts per °/s at 100 Hz, 100 counts per kelvin.
+/// let x = axes.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [0.01])?;
+/// assert_eq!(x.invalid, None);
+/// let (diagnosis, model) = (Diagnosis::default(), Model::ieee_952());
+/// diagnosis.run(&x.curve, &x.evidence(), &model, &CATALOGUE, |step| println!("{}", step.comparison))?;
+/// # Ok::<(), allanite::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Axes<
+    const OCTAVES: usize,
+    const COVARIATES: usize = 0,
+    G: GatePart = Gated,
+    M: MomentPart = Moments,
+    const AXES: usize = 3,
+> {
+    gate: G::State<AXES, COVARIATES>,
+    kept: Kept<OCTAVES, COVARIATES, M, AXES>,
+    losses: u64,
+}
+
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize>
+    Axes<OCTAVES, COVARIATES, G, M, AXES>
+where
+    G: GatePart,
+    M: MomentPart,
+{
+    /// An empty record, judged by the [default limits](Limits::DEFAULT).
+    pub const fn new() -> Self {
+        Self {
+            gate: <G::State<AXES, COVARIATES> as part::Passing<AXES, COVARIATES>>::NEW,
+            kept: Kept::NEW,
+            losses: 0,
+        }
+    }
+
+    /// An empty record, judged by these limits.
+    ///
+    /// # Errors
+    /// Where a limit is outside the range that its field documents.
+    pub fn with_limits(limits: &'static Limits) -> Result<Self, InvalidLimit> {
+        let mut axes = Self::new();
+        axes.gate.set_limits(limits)?;
+        axes.kept.set_limits(limits)?;
+        Ok(axes)
+    }
+
+    /// Adds one sample: a count of every axis, and of every covariate.
+    #[inline]
+    pub fn push(&mut self, sample: impl Into<Sample<AXES, COVARIATES>>) {
+        match self.gate.push(sample.into()) {
+            Passed::Nothing => {}
+            Passed::Sample(sample) => self.kept.push(&sample),
+            Passed::Gap => self.kept.gap(),
+        }
+    }
+
+    /// Samples were lost, or the gyro was disturbed: no difference will span this moment.
+    pub fn gap(&mut self) {
+        self.losses = self.losses.saturating_add(1);
+        let passed = self.gate.gap();
+        self.keep(passed);
+    }
+
+    /// This many samples were lost at this place: counts them, and is a [`gap`](Self::gap).
+    pub fn missing(&mut self, samples: u64) {
+        if samples > 0 {
+            self.kept.add_missing(samples);
+            self.gap();
+        }
+    }
+
+    /// Lets go of the samples that the gate holds back, up to 128, as if they were known to be at rest: at
+    /// the end of a record. It is not a gap.
+    pub fn release(&mut self) {
+        loop {
+            let passed = self.gate.release();
+            if passed == Passed::Nothing {
+                return;
+            }
+            self.keep(passed);
+        }
+    }
+
+    fn keep(&mut self, passed: Passed<AXES, COVARIATES>) {
+        match passed {
+            Passed::Nothing => {}
+            Passed::Sample(sample) => self.kept.push(&sample),
+            Passed::Gap => self.kept.gap(),
+        }
+    }
+
+    /// Adds another record of the same sensor, as if a gap lay between the two. Both gates let go of what
+    /// they hold back.
+    pub fn merge(&mut self, other: &Self) {
+        let mut other = other.clone();
+        self.release();
+        other.release();
+        self.kept.merge(&other.kept);
+        self.gate.merge(&other.gate);
+        self.losses = self.losses.saturating_add(other.losses);
+    }
+
+    /// Forgets everything but the limits.
+    pub fn reset(&mut self) {
+        let limits = self.limits();
+        *self = Self::new();
+        // They were checked when they were set.
+        let _ = self.gate.set_limits(limits);
+        let _ = self.kept.set_limits(limits);
+    }
+
+    /// The limits that the record is judged by.
+    pub fn limits(&self) -> &'static Limits {
+        match self.kept.axes.first() {
+            Some(axis) => axis.integrity.limits(),
+            None => &Limits::DEFAULT,
+        }
+    }
+
+    /// Samples that are kept, without those that the gate holds back.
+    pub fn samples(&self) -> u64 {
+        self.kept
+            .axes
+            .first()
+            .map_or(0, |axis| axis.accumulator.samples())
+    }
+
+    /// Samples that the gate left out; 0 without a gate.
+    pub fn left_out(&self) -> u64 {
+        self.gate.gate().map_or(0, gate::Gate::left_out)
+    }
+
+    /// How often samples were lost: calls of [`gap`](Self::gap) and [`missing`](Self::missing).
+    /// [`Accumulator::gaps`] counts less where several follow each other without a sample between, and
+    /// more where a gate leaves samples out.
+    pub const fn losses(&self) -> u64 {
+        self.losses
+    }
+
+    /// The accumulators of the axes.
+    pub fn accumulators(&self) -> [&Accumulator<OCTAVES>; AXES] {
+        self.kept.axes.each_ref().map(|axis| &axis.accumulator)
+    }
+
+    /// What was counted of the record that is kept.
+    pub fn integrity(&self) -> [&Integrity; AXES] {
+        self.kept.axes.each_ref().map(|axis| &axis.integrity)
+    }
+
+    /// What the gate saw of all samples, those included that it left out: spikes and motions, counted axis
+    /// by axis. Without a gate, that of the record.
+    pub fn seen(&self) -> [&Integrity; AXES] {
+        match self.gate.gate() {
+            Some(gate) => gate.integrity().each_ref(),
+            None => self.integrity(),
+        }
+    }
+}
+
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize> Default
+    for Axes<OCTAVES, COVARIATES, G, M, AXES>
+where
+    G: GatePart,
+    M: MomentPart,
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}

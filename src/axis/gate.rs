@@ -1,0 +1,195 @@
+//! The gate: leaves out what integrity finds odd, before anything is summed.
+
+use super::{
+    part::{Passed, Passing},
+    sample::Sample,
+};
+use crate::integrity::{Integrity, InvalidLimit, Limits, Observation};
+
+/// Samples of a cluster that integrity takes to see motion.
+const CLUSTER: u8 = 64;
+
+/// Samples held back: those of a cluster, and of the one before, in which motion may have begun.
+pub(super) const HELD: usize = 2 * CLUSTER as usize;
+
+/// Slots that one word of flags has room for.
+const WORD: usize = u32::BITS as usize;
+
+/// Leaves out stuck values, hits of rails, spikes and motion: a gap takes their place, and they are
+/// counted. What is odd in one axis is left out of all, so that axes and covariates stay in step.
+///
+/// Integrity sees motion at the end of a cluster of 64 samples, so the last 128 samples are held back
+/// until they are known to be at rest, and 64 more are left out when motion ends. What begins more
+/// gradually is seen in clusters of 1024, and its first samples are in the record by then. The same holds
+/// for a run of equal values, which is at least 128 samples long when it is found to be too long.
+///
+/// A sample takes the same time whether it is odd or not: what is left out and what was lost wait for
+/// their turn in the same queue.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Gate<const AXES: usize, const COVARIATES: usize> {
+    /// What was seen of every sample, those that were left out included.
+    integrity: [Integrity; AXES],
+    held: [Sample<AXES, COVARIATES>; HELD],
+    /// A bit for every slot: it marks a gap, and holds no sample.
+    is_gap: [u32; HELD / WORD],
+    /// The slot of the oldest.
+    first: u8,
+    /// Slots in use.
+    length: u8,
+    /// Samples yet to leave out behind a motion.
+    behind: u8,
+    left_out: u64,
+}
+
+impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
+    /// What was seen of every axis.
+    pub(super) fn integrity(&self) -> &[Integrity; AXES] {
+        &self.integrity
+    }
+
+    /// Samples left out.
+    pub(super) fn left_out(&self) -> u64 {
+        self.left_out
+    }
+
+    /// What was seen, to be restored with the number of samples left out.
+    #[cfg(feature = "storage")]
+    pub(super) fn state_mut(&mut self) -> (&mut [Integrity; AXES], &mut u64) {
+        (&mut self.integrity, &mut self.left_out)
+    }
+
+    /// Puts a sample behind the others, and takes the oldest where there is no room.
+    #[inline(always)]
+    fn hold(&mut self, sample: Sample<AXES, COVARIATES>) -> Passed<AXES, COVARIATES> {
+        let passed = if usize::from(self.length) == HELD {
+            self.release()
+        } else {
+            Passed::Nothing
+        };
+        let slot = self.slot(self.length);
+        self.held[slot] = sample;
+        self.length = self.length.wrapping_add(1);
+        passed
+    }
+
+    /// Marks a gap behind the others: one, however many samples are left out or lost in a row.
+    #[inline(never)]
+    fn hold_gap(&mut self) -> Passed<AXES, COVARIATES> {
+        if self.length > 0 {
+            let newest = self.slot(self.length.wrapping_sub(1));
+            if self.is_gap(newest) {
+                return Passed::Nothing;
+            }
+        }
+        let passed = self.hold(Sample::ZERO);
+        let newest = self.slot(self.length.wrapping_sub(1));
+        self.is_gap[newest / WORD] |= flag(newest);
+        passed
+    }
+
+    /// Leaves out everything that is held back.
+    #[cold]
+    #[inline(never)]
+    fn leave_out_held(&mut self) {
+        let gaps: u32 = self.is_gap.iter().map(|flags| flags.count_ones()).sum();
+        let samples = u64::from(self.length).saturating_sub(gaps.into());
+        self.left_out = self.left_out.saturating_add(samples);
+        self.is_gap = [0; HELD / WORD];
+        self.length = 0;
+    }
+
+    /// The slot of the one that is so many behind the oldest.
+    #[inline(always)]
+    fn slot(&self, behind: u8) -> usize {
+        usize::from(self.first.wrapping_add(behind)) % HELD
+    }
+
+    #[inline(always)]
+    fn is_gap(&self, slot: usize) -> bool {
+        self.is_gap[slot / WORD] & flag(slot) != 0
+    }
+}
+
+/// The flag of a slot within its word.
+#[inline(always)]
+const fn flag(slot: usize) -> u32 {
+    1_u32.wrapping_shl(slot as u32)
+}
+
+impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES>
+    for Gate<AXES, COVARIATES>
+{
+    const NEW: Self = Self {
+        integrity: [const { Integrity::new() }; AXES],
+        held: [Sample::ZERO; HELD],
+        is_gap: [0; HELD / WORD],
+        first: 0,
+        length: 0,
+        behind: 0,
+        left_out: 0,
+    };
+    const EXISTS: bool = true;
+
+    fn set_limits(&mut self, limits: &'static Limits) -> Result<(), InvalidLimit> {
+        let fresh = Integrity::with_limits(limits)?;
+        self.integrity = [(); AXES].map(|()| fresh.clone());
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn push(&mut self, sample: Sample<AXES, COVARIATES>) -> Passed<AXES, COVARIATES> {
+        let mut seen = Observation::default();
+        for (integrity, &count) in self.integrity.iter_mut().zip(&sample.counts) {
+            seen = seen.or(integrity.push(count));
+        }
+        let is_odd = seen.is_odd() || self.behind > 0;
+        if !is_odd {
+            return self.hold(sample);
+        }
+        self.left_out = self.left_out.saturating_add(1);
+        self.behind = self.behind.saturating_sub(1);
+        if seen.moving || seen.stuck {
+            self.leave_out_held();
+        }
+        if seen.moving {
+            self.behind = CLUSTER;
+        }
+        self.hold_gap()
+    }
+
+    fn gap(&mut self) -> Passed<AXES, COVARIATES> {
+        self.integrity.iter_mut().for_each(Integrity::gap);
+        self.hold_gap()
+    }
+
+    #[inline(always)]
+    fn release(&mut self) -> Passed<AXES, COVARIATES> {
+        if self.length == 0 {
+            return Passed::Nothing;
+        }
+        let oldest = self.slot(0);
+        self.first = self.first.wrapping_add(1) % HELD as u8;
+        self.length = self.length.wrapping_sub(1);
+        if self.is_gap(oldest) {
+            self.is_gap[oldest / WORD] &= !flag(oldest);
+            return Passed::Gap;
+        }
+        Passed::Sample(self.held[oldest])
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for (own, other) in self.integrity.iter_mut().zip(&other.integrity) {
+            own.merge(other);
+        }
+        self.left_out = self.left_out.saturating_add(other.left_out);
+    }
+
+    fn gate(&self) -> Option<&Self> {
+        Some(self)
+    }
+
+    #[cfg(feature = "storage")]
+    fn gate_mut(&mut self) -> Option<&mut Self> {
+        Some(self)
+    }
+}

@@ -1,0 +1,181 @@
+//! What is kept of a record, behind the gate.
+
+use super::{
+    part::{MomentPart, MomentSums},
+    sample::Sample,
+};
+use crate::{
+    covariate::CrossSums,
+    integrity::{Integrity, InvalidLimit, Limits},
+    octave::{Accumulator, Observer},
+};
+
+/// The sums of all axes and covariates. They all take the same samples and gaps, so that everything that
+/// is read from them tells of the same record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Kept<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize>
+where
+    M: MomentPart,
+{
+    pub(super) axes: [AxisSums<OCTAVES, COVARIATES, M>; AXES],
+    /// One accumulator a covariate, which all axes share.
+    pub(super) covariates: [Accumulator<OCTAVES>; COVARIATES],
+}
+
+/// The sums of one axis.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M: MomentPart> {
+    pub(super) accumulator: Accumulator<OCTAVES>,
+    pub(super) integrity: Integrity,
+    pub(super) moments: M::Sums<OCTAVES>,
+    pub(super) cross: [CrossSums<OCTAVES>; COVARIATES],
+}
+
+/// Differences of a covariate that a sample completes: of octaves 0, 1 and 2, and of one other.
+#[derive(Clone, Copy)]
+struct Completed([i64; 4]);
+
+impl Completed {
+    /// The difference of an octave.
+    #[inline(always)]
+    fn of(&self, octave: usize) -> i64 {
+        self.0[octave.min(3)]
+    }
+}
+
+impl Observer for Completed {
+    #[inline(always)]
+    fn observe(&mut self, octave: usize, difference: i64) {
+        self.0[octave.min(3)] = difference;
+    }
+}
+
+/// What is summed beside the accumulator of an axis, while it takes a sample.
+struct Beside<'a, S, const OCTAVES: usize, const COVARIATES: usize> {
+    moments: &'a mut S,
+    cross: &'a mut [CrossSums<OCTAVES>; COVARIATES],
+    completed: &'a [Completed; COVARIATES],
+}
+
+impl<S, const OCTAVES: usize, const COVARIATES: usize> Observer
+    for Beside<'_, S, OCTAVES, COVARIATES>
+where
+    S: MomentSums<OCTAVES>,
+{
+    #[inline(always)]
+    fn observe(&mut self, octave: usize, difference: i64) {
+        self.moments.add(octave, difference);
+        for (cross, completed) in self.cross.iter_mut().zip(self.completed) {
+            cross.add(octave, difference, completed.of(octave));
+        }
+    }
+}
+
+impl<const OCTAVES: usize, const COVARIATES: usize, M> AxisSums<OCTAVES, COVARIATES, M>
+where
+    M: MomentPart,
+{
+    const NEW: Self = Self {
+        accumulator: Accumulator::new(),
+        integrity: Integrity::new(),
+        moments: M::Sums::NEW,
+        cross: [const { CrossSums::NEW }; COVARIATES],
+    };
+
+    #[inline(always)]
+    fn push(&mut self, count: i32, completed: &[Completed; COVARIATES]) {
+        let Self {
+            accumulator,
+            integrity,
+            moments,
+            cross,
+        } = self;
+        integrity.push(count);
+        let mut beside = Beside {
+            moments,
+            cross,
+            completed,
+        };
+        accumulator.push_observed(count, &mut beside);
+    }
+
+    /// Adds what the accumulators still have pending, which they lose at a gap.
+    fn add_pending(&mut self, covariates: &[Accumulator<OCTAVES>; COVARIATES]) {
+        for octave in 0..OCTAVES {
+            let Some(difference) = self.accumulator.pending_difference(octave) else {
+                continue;
+            };
+            self.moments.add(octave, difference);
+            for (cross, covariate) in self.cross.iter_mut().zip(covariates) {
+                if let Some(other) = covariate.pending_difference(octave) {
+                    cross.add(octave, difference, other);
+                }
+            }
+        }
+    }
+}
+
+impl<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize>
+    Kept<OCTAVES, COVARIATES, M, AXES>
+where
+    M: MomentPart,
+{
+    pub(super) const NEW: Self = Self {
+        axes: [const { AxisSums::NEW }; AXES],
+        covariates: [const { Accumulator::new() }; COVARIATES],
+    };
+
+    pub(super) fn set_limits(&mut self, limits: &'static Limits) -> Result<(), InvalidLimit> {
+        let fresh = Integrity::with_limits(limits)?;
+        for axis in &mut self.axes {
+            axis.integrity = fresh.clone();
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    pub(super) fn push(&mut self, sample: &Sample<AXES, COVARIATES>) {
+        let mut completed = [Completed([0; 4]); COVARIATES];
+        let covariates = self.covariates.iter_mut().zip(&sample.covariates);
+        for ((covariate, &count), completed) in covariates.zip(&mut completed) {
+            covariate.push_observed(count, completed);
+        }
+        for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
+            axis.push(count, &completed);
+        }
+    }
+
+    #[inline(never)]
+    pub(super) fn gap(&mut self) {
+        for axis in &mut self.axes {
+            axis.add_pending(&self.covariates);
+            axis.accumulator.gap();
+            axis.integrity.gap();
+        }
+        self.covariates.iter_mut().for_each(Accumulator::gap);
+    }
+
+    pub(super) fn add_missing(&mut self, samples: u64) {
+        for axis in &mut self.axes {
+            axis.integrity.add_missing(samples);
+        }
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.gap();
+        // What is pending there belongs to its sums.
+        let mut other = other.clone();
+        other.gap();
+        for (own, other) in self.axes.iter_mut().zip(&other.axes) {
+            own.accumulator.merge(&other.accumulator);
+            own.integrity.merge(&other.integrity);
+            own.moments.merge(&other.moments);
+            for (own, other) in own.cross.iter_mut().zip(&other.cross) {
+                own.merge(other);
+            }
+        }
+        for (own, other) in self.covariates.iter_mut().zip(&other.covariates) {
+            own.merge(other);
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! Snapshots of everything that is kept of a record, self-tests included: version 2 of the format.
+//!
+//! The payload of the [envelope](crate::envelope), as postcard writes it: numbers of more than a byte are
+//! varints, seven bits a byte, lowest first; signed ones are zigzag.
+//!
+//! | content | type |
+//! |---|---|
+//! | number of octaves, axes, covariates, self-tests | 4 × u8 |
+//! | parts: 1 for a gate, 2 for fourth moments, 3 for both | u8 |
+//! | samples; gaps, one for the end of the snapshot included | 2 × u64 |
+//! | of each octave, `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
+//! | of each axis, then of each covariate: Σ D² of each octave in counts², lowest limb first | 3 × u64 |
+//! | of each axis: its integrity, as the structure `integrity::State` has it | |
+//! | of each axis, with fourth moments: Σ D⁴ of each octave, lowest limb first | 3 × u64 |
+//! | of each axis, of each covariate, of each octave: Σ D_g D_x as `low + 2^64 · upper` | i64, i128 |
+//! | losses | u64 |
+//! | with a gate: samples left out, and of each axis the integrity of what it saw | u64, … |
+//! | of each self-test: plan, next look, probability left, limits kept, verdict | |
+
+use super::{
+    Axes, GatePart, MomentPart,
+    part::{MomentSums, Passing},
+};
+use crate::{
+    covariate::ProductSum,
+    envelope::{self, Kind, OVERHEAD, Writer},
+    error::Error,
+    octave::{Accumulator, OctaveSum},
+    self_test::{self, SelfTest},
+    snapshot::{self, LONGEST, has_possible_gaps, is_possible},
+    square_sum::SquareSum,
+};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+const VERSION: u8 = 2;
+
+/// Bytes that the integrity of an axis takes at most.
+const INTEGRITY: usize = 520;
+
+/// Bytes of the longest varint of 128 bits.
+const LONGEST_128: usize = 19;
+
+#[derive(PartialEq, Eq, Serialize, Deserialize)]
+struct Parts {
+    octaves: u8,
+    axes: u8,
+    covariates: u8,
+    self_tests: u8,
+    kept: u8,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Counts {
+    samples: u64,
+    gaps: u64,
+}
+
+/// What is yet to be read.
+struct Reader<'b>(&'b [u8]);
+
+impl Reader<'_> {
+    fn take<T: DeserializeOwned>(&mut self) -> Result<T, Error> {
+        let taken = postcard::take_from_bytes(self.0);
+        let (part, rest) = taken.map_err(|_| Error::Impossible)?;
+        self.0 = rest;
+        Ok(part)
+    }
+}
+
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize>
+    Axes<OCTAVES, COVARIATES, G, M, AXES>
+where
+    G: GatePart,
+    M: MomentPart,
+{
+    const HAS_GATE: bool = <G::State<AXES, COVARIATES> as Passing<AXES, COVARIATES>>::EXISTS;
+    const HAS_MOMENTS: bool = <M::Sums<OCTAVES> as MomentSums<OCTAVES>>::EXIST;
+
+    /// Bytes that a snapshot of any record fits into, with so many self-tests. What a record of a gyro at
+    /// rest takes is a third of it.
+    pub const fn snapshot_bytes(self_tests: usize) -> usize {
+        let sums = OCTAVES * 3 * LONGEST;
+        let moments = if Self::HAS_MOMENTS { sums } else { 0 };
+        let products = COVARIATES * OCTAVES * (LONGEST + LONGEST_128);
+        let seen = if Self::HAS_GATE { INTEGRITY } else { 0 };
+        let axis = sums + INTEGRITY + moments + products + seen;
+        let head = 5 + (4 + OCTAVES) * LONGEST;
+        head + AXES * axis + COVARIATES * sums + self_tests * self_test::LONGEST + OVERHEAD
+    }
+
+    fn parts(self_tests: usize) -> Parts {
+        Parts {
+            octaves: OCTAVES as u8,
+            axes: AXES as u8,
+            covariates: COVARIATES as u8,
+            self_tests: self_tests as u8,
+            kept: u8::from(Self::HAS_GATE) + 2 * u8::from(Self::HAS_MOMENTS),
+        }
+    }
+
+    /// Writes everything to a buffer, and the state of the self-tests that judge these axes, and returns the
+    /// part of the buffer that was used.
+    ///
+    /// The state is untouched. Samples that the gate holds back are not in the snapshot: whoever restores it
+    /// has lost them, like those that come after it.
+    ///
+    /// # Errors
+    /// [`Error::BufferTooSmall`]; never with [`snapshot_bytes`](Self::snapshot_bytes).
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use allanite::Axes;
+    ///
+    /// type Gyro = Axes<10, 1, ()>;
+    ///
+    /// let mut gyro = Gyro::new();
+    /// for n in 0..100 {
+    ///     gyro.push(([n * n % 7, n * n % 11, n * n % 13], [n]));
+    /// }
+    /// let mut buffer = [0; Gyro::snapshot_bytes(0)];
+    /// let stored = gyro.snapshot(&[], &mut buffer)?;
+    ///
+    /// // After a restart: as if a gap lay between.
+    /// let mut restored = Gyro::new();
+    /// restored.restore(&mut [], stored)?;
+    /// gyro.gap();
+    /// assert_eq!(restored.accumulators(), gyro.accumulators());
+    /// # Ok::<(), allanite::Error>(())
+    /// ```
+    pub fn snapshot<'b>(
+        &self,
+        self_tests: &[SelfTest<OCTAVES>],
+        buffer: &'b mut [u8],
+    ) -> Result<&'b [u8], Error> {
+        let most = Self::snapshot_bytes(self_tests.len()) - OVERHEAD;
+        let mut writer = Writer::new(buffer, Kind::Snapshot, VERSION, most)?;
+        writer.push(&Self::parts(self_tests.len()))?;
+        self.write_sums(&mut writer)?;
+        for axis in &self.kept.axes {
+            writer.push(&axis.integrity.stored())?;
+            if let Some(moments) = axis.moments.moments() {
+                for octave in 0..OCTAVES {
+                    writer.push(&moments.read(octave, &axis.accumulator))?;
+                }
+            }
+            for (products, covariate) in axis.cross.iter().zip(&self.kept.covariates) {
+                for octave in 0..OCTAVES {
+                    let sum = products.read(octave, &axis.accumulator, covariate);
+                    writer.push(&sum.parts())?;
+                }
+            }
+        }
+        writer.push(&self.losses)?;
+        if let Some(gate) = self.gate.gate() {
+            writer.push(&gate.left_out())?;
+            for seen in gate.integrity() {
+                writer.push(&seen.stored())?;
+            }
+        }
+        for test in self_tests {
+            writer.push(&test.stored())?;
+        }
+        writer.finish()
+    }
+
+    fn write_sums(&self, writer: &mut Writer<'_>) -> Result<(), Error> {
+        let accumulators = || {
+            let axes = self.kept.axes.iter().map(|axis| &axis.accumulator);
+            axes.chain(&self.kept.covariates)
+        };
+        let Some(first) = accumulators().next() else {
+            return Ok(());
+        };
+        writer.push(&Counts {
+            samples: first.samples(),
+            gaps: first.ended_gaps(),
+        })?;
+        for octave in first.octaves() {
+            writer.push(&octave.differences)?;
+        }
+        for accumulator in accumulators() {
+            for octave in accumulator.octaves() {
+                writer.push(&octave.sum.limbs())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Restores what a [snapshot](Self::snapshot) was taken of, after a [`gap`](Self::gap), and the
+    /// self-tests, which were made by the same plans. The limits of integrity are not stored and stay as they
+    /// are. A snapshot of an [`Accumulator`] alone is restored into one axis without moments and
+    /// covariates, with an integrity that has seen nothing.
+    ///
+    /// # Errors
+    /// [`Error::Foreign`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::OtherKind`],
+    /// [`Error::OtherVersion`], [`Error::OtherOctaves`], [`Error::OtherParts`], [`Error::OtherPlan`];
+    /// [`Error::Impossible`] for contents that no record has. The record is empty after any of them, and the
+    /// self-tests are to be made anew.
+    pub fn restore(
+        &mut self,
+        self_tests: &mut [SelfTest<OCTAVES>],
+        bytes: &[u8],
+    ) -> Result<(), Error> {
+        self.reset();
+        let restored = self.read(self_tests, bytes);
+        if restored.is_err() {
+            self.reset();
+        }
+        restored
+    }
+
+    fn read(&mut self, self_tests: &mut [SelfTest<OCTAVES>], bytes: &[u8]) -> Result<(), Error> {
+        let (version, payload) = envelope::open_any(bytes, Kind::Snapshot)?;
+        match version {
+            VERSION => {}
+            snapshot::VERSION => return self.read_accumulator(self_tests, bytes),
+            found => {
+                return Err(Error::OtherVersion {
+                    found,
+                    known: VERSION,
+                });
+            }
+        }
+        let mut reader = Reader(payload);
+        let parts: Parts = reader.take()?;
+        if usize::from(parts.octaves) != OCTAVES {
+            return Err(Error::OtherOctaves {
+                found: parts.octaves.into(),
+                wanted: OCTAVES,
+            });
+        }
+        if parts != Self::parts(self_tests.len()) {
+            return Err(Error::OtherParts);
+        }
+        self.read_sums(&mut reader)?;
+        for axis in &mut self.kept.axes {
+            let rest = axis.integrity.restore(reader.0);
+            reader.0 = rest.ok_or(Error::Impossible)?;
+            if let Some(moments) = axis.moments.moments_mut() {
+                for sum in moments.sums_mut() {
+                    *sum = reader.take()?;
+                }
+            }
+            for sum in axis.cross.iter_mut().flat_map(|cross| cross.sums_mut()) {
+                let (low, upper) = reader.take()?;
+                *sum = ProductSum::from_parts(low, upper);
+            }
+        }
+        self.losses = reader.take()?;
+        if let Some(gate) = self.gate.gate_mut() {
+            let (seen, left_out) = gate.state_mut();
+            *left_out = reader.take()?;
+            for seen in seen {
+                reader.0 = seen.restore(reader.0).ok_or(Error::Impossible)?;
+            }
+        }
+        for test in self_tests {
+            reader.0 = test.restore(reader.0)?;
+        }
+        reader.0.is_empty().then_some(()).ok_or(Error::Impossible)
+    }
+
+    fn read_sums(&mut self, reader: &mut Reader<'_>) -> Result<(), Error> {
+        let Counts { samples, gaps } = reader.take()?;
+        if !has_possible_gaps(samples, gaps) {
+            return Err(Error::Impossible);
+        }
+        let mut octaves = [OctaveSum {
+            m: 0,
+            differences: 0,
+            sum: SquareSum::ZERO,
+        }; OCTAVES];
+        for (octave, k) in octaves.iter_mut().zip(0_u32..) {
+            octave.m = 1_u32.wrapping_shl(k);
+            octave.differences = reader.take()?;
+        }
+        let axes = self.kept.axes.iter_mut().map(|axis| &mut axis.accumulator);
+        for accumulator in axes.chain(&mut self.kept.covariates) {
+            for (octave, k) in octaves.iter_mut().zip(0..) {
+                let sum = SquareSum::from_limbs(reader.take()?);
+                octave.sum = sum.ok_or(Error::Impossible)?;
+                if !is_possible(samples, gaps, k, octave) {
+                    return Err(Error::Impossible);
+                }
+            }
+            *accumulator = Accumulator::ended(samples, gaps, octaves);
+        }
+        Ok(())
+    }
+
+    /// Restores a snapshot of version 1.
+    fn read_accumulator(
+        &mut self,
+        self_tests: &[SelfTest<OCTAVES>],
+        bytes: &[u8],
+    ) -> Result<(), Error> {
+        let [axis] = &mut self.kept.axes[..] else {
+            return Err(Error::OtherParts);
+        };
+        if COVARIATES > 0 || Self::HAS_MOMENTS || !self_tests.is_empty() {
+            return Err(Error::OtherParts);
+        }
+        axis.accumulator = Accumulator::restore(bytes)?;
+        Ok(())
+    }
+}

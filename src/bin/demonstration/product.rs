@@ -1,0 +1,170 @@
+//! All that a product does with three axes, every part switched on: samples come through a queue that
+//! overflows now and then, beside a temperature; three samples are corrupt, the gyro is moved once, and the
+//! power fails once after a snapshot. At the end there are a verdict of the self-test and a diagnosis.
+
+use super::{AMPLITUDES, lines, simulated::SimulatedGyro};
+use allanite::{
+    Axes, Error, Model, Real, Sample, Scale,
+    diagnosis::{Diagnosis, Options},
+    effect::CATALOGUE,
+    queue::{self, Queued},
+    self_test::{Limit, Plan, SelfTest},
+};
+use core::fmt::Arguments;
+use heapless::{Vec, spsc::Queue};
+
+/// Octaves of averaging time.
+pub const OCTAVES: usize = 16;
+
+/// Three axes beside a temperature, with a gate and with fourth moments.
+pub type Gyro = Axes<OCTAVES, 1>;
+
+/// Samples that the sensor makes: 11 minutes.
+pub const SAMPLES: u32 = 1 << 16;
+
+/// The seed of the first axis' noise.
+const SEED: u64 = 3952;
+/// Sample, axis and count of what the bus corrupts.
+const SPIKES: [(u32, usize, i32); 3] = [(9000, 0, 20_000), (21_000, 1, -9000), (33_000, 2, 32_767)];
+/// Samples in which the second axis is turned.
+const MOTION: core::ops::Range<u32> = 40_000..40_500;
+/// Samples at which a snapshot is taken, and at which the power fails.
+const SNAPSHOT: u32 = 50_000;
+const POWER_LOSS: u32 = 52_000;
+/// Samples between the overflows of the queue, and what the main loop is late by then.
+const LATE: (u32, u32) = (7000, 40);
+/// Samples that the main loop usually takes at once.
+const USUAL: u32 = 8;
+
+const RATE_HZ: Real = 100.0;
+/// Kelvin a count of temperature.
+const KELVIN: Real = 0.01;
+
+/// Three simulated gyros and a thermometer.
+struct Sensor {
+    gyros: [SimulatedGyro; 3],
+    made: u32,
+}
+
+impl Sensor {
+    fn new() -> Self {
+        Self {
+            gyros: [0, 1, 2].map(|axis| SimulatedGyro::new(AMPLITUDES, SEED + axis)),
+            made: 0,
+        }
+    }
+
+    fn sample(&mut self) -> Sample<3, 1> {
+        let n = self.made;
+        self.made += 1;
+        let mut counts = [0; 3];
+        for (count, gyro) in counts.iter_mut().zip(&mut self.gyros) {
+            *count = gyro.next().unwrap_or(0);
+        }
+        // Ten kelvin up and down in eleven minutes, which the first axis follows: 0.06 °/s per kelvin.
+        let half = SAMPLES / 2;
+        let temperature = (n.min(SAMPLES - n) * 1000 / half) as i32;
+        counts[0] += temperature * 8 / 100;
+        if MOTION.contains(&n) {
+            counts[1] += 3000;
+        }
+        for (at, axis, count) in SPIKES {
+            if at == n {
+                counts[axis] = count;
+            }
+        }
+        (counts, [temperature]).into()
+    }
+}
+
+/// The test that the first axis is put to.
+fn self_test(scale: Scale) -> Option<SelfTest<OCTAVES>> {
+    let limit = Limit {
+        effect: "angle_random_walk",
+        most: 0.00495,
+    };
+    let mut limits = Vec::new();
+    limits.push(limit).ok()?;
+    let plan = Plan {
+        limits,
+        least_p: 0.0,
+        false_pass: 0.01,
+        false_fail: 0.01,
+        shortest_s: 10.0,
+        longest_s: 640.0,
+    };
+    SelfTest::new(plan, scale).ok()
+}
+
+/// Runs the product with the bytes that survive a loss of power, and tells what it finds.
+///
+/// # Errors
+/// [`Error::BufferTooSmall`] if the snapshot does not fit; other errors would be a defect.
+pub fn run(
+    gyro: &mut Gyro,
+    flash: &mut [u8],
+    mut line: impl FnMut(Arguments<'_>),
+) -> Result<(), Error> {
+    let scale = Scale::new(1.0 / 131.0, RATE_HZ)?;
+    let mut sensor = Sensor::new();
+    let mut tests = [self_test(scale).ok_or(Error::Impossible)?];
+    let mut stored: &[u8] = &[];
+    let mut flash = Some(flash);
+    let mut lost_power = false;
+    let mut queue = Queue::<Queued<Sample<3, 1>>, 16>::new();
+    let (mut interrupt, mut main_loop) = queue::split(&mut queue);
+    while sensor.made < SAMPLES {
+        // What the interrupt does while the main loop is busy.
+        let (every, late) = LATE;
+        let more = if sensor.made % every < USUAL {
+            late
+        } else {
+            USUAL
+        };
+        for _ in 0..more.min(SAMPLES - sensor.made) {
+            interrupt.send(sensor.sample());
+        }
+        while let Some(Queued { sample, lost }) = main_loop.receive() {
+            gyro.missing(lost.into());
+            gyro.push(sample);
+        }
+        if tests[0].is_due(gyro.samples()) {
+            let x = gyro.evidence(0, scale, [KELVIN])?;
+            let status = tests[0].look(x.samples, &x.curve, x.invalid);
+            line(format_args!("look samples {} {status:?}", x.samples));
+        }
+        if sensor.made >= SNAPSHOT
+            && let Some(buffer) = flash.take()
+        {
+            stored = gyro.snapshot(&tests, buffer)?;
+            let sum = stored.iter().fold(0_u32, |sum, &byte| {
+                sum.wrapping_mul(31).wrapping_add(byte.into())
+            });
+            line(format_args!("snapshot bytes {} sum {sum:x}", stored.len()));
+        }
+        if sensor.made >= POWER_LOSS && !lost_power {
+            lost_power = true;
+            gyro.reset();
+            tests = [self_test(scale).ok_or(Error::Impossible)?];
+            gyro.restore(&mut tests, stored)?;
+            line(format_args!("restored samples {}", gyro.samples()));
+        }
+    }
+    gyro.release();
+    line(format_args!(
+        "record samples {} left_out {} losses {}",
+        gyro.samples(),
+        gyro.left_out(),
+        gyro.losses()
+    ));
+    for (axis, seen) in gyro.seen().into_iter().enumerate() {
+        line(format_args!("axis {axis} seen {:?}", seen.tally()));
+        lines::evidence(&gyro.evidence(axis, scale, [KELVIN])?, &mut line);
+    }
+    let x = gyro.evidence(0, scale, [KELVIN])?;
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let diagnosis = Diagnosis::new(x.curve.clone(), x.evidence(), &model, &CATALOGUE, options)?;
+    let verdict = diagnosis.run(|step| lines::step(step, &mut line))?;
+    line(format_args!("verdict {verdict:?}"));
+    Ok(())
+}

@@ -1,0 +1,61 @@
+//! The image that does all that a product does, every part of the library switched on. Whatever it finds is
+//! logged with its bits, and the host prints the same lines.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[path = "demonstration/mod.rs"]
+// Every image uses some of it.
+#[allow(dead_code, unreachable_pub)]
+mod demonstration;
+
+#[cfg(not(target_os = "none"))]
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    use demonstration::product::{Gyro, run};
+
+    let mut gyro = Box::new(Gyro::new());
+    let mut flash = vec![0; Gyro::snapshot_bytes(1)];
+    run(&mut gyro, &mut flash, |line| println!("{line}"))?;
+    Ok(())
+}
+
+#[cfg(target_os = "none")]
+mod image {
+    use crate::demonstration::product::{Gyro, run};
+    use core::cell::RefCell;
+    // Critical sections of a single core.
+    #[cfg(target_arch = "arm")]
+    use cortex_m as _;
+    use critical_section::Mutex;
+    use defmt_semihosting as _;
+    #[cfg(target_arch = "riscv32")]
+    use riscv as _;
+
+    /// Empty, it is all zero: it takes no flash for an initial value.
+    static GYRO: Mutex<RefCell<Gyro>> = Mutex::new(RefCell::new(Gyro::new()));
+    /// Stands for flash.
+    static FLASH: Mutex<RefCell<[u8; Gyro::snapshot_bytes(1)]>> =
+        Mutex::new(RefCell::new([0; Gyro::snapshot_bytes(1)]));
+
+    #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+    #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
+    fn main() -> ! {
+        let result = critical_section::with(|section| {
+            let mut gyro = GYRO.borrow_ref_mut(section);
+            let mut flash = FLASH.borrow_ref_mut(section);
+            run(&mut gyro, &mut flash[..], |line| {
+                defmt::info!("{}", defmt::Display2Format(&line));
+            })
+        });
+        if let Err(error) = result {
+            defmt::error!("no diagnosis: {}", error);
+            semihosting::process::exit(1);
+        }
+        semihosting::process::exit(0)
+    }
+
+    #[panic_handler]
+    fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
+        defmt::error!("{}", defmt::Display2Format(info));
+        semihosting::process::exit(101)
+    }
+}

@@ -1,0 +1,167 @@
+//! What a snapshot holds of a self-test: the looks taken, the limits kept, the error probability left.
+
+use super::{Failure, Limit, Plan, Progress, SelfTest, Status};
+use crate::{
+    algebra::Choice,
+    envelope::CRC,
+    error::Error,
+    real::{Real, double, real},
+    record::WireReason,
+};
+use serde::{Deserialize, Serialize};
+
+/// Bytes of a stored test at most.
+pub(crate) const LONGEST: usize = 80;
+
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    /// CRC-32 of the plan and the scale.
+    plan: u32,
+    next: u64,
+    fail_left: f64,
+    kept: u16,
+    verdict: Verdict,
+}
+
+/// A [`Status`], limits by their place in the plan.
+#[derive(Serialize, Deserialize)]
+enum Verdict {
+    Running {
+        expected_s: f64,
+    },
+    Passed,
+    AboveLimit {
+        limit: u8,
+        value: f64,
+    },
+    Misfit {
+        p_value: f64,
+    },
+    Undecided {
+        /// `None` stands for the misfit.
+        limit: Option<u8>,
+        decided_by_s: Option<f64>,
+    },
+    Invalid(WireReason),
+}
+
+impl<const OCTAVES: usize> SelfTest<OCTAVES> {
+    /// What a snapshot holds.
+    pub(crate) fn stored(&self) -> impl Serialize + use<OCTAVES> {
+        let Progress {
+            next,
+            fail_left,
+            kept,
+            status,
+        } = self.progress;
+        Stored {
+            plan: self.fingerprint(),
+            next,
+            fail_left: double(fail_left),
+            kept: kept.bits(),
+            verdict: self.stored_verdict(status),
+        }
+    }
+
+    fn stored_verdict(&self, status: Status) -> Verdict {
+        let place = |limit: Limit| {
+            let mut limits = self.plan.limits.iter();
+            limits.position(|own| *own == limit).map(|i| i as u8)
+        };
+        match status {
+            Status::Running { expected_s, .. } => Verdict::Running {
+                expected_s: double(expected_s),
+            },
+            Status::Passed => Verdict::Passed,
+            Status::Failed(Failure::Limit { limit, value }) => Verdict::AboveLimit {
+                limit: place(limit).unwrap_or(0),
+                value: double(value),
+            },
+            Status::Failed(Failure::Misfit { p_value }) => Verdict::Misfit {
+                p_value: double(p_value),
+            },
+            Status::Undecided {
+                limit,
+                decided_by_s,
+            } => Verdict::Undecided {
+                limit: place(limit),
+                decided_by_s: decided_by_s.map(double),
+            },
+            Status::Invalid(reason) => Verdict::Invalid(reason.into()),
+        }
+    }
+
+    /// Goes on where the test was when it was [stored](Self::stored), and returns the bytes behind it.
+    pub(crate) fn restore<'b>(&mut self, bytes: &'b [u8]) -> Result<&'b [u8], Error> {
+        let taken = postcard::take_from_bytes::<Stored>(bytes);
+        let (stored, rest) = taken.map_err(|_| Error::Impossible)?;
+        if stored.plan != self.fingerprint() {
+            return Err(Error::OtherPlan);
+        }
+        let fail_left: Real = real(stored.fail_left);
+        let status = self.status_of(stored.verdict);
+        let status = status.filter(|_| fail_left >= 0.0 && fail_left < 0.5);
+        self.progress = Progress {
+            next: stored.next,
+            fail_left,
+            kept: Choice::from_bits(stored.kept),
+            status: status.ok_or(Error::Impossible)?,
+        };
+        Ok(rest)
+    }
+
+    fn status_of(&self, verdict: Verdict) -> Option<Status> {
+        let limit = |i: u8| self.plan.limits.get(usize::from(i)).copied();
+        Some(match verdict {
+            Verdict::Running { expected_s } => Status::Running {
+                progress: 0.0,
+                expected_s: real(expected_s),
+            },
+            Verdict::Passed => Status::Passed,
+            Verdict::AboveLimit { limit: i, value } => Status::Failed(Failure::Limit {
+                limit: limit(i)?,
+                value: real(value),
+            }),
+            Verdict::Misfit { p_value } => Status::Failed(Failure::Misfit {
+                p_value: real(p_value),
+            }),
+            Verdict::Undecided {
+                limit: i,
+                decided_by_s,
+            } => {
+                let decided_by_s = decided_by_s.map(real);
+                match i {
+                    Some(i) => Status::Undecided {
+                        limit: limit(i)?,
+                        decided_by_s,
+                    },
+                    None => self.undecided(usize::MAX, decided_by_s),
+                }
+            }
+            Verdict::Invalid(reason) => Status::Invalid(reason.into()),
+        })
+    }
+
+    /// What tells one plan and scale from another.
+    fn fingerprint(&self) -> u32 {
+        let Plan {
+            limits,
+            least_p,
+            false_pass,
+            false_fail,
+            shortest_s,
+            longest_s,
+        } = &self.plan;
+        let mut digest = CRC.digest();
+        for limit in limits {
+            digest.update(limit.effect.as_bytes());
+            digest.update(&double(limit.most).to_le_bytes());
+        }
+        let scale = [self.scale.rate_per_count(), self.scale.rate_hz()];
+        let numbers = [*least_p, *false_pass, *false_fail, *shortest_s, *longest_s];
+        for number in numbers.into_iter().chain(scale) {
+            digest.update(&double(number).to_le_bytes());
+        }
+        digest.finalize()
+    }
+}

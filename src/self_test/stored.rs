@@ -100,7 +100,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         }
         let fail_left: Real = real(stored.fail_left);
         let status = self.status_of(stored.verdict);
-        let status = status.filter(|_| fail_left >= 0.0 && fail_left < 0.5);
+        let status = status.filter(|_| (0.0..0.5).contains(&fail_left));
         self.progress = Progress {
             next: stored.next,
             fail_left,

@@ -58,7 +58,7 @@ pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = 
 /// # Example
 ///
 /// ```
-/// use allanite::{Axes, Model, Scale, effect::CATALOGUE, diagnosis::{Diagnosis}};
+/// use allanite::{Axes, Model, Scale, diagnosis::Diagnosis, effect::CATALOGUE};
 ///
 /// // Three axes of 12 octaves, beside a temperature.
 /// static EMPTY: Axes<12, 1> = Axes::new();

@@ -13,7 +13,7 @@ use crate::{
 ///
 /// ```
 /// // The 95 % quantile of χ² with 11 degrees of freedom.
-/// assert!((allanite::chi_squared_tail(19.675, 11) - 0.05).abs() < 1e-5);
+/// assert!((allanite::fit::chi_squared_tail(19.675, 11) - 0.05).abs() < 1e-5);
 /// ```
 pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
     if degrees_of_freedom == 0 || x.is_nan() {

@@ -71,7 +71,7 @@ use state::{CLUSTERS, State};
 /// # Example
 ///
 /// ```
-/// use allanite::{Integrity, Reason};
+/// use allanite::{integrity::{Integrity, Reason}};
 ///
 /// let mut integrity = Integrity::default();
 /// for n in 0..10_000_i32 {

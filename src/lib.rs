@@ -3,66 +3,45 @@
 #![forbid(unsafe_code)]
 
 mod algebra;
-mod axis;
+pub mod axis;
 mod chi_squared;
 mod cholesky;
 mod coefficient;
-mod comparison;
+pub mod comparison;
 mod covariance;
 pub mod covariate;
-mod curve;
+pub mod curve;
 pub mod diagnosis;
 pub mod effect;
-#[cfg(feature = "storage")]
-mod envelope;
 mod error;
 pub mod fit;
-#[cfg(feature = "flash")]
-mod flash;
-mod integrity;
-mod kurtosis;
+pub mod integrity;
+pub mod kurtosis;
 mod lattice;
 mod limits;
 mod list;
 mod math;
-mod model;
+pub mod model;
 mod nnls;
 mod observability;
-mod octave;
+pub mod octave;
 mod profile;
 pub mod queue;
 mod real;
-#[cfg(feature = "storage")]
-mod record;
 pub mod self_test;
 pub mod sensor;
-#[cfg(feature = "storage")]
-mod snapshot;
 mod square_sum;
+#[cfg(feature = "storage")]
+pub mod storage;
 #[cfg(test)]
 mod test_random;
 
-pub use axis::{Axes, Axis, AxisEvidence, GatePart, Gated, MomentPart, Moments, Sample};
-pub use chi_squared::chi_squared_tail;
-pub use coefficient::{Coefficient, State};
-pub use comparison::{ComparedOctave, Comparison, Stretch};
-pub use covariance::curve_covariance;
-pub use covariate::{CrossCurve, CrossPoint};
-pub use curve::{Curve, Point, Scale};
+pub use axis::{Axes, Axis};
+pub use coefficient::Coefficient;
+pub use comparison::Comparison;
+pub use curve::{Curve, Scale};
 pub use error::Error;
-#[cfg(feature = "flash")]
-pub use flash::{SnapshotStore, StoreError};
-pub use integrity::{Integrity, InvalidLimit, Limits, Observation, Reason, Tally};
-pub use kurtosis::{Kurtosis, KurtosisPoint};
-pub use limits::{MAX_EFFECTS, MAX_SHAPE};
+pub use heapless;
 pub use model::{Model, Term};
-pub use octave::{Accumulator, OctaveSum};
+pub use octave::Accumulator;
 pub use real::Real;
-#[cfg(feature = "storage")]
-pub use record::{
-    AxisRecord, Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, Record,
-    RecordedShape, RecordedState, RecordedTerm,
-};
-#[cfg(feature = "storage")]
-pub use snapshot::{Snapshot, SnapshotInterval};
-pub use square_sum::SquareSum;

@@ -3,11 +3,13 @@
 use crate::{
     effect::{Effect, IEEE_952, SampledShape},
     error::Error,
-    limits::{MAX_EFFECTS, MAX_PARAMETERS},
+    limits::MAX_PARAMETERS,
     list,
     real::{Real, real},
 };
 use heapless::Vec;
+
+pub use crate::limits::MAX_EFFECTS;
 
 /// One effect of a model, with its shape.
 #[derive(Clone, Copy)]

@@ -2,7 +2,7 @@
 
 mod slice;
 
-use crate::square_sum::SquareSum;
+pub use crate::square_sum::SquareSum;
 
 /// Angles kept per level: those of the last eight block boundaries.
 const RING: usize = 8;

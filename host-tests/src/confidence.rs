@@ -1,7 +1,10 @@
 //! Confidence limits of a curve, octave by octave.
 
 use crate::log::OCTAVES;
-use allanite::{Curve, Model, curve_covariance, fit::Fit};
+use allanite::{
+    Curve, Model,
+    fit::{Fit, curve_covariance},
+};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Probability below the lower limit, and above the upper one: 95 % lie between them.

@@ -120,11 +120,11 @@ impl fmt::Display for Sensor {
     }
 }
 
-impl From<allanite::RateUnit> for Unit {
-    fn from(unit: allanite::RateUnit) -> Self {
+impl From<allanite::storage::RateUnit> for Unit {
+    fn from(unit: allanite::storage::RateUnit) -> Self {
         match unit {
-            allanite::RateUnit::DegreesPerSecond => Self::DegreesPerSecond,
-            allanite::RateUnit::RadiansPerSecond => Self::RadiansPerSecond,
+            allanite::storage::RateUnit::DegreesPerSecond => Self::DegreesPerSecond,
+            allanite::storage::RateUnit::RadiansPerSecond => Self::RadiansPerSecond,
         }
     }
 }

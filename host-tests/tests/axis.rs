@@ -4,9 +4,12 @@
 mod seeded;
 
 use allanite::{
-    Axes, Axis, Error, GatePart, Integrity, Limits, Model, MomentPart, Reason, Scale,
+    Axes, Axis, Model, Scale,
+    axis::{GatePart, MomentPart},
     fit::{Options, fit},
+    integrity::{Integrity, Limits, Reason},
     self_test::{Limit, Plan, SelfTest, Status},
+    storage::Error,
 };
 use host_tests::simulate::{Preset, Simulator};
 use proptest::{collection::vec, prelude::*};
@@ -352,7 +355,7 @@ fn snapshots_of_other_parts_and_plans_are_refused_and_leave_nothing() {
     assert_eq!(without.restore(&mut tests, stored), Err(Error::OtherParts));
     let mut fewer = Axes::<10, 1>::new();
     let refused = fewer.restore(&mut [], stored).unwrap_err();
-    let octaves = Error::OtherOctaves {
+    let octaves = Error::WrongOctaves {
         found: OCTAVES,
         wanted: 10,
     };
@@ -390,7 +393,7 @@ proptest! {
     #[test]
     fn merging_and_restoring_are_gaps(stretches in stretches(), gated in any::<bool>()) {
         if gated {
-            merge_and_restore::<allanite::Gated>(&stretches)?;
+            merge_and_restore::<allanite::axis::Gated>(&stretches)?;
         } else {
             merge_and_restore::<()>(&stretches)?;
         }

@@ -1,6 +1,6 @@
 //! The tail of the χ² distribution against tables and two other ways of computing it.
 
-use allanite::chi_squared_tail;
+use allanite::fit::chi_squared_tail;
 use statrs::function::gamma::{gamma_ur, ln_gamma};
 
 /// Quantiles of Abramowitz & Stegun 1964, table 26.8: degrees of freedom, then the χ² that is

@@ -1,8 +1,9 @@
 //! The covariance of a curve against the sum over every pair of its differences.
 
 use allanite::{
-    Curve, Model, curve_covariance,
+    Curve, Model,
     effect::{IEEE_952, SampledShape},
+    fit::curve_covariance,
 };
 
 /// Octaves of every curve here; a record of so few samples has fewer.

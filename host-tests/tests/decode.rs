@@ -3,13 +3,14 @@
 #[path = "common/factory.rs"]
 mod factory;
 
-use allanite::{AxisRecord, RateUnit};
+use allanite::storage::{AxisCertificate, RateUnit};
 use factory::{SINUSOID, axis, encoded, record};
 use host_tests::program::{json, output, refusal, run};
 use std::{fs, sync::LazyLock};
 use tempfile::TempDir;
 
-static AXES: LazyLock<[AxisRecord; 2]> = LazyLock::new(|| [axis(None, 1), axis(Some(SINUSOID), 2)]);
+static AXES: LazyLock<[AxisCertificate; 2]> =
+    LazyLock::new(|| [axis(None, 1), axis(Some(SINUSOID), 2)]);
 
 /// Two devices, a snapshot, a broken record and something else.
 fn folder() -> TempDir {

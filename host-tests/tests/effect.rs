@@ -2,12 +2,13 @@
 //! over single samples. A new effect is tested by its line in the catalogue alone.
 
 use allanite::{
-    Curve, Model, Term, curve_covariance,
+    Curve, Model, Term,
     effect::{
         AngleRandomWalk, BiasInstability, Description, Distribution, EXPLAINED, Effect, Explain,
         FIRST_OWN_CODE, GaussMarkov, IEEE_952, MAX_PARAMETERS, Quantization, RateRamp,
         RateRandomWalk, Resonance, Response, SampledShape, Span,
     },
+    fit::curve_covariance,
 };
 use nalgebra::SMatrix;
 use std::f64::consts::{LN_2, PI};

@@ -3,7 +3,10 @@
 #[path = "common/ram_flash.rs"]
 mod ram_flash;
 
-use allanite::{Accumulator, Error, SnapshotStore, StoreError};
+use allanite::{
+    Accumulator,
+    storage::{Error, SnapshotStore, StoreError},
+};
 use pollster::block_on;
 use ram_flash::{PAGE, PowerCut, RamFlash, WORD};
 
@@ -162,7 +165,7 @@ fn impossible_range_and_small_buffer_are_refused() {
     assert_eq!(load(&mut store, 0), None);
     block_on(store.save(0, &states[0][0], &mut buffer())).unwrap();
     let other = block_on(store.load::<20>(0, &mut buffer()));
-    let wanted = Error::OtherOctaves {
+    let wanted = Error::WrongOctaves {
         found: OCTAVES,
         wanted: 20,
     };

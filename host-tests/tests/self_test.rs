@@ -1,7 +1,8 @@
 //! The self-test: verdicts, looks, and plans that are refused.
 
 use allanite::{
-    Axis, Limits, Reason, Scale,
+    Axis, Scale,
+    integrity::{Limits, Reason},
     self_test::{Failure, InvalidPlan, Limit, Plan, SelfTest, Status},
 };
 use host_tests::{

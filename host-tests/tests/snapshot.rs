@@ -5,7 +5,10 @@ mod sealed;
 #[path = "common/seeded.rs"]
 mod seeded;
 
-use allanite::{Accumulator, Error, Scale, Snapshot, SnapshotInterval};
+use allanite::{
+    Accumulator, Scale,
+    storage::{Error, Snapshot, SnapshotInterval},
+};
 use proptest::{collection::vec, prelude::*};
 use sealed::sealed;
 use seeded::seeded;
@@ -106,7 +109,7 @@ fn every_change_of_one_byte_is_refused() {
             changed[i] = bytes[i] ^ difference;
             let error = Accumulator::<20>::restore(&changed).unwrap_err();
             let expected = match i {
-                0..4 => matches!(error, Error::Foreign),
+                0..4 => matches!(error, Error::UnknownMagic),
                 6..8 => matches!(error, Error::WrongLength { .. }),
                 _ => error == Error::Corrupt,
             };
@@ -156,17 +159,17 @@ fn other_kind_version_and_number_of_octaves_are_named() {
     let kind = restore(&sealed(2, 1, &bytes[8..bytes.len() - 4]));
     assert_eq!(
         kind,
-        Error::OtherKind {
+        Error::WrongKind {
             found: 2,
             wanted: 1
         }
     );
     let version = restore(&sealed(1, 2, &bytes[8..bytes.len() - 4]));
-    assert_eq!(version, Error::OtherVersion { found: 2, known: 1 });
+    assert_eq!(version, Error::UnknownVersion { found: 2, known: 1 });
     let octaves = restore(&snapshot(&recorded::<19>(1000)));
     assert_eq!(
         octaves,
-        Error::OtherOctaves {
+        Error::WrongOctaves {
             found: 19,
             wanted: 20
         }
@@ -175,7 +178,7 @@ fn other_kind_version_and_number_of_octaves_are_named() {
         kind,
         version,
         octaves,
-        Error::Foreign,
+        Error::UnknownMagic,
         Error::Corrupt,
         Error::Impossible,
     ] {
@@ -246,7 +249,7 @@ fn contents_of_every_kind_are_refused_or_make_a_snapshot() {
                     assert_eq!(again, Ok(restored), "byte {i} = {value}");
                     accepted += 1;
                 }
-                Err(Error::Impossible | Error::OtherOctaves { .. }) => {}
+                Err(Error::Impossible | Error::WrongOctaves { .. }) => {}
                 Err(error) => panic!("byte {i} = {value}: {error:?}"),
             }
         }

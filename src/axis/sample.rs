@@ -6,7 +6,7 @@
 /// covariates:
 ///
 /// ```
-/// use allanite::Sample;
+/// use allanite::axis::Sample;
 ///
 /// let one: Sample<1, 0> = 5.into();
 /// let three: Sample<3, 0> = [5, -2, 0].into();

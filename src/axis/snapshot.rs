@@ -1,6 +1,6 @@
 //! Snapshots of everything that is kept of a record, self-tests included: version 2 of the format.
 //!
-//! The payload of the [envelope](crate::envelope), as postcard writes it: numbers of more than a byte are
+//! The payload of the [envelope](crate::storage::envelope), as postcard writes it: numbers of more than a byte are
 //! varints, seven bits a byte, lowest first; signed ones are zigzag.
 //!
 //! | content | type |
@@ -23,12 +23,14 @@ use super::{
 };
 use crate::{
     covariate::ProductSum,
-    envelope::{self, Kind, OVERHEAD, Writer},
-    error::Error,
     octave::{Accumulator, OctaveSum},
     self_test::{self, SelfTest},
-    snapshot::{self, LONGEST, has_possible_gaps, is_possible},
     square_sum::SquareSum,
+    storage::Error,
+    storage::{
+        envelope::{self, Kind, OVERHEAD, Writer},
+        snapshot::{self, LONGEST, has_possible_gaps, is_possible},
+    },
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
@@ -193,8 +195,8 @@ where
     /// covariates, with an integrity that has seen nothing.
     ///
     /// # Errors
-    /// [`Error::Foreign`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::OtherKind`],
-    /// [`Error::OtherVersion`], [`Error::OtherOctaves`], [`Error::OtherParts`], [`Error::OtherPlan`];
+    /// [`Error::UnknownMagic`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::WrongKind`],
+    /// [`Error::UnknownVersion`], [`Error::WrongOctaves`], [`Error::OtherParts`], [`Error::OtherPlan`];
     /// [`Error::Impossible`] for contents that no record has. The record is empty after any of them, and the
     /// self-tests are to be made anew.
     pub fn restore(
@@ -216,7 +218,7 @@ where
             VERSION => {}
             snapshot::VERSION => return self.read_accumulator(self_tests, bytes),
             found => {
-                return Err(Error::OtherVersion {
+                return Err(Error::UnknownVersion {
                     found,
                     known: VERSION,
                 });
@@ -225,7 +227,7 @@ where
         let mut reader = Reader(payload);
         let parts: Parts = reader.take()?;
         if usize::from(parts.octaves) != OCTAVES {
-            return Err(Error::OtherOctaves {
+            return Err(Error::WrongOctaves {
                 found: parts.octaves.into(),
                 wanted: OCTAVES,
             });

@@ -10,7 +10,7 @@ pub struct Evidence<'a, const K: usize> {
     /// What the rate may follow. One covariate is taken into account, the one with the surest slope: of two
     /// that share their course, cross sums with the gyro do not tell which it is.
     pub covariates: &'a [CrossCurve<K>],
-    /// Why the curve is not valid, as of [`Integrity`](crate::Integrity).
+    /// Why the curve is not valid, as of [`Integrity`](crate::integrity::Integrity).
     pub invalid: Option<Reason>,
 }
 

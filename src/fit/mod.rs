@@ -16,6 +16,10 @@ mod shape;
 mod solver;
 mod weights;
 
+pub use crate::{
+    chi_squared::chi_squared_tail, coefficient::State, covariance::curve_covariance,
+    limits::MAX_SHAPE,
+};
 pub use correlation::Correlations;
 pub use fitting::{Fitting, fit};
 pub use method::{ADEQUATE_P, Method, Options};

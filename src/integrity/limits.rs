@@ -1,6 +1,6 @@
 //! From when on a record is not to be believed.
 
-/// Limits of [`Integrity`](crate::Integrity). Shares are in thousandths, `0 … 1000`: 0 allows none,
+/// Limits of [`Integrity`](crate::integrity::Integrity). Shares are in thousandths, `0 … 1000`: 0 allows none,
 /// 1000 any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

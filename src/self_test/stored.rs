@@ -3,10 +3,9 @@
 use super::{Failure, Limit, Plan, Progress, SelfTest, Status};
 use crate::{
     algebra::Choice,
-    envelope::CRC,
-    error::Error,
     real::{Real, double, real},
-    record::WireReason,
+    storage::Error,
+    storage::{certificate::WireReason, envelope::CRC},
 };
 use serde::{Deserialize, Serialize};
 

@@ -77,7 +77,7 @@ mod watched;
 mod worker;
 
 use crate::unit::{Sensor, Unit};
-use allanite::{Accumulator, CrossCurve, Kurtosis, Reason};
+use allanite::{Accumulator, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis};
 pub use covariate::CovariateChoice;
 pub use file::{read, read_in_two, read_with_evidence};
 pub use names::TimeUnit;

@@ -1,7 +1,9 @@
 //! An axis of a log with all that is kept beside its curve, and any number of covariates.
 
 use super::OCTAVES;
-use allanite::{Accumulator, Axis, CrossCurve, Error, Kurtosis, Reason, Scale};
+use allanite::{
+    Accumulator, Axis, Error, Scale, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis,
+};
 
 /// The most covariates that a log is read with.
 pub(super) const MOST: usize = 8;

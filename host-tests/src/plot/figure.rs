@@ -45,7 +45,7 @@ impl Figure {
     /// The figure of a model beside a record; effects that lie below the frame do not show.
     pub fn new(model: &Model, comparison: &Comparison<OCTAVES>, frame: &Frame) -> Self {
         let octaves = comparison.octaves.iter();
-        let roots = |variance: &dyn Fn(&allanite::ComparedOctave) -> f64| {
+        let roots = |variance: &dyn Fn(&allanite::comparison::ComparedOctave) -> f64| {
             let root = |variance: f64| variance.max(0.0).sqrt() as f32;
             octaves
                 .clone()
@@ -53,7 +53,7 @@ impl Figure {
                 .collect()
         };
         // An octave that agrees to the last bit has no error to show.
-        let error = |octave: &allanite::ComparedOctave| match octave.standard_error() {
+        let error = |octave: &allanite::comparison::ComparedOctave| match octave.standard_error() {
             error if error.is_finite() => error,
             _ => 0.0,
         };

@@ -3,7 +3,7 @@
 
 use super::ticks;
 use crate::log::OCTAVES;
-use allanite::{ComparedOctave, Comparison};
+use allanite::{Comparison, comparison::ComparedOctave};
 
 /// A logarithmic axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

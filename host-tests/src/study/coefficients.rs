@@ -3,8 +3,8 @@
 use super::{curve, theory::squares};
 use crate::simulate::Coefficients;
 use allanite::{
-    Model, State,
-    fit::{Method, Options, fit},
+    Model,
+    fit::{Method, Options, State, fit},
 };
 use rayon::prelude::*;
 

@@ -3,8 +3,8 @@
 use super::{OCTAVES, curve, quantile};
 use crate::simulate::Coefficients;
 use allanite::{
-    Model, curve_covariance,
-    fit::{Options, fit},
+    Model,
+    fit::{Options, curve_covariance, fit},
 };
 use rayon::prelude::*;
 

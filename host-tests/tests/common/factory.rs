@@ -1,9 +1,10 @@
 //! Records of simulated gyros, as a factory would write them.
 
 use allanite::{
-    Accumulator, AxisRecord, Conditions, Model, RateUnit, Record, Scale,
+    Accumulator, Model, Scale,
     diagnosis::{Diagnosis, Evidence, Options},
     effect::CATALOGUE,
+    storage::{AxisCertificate, Certificate, Conditions, RateUnit},
 };
 use host_tests::demonstration::{
     AMPLITUDES,
@@ -26,7 +27,7 @@ pub(crate) fn counts(disturbance: Option<Disturbance>, seed: u64) -> Counts {
 }
 
 /// An axis and its diagnosis.
-pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisRecord {
+pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisCertificate {
     let curve = counts(disturbance, seed).curve(Scale::new(1.0 / 131.0, 100.0).unwrap());
     let (mut last, model) = (None, Model::ieee_952());
     let report =
@@ -36,12 +37,12 @@ pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisRecord {
         .and_then(|diagnosis| diagnosis.run(report))
         .unwrap();
     let (model, fit) = last.unwrap();
-    let mut axis = AxisRecord::new(&curve, &model, &fit).unwrap();
+    let mut axis = AxisCertificate::new(&curve, &model, &fit).unwrap();
     axis.verdict = Some(verdict);
     axis
 }
 
-pub(crate) fn record(device: &str, unit: RateUnit, axes: &[AxisRecord]) -> Record {
+pub(crate) fn record(device: &str, unit: RateUnit, axes: &[AxisCertificate]) -> Certificate {
     let conditions = Conditions {
         temperature_c: Some((22.5, 24.25)),
         duration_s: SAMPLES as f64 / 100.0,
@@ -49,14 +50,14 @@ pub(crate) fn record(device: &str, unit: RateUnit, axes: &[AxisRecord]) -> Recor
         samples: SAMPLES as u64,
         gaps: 0,
     };
-    let mut record = Record::new(device.as_bytes(), [1, 2, 300], conditions, unit).unwrap();
+    let mut record = Certificate::new(device.as_bytes(), [1, 2, 300], conditions, unit).unwrap();
     for axis in axes {
         record.axes.push(axis.clone()).unwrap();
     }
     record
 }
 
-pub(crate) fn encoded(record: &Record) -> Vec<u8> {
-    let mut buffer = vec![0; Record::MAX_BYTES];
+pub(crate) fn encoded(record: &Certificate) -> Vec<u8> {
+    let mut buffer = vec![0; Certificate::MAX_BYTES];
     record.encode(&mut buffer).unwrap().to_vec()
 }

@@ -2,9 +2,9 @@
 
 use super::{ALL, METHODS, OCTAVES, RATE_HZ, assert_relative, changed, exact, settings};
 use allanite::{
-    Curve, Error, Model, State,
+    Curve, Error, Model,
     effect::{AngleRandomWalk, Effect, RateRamp},
-    fit::{Method, Options, fit},
+    fit::{Method, Options, State, fit},
 };
 
 #[test]

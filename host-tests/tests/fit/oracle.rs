@@ -2,9 +2,9 @@
 
 use super::{OCTAVES, assert_relative, fitted, noisy, settings};
 use allanite::{
-    Curve, Model, chi_squared_tail, curve_covariance,
+    Curve, Model,
     effect::{IEEE_952, SampledShape},
-    fit::{Method, Options},
+    fit::{Method, Options, chi_squared_tail, curve_covariance},
 };
 
 /// `A_k`, the variances of unit coefficients.

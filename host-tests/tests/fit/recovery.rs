@@ -2,9 +2,9 @@
 
 use super::{ALL, METHODS, RATE_HZ, assert_relative, changed, exact, fitted, noisy, settings};
 use allanite::{
-    Coefficient, Curve, State,
+    Coefficient, Curve,
     effect::IEEE_952,
-    fit::{Fit, Options},
+    fit::{Fit, Options, State},
 };
 use rayon::prelude::*;
 

@@ -3,7 +3,10 @@
 use super::{
     FINE, SAMPLES, assert_unremarkable, assert_valid, disturb, integrity, mems, quantised, rest,
 };
-use allanite::{Accumulator, Integrity, Limits, Reason};
+use allanite::{
+    Accumulator,
+    integrity::{Integrity, Limits, Reason},
+};
 use host_tests::simulate::{Preset, Simulator};
 
 fn is_moved(reason: Option<Reason>) -> bool {

@@ -6,7 +6,7 @@ mod rest;
 mod seeded;
 mod state;
 
-use allanite::{Integrity, Tally};
+use allanite::integrity::{Integrity, Tally};
 use host_tests::simulate::{Preset, Simulator};
 use rayon::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use super::seeded::seeded;
 use super::{disturb, integrity, mems};
-use allanite::{Integrity, Limits, Observation};
+use allanite::integrity::{Integrity, Limits, Observation};
 use proptest::{collection::vec, prelude::*};
 
 /// Limits that last as long as the program, as those in a product's flash.

@@ -3,9 +3,10 @@
 mod second_order;
 
 use allanite::{
-    Accumulator, AxisRecord, Conditions, Curve, EffectCode, Model, RateUnit, Record, Scale,
+    Accumulator, Curve, Model, Scale,
     diagnosis::{Addition, Diagnosis, Evidence, Options, Step},
     effect::{CATALOGUE, Effect, Explain, FIRST_OWN_CODE, SampledShape},
+    storage::{AxisCertificate, Certificate, Conditions, EffectCode, RateUnit},
 };
 use host_tests::simulate::{Coefficients, Hidden, Simulator};
 use second_order::SecondOrderGaussMarkov;
@@ -116,14 +117,14 @@ fn it_is_stored_and_read_back() {
             gaps: 0,
         };
         let unit = RateUnit::DegreesPerSecond;
-        let mut record = Record::new(b"own", [1, 0, 0], conditions, unit).expect("short");
-        let axis = AxisRecord::new(&curve, &last.model, &last.fit).expect("a record");
+        let mut record = Certificate::new(b"own", [1, 0, 0], conditions, unit).expect("short");
+        let axis = AxisCertificate::new(&curve, &last.model, &last.fit).expect("a record");
         assert!(record.axes.push(axis).is_ok());
-        let mut buffer = [0; Record::MAX_BYTES];
+        let mut buffer = [0; Certificate::MAX_BYTES];
         let stored = record.encode(&mut buffer).expect("it fits");
-        let read = Record::decode(stored).expect("intact");
+        let read = Certificate::decode(stored).expect("intact");
         // NaN is what is not known, so that records are compared as bytes.
-        let mut again = [0; Record::MAX_BYTES];
+        let mut again = [0; Certificate::MAX_BYTES];
         assert_eq!(read.encode(&mut again).expect("it fits"), stored);
 
         let term = read.axes[0].terms.last().expect("terms");

@@ -48,10 +48,22 @@ impl Crate {
     /// The crate that consists of these files.
     pub(crate) fn of<'a>(files: impl Iterator<Item = (&'a str, &'a str)>) -> Self {
         let mut of = Self::default();
-        for (name, text) in files {
-            let parsed = syn::parse_file(text).unwrap_or_else(|error| panic!("{name}: {error}"));
-            let items = without_tests(parsed.items);
-            let path = module_path(name);
+        let parsed: Vec<_> = files
+            .map(|(name, text)| {
+                let file = syn::parse_file(text).unwrap_or_else(|error| panic!("{name}: {error}"));
+                (name, module_path(name), file.items)
+            })
+            .collect();
+        let tests: Vec<ModulePath> = parsed
+            .iter()
+            .flat_map(|(_, path, items)| test_files(path, items))
+            .collect();
+        for (name, path, items) in parsed {
+            // A file of tests may import whatever it tests.
+            if tests.iter().any(|test| path.starts_with(test)) {
+                continue;
+            }
+            let items = without_tests(items);
             of.declare(name, &path, &items);
             of.files.insert(name.to_owned(), File { path, items });
         }
@@ -141,6 +153,19 @@ fn module_path(file: &str) -> ModulePath {
         path.pop();
     }
     path
+}
+
+/// The modules of a file that exist in tests only and lie in files of their own.
+fn test_files(path: &ModulePath, items: &[Item]) -> Vec<ModulePath> {
+    let modules = items.iter().filter(|item| is_test(item));
+    modules
+        .filter_map(|item| match item {
+            Item::Mod(inner) if inner.content.is_none() => {
+                Some([&path[..], &[inner.ident.to_string()]].concat())
+            }
+            _ => None,
+        })
+        .collect()
 }
 
 fn without_tests(items: Vec<Item>) -> Vec<Item> {

@@ -23,7 +23,10 @@ mod work;
 mod image {
     use crate::clock::Clock;
     use crate::{stack, work};
-    use allanite::{Accumulator, Axes, Curve, Gated, Model, Moments};
+    use allanite::{
+        Accumulator, Axes, Curve, Model,
+        axis::{Gated, Moments},
+    };
     use core::hint::black_box;
     #[cfg(target_arch = "arm")]
     use cortex_m as _;

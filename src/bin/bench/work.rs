@@ -10,7 +10,8 @@ use allanite::effect::{
     SampledShape, Sinusoid,
 };
 use allanite::{
-    Accumulator, Axes, Curve, Error, GatePart, Model, MomentPart, Real,
+    Accumulator, Axes, Curve, Error, Model, Real,
+    axis::{GatePart, MomentPart},
     diagnosis::{self, Diagnosis, Evidence, Progress, Verdict},
     fit::{Fit, Fitting, Options, fit},
 };

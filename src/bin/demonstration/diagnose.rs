@@ -6,7 +6,8 @@ use super::{
     simulated::{Disturbance, SimulatedGyro},
 };
 use allanite::{
-    Axis, AxisEvidence, Error, Model, Real, Scale,
+    Axis, Error, Model, Real, Scale,
+    axis::AxisEvidence,
     diagnosis::{Diagnosis, Options, Step, Verdict},
     effect::CATALOGUE,
 };

@@ -3,7 +3,8 @@
 
 use super::{characterise::Characterised, double};
 use allanite::{
-    AxisEvidence, Curve, Real,
+    Curve, Real,
+    axis::AxisEvidence,
     diagnosis::{Addition, Step},
 };
 use core::fmt::{self, Arguments, Display, Formatter};

@@ -4,11 +4,13 @@
 
 use super::{AMPLITUDES, lines, simulated::SimulatedGyro};
 use allanite::{
-    Axes, Error, Model, Real, Sample, Scale,
+    Axes, Error, Model, Real, Scale,
+    axis::Sample,
     diagnosis::{Diagnosis, Options},
     effect::CATALOGUE,
     queue::{self, Queued},
     self_test::{Limit, Plan, SelfTest},
+    storage,
 };
 use core::fmt::Arguments;
 use heapless::{Vec, spsc::Queue};
@@ -96,18 +98,41 @@ fn self_test(scale: Scale) -> Option<SelfTest<OCTAVES>> {
     SelfTest::new(plan, scale).ok()
 }
 
+/// Why the product stopped: a defect, unless the snapshot does not fit its buffer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Failure {
+    /// The plan of the self-test is not valid.
+    Plan,
+    /// The record cannot be fitted or diagnosed.
+    Record(Error),
+    /// The snapshot cannot be written or read.
+    Storage(storage::Error),
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Record(error)
+    }
+}
+
+impl From<storage::Error> for Failure {
+    fn from(error: storage::Error) -> Self {
+        Self::Storage(error)
+    }
+}
+
 /// Runs the product with the bytes that survive a loss of power, and tells what it finds.
 ///
 /// # Errors
-/// [`Error::BufferTooSmall`] if the snapshot does not fit; other errors would be a defect.
+/// [`Failure`].
 pub fn run(
     gyro: &mut Gyro,
     flash: &mut [u8],
     mut line: impl FnMut(Arguments<'_>),
-) -> Result<(), Error> {
+) -> Result<(), Failure> {
     let scale = Scale::new(1.0 / 131.0, RATE_HZ)?;
     let mut sensor = Sensor::new();
-    let mut tests = [self_test(scale).ok_or(Error::Impossible)?];
+    let mut tests = [self_test(scale).ok_or(Failure::Plan)?];
     let mut stored: &[u8] = &[];
     let mut flash = Some(flash);
     let mut lost_power = false;
@@ -145,7 +170,7 @@ pub fn run(
         if sensor.made >= POWER_LOSS && !lost_power {
             lost_power = true;
             gyro.reset();
-            tests = [self_test(scale).ok_or(Error::Impossible)?];
+            tests = [self_test(scale).ok_or(Failure::Plan)?];
             gyro.restore(&mut tests, stored)?;
             line(format_args!("restored samples {}", gyro.samples()));
         }

@@ -8,7 +8,10 @@ use crate::{
     },
     unit::Unit,
 };
-use allanite::{ComparedOctave, Model, Stretch as Side};
+use allanite::{
+    Model,
+    comparison::{ComparedOctave, Stretch as Side},
+};
 use serde::Serialize;
 use serde_json::{Map, Value};
 

@@ -4,7 +4,7 @@ use crate::{
     command::effect_argument::EffectArgument,
     failure::{Failure, quoted},
 };
-use allanite::{MAX_EFFECTS, Model, Term};
+use allanite::{Model, Term, model::MAX_EFFECTS};
 use clap::Args;
 
 /// Effects to add and to leave out.

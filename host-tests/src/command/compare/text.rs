@@ -11,7 +11,7 @@ use crate::{
     },
     plot::Plot,
 };
-use allanite::State;
+use allanite::fit::State;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 

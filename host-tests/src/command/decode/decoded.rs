@@ -1,6 +1,6 @@
 //! What a file holds, and what its parts are called.
 
-use allanite::{OctaveSum, Record};
+use allanite::{octave::OctaveSum, storage::Certificate};
 use std::path::PathBuf;
 
 /// What a file holds.
@@ -11,7 +11,7 @@ pub(super) struct Decoded {
 
 /// A record or a snapshot.
 pub(super) enum Stored {
-    Record(Box<Record>),
+    Certificate(Box<Certificate>),
     Snapshot(StoredSnapshot),
 }
 
@@ -23,7 +23,7 @@ pub(super) struct StoredSnapshot {
 }
 
 /// A device's identity: text where it is, else its bytes.
-pub(super) fn device(record: &Record) -> String {
+pub(super) fn device(record: &Certificate) -> String {
     match std::str::from_utf8(&record.device) {
         Ok(text) if !text.is_empty() && !text.contains(char::is_control) => text.to_owned(),
         _ => hex(record),
@@ -31,13 +31,13 @@ pub(super) fn device(record: &Record) -> String {
 }
 
 /// A device's identity in hexadecimal digits.
-pub(super) fn hex(record: &Record) -> String {
+pub(super) fn hex(record: &Certificate) -> String {
     let digits = record.device.iter().map(|byte| format!("{byte:02x}"));
     digits.collect()
 }
 
 /// `1.2.0`.
-pub(super) fn firmware(record: &Record) -> String {
+pub(super) fn firmware(record: &Certificate) -> String {
     record.firmware.map(|part| part.to_string()).join(".")
 }
 

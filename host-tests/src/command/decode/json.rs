@@ -2,7 +2,10 @@
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
 use crate::{command::output::units, unit::Unit};
-use allanite::{AxisRecord, Record, RecordedState, RecordedTerm, diagnosis::Verdict};
+use allanite::{
+    diagnosis::Verdict,
+    storage::{AxisCertificate, Certificate, CertifiedState, CertifiedTerm},
+};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::{
@@ -85,7 +88,7 @@ pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<
     };
     for one in decoded {
         match &one.stored {
-            Stored::Record(record) => document.records.push(device(&one.file, record)),
+            Stored::Certificate(record) => document.records.push(device(&one.file, record)),
             Stored::Snapshot(stored) => document.snapshots.push(snapshot(&one.file, stored)),
         }
     }
@@ -93,7 +96,7 @@ pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<
     writeln!(output)
 }
 
-fn device(file: &Path, record: &Record) -> Device {
+fn device(file: &Path, record: &Certificate) -> Device {
     let conditions = &record.conditions;
     let axes = record.axes.iter().enumerate();
     Device {
@@ -113,7 +116,7 @@ fn device(file: &Path, record: &Record) -> Device {
     }
 }
 
-fn axis(name: String, axis: &AxisRecord, unit: Unit) -> Axis {
+fn axis(name: String, axis: &AxisCertificate, unit: Unit) -> Axis {
     let count = axis.terms.len();
     let row = |i: usize| (0..=i).map(|j| axis.covariance(i, j)).collect();
     Axis {
@@ -133,7 +136,7 @@ fn axis(name: String, axis: &AxisRecord, unit: Unit) -> Axis {
     }
 }
 
-fn term(term: &RecordedTerm, unit: Unit) -> Term {
+fn term(term: &CertifiedTerm, unit: Unit) -> Term {
     let effect = term.effect.effect();
     let parameters = effect.map_or(&[][..], |effect| effect.parameters());
     let shape = parameters.iter().zip(&term.shape).map(|(parameter, one)| {
@@ -141,9 +144,9 @@ fn term(term: &RecordedTerm, unit: Unit) -> Term {
         (parameter.name.to_owned(), numbers)
     });
     let (state, after_s) = match term.state {
-        RecordedState::Measured => ("measured", None),
-        RecordedState::UpperBound => ("upper_bound", None),
-        RecordedState::NotObservable { after_s } => ("not_observable", after_s),
+        CertifiedState::Measured => ("measured", None),
+        CertifiedState::UpperBound => ("upper_bound", None),
+        CertifiedState::NotObservable { after_s } => ("not_observable", after_s),
     };
     Term {
         effect: term.effect.name(),

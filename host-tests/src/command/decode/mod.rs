@@ -8,7 +8,7 @@ use crate::{
     command::{examples, input::many},
     failure::{Failure, Place},
 };
-use allanite::{Error, Record, Snapshot};
+use allanite::storage::{self, Certificate, Snapshot};
 use clap::Args;
 use decoded::{Decoded, Stored, StoredSnapshot};
 use std::{
@@ -58,9 +58,9 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
 
 fn decode(path: &Path) -> Result<Stored, Failure> {
     let bytes = read(path).map_err(|error| Place::file(path).io(&error))?;
-    let stored = match Record::decode(&bytes) {
-        Ok(record) => Ok(Stored::Record(Box::new(record))),
-        Err(Error::OtherKind { .. }) => Snapshot::open(&bytes).map(|snapshot| {
+    let stored = match Certificate::decode(&bytes) {
+        Ok(record) => Ok(Stored::Certificate(Box::new(record))),
+        Err(storage::Error::WrongKind { .. }) => Snapshot::open(&bytes).map(|snapshot| {
             Stored::Snapshot(StoredSnapshot {
                 samples: snapshot.samples(),
                 gaps: snapshot.gaps(),

@@ -9,9 +9,9 @@ use crate::{
     unit::Unit,
 };
 use allanite::{
-    AxisRecord, Record, RecordedShape, RecordedState, RecordedTerm,
     diagnosis::Verdict,
     effect::{Effect, IEEE_952, Parameter},
+    storage::{AxisCertificate, Certificate, CertifiedShape, CertifiedState, CertifiedTerm},
 };
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
@@ -20,7 +20,7 @@ use std::io::{self, Write};
 pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<()> {
     let mut records = Vec::new();
     for one in decoded {
-        if let Stored::Record(record) = &one.stored {
+        if let Stored::Certificate(record) = &one.stored {
             records.push(record.as_ref());
         }
     }
@@ -42,7 +42,7 @@ pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<
     Ok(())
 }
 
-fn print_record(record: &Record, output: &mut impl Write) -> io::Result<()> {
+fn print_record(record: &Certificate, output: &mut impl Write) -> io::Result<()> {
     let conditions = &record.conditions;
     writeln!(
         output,
@@ -77,14 +77,14 @@ fn gaps(gaps: u64) -> String {
     }
 }
 
-fn temperature(record: &Record) -> String {
+fn temperature(record: &Certificate) -> String {
     match record.conditions.temperature_c {
         Some((low, high)) => format!("{low} … {high} °C"),
         None => "temperature unknown".into(),
     }
 }
 
-fn p_value(axis: &AxisRecord, before: &str) -> String {
+fn p_value(axis: &AxisCertificate, before: &str) -> String {
     let p = axis.p_value;
     if p.is_finite() {
         format!("{before}{}", probability(p))
@@ -94,7 +94,7 @@ fn p_value(axis: &AxisRecord, before: &str) -> String {
 }
 
 /// The verdict with what was found.
-fn judgement(axis: &AxisRecord) -> String {
+fn judgement(axis: &AxisCertificate) -> String {
     let found = words::list(axis.found().map(|term| term.effect.name()));
     match axis.verdict {
         None => "not diagnosed".into(),
@@ -126,7 +126,7 @@ fn finish(mut table: Table, right: impl Fn(usize) -> bool) -> Table {
 }
 
 /// The terms of one axis.
-fn terms(axis: &AxisRecord, unit: Unit) -> Table {
+fn terms(axis: &AxisCertificate, unit: Unit) -> Table {
     let header = [
         "effect",
         "",
@@ -144,22 +144,22 @@ fn terms(axis: &AxisRecord, unit: Unit) -> Table {
             effect.map_or("", |effect| effect.symbol()).into(),
             value(term, 1.0),
             match term.state {
-                RecordedState::Measured => format!(
+                CertifiedState::Measured => format!(
                     "{} … {}",
                     number(term.lower.into()),
                     number(term.upper.into())
                 ),
-                RecordedState::UpperBound => "0 inside".into(),
-                RecordedState::NotObservable { .. } => "–".into(),
+                CertifiedState::UpperBound => "0 inside".into(),
+                CertifiedState::NotObservable { .. } => "–".into(),
             },
             effect.map_or(String::new(), |effect| {
                 units::unit(unit, effect.half_seconds())
             }),
             match term.state {
-                RecordedState::Measured => "measured".into(),
-                RecordedState::UpperBound => "upper bound".into(),
-                RecordedState::NotObservable { after_s: None } => "not observable".into(),
-                RecordedState::NotObservable {
+                CertifiedState::Measured => "measured".into(),
+                CertifiedState::UpperBound => "upper bound".into(),
+                CertifiedState::NotObservable { after_s: None } => "not observable".into(),
+                CertifiedState::NotObservable {
                     after_s: Some(after_s),
                 } => format!("not observable; {} would do", duration(after_s.into())),
             },
@@ -169,17 +169,17 @@ fn terms(axis: &AxisRecord, unit: Unit) -> Table {
     finish(table, |i| i == 2)
 }
 
-fn value(term: &RecordedTerm, factor: f64) -> String {
+fn value(term: &CertifiedTerm, factor: f64) -> String {
     match term.state {
-        RecordedState::Measured => number(factor * f64::from(term.value)),
-        RecordedState::UpperBound => format!("< {}", number(factor * f64::from(term.upper))),
-        RecordedState::NotObservable { .. } => "–".into(),
+        CertifiedState::Measured => number(factor * f64::from(term.value)),
+        CertifiedState::UpperBound => format!("< {}", number(factor * f64::from(term.upper))),
+        CertifiedState::NotObservable { .. } => "–".into(),
     }
 }
 
-fn shape(term: &RecordedTerm, effect: Option<&dyn Effect>) -> String {
+fn shape(term: &CertifiedTerm, effect: Option<&dyn Effect>) -> String {
     let parameters = effect.map_or(&[][..], |effect| effect.parameters());
-    let one = |(parameter, shape): (&Parameter, &RecordedShape)| {
+    let one = |(parameter, shape): (&Parameter, &CertifiedShape)| {
         let interval = match shape.lower.is_finite() && shape.upper.is_finite() {
             true => format!(
                 " ({} … {})",
@@ -195,7 +195,7 @@ fn shape(term: &RecordedTerm, effect: Option<&dyn Effect>) -> String {
 }
 
 /// One row a device and axis, in customary units, so that any two compare.
-fn devices(records: &[&Record]) -> Table {
+fn devices(records: &[&Certificate]) -> Table {
     let customary = |effect: &&dyn Effect| {
         let customary = units::customary(Unit::DegreesPerSecond, effect.half_seconds());
         format!(

@@ -10,7 +10,8 @@ use crate::{
     log::{CovariateChoice, Evidence, OCTAVES},
 };
 use allanite::{
-    CrossCurve, Error, Model, Term, covariate,
+    Error, Model, Term, covariate,
+    covariate::CrossCurve,
     diagnosis::{
         Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
     },

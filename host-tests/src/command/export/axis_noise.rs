@@ -7,7 +7,7 @@ use crate::{
     equivalent::Equivalent,
     overbound::Overbound,
 };
-use allanite::{Coefficient, Model, State};
+use allanite::{Coefficient, Model, fit::State};
 
 /// What is known of one axis.
 pub(super) struct AxisNoise {
@@ -49,7 +49,7 @@ impl AxisNoise {
         let with_process = Overbound::with_gauss_markov(&curve, &limits)?;
         let squares = fit.squares();
         let interval_s = curve.interval_s();
-        let octave = |(point, limits): (&allanite::Point, &Limits)| Octave {
+        let octave = |(point, limits): (&allanite::curve::Point, &Limits)| Octave {
             tau_s: point.tau_s,
             m: point.m,
             differences: point.differences,

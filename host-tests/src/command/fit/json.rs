@@ -2,7 +2,7 @@
 
 use super::fitted::Fitted;
 use crate::{command::output::units, unit::Unit};
-use allanite::{Coefficient, State};
+use allanite::{Coefficient, fit::State};
 use serde::Serialize;
 
 /// What a command prints of one file.

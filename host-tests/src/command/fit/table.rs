@@ -8,7 +8,10 @@ use crate::{
     },
     unit::Unit,
 };
-use allanite::{Coefficient, State, fit::Fit};
+use allanite::{
+    Coefficient,
+    fit::{Fit, State},
+};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 

@@ -3,7 +3,8 @@
 use super::words;
 use crate::{command::fit, log::OCTAVES, unit::Unit};
 use allanite::{
-    ComparedOctave, Comparison, Model, Term, covariate, diagnosis::FollowedCovariate, fit::Fit,
+    Comparison, Model, Term, comparison::ComparedOctave, covariate, diagnosis::FollowedCovariate,
+    fit::Fit,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};

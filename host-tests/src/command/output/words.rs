@@ -9,10 +9,10 @@ use crate::{
     unit::{Sensor, Unit},
 };
 use allanite::{
-    Coefficient, State, Term,
+    Coefficient, Term,
     diagnosis::Step,
     effect::{Effect, MAX_PARAMETERS, Parameter},
-    fit::Fit,
+    fit::{Fit, State},
 };
 
 /// A name as people write it.

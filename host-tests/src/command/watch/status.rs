@@ -9,7 +9,10 @@ use crate::command::{
     output::number::{duration, probability},
 };
 use allanite::fit::ADEQUATE_P;
-use allanite::{Coefficient, State, fit::Fit};
+use allanite::{
+    Coefficient,
+    fit::{Fit, State},
+};
 use std::path::Path;
 
 /// Two-sided 95 % of a normal distribution, in standard errors.

@@ -6,16 +6,17 @@ mod factory;
 mod sealed;
 
 use allanite::{
-    Curve, EffectCode, Error, Model, RateUnit, Reason, Record, RecordedState, State,
-    curve_covariance,
+    Curve, Model,
     diagnosis::Verdict,
     effect::{AngleRandomWalk, BiasInstability, CATALOGUE, RateRandomWalk},
-    fit::{Options, fit},
+    fit::{Options, State, curve_covariance, fit},
+    integrity::Reason,
+    storage::{Certificate, CertifiedState, EffectCode, Error, RateUnit},
 };
 use factory::{SINUSOID, axis, encoded, record};
 use sealed::sealed;
 
-fn three_axes() -> Record {
+fn three_axes() -> Certificate {
     let axes = [axis(None, 1), axis(Some(SINUSOID), 2), axis(None, 3)];
     record("SN-0042", RateUnit::DegreesPerSecond, &axes)
 }
@@ -24,9 +25,9 @@ fn three_axes() -> Record {
 fn record_keeps_what_fit_and_diagnosis_said() {
     let written = three_axes();
     let bytes = encoded(&written);
-    let read = Record::decode(&bytes).unwrap();
+    let read = Certificate::decode(&bytes).unwrap();
     assert_eq!(encoded(&read), bytes);
-    assert_eq!((bytes.len(), Record::MAX_BYTES), (610, 1726));
+    assert_eq!((bytes.len(), Certificate::MAX_BYTES), (610, 1726));
     assert_eq!(read.device, b"SN-0042");
     assert_eq!(read.firmware, [1, 2, 300]);
     assert_eq!(read.conditions, written.conditions);
@@ -45,7 +46,7 @@ fn numbers_of_a_fit_are_kept_in_single_precision() {
     let curve = factory::counts(None, 1).curve(allanite::Scale::new(0.01, 100.0).unwrap());
     let model = Model::ieee_952();
     let fit = fit(&curve, &model, Options::default()).unwrap();
-    let axis = allanite::AxisRecord::new(&curve, &model, &fit).unwrap();
+    let axis = allanite::storage::AxisCertificate::new(&curve, &model, &fit).unwrap();
     assert_eq!(axis.chi_squared, fit.chi_squared);
     assert_eq!(axis.p_value, fit.p_value);
     assert_eq!(usize::from(axis.degrees_of_freedom), fit.degrees_of_freedom);
@@ -55,9 +56,9 @@ fn numbers_of_a_fit_are_kept_in_single_precision() {
         assert_eq!(term.upper, coefficient.upper as f32);
         assert_eq!(term.square_error, coefficient.square_error as f32);
         let same = match (term.state, coefficient.state) {
-            (RecordedState::Measured, State::Measured) => true,
-            (RecordedState::UpperBound, State::UpperBound) => true,
-            (RecordedState::NotObservable { after_s: a }, State::NotObservable { after_s: b }) => {
+            (CertifiedState::Measured, State::Measured) => true,
+            (CertifiedState::UpperBound, State::UpperBound) => true,
+            (CertifiedState::NotObservable { after_s: a }, State::NotObservable { after_s: b }) => {
                 a == b.map(|b| b as f32)
             }
             _ => false,
@@ -132,12 +133,18 @@ fn every_change_of_one_byte_is_refused() {
     for i in 0..bytes.len() {
         for difference in 1..=u8::MAX {
             changed[i] = bytes[i] ^ difference;
-            assert!(Record::decode(&changed).is_err(), "byte {i} ^ {difference}");
+            assert!(
+                Certificate::decode(&changed).is_err(),
+                "byte {i} ^ {difference}"
+            );
         }
         changed[i] = bytes[i];
     }
     for length in 0..bytes.len() {
-        assert!(Record::decode(&bytes[..length]).is_err(), "{length} bytes");
+        assert!(
+            Certificate::decode(&bytes[..length]).is_err(),
+            "{length} bytes"
+        );
     }
 }
 
@@ -150,10 +157,10 @@ fn contents_of_every_kind_are_refused_or_make_a_record() {
         for value in 0..=u8::MAX {
             let mut payload = payload.to_vec();
             payload[i] = value;
-            match Record::decode(&sealed(2, 1, &payload)) {
+            match Certificate::decode(&sealed(2, 1, &payload)) {
                 Ok(record) => {
                     let again = encoded(&record);
-                    assert_eq!(encoded(&Record::decode(&again).unwrap()), again);
+                    assert_eq!(encoded(&Certificate::decode(&again).unwrap()), again);
                     accepted += 1;
                 }
                 Err(error) => assert_eq!(error, Error::Impossible, "byte {i} = {value}"),
@@ -162,7 +169,7 @@ fn contents_of_every_kind_are_refused_or_make_a_record() {
     }
     assert!(accepted > payload.len());
     for length in 0..payload.len() {
-        let short = Record::decode(&sealed(2, 1, &payload[..length]));
+        let short = Certificate::decode(&sealed(2, 1, &payload[..length]));
         assert_eq!(short, Err(Error::Impossible), "{length} bytes");
     }
 }
@@ -184,7 +191,7 @@ fn every_effect_of_the_catalogue_has_a_code_that_stays() {
 fn largest_record_fits_and_what_does_not_is_refused() {
     let mut largest = three_axes();
     let axes = largest.axes;
-    largest = Record::new(&[0xFF; 16], [0; 3], largest.conditions, largest.unit).unwrap();
+    largest = Certificate::new(&[0xFF; 16], [0; 3], largest.conditions, largest.unit).unwrap();
     largest.axes = axes;
     largest.conditions.samples = u64::MAX;
     largest.conditions.gaps = u64::MAX;
@@ -192,8 +199,8 @@ fn largest_record_fits_and_what_does_not_is_refused() {
     for axis in &mut largest.axes {
         while axis.terms.push(axis.terms[0].clone()).is_ok() {}
         for term in &mut axis.terms {
-            term.state = RecordedState::NotObservable { after_s: Some(1.0) };
-            let one = allanite::RecordedShape {
+            term.state = CertifiedState::NotObservable { after_s: Some(1.0) };
+            let one = allanite::storage::CertifiedShape {
                 value: 1.0,
                 lower: 0.5,
                 upper: 2.0,
@@ -208,16 +215,16 @@ fn largest_record_fits_and_what_does_not_is_refused() {
         }));
     }
     let bytes = encoded(&largest);
-    assert!(bytes.len() <= Record::MAX_BYTES && bytes.len() + 8 > Record::MAX_BYTES);
-    assert_eq!(encoded(&Record::decode(&bytes).unwrap()), bytes);
+    assert!(bytes.len() <= Certificate::MAX_BYTES && bytes.len() + 8 > Certificate::MAX_BYTES);
+    assert_eq!(encoded(&Certificate::decode(&bytes).unwrap()), bytes);
     let mut buffer = vec![0; bytes.len() - 1];
-    let needed = Record::MAX_BYTES;
+    let needed = Certificate::MAX_BYTES;
     assert_eq!(
         largest.encode(&mut buffer),
         Err(Error::BufferTooSmall { needed })
     );
 
-    let long = Record::new(
+    let long = Certificate::new(
         &[0; 17],
         [0; 3],
         largest.conditions,
@@ -241,7 +248,7 @@ fn format_is_the_one_that_was_frozen() {
         .step_by(2)
         .map(|i| u8::from_str_radix(&FROZEN[i..i + 2], 16).unwrap())
         .collect();
-    let record = Record::decode(&bytes).unwrap();
+    let record = Certificate::decode(&bytes).unwrap();
     assert_eq!(encoded(&record), bytes);
     assert_eq!(record.device, b"SN-1");
     assert_eq!(record.firmware, [1, 2, 300]);
@@ -271,12 +278,12 @@ fn format_is_the_one_that_was_frozen() {
     assert_eq!((white.value, white.lower, white.upper), (0.5, 0.25, 0.75));
     assert_eq!(
         (white.state, white.square_error),
-        (RecordedState::Measured, 0.125)
+        (CertifiedState::Measured, 0.125)
     );
     assert_eq!(sinusoid.effect.name(), "sinusoid");
     assert_eq!(
         sinusoid.state,
-        RecordedState::NotObservable { after_s: Some(8.0) }
+        CertifiedState::NotObservable { after_s: Some(8.0) }
     );
     let shape = sinusoid.shape[0];
     assert_eq!((shape.value, shape.lower, shape.upper), (8.0, 7.0, 9.0));

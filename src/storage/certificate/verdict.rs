@@ -1,6 +1,6 @@
 //! Verdicts as they are stored: apart from the public ones, which may be reordered.
 
-use crate::{Reason, diagnosis::Verdict};
+use crate::{diagnosis::Verdict, integrity::Reason};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]

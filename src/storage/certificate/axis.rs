@@ -2,11 +2,12 @@
 
 use super::EffectCode;
 use crate::{
-    Curve, Error, MAX_EFFECTS, Model, State,
+    Curve, Error, Model,
     diagnosis::Verdict,
     effect::IEEE_952,
-    fit::{Correlations, Fit},
+    fit::{Correlations, Fit, State},
     limits::MAX_PARAMETERS,
+    model::MAX_EFFECTS,
     real::{double, single},
 };
 use heapless::Vec;
@@ -14,9 +15,9 @@ use heapless::Vec;
 /// A fit and what came of it, in single precision: far below what any record tells.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct AxisRecord {
+pub struct AxisCertificate {
     /// The model's terms, in its order.
-    pub terms: Vec<RecordedTerm, MAX_EFFECTS>,
+    pub terms: Vec<CertifiedTerm, MAX_EFFECTS>,
     /// Correlations of their squared coefficients.
     pub correlations: Correlations,
     /// χ² of the fit; NaN for methods without error model.
@@ -34,7 +35,7 @@ pub struct AxisRecord {
 /// A term of a model: an effect, its coefficient, its shape.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct RecordedTerm {
+pub struct CertifiedTerm {
     /// The effect.
     pub effect: EffectCode,
     /// Best value of the coefficient, in rate unit · s^(half_seconds/2) of the effect.
@@ -46,15 +47,15 @@ pub struct RecordedTerm {
     /// Standard error of the squared coefficient; infinite as `upper`.
     pub square_error: f32,
     /// Whether it was measured.
-    pub state: RecordedState,
+    pub state: CertifiedState,
     /// The shape parameters, in the order in which the effect names them.
-    pub shape: Vec<RecordedShape, MAX_PARAMETERS>,
+    pub shape: Vec<CertifiedShape, MAX_PARAMETERS>,
 }
 
 /// [`State`] in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum RecordedState {
+pub enum CertifiedState {
     /// The 95 % interval excludes zero.
     Measured,
     /// `upper` bounds it, one-sided, at 95 %.
@@ -69,7 +70,7 @@ pub enum RecordedState {
 /// A shape parameter, in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct RecordedShape {
+pub struct CertifiedShape {
     /// Best value.
     pub value: f32,
     /// Lower end of the 95 % interval; NaN of one that was not fitted.
@@ -78,7 +79,7 @@ pub struct RecordedShape {
     pub upper: f32,
 }
 
-impl AxisRecord {
+impl AxisCertificate {
     /// What is kept of a fit of this model to this curve: the one that was asked about, or the last
     /// [`Step`](crate::Step) of a diagnosis. Its verdict is set apart.
     ///
@@ -110,8 +111,8 @@ impl AxisRecord {
     }
 
     /// The effects beyond the five of IEEE Std 952.
-    pub fn found(&self) -> impl Iterator<Item = &RecordedTerm> {
-        let usual = |term: &&RecordedTerm| {
+    pub fn found(&self) -> impl Iterator<Item = &CertifiedTerm> {
+        let usual = |term: &&CertifiedTerm| {
             let mut names = IEEE_952.iter().map(|effect| effect.name());
             !names.any(|name| name == term.effect.name())
         };
@@ -119,28 +120,28 @@ impl AxisRecord {
     }
 }
 
-fn term(model: &Model, fit: &Fit, i: usize) -> Option<RecordedTerm> {
+fn term(model: &Model, fit: &Fit, i: usize) -> Option<CertifiedTerm> {
     let (term, coefficient) = (model.terms().get(i)?, fit.coefficients.get(i)?);
     let parameters = term.effect.parameters().iter().zip(term.parameters);
     let shape = parameters.map(|(parameter, value)| {
         let mut estimates = fit.shape.iter();
         let estimate = estimates.find(|one| one.term == i && one.name == parameter.name);
-        RecordedShape {
+        CertifiedShape {
             value: single(value),
             lower: estimate.map_or(f32::NAN, |one| single(one.lower)),
             upper: estimate.map_or(f32::NAN, |one| single(one.upper)),
         }
     });
-    Some(RecordedTerm {
+    Some(CertifiedTerm {
         effect: EffectCode::of(term.effect),
         value: single(coefficient.value),
         lower: single(coefficient.lower),
         upper: single(coefficient.upper),
         square_error: single(coefficient.square_error),
         state: match coefficient.state {
-            State::Measured => RecordedState::Measured,
-            State::UpperBound => RecordedState::UpperBound,
-            State::NotObservable { after_s } => RecordedState::NotObservable {
+            State::Measured => CertifiedState::Measured,
+            State::UpperBound => CertifiedState::UpperBound,
+            State::NotObservable { after_s } => CertifiedState::NotObservable {
                 after_s: after_s.map(single),
             },
         },

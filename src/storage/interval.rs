@@ -10,7 +10,7 @@ use core::num::NonZeroU64;
 /// # Example
 ///
 /// ```
-/// use allanite::{Accumulator, SnapshotInterval};
+/// use allanite::{Accumulator, storage::SnapshotInterval};
 /// use core::num::NonZeroU64;
 ///
 /// let mut accumulator = Accumulator::<10>::new();

@@ -12,7 +12,7 @@
 //! The envelope stays as it is in every version. A CRC-32 detects every change within 32
 //! consecutive bits, so that of any one byte, and others but for one in 2^32.
 
-use crate::error::Error;
+use super::error::Error;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use serde::Serialize;
 
@@ -33,7 +33,7 @@ pub(crate) const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_H
 #[repr(u8)]
 pub(crate) enum Kind {
     Snapshot = 1,
-    Record = 2,
+    Certificate = 2,
 }
 
 /// An envelope that is being filled.
@@ -95,7 +95,7 @@ impl<'b> Writer<'b> {
 pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> {
     let (version, payload) = open_any(bytes, kind)?;
     if version != known {
-        return Err(Error::OtherVersion {
+        return Err(Error::UnknownVersion {
             found: version,
             known,
         });
@@ -107,7 +107,7 @@ pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> 
 pub(crate) fn open_any(bytes: &[u8], kind: Kind) -> Result<(u8, &[u8]), Error> {
     let (head, _) = bytes.split_at(bytes.len().min(MAGIC.len()));
     if !MAGIC.starts_with(head) {
-        return Err(Error::Foreign);
+        return Err(Error::UnknownMagic);
     }
     let wrong_length = |stored| Error::WrongLength {
         found: bytes.len(),
@@ -130,7 +130,7 @@ pub(crate) fn open_any(bytes: &[u8], kind: Kind) -> Result<(u8, &[u8]), Error> {
     }
     // Past the checksum, so that a changed byte is called that.
     if found != kind as u8 {
-        return Err(Error::OtherKind {
+        return Err(Error::WrongKind {
             found,
             wanted: kind as u8,
         });

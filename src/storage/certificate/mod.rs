@@ -1,6 +1,6 @@
 //! Factory records: who a gyro is, under which conditions it was measured, and what came of it.
 //!
-//! The payload of the [envelope](crate::envelope), version 1, as postcard writes it: f32 and f64 are
+//! The payload of the [envelope](crate::storage::envelope), version 1, as postcard writes it: f32 and f64 are
 //! little endian, integers of more than a byte are varints, an option is a byte 0 or a byte 1 and its
 //! content. NaN is what is not known.
 //!
@@ -33,11 +33,11 @@ mod effect_code;
 mod verdict;
 mod wire;
 
-pub use axis::{AxisRecord, RecordedShape, RecordedState, RecordedTerm};
+pub use axis::{AxisCertificate, CertifiedShape, CertifiedState, CertifiedTerm};
 pub use effect_code::EffectCode;
 pub(crate) use verdict::WireReason;
 
-use crate::error::Error;
+use super::Error;
 use heapless::Vec;
 
 /// Axes that one record has room for.
@@ -88,7 +88,7 @@ impl Conditions {
 /// # Example
 ///
 /// ```
-/// use allanite::{AxisRecord, Conditions, Curve, Model, RateUnit, Real, Record, fit::{Options, fit}};
+/// use allanite::{Curve, Model, Real, fit::{Options, fit}, storage::{AxisCertificate, Conditions, RateUnit, Certificate}};
 ///
 /// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1 << k) as Real));
 /// let (curve, model) = (Curve::<10>::new(100.0, white)?, Model::ieee_952());
@@ -101,20 +101,20 @@ impl Conditions {
 ///     samples: 40_000,
 ///     gaps: 0,
 /// };
-/// let mut record = Record::new(b"SN-0042", [1, 2, 0], conditions, RateUnit::DegreesPerSecond)?;
-/// let axis = AxisRecord::new(&curve, &model, &fit)?;
+/// let mut record = Certificate::new(b"SN-0042", [1, 2, 0], conditions, RateUnit::DegreesPerSecond)?;
+/// let axis = AxisCertificate::new(&curve, &model, &fit)?;
 /// assert!(record.axes.push(axis).is_ok());
 ///
-/// let mut buffer = [0; Record::MAX_BYTES];
+/// let mut buffer = [0; Certificate::MAX_BYTES];
 /// let stored = record.encode(&mut buffer)?;
-/// let read = Record::decode(stored)?;
+/// let read = Certificate::decode(stored)?;
 /// assert_eq!(read.device, record.device);
 /// assert_eq!(read.axes[0].terms[1].effect.name(), "angle_random_walk");
 /// # Ok::<(), allanite::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Record {
+pub struct Certificate {
     /// Identity of the device: a serial number, as text or not.
     pub device: Vec<u8, MAX_DEVICE_BYTES>,
     /// Version of its firmware: major, minor, patch.
@@ -124,10 +124,10 @@ pub struct Record {
     /// The unit of its rates.
     pub unit: RateUnit,
     /// What was found of each axis.
-    pub axes: Vec<AxisRecord, MAX_AXES>,
+    pub axes: Vec<AxisCertificate, MAX_AXES>,
 }
 
-impl Record {
+impl Certificate {
     /// A record without axes yet.
     ///
     /// # Errors

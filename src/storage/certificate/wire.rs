@@ -1,14 +1,14 @@
 //! Records as bytes.
 
 use super::{
-    AxisRecord, Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, Record,
-    RecordedShape, RecordedState, RecordedTerm, verdict::WireVerdict,
+    AxisCertificate, Certificate, CertifiedShape, CertifiedState, CertifiedTerm, Conditions,
+    EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, verdict::WireVerdict,
 };
 use crate::{
-    envelope::{self, Kind, OVERHEAD, Writer},
-    error::Error,
     fit::Correlations,
     limits::{MAX_EFFECTS, MAX_PARAMETERS, PAIRS},
+    storage::Error,
+    storage::envelope::{self, Kind, OVERHEAD, Writer},
 };
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -65,7 +65,7 @@ const AXIS_BYTES: usize = 16 + 3 + 4 + 27 + 1 + 4 * PAIRS;
 const TERM_BYTES: usize = 1 + 16 + 6 + 1 + 12 * MAX_PARAMETERS;
 const PAYLOAD_BYTES: usize = HEAD_BYTES + MAX_AXES * (AXIS_BYTES + MAX_EFFECTS * TERM_BYTES);
 
-impl Record {
+impl Certificate {
     /// Bytes that every record fits into; three axes of five terms take 600.
     pub const MAX_BYTES: usize = PAYLOAD_BYTES + OVERHEAD;
 
@@ -79,7 +79,7 @@ impl Record {
         if !conditions.are_possible() {
             return Err(Error::Impossible);
         }
-        let mut writer = Writer::new(buffer, Kind::Record, VERSION, PAYLOAD_BYTES)?;
+        let mut writer = Writer::new(buffer, Kind::Certificate, VERSION, PAYLOAD_BYTES)?;
         writer.push(&WireHead {
             device: &self.device,
             firmware: self.firmware,
@@ -103,16 +103,16 @@ impl Record {
     /// Reads what [`encode`](Self::encode) wrote, and checks all of it.
     ///
     /// # Errors
-    /// [`Error::Foreign`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::OtherKind`],
-    /// [`Error::OtherVersion`]; [`Error::Impossible`] for numbers that no fit has.
+    /// [`Error::UnknownMagic`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::WrongKind`],
+    /// [`Error::UnknownVersion`]; [`Error::Impossible`] for numbers that no fit has.
     pub fn decode(bytes: &[u8]) -> Result<Self, Error> {
-        let mut rest = envelope::open(bytes, Kind::Record, VERSION)?;
+        let mut rest = envelope::open(bytes, Kind::Certificate, VERSION)?;
         let record = decode_payload(&mut rest).ok_or(Error::Impossible)?;
         rest.is_empty().then_some(record).ok_or(Error::Impossible)
     }
 }
 
-fn encode_axis(axis: &AxisRecord, writer: &mut Writer<'_>) -> Result<(), Error> {
+fn encode_axis(axis: &AxisCertificate, writer: &mut Writer<'_>) -> Result<(), Error> {
     writer.push(&WireAxis {
         chi_squared: axis.chi_squared,
         p_value: axis.p_value,
@@ -129,9 +129,9 @@ fn encode_axis(axis: &AxisRecord, writer: &mut Writer<'_>) -> Result<(), Error> 
             upper: term.upper,
             square_error: term.square_error,
             state: match term.state {
-                RecordedState::Measured => WireState::Measured,
-                RecordedState::UpperBound => WireState::UpperBound,
-                RecordedState::NotObservable { after_s } => WireState::NotObservable(after_s),
+                CertifiedState::Measured => WireState::Measured,
+                CertifiedState::UpperBound => WireState::UpperBound,
+                CertifiedState::NotObservable { after_s } => WireState::NotObservable(after_s),
             },
             shapes: term.shape.len() as u8,
         })?;
@@ -152,7 +152,7 @@ fn take<'b, T: Deserialize<'b>>(rest: &mut &'b [u8]) -> Option<T> {
     Some(part)
 }
 
-fn decode_payload(rest: &mut &[u8]) -> Option<Record> {
+fn decode_payload(rest: &mut &[u8]) -> Option<Certificate> {
     let head: WireHead = take(rest)?;
     let conditions = Conditions {
         temperature_c: head.temperature_c,
@@ -168,7 +168,7 @@ fn decode_payload(rest: &mut &[u8]) -> Option<Record> {
     for _ in 0..head.axes {
         axes.push(decode_axis(rest)?).ok()?;
     }
-    Some(Record {
+    Some(Certificate {
         device: Vec::from_slice(head.device).ok()?,
         firmware: head.firmware,
         conditions,
@@ -181,7 +181,7 @@ fn decode_payload(rest: &mut &[u8]) -> Option<Record> {
     })
 }
 
-fn decode_axis(rest: &mut &[u8]) -> Option<AxisRecord> {
+fn decode_axis(rest: &mut &[u8]) -> Option<AxisCertificate> {
     let axis: WireAxis = take(rest)?;
     let probability = axis.p_value.is_nan() || (0.0..=1.0).contains(&axis.p_value);
     if !probability || axis.chi_squared < 0.0 {
@@ -200,7 +200,7 @@ fn decode_axis(rest: &mut &[u8]) -> Option<AxisRecord> {
             return None;
         }
     }
-    Some(AxisRecord {
+    Some(AxisCertificate {
         terms,
         correlations: Correlations::from_triangle(below),
         chi_squared: axis.chi_squared,
@@ -211,12 +211,12 @@ fn decode_axis(rest: &mut &[u8]) -> Option<AxisRecord> {
     })
 }
 
-fn decode_term(rest: &mut &[u8]) -> Option<RecordedTerm> {
+fn decode_term(rest: &mut &[u8]) -> Option<CertifiedTerm> {
     let term: WireTerm = take(rest)?;
     let mut shape = Vec::new();
     for _ in 0..term.shapes {
         let (value, lower, upper): WireShape = take(rest)?;
-        let one = RecordedShape {
+        let one = CertifiedShape {
             value,
             lower,
             upper,
@@ -224,16 +224,16 @@ fn decode_term(rest: &mut &[u8]) -> Option<RecordedTerm> {
         shape.push(one).ok()?;
     }
     let state = match term.state {
-        WireState::Measured => RecordedState::Measured,
-        WireState::UpperBound => RecordedState::UpperBound,
-        WireState::NotObservable(after_s) => RecordedState::NotObservable { after_s },
+        WireState::Measured => CertifiedState::Measured,
+        WireState::UpperBound => CertifiedState::UpperBound,
+        WireState::NotObservable(after_s) => CertifiedState::NotObservable { after_s },
     };
     let valued = term.value.is_finite() && term.value >= 0.0 && term.square_error >= 0.0;
     let ordered = term.lower <= term.value && term.value <= term.upper;
-    if !valued || (state == RecordedState::Measured && !ordered) {
+    if !valued || (state == CertifiedState::Measured && !ordered) {
         return None;
     }
-    Some(RecordedTerm {
+    Some(CertifiedTerm {
         effect: EffectCode::from_number(term.effect)?,
         value: term.value,
         lower: term.lower,

@@ -1,6 +1,6 @@
 //! Snapshots of an accumulator alone: its sums as bytes that survive a restart.
 //!
-//! The payload of the [envelope](crate::envelope), version 1, as postcard writes it: numbers of more
+//! The payload of the [envelope](crate::storage::envelope), version 1, as postcard writes it: numbers of more
 //! than a byte are varints, seven bits a byte, lowest first. [`Axes`](crate::Axes) write version 2.
 //!
 //! | content | type |
@@ -11,15 +11,11 @@
 //! | of each octave, `m = 1, 2, 4, …`: number of differences | u64 |
 //! | of each octave, behind its number: Σ D² in counts², lowest limb first | 3 × u64 |
 
-mod interval;
-
-pub use interval::SnapshotInterval;
-
+use super::envelope::{self, Kind, OVERHEAD, Writer};
 use crate::{
-    envelope::{self, Kind, OVERHEAD, Writer},
-    error::Error,
     octave::{Accumulator, OctaveSum},
     square_sum::SquareSum,
+    storage::Error,
 };
 use serde::{Deserialize, Serialize};
 
@@ -61,8 +57,8 @@ impl<'b> Snapshot<'b> {
     /// Opens what [`Accumulator::snapshot`] wrote, and checks all of it.
     ///
     /// # Errors
-    /// [`Error::Foreign`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::OtherKind`],
-    /// [`Error::OtherVersion`]; [`Error::Impossible`] for sums that so many samples cannot have.
+    /// [`Error::UnknownMagic`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::WrongKind`],
+    /// [`Error::UnknownVersion`]; [`Error::Impossible`] for sums that so many samples cannot have.
     pub fn open(bytes: &'b [u8]) -> Result<Self, Error> {
         let payload = envelope::open(bytes, Kind::Snapshot, VERSION)?;
         let (head, sums) =
@@ -198,12 +194,12 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// then, and no difference spans the moment.
     ///
     /// # Errors
-    /// Of [`Snapshot::open`]; [`Error::OtherOctaves`].
+    /// Of [`Snapshot::open`]; [`Error::WrongOctaves`].
     pub fn restore(bytes: &[u8]) -> Result<Self, Error> {
         let snapshot = Snapshot::open(bytes)?;
         let found = usize::from(snapshot.octaves);
         if found != OCTAVES {
-            return Err(Error::OtherOctaves {
+            return Err(Error::WrongOctaves {
                 found,
                 wanted: OCTAVES,
             });

@@ -1,6 +1,7 @@
 //! Snapshots in flash.
 
-use crate::{error::Error, octave::Accumulator};
+use super::error::Error;
+use crate::octave::Accumulator;
 use core::ops::Range;
 use embedded_storage_async::nor_flash::NorFlash;
 use sequential_storage::{
@@ -21,7 +22,7 @@ use sequential_storage::{
 /// # Example
 ///
 /// ```
-/// use allanite::{Accumulator, SnapshotInterval, SnapshotStore, StoreError};
+/// use allanite::{Accumulator, storage::{SnapshotInterval, SnapshotStore, StoreError}};
 /// use embedded_storage_async::nor_flash::NorFlash;
 ///
 /// /// What a task does at every sample.

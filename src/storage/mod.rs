@@ -1,0 +1,20 @@
+//! What outlives the power: snapshots of a record in progress, certificates of a finished one, and flash to
+//! keep them in. Everything is stored in an [`envelope`] with a checksum.
+
+pub mod certificate;
+pub mod envelope;
+mod error;
+#[cfg(feature = "flash")]
+mod flash;
+mod interval;
+pub mod snapshot;
+
+pub use certificate::{
+    AxisCertificate, Certificate, CertifiedShape, CertifiedState, CertifiedTerm, Conditions,
+    EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit,
+};
+pub use error::Error;
+#[cfg(feature = "flash")]
+pub use flash::{SnapshotStore, StoreError};
+pub use interval::SnapshotInterval;
+pub use snapshot::Snapshot;

@@ -78,8 +78,9 @@ impl Gaussian {
             ready: Vec::with_capacity(length),
             at: 0,
         };
-        // The first block lacks the noise before it.
         gaussian.fill(random);
+        // The first of the two blocks lacks the noise before it.
+        gaussian.at = gaussian.carried.len();
         gaussian
     }
 
@@ -176,7 +177,8 @@ fn length(effect: &dyn Effect, shape: &SampledShape) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use allanite::effect::{Distribution, EXPLAINED, IEEE_952};
+    use allanite::effect::{Distribution, EXPLAINED, GaussMarkov, IEEE_952};
+    use rand::SeedableRng;
 
     /// Autocovariance of the moving average.
     fn of(weights: &[f64], lag: usize) -> f64 {
@@ -192,6 +194,40 @@ mod tests {
             .map(|i| (m - i.abs()) as f64 * (at(i) - at(i + m)))
             .sum();
         sum / (m * m) as f64
+    }
+
+    /// Wherever a record is looked at: at its beginning, and on both sides of where blocks meet.
+    #[test]
+    fn noise_is_stationary_from_the_first_sample_on() {
+        const SEEDS: u64 = 1000;
+        let shape = SampledShape {
+            interval_s: 0.01,
+            parameters: [0.1, 0.0],
+        };
+        let block = weights(&GaussMarkov, &shape).len();
+        let places = [0, 1, block - 1, block, 2 * block, 3 * block - 1, 3 * block];
+        let mut squares = [0.0; 7];
+        let mut steps = [0.0; 7];
+        for seed in 0..SEEDS {
+            let mut random = Random::seed_from_u64(seed);
+            let mut gaussian = Gaussian::new(&GaussMarkov, &shape, 2.0, &mut random);
+            let record: Vec<f64> = (0..=3 * block + 1)
+                .map(|_| gaussian.next(&mut random))
+                .collect();
+            for (i, &place) in places.iter().enumerate() {
+                squares[i] += record[place].powi(2) / SEEDS as f64;
+                steps[i] += (record[place + 1] - record[place]).powi(2) / SEEDS as f64;
+            }
+        }
+        // Mean squares of 1000 normal numbers scatter by 4.5 %.
+        let step = 2.0 * 4.0 * (1.0 - (-0.1_f64).exp());
+        for (i, place) in places.iter().enumerate() {
+            assert!(
+                (squares[i] / 4.0 - 1.0).abs() < 0.2,
+                "at {place}: {squares:?}"
+            );
+            assert!((steps[i] / step - 1.0).abs() < 0.2, "at {place}: {steps:?}");
+        }
     }
 
     #[test]

@@ -3,21 +3,22 @@
 mod evidence;
 mod gate;
 mod kept;
-mod part;
+mod moments;
 mod sample;
 #[cfg(feature = "storage")]
 mod snapshot;
 
 pub use evidence::AxisEvidence;
-pub use part::{GatePart, Gated, MomentPart, Moments};
+pub use gate::{GatePart, Gated};
+pub use moments::{MomentPart, Moments};
 pub use sample::Sample;
 
 use crate::{
     integrity::{Integrity, InvalidLimit, Limits},
     octave::Accumulator,
 };
+use gate::{Passed, Passing};
 use kept::Kept;
-use part::{Passed, Passing as _};
 
 /// One axis: [`Axes`] of a gyro of which one axis is recorded.
 pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = Moments> =
@@ -104,7 +105,7 @@ where
     /// An empty record, judged by the [default limits](Limits::DEFAULT).
     pub const fn new() -> Self {
         Self {
-            gate: <G::State<AXES, COVARIATES> as part::Passing<AXES, COVARIATES>>::NEW,
+            gate: <G::State<AXES, COVARIATES> as Passing<AXES, COVARIATES>>::NEW,
             kept: Kept::NEW,
             losses: 0,
         }

@@ -1,6 +1,10 @@
 //! What a record tells of one axis: its curve, and all that a diagnosis takes beside it.
 
-use super::{Axes, GatePart, MomentPart, gate::Gate, part::MomentSums as _, part::Passing as _};
+use super::{
+    Axes,
+    gate::{Gate, GatePart, Passing as _},
+    moments::{MomentPart, MomentSums as _},
+};
 use crate::{
     covariate::CrossCurve,
     curve::{Curve, Scale},

@@ -1,10 +1,104 @@
 //! The gate: leaves out what integrity finds odd, before anything is summed.
 
-use super::{
-    part::{Passed, Passing},
-    sample::Sample,
-};
+use super::sample::Sample;
 use crate::integrity::{Integrity, InvalidLimit, Limits, Observation};
+use core::fmt::Debug;
+
+/// Leaves out odd samples before anything is summed: `G` of [`Axes`](super::Axes).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gated;
+
+/// What can stand for `G` of [`Axes`](super::Axes): [`Gated`], or `()` for no gate.
+pub trait GatePart: Clone + Debug + PartialEq + Eq {
+    /// The state of the gate.
+    #[doc(hidden)]
+    type State<const AXES: usize, const COVARIATES: usize>: Passing<AXES, COVARIATES>;
+}
+
+impl GatePart for Gated {
+    type State<const AXES: usize, const COVARIATES: usize> = Gate<AXES, COVARIATES>;
+}
+
+impl GatePart for () {
+    type State<const AXES: usize, const COVARIATES: usize> = ();
+}
+
+/// What a gate lets go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passed<const AXES: usize, const COVARIATES: usize> {
+    /// Nothing yet: the sample is held back.
+    Nothing,
+    /// A sample.
+    Sample(Sample<AXES, COVARIATES>),
+    /// The place of a sample that was left out or lost.
+    Gap,
+}
+
+/// How samples pass a gate. Without one, everything passes at once.
+pub trait Passing<const AXES: usize, const COVARIATES: usize>:
+    Clone + Debug + PartialEq + Eq
+{
+    /// Nothing seen yet.
+    const NEW: Self;
+
+    /// Whether there is a gate.
+    const EXISTS: bool;
+
+    /// The same with limits of what is odd.
+    fn set_limits(&mut self, limits: &'static Limits) -> Result<(), InvalidLimit>;
+
+    /// A sample comes; what passes now.
+    fn push(&mut self, sample: Sample<AXES, COVARIATES>) -> Passed<AXES, COVARIATES>;
+
+    /// The next sample does not adjoin the last; what passes now.
+    fn gap(&mut self) -> Passed<AXES, COVARIATES>;
+
+    /// The oldest that is held back; [`Passed::Nothing`] where nothing is.
+    fn release(&mut self) -> Passed<AXES, COVARIATES>;
+
+    /// Adds what another gate saw, which holds nothing back.
+    fn merge(&mut self, other: &Self);
+
+    /// The gate itself, if there is one.
+    fn gate(&self) -> Option<&Gate<AXES, COVARIATES>>;
+
+    /// The gate itself, if there is one.
+    #[cfg(feature = "storage")]
+    fn gate_mut(&mut self) -> Option<&mut Gate<AXES, COVARIATES>>;
+}
+
+impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES> for () {
+    const NEW: Self = ();
+    const EXISTS: bool = false;
+
+    fn set_limits(&mut self, _: &'static Limits) -> Result<(), InvalidLimit> {
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn push(&mut self, sample: Sample<AXES, COVARIATES>) -> Passed<AXES, COVARIATES> {
+        Passed::Sample(sample)
+    }
+
+    fn gap(&mut self) -> Passed<AXES, COVARIATES> {
+        Passed::Gap
+    }
+
+    fn release(&mut self) -> Passed<AXES, COVARIATES> {
+        Passed::Nothing
+    }
+
+    fn merge(&mut self, (): &Self) {}
+
+    fn gate(&self) -> Option<&Gate<AXES, COVARIATES>> {
+        None
+    }
+
+    #[cfg(feature = "storage")]
+    fn gate_mut(&mut self) -> Option<&mut Gate<AXES, COVARIATES>> {
+        None
+    }
+}
 
 /// Samples of a cluster that integrity takes to see motion.
 const CLUSTER: u8 = 64;

@@ -1,7 +1,7 @@
 //! What is kept of a record, behind the gate.
 
 use super::{
-    part::{MomentPart, MomentSums},
+    moments::{MomentPart, MomentSums},
     sample::Sample,
 };
 use crate::{

@@ -17,10 +17,7 @@
 //! | with a gate: samples left out, and of each axis the integrity of what it saw | u64, … |
 //! | of each self-test: plan, next look, probability left, limits kept, verdict | |
 
-use super::{
-    Axes, GatePart, MomentPart,
-    part::{MomentSums, Passing},
-};
+use super::{Axes, GatePart, MomentPart, gate::Passing, moments::MomentSums};
 use crate::{
     covariate::ProductSum,
     octave::{Accumulator, OctaveSum},

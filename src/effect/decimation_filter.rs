@@ -1,6 +1,6 @@
 use super::{
-    AngleRandomWalk, Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS,
-    Parameter, SampledShape, SearchRange, SecondDifferences,
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
+    SampledShape, SearchRange, SecondDifferences, angle_random_walk::AngleRandomWalk,
 };
 use crate::math;
 use crate::real::Real;

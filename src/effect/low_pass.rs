@@ -1,6 +1,6 @@
 use super::{
-    AngleRandomWalk, Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS,
-    Parameter, SampledShape, SearchRange, SecondDifferences, pole::Pole,
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
+    SampledShape, SearchRange, SecondDifferences, angle_random_walk::AngleRandomWalk, pole::Pole,
 };
 use crate::real::Real;
 

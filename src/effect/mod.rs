@@ -11,15 +11,14 @@
 //! a firmware's own takes the same file anywhere and a place in the list that the firmware hands to
 //! [`Diagnosis`](crate::Diagnosis).
 
-mod description;
+mod definition;
 mod explanation;
 mod pole;
 mod sampled_shape;
 mod search_range;
 
-use crate::real::Real;
 pub use crate::{lattice::SecondDifferences, limits::MAX_PARAMETERS};
-pub use description::{Description, Distribution, FIRST_OWN_CODE, Parameter};
+pub use definition::{Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Response};
 pub use explanation::{Explain, Explanation};
 pub use sampled_shape::SampledShape;
 pub use search_range::{SearchRange, Span};
@@ -90,86 +89,4 @@ pub fn explanation(name: &str) -> Option<Explanation> {
     let mut effects = EXPLAINED.iter();
     let named = effects.find(|effect| effect.description().name == name);
     named.map(|effect| effect.explanation())
-}
-
-/// The differences of adjacent cluster means that a deterministic effect makes.
-///
-/// The mean product of two such differences is `amplitude(m_j) · amplitude(m_k) · cos(phase · y)`,
-/// divided by τ_j τ_k, where `m_j` and `m_k` are the averaging factors and `y` is the distance of
-/// their middles in samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Response {
-    /// Root-mean-square of a difference, times τ, in seconds times the rate unit per unit of the
-    /// coefficient. The sign tells two differences in phase from two in opposition.
-    pub amplitude: Real,
-    /// Phase from one sample to the next, in radians: 0 for a ramp, whose differences are all the
-    /// same.
-    pub phase: Real,
-}
-
-/// A physical effect that shows in an Allan curve.
-///
-/// Only the description and the kernel have to be given. Everything else has a default that follows
-/// from the kernel; an effect overrides it where a closed form is faster or cancels less.
-///
-/// The coefficient enters every covariance squared. All functions are for a coefficient of one, take
-/// lags `lag`, `x` and averaging factors `m` in samples, and expect `m ≥ 1` and finite arguments.
-pub trait Effect: Sync {
-    /// Name, parameters, unit and relations of the effect.
-    fn description(&self) -> &'static Description;
-
-    /// The generalised covariance `G(n)` of the angle, for `lag = n ≥ 0` samples, in s² times the
-    /// rate unit squared per coefficient squared. A constant and a multiple of `n²` are free.
-    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real;
-
-    /// The second difference `G(x + m) − 2 G(x) + G(|x − m|)` of the kernel for `x ≥ 0`, up to a
-    /// constant, in the unit of the kernel.
-    ///
-    /// The default cancels for `x ≫ m`: an effect that has a closed form overrides it.
-    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        let apart = if x < m { m - x } else { x - m };
-        self.kernel(x + m, shape) - 2.0 * self.kernel(x, shape) + self.kernel(apart, shape)
-    }
-
-    /// Allan variance `σ²(mτ₀)`, in the rate unit squared per coefficient squared.
-    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
-        let tau_s = m * shape.interval_s;
-        let at_m = self.second_difference(m, m, shape);
-        (at_m - self.second_difference(0.0, m, shape)) / (tau_s * tau_s)
-    }
-
-    /// Hands the Allan variances at ascending averaging factors to `each`. An effect overrides it
-    /// where the variance of one octave leads to that of the next.
-    fn variances(
-        &self,
-        factors: &mut dyn Iterator<Item = Real>,
-        shape: &SampledShape,
-        each: &mut dyn FnMut(Real),
-    ) {
-        for m in factors {
-            each(self.variance(m, shape));
-        }
-    }
-
-    /// Adds `weight` times the second differences for clusters of `m` samples, at every lag of the
-    /// lattice `sum`.
-    fn add_second_differences(
-        &self,
-        m: Real,
-        weight: Real,
-        shape: &SampledShape,
-        sum: &mut SecondDifferences,
-    ) {
-        sum.add(m, |x| weight * self.second_difference(x, m, shape));
-    }
-
-    /// The response of a deterministic effect to clusters of `m` samples; `None` for a random one.
-    ///
-    /// A deterministic effect is the same in every record but for its phase. It shifts the curve,
-    /// but scatters it only where random effects beat against it.
-    fn response(&self, m: Real, shape: &SampledShape) -> Option<Response> {
-        let _ = (m, shape);
-        None
-    }
 }

@@ -1,6 +1,6 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, GaussMarkov, MAX_PARAMETERS,
-    SampledShape, SecondDifferences, gauss_markov,
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, SampledShape,
+    SecondDifferences, gauss_markov, gauss_markov::GaussMarkov,
 };
 use crate::real::Real;
 

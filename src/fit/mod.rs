@@ -23,8 +23,7 @@ pub use crate::{
 pub use correlation::Correlations;
 pub use fitting::{Fitting, fit};
 pub use method::{ADEQUATE_P, Method, Options};
-pub use result::Fit;
-pub use shape::ShapeEstimate;
+pub use result::{Fit, ShapeEstimate};
 
 pub(crate) use estimate::Estimator;
 pub(crate) use fitting::Work;

@@ -1,15 +1,28 @@
 //! What a fit returns.
 
-use super::{
-    method::{ADEQUATE_P, Method},
-    shape::ShapeEstimate,
-};
+use super::method::{ADEQUATE_P, Method};
 use crate::{
     coefficient::Coefficient,
     limits::{MAX_EFFECTS, MAX_SHAPE},
     real::Real,
 };
 use heapless::Vec;
+
+/// A fitted shape parameter, with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ShapeEstimate {
+    /// Place of the effect in the model.
+    pub term: usize,
+    /// The parameter's name, such as `frequency_hz`.
+    pub name: &'static str,
+    /// Best value.
+    pub value: Real,
+    /// Lower end of the interval.
+    pub lower: Real,
+    /// Upper end of the interval.
+    pub upper: Real,
+}
 
 /// Coefficients of a model, with what they are worth.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Uncertainty of fitted shapes, and what they add to that of the coefficients.
 
-use super::{problem::Problem, weights::Weights};
+use super::{problem::Problem, result::ShapeEstimate, weights::Weights};
 use crate::{
     algebra,
     limits::{MAX_SHAPE, TWO_SIDED_95},
@@ -14,22 +14,6 @@ use heapless::Vec;
 
 /// Relative step of the numerical derivatives.
 const STEP: Real = 0.01;
-
-/// A fitted shape parameter, with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ShapeEstimate {
-    /// Place of the effect in the model.
-    pub term: usize,
-    /// The parameter's name, such as `frequency_hz`.
-    pub name: &'static str,
-    /// Best value.
-    pub value: Real,
-    /// Lower end of the interval.
-    pub lower: Real,
-    /// Upper end of the interval.
-    pub upper: Real,
-}
 
 /// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
 /// linear around the solution.

@@ -1,8 +1,9 @@
 //! What has been seen of a record, whatever the limits.
 
 use super::{
-    Limits, Observation,
     cluster::Cluster,
+    limits::Limits,
+    observation::Observation,
     rails::Rails,
     runs::Runs,
     watch::{Fate, Rule, Watch, square},

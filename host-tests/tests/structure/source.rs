@@ -79,6 +79,10 @@ impl Crate {
             match item {
                 Item::Use(import) => module.import(&import.tree, &mut Vec::new()),
                 Item::Macro(_) => module.calls_macros = true,
+                // What lies elsewhere belongs to the file that brings it in.
+                Item::Mod(inner) if inner.attrs.iter().any(|one| one.path().is_ident("path")) => {
+                    module.defined.insert(inner.ident.to_string());
+                }
                 Item::Mod(inner) => {
                     if let Some((_, items)) = &inner.content {
                         let path = [&path[..], &[inner.ident.to_string()]].concat();

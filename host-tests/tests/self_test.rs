@@ -224,3 +224,34 @@ fn devices_at_the_limit_are_seldom_passed_or_failed() {
     let good = study(CASES[0], 0.5, 50, Looks::Early);
     assert_eq!((good.passed, good.failed), (1.0, 0.0));
 }
+
+#[test]
+fn a_look_in_pieces_judges_the_record_that_it_began_with() {
+    let new = || {
+        let plan = plan(&[("angle_random_walk", 0.00505)]);
+        SelfTest::<16>::new(plan, scale()).unwrap()
+    };
+    let (mut whole, mut pieces, mut gyro) = (new(), new(), Gyro::new());
+    let mut looks = 0;
+    for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7) {
+        gyro.push((rate / UNIT).round() as i32);
+        if !whole.is_due(gyro.samples()) {
+            continue;
+        }
+        let record = gyro.evidence(0, scale(), []).unwrap();
+        let expected = whole.look(record.samples, &record.curve, record.invalid);
+        let mut look = pieces.begin_look(record.samples, record.curve, record.invalid);
+        let mut calls = 1;
+        while !look.advance() {
+            calls += 1;
+        }
+        assert!(calls > 10, "{calls} pieces");
+        assert_eq!(pieces.conclude(&look), expected);
+        looks += 1;
+        if !matches!(expected, Status::Running { .. }) {
+            break;
+        }
+    }
+    assert!(looks > 1, "{looks} looks");
+    assert_eq!(pieces, whole);
+}

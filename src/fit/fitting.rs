@@ -8,7 +8,7 @@ use super::{
     result::Fit,
     solver::{Solver, Start, Tolerance},
 };
-use crate::{curve::Curve, error::Error, model::Model};
+use crate::{curve::Curve, error::Error, model::Model, real::Real};
 
 /// Fits a model's coefficients to a curve.
 ///
@@ -102,6 +102,17 @@ impl<const K: usize> Fitting<K> {
             }
         }
         Ok(self.stage.is_none().then_some(&self.fit))
+    }
+
+    /// The fit as far as it is complete.
+    pub(crate) const fn so_far(&self) -> &Fit {
+        &self.fit
+    }
+
+    /// The standard error of a squared coefficient with its neighbours in the model free.
+    pub(crate) fn error_beside(&self, i: usize) -> Real {
+        let problem = Problem::new(&self.curve, &self.model, &self.work.columns);
+        self.work.solver.error_beside(&problem, i)
     }
 
     /// The curve that is fitted.

@@ -1,6 +1,7 @@
 //! A self-test with limits: it looks at a growing record, and gives a verdict as soon as the record bears one.
 
 mod decide;
+mod look;
 mod plan;
 #[cfg(feature = "storage")]
 mod stored;
@@ -8,16 +9,16 @@ mod stored;
 #[cfg(feature = "storage")]
 pub(crate) use stored::LONGEST;
 
+pub use look::Look;
 pub use plan::{InvalidPlan, Limit, Plan};
 
 use crate::{
     algebra::Choice,
     coefficient::{Coefficient, State},
     curve::{Curve, Scale},
-    fit::{Estimator, Fit, Options, Problem, Start, Tolerance, Work, check},
+    fit::Fitting,
     integrity::Reason,
     list::numbered,
-    model::Model,
     real::{Real, real, single},
 };
 use decide::{Side, quantile, side};
@@ -188,19 +189,24 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         }
     }
 
-    /// Takes a look at the curve of a record of so many samples, where one [is due](Self::is_due), and says
-    /// how the test stands. `invalid` is why the curve is not valid, as of
-    /// [`Axes::verdict`](crate::Axes::verdict). It takes a [`fit`](crate::fit()).
-    pub fn look(
-        &mut self,
+    /// Begins a look at the curve of a record of so many samples, where one [is due](Self::is_due).
+    /// `invalid` is why the curve is not valid, as of [`Axes::verdict`](crate::Axes::verdict).
+    pub fn begin_look(
+        &self,
         samples: u64,
-        curve: &Curve<OCTAVES>,
+        curve: Curve<OCTAVES>,
         invalid: Option<Reason>,
-    ) -> Status {
+    ) -> Look<OCTAVES> {
+        Look::new(samples, curve, invalid)
+    }
+
+    /// Takes up a look that is [complete](Look::advance), and says how the test stands.
+    pub fn conclude(&mut self, look: &Look<OCTAVES>) -> Status {
+        let samples = look.samples;
         if self.is_due(samples) {
-            self.progress.status = match invalid {
+            self.progress.status = match look.invalid {
                 Some(reason) => Status::Invalid(reason),
-                None => self.judge(samples, curve),
+                None => self.judge(samples, look.fitting.as_ref()),
             };
             while self.progress.next <= samples {
                 let twice = self.progress.next.saturating_mul(2);
@@ -210,38 +216,41 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         self.status(samples)
     }
 
+    /// Takes a whole look in one go, and says how the test stands: [`begin_look`](Self::begin_look),
+    /// [`Look::advance`] until it is complete, and [`conclude`](Self::conclude). It takes a
+    /// [`fit`](crate::fit::fit()) where a look is due, and next to nothing otherwise.
+    pub fn look(
+        &mut self,
+        samples: u64,
+        curve: &Curve<OCTAVES>,
+        invalid: Option<Reason>,
+    ) -> Status {
+        if !self.is_due(samples) {
+            return self.status(samples);
+        }
+        let mut look = self.begin_look(samples, curve.clone(), invalid);
+        while !look.advance() {}
+        self.conclude(&look)
+    }
+
     /// Share of the longest record that is there.
     fn share(&self, samples: u64) -> f32 {
         single((samples as Real / self.last as Real).min(1.0))
     }
 
     #[inline(never)]
-    fn judge(&mut self, samples: u64, curve: &Curve<OCTAVES>) -> Status {
+    fn judge(&mut self, samples: u64, fitting: Option<&Fitting<OCTAVES>>) -> Status {
         let is_last = samples >= self.last;
         let seconds = samples as Real / self.scale.rate_hz();
-        let model = Model::ieee_952();
-        let mut work = Work::new();
-        let tolerance = Tolerance::IfNeeded(Options::default().tolerance);
-        let solved = check(curve.points(), 2)
-            .and_then(|()| work.begin_at(curve, &model, Start::Independent, tolerance))
-            .and_then(|()| {
-                let problem = Problem::new(curve, &model, &work.columns);
-                while !work.solver.advance(&problem)? {}
-                Ok(())
-            });
-        let problem = Problem::new(curve, &model, &work.columns);
-        let solver = &work.solver;
-        if solved.is_err() {
+        let Some(fitting) = fitting else {
             // Gaps may have left too few differences; the first limit stands for all.
             return if is_last {
                 self.undecided(0, None)
             } else {
                 self.running(samples, Real::INFINITY)
             };
-        }
-        let mut fit = Fit::empty();
-        let mut estimator = Estimator::new(&problem, solver, &mut fit);
-        while !estimator.advance(&problem, solver, &mut fit) {}
+        };
+        let (fit, model) = (fitting.so_far(), fitting.model());
         let spent = if is_last { 1.0 } else { 0.5 } * self.progress.fail_left;
         self.progress.fail_left -= spent;
         let fail = quantile(spent);
@@ -261,7 +270,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             let Some(coefficient) = fit.coefficients.get(at) else {
                 continue;
             };
-            let beside = solver.error_beside(&problem, at);
+            let beside = fitting.error_beside(at);
             match side(coefficient, beside, limit.most, self.pass, fail) {
                 Side::Below => self.progress.kept.add(i),
                 Side::Above => {

@@ -227,10 +227,7 @@ fn devices_at_the_limit_are_seldom_passed_or_failed() {
 
 #[test]
 fn a_look_in_pieces_judges_the_record_that_it_began_with() {
-    let new = || {
-        let plan = plan(&[("angle_random_walk", 0.00505)]);
-        SelfTest::<16>::new(plan, scale()).unwrap()
-    };
+    let new = || SelfTest::<16>::new(plan("angle_random_walk", 0.00505), scale()).unwrap();
     let (mut whole, mut pieces, mut gyro) = (new(), new(), Gyro::new());
     let mut looks = 0;
     for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7) {

@@ -17,18 +17,20 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// The grid of a parameter that an effect does not have.
-    const SINGLE: Self = Self {
-        low: 0.0,
-        high: 0.0,
-        log_step: 0.0,
-        steps: 1,
-    };
+    /// The grid of a single value.
+    pub(super) const fn only(value: Real) -> Self {
+        Self {
+            low: value,
+            high: value,
+            log_step: 0.0,
+            steps: 1,
+        }
+    }
 
     /// The grid of a parameter, of a single step if the effect does not have it.
     pub(super) fn of(effect: &dyn Effect, parameter: usize, span: &Span) -> Self {
         let Some(range) = effect.search_range(parameter, span) else {
-            return Self::SINGLE;
+            return Self::only(0.0);
         };
         if effect.is_whole(parameter) {
             return Self {

@@ -4,7 +4,7 @@ use super::{
     EVALUATIONS_A_CALL,
     grid::Grid,
     likelihood::{Evaluation, Found},
-    refinement::Refinement,
+    search::GridSearch,
 };
 use crate::{
     effect::Span,
@@ -116,7 +116,7 @@ enum Stage {
     /// Other whole numbers come next.
     Choosing,
     /// Their best shape is looked for.
-    Refining(Refinement),
+    Searching(GridSearch),
 }
 
 impl JointInterval {
@@ -169,13 +169,14 @@ impl JointInterval {
                     }
                 }
                 Stage::Choosing => {
-                    let Some(term) = self.next_whole(span) else {
+                    let Some((j, value)) = self.next_whole(span) else {
                         return Some((self.lower, self.upper));
                     };
-                    self.stage = Stage::Refining(Refinement::of_known(evaluation, term, span));
+                    let effect = self.known.term.effect;
+                    self.stage = Stage::Searching(GridSearch::with(effect, j, value, span));
                 }
-                Stage::Refining(refinement) => {
-                    if let Some(found) = refinement.advance(evaluation) {
+                Stage::Searching(search) => {
+                    if let Some(found) = search.advance(evaluation) {
                         self.best = found;
                         self.ends = [End::new(-1.0), End::new(1.0)];
                         let as_good = found.chi_squared < self.known.chi_squared + RISE;
@@ -185,7 +186,7 @@ impl JointInterval {
                             Stage::Choosing
                         };
                     }
-                    // A refinement has done as many evaluations as a call may.
+                    // A search has done as many evaluations as a call may.
                     return None;
                 }
             }
@@ -193,17 +194,16 @@ impl JointInterval {
         None
     }
 
-    /// The shape with the next value of a whole-numbered parameter.
-    fn next_whole(&mut self, span: &Span) -> Option<Term> {
-        let term = self.known.term;
-        let count = term.effect.parameters().len().min(MAX_PARAMETERS);
+    /// The next value of a whole-numbered parameter, and which one it is of.
+    fn next_whole(&mut self, span: &Span) -> Option<(usize, Real)> {
+        let effect = self.known.term.effect;
+        let count = effect.parameters().len().min(MAX_PARAMETERS);
         while self.whole < count {
-            let grid = Grid::of(term.effect, self.whole, span);
-            if term.effect.is_whole(self.whole) && self.step < grid.steps {
-                let mut other = term;
-                other.set_parameter(self.whole, grid.at(self.step));
+            let grid = Grid::of(effect, self.whole, span);
+            if effect.is_whole(self.whole) && self.step < grid.steps {
+                let value = grid.at(self.step);
                 self.step = self.step.saturating_add(1);
-                return Some(other);
+                return Some((self.whole, value));
             }
             self.whole = self.whole.saturating_add(1);
             self.step = 0;

@@ -5,13 +5,10 @@ use super::{
     grid::Grid,
     likelihood::{Evaluation, Found},
 };
-use crate::{effect::Span, limits::MAX_PARAMETERS, math, model::Term, real::Real};
+use crate::{limits::MAX_PARAMETERS, math, real::Real};
 
 /// How often the step is halved: from half a grid step to a 32nd.
 const HALVINGS: u8 = 5;
-
-/// The first step of the logarithm from a shape that was fitted before.
-const KNOWN_STEP: Real = 0.1;
 
 /// A way downhill from a shape, one parameter after the other, in steps of the logarithm that are
 /// halved whenever a round is over.
@@ -27,7 +24,7 @@ pub(crate) struct Refinement {
 
 impl Refinement {
     /// Refines a shape that a grid search found.
-    pub(super) fn of_grid(best: Found, grids: [Grid; MAX_PARAMETERS]) -> Self {
+    pub(super) fn new(best: Found, grids: [Grid; MAX_PARAMETERS]) -> Self {
         Self {
             best,
             steps: grids.map(|grid| 0.5 * grid.log_step),
@@ -35,21 +32,6 @@ impl Refinement {
             round: 0,
             parameter: 0,
             down: false,
-        }
-    }
-
-    /// Refines a shape that is known to within 10 %.
-    pub(crate) fn of_known<const K: usize>(
-        evaluation: &mut Evaluation<'_, K>,
-        term: Term,
-        span: &Span,
-    ) -> Self {
-        Self {
-            steps: [KNOWN_STEP; MAX_PARAMETERS],
-            ..Self::of_grid(
-                evaluation.found(term),
-                core::array::from_fn(|i| Grid::of(term.effect, i, span)),
-            )
         }
     }
 

@@ -10,6 +10,7 @@ use crate::{
     effect::{Effect, Span},
     limits::MAX_PARAMETERS,
     model::Term,
+    real::Real,
 };
 
 /// A search over the grid of an effect's shapes, whose best is refined.
@@ -35,6 +36,15 @@ impl GridSearch {
         }
     }
 
+    /// Begins to search among the shapes with this value of a parameter.
+    pub(super) fn with(effect: &'static dyn Effect, j: usize, value: Real, span: &Span) -> Self {
+        let mut search = Self::new(effect, span);
+        if let Some(grid) = search.grids.get_mut(j) {
+            *grid = Grid::only(value);
+        }
+        search
+    }
+
     /// Does some evaluations; returns the best shape when no more are to do.
     #[inline(never)]
     pub(crate) fn advance<const K: usize>(
@@ -47,7 +57,7 @@ impl GridSearch {
         let [first, second] = &self.grids;
         for _ in 0..EVALUATIONS_A_CALL {
             if self.at[0] >= first.steps {
-                self.refinement = Some(Refinement::of_grid(self.best, self.grids));
+                self.refinement = Some(Refinement::new(self.best, self.grids));
                 break;
             }
             self.term.parameters = [first.at(self.at[0]), second.at(self.at[1])];

@@ -59,7 +59,7 @@ pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = 
 /// # Example
 ///
 /// ```
-/// use allanite::{Axes, Model, Scale, diagnosis::Diagnosis, effect::CATALOGUE};
+/// use allanite::{Axes, Model, Scale, diagnosis::{Diagnosis, Options}, effect::CATALOGUE};
 ///
 /// // Three axes of 12 octaves, beside a temperature.
 /// static EMPTY: Axes<12, 1> = Axes::new();
@@ -79,8 +79,9 @@ pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = 
 /// // 131 counts per °/s at 100 Hz, 100 counts per kelvin.
 /// let x = axes.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [0.01])?;
 /// assert_eq!(x.invalid, None);
-/// let (diagnosis, model) = (Diagnosis::default(), Model::ieee_952());
-/// diagnosis.run(&x.curve, &x.evidence(), &model, &CATALOGUE, |step| println!("{}", step.comparison))?;
+/// let (model, options) = (Model::ieee_952(), Options::default());
+/// let diagnosis = Diagnosis::new(x.curve.clone(), x.evidence(), &model, &CATALOGUE, options)?;
+/// diagnosis.run(|step| println!("{}", step.comparison))?;
 /// # Ok::<(), allanite::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

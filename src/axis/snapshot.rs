@@ -125,7 +125,7 @@ where
     /// restored.restore(&mut [], stored)?;
     /// gyro.gap();
     /// assert_eq!(restored.accumulators(), gyro.accumulators());
-    /// # Ok::<(), allanite::Error>(())
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
     pub fn snapshot<'b>(
         &self,

@@ -152,7 +152,7 @@ fn an_interval_joins_the_whole_numbers_that_explain_a_curve_as_well() {
         ..replaced
     };
     let mut best = evaluation.found(replaced);
-    for (stages, step) in (1..=3).flat_map(|stages| (0..200).map(move |step| (stages, step))) {
+    for (stages, step) in (1..=2).flat_map(|stages| (0..200).map(move |step| (stages, step))) {
         best.improve(evaluation.found(shape(stages, step)));
     }
     let (lower, upper) = bounded(&mut evaluation, best.term);
@@ -160,7 +160,7 @@ fn an_interval_joins_the_whole_numbers_that_explain_a_curve_as_well() {
     // Every value that a brute-force scan over both parameters finds as good lies inside, and more than one
     // number of stages does.
     let mut inside = [0; 5];
-    for (stages, step) in (1..=3).flat_map(|stages| (0..200).map(move |step| (stages, step))) {
+    for (stages, step) in (1..=2).flat_map(|stages| (0..200).map(move |step| (stages, step))) {
         let term = shape(stages, step);
         if evaluation.found(term).chi_squared < best.chi_squared + 3.8 {
             let (margin, width_s) = (1.03, term.parameters[0]);

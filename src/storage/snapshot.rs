@@ -172,7 +172,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// let restored = Accumulator::<10>::restore(stored)?;
     /// accumulator.gap();
     /// assert_eq!(restored, accumulator);
-    /// # Ok::<(), allanite::Error>(())
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
     pub fn snapshot<'b>(&self, buffer: &'b mut [u8]) -> Result<&'b [u8], Error> {
         let mut writer = Writer::new(buffer, Kind::Snapshot, VERSION, longest(OCTAVES))?;

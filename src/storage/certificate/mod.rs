@@ -110,7 +110,7 @@ impl Conditions {
 /// let read = Certificate::decode(stored)?;
 /// assert_eq!(read.device, record.device);
 /// assert_eq!(read.axes[0].terms[1].effect.name(), "angle_random_walk");
-/// # Ok::<(), allanite::Error>(())
+/// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

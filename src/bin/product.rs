@@ -47,7 +47,7 @@ mod image {
             })
         });
         if let Err(error) = result {
-            defmt::error!("no diagnosis: {}", error);
+            defmt::error!("no diagnosis: {}", defmt::Debug2Format(&error));
             semihosting::process::exit(1);
         }
         semihosting::process::exit(0)

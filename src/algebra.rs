@@ -27,6 +27,7 @@ impl Number for f32 {
 pub(crate) struct Vector<const N: usize, E = Real>(SVector<E, N>);
 
 impl<const N: usize, E: Number> Vector<N, E> {
+    #[inline(always)]
     pub(crate) fn zeros() -> Self {
         Self(SVector::zeros())
     }
@@ -80,6 +81,7 @@ impl<const N: usize, E> From<SVector<E, N>> for Vector<N, E> {
 pub(crate) struct Triangle<const A: usize, const B: usize, E = Real>(SMatrix<E, A, B>);
 
 impl<const A: usize, const B: usize, E: Number> Triangle<A, B, E> {
+    #[inline(always)]
     pub(crate) fn zeros() -> Self {
         Self(SMatrix::zeros())
     }

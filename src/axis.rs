@@ -80,7 +80,7 @@ pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = 
 /// let x = axes.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [0.01])?;
 /// assert_eq!(x.invalid, None);
 /// let (model, options) = (Model::ieee_952(), Options::default());
-/// let diagnosis = Diagnosis::new(x.curve.clone(), x.evidence(), &model, &CATALOGUE, options)?;
+/// let mut diagnosis = Diagnosis::new(x.curve.clone(), x.evidence(), &model, &CATALOGUE, options);
 /// diagnosis.run(|step| println!("{}", step.comparison))?;
 /// # Ok::<(), allanite::Error>(())
 /// ```

@@ -125,6 +125,7 @@ impl<const K: usize> Comparison<K> {
     }
 
     /// Of nothing yet.
+    #[inline(always)]
     pub(crate) const fn empty() -> Self {
         Self {
             octaves: Vec::new(),

@@ -37,6 +37,7 @@ pub(crate) struct NormalEquations {
 
 impl NormalEquations {
     /// Of no unknowns.
+    #[inline(always)]
     pub(crate) fn empty() -> Self {
         Self {
             scaled: Matrix::zeros(),

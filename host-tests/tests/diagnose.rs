@@ -315,8 +315,8 @@ fn the_way_not_taken_is_fitted_as_the_one_that_was() {
         let report = |step: &Step<OCTAVES>| steps.push(step.clone());
         let model = Model::ieee_952();
         let (evidence, options) = (Evidence::NONE, Options::default());
-        let diagnosis = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options);
-        diagnosis.unwrap().run(report).unwrap();
+        let mut diagnosis = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options);
+        diagnosis.run(report).unwrap();
         for (at, step) in steps.iter().enumerate() {
             let before = at.checked_sub(1).map(|before| &steps[before]);
             for (place, candidate) in step.candidates.iter().enumerate() {

@@ -29,6 +29,7 @@ pub(super) struct Judged {
 
 impl Judged {
     /// No judgement yet.
+    #[inline(always)]
     pub(super) fn none() -> Self {
         Self {
             squares: Vector::zeros(),

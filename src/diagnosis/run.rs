@@ -51,7 +51,7 @@ use crate::{
 /// let curve = gyro.curve(Scale::new(0.01, 100.0)?);
 /// let model = Model::ieee_952();
 /// let (evidence, options) = (Evidence::NONE, Options::default());
-/// let mut diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options)?;
+/// let mut diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options);
 /// let verdict = loop {
 ///     match diagnosis.advance()? {
 ///         Progress::Working => {} // feed the watchdog, take the next samples
@@ -86,6 +86,8 @@ pub struct Diagnosis<'a, const K: usize> {
 // Large variants share their memory: a diagnosis lies in it once, and is never copied.
 #[expect(clippy::large_enum_variant)]
 enum Stage<const K: usize> {
+    /// Nothing has been done yet.
+    Beginning,
     /// The step's model is fitted and compared.
     Judging(Judging<K>),
     /// Covariates are asked whether the rate follows them.
@@ -116,19 +118,17 @@ pub enum Progress<'s, const K: usize> {
 }
 
 impl<'a, const K: usize> Diagnosis<'a, K> {
-    /// Begins to look for what a model lacks.
-    ///
-    /// # Errors
-    /// [`Error::TooFewOctaves`] below two, [`Error::NoNoise`], [`Error::Singular`].
+    /// A diagnosis that looks for what a model lacks. It does not begin before it is advanced.
+    // Inlined, so that some 7 KiB are built where they stay and not moved there.
+    #[inline(always)]
     pub fn new(
         curve: Curve<K>,
         evidence: Evidence<'a, K>,
         model: &Model,
         effects: &'a [&'static dyn Effect],
         options: Options,
-    ) -> Result<Self, Error> {
-        check(curve.points(), 2)?;
-        let mut diagnosis = Self {
+    ) -> Self {
+        Self {
             span: curve.span(),
             curve,
             evidence,
@@ -140,17 +140,15 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
             additions: 0,
             preferred: None,
             work: Work::new(),
-            stage: Stage::Judging(Judging::new()),
-        };
-        diagnosis.judge(Start::Independent, Tolerance::IfNeeded(options.tolerance))?;
-        Ok(diagnosis)
+            stage: Stage::Beginning,
+        }
     }
 
     /// Does the whole diagnosis, and hands every step to `report`, the last one included.
     ///
     /// # Errors
     /// As of [`fit`](crate::fit::fit()).
-    pub fn run(mut self, mut report: impl FnMut(&Step<K>)) -> Result<Verdict, Error> {
+    pub fn run(&mut self, mut report: impl FnMut(&Step<K>)) -> Result<Verdict, Error> {
         loop {
             match self.advance()? {
                 Progress::Working => {}
@@ -230,7 +228,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
             Stage::Swapping(swapping) => {
                 Ok(swapping.advance(curve, effects, &contest, work, step, best))
             }
-            Stage::Reported | Stage::Finished(_) => Ok(true),
+            Stage::Beginning | Stage::Reported | Stage::Finished(_) => Ok(true),
         }
     }
 
@@ -238,6 +236,11 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
     #[inline(never)]
     fn go_on(&mut self) -> Result<(), Error> {
         match &mut self.stage {
+            Stage::Beginning => {
+                check(self.curve.points(), 2)?;
+                let tolerance = Tolerance::IfNeeded(self.options.tolerance);
+                self.judge(Start::Independent, tolerance)?;
+            }
             Stage::Judging(_) => {
                 self.step.begin_report();
                 if self.has_room()

@@ -125,6 +125,7 @@ pub struct Step<const K: usize> {
 
 impl<const K: usize> Step<K> {
     /// A step of which only the model is known.
+    #[inline(always)]
     pub(super) fn of(model: &Model) -> Self {
         Self {
             model: model.clone(),

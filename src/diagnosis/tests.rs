@@ -136,10 +136,10 @@ fn a_diagnosis_in_pieces_reports_what_one_in_one_go_reports() {
     let (model, options) = (Model::ieee_952(), Options::default());
     let new = || Diagnosis::new(with_sinusoid(), Evidence::NONE, &model, &CATALOGUE, options);
     let mut whole = heapless::Vec::<Step<OCTAVES>, 4>::new();
-    let verdict = new().unwrap().run(|step| whole.push(step.clone()).unwrap());
+    let verdict = new().run(|step| whole.push(step.clone()).unwrap());
     assert_eq!(verdict, Ok(Verdict::Improved));
 
-    let mut diagnosis = new().unwrap();
+    let mut diagnosis = new();
     let mut at = 0;
     let mut pieces = 0;
     let verdict = loop {
@@ -164,7 +164,6 @@ fn the_list_of_candidates_shows_what_the_next_step_has() {
     let (model, options) = (Model::ieee_952(), Options::default());
     let mut steps = heapless::Vec::<Step<OCTAVES>, 4>::new();
     Diagnosis::new(with_sinusoid(), Evidence::NONE, &model, &CATALOGUE, options)
-        .unwrap()
         .run(|step| steps.push(step.clone()).unwrap())
         .unwrap();
     let mut compared = 0;
@@ -188,11 +187,10 @@ fn a_curve_of_two_octaves_is_too_short() {
     let short = Curve::<OCTAVES>::new(100.0, octaves).unwrap();
     let (model, options) = (Model::ieee_952(), Options::default());
     let mut steps = 0;
-    let verdict = Diagnosis::new(short, Evidence::NONE, &model, &CATALOGUE, options)
-        .unwrap()
-        .run(|step| {
-            assert!(step.fit.p_value.is_nan());
-            steps += 1;
-        });
+    let mut diagnosis = Diagnosis::new(short, Evidence::NONE, &model, &CATALOGUE, options);
+    let verdict = diagnosis.run(|step| {
+        assert!(step.fit.p_value.is_nan());
+        steps += 1;
+    });
     assert_eq!((verdict, steps), (Ok(Verdict::TooShort), 1));
 }

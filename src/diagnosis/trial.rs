@@ -40,6 +40,7 @@ pub(super) struct Fitted {
 
 impl Fitted {
     /// A model of no effects.
+    #[inline(always)]
     pub(super) fn empty() -> Self {
         Self {
             model: Model::default(),

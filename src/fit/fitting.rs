@@ -35,9 +35,8 @@ pub fn fit<const K: usize>(
 ) -> Result<Fit, Error> {
     let mut fit = Fit::empty();
     let mut work = Work::new();
-    if let Some(mut stage) = Stage::begin(curve, model, options, &mut work, &mut fit)? {
-        while !stage.advance(curve, model, &mut work, &mut fit)? {}
-    }
+    let mut stage = Stage::Beginning;
+    while !stage.advance(curve, model, options, &mut work, &mut fit)? {}
     Ok(fit)
 }
 
@@ -52,7 +51,7 @@ pub fn fit<const K: usize>(
 ///
 /// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1 << k) as Real));
 /// let curve = Curve::<10>::new(100.0, white)?;
-/// let mut fitting = Fitting::new(curve, Model::ieee_952(), Options::default())?;
+/// let mut fitting = Fitting::new(curve, Model::ieee_952(), Options::default());
 /// let fit = loop {
 ///     if let Some(fit) = fitting.advance()? {
 ///         break fit;
@@ -67,26 +66,23 @@ pub struct Fitting<const K: usize> {
     model: Model,
     work: Work<K>,
     fit: Fit,
-    /// `None` when the fit is complete.
-    stage: Option<Stage>,
+    options: Options,
+    stage: Stage,
 }
 
 impl<const K: usize> Fitting<K> {
-    /// Begins to fit a model to a curve.
-    ///
-    /// # Errors
-    /// As of [`fit()`].
-    pub fn new(curve: Curve<K>, model: Model, options: Options) -> Result<Self, Error> {
-        let mut fitting = Self {
+    /// A fit of a model to a curve. It does not begin before it is advanced.
+    // Inlined, so that some kilobytes are built where they stay and not moved there.
+    #[inline(always)]
+    pub fn new(curve: Curve<K>, model: Model, options: Options) -> Self {
+        Self {
             curve,
             model,
             work: Work::new(),
             fit: Fit::empty(),
-            stage: None,
-        };
-        let (work, fit) = (&mut fitting.work, &mut fitting.fit);
-        fitting.stage = Stage::begin(&fitting.curve, &fitting.model, options, work, fit)?;
-        Ok(fitting)
+            options,
+            stage: Stage::Beginning,
+        }
     }
 
     /// Does one piece of work. Returns the fit once it is complete.
@@ -94,14 +90,16 @@ impl<const K: usize> Fitting<K> {
     /// # Errors
     /// As of [`fit()`].
     pub fn advance(&mut self) -> Result<Option<&Fit>, Error> {
-        if let Some(stage) = &mut self.stage {
-            let complete =
-                stage.advance(&self.curve, &self.model, &mut self.work, &mut self.fit)?;
-            if complete {
-                self.stage = None;
-            }
-        }
-        Ok(self.stage.is_none().then_some(&self.fit))
+        let Self {
+            curve,
+            model,
+            work,
+            fit,
+            options,
+            stage,
+        } = self;
+        let complete = stage.advance(curve, model, *options, work, fit)?;
+        Ok(complete.then_some(&self.fit))
     }
 
     /// The fit as far as it is complete.
@@ -134,6 +132,7 @@ pub(crate) struct Work<const K: usize> {
 
 impl<const K: usize> Work<K> {
     /// No fit yet.
+    #[inline(always)]
     pub(crate) fn new() -> Self {
         Self {
             columns: Columns::empty(),
@@ -159,43 +158,46 @@ impl<const K: usize> Work<K> {
     }
 }
 
-/// The stage of a fit by the covariance.
-// The smaller variant wastes a few hundred bytes in a fit, which has some thousands.
+/// The stage of a fit.
+// The smaller variants waste a few hundred bytes in a fit, which has some thousands.
 #[expect(clippy::large_enum_variant)]
 enum Stage {
+    Beginning,
     Solving,
     Estimating(Estimator),
+    Complete,
 }
 
 impl Stage {
-    /// Begins to fit. Returns `None` if the fit is complete already: so it is for the methods that take
-    /// octaves for independent.
+    /// Begins to fit. Methods that take octaves for independent are complete at once.
     #[inline(never)]
     fn begin<const K: usize>(
+        &mut self,
         curve: &Curve<K>,
         model: &Model,
         options: Options,
         work: &mut Work<K>,
         fit: &mut Fit,
-    ) -> Result<Option<Self>, Error> {
+    ) -> Result<(), Error> {
         let needed = match options.method {
             Method::Covariance => 2,
             _ => model.terms().len(),
         };
         check(curve.points(), needed)?;
-        match options.method {
+        *self = match options.method {
             Method::Covariance => {
                 let tolerance = Tolerance::IfNeeded(options.tolerance);
                 work.begin_at(curve, model, Start::Independent, tolerance)?;
-                Ok(Some(Self::Solving))
+                Self::Solving
             }
             method => {
                 work.columns.set(curve, model);
                 let problem = Problem::new(curve, model, &work.columns);
                 *fit = independent::fit(&problem, method)?;
-                Ok(None)
+                Self::Complete
             }
-        }
+        };
+        Ok(())
     }
 
     /// Does one piece of work, and returns whether the fit is complete.
@@ -203,18 +205,26 @@ impl Stage {
         &mut self,
         curve: &Curve<K>,
         model: &Model,
+        options: Options,
         work: &mut Work<K>,
         fit: &mut Fit,
     ) -> Result<bool, Error> {
-        let problem = Problem::new(curve, model, &work.columns);
         match self {
+            Self::Beginning => self.begin(curve, model, options, work, fit)?,
             Self::Solving => {
+                let problem = Problem::new(curve, model, &work.columns);
                 if work.solver.advance(&problem)? {
                     *self = Self::Estimating(Estimator::new(&problem, &work.solver, fit));
                 }
-                Ok(false)
             }
-            Self::Estimating(estimator) => Ok(estimator.advance(&problem, &work.solver, fit)),
+            Self::Estimating(estimator) => {
+                let problem = Problem::new(curve, model, &work.columns);
+                if estimator.advance(&problem, &work.solver, fit) {
+                    *self = Self::Complete;
+                }
+            }
+            Self::Complete => {}
         }
+        Ok(matches!(self, Self::Complete))
     }
 }

@@ -20,6 +20,7 @@ pub(crate) struct Columns<const K: usize>(Vec<algebra::Vector<K, f32>, MAX_EFFEC
 
 impl<const K: usize> Columns<K> {
     /// Columns of no model yet.
+    #[inline(always)]
     pub(crate) const fn empty() -> Self {
         Self(Vec::new())
     }

@@ -52,6 +52,7 @@ pub struct Fit {
 
 impl Fit {
     /// A fit of nothing yet.
+    #[inline(always)]
     pub(crate) const fn empty() -> Self {
         Self {
             method: Method::Covariance,

@@ -24,6 +24,7 @@ pub(crate) struct ShapeEquations {
 
 impl ShapeEquations {
     /// Of no model yet.
+    #[inline(always)]
     pub(crate) fn empty() -> Self {
         Self {
             equations: NormalEquations::empty(),

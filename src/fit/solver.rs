@@ -81,6 +81,7 @@ pub(crate) struct Solver<const K: usize> {
 
 impl<const K: usize> Solver<K> {
     /// A solver without a problem.
+    #[inline(always)]
     pub(crate) fn new() -> Self {
         Self {
             weights: Weights::empty(),

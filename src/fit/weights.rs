@@ -35,6 +35,7 @@ pub(crate) struct Weights<const K: usize> {
 
 impl<const K: usize> Weights<K> {
     /// The weights of no model yet.
+    #[inline(always)]
     pub(crate) fn empty() -> Self {
         Self {
             model: algebra::Vector::zeros(),
@@ -245,6 +246,7 @@ pub(crate) struct Whitened<const K: usize> {
 }
 
 impl<const K: usize> Whitened<K> {
+    #[inline(always)]
     pub(crate) fn empty() -> Self {
         Self {
             columns: Vec::new(),

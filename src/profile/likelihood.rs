@@ -25,6 +25,7 @@ pub(crate) struct Profile<const K: usize> {
 
 impl<const K: usize> Profile<K> {
     /// A profile of no effect yet.
+    #[inline(always)]
     pub(crate) fn empty() -> Self {
         Self {
             to_measured: false,

@@ -56,7 +56,7 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
     pub(super) fn new(samples: u64, curve: Curve<OCTAVES>, invalid: Option<Reason>) -> Self {
         let fitting = match invalid {
             Some(_) => None,
-            None => Fitting::new(curve, Model::ieee_952(), Options::default()).ok(),
+            None => Some(Fitting::new(curve, Model::ieee_952(), Options::default())),
         };
         Self {
             samples,

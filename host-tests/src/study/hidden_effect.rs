@@ -146,7 +146,7 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
     };
     let (model, options) = (Model::ieee_952(), allanite::diagnosis::Options::default());
     let verdict = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options)
-        .and_then(|diagnosis| diagnosis.run(|step| steps.push(step.clone())))
+        .run(|step| steps.push(step.clone()))
         .ok();
     let (first, last) = (&steps[0], &steps[steps.len() - 1]);
     let on_other = |step: &Step<OCTAVES>| {

@@ -79,18 +79,16 @@ pub fn diagnose(
     };
     let model = Model::ieee_952();
     let options = Options::default();
-    let diagnosis = Diagnosis::new(record.curve, evidence, &model, &CATALOGUE, options);
-    let report = diagnosis.and_then(|diagnosis| {
-        diagnosis.run(|step| match &step.added {
-            Some(Addition::Covariate(followed)) => {
-                outcome.slope = Some((followed.slope.value, followed.slope.error));
-            }
-            Some(Addition::Effect(term)) => {
-                outcome.named.push(term.effect.name());
-                outcome.named.extend(step.ambiguous.iter());
-            }
-            _ => {}
-        })
+    let mut diagnosis = Diagnosis::new(record.curve, evidence, &model, &CATALOGUE, options);
+    let report = diagnosis.run(|step| match &step.added {
+        Some(Addition::Covariate(followed)) => {
+            outcome.slope = Some((followed.slope.value, followed.slope.error));
+        }
+        Some(Addition::Effect(term)) => {
+            outcome.named.push(term.effect.name());
+            outcome.named.extend(step.ambiguous.iter());
+        }
+        _ => {}
     });
     report.expect("a curve to diagnose");
     outcome

@@ -34,7 +34,7 @@ pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisCertifica
         |step: &allanite::diagnosis::Step<17>| last = Some((step.model.clone(), step.fit.clone()));
     let (evidence, options) = (Evidence::NONE, Options::default());
     let verdict = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options)
-        .and_then(|diagnosis| diagnosis.run(report))
+        .run(report)
         .unwrap();
     let (model, fit) = last.unwrap();
     let mut axis = AxisCertificate::new(&curve, &model, &fit).unwrap();

@@ -59,7 +59,7 @@ fn diagnosed(hidden: Hidden) -> (Curve<OCTAVES>, Vec<Step<OCTAVES>>) {
     let model = Model::ieee_952();
     let (effects, options) = (effects(), Options::default());
     Diagnosis::new(curve.clone(), evidence, &model, &effects, options)
-        .and_then(|diagnosis| diagnosis.run(|step| steps.push(step.clone())))
+        .run(|step| steps.push(step.clone()))
         .expect("a diagnosis");
     (curve, steps)
 }

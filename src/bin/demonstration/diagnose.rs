@@ -65,7 +65,7 @@ pub fn diagnose(
     let record = recorded(disturbance, seed)?;
     let (model, options) = (Model::ieee_952(), Options::default());
     let curve = record.curve.clone();
-    Diagnosis::new(curve, record.evidence(), &model, &CATALOGUE, options)?.run(report)
+    Diagnosis::new(curve, record.evidence(), &model, &CATALOGUE, options).run(report)
 }
 
 /// A call of its own: gyro and record leave the stack to the diagnosis.

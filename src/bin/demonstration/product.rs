@@ -188,7 +188,7 @@ pub fn run(
     }
     let x = gyro.evidence(0, scale, [KELVIN])?;
     let (model, options) = (Model::ieee_952(), Options::default());
-    let diagnosis = Diagnosis::new(x.curve.clone(), x.evidence(), &model, &CATALOGUE, options)?;
+    let mut diagnosis = Diagnosis::new(x.curve.clone(), x.evidence(), &model, &CATALOGUE, options);
     let verdict = diagnosis.run(|step| lines::step(step, &mut line))?;
     line(format_args!("verdict {verdict:?}"));
     Ok(())

@@ -33,7 +33,7 @@ mod image {
                 &model,
                 &CATALOGUE,
                 Options::default(),
-            )?
+            )
             .run(report)
         });
         black_box(&verdict);

@@ -76,8 +76,7 @@ mod image {
             black_box(step);
         };
         let (curve, options) = (x.curve.clone(), diagnosis::Options::default());
-        let verdict = Diagnosis::new(curve, x.evidence(), &model, &CATALOGUE, options)
-            .and_then(|diagnosis| diagnosis.run(report));
+        let verdict = Diagnosis::new(curve, x.evidence(), &model, &CATALOGUE, options).run(report);
         let _ = black_box(verdict);
         if let Ok(fit) = fit(&x.curve, &model, Options::default()) {
             let _ = black_box(fit.correlations(&x.curve, &model));

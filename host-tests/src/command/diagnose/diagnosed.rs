@@ -92,7 +92,7 @@ impl Diagnosed {
         let mut steps = Vec::new();
         let curve = axis.curve()?;
         let model = Model::ieee_952();
-        let diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options)?;
+        let mut diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options);
         let verdict = diagnosis.run(|step| steps.push(step.clone()))?;
         Ok(Self {
             axis,

@@ -13,8 +13,9 @@ use crate::{curve::Curve, error::Error, model::Model};
 /// Fits a model's coefficients to a curve.
 ///
 /// # Errors
-/// [`Error::NoNoise`], [`Error::TooFewOctaves`] (two are needed, or for the unconstrained methods as
-/// many as there are effects), [`Error::Singular`].
+/// [`Error::NoNoise`] if an octave has a variance of zero. [`Error::TooFewOctaves`] for fewer than two
+/// octaves, or for fewer than there are effects with the unconstrained methods. [`Error::Singular`] if
+/// the normal equations have no solution.
 ///
 /// # Example
 ///
@@ -41,9 +42,9 @@ pub fn fit<const K: usize>(
     Ok(fit)
 }
 
-/// A fit in progress, for a main loop that has other work to do: one call of
-/// [`advance`](Self::advance) takes at most 2 million instructions on a Cortex-M4F in single precision
-/// (`cargo xtask bench` measures the longest), the whole fit what [`fit()`] takes. To abort it, drop it.
+/// A fit in progress, for a main loop that has other work to do. One call of [`advance`](Self::advance)
+/// takes at most 2 million instructions on a Cortex-M4F in single precision; `cargo xtask bench`
+/// measures the longest. The calls together take as long as [`fit()`]. To abort a fit, drop it.
 ///
 /// # Example
 ///
@@ -75,7 +76,7 @@ impl<const K: usize> Fitting<K> {
     /// Begins to fit a model to a curve.
     ///
     /// # Errors
-    /// As of [`fit()`].
+    /// The same as those of [`fit()`].
     pub fn new(curve: Curve<K>, model: Model, options: Options) -> Result<Self, Error> {
         let mut fitting = Self {
             curve,
@@ -89,10 +90,10 @@ impl<const K: usize> Fitting<K> {
         Ok(fitting)
     }
 
-    /// Does one piece of work. Returns the fit once it is complete.
+    /// Does one piece of work. Returns the fit once it is complete, and `None` before.
     ///
     /// # Errors
-    /// As of [`fit()`].
+    /// The same as those of [`fit()`].
     pub fn advance(&mut self) -> Result<Option<&Fit>, Error> {
         if let Some(stage) = &mut self.stage {
             let complete =
@@ -115,14 +116,14 @@ impl<const K: usize> Fitting<K> {
     }
 }
 
-/// What a fit by the covariance works on: the columns of the model, and their solution.
+/// The memory of a fit by the covariance: the columns of the model, and their solution.
 pub(crate) struct Work<const K: usize> {
     pub(crate) columns: Columns<K>,
     pub(crate) solver: Solver<K>,
 }
 
 impl<const K: usize> Work<K> {
-    /// No fit yet.
+    /// Memory without a fit.
     pub(crate) fn new() -> Self {
         Self {
             columns: Columns::empty(),
@@ -149,7 +150,7 @@ impl<const K: usize> Work<K> {
 }
 
 /// The stage of a fit by the covariance.
-// The smaller variant wastes a few hundred bytes in a fit, which has some thousands.
+// The smaller variant wastes a few hundred bytes of a fit, which takes some thousands.
 #[expect(clippy::large_enum_variant)]
 enum Stage {
     Solving,
@@ -157,7 +158,7 @@ enum Stage {
 }
 
 impl Stage {
-    /// Begins to fit. Returns `None` if the fit is complete already: so it is for the methods that take
+    /// Begins a fit. Returns `None` if the fit is already complete, as it is with the methods that take
     /// octaves for independent.
     #[inline(never)]
     fn begin<const K: usize>(

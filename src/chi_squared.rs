@@ -11,8 +11,8 @@ use crate::{
 /// precision it is accurate to 1e-13 of the value down to the smallest numbers, for up to some hundred
 /// degrees of freedom. It is 1 for `x ≤ 0`. It is NaN for zero degrees of freedom, or if `x` is NaN.
 ///
+/// ```
 /// // This is the 95 % quantile of χ² with 11 degrees of freedom.
-/// // The 95 % quantile of χ² with 11 degrees of freedom.
 /// assert!((allanite::fit::chi_squared_tail(19.675, 11) - 0.05).abs() < 1e-5);
 /// ```
 pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {

@@ -68,24 +68,25 @@ impl Level {
 /// From this sum follows `σ²(τ) = ½ mean D² / m²` in counts² (IEEE Std 952-1997, annex C). The overlap
 /// is that of NIST SP 1065, 2008, eq. 11, thinned to a quarter of a cluster. This keeps 93 % of the
 /// degrees of freedom on white noise, in constant memory.
+///
 /// # How it works
 ///
-/// Level `L` keeps the angle at the last eight boundaries of blocks of `2^L` samples and serves
 /// Level `L` keeps the angle at the last eight boundaries of blocks of `2^L` samples, and serves the
 /// octave `m = 4 · 2^L`. Level 0 serves `m = 1` and `m = 2` as well. A level takes its new boundary
 /// from the level below, half a block after the boundary was reached. So sample `n` updates level 0 and
 /// exactly one other level, which the trailing zeros of `n` select. Ring positions, fill states and the
 /// numbers of differences all follow from `n`.
+///
 /// # Cost
 ///
-/// Integers only: a constant offset cancels exactly, host and target agree to the bit, and the
 /// The accumulator uses integers only: a constant offset cancels exactly, host and target agree to the
 /// bit, and the order in which records are [merged](Self::merge) does not matter.
-/// On a Cortex-M4F [`push`](Self::push) takes 136 instructions a sample, whatever the number of
+///
 /// On a Cortex-M4F [`push`](Self::push) takes 136 instructions per sample, whatever the number of
 /// octaves and the position in the schedule, as long as no difference exceeds 31 bits. It takes at most
 /// 232 with full-scale input. [`push_slice`](Self::push_slice) takes 127, built for size. The state
 /// takes `80 + 96 · OCTAVES` bytes, which is 2384 for 24 octaves. `cargo xtask bench` measures this.
+///
 /// # Example
 ///
 /// ```

@@ -1,4 +1,4 @@
-//! The best shape near one that is known.
+//! The search for the best shape near a known one.
 
 use super::{
     EVALUATIONS_A_CALL,
@@ -7,14 +7,14 @@ use super::{
 };
 use crate::{effect::Span, limits::MAX_PARAMETERS, math, model::Term, real::Real};
 
-/// How often the step is halved: from half a grid step to a 32nd.
+/// How often the step is halved: it goes from half a grid step to a 32nd of one.
 const HALVINGS: u8 = 5;
 
-/// The first step of the logarithm from a shape that was fitted before.
+/// The first step of the logarithm away from a shape that was fitted before.
 const KNOWN_STEP: Real = 0.1;
 
-/// A way downhill from a shape, one parameter after the other, in steps of the logarithm that are
-/// halved whenever a round is over.
+/// A search downhill from a shape. It changes one parameter after the other, in steps of the logarithm
+/// that are halved after every round.
 pub(crate) struct Refinement {
     best: Found,
     steps: [Real; MAX_PARAMETERS],
@@ -53,7 +53,7 @@ impl Refinement {
         }
     }
 
-    /// Does some evaluations; returns the best shape when no more are to do.
+    /// Does some evaluations. Returns the best shape when there are no more to do.
     pub(crate) fn advance<const K: usize>(
         &mut self,
         evaluation: &mut Evaluation<'_, K>,

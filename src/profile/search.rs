@@ -1,4 +1,4 @@
-//! The best shape of an effect anywhere.
+//! The search for the best shape of an effect over the whole range of shapes.
 
 use super::{
     EVALUATIONS_A_CALL,
@@ -12,7 +12,7 @@ use crate::{
     model::Term,
 };
 
-/// A search over the grid of an effect's shapes, whose best is refined.
+/// A search over the grid of an effect's shapes. The best shape of the grid is then refined.
 pub(crate) struct GridSearch {
     term: Term,
     grids: [Grid; MAX_PARAMETERS],
@@ -35,7 +35,7 @@ impl GridSearch {
         }
     }
 
-    /// Does some evaluations; returns the best shape when no more are to do.
+    /// Does some evaluations. Returns the best shape when there are no more to do.
     #[inline(never)]
     pub(crate) fn advance<const K: usize>(
         &mut self,

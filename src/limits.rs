@@ -1,6 +1,6 @@
 //! Sizes of the library's lists, and the quantiles that decide at 95 %.
 //!
-//! Every other module may use these numbers, so this module imports none of them.
+//! Every other module may use these numbers, so this module imports no other module.
 
 /// The number of effects that one model has room for.
 pub const MAX_EFFECTS: usize = 8;

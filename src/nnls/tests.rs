@@ -211,7 +211,7 @@ fn data_of_any_size_make_no_difference() {
     for _ in 0..300 {
         let count = 2 + random.below(MOST - 1);
         let plain = Problem::random(count, &mut random, |_, _| {});
-        // The data range from a hundredth of their size to a million times their size.
+        // The data range from a hundredth of a standard error to a million standard errors.
         let factor = libm::pow(10.0, 2.0 + 4.0 * random.signed());
         let scaled = Problem {
             b: plain.b.map(|b| b * factor),

@@ -1,8 +1,9 @@
 //! Vectors and triangles whose indices cannot panic.
 //!
-//! nalgebra stores the numbers and computes with whole vectors: sums, products, norms. Its own index
-//! panics beyond the end, and what may panic brings messages and a handler into firmware. Here an element
-//! beyond the end is zero, and a number that is put there is dropped; debug assertions report either.
+//! nalgebra stores the numbers and computes with whole vectors: sums, products and norms. Its own index
+//! panics beyond the end, and code that may panic adds messages and a panic handler to the firmware.
+//! Here, an element beyond the end reads as zero, and a number that is put there is dropped. Debug
+//! assertions report both.
 
 use crate::real::Real;
 use core::ops::{Deref, Index};
@@ -72,11 +73,11 @@ impl<const N: usize, E> From<SVector<E, N>> for Vector<N, E> {
     }
 }
 
-/// The lower triangle of a symmetric matrix, or its Cholesky factor: row by row, from the left to the
-/// diagonal, in the storage of an `A` by `B` matrix.
+/// The lower triangle of a symmetric matrix, or its Cholesky factor. The rows lie one behind the other,
+/// each from its first element to the diagonal, in the storage of an `A` by `B` matrix.
 ///
-/// `n` rows need `n (n + 1)/2` places. A constant `n` has `A = n + 1` and `B = n/2`; a generic `n` has
-/// `A = B = n`, because no expression of a generic constant can be another one.
+/// `n` rows need `n (n + 1)/2` places. A constant, even `n` has `A = n + 1` and `B = n/2`. A generic
+/// `n` has `A = B = n`, because a generic constant cannot be computed from another one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle<const A: usize, const B: usize, E = Real>(SMatrix<E, A, B>);
 
@@ -100,7 +101,7 @@ impl<const A: usize, const B: usize, E: Number> Triangle<A, B, E> {
         }
     }
 
-    /// Every row, one behind the other.
+    /// All rows, one behind the other.
     pub(crate) fn rows(&self) -> &[E] {
         self.0.as_slice()
     }
@@ -130,7 +131,7 @@ pub(crate) const fn row_start(row: usize) -> usize {
 pub(crate) struct Choice(u16);
 
 impl Choice {
-    /// Those for which `chosen` is true.
+    /// The choice of all unknowns for which `chosen` is true.
     pub(crate) fn of(chosen: impl Fn(usize) -> bool) -> Self {
         let mut choice = Self::default();
         for i in 0..u16::BITS as usize {
@@ -141,13 +142,13 @@ impl Choice {
         choice
     }
 
-    /// Those of these bits.
+    /// The choice in which unknown `i` is chosen if bit `i` is set.
     #[cfg(feature = "storage")]
     pub(crate) const fn from_bits(bits: u16) -> Self {
         Self(bits)
     }
 
-    /// A bit for each.
+    /// The choice as bits: bit `i` is set if unknown `i` is chosen.
     #[cfg(feature = "storage")]
     pub(crate) const fn bits(self) -> u16 {
         self.0
@@ -169,7 +170,7 @@ impl Choice {
         self.0 &= !Self::bit(i);
     }
 
-    /// And one more.
+    /// The choice with unknown `i` added.
     #[must_use]
     pub(crate) const fn with(self, i: usize) -> Self {
         Self(self.0 | Self::bit(i))
@@ -198,7 +199,7 @@ mod tests {
             let row = &triangle.rows()[row_start(i)..=row_start(i) + i];
             assert!(row.iter().zip(0..).all(|(&x, j)| x == number(i, j)));
         }
-        // 21 elements in 24 places.
+        // The 21 elements leave the last of the 24 places empty.
         assert!(triangle.rows()[21..].iter().all(|&x| x == 0.0));
     }
 

@@ -1,4 +1,5 @@
-//! An axis, or several that are recorded together: everything that is kept of a record, behind one `push`.
+//! One axis, or several axes that are recorded together: one `push` feeds everything that is kept of a
+//! record.
 
 mod evidence;
 mod gate;
@@ -20,48 +21,49 @@ use crate::{
 use gate::{Passed, Passing};
 use kept::Kept;
 
-/// One axis: [`Axes`] of a gyro of which one axis is recorded.
+/// One axis: [`Axes`] for a gyro of which a single axis is recorded.
 pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = Moments> =
     Axes<OCTAVES, COVARIATES, G, M, 1>;
 
-/// Everything that is kept of a record of three axes, or of as many as `AXES` says.
+/// Everything that is kept of a record, for three axes or for as many as `AXES` says.
 ///
-/// A sample goes this way, in integers only:
+/// Every sample takes this path, in integers only:
 ///
 /// ```text
 /// counts + covariates ─► gate ─► integrity, accumulator, fourth moments, products with covariates
 /// ```
 ///
-/// The gate sees every sample, and lets those go that belong to a gyro at rest; a gap takes the place of
-/// the others. What lies behind it sees one and the same record of samples and gaps. So the curve, the
-/// evidence for a diagnosis, the snapshot and the verdict on the record's integrity all tell of the record
-/// that is kept, and none of the samples that were left out.
+/// The gate sees every sample. It passes on those of a gyro at rest, and replaces the others by a gap.
+/// The parts behind the gate all see the same record of samples and gaps. So the curve, the evidence
+/// for a diagnosis, the snapshot and the verdict on the record's integrity all describe the record that
+/// is kept, and none of the samples that were left out.
 ///
 /// # Parts
 ///
 /// | parameter | stands for | default |
 /// |---|---|---|
 /// | `OCTAVES` | octaves of averaging time, 2 to 30 | – |
-/// | `COVARIATES` | covariates, sampled with every count: a temperature, a supply voltage | 0 |
-/// | `G` | [`Gated`], or `()`: every sample is kept | [`Gated`] |
-/// | `M` | [`Moments`], or `()`: a diagnosis cannot tell telegraph noise from Gauss–Markov noise | [`Moments`] |
+///
+/// | `COVARIATES` | covariates sampled with every count, such as a temperature or a supply voltage | 0 |
+/// | `G` | [`Gated`], or `()` to keep every sample | [`Gated`] |
+/// | `M` | [`Moments`], or `()`: then telegraph and Gauss–Markov noise cannot be told apart | [`Moments`] |
 /// | `AXES` | axes that share the gate's decision and the covariates; see [`Axis`] for one | 3 |
 ///
-/// What is left out takes no memory, no flash and no time. An [`Accumulator`] alone is the least that
-/// makes a curve.
+/// A part that is left out takes no memory, no flash and no time. If only the curve is needed, an
+/// [`Accumulator`] is enough.
 ///
 /// # Cost
 ///
-/// With every part, 20 octaves and one covariate, three axes take 5.2 KiB an axis on a 32-bit core. An
-/// empty state is all zero, so that a `static` lies in `.bss`. `cargo xtask bench` measures both this and
-/// the instructions a sample.
+/// With every part, 20 octaves and one covariate, three axes take 5.2 KiB per axis on a 32-bit core. An
+/// empty state is all zero, so that a `static` is placed in `.bss`. `cargo xtask bench` measures the
+/// memory and the instructions per sample.
 ///
 /// # Example
 ///
 /// ```
 /// use allanite::{Axes, Model, Scale, diagnosis::{Diagnosis, Options}, effect::CATALOGUE};
 ///
-/// // Three axes of 12 octaves, beside a temperature.
+/// // Three axes of 12 octaves, with a temperature as the covariate.
 /// static EMPTY: Axes<12, 1> = Axes::new();
 /// let mut axes = EMPTY.clone();
 /// let mut random = 1_u32;
@@ -76,7 +78,7 @@ pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = 
 /// axes.release();
 /// assert_eq!((axes.left_out(), axes.samples()), (1, 9999));
 ///
-/// // 131 counts per °/s at 100 Hz, 100 counts per kelvin.
+/// // The gyro gives 131 counts per °/s at 100 Hz; the thermometer gives 100 counts per kelvin.
 /// let x = axes.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [0.01])?;
 /// assert_eq!(x.invalid, None);
 /// let (model, options) = (Model::ieee_952(), Options::default());
@@ -103,7 +105,7 @@ where
     G: GatePart,
     M: MomentPart,
 {
-    /// An empty record, judged by the [default limits](Limits::DEFAULT).
+    /// An empty record that is judged by the [default limits](Limits::DEFAULT).
     pub const fn new() -> Self {
         Self {
             gate: <G::State<AXES, COVARIATES> as Passing<AXES, COVARIATES>>::NEW,
@@ -112,10 +114,10 @@ where
         }
     }
 
-    /// An empty record, judged by these limits.
+    /// An empty record that is judged by these limits.
     ///
     /// # Errors
-    /// Where a limit is outside the range that its field documents.
+    /// [`InvalidLimit`] if a limit is outside the range that its field documents.
     pub fn with_limits(limits: &'static Limits) -> Result<Self, InvalidLimit> {
         let mut axes = Self::new();
         axes.gate.set_limits(limits)?;
@@ -123,7 +125,7 @@ where
         Ok(axes)
     }
 
-    /// Adds one sample: a count of every axis, and of every covariate.
+    /// Adds one sample: one count of every axis and of every covariate.
     #[inline]
     pub fn push(&mut self, sample: impl Into<Sample<AXES, COVARIATES>>) {
         match self.gate.push(sample.into()) {
@@ -133,14 +135,15 @@ where
         }
     }
 
-    /// Samples were lost, or the gyro was disturbed: no difference will span this moment.
+    /// Marks a place where samples were lost or the gyro was disturbed. No difference spans this place.
     pub fn gap(&mut self) {
         self.losses = self.losses.saturating_add(1);
         let passed = self.gate.gap();
         self.keep(passed);
     }
 
-    /// This many samples were lost at this place: counts them, and is a [`gap`](Self::gap).
+    /// Counts samples that were lost at this place, and marks a [`gap`](Self::gap). Does nothing for 0
+    /// samples.
     pub fn missing(&mut self, samples: u64) {
         if samples > 0 {
             self.kept.add_missing(samples);
@@ -148,8 +151,8 @@ where
         }
     }
 
-    /// Lets go of the samples that the gate holds back, up to 128, as if they were known to be at rest: at
-    /// the end of a record. It is not a gap.
+    /// Keeps the samples that the gate still holds back, up to 128, as if they were known to be at
+    /// rest. Call it at the end of a record. It is not a gap.
     pub fn release(&mut self) {
         loop {
             let passed = self.gate.release();
@@ -168,8 +171,8 @@ where
         }
     }
 
-    /// Adds another record of the same sensor, as if a gap lay between the two. Both gates let go of what
-    /// they hold back.
+    /// Adds another record of the same sensor, as if a gap lay between the two. Both gates first
+    /// release the samples that they hold back.
     pub fn merge(&mut self, other: &Self) {
         let mut other = other.clone();
         self.release();
@@ -183,12 +186,12 @@ where
     pub fn reset(&mut self) {
         let limits = self.limits();
         *self = Self::new();
-        // They were checked when they were set.
+        // The limits were checked when they were set.
         let _ = self.gate.set_limits(limits);
         let _ = self.kept.set_limits(limits);
     }
 
-    /// The limits that the record is judged by.
+    /// The limits by which the record is judged.
     pub fn limits(&self) -> &'static Limits {
         match self.kept.axes.first() {
             Some(axis) => axis.integrity.limits(),
@@ -196,7 +199,7 @@ where
         }
     }
 
-    /// Samples that are kept, without those that the gate holds back.
+    /// The number of samples that are kept, without those that the gate still holds back.
     pub fn samples(&self) -> u64 {
         self.kept
             .axes
@@ -204,30 +207,30 @@ where
             .map_or(0, |axis| axis.accumulator.samples())
     }
 
-    /// Samples that the gate left out; 0 without a gate.
+    /// The number of samples that the gate left out; 0 without a gate.
     pub fn left_out(&self) -> u64 {
         self.gate.gate().map_or(0, gate::Gate::left_out)
     }
 
-    /// How often samples were lost: calls of [`gap`](Self::gap) and [`missing`](Self::missing).
-    /// [`Accumulator::gaps`] counts less where several follow each other without a sample between, and
-    /// more where a gate leaves samples out.
+    /// How often samples were lost: the number of calls of [`gap`](Self::gap) and
+    /// [`missing`](Self::missing). [`Accumulator::gaps`] is smaller where several calls follow each
+    /// other without a sample in between, and larger where a gate leaves samples out.
     pub const fn losses(&self) -> u64 {
         self.losses
     }
 
-    /// The accumulators of the axes.
+    /// The accumulator of every axis.
     pub fn accumulators(&self) -> [&Accumulator<OCTAVES>; AXES] {
         self.kept.axes.each_ref().map(|axis| &axis.accumulator)
     }
 
-    /// What was counted of the record that is kept.
+    /// The integrity of the record that is kept, for every axis.
     pub fn integrity(&self) -> [&Integrity; AXES] {
         self.kept.axes.each_ref().map(|axis| &axis.integrity)
     }
 
-    /// What the gate saw of all samples, those included that it left out: spikes and motions, counted axis
-    /// by axis. Without a gate, that of the record.
+    /// The integrity of all samples, for every axis: the gate counts the spikes and motions of the
+    /// samples that it leaves out as well. Without a gate, this is the integrity of the record.
     pub fn seen(&self) -> [&Integrity; AXES] {
         match self.gate.gate() {
             Some(gate) => gate.integrity().each_ref(),

@@ -1,4 +1,4 @@
-//! The χ² distribution, for whole degrees of freedom.
+//! The χ² distribution for whole degrees of freedom.
 
 use crate::{
     math,
@@ -7,12 +7,12 @@ use crate::{
 
 /// Probability that χ² with `degrees_of_freedom` exceeds `x`.
 ///
-/// A finite sum (Abramowitz & Stegun 1964, eqs. 26.4.4 and 26.4.5): accurate to 1e-13 of the value
-/// down to the smallest numbers, for up to some hundred degrees of freedom. 1 for `x ≤ 0`; NaN
-/// without degrees of freedom, or if `x` is NaN.
+/// The probability is a finite sum (Abramowitz & Stegun 1964, eqs. 26.4.4 and 26.4.5). In double
+/// precision it is accurate to 1e-13 of the value down to the smallest numbers, for up to some hundred
+/// degrees of freedom. It is 1 for `x ≤ 0`. It is NaN for zero degrees of freedom, or if `x` is NaN.
 ///
 /// ```
-/// // The 95 % quantile of χ² with 11 degrees of freedom.
+/// // This is the 95 % quantile of χ² with 11 degrees of freedom.
 /// assert!((allanite::fit::chi_squared_tail(19.675, 11) - 0.05).abs() < 1e-5);
 /// ```
 pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
@@ -26,9 +26,11 @@ pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
         return 0.0;
     }
     let half = 0.5 * x;
-    // Half of the exponential comes last, so that no term is lost that the sum can lift again.
+    // The factor e^(−x/2) is split into two equal factors. The second one comes last, so that no term
+    // underflows that the sum would lift again.
     let decay = math::exp(-0.5 * half);
-    // Terms x^r e^(−x/2) / (r!! …): whole powers of x/2 for even degrees, half ones for odd.
+    // The terms are x^r e^(−x/2) / (r!! …), with whole powers of x/2 for an even number of degrees of
+    // freedom and half-integer powers for an odd one.
     let odd = degrees_of_freedom % 2 == 1;
     let mut sum = 0.0;
     let mut term = if odd {
@@ -47,7 +49,7 @@ pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
     } else {
         0.0
     };
-    // Beyond all doubles, where the terms may be too.
+    // Here the probability is below the smallest number, and the terms may have overflowed.
     if decay == 0.0 {
         return 0.0;
     }
@@ -59,8 +61,8 @@ mod tests {
     use super::*;
     use crate::real::{by_precision, double, real};
 
-    /// Quantiles of Abramowitz & Stegun 1964, table 26.8: degrees of freedom, then the χ² that is
-    /// exceeded with a probability of 0.95, 0.5, 0.05 and 0.001.
+    /// Quantiles of Abramowitz & Stegun 1964, table 26.8: the degrees of freedom, then the values that
+    /// χ² exceeds with a probability of 0.95, 0.5, 0.05 and 0.001.
     #[rustfmt::skip]
     const TABLE: [(usize, [f64; 4]); 6] = [
         ( 1, [3.93214e-3, 0.454937, 3.84146, 10.828]),
@@ -85,10 +87,11 @@ mod tests {
         }
     }
 
-    /// The integral of the density from `x` on, relative to all of it, by Simpson's rule in the root.
+    /// The integral of the density from `x` on, relative to the integral of the whole density.
+    /// Simpson's rule takes it in the square root of χ².
     fn integrated(x: f64, degrees: usize) -> f64 {
         const STEPS: u32 = 4000;
-        // With x = u²: u^(n − 1) e^(−u²/2) du.
+        // With x = u², the density is u^(n − 1) e^(−u²/2) du.
         let density = |u: f64| libm::exp(-0.5 * u * u + (degrees as f64 - 1.0) * libm::log(u));
         let integral = |from: f64, to: f64| {
             let step = (to - from) / f64::from(STEPS);
@@ -115,7 +118,8 @@ mod tests {
                     double(chi_squared_tail(real(x), degrees)),
                     integrated(x, degrees),
                 );
-                // The rounding of x in single precision counts as often as the exponent is large.
+                // The rounding of x in single precision changes the exponent x/2, so that the relative
+                // error grows with x.
                 let most = digits * (1.0 + 0.5 * x) * expected + 1e-30;
                 assert!(
                     (found - expected).abs() <= most,

@@ -1,10 +1,12 @@
-//! The Cholesky factor `L` of a positive definite matrix `A = L L'`, and the solution of its equations.
+//! The Cholesky factor `L` of a positive definite matrix `A = L L'`, and the solution of equations with
+//! it.
 //!
-//! The rows of a [`Triangle`] are slices, so that one function serves triangles of every size.
+//! The rows of a [`Triangle`] are handled as slices, so that one function serves triangles of every
+//! size.
 //!
-//! nalgebra's own `Cholesky` takes and returns whole square matrices by value, and asserts the sizes of the
-//! parts that it views, which is a way to a panic. Measured on a Cortex-M4F in single precision, beside a
-//! plain loop over `(i, j)` in each storage:
+//! nalgebra's own `Cholesky` takes and returns whole square matrices by value. It also asserts the
+//! sizes of the parts that it views, so that it may panic. The table compares the alternatives with a
+//! plain loop over `(i, j)` in each storage, as measured on a Cortex-M4F in single precision:
 //!
 //! | instead of the plain loops | flash of a fit | stack of a fit | stack of a diagnosis | its instructions | can panic |
 //! |---|---|---|---|---|---|
@@ -13,8 +15,8 @@
 //! | squares store the normal equations | + 232 bytes | + 1056 bytes | + 464 bytes | − 13 % | no |
 //! | this module | − 152 bytes | + 8 bytes | + 8 bytes | − 8 % | no |
 //!
-//! The flash is that of the image `footprint_fit`; the rest is what the image `bench` prints, both by
-//! `cargo xtask bench`. This module takes 650 bytes of flash.
+//! The flash is that of the image `footprint_fit`. The other columns are what the image `bench` prints.
+//! `cargo xtask bench` measures both. This module takes 650 bytes of flash.
 
 use crate::{
     algebra::{Number, Triangle, Vector, row_start},
@@ -23,9 +25,9 @@ use crate::{
 };
 use num_traits::AsPrimitive;
 
-/// Replaces the first `n` rows of a matrix by those of its Cholesky factor, with the reciprocals of the
-/// diagonal on the diagonal. Returns `false` if the matrix is not positive definite, and leaves it
-/// spoilt then.
+/// Replaces the first `n` rows of a matrix by those of its Cholesky factor. The diagonal holds the
+/// reciprocals of the factor's diagonal. Returns `false` if the matrix is not positive definite; some
+/// of its rows are overwritten then.
 pub(crate) fn factor<const A: usize, const B: usize, E>(
     matrix: &mut Triangle<A, B, E>,
     n: usize,
@@ -61,7 +63,7 @@ pub(crate) fn backward<const A: usize, const B: usize, const K: usize, E, X>(
     backward_rows(factor.rows(), n, x.as_mut_slice());
 }
 
-/// One row of a triangle, with its diagonal element apart.
+/// One row of a triangle: its diagonal element, and the elements before it.
 fn row<E>(rows: &[E], i: usize) -> Option<(&E, &[E])> {
     rows.get(row_start(i)..)?.get(..=i)?.split_last()
 }
@@ -75,8 +77,8 @@ where
     (0..n).all(|i| factor_row(rows, i).is_some())
 }
 
-/// Replaces row `i` by that of the factor, whose rows above are known. `None` if the matrix is not
-/// positive definite.
+/// Replaces row `i` by that of the factor. The rows above must have been replaced before. Returns
+/// `None` if the matrix is not positive definite.
 fn factor_row<E>(rows: &mut [E], i: usize) -> Option<()>
 where
     E: Number + AsPrimitive<Real>,

@@ -1,4 +1,4 @@
-//! A coefficient, and what a record says of it.
+//! A coefficient, and what a record says about it.
 
 use crate::{
     effect::Effect,
@@ -7,19 +7,19 @@ use crate::{
     real::{Real, real},
 };
 
-/// What a record says of a coefficient.
+/// What a record says about a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum State {
-    /// Its 95 % interval excludes zero.
+    /// The 95 % interval excludes zero.
     Measured,
-    /// Zero is within its interval: `upper` bounds it, one-sided, at 95 %.
+    /// The 95 % interval includes zero, and `upper` is a one-sided 95 % bound.
     UpperBound,
-    /// The record says nothing of it: other effects could take its place, or its bound is no better
-    /// than that it cannot exceed the whole curve.
+    /// The record says nothing about the coefficient. Either other effects could take its place, or its
+    /// bound says no more than that the effect cannot exceed the whole curve.
     NotObservable {
-        /// Length of a record, in seconds, that would measure it if it were at its bound; `None`
-        /// where no length up to 2^30 samples would.
+        /// The length of a record, in seconds, that would measure the coefficient if it were at its
+        /// bound. `None` if no length up to 2^30 samples would.
         after_s: Option<Real>,
     },
 }
@@ -32,26 +32,26 @@ pub struct Coefficient {
     pub name: &'static str,
     /// The coefficient's symbol, such as `N`.
     pub symbol: &'static str,
-    /// The unit is rate unit · s^(half_seconds/2).
+    /// Twice the exponent of the second in the unit, which is rate unit · s^(half_seconds/2).
     pub half_seconds: i8,
-    /// Best value; zero where the square is negative, which only unconstrained methods return.
+    /// Best value. It is zero where the square is negative, which only unconstrained methods return.
     pub value: Real,
-    /// Lower end of the 95 % interval; zero unless measured.
+    /// Lower end of the 95 % interval; zero unless the coefficient is measured.
     pub lower: Real,
-    /// Upper end of the 95 % interval, or the one-sided 95 % bound; infinite if the effect cannot
+    /// Upper end of the 95 % interval, or the one-sided 95 % bound. It is infinite if the effect cannot
     /// be told from others.
     pub upper: Real,
-    /// Whether it was measured.
+    /// Whether the coefficient is measured, bounded or not observable.
     pub state: State,
-    /// The squared coefficient, which is what the fit is linear in.
+    /// The squared coefficient. The fit is linear in the squares.
     pub square: Real,
-    /// Standard error of the square; infinite as `upper`.
+    /// Standard error of the square; infinite where `upper` is.
     pub square_error: Real,
 }
 
 impl Coefficient {
-    /// A squared coefficient and its variance; `None` where the fit cannot tell the effect from
-    /// others.
+    /// A coefficient from its square and the variance of the square. The variance is `None` where the
+    /// fit cannot tell the effect from others.
     pub(crate) fn new(effect: &dyn Effect, square: Real, variance: Option<Real>) -> Self {
         let error = variance.map_or(Real::INFINITY, math::sqrt);
         let root = |square: Real| {
@@ -86,7 +86,7 @@ impl Coefficient {
         }
     }
 
-    /// That of a curve whose variances are so many times larger.
+    /// The same coefficient for a curve whose variances are `unit` times as large.
     pub(crate) fn in_unit(self, unit: Real) -> Self {
         let root = math::sqrt(unit);
         Self {
@@ -114,7 +114,7 @@ mod tests {
         test_random::Random,
     };
 
-    /// What roots of squares may differ by, in rounding errors of the square.
+    /// The relative tolerance for roots of squares, which covers the rounding errors of the squares.
     const ROUNDING: f64 = if cfg!(feature = "double") {
         1e-14
     } else {
@@ -139,7 +139,7 @@ mod tests {
             }
             if square > half {
                 assert_eq!(found.state, State::Measured);
-                // The difference has as many digits as the two have.
+                // Rounding errors of the difference are relative to its two terms.
                 let below = double(found.lower) * double(found.lower);
                 assert!((below - (square - half)).abs() <= 4.0 * ROUNDING * square);
                 assert_close(found.upper, libm::sqrt(square + half));

@@ -14,7 +14,7 @@ use crate::{
 };
 use heapless::Vec;
 
-/// A disagreement of an octave below so many standard errors is not one.
+/// The number of standard errors from which on the disagreement of an octave is noticeable.
 const NOTICEABLE: Real = 2.0;
 
 /// One octave of a measurement beside a model.
@@ -27,12 +27,12 @@ pub struct ComparedOctave {
     pub tau_s: Real,
     /// Measured Allan variance, in rate units squared.
     pub measured: Real,
-    /// The model's.
+    /// The model's Allan variance, in rate units squared.
     pub model: Real,
-    /// How far the measured variance lies above the model's in standard errors, the model's tolerance
-    /// among them.
+    /// How far the measured variance lies above the model's, in standard errors of the measured
+    /// variance. The standard error includes the model's tolerance.
     pub z: Real,
-    /// Each effect's share of the model's variance, in the model's order.
+    /// Each effect's share of the model's variance, from 0 to 1, in the model's order.
     pub shares: [f32; MAX_EFFECTS],
 }
 
@@ -42,22 +42,22 @@ impl ComparedOctave {
         100.0 * (self.measured / self.model - 1.0)
     }
 
-    /// Standard error of the measured variance, in rate units squared: what `z` counts in, the model's
-    /// tolerance included. NaN where measured and model agree to the last bit.
+    /// Standard error of the measured variance, in rate units squared, the model's tolerance included.
+    /// It is the unit of `z`. NaN where measurement and model agree to the last bit.
     pub fn standard_error(&self) -> Real {
         (self.measured - self.model) / self.z
     }
 }
 
-/// Neighbouring octaves that noticeably disagree, all to one side.
+/// Neighbouring octaves that all disagree noticeably to the same side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stretch {
     /// Whether the measurement lies above the model.
     pub above: bool,
-    /// Its first octave's averaging time, in seconds.
+    /// Averaging time of the first octave, in seconds.
     pub from_s: Real,
-    /// Its last octave's averaging time, in seconds.
+    /// Averaging time of the last octave, in seconds.
     pub to_s: Real,
 }
 
@@ -67,37 +67,38 @@ pub struct Stretch {
 pub struct Comparison<const K: usize> {
     /// The octaves, shortest averaging time first.
     pub octaves: Vec<ComparedOctave, K>,
-    /// Squared disagreement in units of the curve's covariance.
+    /// χ²: the squared disagreement in units of the curve's covariance.
     pub chi_squared: Real,
-    /// Octaves less what was fitted to them.
+    /// The number of octaves, less the number of unknowns that were fitted to them.
     pub degrees_of_freedom: usize,
-    /// Probability of a larger χ² if the model is true.
+    /// Probability of a larger χ² if the model is true. NaN without degrees of freedom.
     pub p_value: Real,
-    /// Root-mean-square disagreement of the octaves, in percent.
+    /// Root-mean-square disagreement of the octaves, in percent of the model's variance.
     pub rms_percent: Real,
 }
 
 impl<const K: usize> Comparison<K> {
-    /// The fit of a model beside the curve that it was fitted to.
+    /// Compares the fit of a model with the curve that it was fitted to.
     ///
     /// # Errors
-    /// As of [`fit`](crate::fit).
+    /// The same as those of [`fit`](crate::fit::fit()).
     pub fn new(curve: &Curve<K>, model: &Model, fit: &Fit) -> Result<Self, Error> {
         let unknowns = curve.points().len().saturating_sub(fit.degrees_of_freedom);
         let mut comparison = Self::with_unknowns(curve, model, fit, fit.tolerance, unknowns)?;
         if !fit.chi_squared.is_nan() {
-            // The covariance that a fit ends with is a little off that of its result.
+            // The covariance at the end of a fit differs a little from the covariance at its result.
             comparison.chi_squared = fit.chi_squared;
             comparison.p_value = fit.p_value;
         }
         Ok(comparison)
     }
 
-    /// A fit beside a curve that it was not fitted to, such as of the other half of a record: no
-    /// degree of freedom is spent, and the model has its `tolerance`.
+    /// Compares a fit with a curve that it was not fitted to, such as the curve of the other half of a
+    /// record. No degree of freedom is spent. The model is granted `tolerance`, relative to its
+    /// variance.
     ///
     /// # Errors
-    /// As of [`fit`](crate::fit).
+    /// The same as those of [`fit`](crate::fit::fit()).
     pub fn held_out(
         curve: &Curve<K>,
         model: &Model,
@@ -136,7 +137,7 @@ impl<const K: usize> Comparison<K> {
         }
     }
 
-    /// Compares in place.
+    /// Compares the problem's curve with the model, in place.
     #[inline(never)]
     pub(crate) fn set(
         &mut self,
@@ -158,7 +159,7 @@ impl<const K: usize> Comparison<K> {
                 shares: core::array::from_fn(|i| single(problem.share(k, i, squares))),
             };
             sum_of_squares += octave.percent() * octave.percent();
-            // As many as the curve has.
+            // There is a place for every octave of the curve.
             let _ = self.octaves.push(octave);
         }
         self.chi_squared = weights.chi_squared(problem, squares);
@@ -167,7 +168,7 @@ impl<const K: usize> Comparison<K> {
         self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as Real);
     }
 
-    /// Stretches of octaves that noticeably disagree to one side, shortest averaging time first.
+    /// The stretches of octaves that disagree noticeably to one side, shortest averaging time first.
     pub fn stretches(&self) -> impl Iterator<Item = Stretch> + '_ {
         let noticeable = |octave: &ComparedOctave| octave.z > NOTICEABLE || octave.z < -NOTICEABLE;
         let alike = move |a: &ComparedOctave, b: &ComparedOctave| {
@@ -184,7 +185,7 @@ impl<const K: usize> Comparison<K> {
         })
     }
 
-    /// The octave that disagrees most, in standard errors; `None` for an empty curve.
+    /// The octave that disagrees most, counted in standard errors; `None` for an empty curve.
     pub fn worst(&self) -> Option<&ComparedOctave> {
         let size = |octave: &&ComparedOctave| if octave.z < 0.0 { -octave.z } else { octave.z };
         self.octaves
@@ -193,7 +194,7 @@ impl<const K: usize> Comparison<K> {
     }
 }
 
-/// One sentence: the worst octave, then the stretches.
+/// Writes one sentence: the worst octave comes first, then the stretches.
 impl<const K: usize> core::fmt::Display for Comparison<K> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Some(worst) = self.worst() else {
@@ -245,7 +246,7 @@ const fn side(above: bool) -> &'static str {
     if above { "above" } else { "below" }
 }
 
-/// A time in milliseconds or seconds, to three digits.
+/// A time that is written in milliseconds or seconds, with three digits.
 pub(crate) struct Time(pub(crate) Real);
 
 impl core::fmt::Display for Time {

@@ -1,21 +1,23 @@
-//! The covariance of an Allan curve, from its effects.
+//! The covariance of an Allan curve, computed from its effects.
 //!
 //! ```text
 //! Cov(σ̂²_j, σ̂²_k) = ½ Σ_ℓ N_jk(ℓ) [(c_ℓ + g_ℓ)² − g_ℓ²] / (n_j n_k)
 //! ```
 //!
-//! `c` is the covariance of two differences that lie `ℓ` apart as the random effects make it, `g`
-//! the product of what the deterministic ones put there, `N_jk(ℓ)` the number of pairs of starts
-//! so far apart (Isserlis 1918 for the fourth moments; Greenhall 1991 for Allan variances).
-//! Only octaves' own ends limit the pairs: gaps inside a record are not known to a curve, and the
-//! smaller numbers of differences that they leave stand in for them.
+//! Here `c_ℓ` is the covariance that the random effects give two differences a lag of `ℓ` apart, `g_ℓ`
+//! is the product that the deterministic effects add to it, `N_jk(ℓ)` is the number of pairs of starts
+//! that far apart, and `n_j` is the number of differences of octave `j`. The fourth moments follow
+//! Isserlis 1918, the Allan variances follow Greenhall 1991. Only the ends of the octaves limit the
+//! pairs: a curve does not know the gaps inside its record. The smaller numbers of differences that
+//! gaps leave stand in for them.
 //!
-//! The sum runs over every lag near 0 and near `m_k`, where `c` has its kinks, and by the
-//! trapezoidal rule over lags in steps that grow with the distance from both: within 1 % of the
-//! full sum for the effects of [`IEEE_952`](crate::effect::IEEE_952).
+//! The sum takes every lag near 0 and near `m_k`, where `c` has its kinks. Elsewhere it follows the
+//! trapezoidal rule, in steps that grow with the distance from both. It is within 1 % of the full sum
+//! for the effects of [`IEEE_952`](crate::effect::IEEE_952).
 //!
-//! It is taken in single precision, of numbers in units of the octave's own variance: weights need no
-//! more than six digits, and a core whose arithmetic is in single precision spends half as long.
+//! The sum is taken in single precision, and its numbers are in units of the octave's own variance.
+//! Weights need no more than six digits, and a core that computes single precision in hardware takes
+//! half as long.
 
 use crate::{
     curve::{Curve, Point},
@@ -29,19 +31,22 @@ use crate::{
 use heapless::Vec;
 use nalgebra::{Complex, SMatrix};
 
-/// Kinks lie within a cluster, four quarters, of 0 and of the middle: lags up to here are taken one by
-/// one, in quarters of the shorter cluster …
+/// Up to this distance from 0 or from the middle, the sum takes the lags one by one, in quarters of the
+/// shorter cluster. The kinks lie within one cluster, which is four quarters.
 const KINK: u32 = 6;
-/// … up to here by two, and beyond in steps of the distance's power of two …
+/// Up to this distance, the sum takes every second lag. Beyond it, the step is the distance's power of
+/// two, or half of that for octaves less than [`FAR`] apart.
 const NEAR: u32 = 8;
-/// … or of half of that between octaves less far apart than this.
+/// The distance of two octaves, in quarters of the shorter cluster, from which on the longer steps are
+/// enough.
 const FAR: u32 = 256;
 
-/// The outward tail of the sum ends where two lags in turn add less than this share.
+/// The outward tail of the sum ends after two lags in a row that each add less than this share of the
+/// sum.
 const NEGLIGIBLE: f32 = 1e-4;
 
-/// The covariance of a curve's Allan variances, in rate units to the fourth, where a model's
-/// effects have the squared coefficients `squares`: what the fit weights with. Rows and columns
+/// The covariance of a curve's Allan variances, in rate units to the fourth, for a model whose effects
+/// have the squared coefficients `squares`. A fit takes its weights from this matrix. Rows and columns
 /// beyond the curve's octaves are zero.
 pub fn curve_covariance<const K: usize>(
     curve: &Curve<K>,
@@ -57,8 +62,8 @@ pub fn curve_covariance<const K: usize>(
     matrix
 }
 
-/// The covariance of a curve's variances, in rate units to the fourth, where the effects have the
-/// squared coefficients `squares`: `each(k, j, covariance)` for the lower triangle, `j ≤ k`.
+/// Computes the covariance of a curve's variances, in rate units to the fourth, for effects with the
+/// squared coefficients `squares`. Calls `each(k, j, covariance)` for the lower triangle, `j ≤ k`.
 pub(crate) fn covariance(
     points: &[Point],
     model: &Model,
@@ -73,8 +78,8 @@ pub(crate) fn covariance(
     }
 }
 
-/// The covariance of octave `j` with itself and with all longer ones: `each(k, covariance)` for
-/// `k ≥ j`. Nothing for an octave that the curve does not have.
+/// Computes the covariance of octave `j` with itself and with all longer octaves. Calls
+/// `each(k, covariance)` for `k ≥ j`. Calls nothing for an octave that the curve does not have.
 #[inline(never)]
 pub(crate) fn covariance_row(
     points: &[Point],
@@ -110,7 +115,7 @@ pub(crate) fn covariance_row(
     for (term, &square) in present() {
         if let Some(short) = term.effect.response(m_j, &term.sampled_shape(interval_s)) {
             let phase = 0.25 * m_j * short.phase;
-            // As many as effects: there is always room.
+            // There is a place for every effect of a model.
             let _ = waves.push(Wave {
                 term,
                 size: per_unit * square * short.amplitude,
@@ -123,7 +128,7 @@ pub(crate) fn covariance_row(
     }
     for (k, longer) in numbered(points.iter()).skip(j) {
         let pair = Pair { shorter, longer };
-        // Beyond the lattice, octaves a factor of 2^18 apart: correlations below 0.002.
+        // Octaves a factor of 2^18 apart lie beyond the lattice. Their correlation is below 0.002.
         if pair.middle() >= lattice::END / 4 {
             each(k, 0.0);
             continue;
@@ -138,16 +143,16 @@ pub(crate) fn covariance_row(
     }
 }
 
-/// Twice what a deterministic effect puts into the product of two differences: `product · cos(phase · ℓ)`
-/// at a lag of `ℓ` quarters of the shorter cluster.
+/// What a deterministic effect adds to the product of two differences, times two. It is
+/// `product · cos(phase · ℓ)` at a lag of `ℓ` quarters of the shorter cluster.
 struct Wave<'a> {
     term: &'a Term,
-    /// All of the product but what the longer octave brings.
+    /// The product without the factor of the longer octave.
     size: Real,
     product: f32,
     phase: Real,
     turn: Option<usize>,
-    /// `e^(i · phase · ℓ)`.
+    /// `e^(i · phase · ℓ)` at the present lag.
     now: Complex<f32>,
 }
 
@@ -156,7 +161,7 @@ impl Wave<'_> {
         self.product * self.now.re
     }
 
-    /// Goes from one lag to another, a power of two further.
+    /// Advances from a lag by a step, which is a power of two.
     fn advance(&mut self, lag: u32, step: u32, turns: &[Turn]) {
         if self.phase == 0.0 {
             return;
@@ -176,17 +181,19 @@ impl Wave<'_> {
 
 const START: Complex<f32> = Complex::new(1.0, 0.0);
 
-/// Oscillations of a model whose turns are tabled; those beyond take a cosine a lag.
+/// The number of oscillations of a model whose turns are kept in tables. Any further one takes a cosine
+/// per lag.
 const TABLES: usize = 2;
 
-/// `e^(i · phase · 2^k)`, by squaring: a lattice of cosines for one exponential.
+/// The powers `e^(i · phase · 2^k)`, by repeated squaring: one exponential replaces the cosines of a
+/// lattice.
 struct Turn {
     phase: Real,
     steps: [Complex<f32>; (lattice::END / 2).ilog2() as usize],
 }
 
 impl Turn {
-    /// The place of a phase's turns among those that are known, or where they come to be. `None` where
+    /// The place of a phase's turns in `known`, where they are added if they are missing. `None` if
     /// there is no room.
     fn of(phase: Real, known: &mut Vec<Self, TABLES>) -> Option<usize> {
         if let Some(at) = known.iter().position(|turn| turn.phase == phase) {
@@ -211,7 +218,7 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// The longer cluster in quarters of the shorter: the lag of the outer kinks.
+    /// The length of the longer cluster in quarters of the shorter one: the lag of the outer kinks.
     fn middle(&self) -> u32 {
         let ratio = self.longer.m.checked_div(self.shorter.m).unwrap_or(0);
         ratio.saturating_mul(4)
@@ -231,7 +238,9 @@ impl Pair<'_> {
             let random = differences.at(lag.abs_diff(middle)) - (here + here)
                 + differences.at(lag.saturating_add(middle));
             if random != 0.0 {
-                // Half the steps to either side, in strides; both signs of the lag are in `pairs`.
+                // The trapezoidal rule weights a lag with half the steps to either side. The factor of
+                // one half follows below, and so does the division by the stride. `pairs` counts both
+                // signs of the lag.
                 let weight =
                     (u64::from(step_before) + u64::from(step)).saturating_mul(pairs) as f32;
                 let mut factor = random;
@@ -256,7 +265,7 @@ impl Pair<'_> {
             }
         }
         let counts = self.shorter.differences as Real * self.longer.differences as Real;
-        // Of single precision's range, the square of τ² would take too much.
+        // The square of τ² would leave the range of single precision, so τ² is divided out first.
         let unit = differences.unit() / (self.shorter.tau_s * self.longer.tau_s);
         0.25 * real(sum) * (unit * unit) / (real(stride) * counts)
     }
@@ -264,15 +273,16 @@ impl Pair<'_> {
 
 /// Where the differences of two octaves start.
 struct Starts {
-    /// Samples between the starts of the longer, as a power of two.
+    /// The binary logarithm of the number of samples between two starts of the longer difference.
     advance_bits: u32,
-    /// Quarters of the shorter cluster to samples: a power of two, and two less.
+    /// The binary logarithm of the shorter cluster's length in samples. It turns quarters of the
+    /// cluster into samples, with a shift by two less.
     quarter_bits: u32,
-    /// Room on either side of the shorter difference inside the longer, in samples.
+    /// The room that the longer difference leaves on either side of the shorter one, in samples.
     inside: u64,
-    /// The last start of the shorter.
+    /// The last start of the shorter difference, in samples.
     last: u64,
-    /// Starts of the longer.
+    /// The number of starts of the longer difference.
     count: u64,
 }
 
@@ -290,16 +300,18 @@ impl Starts {
         }
     }
 
-    /// How many pairs of starts have their differences' middles `lag` quarters of the shorter
-    /// cluster apart, either way round.
+    /// The number of pairs of starts whose differences have their middles `lag` quarters of the shorter
+    /// cluster apart, in either order.
     fn pairs(&self, lag: u32) -> u64 {
         let distance = u64::from(lag).wrapping_shl(self.quarter_bits) >> 2;
-        // Starts of the longer difference, less those whose partner would lie before the record …
+        // In one order, the partners of these starts of the longer difference would lie before the
+        // record.
         let outside = distance.saturating_sub(self.inside);
         let advance = 1_u64.wrapping_shl(self.advance_bits);
         let partly = outside.saturating_add(advance.saturating_sub(1));
         let before = partly.wrapping_shr(self.advance_bits);
-        // … or after its end.
+        // In the other order, these starts have a partner that does not lie beyond the end of the
+        // record.
         let end = distance.saturating_add(self.inside);
         let after = match self.last.checked_sub(end) {
             Some(room) => room.wrapping_shr(self.advance_bits).saturating_add(1),
@@ -310,15 +322,15 @@ impl Starts {
     }
 }
 
-/// Samples from one start to the next.
+/// The number of samples from one start to the next.
 fn advance(m: u32) -> u32 {
     (m / 4).max(1)
 }
 
-/// The next lag of the sum: by quarters of a cluster near 0 and near the middle, where the kinks
-/// are, then by two, then by the distance's power of two.
+/// The step from a lag of the sum to the next one: a quarter of a cluster near 0 and near the middle,
+/// where the kinks are, then two quarters, then the power of two of the distance.
 fn step_after(lag: u32, middle: u32, stride: u32) -> u32 {
-    // Far apart, octaves are correlated too little for half steps to matter.
+    // Octaves that lie far apart are correlated too little for half steps to matter.
     let halvings = if middle < FAR { 1 } else { 0 };
     let power = |distance: u32| 1_u32.wrapping_shl(floor_log2(distance).saturating_sub(halvings));
     let away = |distance: u32| match distance {

@@ -1,19 +1,20 @@
 //! A covariate: anything that is sampled beside the gyro and that the rate may follow, such as a
 //! temperature, its rate of change, an acceleration or a supply voltage.
 //!
-//! It is measured and not modelled: `D_g = D_noise + α D_x`, so that no kernel is needed, and the
-//! covariate claims none of the curve's shapes. The slope comes from the octave sums as
+//! A covariate is measured and not modelled: `D_g = D_noise + α D_x`. So it needs no kernel, and it
+//! claims none of the curve's shapes. The slope `α` follows from the octave sums:
 //!
 //! ```text
 //! α̂ = Σ_k (n/m_k) C_gx,k / σ²_k  /  Σ_k (n/m_k) σ²_x,k / σ²_k,      Var α̂ = c / Σ_k (n/m_k) σ²_x,k / σ²_k
 //! ```
 //!
-//! with `C_gx` and `σ²_x` of the [`CrossCurve`], `σ²` of the noise, and `n/m` clusters in an octave. An
-//! octave sees the density of the covariate through `|H(f)|² = 2 sin⁴(πfτ)/(πfτ)²`, and all octaves
-//! together weight it with `W(f) = Σ_k (n/m_k) |H_k(f)|²/σ²_k`, so that `c` is `W` times the noise's
-//! density: 2 for white noise, whose `Σ|H|²` is 2, and `π²/(6 ln² 2) = 3.42` for flicker noise, from
-//! `∫ sin⁴u/u⁴ du = π/3` over `(2 ln 2/π) B²`. What a gyro may follow is slow, so the value of flicker
-//! noise is taken, which is on the cautious side where the noise is white.
+//! Here `C_gx` and `σ²_x` are the numbers of the [`CrossCurve`], `σ²` is the Allan variance of the
+//! noise, and `n/m` is the number of clusters in an octave. An octave sees the spectral density of the
+//! covariate through `|H(f)|² = 2 sin⁴(πfτ)/(πfτ)²`, and all octaves together weight it with
+//! `W(f) = Σ_k (n/m_k) |H_k(f)|²/σ²_k`. The factor `c` is `W` times the spectral density of the noise.
+//! It is 2 for white noise, whose `Σ|H|²` is 2. It is `π²/(6 ln² 2) = 3.42` for flicker noise, from
+//! `∫ sin⁴u/u⁴ du = π/3` over `(2 ln 2/π) B²`. The covariates that a gyro may follow are slow, so the
+//! value for flicker noise is taken. It is cautious where the noise is white.
 
 mod cross_sums;
 
@@ -32,10 +33,10 @@ use crate::{
 };
 use heapless::Vec;
 
-/// Its name in files and on the command line.
+/// The name of a covariate in files and on the command line.
 pub const NAME: &str = "covariate";
 
-/// What to tell somebody whose gyro follows a covariate.
+/// The explanation for the owner of a gyro that follows a covariate.
 pub const EXPLANATION: Explanation = Explanation {
     what: "the rate follows something that was recorded alongside, such as the temperature",
     origin: "thermal expansion and the temperature of the drive's electronics; acceleration \
@@ -44,19 +45,20 @@ pub const EXPLANATION: Explanation = Explanation {
             slope times covariate from the rate",
 };
 
-/// One octave of a gyro beside a covariate.
+/// One octave of a gyro and a covariate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CrossPoint {
     /// Averaging factor.
     pub m: u32,
-    /// Allan covariance `½ mean (D_g D_x)/m²`, in rate units times the covariate's.
+    /// Allan covariance `½ mean (D_g D_x)/m²`, in rate units times the covariate's unit.
     pub covariance: Real,
     /// The covariate's Allan variance, in its unit squared.
     pub variance: Real,
 }
 
-/// What a gyro and a covariate share, octave by octave: all that a diagnosis knows of the covariate.
+/// What a gyro and a covariate share, octave by octave. A diagnosis knows nothing else of the
+/// covariate.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CrossCurve<const K: usize> {
@@ -64,8 +66,8 @@ pub struct CrossCurve<const K: usize> {
 }
 
 impl<const K: usize> CrossCurve<K> {
-    /// The cross curve of a gyro and a covariate that took the same samples and gaps, of the octaves
-    /// that the gyro's curve has. `per_count` is the covariate's unit per count.
+    /// The cross curve of a gyro and a covariate that took the same samples and gaps. It has the
+    /// octaves of the gyro's curve. One count of the covariate stands for `per_count` of its unit.
     pub(crate) fn new(
         gyro: &Accumulator<K>,
         covariate: &Accumulator<K>,
@@ -81,11 +83,11 @@ impl<const K: usize> CrossCurve<K> {
             if gyro_octave.differences < Curve::<K>::MIN_DIFFERENCES {
                 continue;
             }
-            // ½ mean (D_g/m)(D_x/m).
+            // The factors of ½ mean (D_g/m)(D_x/m).
             let m = real(gyro_octave.m);
             let half_mean = 0.5 / (gyro_octave.differences as Real * m * m);
             let product = products.read(k, gyro, covariate).to_real();
-            // There are as many octaves as there is room for.
+            // There is room for every octave.
             let _ = points.push(CrossPoint {
                 m: gyro_octave.m,
                 covariance: half_mean * product * scale.rate_per_count() * per_count,
@@ -95,20 +97,21 @@ impl<const K: usize> CrossCurve<K> {
         Ok(Self { points })
     }
 
-    /// The octaves, shortest averaging time first: those of the gyro's curve.
+    /// The octaves, shortest averaging time first. They are the octaves of the gyro's curve.
     pub fn points(&self) -> &[CrossPoint] {
         &self.points
     }
 
-    /// Takes what follows the covariate off the gyro's curve, `σ²_g − 2α C_gx + α² σ²_x`. The slope's own
-    /// error ε takes some of the noise away with it, on average `ε² σ²_x`, which is put back.
+    /// Subtracts what follows the covariate from the gyro's curve, `σ²_g − 2α C_gx + α² σ²_x`. The
+    /// slope's own error ε takes some of the noise away as well, `ε² σ²_x` on average, which is added
+    /// back.
     #[inline(never)]
     pub fn correct(&self, curve: &mut Curve<K>, slope: &Slope) {
         let Slope { value, error } = *slope;
         curve.change_variances(|k, variance| match self.points.get(k) {
             Some(cross) => {
                 let follows = value * (2.0 * cross.covariance - value * cross.variance);
-                // It is a mean square, and falls below zero by rounding only.
+                // The rest is a mean square. Only rounding makes it negative.
                 let rest = (variance - follows).max(variance * Real::EPSILON);
                 rest + error * error * cross.variance
             }
@@ -116,9 +119,9 @@ impl<const K: usize> CrossCurve<K> {
         });
     }
 
-    /// The first octave in which the covariate is more than its sensor's noise: the very first, where
-    /// the curve rises from the start, and also where it never rises and all of it is noise that the
-    /// rate might follow.
+    /// The first octave in which the covariate exceeds its sensor's noise. This is octave 0 where the
+    /// curve rises from the start. It is octave 0 as well where the curve never rises: then the rate
+    /// might follow the noise.
     fn first_octave(&self) -> usize {
         let by_variance = |(_, a): &(usize, &CrossPoint), (_, b): &(usize, &CrossPoint)| {
             a.variance.total_cmp(&b.variance)
@@ -134,26 +137,27 @@ impl<const K: usize> CrossCurve<K> {
     }
 }
 
-/// A sensor's own noise, which the rate does not follow, would dilute the slope. Where a covariate's
-/// curve falls before it rises, octaves count from where it has risen to this many times its least.
+/// The rise above the least variance of a covariate from which on octaves count, where the covariate's
+/// curve falls before it rises. The octaves before hold the sensor's own noise, which the rate does not
+/// follow and which would dilute the slope.
 const RISEN: Real = 4.0;
 
-/// Variance of a slope times the information that the octaves sum up.
+/// The factor `c` of the slope's variance, for flicker noise; see the [module](self).
 const CAUTION: Real = 3.42;
 
-/// How a rate follows a covariate.
+/// The slope with which a rate follows a covariate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Slope {
-    /// Rate units per unit of the covariate, with sign.
+    /// Rate units per unit of the covariate, positive or negative.
     pub value: Real,
-    /// Its standard error.
+    /// Standard error of the slope, in the same unit.
     pub error: Real,
 }
 
 impl Slope {
-    /// The slope, where noise has the Allan variance `noise(k)` in octave `k`. `None` for a covariate
-    /// that does not change.
+    /// The slope, where the noise has the Allan variance `noise(k)` in octave `k`. `None` if the
+    /// covariate does not change.
     pub(crate) fn of<const K: usize>(
         cross: &CrossCurve<K>,
         points: &[Point],
@@ -172,12 +176,12 @@ impl Slope {
         })
     }
 
-    /// The slope in standard errors.
+    /// The slope divided by its standard error.
     pub fn z(&self) -> Real {
         self.value / self.error
     }
 
-    /// The 95 % interval.
+    /// The lower and the upper end of the slope's 95 % interval.
     pub fn interval(&self) -> (Real, Real) {
         let half = 1.959_964 * self.error;
         (self.value - half, self.value + half)

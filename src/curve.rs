@@ -1,4 +1,4 @@
-//! The Allan curve: what is left of the samples.
+//! The Allan curve, which is what remains of the samples.
 
 use crate::{
     effect::Span,
@@ -10,7 +10,7 @@ use crate::{
 };
 use heapless::Vec;
 
-/// How counts and sample numbers become rates and seconds.
+/// The scale that turns counts and sample numbers into rates and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Scale {
@@ -19,11 +19,11 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// A sensor of `rate_per_count` rate units (rad/s or deg/s: coefficients come out in the same)
-    /// per count, sampled at `rate_hz`.
+    /// The scale of a sensor that gives `rate_per_count` rate units per count and is sampled at
+    /// `rate_hz`. The rate unit may be rad/s or deg/s; coefficients come out in the same unit.
     ///
     /// # Errors
-    /// [`Error::InvalidScale`], [`Error::InvalidRate`] unless both are positive and finite.
+    /// [`Error::InvalidScale`] and [`Error::InvalidRate`] if the number is not positive and finite.
     pub fn new(rate_per_count: Real, rate_hz: Real) -> Result<Self, Error> {
         let valid = |x: Real| x.is_finite() && x > 0.0;
         if !valid(rate_per_count) {
@@ -57,7 +57,7 @@ pub struct Point {
     pub m: u32,
     /// Averaging time τ = m τ₀, in seconds.
     pub tau_s: Real,
-    /// Quarter-overlapping differences behind the variance.
+    /// The number of quarter-overlapping differences that the variance is computed from.
     pub differences: u64,
     /// Allan variance σ²(τ), in rate units squared.
     pub variance: Real,
@@ -70,28 +70,29 @@ impl Point {
     }
 }
 
-/// An Allan curve of up to `K` octaves: everything that the fit, the comparison and the diagnosis
-/// know of a record.
+/// An Allan curve of up to `K` octaves. The fit, the comparison and the diagnosis work on it, without
+/// the samples.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Curve<const K: usize> {
     rate_hz: Real,
-    /// A power of four near the least variance: in this unit, squares of variances do not leave single
-    /// precision's range.
+    /// A power of four near the smallest variance. In this unit, the squares of variances stay within
+    /// the range of single precision.
     variance_unit: Real,
     points: Vec<Point, K>,
 }
 
 impl<const K: usize> Curve<K> {
-    /// Differences that an octave needs to enter a curve, unless another number is asked for: with
-    /// fewer, the estimate's distribution is too far from any that a fit can weight.
+    /// The number of differences that an octave needs to enter a curve, unless another number is asked
+    /// for. With fewer, the distribution of the estimate is too far from any that a fit can weight.
     pub const MIN_DIFFERENCES: u64 = 6;
 
-    /// A stored curve: averaging factor, number of differences and Allan variance of each octave,
-    /// shortest averaging time first.
+    /// A curve from stored octaves, each given by its averaging factor, its number of differences and
+    /// its Allan variance in rate units squared, shortest averaging time first.
     ///
     /// # Errors
-    /// [`Error::InvalidRate`], [`Error::InvalidPoint`], [`Error::TooManyOctaves`].
+    /// [`Error::InvalidRate`] if `rate_hz` is not positive and finite, [`Error::InvalidPoint`] if an
+    /// octave is not possible, [`Error::TooManyOctaves`] if there are more than `K`.
     pub fn new(
         rate_hz: Real,
         octaves: impl IntoIterator<Item = (u32, u64, Real)>,
@@ -122,7 +123,7 @@ impl<const K: usize> Curve<K> {
         })
     }
 
-    /// Other variances in place, which must be finite and not negative.
+    /// Replaces every variance in place. The new variances must be finite and not negative.
     pub(crate) fn change_variances(&mut self, variance: impl Fn(usize, Real) -> Real) {
         for (k, point) in numbered(self.points.iter_mut()) {
             point.variance = variance(k, point.variance);
@@ -139,7 +140,7 @@ impl<const K: usize> Curve<K> {
         1.0 / self.rate_hz
     }
 
-    /// What the curve spans.
+    /// The range of times that the curve covers.
     pub(crate) fn span(&self) -> Span {
         Span {
             interval_s: self.interval_s(),
@@ -147,8 +148,8 @@ impl<const K: usize> Curve<K> {
         }
     }
 
-    /// The unit that a fit counts variances in, and with them squared coefficients. What is taken off a
-    /// curve leaves it.
+    /// The unit, in rate units squared, in which a fit counts variances and squared coefficients. It
+    /// stays the same when something is subtracted from the curve.
     pub(crate) const fn variance_unit(&self) -> Real {
         self.variance_unit
     }
@@ -159,7 +160,8 @@ impl<const K: usize> Curve<K> {
     }
 }
 
-/// Clusters `N/m` in the record, from an octave's number of differences as of a contiguous one.
+/// The number of clusters `N/m` in the record, from an octave's number of differences. The record is
+/// taken to be without gaps.
 pub(crate) fn clusters(point: &Point) -> Real {
     let m = real(point.m);
     point.differences.saturating_sub(1) as Real * (0.25 * m).max(1.0) / m + 2.0
@@ -184,19 +186,20 @@ fn power_of_four(points: &[Point]) -> Real {
 }
 
 impl<const K: usize> Accumulator<K> {
-    /// The Allan curve as of now, of octaves with at least [`Curve::MIN_DIFFERENCES`].
+    /// The Allan curve so far, of the octaves with at least [`Curve::MIN_DIFFERENCES`] differences.
     pub fn curve(&self, scale: Scale) -> Curve<K> {
         self.curve_of(scale, Curve::<K>::MIN_DIFFERENCES)
     }
 
-    /// The Allan curve as of now, of octaves with at least `min_differences` (at least one).
+    /// The Allan curve so far, of the octaves with at least `min_differences` differences, and at least
+    /// one.
     pub fn curve_of(&self, scale: Scale, min_differences: u64) -> Curve<K> {
         let mut points = Vec::new();
         for octave in self.octaves() {
             if octave.differences < min_differences.max(1) {
                 continue;
             }
-            // σ² = ½ mean (D/m)², in counts² until scaled.
+            // σ² = ½ mean (D/m)², in counts² until it is scaled.
             let cluster_scale = scale.rate_per_count / real(octave.m);
             let mean_square = octave.sum.to_real() / octave.differences as Real;
             let point = Point {
@@ -205,7 +208,7 @@ impl<const K: usize> Accumulator<K> {
                 differences: octave.differences,
                 variance: 0.5 * mean_square * cluster_scale * cluster_scale,
             };
-            // As many octaves as capacity: there is always room.
+            // There is room for every octave.
             let _ = points.push(point);
         }
         Curve {

@@ -11,50 +11,51 @@ pub enum Error {
     InvalidRate(Real),
     /// The rate per count is not a positive, finite number.
     InvalidScale(Real),
-    /// A curve's point is impossible: `m` is not a power of two up to 2^29, not above the one
-    /// before it, without differences, or its variance is negative or not finite.
+    /// A point of the curve is impossible. Its `m` is not a power of two up to 2^29 or not above the
+    /// one before it, or it has no differences, or its variance is negative or not finite.
     InvalidPoint {
         /// The point's averaging factor.
         m: u32,
     },
-    /// More octaves than the curve has room for.
+    /// There are more octaves than the curve has room for.
     TooManyOctaves {
-        /// How many it has room for.
+        /// The number of octaves that there is room for.
         capacity: usize,
     },
-    /// Fewer octaves with enough differences than a fit needs: record longer.
+    /// Fewer octaves have enough differences than the fit needs: record longer.
     TooFewOctaves {
-        /// Octaves that the curve has.
+        /// The number of octaves that the curve has.
         found: usize,
-        /// Octaves that the fit needs.
+        /// The number of octaves that the fit needs.
         needed: usize,
     },
-    /// A variance of zero: the counts never changed, so there is no noise to characterise.
+    /// An octave has a variance of zero: the counts never changed, so there is no noise to
+    /// characterise.
     NoNoise {
         /// The averaging factor of the first such octave.
         m: u32,
     },
-    /// More effects in a model than it has room for.
+    /// There are more effects than a model has room for.
     TooManyEffects {
-        /// How many it has room for.
+        /// The number of effects that there is room for.
         capacity: usize,
     },
-    /// An axis that the record does not have.
+    /// The record does not have the axis that was asked for.
     UnknownAxis {
         /// The axis that was asked for, counted from 0.
         axis: usize,
-        /// How many axes the record has.
+        /// The number of axes that the record has.
         axes: usize,
     },
-    /// Samples came at another rate than the configured one: the curve would be shifted along τ.
+    /// The samples came at another rate than the configured one, which would shift the curve along τ.
     RateContradicted {
-        /// The rate that was configured, in Hz.
+        /// The configured rate, in Hz.
         configured_hz: Real,
-        /// The rate that the samples came at, in Hz.
+        /// The rate at which the samples came, in Hz.
         measured_hz: Real,
     },
-    /// The normal equations have no solution: the model's effects cannot be told apart, or a
-    /// column is not finite.
+    /// The normal equations have no solution. The model's effects cannot be told apart, or a column is
+    /// not finite.
     Singular,
 }
 

@@ -1,4 +1,5 @@
-//! Whether a record is one of a gyro at rest: stuck, railed, spiked, moved, or missing samples.
+//! Whether a record is that of a gyro at rest, or has stuck values, rail hits, spikes, motion or
+//! missing samples.
 
 mod cluster;
 mod limits;
@@ -15,60 +16,65 @@ pub use reason::Reason;
 
 use state::{CLUSTERS, State};
 
-/// Watches the counts beside an [`Accumulator`](crate::Accumulator), in fixed memory and integers
-/// only, and tells whether the Allan curve can mean what it says.
+/// Watches the counts beside an [`Accumulator`](crate::Accumulator), in fixed memory and integers only,
+/// and tells whether the Allan curve is valid.
 ///
-/// An Allan variance assumes a gyro at rest whose noise goes on as it began. It averages whatever
-/// it is given: one corrupt word on the bus raises every octave as white noise would, a hand on the
-/// bench looks like a random walk, a sensor that hangs looks quiet. None of this can be seen in the
-/// curve any more; here it is counted before it is averaged.
+/// An Allan variance assumes a gyro at rest whose noise stays the same. It averages whatever it is
+/// given: one corrupt word on the bus raises every octave as white noise would, a hand on the bench
+/// looks like a random walk, and a sensor that hangs looks quiet. None of this can be seen in the curve
+/// any more, so it is counted before it is averaged.
 ///
 /// # The statistics
 ///
-/// *Repeats.* A quiet gyro behind a coarse converter repeats values, so no fixed length of a run
-/// is suspicious. The record itself tells its mean run, the number of samples over the number of
-/// changes. Runs of independent noise are geometric, and one longer than `r` times the mean has a
-/// probability below `e^−r`: at 41 not one in 10⁹ samples, in 10⁹ records. The default of 128
-/// leaves room for a level that drifts between the middle of a quantum, where runs are long, and
-/// its edge, where they are short: it holds for a noise of 0.2 counts rms or more. Below that,
-/// quantisation is no longer a noise that adds, and `Stuck` is the right word for the curve. So it
-/// is where fewer than one sample in a thousand changes at all.
+/// *Repeats.* A quiet gyro behind a coarse converter repeats values, so no fixed length of a run is
+/// suspicious. The record itself gives its mean run, which is the number of samples over the number of
+/// changes. Runs of independent noise have a geometric distribution: a run longer than `r` times the
+/// mean has a probability below `e^−r`. At 41, not one is expected in 10⁹ records of 10⁹ samples. The
+/// default of 128 leaves room for a level that drifts between the middle of a quantum, where runs are
+/// long, and its edge, where they are short. It holds for a noise of 0.2 counts rms or more. Below
+/// that, quantization is no longer a noise that adds, and the curve is rightly called `Stuck`. It is
+/// also called `Stuck` where fewer than one sample in a thousand changes at all.
 ///
-/// *Rails.* A converter that clips returns its extreme value. A hit counts if it is a rail and the
-/// record's extreme too: a value beyond proves that the rail is none of this sensor.
+/// *Rails.* A converter that clips returns its extreme value. A sample counts as a hit if it equals a
+/// rail and is the extreme of the record too: a value beyond proves that the sensor does not have this
+/// rail.
 ///
-/// *Spikes.* A sample further from the last ordinary one than 20 times the mean absolute difference
-/// of neighbours, back within three samples. The scale follows the record over some 256 samples;
-/// each difference enters it with at most twice what is usual, so that a spike of any size
-/// raises it by 1 %. For white noise the limit lies at 16 standard deviations of a difference,
-/// which is beyond any number of samples. A spike adds the same share to every octave that white
-/// noise rules; where their squares make up 5 % of ΣD² at `m = 1`, angle random walk comes out
-/// 2.5 % too high, and the record is invalid. In 2^16 samples one spike of 42 standard
-/// deviations does that. Rarer or smaller ones are counted.
+/// *Spikes.* A spike lies further from the last ordinary sample than 20 times the mean absolute
+/// difference of neighbours, and is over within three samples. The scale follows the record over some
+/// 256 samples. Each difference enters it with at most twice the usual size, so that a spike of any
+/// size raises the scale by 1 %. For white noise, the limit lies at 16 standard deviations of a
+/// difference, which no number of samples reaches. A spike adds the same share to every octave that
+/// white noise dominates. Where the squares of the spikes make up 5 % of ΣD² at `m = 1`, angle random
+/// walk comes out 2.5 % too high, and the record is invalid. In 2^16 samples, one spike of 42 standard
+/// deviations is enough for that. Rarer or smaller spikes are counted and tolerated.
 ///
-/// *Motion.* The same statistic of the means of 64 and of 1024 samples, spikes left out: a cluster
-/// further from the last ordinary one than 64 times what neighbours usually differ by (those of
-/// 64 samples, where those of 1024 differ less), until it is back or for 64 clusters. Jumps beyond the
-/// limit of spikes that do not come back count too, as motion of clusters of one. Because the scale is that of the record's own clusters, whatever goes
-/// on all the time is part of it: flicker, random walk, ramps, a sinusoid, noise with memory. What
-/// is left is what happens a few times and dwarfs the rest. For a consumer gyro of 0.005 °/√s at
-/// 100 Hz the limit lies at 0.5 °/s, for a tactical one at 0.2 °/s, and no hand is that steady.
-/// Telegraph noise whose jumps exceed the limit and are rare is taken for motion; its rms would have
-/// to be three to five times that of the white noise of a sample. Motion counts from 5 % of ΣD² of the
-/// clusters on.
+/// *Motion.* The same statistic is applied to the means of 64 and of 1024 samples, without spikes. A
+/// cluster is in motion if it lies further from the last ordinary one than 64 times the usual
+/// difference of neighbours. For clusters of 1024 samples, the usual difference is at least that of
+/// clusters of 64. Motion lasts until a cluster is back, or for 64 clusters. Jumps beyond the limit of
+/// spikes that do not come back count as motion too, of clusters of one sample. The scale is that of
+/// the record's own clusters, so that it includes whatever goes on all the time: flicker noise, random
+/// walk, ramps, a sinusoid, noise with memory. What remains is what happens a few times and is much
+/// larger than the rest. For a consumer gyro of 0.005 °/√s at 100 Hz, the limit lies at 0.5 °/s, for a
+/// tactical one at 0.2 °/s. No hand is that steady. Telegraph noise whose jumps exceed the limit and
+/// are rare is taken for motion; its rms would have to be three to five times that of the white noise
+/// of a sample. Motion makes the record invalid from 5 % of the clusters' ΣD² on.
 ///
-/// *Missing samples.* As told by [`missing`](Self::missing): no more than one in ten.
+/// *Missing samples.* At most one in ten samples may be lost, as reported by
+/// [`missing`](Self::missing).
 ///
-/// What is not seen: motion that sets in as gradually as the scale follows, about a factor of two in
-/// a hundred clusters; a shake of zero mean that lasts while the scale is learnt.
+/// Two kinds of motion are not seen. One is motion that sets in as gradually as the scale follows, by
+/// about a factor of two in a hundred clusters. The other is a shake of zero mean that lasts while the
+/// scale is learnt.
 ///
-/// While it learns a scale (64 differences; 16 of clusters) nothing is judged; then the largest
-/// difference so far is.
+/// Nothing is judged while a scale is learnt, from 64 differences of samples and 16 of clusters. After
+/// that, the largest difference so far is judged.
 ///
 /// # Cost
 ///
-/// Integers only, no division: a handful of comparisons, additions and multiplications a sample, once
-/// in 64 samples those of a cluster besides. The state takes at most 480 bytes.
+/// The watch uses integers only, and no division. A sample takes a handful of comparisons, additions
+/// and multiplications; every 64th sample takes those of a cluster as well. The state takes at most 480
+/// bytes.
 ///
 /// # Example
 ///
@@ -84,8 +90,8 @@ use state::{CLUSTERS, State};
 /// assert!(matches!(integrity.verdict(), Some(Reason::Spiked { .. })));
 /// ```
 ///
-/// The limits are configuration and lie apart, in flash: an empty state is all zero, and a `static` that
-/// holds one takes no flash for its initial value.
+/// The limits are configuration. They lie apart from the state, in flash. An empty state is all zero,
+/// so that a `static` that holds one takes no flash for its initial value.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Integrity {
@@ -102,11 +108,11 @@ pub struct Tally {
     pub samples: u64,
     /// Samples lost.
     pub missing: u64,
-    /// Samples that equal the one before.
+    /// Samples that equal the sample before.
     pub repeats: u64,
     /// Samples in the longest run of equal values.
     pub longest_run: u32,
-    /// Runs that were implausibly long by what was known when they happened.
+    /// Runs that were implausibly long, judged by what was known when they happened.
     pub stuck_runs: u64,
     /// Samples in these runs.
     pub stuck_samples: u64,
@@ -114,14 +120,14 @@ pub struct Tally {
     pub rail_hits: u64,
     /// Excursions of one to three samples far beyond the noise.
     pub spikes: u64,
-    /// Jumps of the same size that did not come back.
+    /// Jumps of the size of a spike that did not come back.
     pub steps: u64,
     /// Stretches in which clusters lay far from those before.
     pub motions: u64,
 }
 
 impl Integrity {
-    /// Watches with the default limits.
+    /// A watch with the default limits.
     pub const fn new() -> Self {
         Self {
             limits: None,
@@ -129,10 +135,10 @@ impl Integrity {
         }
     }
 
-    /// Watches with these limits.
+    /// A watch with these limits.
     ///
     /// # Errors
-    /// Where a limit is outside the range that its field documents.
+    /// [`InvalidLimit`] if a limit is outside the range that its field documents.
     pub const fn with_limits(limits: &'static Limits) -> Result<Self, InvalidLimit> {
         match limits.check() {
             Ok(()) => Ok(Self {
@@ -143,7 +149,7 @@ impl Integrity {
         }
     }
 
-    /// The limits.
+    /// The limits by which the record is judged.
     pub const fn limits(&self) -> &'static Limits {
         match self.limits {
             Some(limits) => limits,
@@ -164,7 +170,8 @@ impl Integrity {
         state.push(count, limits)
     }
 
-    /// This many samples were lost at this place: counts them, and is a [`gap`](Self::gap).
+    /// Counts samples that were lost at this place, and marks a [`gap`](Self::gap). Does nothing for 0
+    /// samples.
     pub fn missing(&mut self, samples: u64) {
         if samples > 0 {
             self.add_missing(samples);
@@ -172,19 +179,19 @@ impl Integrity {
         }
     }
 
-    /// Counts samples that were lost, at a place that a [`gap`](Self::gap) marks.
+    /// Counts samples that were lost, at a place that a [`gap`](Self::gap) marks separately.
     pub(crate) fn add_missing(&mut self, samples: u64) {
         self.state.missing = self.state.missing.saturating_add(samples);
     }
 
-    /// The samples that follow do not adjoin those before: no run, difference or cluster will span
-    /// this moment. What was counted and learnt stays.
+    /// Marks a place where the next sample does not adjoin the one before. No run, difference or
+    /// cluster spans this place. What was counted and learnt stays.
     pub fn gap(&mut self) {
         self.state.gap();
     }
 
-    /// Adds another record of the same sensor, as if a gap lay between the two. It is judged by the
-    /// limits of this one.
+    /// Adds another record of the same sensor, as if a gap lay between the two. The limits of this one
+    /// judge the whole.
     pub fn merge(&mut self, other: &Self) {
         self.state.merge(&other.state);
     }
@@ -194,7 +201,7 @@ impl Integrity {
         self.state = State::NEW;
     }
 
-    /// What was counted so far.
+    /// What has been counted so far.
     pub fn tally(&self) -> Tally {
         let state = &self.state;
         let motions = state.clusters.iter().map(|c| c.motions).max();
@@ -212,9 +219,9 @@ impl Integrity {
         }
     }
 
-    /// Why the Allan curve of this record cannot mean what it says; `None` where it can. Of
-    /// several reasons the one that may have caused the others: rails, stuck values, motion,
-    /// spikes, missing samples.
+    /// Why the Allan curve of this record is not valid; `None` where it is valid. If there are several
+    /// reasons, it is the one that may have caused the others, in this order: rails, stuck values,
+    /// motion, spikes, missing samples.
     pub fn verdict(&self) -> Option<Reason> {
         let (limits, state) = (self.limits(), &self.state);
         let samples = state.samples();
@@ -249,7 +256,8 @@ impl Integrity {
             .then_some(Reason::Missing { missing, sent })
     }
 
-    /// By the mean run of the whole record, which a run that happened early did not know.
+    /// Judges the runs by the mean run of the whole record, which was not yet known when an early run
+    /// happened.
     fn stuck(&self) -> Option<Reason> {
         let (limits, state) = (self.limits(), &self.state);
         let (samples, runs) = (state.samples(), &state.runs);
@@ -269,7 +277,7 @@ impl Integrity {
 }
 
 impl Default for Integrity {
-    /// With the default limits.
+    /// A watch with the default limits.
     fn default() -> Self {
         Self::new()
     }
@@ -285,15 +293,15 @@ impl Eq for Integrity {}
 
 #[cfg(feature = "storage")]
 impl Integrity {
-    /// What a snapshot holds: all but the limits, as behind a gap.
+    /// What a snapshot stores: the state after a gap, without the limits.
     pub(crate) fn stored(&self) -> impl serde::Serialize + use<> {
         let mut state = self.state.clone();
         state.gap();
         state
     }
 
-    /// Reads what was [stored](Self::stored), and returns the bytes behind it; `None` where no record
-    /// leaves that.
+    /// Reads what was [stored](Self::stored), and returns the bytes behind it. `None` if no record
+    /// leads to such a state.
     pub(crate) fn restore<'b>(&mut self, bytes: &'b [u8]) -> Option<&'b [u8]> {
         let (state, rest) = postcard::take_from_bytes::<State>(bytes).ok()?;
         if !state.is_possible() {
@@ -304,12 +312,12 @@ impl Integrity {
     }
 }
 
-/// Whether a part is more than so many thousandths of the whole.
+/// Whether a part is more than `per_mille` thousandths of the whole.
 pub(crate) fn exceeds(part: u128, whole: u128, per_mille: u16) -> bool {
     part.saturating_mul(1000) > whole.saturating_mul(per_mille.into())
 }
 
-/// A part of a whole in per cent, rounded down.
+/// A part of a whole in percent, rounded down.
 fn percent(part: u128, whole: u128) -> u8 {
     let percent = part.saturating_mul(100) / whole.max(1);
     percent.min(100) as u8

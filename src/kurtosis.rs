@@ -1,17 +1,18 @@
-//! Evidence beyond the curve: whether the differences are Gaussian.
+//! Evidence beyond the curve: whether the differences have a Gaussian distribution.
 
 use crate::{curve::Curve, list::numbered, octave::Accumulator, real::Real};
 use heapless::Vec;
 
-/// Σ D⁴ of every octave of an accumulator, over the differences that the accumulator squares.
+/// The sums Σ D⁴ of every octave of an accumulator, over the differences that the accumulator squares.
 ///
-/// An Allan variance does not know Gauss–Markov noise from random telegraph noise. The kurtosis of
-/// the differences `D_s = θ_{s+2m} − 2θ_{s+m} + θ_s` does: it is 3 for any Gaussian noise, and more
+/// An Allan variance does not distinguish Gauss–Markov noise from random telegraph noise. The kurtosis
+/// of the differences `D_s = θ_{s+2m} − 2θ_{s+m} + θ_s` does: it is 3 for any Gaussian noise, and more
 /// where a rate jumps. The fourth powers are those of the same quarter-overlapping differences whose
-/// squares the accumulator sums, so that nothing else is kept: 24 bytes an octave.
+/// squares the accumulator sums. So the sums are all that is kept in addition, 24 bytes per octave.
 ///
 /// The sums are integers of 192 bits that stop at their largest value. A difference of 2^48 or more
-/// stops its octave at once; a converter of 16 bits stays below that in any octave.
+/// stops the sum of its octave at once. The differences of a 16-bit converter stay below that in any
+/// octave.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FourthMoments<const OCTAVES: usize> {
     sums: [[u64; 3]; OCTAVES],
@@ -21,7 +22,7 @@ pub struct FourthMoments<const OCTAVES: usize> {
 const STOPPED: [u64; 3] = [u64::MAX; 3];
 
 impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
-    /// Nothing summed yet.
+    /// Sums of no difference yet.
     pub(crate) const NEW: Self = Self {
         sums: [[0; 3]; OCTAVES],
     };
@@ -32,7 +33,7 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
         let Some(sum) = self.sums.get_mut(octave) else {
             return;
         };
-        // The path of a gyro at rest: two multiplications, one limb.
+        // A gyro at rest takes this path, with two multiplications and one limb.
         let short = difference as i16;
         if i64::from(short) == difference {
             let square = i32::from(short).wrapping_mul(i32::from(short)) as u32;
@@ -52,8 +53,8 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
         }
     }
 
-    /// The sum of octave `k` as of now, lowest limb first, with the difference that `accumulator` still has
-    /// pending.
+    /// The sum of octave `k` so far, lowest limb first. It includes the difference that is still
+    /// pending in `accumulator`.
     pub(crate) fn read(&self, k: usize, accumulator: &Accumulator<OCTAVES>) -> [u64; 3] {
         let mut sum = self.sums.get(k).copied().unwrap_or([0; 3]);
         if let Some(difference) = accumulator.pending_difference(k) {
@@ -62,14 +63,14 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
         sum
     }
 
-    /// The sums, to be restored.
+    /// The sums, for a snapshot that restores them.
     #[cfg(feature = "storage")]
     pub(crate) fn sums_mut(&mut self) -> &mut [[u64; 3]; OCTAVES] {
         &mut self.sums
     }
 
-    /// Excess kurtosis of every octave of `accumulator`, whose differences these are, with at least 30
-    /// differences that are not all zero, and whose sum has not stopped.
+    /// Excess kurtosis of every octave of `accumulator`, whose differences these are. An octave is left
+    /// out if it has fewer than 30 differences, if all of them are zero, or if its sum has stopped.
     pub(crate) fn kurtosis(&self, accumulator: &Accumulator<OCTAVES>) -> Kurtosis<OCTAVES> {
         let mut points = Vec::new();
         for (k, octave) in numbered(accumulator.octaves()) {
@@ -78,7 +79,7 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
             if octave.differences < 30 || squares == 0.0 || fourth == STOPPED {
                 continue;
             }
-            // In units of the mean square, so that single precision has room for it.
+            // The sum is taken in units of the mean square, so that it fits in single precision.
             let n = octave.differences as Real;
             let mean_square = squares / n;
             let [low, middle, high] = fourth.map(|limb| limb as Real / mean_square / mean_square);
@@ -104,7 +105,8 @@ fn add_large(sum: &mut [u64; 3], magnitude: u64) {
         *sum = STOPPED;
         return;
     }
-    // A square of 96 bits, split so that its square needs no more than 128 at a time.
+    // The square has 96 bits. It is split, so that its own square needs no more than 128 bits at a
+    // time.
     let square = u128::from(magnitude) * u128::from(magnitude);
     let (upper, lower) = ((square >> 64) as u64, square as u64);
     let low = u128::from(lower) * u128::from(lower);
@@ -135,7 +137,7 @@ fn add_limbs(sum: &mut [u64; 3], limbs: [u64; 3]) {
 pub struct KurtosisPoint {
     /// Averaging factor.
     pub m: u32,
-    /// Differences behind it.
+    /// The number of differences behind the excess.
     pub differences: u64,
     /// Kurtosis less 3, `n Σ D⁴ / (Σ D²)² − 3`: zero for Gaussian noise.
     pub excess: Real,
@@ -144,11 +146,12 @@ pub struct KurtosisPoint {
 impl KurtosisPoint {
     /// Variance of the excess that Gaussian noise shows.
     ///
-    /// It is `24 Σ_ℓ ρ_ℓ⁴ / n`, where `ρ_ℓ` is the correlation of differences that are `ℓ` starts apart
-    /// (the term of order four in the Hermite expansion of the excess; Lomnicki 1961). Starts advance
-    /// by a quarter of a cluster, or by half of one at `m = 2`, or by one at `m = 1`. `Σ ρ⁴` is then
-    /// 1.49, 1.14 and 1.13 for white noise of the rate, and 3.06, 1.54 and 1.01 for a random walk, which
-    /// noise is like whose correlation time exceeds a cluster. The larger of both is taken.
+    /// It is `24 Σ_ℓ ρ_ℓ⁴ / n`, where `ρ_ℓ` is the correlation of differences whose starts are `ℓ`
+    /// starts apart. This is the term of order four in the Hermite expansion of the excess (Lomnicki
+    /// 1961). Starts advance by a quarter of a cluster, or by half of one at `m = 2`, or by one at
+    /// `m = 1`. `Σ ρ⁴` is then 1.49, 1.14 and 1.13 for white noise of the rate, and 3.06, 1.54 and 1.01
+    /// for a random walk. Noise whose correlation time exceeds a cluster resembles a random walk. The
+    /// larger one of both values is taken.
     pub fn variance(&self) -> Real {
         let correlated = match self.m {
             1 => 1.13,
@@ -163,17 +166,18 @@ impl KurtosisPoint {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Kurtosis<const K: usize> {
-    /// The octaves that have one.
+    /// The octaves whose excess is known.
     pub points: Vec<KurtosisPoint, K>,
 }
 
 impl<const K: usize> Kurtosis<K> {
-    /// Whether exponentially correlated noise that has `share(k)` of the variance of the curve's octave
-    /// `k` jumps (random telegraph noise) or not (Gauss–Markov noise); `None` where that cannot be
-    /// said.
+    /// Whether exponentially correlated noise jumps (random telegraph noise) or does not (Gauss–Markov
+    /// noise). The noise has `share(k)` of the variance of the curve's octave `k`. `None` where the
+    /// data do not decide.
     ///
-    /// Telegraph noise that jumps would have an excess of `share² · E(τ/T_c)`: the record's excess is
-    /// regressed on that, which gives 1 for telegraph and 0 for Gaussian noise.
+    /// Telegraph noise would have an excess of `share² · E(τ/T_c)`, where `E` is [`telegraph_excess`].
+    /// A regression of the record's excess on that gives 1 for telegraph noise and 0 for Gaussian
+    /// noise.
     pub(crate) fn jumps(
         &self,
         curve: &Curve<K>,
@@ -198,12 +202,14 @@ impl<const K: usize> Kurtosis<K> {
     }
 }
 
-/// Standard errors that lie between the two before one is named.
+/// The number of standard errors that must lie between the two kinds of noise before one of them is
+/// named.
 const DECISIVE: Real = 6.0;
 
-/// Excess kurtosis of the differences of random telegraph noise alone, at `x = τ/T_c`: where jumps
-/// are rare, a share `x` of the differences holds one, and its size is triangular in its place.
-/// `1.8/x − 1.6` to a fifth for `x ≤ 1`; zero is close beyond.
+/// Excess kurtosis of the differences of random telegraph noise alone, at `x = τ/T_c`. Where jumps are
+/// rare, a share `x` of the differences holds a jump, which counts by a triangular function of its
+/// place. The formula `1.8/x − 1.6` is accurate to a fifth for `x ≤ 1`. Beyond that, the excess is
+/// close to zero.
 pub(crate) fn telegraph_excess(x: Real) -> Real {
     (1.8 / x - 1.6).max(0.0)
 }
@@ -213,7 +219,7 @@ mod tests {
     extern crate std;
     use super::*;
 
-    /// Σ D⁴ in 128 bits, for differences whose sum they hold.
+    /// Σ D⁴ in 128 bits, for differences whose sum fits.
     fn direct(differences: &[i64]) -> [u64; 3] {
         let fourth = differences.iter().map(|&difference| {
             let square = u128::from(difference.unsigned_abs()).pow(2);

@@ -1,4 +1,4 @@
-//! Second differences of a kernel at every lag that two octaves of a curve can meet.
+//! Second differences of a kernel at every lag at which two octaves of a curve can meet.
 
 use crate::{
     list::numbered,
@@ -7,21 +7,21 @@ use crate::{
 };
 use nalgebra::Complex;
 
-/// Positions up to this one, in quarters of a cluster, are kept one by one.
+/// Up to this one, every position is kept. Positions are counted in quarters of a cluster.
 const FINE: u32 = 16;
 const FINE_SLOTS: usize = FINE as usize + 1;
-/// Beyond, there are four positions an octave …
+/// The number of positions in each octave beyond [`FINE`].
 const STEPS: u32 = 4;
-/// … for so many octaves.
+/// The number of octaves beyond [`FINE`].
 const COARSE_OCTAVES: u32 = 18;
 
-/// Slots of the lattice.
+/// The number of slots of the lattice.
 pub(crate) const LEN: usize = FINE_SLOTS + (STEPS * COARSE_OCTAVES) as usize;
 
 /// The largest position.
 pub(crate) const END: u32 = FINE << COARSE_OCTAVES;
 
-/// The lag that a slot is for, in quarters of a cluster: 0, 1, … 16, 20, 24, 28, 32, 40, ….
+/// The lag of a slot, in quarters of a cluster: 0, 1, … 16, 20, 24, 28, 32, 40, ….
 pub(crate) const fn position(slot: usize) -> u32 {
     if slot < FINE_SLOTS {
         return slot as u32;
@@ -34,10 +34,10 @@ pub(crate) const fn position(slot: usize) -> u32 {
 
 const ONE: Complex<Real> = Complex::new(1.0, 0.0);
 
-/// Powers of `w` at every position, by multiplication, slot after slot.
+/// The powers of `w` at every position. Multiplication leads from each slot to the next.
 pub(crate) struct Powers {
     fine: [Complex<Real>; FINE_SLOTS],
-    /// Those of the last slots, slot `s` at `s % STEPS`.
+    /// The powers of the last slots. Slot `s` is kept at `s % STEPS`.
     last: [Complex<Real>; STEPS as usize],
 }
 
@@ -55,21 +55,21 @@ impl Powers {
         }
     }
 
-    /// At a position of up to 16.
+    /// The power at a position of up to 16.
     pub(crate) fn near(&self, position: usize) -> Complex<Real> {
         self.fine.get(position).copied().unwrap_or(ONE)
     }
 
-    /// In the next slot: slots are asked for in their order.
+    /// The power at the next slot. Slots must be asked for in their order.
     pub(crate) fn next(&mut self, slot: usize) -> Complex<Real> {
         let steps = STEPS as usize;
         let power = if slot < FINE_SLOTS {
             self.near(slot)
         } else if slot < FINE_SLOTS + steps {
-            // 20, 24, 28, 32 are 16 + 4, 16 + 8, 16 + 12, 16 + 16.
+            // The positions 20, 24, 28, 32 are 16 + 4, 16 + 8, 16 + 12, 16 + 16.
             self.near(FINE as usize) * self.near(steps * (slot - FINE as usize))
         } else {
-            // Twice the position an octave below.
+            // The position is twice that of the slot an octave below.
             let below = self.last.get(slot % steps).copied().unwrap_or(ONE);
             below * below
         };
@@ -80,9 +80,9 @@ impl Powers {
     }
 }
 
-/// Second differences `G(x + m) − 2 G(x) + G(|x − m|)` for one averaging factor `m`, kept at
-/// lags `x` on a lattice that is fine near 0 and coarsens with the distance, as they do: their
-/// kinks lie within `m`.
+/// Second differences `G(x + m) − 2 G(x) + G(|x − m|)` for one averaging factor `m`. They are kept at
+/// lags `x` on a lattice that is fine near 0 and coarsens with the distance, because their kinks lie
+/// within `m`.
 #[derive(Clone, Debug)]
 pub struct SecondDifferences {
     values: [Real; LEN],
@@ -91,7 +91,8 @@ pub struct SecondDifferences {
 }
 
 impl SecondDifferences {
-    /// Nothing yet, for clusters of `m` samples and lags up to `end` quarters of a cluster.
+    /// Second differences of zero, for clusters of `m` samples and lags up to `end` quarters of a
+    /// cluster.
     pub(crate) fn zero(m: u32, end: u32) -> Self {
         let used = (0..LEN).find(|&slot| position(slot) >= end);
         Self {
@@ -101,16 +102,16 @@ impl SecondDifferences {
         }
     }
 
-    /// Adds `f(x)` at every lag `x`, in samples, of clusters of `m` samples.
+    /// Adds `f(x)` at every lag `x`, in samples, for clusters of `m` samples.
     pub fn add(&mut self, m: Real, f: impl Fn(Real) -> Real) {
         self.add_below(m, Real::INFINITY, f);
     }
 
-    /// The same for an effect whose second differences vanish from the lag `end` on.
+    /// Does the same for an effect whose second differences vanish from the lag `end` on, in samples.
     pub fn add_below(&mut self, m: Real, end: Real, f: impl Fn(Real) -> Real) {
         for (slot, value) in numbered(self.values.iter_mut()).take(self.used) {
             let position = position(slot);
-            // Quarters of a cluster that lie between samples are never asked for.
+            // Quarters of a cluster that fall between two samples are never asked for.
             if !position.is_multiple_of(self.stride) {
                 continue;
             }
@@ -122,7 +123,7 @@ impl SecondDifferences {
         }
     }
 
-    /// The same at lags of a cluster and more.
+    /// Does the same at lags of a cluster and more.
     pub(crate) fn add_from(&mut self, m: Real, f: impl Fn(Real) -> Real) {
         let slots = numbered(self.values.iter_mut());
         for (slot, value) in slots.take(self.used).skip(STEPS as usize) {
@@ -140,21 +141,21 @@ impl SecondDifferences {
         }
     }
 
-    /// Adds `weight` times a table of all positions.
+    /// Adds `weight` times a table that has a number for every slot.
     pub(crate) fn add_scaled(&mut self, weight: Real, table: &[Real; LEN]) {
         for (value, unit) in self.values.iter_mut().zip(table).take(self.used) {
             *value += weight * unit;
         }
     }
 
-    /// Adds to one position up to 16 quarters of a cluster.
+    /// Adds `value` at one position of up to 16 quarters of a cluster.
     pub fn add_at(&mut self, position: u32, value: Real) {
         if let Some(slot) = self.values.get_mut(position.min(FINE) as usize) {
             *slot += value;
         }
     }
 
-    /// In units of τ² times the Allan variance, in single precision.
+    /// The same differences in single precision, in units of τ² times the Allan variance.
     pub(crate) fn rounded(&self) -> Rounded {
         let unit = self.values[4] - self.values[0];
         let unit = if unit > 0.0 { unit } else { 1.0 };
@@ -166,7 +167,7 @@ impl SecondDifferences {
     }
 }
 
-/// Second differences in units of their octave's variance.
+/// Second differences in units of τ² times their octave's Allan variance.
 pub(crate) struct Rounded {
     values: [f32; LEN],
     unit: Real,
@@ -178,14 +179,14 @@ impl Rounded {
         self.unit
     }
 
-    /// That of a slot, or of the last.
+    /// The difference at a slot, or at the last slot if there is no such slot.
     #[inline]
     fn slot(&self, slot: usize) -> f32 {
         let [.., last] = self.values;
         self.values.get(slot).copied().unwrap_or(last)
     }
 
-    /// The second difference at a lag in quarters of a cluster, on a straight line between the
+    /// The second difference at a lag in quarters of a cluster, interpolated linearly between the
     /// lattice's positions.
     #[inline]
     pub(crate) fn at(&self, position: u32) -> f32 {
@@ -193,7 +194,7 @@ impl Rounded {
             return self.slot(position as usize);
         }
         let position = position.min(END - 1);
-        // The position's octave, and its step in it.
+        // These are the octave of the position, and the position's step within the octave.
         let octave = floor_log2(position).saturating_sub(FINE.ilog2());
         let width_bits = octave + (FINE / STEPS).ilog2();
         let start = FINE.wrapping_shl(octave);
@@ -204,14 +205,15 @@ impl Rounded {
         if rest == 0 {
             return low;
         }
-        // 2^-width_bits by its bits: a division costs ten multiplications in software.
+        // This is 2^-width_bits, made from its bits: in software, a division costs as much as ten
+        // multiplications.
         let reciprocal = f32::from_bits(127_u32.saturating_sub(width_bits) << 23);
         low + (self.slot(slot.saturating_add(1)) - low) * (rest as f32 * reciprocal)
     }
 }
 
-/// Starts of differences advance by so many quarters of a cluster: one, where a quarter is a whole
-/// number of samples.
+/// The number of quarters of a cluster by which the starts of differences advance. It is one where a
+/// quarter is a whole number of samples.
 pub(crate) const fn stride(m: u32) -> u32 {
     match m {
         1 => 4,

@@ -1,37 +1,37 @@
 //! Sizes of the library's lists, and the quantiles that decide at 95 %.
 //!
-//! Every other module may use these numbers, so this module uses none of them: it imports nothing.
+//! Every other module may use these numbers, so this module imports no other module.
 
-/// Effects that one model has room for.
+/// The number of effects that one model has room for.
 pub const MAX_EFFECTS: usize = 8;
 
-/// Shape parameters that one effect has room for.
+/// The number of shape parameters that one effect has room for.
 pub const MAX_PARAMETERS: usize = 2;
 
-/// Fitted shape parameters that one model has room for.
+/// The number of fitted shape parameters that one model has room for.
 pub const MAX_SHAPE: usize = 4;
 
-/// Unknowns of the largest system of normal equations: the coefficients of a model, and behind them its
-/// fitted shape parameters.
+/// The number of unknowns in the largest system of normal equations. The coefficients of a model come
+/// first, its fitted shape parameters follow.
 pub(crate) const UNKNOWNS: usize = MAX_EFFECTS + MAX_SHAPE;
 
-/// Pairs of different effects in the largest model.
+/// The number of pairs of different effects in the largest model.
 pub(crate) const PAIRS: usize = MAX_EFFECTS * (MAX_EFFECTS - 1) / 2;
 
-/// A normal variable lies within so many standard errors of its mean with a probability of 95 %
+/// A normal variable lies within this many standard errors of its mean with a probability of 95 %
 /// (Abramowitz & Stegun 1964, table 26.5).
 pub(crate) const TWO_SIDED_95: f64 = 1.959_964;
 
-/// A normal variable lies below its mean plus so many standard errors with a probability of 95 %
+/// A normal variable lies below its mean plus this many standard errors with a probability of 95 %
 /// (Abramowitz & Stegun 1964, table 26.5).
 pub(crate) const ONE_SIDED_95: f64 = 1.644_854;
 
-/// χ² with one degree of freedom lies below this with a probability of 95 %: the square of
+/// χ² with one degree of freedom lies below this number with a probability of 95 %. It is the square of
 /// [`TWO_SIDED_95`] (Abramowitz & Stegun 1964, table 26.8).
 pub(crate) const CHI_SQUARED_95: f64 = 3.841_459;
 
-/// A model whose p-value is lower is not adequate: a χ² as large would come out in one of a hundred
-/// records if the model were true. Fit, comparison and diagnosis share this threshold.
+/// A model with a lower p-value is not adequate: if it were true, a χ² as large would come out in one
+/// of a hundred records. Fit, comparison and diagnosis share this threshold.
 pub(crate) const ADEQUATE_P: f64 = 0.01;
 
 #[cfg(test)]
@@ -41,7 +41,8 @@ mod tests {
 
     #[test]
     fn quantiles_leave_five_per_cent() {
-        // The probability of a normal variable beyond x standard errors is erfc(x/√2)/2.
+        // A normal variable lies beyond x standard errors, on one side, with a probability of
+        // erfc(x/√2)/2.
         let beyond = |x: f64| 0.5 * libm::erfc(x / core::f64::consts::SQRT_2);
         assert!((2.0 * beyond(TWO_SIDED_95) - 0.05).abs() < 1e-7);
         assert!((beyond(ONE_SIDED_95) - 0.05).abs() < 1e-7);

@@ -1,14 +1,16 @@
-//! Lists of limited length, filled without a way to panic: heapless's own `insert` and `collect` have one.
+//! Lists of limited length, filled by functions that cannot panic. heapless's own `insert` and
+//! `collect` can.
 
 use core::{iter::Zip, mem, ops::Range};
 use heapless::Vec;
 
-/// Items with their places: the numbers of `enumerate` panic beyond `usize` where overflow is checked.
+/// Items with their places, counted from 0. `enumerate` panics beyond `usize` where overflow is
+/// checked.
 pub(crate) fn numbered<I: IntoIterator>(items: I) -> Zip<Range<usize>, I::IntoIter> {
     (0..usize::MAX).zip(items)
 }
 
-/// The first items, as many as there is room for.
+/// A list of the first items, as many as there is room for.
 pub(crate) fn fill<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();
     for item in items {
@@ -19,7 +21,8 @@ pub(crate) fn fill<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec
     list
 }
 
-/// Puts an item before the one at a place, or last; not where there is no room.
+/// Inserts an item at a place, or at the end if the place lies beyond it. Does nothing if there is no
+/// room.
 pub(crate) fn insert<T, const N: usize>(list: &mut Vec<T, N>, place: usize, item: T) {
     if list.push(item).is_err() {
         return;
@@ -32,8 +35,8 @@ pub(crate) fn insert<T, const N: usize>(list: &mut Vec<T, N>, place: usize, item
     }
 }
 
-/// Puts an item before the first that is worse; the last one goes where there is no room. The item's
-/// place, or `None` if it is worse than all of a full list.
+/// Inserts an item before the first one that is worse. A full list loses its last item. Returns the
+/// item's place, or `None` if the list is full and has no worse item.
 pub(crate) fn rank<T, const N: usize>(
     list: &mut Vec<T, N>,
     item: T,
@@ -81,7 +84,8 @@ mod tests {
         assert_eq!(list, [3, 4, 5], "full");
     }
 
-    /// What an unlimited list would hold, sorted with earlier items first, and then cut.
+    /// The list is compared with one of unlimited length, which is sorted with earlier items first and
+    /// then cut.
     #[test]
     fn ranked_items_are_the_best_of_all_in_their_order() {
         let mut random = Random::new(31);
@@ -105,7 +109,7 @@ mod tests {
         for place in 0..6 {
             let mut list = Vec::<u8, 4>::from([0, 1, 2]);
             insert(&mut list, place, 9);
-            // Beyond the end is the end.
+            // A place beyond the end stands for the end.
             let (before, later) = [0, 1, 2].split_at(place.min(3));
             assert_eq!(list[..before.len()], *before);
             assert_eq!(list[before.len()], 9);

@@ -1,5 +1,6 @@
-//! Every transcendental function of the library, by name: a method such as `x.sqrt()` becomes
-//! std's once anything in a build links std, and host and target would compute different numbers.
+//! Every transcendental function of the library, as a named function. A method such as `x.sqrt()`
+//! becomes std's once anything in a build links std, and then host and target compute different
+//! numbers.
 
 use crate::real::{Real, consts::PI, real, single};
 #[cfg(feature = "double")]
@@ -10,15 +11,15 @@ pub(crate) use libm::{
     sqrtf as sqrt,
 };
 
-/// Sine and cosine of an angle in turns, to 3e-16 (2e-7 in single precision): whole quadrants are taken off exactly, and the rest is
-/// small enough for Taylor's series. libm's reduction of angles of any size would cost 4 KB of flash and
-/// 700 bytes of stack.
+/// Sine and cosine of an angle in turns, accurate to 3e-16 (2e-7 in single precision). Whole quadrants
+/// are subtracted exactly, and the rest is small enough for Taylor's series. libm's reduction of angles
+/// of any size would cost 4 KB of flash and 700 bytes of stack.
 pub(crate) fn sincos_of_turns(turns: Real) -> (Real, Real) {
     let turns = turns - floor(turns);
     let quadrant = floor(4.0 * turns + 0.5);
     let rest = 2.0 * PI * (turns - 0.25 * quadrant);
     let square = rest * rest;
-    // x − x³/3! + …, 1 − x²/2! + ….
+    // The series are x − x³/3! + … for the sine and 1 − x²/2! + … for the cosine.
     let (mut sine, mut cosine) = (0.0, 0.0);
     for [odd, even] in SERIES {
         sine = odd - square * sine;
@@ -33,16 +34,17 @@ pub(crate) fn sincos_of_turns(turns: Real) -> (Real, Real) {
     }
 }
 
-/// Terms of the series: those left out are below 1e-17 of an eighth turn, in single precision 1e-9.
+/// The number of terms of the series. At an eighth of a turn, the terms left out are below 1e-17, or
+/// below 1e-9 in single precision.
 const TERMS: usize = if cfg!(feature = "double") { 10 } else { 6 };
 
-/// `1/(2k+1)!` and `1/(2k)!`, the highest k first.
+/// The numbers `1/(2k+1)!` and `1/(2k)!`, the highest k first.
 const SERIES: [[Real; 2]; TERMS] = {
     let mut series = [[1.0; 2]; TERMS];
     let (mut factorial, mut k) = (1.0_f64, 1);
     while k < TERMS {
         factorial *= (2 * k) as f64;
-        // factorial = (2k)!, exact in 53 bits up to 18!.
+        // factorial is (2k)!, which is exact in 53 bits up to 18!.
         series[TERMS - 1 - k][1] = (1.0 / factorial) as Real;
         factorial *= (2 * k + 1) as f64;
         series[TERMS - 1 - k][0] = (1.0 / factorial) as Real;
@@ -51,24 +53,24 @@ const SERIES: [[Real; 2]; TERMS] = {
     series
 };
 
-/// The binary logarithm to a percent or so, for the number of steps of a search grid.
+/// The binary logarithm, accurate to about a percent. It sets the number of steps of a search grid.
 pub(crate) fn log2_roughly(x: Real) -> Real {
     real(micromath::F32(single(x)).log2().0)
 }
 
-/// The whole part of the binary logarithm; 0 of 0, where `ilog2` panics.
+/// The whole part of the binary logarithm. It is 0 for 0, where `ilog2` panics.
 pub(crate) const fn floor_log2(n: u32) -> u32 {
     (u32::BITS - 1) ^ (n | 1).leading_zeros()
 }
 
 /// The natural logarithm of an integer above 0, for tables computed by the compiler.
 pub(crate) const fn log_of_integer(i: u32) -> f64 {
-    // i = 2^exponent · mantissa, with the mantissa in [1, 2): ln = 2 artanh((x − 1)/(x + 1)).
+    // With i = 2^exponent · mantissa and the mantissa x in [1, 2), ln x = 2 artanh((x − 1)/(x + 1)).
     let exponent = i.ilog2();
     let mantissa = i as f64 / (1_u64 << exponent) as f64;
     let t = (mantissa - 1.0) / (mantissa + 1.0);
     let t2 = t * t;
-    // t² ≤ 1/9: eighteen terms leave less than 1e-18.
+    // Because t² ≤ 1/9, eighteen terms leave less than 1e-18.
     let mut k = 37;
     let mut sum = 0.0;
     while k > 0 {
@@ -87,7 +89,7 @@ mod tests {
     fn sine_and_cosine_are_those_of_libm() {
         for i in -3000..3000 {
             let turns = real(i) / 1009.0;
-            // libm's argument is rounded: 2π of a few turns.
+            // libm takes the angle in radians, which is rounded. Below one turn, the rounding is small.
             let angle = 2.0 * core::f64::consts::PI * double(turns - floor(turns));
             let (sine, cosine) = sincos_of_turns(turns);
             let off = |found: Real, expected: f64| (double(found) - expected).abs();

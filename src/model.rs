@@ -16,12 +16,12 @@ pub use crate::limits::MAX_EFFECTS;
 pub struct Term {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// Its shape parameters, in the order in which it names them.
+    /// The effect's shape parameters, in the order in which the effect names them.
     pub parameters: [Real; MAX_PARAMETERS],
-    /// Whether the shape was found on the curve that the model is fitted to: it then costs degrees
+    /// Whether the shape was found on the curve that the model is fitted to. Such a shape costs degrees
     /// of freedom, and widens the intervals of the coefficients.
     pub fitted: bool,
-    /// Whether the coefficient is held at zero: a fitted shape could take its place, so that the
+    /// Whether the coefficient is held at zero, because a fitted shape could take its place and the
     /// curve does not tell the two apart.
     pub held: bool,
 }
@@ -52,7 +52,7 @@ impl Term {
         all.filter(move |&i| fitted && !effect.is_whole(i))
     }
 
-    /// A shape parameter; 0 of one that no effect has.
+    /// A shape parameter, or 0 for a place beyond [`MAX_PARAMETERS`].
     pub(crate) fn parameter(&self, j: usize) -> Real {
         self.parameters.get(j).copied().unwrap_or(0.0)
     }
@@ -72,7 +72,7 @@ impl Term {
         parameters.get(j).map_or("", |parameter| parameter.name)
     }
 
-    /// Its shape for samples that lie `interval_s` seconds apart.
+    /// The effect's shape for samples that lie `interval_s` seconds apart.
     pub fn sampled_shape(&self, interval_s: Real) -> SampledShape {
         SampledShape {
             interval_s,
@@ -94,18 +94,19 @@ pub struct Model {
 }
 
 impl Model {
-    /// Quantization, angle random walk, bias instability, rate random walk and rate ramp.
+    /// The five terms of IEEE Std 952: quantization, angle random walk, bias instability, rate random
+    /// walk and rate ramp.
     pub fn ieee_952() -> Self {
         Self {
-            // Five fit into eight.
+            // The five terms fit into eight places.
             terms: list::fill(IEEE_952.into_iter().map(Term::new)),
         }
     }
 
-    /// A model of these effects, without shape parameters.
+    /// A model of these effects. None of their shape parameters is set or fitted.
     ///
     /// # Errors
-    /// [`Error::TooManyEffects`] above [`MAX_EFFECTS`].
+    /// [`Error::TooManyEffects`] for more than [`MAX_EFFECTS`].
     pub fn new(effects: &[&'static dyn Effect]) -> Result<Self, Error> {
         let mut model = Self::default();
         for effect in effects {
@@ -117,14 +118,15 @@ impl Model {
     /// Adds an effect.
     ///
     /// # Errors
-    /// [`Error::TooManyEffects`] above [`MAX_EFFECTS`].
+    /// [`Error::TooManyEffects`] if the model already has [`MAX_EFFECTS`].
     pub fn add(&mut self, term: Term) -> Result<(), Error> {
         self.terms.push(term).map_err(|_| Error::TooManyEffects {
             capacity: MAX_EFFECTS,
         })
     }
 
-    /// Puts an effect back that has no shape: one of the five at its usual place.
+    /// Puts an effect without a shape back. One of the five terms returns to its usual place, another
+    /// one to the end.
     pub(crate) fn restore(&mut self, effect: &'static dyn Effect) -> Result<(), Error> {
         let usual = IEEE_952.iter().position(|e| e.name() == effect.name());
         let place = usual.unwrap_or(MAX_EFFECTS).min(self.terms.len());
@@ -137,7 +139,7 @@ impl Model {
         Ok(())
     }
 
-    /// Without the effect of that name, if it has it.
+    /// The model without the effect of that name, if it has one.
     #[must_use]
     pub fn without(&self, name: &str) -> Self {
         let rest = self.terms.iter().filter(|term| term.effect.name() != name);
@@ -146,7 +148,7 @@ impl Model {
         }
     }
 
-    /// Takes the effect of that name out; of two, the later one. Gives back its place.
+    /// Removes the effect of that name, or the later one if there are two. Returns its place.
     pub(crate) fn remove(&mut self, name: &str) -> Option<usize> {
         let mut terms = self.terms.iter();
         let place = terms.rposition(|term| term.effect.name() == name)?;
@@ -154,8 +156,8 @@ impl Model {
         Some(place)
     }
 
-    /// Another effect instead of one that it has: what the old one replaced comes back, what the new one
-    /// replaces goes.
+    /// Exchanges an effect of the model for another one. What the old effect replaced comes back, and
+    /// what the new one replaces is removed.
     pub(crate) fn exchange(
         &mut self,
         dropped: &'static dyn Effect,
@@ -187,8 +189,9 @@ impl Model {
         &self.terms
     }
 
-    /// Allan variance at an averaging factor, in rate units squared, for squared coefficients in
-    /// the order of the effects.
+    /// The model's Allan variance at the averaging factor `m`, in rate units squared. `squares` holds
+    /// the squared coefficients in the order of the effects, and `interval_s` is the sample interval in
+    /// seconds.
     pub fn variance(&self, squares: &[Real], m: u32, interval_s: Real) -> Real {
         let shares = self.terms.iter().zip(squares);
         shares

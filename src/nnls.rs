@@ -1,4 +1,4 @@
-//! Least squares with coefficients that cannot be negative, from the normal equations.
+//! Least squares with coefficients that cannot be negative, solved by the normal equations.
 
 use crate::{
     algebra::{self, Choice, Triangle},
@@ -9,7 +9,7 @@ use crate::{
     real::{Real, by_precision},
 };
 
-/// `H` of normal equations `H β = b`.
+/// The matrix `H` of normal equations `H β = b`.
 pub(crate) type Matrix = Triangle<{ UNKNOWNS + 1 }, { UNKNOWNS / 2 }>;
 const _: () = assert!(
     UNKNOWNS.is_multiple_of(2),
@@ -18,16 +18,16 @@ const _: () = assert!(
 /// One number for each unknown.
 pub(crate) type Vector = algebra::Vector<UNKNOWNS>;
 
-/// A pivot of the scaled equations below this is rounding, not information.
+/// A pivot of the scaled equations below this limit is rounding and not information.
 const LEAST_PIVOT: Real = by_precision(1e-10, 1e-5);
-/// A slope of the scaled equations below this is rounding, too.
+/// A slope of the scaled equations below this limit is rounding as well.
 const LEAST_SLOPE: Real = by_precision(1e-12, 1e-6);
 
-/// Which unknowns are free; the others are held at zero.
+/// The choice of free unknowns. The others are held at zero.
 pub(crate) type Free = Choice;
 
-/// The equations with every column scaled to one, so that coefficients of any magnitude share one
-/// tolerance.
+/// The normal equations, with every column scaled to one so that coefficients of any magnitude share
+/// one tolerance.
 pub(crate) struct NormalEquations {
     scaled: Matrix,
     right: Vector,
@@ -47,11 +47,11 @@ impl NormalEquations {
         }
     }
 
-    /// Takes the first `count` unknowns' `H` and `b`: `row(i, own)` fills `H_ij` for `j ≤ i` and returns
-    /// `b_i`.
+    /// Sets `H` and `b` for the first `count` unknowns. `row(i, own)` fills `own` with `H_ij` for
+    /// `j ≤ i`, and returns `b_i`.
     ///
     /// # Errors
-    /// [`Error::Singular`] where a column is zero or not finite.
+    /// [`Error::Singular`] if a column is zero or not finite.
     pub(crate) fn set(
         &mut self,
         count: usize,
@@ -75,10 +75,11 @@ impl NormalEquations {
         Ok(())
     }
 
-    /// Exchanges one unknown for another: `entry(j)` of `H` with the others and itself, and its `b`.
+    /// Exchanges one unknown for another. `entry(j)` is the element of `H` for the new unknown and
+    /// unknown `j`, and `right` is its element of `b`.
     ///
     /// # Errors
-    /// [`Error::Singular`] where its column is zero or not finite.
+    /// [`Error::Singular`] if the new column is zero or not finite.
     pub(crate) fn exchange(
         &mut self,
         place: usize,
@@ -98,12 +99,12 @@ impl NormalEquations {
         Ok(())
     }
 
-    /// Number of unknowns.
+    /// The number of unknowns.
     pub(crate) const fn count(&self) -> usize {
         self.count
     }
 
-    /// Factors the equations of the free unknowns; the others become the identity.
+    /// Factors the equations of the free unknowns. The rows of the others become those of the identity.
     #[inline(never)]
     fn factor(&self, free: &Free, factor: &mut Matrix) -> bool {
         for i in 0..self.count {
@@ -116,12 +117,13 @@ impl NormalEquations {
                 factor.put((i, j), element);
             }
         }
-        // The diagonal holds reciprocals.
+        // The diagonal of the factor holds reciprocals.
         cholesky::factor(factor, self.count)
             && (0..self.count).all(|i| factor[(i, i)] * factor[(i, i)] * LEAST_PIVOT < 1.0)
     }
 
-    /// Solves the scaled equations of the free unknowns for any right side.
+    /// Solves the scaled equations of the free unknowns for any right side, in place. Returns `false`
+    /// if they cannot be told apart.
     #[inline(never)]
     fn solve_for(&self, free: &Free, x: &mut Vector) -> bool {
         let mut factor = Matrix::zeros();
@@ -134,7 +136,7 @@ impl NormalEquations {
     }
 
     fn solve_scaled(&self, free: &Free) -> Option<Vector> {
-        // Beyond the count there may be something of an earlier use.
+        // Elements beyond the count may be left over from an earlier use, so they are not copied.
         let mut solution = Vector::zeros();
         for i in (0..self.count).filter(|&i| free.has(i)) {
             solution.put(i, self.right[i]);
@@ -142,7 +144,7 @@ impl NormalEquations {
         self.solve_for(free, &mut solution).then_some(solution)
     }
 
-    /// `b − H β` of a scaled solution.
+    /// The gradient `b − H β` at a scaled solution.
     fn gradient(&self, scaled: &Vector) -> Vector {
         let mut gradient = Vector::zeros();
         for i in 0..self.count {
@@ -152,7 +154,7 @@ impl NormalEquations {
         gradient
     }
 
-    /// How far a solution lowers the sum of squared residuals.
+    /// By how much a solution lowers the sum of squared residuals.
     pub(crate) fn explained(&self, solution: &Vector) -> Real {
         let scale = self.scale.map(|x| if x > 0.0 { x } else { 1.0 });
         let scaled = Vector::from(solution.component_div(&scale));
@@ -162,7 +164,8 @@ impl NormalEquations {
             .sum()
     }
 
-    /// The solution with these unknowns free, whatever its signs. `None` if they cannot be told apart.
+    /// The solution with the given unknowns free, whatever their signs. `None` if they cannot be told
+    /// apart.
     pub(crate) fn solve_free(&self, free: &Free) -> Option<Vector> {
         let solution = self.solve_scaled(free)?;
         Some(solution.component_mul(&self.scale).into())
@@ -171,20 +174,22 @@ impl NormalEquations {
     /// The unconstrained solution.
     ///
     /// # Errors
-    /// [`Error::Singular`].
+    /// [`Error::Singular`] if the unknowns cannot be told apart.
     pub(crate) fn solve(&self) -> Result<Vector, Error> {
         let all = Free::of(|i| i < self.count);
         let solution = self.solve_scaled(&all).ok_or(Error::Singular)?;
         Ok(solution.component_mul(&self.scale).into())
     }
 
-    /// The solution with no negative coefficient, and which are above zero (Lawson & Hanson 1974,
-    /// ch. 23, on the normal equations). Those for which `held` is true stay at zero.
+    /// The solution without negative coefficients, and the choice of those above zero. The coefficients
+    /// of `held` stay at zero. The algorithm is that of Lawson & Hanson 1974, ch. 23, applied to the
+    /// normal equations.
     pub(crate) fn solve_non_negative(&self, held: &Free) -> (Vector, Free) {
         self.improve(Vector::zeros(), Free::default(), held)
     }
 
-    /// The same, sooner where those above zero are guessed right.
+    /// Finds the same solution, and does so sooner if `guess` is the right choice of coefficients above
+    /// zero.
     pub(crate) fn solve_non_negative_near(&self, guess: &Free, held: &Free) -> (Vector, Free) {
         match self.solve_scaled(guess) {
             Some(trial) if (0..self.count).all(|i| !guess.has(i) || trial[i] > 0.0) => {
@@ -197,7 +202,7 @@ impl NormalEquations {
     #[inline(never)]
     fn improve(&self, mut solution: Vector, mut free: Free, held: &Free) -> (Vector, Free) {
         let mut refused = Free::default();
-        // Each round frees one coefficient; thrice their number is the customary limit.
+        // Each round frees one coefficient. Three times their number is the customary limit.
         for _ in 0..3 * UNKNOWNS {
             let gradient = self.gradient(&solution);
             let candidate = (0..self.count)
@@ -211,20 +216,21 @@ impl NormalEquations {
                 .solve_scaled(&free)
                 .filter(|trial| trial[entering] > 0.0)
             else {
-                // Not to be told from those already free.
+                // The coefficient cannot be told from those that are already free.
                 free.drop(entering);
                 refused.add(entering);
                 continue;
             };
             solution = self.retreat(solution, trial, &mut free);
-            // A coefficient refused beside others may be welcome once they have changed.
+            // A coefficient that was refused beside others may be accepted once the others have
+            // changed.
             refused = Free::of(|i| refused.has(i) && i == entering);
         }
         (solution.component_mul(&self.scale).into(), free)
     }
 
-    /// Goes from a solution towards one that may have negative coefficients, holding those that
-    /// reach zero, until none is negative.
+    /// Goes from a solution towards one that may have negative coefficients. Coefficients that reach
+    /// zero are held there, until none is negative.
     fn retreat(&self, mut solution: Vector, mut trial: Vector, free: &mut Free) -> Vector {
         for _ in 0..self.count {
             let held = (0..self.count)
@@ -245,7 +251,7 @@ impl NormalEquations {
         trial
     }
 
-    /// Variance of one of the free unknowns. `None` if they cannot be told apart.
+    /// The variance of one of the free unknowns. `None` if they cannot be told apart.
     pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<Real> {
         let mut unit = Vector::zeros();
         unit.put(i, 1.0);
@@ -253,7 +259,8 @@ impl NormalEquations {
         regular.then(|| unit[i] * self.scale[i] * self.scale[i])
     }
 
-    /// Covariances of one of the free unknowns with all of them. `None` if they cannot be told apart.
+    /// The covariances of one of the free unknowns with all of them. `None` if they cannot be told
+    /// apart.
     pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector> {
         let mut unit = Vector::zeros();
         unit.put(i, 1.0);

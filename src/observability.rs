@@ -1,4 +1,4 @@
-//! How long a record must be for an effect to show.
+//! How long a record must be before an effect can be measured.
 
 use crate::{
     limits::CHI_SQUARED_95,
@@ -8,15 +8,16 @@ use crate::{
     real::{Real, real},
 };
 
-/// Longest record that is considered, in samples: the longest octave's.
+/// The length of the longest record that is considered, in samples: that of the longest octave.
 const LONGEST: Real = (1_u64 << 30) as Real;
 
-/// Length in seconds, the present one doubled as often as needed, of a record in which effect `i`
-/// would be measured: with its square at `square`, and the others as `squares` has them, the square
-/// exceeds half the width of its 95 % interval. `None` if no length does it.
+/// The length, in seconds, of a record in which effect `i` would be measured. The present length is
+/// doubled as often as needed. The effect is measured where its square exceeds half the width of its 95
+/// % interval, with `square` for this effect and `squares` for the others. `None` if no length is
+/// enough.
 ///
-/// Standard errors come from independent octaves of `N/m − 1` clusters each, which is between
-/// what overlapping estimates gain and their correlation takes away.
+/// The standard errors are those of independent octaves of `N/m − 1` clusters each. This is a
+/// compromise: overlapping estimates gain information, and their correlation takes some of it away.
 #[inline(never)]
 pub(crate) fn record_length_s(
     i: usize,
@@ -32,7 +33,8 @@ pub(crate) fn record_length_s(
     let with = free.with(i);
     let count = model.terms().len();
     let mut equations = NormalEquations::empty();
-    // The equations are `samples · Σ q/2m − Σ q/2`, q being an octave's share: each doubling adds one.
+    // The equations are `samples · Σ q/2m − Σ q/2`, where q is an octave's share. Each doubling adds an
+    // octave.
     let (mut growing, mut fixed): (Matrix, Matrix) = (Matrix::zeros(), Matrix::zeros());
     let (mut m, mut samples) = (1.0, 2.0 * samples);
     while samples <= LONGEST {
@@ -42,7 +44,7 @@ pub(crate) fn record_length_s(
                 row.put(j, term.effect.variance(m, &term.sampled_shape(interval_s)));
             }
             let variance = row.dot(&assumed);
-            // Relative variance of a variance from N/m clusters: 2/(N/m − 1).
+            // The variance of a variance from N/m clusters, relative to its square, is 2/(N/m − 1).
             let weight = 0.5 / (variance * variance);
             for a in 0..count {
                 for b in 0..=a {

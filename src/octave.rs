@@ -1,16 +1,17 @@
-//! The accumulator: from counts to one exact sum of squares per octave of averaging time.
+//! The accumulator: it turns counts into one exact sum of squares per octave of averaging time.
 
 mod slice;
 
 pub use crate::square_sum::SquareSum;
 
-/// Angles kept per level: those of the last eight block boundaries.
+/// The number of angles that a level keeps: those at the last eight block boundaries.
 const RING: usize = 8;
 
-/// Octaves below the first level: averaging factors 1 and 2 are read from the ring of factor 4.
+/// The number of octaves below the first level. Averaging factors 1 and 2 are read from the ring of
+/// factor 4.
 const FIRST: usize = 2;
 
-/// Where `number` goes on from when it is exhausted.
+/// The value from which `number` goes on when it is exhausted.
 const LAP: u32 = 1 << 31;
 
 /// Watches the differences that an accumulator completes.
@@ -19,17 +20,17 @@ pub(crate) trait Observer {
     fn observe(&mut self, octave: usize, difference: i64);
 }
 
-/// Nobody watches.
+/// The observer that ignores every difference.
 impl Observer for () {
     #[inline(always)]
     fn observe(&mut self, _: usize, _: i64) {}
 }
 
-/// What is kept of one block length.
+/// What is kept for one block length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Level {
-    /// Angles at the last block boundaries, boundary `b` in slot `b % RING`. They wrap modulo
-    /// 2^64, differences of them do not.
+    /// Angles at the last block boundaries, with boundary `b` in slot `b % RING`. The angles wrap
+    /// modulo 2^64, their differences do not.
     ring: [u64; RING],
     sum: SquareSum,
 }
@@ -55,36 +56,36 @@ impl Level {
     }
 }
 
-/// Octave-spaced, quarter-overlapping Allan accumulator in fixed memory: octave `k` has the
-/// averaging factor `m = 2^k`, `k = 0 … OCTAVES − 1`.
+/// An Allan accumulator with octave-spaced averaging times and quarter-overlapping differences, in
+/// fixed memory. Octave `k` has the averaging factor `m = 2^k`, `k = 0 … OCTAVES − 1`.
 ///
-/// With the angle `θ_n` (the sum of the first `n` counts) every octave sums the squares of
+/// The angle `θ_n` is the sum of the first `n` counts. Every octave sums the squares of
 ///
 /// ```text
 /// D_s = θ_{s+2m} − 2θ_{s+m} + θ_s,      s = 0, h, 2h, …,   h = max(1, m/4)
 /// ```
 ///
-/// from which `σ²(τ) = ½ mean D² / m²` in counts² (IEEE Std 952-1997, annex C; overlap as in NIST
-/// SP 1065, 2008, eq. 11, thinned to a quarter of a cluster, which keeps 93 % of the degrees of
-/// freedom on white noise at constant memory).
+/// From this sum follows `σ²(τ) = ½ mean D² / m²` in counts² (IEEE Std 952-1997, annex C). The overlap
+/// is that of NIST SP 1065, 2008, eq. 11, thinned to a quarter of a cluster. This keeps 93 % of the
+/// degrees of freedom on white noise, in constant memory.
 ///
 /// # How it works
 ///
-/// Level `L` keeps the angle at the last eight boundaries of blocks of `2^L` samples and serves
-/// the octave `m = 4 · 2^L`; level 0 serves `m = 1` and `m = 2` as well. A level takes its new
-/// boundary from the level below, half a block after it was reached, so that sample `n` updates
-/// level 0 and exactly one other level, the one picked by the trailing zeros of `n`. Ring
-/// positions, fill states and the numbers of differences all follow from `n`.
+/// Level `L` keeps the angle at the last eight boundaries of blocks of `2^L` samples, and serves the
+/// octave `m = 4 · 2^L`. Level 0 serves `m = 1` and `m = 2` as well. A level takes its new boundary
+/// from the level below, half a block after the boundary was reached. So sample `n` updates level 0 and
+/// exactly one other level, which the trailing zeros of `n` select. Ring positions, fill states and the
+/// numbers of differences all follow from `n`.
 ///
 /// # Cost
 ///
-/// Integers only: a constant offset cancels exactly, host and target agree to the bit, and the
-/// order in which records are [merged](Self::merge) does not matter.
+/// The accumulator uses integers only: a constant offset cancels exactly, host and target agree to the
+/// bit, and the order in which records are [merged](Self::merge) does not matter.
 ///
-/// On a Cortex-M4F [`push`](Self::push) takes 136 instructions a sample, whatever the number of
-/// octaves and the position in the schedule, as long as no difference exceeds 31 bits, and at most
-/// 232 with full-scale input; [`push_slice`](Self::push_slice) takes 127, built for size. The state is `80 + 96 ·
-/// OCTAVES` bytes: 2384 for 24 octaves. `cargo xtask bench` measures this.
+/// On a Cortex-M4F [`push`](Self::push) takes 136 instructions per sample, whatever the number of
+/// octaves and the position in the schedule, as long as no difference exceeds 31 bits. It takes at most
+/// 232 with full-scale input. [`push_slice`](Self::push_slice) takes 127, built for size. The state
+/// takes `80 + 96 · OCTAVES` bytes, which is 2384 for 24 octaves. `cargo xtask bench` measures this.
 ///
 /// # Example
 ///
@@ -94,46 +95,47 @@ impl Level {
 /// let mut accumulator = Accumulator::<10>::new();
 /// accumulator.push_slice(&[3, 1, -2, 4, 0, 7, 2, 2]);
 /// accumulator.push(5);
-/// // Nine counts: eight differences of neighbours.
+/// // Nine counts have eight differences of neighbours.
 /// assert_eq!(accumulator.octave(0).unwrap().differences, 8);
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-// In this order, so that what every sample touches lies at the same place for any `OCTAVES`.
+// The fields are in this order so that what every sample touches lies at the same place for any
+// `OCTAVES`.
 #[repr(C)]
 pub struct Accumulator<const OCTAVES: usize> {
-    /// Samples since the last gap, as far as the schedule needs them: past 2^32 it goes on from
-    /// 2^31, of the same remainders.
+    /// Samples since the last gap, as far as the schedule needs them. Past 2^32 the number goes on from
+    /// 2^31, which has the same remainders.
     number: u32,
-    /// How often `number` did so.
+    /// How often `number` went on from 2^31.
     laps: u32,
-    /// The angle now, in counts.
+    /// The present angle, in counts.
     angle: u64,
-    /// Sums of the octaves below those of the levels.
+    /// Sums of the octaves below the first level.
     short: [SquareSum; FIRST],
-    /// Level `L` serves octave `L + FIRST`; the last `FIRST` rest.
+    /// Level `L` serves octave `L + FIRST`. The last `FIRST` levels are not used.
     levels: [Level; OCTAVES],
-    /// Differences in the segments before the last gap.
+    /// The number of differences in the segments before the last gap.
     differences: [u64; OCTAVES],
-    /// Samples in the segments before the last gap.
+    /// The number of samples in the segments before the last gap.
     earlier_samples: u64,
     gaps: u64,
 }
 
-/// What the accumulator knows of one octave.
+/// What the accumulator knows about one octave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct OctaveSum {
     /// Averaging factor: samples in a cluster.
     pub m: u32,
-    /// How many differences of adjacent clusters were summed.
+    /// The number of differences of adjacent clusters that were summed.
     pub differences: u64,
-    /// Σ D², in counts².
+    /// The sum Σ D², in counts².
     pub sum: SquareSum,
 }
 
 impl<const OCTAVES: usize> Accumulator<OCTAVES> {
-    /// The proof that no input overflows, checked when the type is used: a difference fits `i64`
-    /// ([`SquareSum`] bounds the sums), and two octaves are the least that make a curve.
+    /// The proof that no input overflows, which the compiler checks where the type is used: a
+    /// difference fits `i64`. [`SquareSum`] bounds the sums. An Allan curve needs at least two octaves.
     const BOUNDS: () = {
         assert!(OCTAVES >= 2, "an Allan curve needs two octaves or more");
         assert!(
@@ -165,10 +167,10 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         self.push_observed(count, &mut ());
     }
 
-    /// Adds one count, and shows an observer every difference that it completes: one of octaves 0, 1
-    /// and 2 each, and one of at most one other. Accumulators that
-    /// take the same samples and gaps complete the same octaves at the same sample, so their
-    /// differences can be multiplied.
+    /// Adds one count, and shows an observer every difference that the count completes: one in each of
+    /// the octaves 0, 1 and 2, and one in at most one other octave. Accumulators that take the same
+    /// samples and gaps complete the same octaves at the same sample, so that their differences can be
+    /// multiplied.
     #[inline(always)]
     pub(crate) fn push_observed(&mut self, count: i32, observer: &mut impl Observer) {
         let n = self.next_number();
@@ -202,7 +204,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
     }
 
-    /// What a full ring allows [`push`](Self::push) to do without questions.
+    /// Does the work of [`push`](Self::push) while the ring is not yet full, and checks which
+    /// differences exist.
     #[cold]
     #[inline(never)]
     fn push_early(&mut self, before: u64, two_before: u64, observer: &mut impl Observer) {
@@ -237,24 +240,25 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         LAP
     }
 
-    /// Updates the one level above 0 whose turn it is at sample `n`: level `L` has its turn half
-    /// a block after each of its block boundaries, when level `L − 1` has long passed them. Returns
-    /// its octave and the difference that this completes.
+    /// Updates the one level above 0 whose turn it is at sample `n`. Level `L` has its turn half a
+    /// block after each of its block boundaries, when level `L − 1` has long passed them. Returns the
+    /// level's octave and the difference that this completes.
     #[inline(always)]
     fn complete_scheduled(&mut self, n: u32) -> Option<(usize, i64)> {
         let level = n.trailing_zeros() as usize + 1;
         if level + FIRST >= OCTAVES {
             return None;
         }
-        // Of the boundary at n − 2^(level−1): its number at this level and at the one below.
+        // The boundary lies at n − 2^(level−1). These are its number at this level and its angle at the
+        // one below.
         let block = n >> level;
         let new = self.levels[level - 1].ring[(2 * block) as usize % RING];
         let difference = self.levels[level].push(block, new)?;
         Some((level + FIRST, difference))
     }
 
-    /// Samples were lost, or the gyro was disturbed: no difference will span this moment. What was
-    /// summed stays. Costs a pass over the octaves.
+    /// Marks a place where samples were lost or the gyro was disturbed. No difference spans this place.
+    /// What was summed stays. A call passes over all octaves once.
     pub fn gap(&mut self) {
         if self.number == 0 {
             return;
@@ -296,29 +300,29 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         *self = Self::new();
     }
 
-    /// Samples so far.
+    /// The number of samples so far.
     pub const fn samples(&self) -> u64 {
         self.earlier_samples.saturating_add(self.position())
     }
 
-    /// Samples since the last gap.
+    /// The number of samples since the last gap.
     const fn position(&self) -> u64 {
         self.number as u64 + ((self.laps as u64) << 31)
     }
 
-    /// Ends of contiguous stretches so far: calls of [`gap`](Self::gap) that had samples before
-    /// them, and one for each merged record.
+    /// The number of contiguous stretches that have ended so far. A call of [`gap`](Self::gap) ends a
+    /// stretch if there were samples before it, and so does every merged record.
     pub const fn gaps(&self) -> u64 {
         self.gaps
     }
 
-    /// [`gaps`](Self::gaps) with one at this moment.
+    /// The number of [`gaps`](Self::gaps) that there would be after a gap at this moment.
     #[cfg(feature = "storage")]
     pub(crate) fn ended_gaps(&self) -> u64 {
         self.gaps.saturating_add(u64::from(self.number > 0))
     }
 
-    /// The state after a gap that this had been read before.
+    /// The state after a gap, rebuilt from what was read of it.
     #[cfg(feature = "storage")]
     pub(crate) fn ended(
         samples: u64,
@@ -335,13 +339,13 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         accumulator
     }
 
-    /// Octave `k`, of averaging factor `2^k`, as of now: what the schedule has put off is
-    /// included, the state is untouched. `None` from `OCTAVES` on.
+    /// Octave `k`, of averaging factor `2^k`, as it is now. What the schedule has put off is included,
+    /// and the state stays as it is. `None` from `OCTAVES` on.
     pub fn octave(&self, k: usize) -> Option<OctaveSum> {
         (k < OCTAVES).then(|| self.read(k))
     }
 
-    /// All octaves as of now, shortest averaging time first.
+    /// All octaves as they are now, shortest averaging time first.
     pub fn octaves(&self) -> impl Iterator<Item = OctaveSum> + '_ {
         (0..OCTAVES).map(|k| self.read(k))
     }
@@ -357,7 +361,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         if let Some(difference) = self.pending_difference(k) {
             sum.add_square(difference);
         }
-        // Blocks so far, less those that the first difference needs.
+        // These are the blocks so far, less those that the first difference needs.
         let running = block.saturating_sub(match k {
             0 => 1,
             1 => 3,
@@ -391,7 +395,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
     }
 
-    /// Differences in the segments before the last gap.
+    /// The number of differences in the segments before the last gap.
     fn counted(&self, k: usize) -> u64 {
         self.differences.get(k).copied().unwrap_or(0)
     }
@@ -408,13 +412,13 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         below.is_some_and(|below| self.number.wrapping_shr(below as u32) & 1 == 0)
     }
 
-    /// The angle at the level's newest block boundary, from the first level below that has it.
+    /// The angle at the level's newest block boundary, taken from the nearest level below that has it.
     fn boundary(&self, level: usize) -> u64 {
         let holder = (0..=level)
             .rev()
             .find(|&l| !self.is_pending(l))
             .unwrap_or(0);
-        // While levels are pending, the boundary is the newest of the level below as well.
+        // While levels are pending, the boundary is also the newest one of the level below.
         let block = self.number.wrapping_shr(holder as u32) as usize;
         let held = self.levels.get(holder).unwrap_or(&Level::EMPTY);
         held.ring[block % RING]
@@ -427,8 +431,8 @@ impl<const OCTAVES: usize> Default for Accumulator<OCTAVES> {
     }
 }
 
-/// `newest − 2 middle + oldest`: the difference of two adjacent cluster sums, exact although the
-/// angles wrap.
+/// `newest − 2 middle + oldest`, which is the difference of two adjacent cluster sums. It is exact
+/// although the angles wrap.
 #[inline(always)]
 fn second_difference(newest: u64, middle: u64, oldest: u64) -> i64 {
     newest

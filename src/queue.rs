@@ -1,21 +1,22 @@
-//! From the interrupt that reads a sample to the loop that accumulates it.
+//! A queue that leads from the interrupt that reads samples to the loop that accumulates them.
 
 use heapless::spsc::{Consumer, Producer, Queue};
 
-/// A sample on its way, and what was lost before it.
+/// A sample on its way, with the number of samples that were lost before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Queued<T> {
     /// The sample.
     pub sample: T,
-    /// Samples lost just before this one: nonzero calls for a `gap()`.
+    /// The number of samples lost just before this one. If it is not 0, call `gap()` before adding the
+    /// sample.
     pub lost: u32,
 }
 
 /// The interrupt's end of a queue.
 ///
-/// A full queue takes no sample: the loss is counted, and told with the next sample that finds room, so
-/// that it is known where in the record it lies.
+/// A full queue takes no sample. The loss is counted and reported with the next sample that finds room,
+/// so that its place in the record is known.
 pub struct Sender<'a, T> {
     producer: Producer<'a, Queued<T>>,
     lost: u32,
@@ -27,7 +28,8 @@ pub struct Receiver<'a, T> {
     lost: u64,
 }
 
-/// Both ends of a queue, which holds one sample less than `N`. No lock, and nothing that blocks.
+/// Splits a queue into its two ends. A queue holds one sample less than `N`. It has no lock, and
+/// nothing blocks.
 ///
 /// # Example
 ///
@@ -60,7 +62,7 @@ pub fn split<T, const N: usize>(
 }
 
 impl<T> Sender<'_, T> {
-    /// Hands a sample over; `false` if it is lost for want of room.
+    /// Hands a sample over. Returns `false` if the sample is lost because there is no room.
     pub fn send(&mut self, sample: T) -> bool {
         let lost = self.lost;
         let sent = self.producer.enqueue(Queued { sample, lost }).is_ok();
@@ -68,26 +70,26 @@ impl<T> Sender<'_, T> {
         sent
     }
 
-    /// The interrupt missed samples by itself: an overrun of the sensor, a failed read.
+    /// Counts samples that the interrupt itself missed, by an overrun of the sensor or a failed read.
     pub fn missed(&mut self, samples: u32) {
         self.lost = self.lost.saturating_add(samples);
     }
 
-    /// Samples lost that no later one has told of yet.
+    /// The number of lost samples that no later sample has reported yet.
     pub fn untold(&self) -> u32 {
         self.lost
     }
 }
 
 impl<T> Receiver<'_, T> {
-    /// The next sample, in the order in which they were sent.
+    /// The next sample, in the order in which samples were sent; `None` if the queue is empty.
     pub fn receive(&mut self) -> Option<Queued<T>> {
         let queued = self.consumer.dequeue()?;
         self.lost = self.lost.saturating_add(u64::from(queued.lost));
         Some(queued)
     }
 
-    /// Samples lost before those that were received.
+    /// The number of samples that were lost before those that were received.
     pub fn lost(&self) -> u64 {
         self.lost
     }

@@ -27,28 +27,28 @@ pub(crate) use core::f32::consts;
 #[cfg(feature = "double")]
 pub(crate) use core::f64::consts;
 
-/// The nearest number.
+/// The nearest number in the library's precision.
 pub(crate) fn real(x: impl AsPrimitive<Real>) -> Real {
     x.as_()
 }
 
-/// The nearest number in single precision, for what nothing more depends on.
+/// The nearest number in single precision, for values on which nothing else depends.
 pub(crate) fn single(x: Real) -> f32 {
     x.as_()
 }
 
-/// The same number in double precision, for what is stored or logged.
+/// The same number in double precision, for values that are stored or logged.
 pub(crate) fn double(x: Real) -> f64 {
     x.as_()
 }
 
-/// A constant that depends on the precision: a limit of rounding or of range.
+/// A constant that depends on the precision, such as a limit of rounding or of range.
 #[cfg(feature = "double")]
 pub(crate) const fn by_precision(double: f64, _single: f32) -> Real {
     double
 }
 
-/// A constant that depends on the precision: a limit of rounding or of range.
+/// A constant that depends on the precision, such as a limit of rounding or of range.
 #[cfg(not(feature = "double"))]
 pub(crate) const fn by_precision(_double: f64, single: f32) -> Real {
     single

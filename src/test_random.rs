@@ -2,11 +2,11 @@
 
 use crate::real::{Real, real};
 
-/// A generator of the kind xorshift64* (Vigna 2016).
+/// A generator of the xorshift64* kind (Vigna 2016).
 pub(crate) struct Random(u64);
 
 impl Random {
-    /// A sequence of its own for every seed.
+    /// A generator whose sequence depends on the seed.
     pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
     }
@@ -19,17 +19,17 @@ impl Random {
         (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 32) as u32
     }
 
-    /// An integer from 0 to below `end`.
+    /// A random integer from 0 to below `end`.
     pub(crate) fn below(&mut self, end: usize) -> usize {
         self.bits() as usize % end
     }
 
-    /// A number between −1 and 1, the same one in either precision but for rounding.
+    /// A random number between −1 and 1. Both precisions give the same one, except for rounding.
     pub(crate) fn signed(&mut self) -> f64 {
         f64::from(self.bits()) / f64::from(1_u32 << 31) - 1.0
     }
 
-    /// The same in the precision of the library.
+    /// The same number in the precision of the library.
     pub(crate) fn real(&mut self) -> Real {
         real(self.signed())
     }

@@ -1,4 +1,4 @@
-//! Factors and solutions against the product `L L'` and nalgebra's own decomposition.
+//! Factors and solutions are compared with the product `L L'` and with nalgebra's own decomposition.
 
 use super::*;
 use crate::{
@@ -7,24 +7,24 @@ use crate::{
 };
 use nalgebra::{SMatrix, SVector};
 
-/// Rows of the largest matrix here.
+/// The number of rows of the largest matrix in these tests.
 const MOST: usize = 12;
-/// A triangle of so many rows.
+/// A triangle of [`MOST`] rows.
 type Full<E = Real> = Triangle<{ MOST + 1 }, { MOST / 2 }, E>;
 type Matrix = SMatrix<f64, MOST, MOST>;
 type Column = SVector<f64, MOST>;
 
-/// Rounding errors of a factor, relative to the diagonal.
+/// The tolerance for the rounding errors of a factor, relative to the diagonal.
 const ROUNDING: f64 = if cfg!(feature = "double") {
     1e-14
 } else {
     3e-6
 };
-/// The same of a factor that is kept in single precision.
+/// The same tolerance for a factor that is kept in single precision.
 const KEPT_SINGLE: f64 = 3e-6;
 
-/// A positive definite matrix with ones on the diagonal, and off it what resembles correlations; the
-/// identity beyond `n` rows.
+/// A positive definite matrix with ones on the diagonal, and numbers that resemble correlations off the
+/// diagonal. It is the identity beyond `n` rows.
 fn positive_definite(n: usize, random: &mut Random) -> Matrix {
     let columns = Matrix::from_fn(|_, _| random.signed() + 0.5);
     let product = columns * columns.transpose() + Matrix::identity();
@@ -37,7 +37,7 @@ fn positive_definite(n: usize, random: &mut Random) -> Matrix {
     })
 }
 
-/// The first `n` rows of a matrix, in whatever precision `to` rounds to.
+/// The first `n` rows of a matrix, in the precision to which `to` rounds.
 fn triangle<E: Number>(matrix: &Matrix, n: usize, to: impl Fn(f64) -> E) -> Full<E> {
     let mut triangle = Full::zeros();
     for i in 0..n {
@@ -48,7 +48,8 @@ fn triangle<E: Number>(matrix: &Matrix, n: usize, to: impl Fn(f64) -> E) -> Full
     triangle
 }
 
-/// `L`, whose diagonal a factor has the reciprocals of; the identity beyond `n` rows.
+/// The factor `L`, made from its stored form, which has the reciprocals of the diagonal. It is the
+/// identity beyond `n` rows.
 fn lower<E: Number + AsPrimitive<f64>>(factor: &Full<E>, n: usize) -> Matrix {
     Matrix::from_fn(|i, j| match i.cmp(&j) {
         core::cmp::Ordering::Greater if i < n => factor[(i, j)].as_(),
@@ -58,7 +59,7 @@ fn lower<E: Number + AsPrimitive<f64>>(factor: &Full<E>, n: usize) -> Matrix {
     })
 }
 
-/// Calls with matrices of every number of rows.
+/// Calls `check` with matrices of every number of rows.
 fn matrices(mut check: impl FnMut(usize, &Matrix, &mut Random)) {
     let mut random = Random::new(11);
     for n in 1..=MOST {
@@ -137,7 +138,7 @@ fn solutions_in_every_precision_fulfil_their_equations() {
         let off = matrix * solved - right;
         assert!(off.amax() < ROUNDING * 40.0, "{:e}", off.amax());
 
-        // A factor in single precision, and unknowns in either.
+        // The factor is in single precision, and the unknowns are in either precision.
         let mut x = Vector::<MOST>::from_fn(|i| right[i] as Real);
         forward(&kept, n, &mut x);
         let solved = Column::from_fn(|i, _| double(x[i]));
@@ -182,7 +183,7 @@ fn matrices_that_are_not_positive_definite_are_refused() {
             assert!(!factor(&mut triangle(&matrix, n, |x| x as f32), n));
         }
         if n > 1 {
-            // Two unknowns that are correlated by more than one.
+            // This gives two unknowns a correlation above one.
             let mut matrix = *matrix;
             let other = (place + 1) % n;
             matrix[(place, other)] = 1.01;

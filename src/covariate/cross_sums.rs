@@ -1,19 +1,19 @@
-//! The sums of products that a gyro shares with a covariate.
+//! The sums of products of a gyro's and a covariate's differences.
 
 use crate::{octave::Accumulator, real::Real};
 
-/// Σ D_g D_x of every octave: 24 bytes an octave.
+/// The sum Σ D_g D_x of every octave, which takes 24 bytes per octave.
 ///
-/// The accumulators of the gyro and of the covariate run through one schedule, so that the differences of
-/// an octave are there at the same sample and can be multiplied. The sums are exact: the product of two
-/// differences within ±2^62 fits 124 bits, and fewer than 2^63 of them fit 187.
+/// The accumulators of the gyro and of the covariate follow one schedule. So both complete the
+/// differences of an octave at the same sample, and the two can be multiplied. The sums are exact: the
+/// product of two differences within ±2^62 fits in 124 bits, and fewer than 2^63 of them fit in 187.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct CrossSums<const OCTAVES: usize> {
     sums: [ProductSum; OCTAVES],
 }
 
-/// A signed sum: `low + 2^64 upper`, where `low` is signed as well, so that a carry happens when it
-/// overflows and at no other time.
+/// A signed sum, `low + 2^64 upper`. `low` is signed as well, so that there is a carry only when it
+/// overflows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ProductSum {
     low: i64,
@@ -30,7 +30,7 @@ impl ProductSum {
     #[inline(always)]
     fn add_product(&mut self, one: i64, other: i64) {
         let (short, other_short) = (one as i32, other as i32);
-        // The path of a gyro at rest: one multiplication, one limb.
+        // A gyro at rest takes this path, with one multiplication and one limb.
         if is_short(one) && is_short(other) {
             let product = i64::from(short) * i64::from(other_short);
             if let Some(low) = self.low.checked_add(product) {
@@ -45,7 +45,7 @@ impl ProductSum {
     #[inline(never)]
     fn add_long(&mut self, product: i128) {
         let low = product as i64;
-        // What the signed lower limb leaves.
+        // This is what the signed lower limb leaves to the upper limbs.
         self.add(low, product.wrapping_sub(i128::from(low)) >> 64);
     }
 
@@ -71,13 +71,13 @@ impl ProductSum {
         self.upper() as Real * LIMB + self.low as Real
     }
 
-    /// The lower limb, and what is above it.
+    /// The lower limb, and the number formed by the limbs above it.
     #[cfg(feature = "storage")]
     pub(crate) const fn parts(&self) -> (i64, i128) {
         (self.low, self.upper())
     }
 
-    /// The sum of these parts.
+    /// The sum that has these parts.
     #[cfg(feature = "storage")]
     pub(crate) const fn from_parts(low: i64, upper: i128) -> Self {
         Self {
@@ -87,19 +87,19 @@ impl ProductSum {
     }
 }
 
-/// Whether a number fits 32 bits: in this form the compiler multiplies what is short as such.
+/// Whether a number fits in 32 bits. In this form, the compiler multiplies short numbers as such.
 #[inline(always)]
 const fn is_short(x: i64) -> bool {
     (x >> 32) as i32 == (x as i32) >> 31
 }
 
 impl<const OCTAVES: usize> CrossSums<OCTAVES> {
-    /// Nothing summed yet.
+    /// Sums of no product yet.
     pub(crate) const NEW: Self = Self {
         sums: [ProductSum::ZERO; OCTAVES],
     };
 
-    /// Adds the product of the differences that both completed in an octave.
+    /// Adds the product of the two differences that were completed in an octave.
     #[inline(always)]
     pub(crate) fn add(&mut self, octave: usize, gyro: i64, covariate: i64) {
         if let Some(sum) = self.sums.get_mut(octave) {
@@ -114,7 +114,8 @@ impl<const OCTAVES: usize> CrossSums<OCTAVES> {
         }
     }
 
-    /// The sum of octave `k` as of now, with the product that both still have pending.
+    /// The present sum of octave `k`. It includes the product of the differences that are still pending
+    /// in both.
     pub(crate) fn read(
         &self,
         k: usize,
@@ -129,7 +130,7 @@ impl<const OCTAVES: usize> CrossSums<OCTAVES> {
         sum
     }
 
-    /// The sums, to be restored.
+    /// The sums, for a snapshot that restores them.
     #[cfg(feature = "storage")]
     pub(crate) fn sums_mut(&mut self) -> &mut [ProductSum; OCTAVES] {
         &mut self.sums

@@ -1,4 +1,4 @@
-//! The step that would have followed with a candidate that was not added.
+//! The step that would have followed if another candidate had been added.
 
 use super::{
     judged::{Judged, Judging},
@@ -13,14 +13,17 @@ use crate::{
     real::Real,
 };
 
-/// The step that would have followed `step` with another candidate of it: the model with the candidate, all
-/// fitted shapes polished, and where it fails. It has no candidates of its own.
+/// The step that would have followed `step` if another one of its candidates had been added: the model
+/// with the candidate, with all fitted shapes polished, and where this model fails. The step has no
+/// candidates of its own.
 ///
-/// `before` is the step before, whose candidates tell the shape of what a [`swap`](Candidate::swap) takes.
-/// `curve` is the one that `step` was judged on, without what follows a covariate.
+/// `before` is the step before `step`. Its candidates give the shape of the effect that a
+/// [`swap`](Candidate::swap) takes. `curve` is the curve on which `step` was judged, without what
+/// follows a covariate.
 ///
 /// # Errors
-/// As of [`fit`](crate::fit::fit()); [`Error::TooManyEffects`] where the model has no room.
+/// The same as those of [`fit`](crate::fit::fit()), and [`Error::TooManyEffects`] if the model has no
+/// room.
 pub fn alternative<const K: usize>(
     curve: &Curve<K>,
     step: &Step<K>,
@@ -45,7 +48,7 @@ pub fn alternative<const K: usize>(
     Ok(alternative)
 }
 
-/// The model with its shapes polished.
+/// Fits the model and polishes its shapes.
 fn polished<const K: usize>(
     curve: &Curve<K>,
     model: Model,
@@ -65,7 +68,7 @@ fn polished<const K: usize>(
     let mut trial = Trial::new(Fitted { model, squares });
     let mut candidate = *candidate;
     loop {
-        // Nothing is gained so far: no round is hopeless.
+        // No other candidate competes, so no round is hopeless.
         let (span, best) = (curve.span(), Real::INFINITY);
         let completed = trial.advance(curve, &span, tolerance, best, &mut work, &mut candidate)?;
         if let Some(completed) = completed {
@@ -74,7 +77,7 @@ fn polished<const K: usize>(
     }
 }
 
-/// Judges a fitted model.
+/// Compares a fitted model with the curve.
 fn judged<const K: usize>(
     curve: &Curve<K>,
     fitted: &Fitted,

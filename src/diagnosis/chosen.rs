@@ -1,4 +1,5 @@
-//! Fourth stage: the best candidate is added if it is worth its parameters. The ambiguity rule is here.
+//! Fourth stage: the best candidate is added if it is worth its parameters. This file holds the rule of
+//! ambiguity.
 
 use super::step::{Candidate, MAX_AMBIGUOUS};
 use crate::real::Real;
@@ -7,13 +8,13 @@ use heapless::Vec;
 /// What is chosen from the candidates of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chosen {
-    /// Effects that explain the curve about as well as the best candidate.
+    /// Effects that explain the curve about as well as those of the best candidate.
     pub(super) ambiguous: Vec<&'static str, MAX_AMBIGUOUS>,
 }
 
-/// Chooses the first of the candidates, which are sorted by their improvement, if that reaches `threshold`.
-/// Candidates whose improvement is within `ambiguity` of its own make it ambiguous: the effects that they
-/// bring and the best one does not.
+/// Chooses the first of the candidates, which are sorted by their improvement, if its improvement
+/// reaches `threshold`. Candidates whose improvement is less than `ambiguity` below that of the first
+/// one make it ambiguous: the result names the effects that they bring and the first one does not.
 pub(super) fn choose(candidates: &[Candidate], threshold: Real, ambiguity: Real) -> Option<Chosen> {
     let (first, others) = candidates.split_first()?;
     if first.improvement < threshold {
@@ -26,7 +27,7 @@ pub(super) fn choose(candidates: &[Candidate], threshold: Real, ambiguity: Real)
     for other in others.iter().filter(close) {
         for name in other.brings(dropped).into_iter().flatten() {
             if !brought.contains(&Some(name)) && !ambiguous.contains(&name) {
-                // There are as many places as candidates bring names.
+                // There is a place for every name that candidates can bring.
                 let _ = ambiguous.push(name);
             }
         }
@@ -86,7 +87,7 @@ mod tests {
             swap: Some(swap),
             ..candidate(&Sinusoid, 50.0)
         };
-        // Without the swap, the dropped effect stays.
+        // Without the swap, the dropped effect stays in the model.
         let candidates = [best, candidate(&DecimationFilter, 49.0)];
         let ambiguous = names(choose(&candidates, 8.0, 6.0)).unwrap_or_default();
         assert_eq!(ambiguous, ["decimation_filter", "resonance"]);

@@ -1,21 +1,23 @@
-//! What is known of a record beside its curve.
+//! What is known of a record in addition to its curve.
 
 use crate::{covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis};
 
-/// What is known of a record beside its curve: all of it optional.
+/// What is known of a record in addition to its curve. All of it is optional.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence<'a, const K: usize> {
-    /// Tells effects apart that share their Allan variance.
+    /// The kurtosis, which distinguishes effects that share their Allan variance.
     pub kurtosis: Option<&'a Kurtosis<K>>,
-    /// What the rate may follow. One covariate is taken into account, the one with the surest slope: of two
-    /// that share their course, cross sums with the gyro do not tell which it is.
+    /// The covariates that the rate may follow. One of them is taken into account, the one with the
+    /// surest slope. If two covariates take the same course, their cross sums with the gyro do not tell
+    /// which one the rate follows.
     pub covariates: &'a [CrossCurve<K>],
-    /// Why the curve is not valid, as of [`Integrity`](crate::integrity::Integrity).
+    /// Why the curve is not valid, as judged by [`Integrity`](crate::integrity::Integrity); `None` if
+    /// it is valid.
     pub invalid: Option<Reason>,
 }
 
 impl<const K: usize> Evidence<'_, K> {
-    /// No evidence but the curve.
+    /// No evidence in addition to the curve.
     pub const NONE: Self = Self {
         kurtosis: None,
         covariates: &[],

@@ -1,5 +1,5 @@
-//! Whether the rate follows a covariate: asked before any effect is looked for, because a covariate carries
-//! its own evidence.
+//! Covariate stage: whether the rate follows a covariate. This comes before the search for effects,
+//! because a covariate carries its own evidence.
 
 use super::{judged::Judged, step::FollowedCovariate};
 use crate::{
@@ -12,15 +12,15 @@ use crate::{
     real::Real,
 };
 
-/// Rounds of a slope and of the noise that is left of the curve without what follows the covariate: as long
-/// as that is in the curve, the noise seems larger and the slope less sure.
+/// The number of rounds that alternate between the slope and the noise that remains when what follows
+/// the covariate is subtracted. Until it is subtracted, the noise seems larger and the slope less sure.
 const ROUNDS: u8 = 5;
 
-/// The search in progress for the covariate of the surest slope.
+/// The search in progress for the covariate with the surest slope.
 pub(super) struct Following<const K: usize> {
     /// The curve without what follows the covariate.
     corrected: Curve<K>,
-    /// The squares of the step's model, and those of the corrected curve's fit.
+    /// The squares of the step's model, and those of the fit to the corrected curve.
     first: Vector,
     squares: Vector,
     slope: Option<Slope>,
@@ -45,11 +45,11 @@ impl<const K: usize> Following<K> {
         }
     }
 
-    /// Does one piece of work. When all covariates have been asked, returns the one of the surest slope, if
-    /// that is `least_z` standard errors or more.
+    /// Does one piece of work. When all covariates have been tried, returns the one with the surest
+    /// slope, if that is more than `least_z` standard errors.
     ///
     /// # Errors
-    /// As of a fit.
+    /// The same as those of a fit.
     #[inline(never)]
     pub(super) fn advance(
         &mut self,

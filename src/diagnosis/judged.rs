@@ -1,4 +1,4 @@
-//! First stage: a model is fitted, its shapes are bounded, and it is compared with the curve.
+//! First stage: a model is fitted, its shapes get their intervals, and it is compared with the curve.
 
 use super::step::Step;
 use crate::{
@@ -13,17 +13,17 @@ use crate::{
     real::Real,
 };
 
-/// What the later stages know of a judged model.
+/// What the later stages know of a model that was judged.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Judged {
-    /// The model's squared coefficients, and those that its covariance was taken at.
+    /// The model's squared coefficients, and those at which its covariance was taken.
     pub(super) squares: Vector,
     pub(super) assumed: Vector,
-    /// Its score, `−2 ln L`.
+    /// The model's score, `−2 ln L`.
     pub(super) score: Real,
-    /// Whether it explains the curve; `None` where the curve is too short to say.
+    /// Whether the model explains the curve; `None` if the curve is too short for a judgement.
     pub(super) adequate: Option<bool>,
-    /// The tolerance that it was granted.
+    /// The tolerance that the model was granted.
     pub(super) tolerance: Real,
 }
 
@@ -41,15 +41,15 @@ impl Judged {
     }
 }
 
-/// The judgement of a model in progress.
-// Large variants share their memory with those of other stages.
+/// The judgement of a model, in progress.
+// The large variants share their memory with those of other stages.
 #[expect(clippy::large_enum_variant)]
 pub(super) enum Judging<const K: usize> {
     /// The model is being solved.
     Solving,
     /// Its coefficients are being estimated.
     Estimating(Estimator),
-    /// The shape at this place in the fit is being bounded.
+    /// The interval of the shape at this place in the fit is being computed.
     Bounding {
         shape: usize,
         interval: Option<JointInterval>,
@@ -63,11 +63,11 @@ impl<const K: usize> Judging<K> {
         Self::Solving
     }
 
-    /// Does one piece of work on the step's model; returns the judgement when the step's fit and comparison
-    /// are complete.
+    /// Does one piece of work on the step's model. Returns the judgement when the step's fit and
+    /// comparison are complete.
     ///
     /// # Errors
-    /// As of a fit.
+    /// The same as those of a fit.
     #[inline(never)]
     pub(super) fn advance(
         &mut self,
@@ -144,8 +144,8 @@ impl<const K: usize> Judging<K> {
     }
 }
 
-/// The term at this place in the model and its fitted parameter, if that is its only one: others have no
-/// profile of their own.
+/// The term at this place in the model and its fitted parameter, if that is its only fitted parameter.
+/// Terms with several have no profile.
 fn only_shape<const K: usize>(problem: &Problem<'_, K>, place: usize) -> Option<(Term, usize)> {
     let term = problem.model.terms().get(place)?;
     let mut parameters = term.fitted_parameters();

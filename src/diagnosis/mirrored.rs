@@ -1,5 +1,5 @@
-//! Last stage: an effect that shares its Allan variance with another is told from it by the kurtosis, or
-//! both are named.
+//! Last stage: the kurtosis tells an effect from another one that has the same Allan variance. If it
+//! cannot, both are named.
 
 use super::{
     step::{Addition, Step},
@@ -12,8 +12,10 @@ use crate::{
     kurtosis::Kurtosis,
     list,
 };
-/// Names every effect's mirror beside it, unless the kurtosis speaks for one of the two that the best
-/// candidate may be: then that one is added.
+
+/// Names the mirror of every ambiguous effect beside it. For the best candidate, the kurtosis may
+/// decide between the effect and its mirror. The right one is then added, and the other one is not
+/// named.
 #[inline(never)]
 pub(super) fn tell_from_mirror<const K: usize>(
     curve: &Curve<K>,
@@ -28,12 +30,12 @@ pub(super) fn tell_from_mirror<const K: usize>(
         candidates,
         ..
     } = step;
-    // Behind a name comes that of its mirror: nothing has told them apart.
+    // Behind each name comes the name of its mirror, because nothing has told the two apart.
     let mut at = 0_usize;
     while let Some(name) = ambiguous.get(at) {
         at = at.saturating_add(1);
         if let Some(mirror) = mirror_of(name, effects) {
-            // There are as many places as candidates bring names, with their mirrors.
+            // There is a place for every name that candidates can bring, and for its mirror.
             list::insert(ambiguous, at, mirror.name());
             at = at.saturating_add(1);
         }
@@ -67,7 +69,7 @@ pub(super) fn tell_from_mirror<const K: usize>(
     }
 }
 
-/// The effect of a list that has the Allan variance of the one of that name.
+/// The effect of the list whose Allan variance is that of the effect with this name.
 fn mirror_of(name: &str, effects: &[&'static dyn Effect]) -> Option<&'static dyn Effect> {
     let is_mirror = |effect: &dyn Effect| effect.mirror().is_some_and(|other| other.name() == name);
     effects.iter().copied().find(|effect| is_mirror(*effect))

@@ -1,10 +1,10 @@
-//! Which effect is missing: what a model lacks is found, added, and the curve judged again.
+//! Which effect is missing: a diagnosis finds what a model lacks, adds it, and judges the curve again.
 //!
-//! A [`Diagnosis`] goes through these stages, one file each: a model is *judged* (fitted and compared with
-//! the curve), covariates are asked whether the rate *follows* them, the list of effects is *scanned* for
-//! shapes that would help, the best of these are *tried* in full, pairs of effects are *swapped* for one
-//! that was added alone, the best candidate is *chosen*, and told from its *mirror* image of the same Allan
-//! variance. Each stage hands a value to the next.
+//! A [`Diagnosis`] goes through the following stages, each in a file of its own. A model is *judged*:
+//! it is fitted and compared with the curve. Covariates are tested for whether the rate *follows* them.
+//! The list of effects is *scanned* for shapes that would help. The best of these are *tried* in full.
+//! Pairs of effects are *swapped* for an effect that was added alone. The best candidate is *chosen*,
+//! and told from its *mirror*, which has the same Allan variance. Each stage hands a value to the next.
 
 mod alternative;
 mod chosen;

@@ -1,4 +1,4 @@
-//! A diagnosis, in one go or in pieces: the stages one after the other, until the model is adequate or
+//! A diagnosis, in one go or in pieces: one stage follows the other until the model is adequate or
 //! nothing helps.
 
 use super::{
@@ -23,17 +23,17 @@ use crate::{
     model::Model,
 };
 
-/// A diagnosis in progress: which effect is missing?
+/// A diagnosis in progress, which finds out which effect is missing.
 ///
 /// It looks for what a model lacks in a list of effects such as
-/// [`CATALOGUE`](crate::effect::CATALOGUE): it fits the model, compares it with the curve, tries every
-/// effect, adds the best one, and starts again, until the model is adequate or nothing helps. A covariate is
-/// tried first, because it carries its own evidence.
+/// [`CATALOGUE`](crate::effect::CATALOGUE). It fits the model, compares it with the curve, tries every
+/// effect, adds the best one, and starts again, until the model is adequate or nothing helps.
+/// Covariates are tried first, because they carry their own evidence.
 ///
-/// [`run`](Self::run) does all of it. [`advance`](Self::advance) does one piece and returns, so that a main
-/// loop feeds its watchdog and takes its samples in between: at most 2 million instructions on a Cortex-M4F
-/// in single precision, of some 100 million for a whole diagnosis of 20 octaves (`cargo xtask bench`
-/// measures both). To abort a diagnosis, drop it.
+/// [`run`](Self::run) does all of it. [`advance`](Self::advance) does one piece and returns, so that a
+/// main loop can feed its watchdog and take its samples in between. One piece takes at most 2 million
+/// instructions on a Cortex-M4F in single precision, of some 100 million for a whole diagnosis of 20
+/// octaves (`cargo xtask bench` measures both). To abort a diagnosis, drop it.
 ///
 /// # Example
 ///
@@ -69,49 +69,49 @@ pub struct Diagnosis<'a, const K: usize> {
     evidence: Evidence<'a, K>,
     effects: &'a [&'static dyn Effect],
     options: Options,
-    /// The present model, and what is reported of it.
+    /// The present model, and what is reported about it.
     step: Step<K>,
     judged: Judged,
     /// The model with the first of the step's candidates.
     best: Fitted,
     /// Effects and covariates added so far.
     additions: usize,
-    /// The effect that was added last, and those that it was preferred to.
+    /// The effect that was added last, and the effects to which it was preferred.
     preferred: Option<Preferred>,
     work: Work<K>,
     stage: Stage<K>,
 }
 
 /// The stage that is in progress.
-// Large variants share their memory: a diagnosis lies in it once, and is never copied.
+// The large variants share their memory. A diagnosis is stored once and never copied.
 #[expect(clippy::large_enum_variant)]
 enum Stage<const K: usize> {
     /// Nothing has been done yet.
     Beginning,
     /// The step's model is fitted and compared.
     Judging(Judging<K>),
-    /// Covariates are asked whether the rate follows them.
+    /// The covariates are tested for whether the rate follows them.
     Following(Following<K>),
-    /// The step's model is solved again, after the solver has worked on covariates.
+    /// The step's model is solved again, because the solver has worked on covariates.
     Resolving,
-    /// Effects are scanned for their best shapes.
+    /// The effects are scanned for their best shapes.
     Scanning(Scanning<K>),
     /// The best shapes are fitted in full.
     Trying(Trying),
-    /// Pairs of effects are tried in the place of the one that was added last.
+    /// Pairs of effects are tried in the place of the effect that was added last.
     Swapping(Swapping<K>),
-    /// The step is reported, and what it adds is taken up next.
+    /// The step is reported. What it adds comes next.
     Reported,
     /// There is nothing left to do.
     Finished(Result<Verdict, Error>),
 }
 
-/// What one piece of a diagnosis has come to.
+/// The result of one piece of a diagnosis.
 #[derive(Debug)]
 pub enum Progress<'s, const K: usize> {
     /// There is more to do.
     Working,
-    /// A model has been judged, and what it lacks has been chosen.
+    /// A model has been judged, and it has been decided what to add.
     Step(&'s Step<K>),
     /// The diagnosis is complete.
     Finished(Verdict),
@@ -144,7 +144,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         }
     }
 
-    /// Does the whole diagnosis, and hands every step to `report`, the last one included.
+    /// Does the whole diagnosis. Calls `report` for every step, including the last one.
     ///
     /// # Errors
     /// As of [`fit`](crate::fit::fit()).
@@ -161,7 +161,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
     /// Does one piece of work.
     ///
     /// # Errors
-    /// As of [`fit`](crate::fit::fit()): the diagnosis ends with an error.
+    /// The same as those of [`fit`](crate::fit::fit()). An error ends the diagnosis.
     pub fn advance(&mut self) -> Result<Progress<'_, K>, Error> {
         let advanced = match self.work() {
             Ok(false) => Ok(()),
@@ -179,7 +179,8 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
     }
 
     /// Does one piece of work on the present stage, and returns whether the stage is complete.
-    // Apart from what follows a stage, whose temporaries would lie on the stack below it.
+    // This is a function of its own, because the temporaries of what follows a stage would lie on the
+    // stack below it.
     #[inline(never)]
     fn work(&mut self) -> Result<bool, Error> {
         let contest = self.contest();
@@ -294,7 +295,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         self.additions < self.options.max_effects && self.evidence.invalid.is_none()
     }
 
-    /// Begins to scan the list of effects where the model is not adequate, or reports the step.
+    /// Begins to scan the list of effects if the model is not adequate; otherwise reports the step.
     fn scan_or_report(&mut self) {
         self.stage = if self.has_room() && self.judged.adequate == Some(false) {
             let problem = Problem::new(&self.curve, &self.step.model, &self.work.columns);
@@ -304,7 +305,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         };
     }
 
-    /// What candidates are compared with.
+    /// What the candidates are compared with.
     const fn contest(&self) -> Contest {
         Contest {
             score: self.judged.score,
@@ -338,7 +339,8 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         self.stage = Stage::Reported;
     }
 
-    /// Takes up what the step adds, and begins to judge the model with it; or finishes.
+    /// Adds what the step adds, and begins to judge the model with it. If the step adds nothing, the
+    /// diagnosis ends.
     fn add(&mut self) -> Result<(), Error> {
         match self.step.added {
             Some(Addition::Covariate(followed)) => {
@@ -350,7 +352,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                 let tolerance = if self.judged.tolerance > 0.0 {
                     Tolerance::Fixed(self.judged.tolerance)
                 } else {
-                    // The curve is another one now: it is decided anew.
+                    // The curve is another one now, so the tolerance is decided anew.
                     Tolerance::IfNeeded(self.options.tolerance)
                 };
                 self.judge(Start::From(self.judged.squares), tolerance)

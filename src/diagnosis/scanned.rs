@@ -1,4 +1,4 @@
-//! Second stage: the best shape of every effect beside a model that is not adequate.
+//! Second stage: the search for the best shape of every effect beside a model that is not adequate.
 
 use super::step::MAX_CANDIDATES;
 use crate::{
@@ -12,10 +12,11 @@ use heapless::Vec;
 /// The best shapes that a scan found, best first.
 pub(super) type Shapes = Vec<Found, MAX_CANDIDATES>;
 
-/// A scan in progress over the effects of a list, with the covariance of the model so far.
+/// A scan of the effects of a list, in progress. It uses the covariance of the model so far.
 pub(super) struct Scanning<const K: usize> {
     profile: Profile<K>,
-    /// The effect that comes next, and the search for the shape of the present one with its place.
+    /// The effect that comes next, and the search for the shape of the present effect, with the
+    /// effect's place.
     next: usize,
     search: Option<(GridSearch, usize)>,
     shapes: Shapes,
@@ -40,7 +41,7 @@ impl<const K: usize> Scanning<K> {
         &self.shapes
     }
 
-    /// Does some evaluations, and returns whether all effects have been searched for.
+    /// Does some evaluations, and returns whether all effects have been scanned.
     #[inline(never)]
     pub(super) fn advance(
         &mut self,
@@ -65,7 +66,7 @@ impl<const K: usize> Scanning<K> {
             return true;
         };
         self.next = self.next.saturating_add(1);
-        // An effect for which the model has no place is not searched for.
+        // An effect for which the model has no place is left out.
         if let Some(place) = place(problem, effect)
             && self.profile.choose(problem, place, &solver.squares).is_ok()
         {
@@ -75,9 +76,10 @@ impl<const K: usize> Scanning<K> {
     }
 }
 
-/// The place that an effect would have in a model: that of the effect that it replaces, or the first behind
-/// the others. `None` for an effect that would add nothing: one of fixed shape that the model has, one whose
-/// counterpart the model lacks, or one that shares its Allan variance with another of the catalogue.
+/// The place that an effect would have in a model: that of the effect that it replaces, or the first
+/// one behind the others. `None` for an effect that would add nothing. Such an effect has a fixed shape
+/// and is in the model already, or replaces an effect that the model lacks, or shares its Allan
+/// variance with another effect of the catalogue.
 fn place<const K: usize>(problem: &Problem<'_, K>, effect: &'static dyn Effect) -> Option<usize> {
     let model = problem.model;
     let present = model.position(effect.name()).is_some();

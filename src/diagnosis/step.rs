@@ -1,4 +1,4 @@
-//! What a diagnosis reports of every model on its way.
+//! What a diagnosis reports about every model on its way.
 
 use crate::{
     comparison::Comparison,
@@ -10,32 +10,33 @@ use crate::{
 };
 use heapless::Vec;
 
-/// Candidates that a step fits in full and reports.
+/// The number of candidates that a step fits in full and reports.
 pub const MAX_CANDIDATES: usize = 4;
 
-/// Names that a step calls ambiguous: two of every other candidate, and mirrors of two.
+/// The number of names that a step can call ambiguous: two for every other candidate, and the mirrors
+/// of two.
 pub const MAX_AMBIGUOUS: usize = 2 * MAX_CANDIDATES;
 
 /// The candidates of a step, best first.
 pub(super) type Candidates = Vec<Candidate, MAX_CANDIDATES>;
 
-/// An effect that a step tried, and that improves the model.
+/// An effect that a step tried and that improves the model.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
     /// The effect with its best shape.
     pub term: Term,
-    /// What else changes where it is added.
+    /// What else changes in the model when the effect is added.
     pub swap: Option<Swap>,
-    /// Its coefficient, in the unit that a [`Coefficient`](crate::Coefficient) of it has.
+    /// The effect's coefficient, in the unit that a [`Coefficient`](crate::Coefficient) of it has.
     pub coefficient: Real,
-    /// χ² of the model with it.
+    /// χ² of the model with the effect.
     pub chi_squared: Real,
-    /// How far it lowers `−2 ln L`, less two for each parameter that it brings.
+    /// How far the effect lowers `−2 ln L`, less two for each parameter that it brings.
     pub improvement: Real,
 }
 
 impl Candidate {
-    /// Parameters that it brings: a coefficient and shapes.
+    /// The number of parameters that the candidate brings: coefficients and fitted shapes.
     pub(super) fn cost(&self) -> Real {
         let swap = self
             .swap
@@ -43,7 +44,7 @@ impl Candidate {
         cost(self.term.effect) + swap
     }
 
-    /// Whether both swap, and bring the same pair.
+    /// Whether both candidates swap, and bring the same pair of effects.
     pub(super) fn brings_the_same(&self, other: &Self) -> bool {
         let pair = |one: &Self| {
             one.swap
@@ -55,21 +56,21 @@ impl Candidate {
         one == (first, second) || one == (second, first)
     }
 
-    /// The effects by which its model differs from those of other candidates, if `dropped` gives way to
-    /// some of them.
+    /// The effects by which the candidate's model differs from the models of other candidates, where
+    /// the best candidate drops the effect `dropped`.
     pub(super) fn brings(&self, dropped: Option<&'static str>) -> [Option<&'static str>; 2] {
         let beside = self.swap.map(|swap| swap.taken.name());
         [Some(self.term.effect.name()), beside.or(dropped)]
     }
 }
 
-/// An effect that was added before and gives way to another when a further one is added: alone, it
-/// had taken the part of both.
+/// An effect that was added before and is exchanged for another one when a further effect is added.
+/// Alone, it had stood for both of them.
 #[derive(Clone, Copy)]
 pub struct Swap {
-    /// The one that gives way.
+    /// The effect that is removed.
     pub dropped: &'static dyn Effect,
-    /// The one in its place.
+    /// The effect that takes its place.
     pub taken: &'static dyn Effect,
 }
 
@@ -83,13 +84,13 @@ impl core::fmt::Debug for Swap {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FollowedCovariate {
-    /// Its place among [`Evidence::covariates`](super::Evidence::covariates).
+    /// The covariate's place among [`Evidence::covariates`](super::Evidence::covariates).
     pub index: usize,
-    /// How the rate follows it.
+    /// The slope with which the rate follows the covariate.
     pub slope: Slope,
 }
 
-/// Parameters of an effect whose shape is fitted.
+/// The number of parameters of an effect whose shape is fitted.
 pub(super) fn cost(effect: &'static dyn Effect) -> Real {
     let shapes = Term::fitted(effect).fitted_parameters();
     1.0 + shapes.map(|_| 1.0).sum::<Real>()
@@ -98,28 +99,28 @@ pub(super) fn cost(effect: &'static dyn Effect) -> Real {
 /// What a step adds to the model.
 #[derive(Clone, Copy, Debug)]
 pub enum Addition {
-    /// An effect of the list: the first candidate.
+    /// An effect of the list, which is that of the first candidate.
     Effect(Term),
-    /// A covariate: what follows it is taken off the curve.
+    /// A covariate. What follows it is subtracted from the curve.
     Covariate(FollowedCovariate),
 }
 
-/// A model on the way of a diagnosis.
+/// One step of a diagnosis: a model, and what is added to it.
 #[derive(Clone, Debug)]
 pub struct Step<const K: usize> {
     /// The model so far.
     pub model: Model,
-    /// The covariate whose share has been subtracted from the curve.
+    /// The covariate whose share has been subtracted from the curve; `None` if there is none.
     pub covariate: Option<FollowedCovariate>,
     /// The model's fit.
     pub fit: Fit,
-    /// Where it fails.
+    /// Where the model fails.
     pub comparison: Comparison<K>,
-    /// What was tried next, best first; none where the model is adequate.
+    /// What was tried next, best first. Empty if the model is adequate.
     pub candidates: Candidates,
-    /// What was added.
+    /// What was added to the model; `None` if nothing was.
     pub added: Option<Addition>,
-    /// Candidates that explain the curve about as well as the one that was added.
+    /// Effects that explain the curve about as well as those of the candidate that was added.
     pub ambiguous: Vec<&'static str, MAX_AMBIGUOUS>,
 }
 
@@ -138,14 +139,14 @@ impl<const K: usize> Step<K> {
         }
     }
 
-    /// Clears what is known of the way from the model before.
+    /// Clears what was reported on the way from the model before.
     pub(super) fn begin_report(&mut self) {
         self.candidates.clear();
         self.added = None;
         self.ambiguous.clear();
     }
 
-    /// What else changes with the effect that is added.
+    /// What else changes with the effect that is added; `None` if nothing does.
     pub fn swap(&self) -> Option<Swap> {
         match self.added {
             Some(Addition::Effect(_)) => self.candidates.first()?.swap,

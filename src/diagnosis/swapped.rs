@@ -1,5 +1,6 @@
-//! Second thoughts on an effect that was added alone. Where two effects are missing, a third of a free
-//! enough shape may have taken the part of both. Those two are as simple as it is, or simpler.
+//! Swaps: second thoughts on an effect that was added alone. Where two effects are missing, a third one
+//! whose shape is free enough may have stood for both. The two effects in its place must be as simple
+//! as it is, or simpler.
 
 use super::{
     scanned::{Scanning, Shapes},
@@ -18,20 +19,20 @@ use crate::{
 };
 use heapless::Vec;
 
-/// Shapes of a scan that are fitted in full beside a runner-up.
+/// The number of shapes of a scan that are fitted in full beside each effect that was not preferred.
 const TRIED: usize = 2;
 
-/// An effect that was added, and those that it was preferred to.
+/// An effect that was added, and the effects to which it was preferred.
 #[derive(Clone)]
 pub(super) struct Preferred {
     added: &'static dyn Effect,
-    /// With the shapes to start from, which need no more than single precision.
+    /// The other effects, with the shapes to start from. Single precision is enough for these.
     others: Vec<(&'static dyn Effect, [f32; MAX_PARAMETERS]), { MAX_CANDIDATES - 1 }>,
 }
 
 impl Preferred {
-    /// The first of the candidates, preferred to the others that would have been accepted and are no freer in
-    /// shape.
+    /// The first of the candidates, and the others that would have been accepted and are as simple as
+    /// it is or simpler.
     pub(super) fn of(candidates: &[Candidate], threshold: Real) -> Option<Self> {
         let (first, others) = candidates.split_first()?;
         let accepted = others.iter().filter(|other| {
@@ -49,24 +50,24 @@ fn is_as_simple(effect: &'static dyn Effect, as_what: &'static dyn Effect) -> bo
     cost(effect) <= cost(as_what)
 }
 
-/// Swaps in progress: beside each effect that the last addition was preferred to, the effects of the list
-/// are scanned and the best ones tried.
+/// Swaps in progress. Beside each effect to which the last addition was preferred, the effects of the
+/// list are scanned and the best ones are tried.
 pub(super) struct Swapping<const K: usize> {
     preferred: Preferred,
     next: usize,
     stage: Stage<K>,
 }
 
-// Large variants share their memory with those of other stages.
+// The large variants share their memory with those of other stages.
 #[expect(clippy::large_enum_variant)]
 enum Stage<const K: usize> {
-    /// The next effect that the last addition was preferred to takes its place.
+    /// The next effect to which the last addition was preferred takes its place.
     Exchanging,
-    /// The model with it is fitted.
+    /// The model with that effect is fitted.
     Solving(Model, Swap),
-    /// The list of effects is scanned beside it.
+    /// The list of effects is scanned beside that effect.
     Scanning(Model, Swap, Scanning<K>),
-    /// The best of them are tried.
+    /// The best effects of the scan are tried.
     Trying(Trying),
 }
 
@@ -79,8 +80,8 @@ impl<const K: usize> Swapping<K> {
         }
     }
 
-    /// Does one piece of work, and returns whether all swaps have been tried. A model that cannot be fitted
-    /// has no candidates.
+    /// Does one piece of work, and returns whether all swaps have been tried. A model that cannot be
+    /// fitted has no candidates.
     #[inline(never)]
     pub(super) fn advance(
         &mut self,
@@ -123,7 +124,7 @@ impl<const K: usize> Swapping<K> {
         false
     }
 
-    /// Scans beside a model that has been solved, tries what has been scanned.
+    /// Scans beside a model that has been solved, or tries what has been scanned.
     #[inline(never)]
     fn go_on(&mut self, curve: &Curve<K>, work: &Work<K>) {
         match &self.stage {
@@ -144,7 +145,7 @@ impl<const K: usize> Swapping<K> {
         }
     }
 
-    /// Begins with the next swap; returns `true` if there is none.
+    /// Begins with the next swap. Returns `true` if there is none.
     #[inline(never)]
     fn exchange(
         &mut self,

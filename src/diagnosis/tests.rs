@@ -1,4 +1,4 @@
-//! The stages of a diagnosis, one by one and together, on curves that are computed.
+//! The stages of a diagnosis, alone and together, on computed curves.
 
 use super::{
     judged::{Judged, Judging},
@@ -19,8 +19,8 @@ use crate::{
 const OCTAVES: usize = 16;
 const INTERVAL_S: Real = 0.01;
 
-/// A curve of white and flicker noise with one more effect, every octave off by a fraction of its standard
-/// error.
+/// A curve of white and flicker noise with one more effect. Every octave is off by a fraction of its
+/// standard error.
 fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real) -> Curve<OCTAVES> {
     let shape = SampledShape {
         interval_s: INTERVAL_S,
@@ -70,7 +70,7 @@ fn a_judgement_tells_an_adequate_model_from_one_that_is_not() {
 
     let judged = judge(&with_sinusoid(), &mut work, &mut step);
     assert_eq!(judged.adequate, Some(false));
-    // What the scatter does not explain is granted the tolerance.
+    // The scatter does not explain the misfit, so the model is granted the tolerance.
     assert_eq!(judged.tolerance, 0.01);
     assert_eq!(judged.score, step.fit.minus_two_log_likelihood);
 }
@@ -155,7 +155,7 @@ fn a_diagnosis_in_pieces_reports_what_one_in_one_go_reports() {
     };
     assert_eq!((verdict, at), (Verdict::Improved, whole.len()));
     assert!(pieces > 100, "{pieces} pieces");
-    // It stays finished.
+    // A finished diagnosis stays finished.
     assert!(matches!(diagnosis.advance(), Ok(Progress::Finished(_))));
 }
 

@@ -1,4 +1,5 @@
-//! A model with one more effect, fitted with its own covariance and its shapes polished.
+//! The trial of a model with one more effect: it is fitted with its own covariance, and its shapes are
+//! polished.
 
 use super::step::Candidate;
 use crate::{
@@ -15,23 +16,24 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The most rounds of fitting and polishing the shapes of a candidate.
+/// The largest number of rounds of fitting a candidate and polishing its shapes.
 const ROUNDS: u8 = 10;
-/// A change of `−2 ln L` that ends the rounds.
+/// The rounds end when `−2 ln L` changes by less than this.
 const SETTLED: Real = 0.5;
-/// A lag of `−2 ln L` behind the best candidate that ends them too …
+/// The rounds end as well when `−2 ln L` lags behind that of the best candidate by more than this, and
+/// a round makes up for less than the share [`CATCHING_UP`] of the lag.
 const HOPELESS: Real = 60.0;
-/// … where a round makes up for less than this share of it.
+/// The share of the lag behind the best candidate that a round must make up for; see [`HOPELESS`].
 const CATCHING_UP: Real = 0.25;
-/// The longest step of a shape's logarithm.
+/// The largest step of a shape's logarithm.
 const STRIDE: Real = 0.2;
-/// How often a step is halved because it led too far.
+/// How often a step may be halved because it led too far.
 const HALVINGS: u8 = 4;
 
-/// Changes of the logarithms of fitted shapes, by effect and parameter.
+/// Changes of the logarithms of fitted shapes, with the place of the effect and of the parameter.
 type Steps = Vec<(u8, u8, f32), MAX_SHAPE>;
 
-/// A model and the squared coefficients that its covariance is taken at.
+/// A model, and the squared coefficients at which its covariance is taken.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
     pub(super) model: Model,
@@ -48,17 +50,17 @@ impl Fitted {
         }
     }
 
-    /// A model with one more effect, as a scan found it: in the place of what it replaces, or behind the
-    /// others.
+    /// A model with one more effect, as a scan found it. The effect takes the place of the effect that
+    /// it replaces, or the last place.
     ///
     /// # Errors
-    /// [`Error::TooManyEffects`].
+    /// [`Error::TooManyEffects`] if the model has no room.
     pub(super) fn with(model: &Model, found: &Found) -> Result<Self, Error> {
         let mut model = model.clone();
         let mut squares = found.squares;
         let replaced = found.term.effect.replaces();
         if let Some(place) = replaced.and_then(|effect| model.remove(effect.name())) {
-            // The square of the effect goes to the end with it.
+            // The square of the effect moves to the end, as the effect does.
             for i in place..model.terms().len() {
                 let (one, other) = (squares[i], squares[i.saturating_add(1)]);
                 squares.put(i, other);
@@ -69,7 +71,7 @@ impl Fitted {
         Ok(Self { model, squares })
     }
 
-    /// Changes the logarithms of shapes, within their ranges.
+    /// Changes the logarithms of shapes within their ranges.
     fn change(&mut self, steps: &Steps, sign: Real, span: &Span) {
         for &(i, j, step) in steps {
             let (j, step) = (usize::from(j), real(step));
@@ -86,11 +88,12 @@ impl Fitted {
     }
 }
 
-/// The fit of a model with one more effect in progress: rounds of its covariance, its coefficients and its
-/// shapes by the method of Gauss and Newton, and at last the coefficients with the shapes at rest.
+/// The fit of a model with one more effect, in progress. Each round takes the covariance, fits the
+/// coefficients, and changes the shapes by the method of Gauss and Newton. At last, the coefficients
+/// are fitted with fixed shapes.
 pub(super) struct Trial {
     present: Fitted,
-    /// The best so far, and its score.
+    /// The best model so far, and its score.
     kept: Option<(Fitted, Real)>,
     before: Real,
     steps: Steps,
@@ -106,7 +109,7 @@ enum Stage {
     Last,
 }
 
-/// A candidate that was fitted, the squares that its covariance was taken at, and its score.
+/// The fit of a candidate, the squares at which its covariance was taken, and its score.
 pub(super) struct Completed {
     pub(super) fitted: Fitted,
     pub(super) score: Real,
@@ -126,12 +129,12 @@ impl Trial {
         }
     }
 
-    /// Does one piece of work. Returns the fit when it is complete, and writes its effect, coefficient and χ²
-    /// to the candidate. The rounds end early when the score lags behind the `best` one of other candidates
-    /// without catching up.
+    /// Does one piece of work. When the fit is complete, returns it and writes its effect, coefficient
+    /// and χ² to the candidate. The rounds end early if the score lags behind the `best` score of other
+    /// candidates without catching up.
     ///
     /// # Errors
-    /// Where the model cannot be fitted: the effect is no candidate then.
+    /// An error means that the model cannot be fitted. The effect is then no candidate.
     #[inline(never)]
     pub(super) fn advance<const K: usize>(
         &mut self,
@@ -159,7 +162,7 @@ impl Trial {
         let now = work.solver.minus_two_log_likelihood();
         let goes_on = match confused {
             Some(confused) => {
-                // Another model, with scores of its own.
+                // This is another model, whose scores cannot be compared with the earlier ones.
                 if let Some(term) = self.present.model.terms_mut().get_mut(confused) {
                     term.held = true;
                 }
@@ -173,7 +176,7 @@ impl Trial {
         if goes_on && self.round < ROUNDS {
             self.begin(curve, tolerance, work)?;
         } else {
-            // The best round, with its shapes at rest.
+            // The rounds are over. The best one is fitted again, with fixed shapes.
             let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
             self.present = fitted;
             self.stage = Stage::Last;
@@ -197,8 +200,8 @@ impl Trial {
         work.begin_at(curve, &self.present.model, start, tolerance)
     }
 
-    /// Keeps a round that is the best so far, and changes the shapes for the next one. Returns whether there
-    /// is a next one.
+    /// Keeps a round that is the best so far, and changes the shapes for the next round. Returns
+    /// whether there is a next round.
     fn step(&mut self, now: Real, best: Real, next: Steps, span: &Span) -> bool {
         let (gain, lag) = (self.before - now, now - best);
         let is_best = self.kept.as_ref().is_none_or(|(_, score)| now < *score);
@@ -217,7 +220,7 @@ impl Trial {
             self.present.change(&self.steps, 1.0, span);
             return true;
         }
-        // Too far: half the way back.
+        // The step led too far, so half of it is taken back.
         self.halvings = self.halvings.saturating_add(1);
         if self.halvings > HALVINGS {
             return false;
@@ -229,7 +232,7 @@ impl Trial {
         true
     }
 
-    /// The fit with the shapes at rest.
+    /// The complete fit, with fixed shapes.
     fn complete<const K: usize>(
         &self,
         problem: &Problem<'_, K>,
@@ -253,7 +256,8 @@ impl Trial {
     }
 }
 
-/// How the shapes ought to change, or the effect that has to be held at zero for them to be determined.
+/// Finds how the shapes should change. Returns the effect that must be held at zero before the shapes
+/// are determined, if there is one.
 #[inline(never)]
 fn polish<const K: usize>(
     problem: &Problem<'_, K>,
@@ -268,7 +272,7 @@ fn polish<const K: usize>(
     let confused = solver.confused(problem, &shape);
     if confused.is_none() {
         shape.steps(&solver.free, |i, j, step| {
-            // There is a place for each fitted shape.
+            // There is a place for every fitted shape.
             let _ = steps.push((i as u8, j as u8, single(step.clamp(-STRIDE, STRIDE))));
         });
     }

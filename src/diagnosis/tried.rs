@@ -1,4 +1,4 @@
-//! Third stage: the shapes that a scan found are fitted in full, and become candidates.
+//! Third stage: the shapes that a scan found are fitted in full and become candidates.
 
 use super::{
     scanned::Shapes,
@@ -6,28 +6,30 @@ use super::{
     trial::{Fitted, Trial},
 };
 use crate::{curve::Curve, effect::Span, fit::Work, list, model::Model, real::Real};
-/// What candidates are compared with, and how.
+
+/// What the candidates are compared with, and how.
 #[derive(Clone, Copy)]
 pub(super) struct Contest {
     /// The score of the step's model.
     pub(super) score: Real,
-    /// The tolerance that all models of the run have.
+    /// The tolerance of all models of the diagnosis.
     pub(super) tolerance: Real,
     pub(super) span: Span,
 }
 
-/// Trials in progress, of one shape after the other.
+/// The trials of several shapes, one after the other, in progress.
 pub(super) struct Trying {
     shapes: Shapes,
     next: usize,
-    /// The model beside which the scan was made, and the swap that leads to it.
+    /// The model beside which the scan was made, and the swap that leads to this model.
     base: Model,
     swap: Option<Swap>,
     trial: Option<(Trial, Candidate)>,
 }
 
 impl Trying {
-    /// Begins to try shapes that were found beside a model: the step's own, or one with a swap.
+    /// Begins to try shapes that were found beside a model. This is the step's own model, or one with a
+    /// swap.
     pub(super) fn new(shapes: Shapes, base: Model, swap: Option<Swap>) -> Self {
         Self {
             shapes,
@@ -38,8 +40,8 @@ impl Trying {
         }
     }
 
-    /// Does one piece of work, and returns whether all shapes have been tried. What lowers the score becomes
-    /// a candidate; the model with the first of them is kept as the `best`.
+    /// Does one piece of work, and returns whether all shapes have been tried. A shape that lowers the
+    /// score becomes a candidate. The model with the best candidate is kept as `best`.
     #[inline(never)]
     pub(super) fn advance<const K: usize>(
         &mut self,
@@ -81,7 +83,7 @@ impl Trying {
         false
     }
 
-    /// Begins with the next shape; returns `true` if there is none.
+    /// Begins with the next shape. Returns `true` if there is none.
     fn begin_next(&mut self, candidates: &Candidates) -> bool {
         let Some(found) = self.shapes.get(self.next) else {
             return true;

@@ -9,7 +9,7 @@ use crate::integrity::Reason;
 pub enum Verdict {
     /// The model that was asked about explains the curve.
     Adequate,
-    /// With the effects that were added, the model explains the curve, or more of it.
+    /// The model explains the curve, or more of it, with the effects that were added.
     Improved,
     /// The model does not explain the curve, and no effect in the list helps.
     Unexplained,
@@ -20,7 +20,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Its name in files.
+    /// The verdict's name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Adequate => "adequate",

@@ -1,4 +1,4 @@
-//! How the errors of fitted coefficients go together.
+//! The correlations between the errors of fitted coefficients.
 
 use super::{
     method::Method,
@@ -17,9 +17,9 @@ use crate::{
     real::{Real, real, single},
 };
 
-/// Correlations of the squared coefficients of a fit, which is linear in these: with
-/// [`Coefficient::square_error`](crate::Coefficient::square_error) `e`, the covariance of two of
-/// them is `ρ_ij e_i e_j`.
+/// Correlations of the squared coefficients of a fit, in which the fit is linear. The covariance of two
+/// squared coefficients is `ρ_ij e_i e_j`, where `e` is
+/// [`Coefficient::square_error`](crate::Coefficient::square_error).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Correlations {
@@ -27,33 +27,34 @@ pub struct Correlations {
     below: [f32; PAIRS],
 }
 
-/// Where the triangle has `low` of the row `high`.
+/// The place in the triangle of column `low` in row `high`.
 const fn place(high: usize, low: usize) -> usize {
     let row = high.saturating_mul(high.saturating_sub(1)) / 2;
     row.saturating_add(low)
 }
 
 impl Correlations {
-    /// Of coefficients of which nothing is known.
+    /// Correlations of coefficients of which nothing is known.
     pub(crate) const UNKNOWN: Self = Self {
         below: [f32::NAN; PAIRS],
     };
 
-    /// Of a triangle, row by row.
+    /// Correlations from their triangle, row by row.
     #[cfg(feature = "storage")]
     pub(crate) const fn from_triangle(below: [f32; PAIRS]) -> Self {
         Self { below }
     }
 
-    /// The first rows of the triangle, of so many coefficients.
+    /// The rows of the triangle for the first `count` coefficients.
     #[cfg(feature = "storage")]
     pub(crate) fn triangle(&self, count: usize) -> &[f32] {
         let pairs = count * count.saturating_sub(1) / 2;
         &self.below[..pairs.min(PAIRS)]
     }
 
-    /// The correlation of two squared coefficients, by their places in the model: 1 of one with
-    /// itself, 0 with one that is zero, NaN beyond the model or where the fit does not tell.
+    /// The correlation of two squared coefficients, by their places in the model. It is 1 for a
+    /// coefficient with itself and 0 with one that is zero. It is NaN beyond the model, or where the
+    /// fit does not determine it.
     pub fn get(&self, i: usize, j: usize) -> Real {
         let (low, high) = if i < j { (i, j) } else { (j, i) };
         if low == high {
@@ -71,12 +72,12 @@ impl Correlations {
 }
 
 impl Fit {
-    /// Correlations of the squared coefficients that were fitted to this curve with this model, fitted
-    /// shapes included: of the inverse of `A'C⁻¹A`, `C` as of the fitted model. NaN for methods other
-    /// than [`Method::Covariance`].
+    /// Correlations of the squared coefficients that were fitted to this curve with this model. They
+    /// are those of the inverse of `A'C⁻¹A`, with the covariance `C` at the fitted model, and they
+    /// include fitted shapes. They are NaN for methods other than [`Method::Covariance`].
     ///
     /// # Errors
-    /// [`Error::Singular`] where model or curve are not those of the fit.
+    /// [`Error::Singular`] if the model or the curve is not that of the fit.
     pub fn correlations<const K: usize>(
         &self,
         curve: &Curve<K>,
@@ -109,7 +110,7 @@ impl Fit {
 }
 
 impl Correlations {
-    /// Takes the columns of a covariance.
+    /// Computes the correlations from the columns of a covariance matrix.
     fn take(&mut self, count: usize, free: &Free, column: impl Fn(usize) -> Option<Vector>) {
         let mut variances = Vector::zeros();
         for i in 0..count {

@@ -1,4 +1,5 @@
-//! From a solution to coefficients with intervals, bounds, and what a longer record would show.
+//! Turns a solution into coefficients with intervals, bounds, and the length of a record that would
+//! show more.
 
 use super::{method::Method, problem::Problem, result::Fit, shape::ShapeEquations, solver::Solver};
 use crate::{
@@ -11,18 +12,19 @@ use crate::{
     real::{Real, real},
 };
 
-/// Rounds of a bound and the covariance that it implies.
+/// The number of rounds in which a bound and the covariance that it implies are computed in turn.
 const BOUND_ROUNDS: usize = 2;
 
-/// The estimates of a solution, one coefficient a call.
+/// The coefficients of a solution, estimated one per call.
 pub(crate) struct Estimator {
-    /// The equations of coefficients and fitted shapes, where the model has shapes and they can be told.
+    /// The equations of coefficients and fitted shapes; `None` if the model has no shapes or they
+    /// cannot be told apart.
     shape: Option<ShapeEquations>,
     next: usize,
 }
 
 impl Estimator {
-    /// Begins with a solution. What belongs to the whole model is written to the fit at once.
+    /// Begins with a solution. What belongs to the whole model is written to the fit immediately.
     #[inline(never)]
     pub(crate) fn new<const K: usize>(
         problem: &Problem<'_, K>,
@@ -117,8 +119,8 @@ fn coefficient<const K: usize>(
     }
 }
 
-/// The one-sided 95 % bound of a square, with the covariance that the model would have at that bound:
-/// where an effect may add to an octave, it may also scatter it.
+/// The one-sided 95 % bound of a square. It uses the covariance that the model would have at that
+/// bound, because an effect that adds to an octave may also scatter it.
 #[inline(never)]
 fn bound<const K: usize>(
     problem: &Problem<'_, K>,

@@ -13,8 +13,9 @@ use crate::{curve::Curve, error::Error, model::Model, real::Real};
 /// Fits a model's coefficients to a curve.
 ///
 /// # Errors
-/// [`Error::NoNoise`], [`Error::TooFewOctaves`] (two are needed, or for the unconstrained methods as
-/// many as there are effects), [`Error::Singular`].
+/// [`Error::NoNoise`] if an octave has a variance of zero. [`Error::TooFewOctaves`] for fewer than two
+/// octaves, or for fewer than there are effects with the unconstrained methods. [`Error::Singular`] if
+/// the normal equations have no solution.
 ///
 /// # Example
 ///
@@ -40,9 +41,9 @@ pub fn fit<const K: usize>(
     Ok(fit)
 }
 
-/// A fit in progress, for a main loop that has other work to do: one call of
-/// [`advance`](Self::advance) takes at most 2 million instructions on a Cortex-M4F in single precision
-/// (`cargo xtask bench` measures the longest), the whole fit what [`fit()`] takes. To abort it, drop it.
+/// A fit in progress, for a main loop that has other work to do. One call of [`advance`](Self::advance)
+/// takes at most 2 million instructions on a Cortex-M4F in single precision; `cargo xtask bench`
+/// measures the longest. The calls together take as long as [`fit()`]. To abort a fit, drop it.
 ///
 /// # Example
 ///
@@ -85,10 +86,10 @@ impl<const K: usize> Fitting<K> {
         }
     }
 
-    /// Does one piece of work. Returns the fit once it is complete.
+    /// Does one piece of work. Returns the fit once it is complete, and `None` before.
     ///
     /// # Errors
-    /// As of [`fit()`].
+    /// The same as those of [`fit()`].
     pub fn advance(&mut self) -> Result<Option<&Fit>, Error> {
         let Self {
             curve,
@@ -124,7 +125,7 @@ impl<const K: usize> Fitting<K> {
     }
 }
 
-/// What a fit by the covariance works on: the columns of the model, and their solution.
+/// The memory of a fit by the covariance: the columns of the model, and their solution.
 pub(crate) struct Work<const K: usize> {
     pub(crate) columns: Columns<K>,
     pub(crate) solver: Solver<K>,
@@ -158,8 +159,8 @@ impl<const K: usize> Work<K> {
     }
 }
 
-/// The stage of a fit.
-// The smaller variants waste a few hundred bytes in a fit, which has some thousands.
+/// The stage of a fit by the covariance.
+// The smaller variant wastes a few hundred bytes of a fit, which takes some thousands.
 #[expect(clippy::large_enum_variant)]
 enum Stage {
     Beginning,
@@ -169,7 +170,8 @@ enum Stage {
 }
 
 impl Stage {
-    /// Begins to fit. Methods that take octaves for independent are complete at once.
+    /// Begins a fit. Returns `None` if the fit is already complete, as it is with the methods that take
+    /// octaves for independent.
     #[inline(never)]
     fn begin<const K: usize>(
         &mut self,

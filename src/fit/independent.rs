@@ -1,4 +1,5 @@
-//! Fits that take octaves for independent: the paper's, and the start of ours.
+//! Fits that take octaves for independent. They are the methods of Lv, Liu, Lai & Huang 2015, and the
+//! start of the fit by the covariance.
 
 use super::{
     method::Method,
@@ -15,7 +16,7 @@ use crate::{
     real::Real,
 };
 
-/// The normal equations of weighted, independent octaves.
+/// Sets the normal equations of weighted octaves that are taken for independent.
 pub(super) fn equations<const K: usize>(
     problem: &Problem<'_, K>,
     weight: impl Fn(&Point, Real) -> Real,
@@ -35,7 +36,7 @@ pub(super) fn equations<const K: usize>(
     })
 }
 
-/// The inverse square of the standard error of an octave that was measured, `δσ̂²`.
+/// The inverse square of an octave's standard error, which is `δσ̂²` for the measured variance.
 pub(super) fn by_relative_accuracy(point: &Point, measured: Real) -> Real {
     let error = relative_accuracy(point) * measured;
     1.0 / (error * error)
@@ -61,14 +62,14 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
     let degrees_of_freedom = problem.points.len().saturating_sub(problem.count());
     let mut scale = 1.0;
     if method != Method::RelativeAccuracy {
-        // No error model: the residuals themselves give the scale.
+        // These methods have no error model: the residuals themselves give the scale.
         scale = chi_squared / degrees_of_freedom.max(1) as Real;
         chi_squared = Real::NAN;
     }
     let mut coefficients = heapless::Vec::new();
     for (i, term) in numbered(problem.model.terms().iter()) {
         let variance = equations.variance(i, &free).ok_or(Error::Singular)?;
-        // As many as effects.
+        // There is a place for every effect of a model.
         let coefficient = Coefficient::new(term.effect, squares[i], Some(scale * variance));
         let _ = coefficients.push(coefficient.in_unit(problem.variance_unit));
     }

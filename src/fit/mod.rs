@@ -1,9 +1,9 @@
-//! From a curve to coefficients: what the effects of a model amount to, with intervals, and how well
-//! the model explains the curve.
+//! The fit: it turns a curve into the coefficients of a model's effects, with intervals, and tells how
+//! well the model explains the curve.
 //!
-//! [`fit()`] does it in one go, [`Fitting`] in pieces. Both minimise `r'C⁻¹r` with squared coefficients
-//! that cannot be negative, `C` being the covariance of the curve at the fitted model; the three
-//! weightings of Lv, Liu, Lai & Huang (2015) are there for comparison ([`Method`]).
+//! [`fit()`] works in one go, [`Fitting`] in pieces. Both minimise `r'C⁻¹r`, where `r` are the
+//! residuals and `C` is the covariance of the curve at the fitted model. Squared coefficients cannot be
+//! negative. The three weightings of Lv, Liu, Lai & Huang (2015) are there for comparison ([`Method`]).
 
 mod correlation;
 mod estimate;

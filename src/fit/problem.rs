@@ -1,4 +1,4 @@
-//! A curve beside what each effect of a model would contribute to it.
+//! A curve, and what each effect of a model would contribute to it.
 
 use super::result::Fit;
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
 use heapless::Vec;
 
 /// Allan variances of each effect of a model at the averaging times of a curve, for coefficients of
-/// one. Single precision is far below what any record tells of them.
+/// one. The rounding of single precision is far below what any record can show.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns<const K: usize>(Vec<algebra::Vector<K, f32>, MAX_EFFECTS>);
 
@@ -54,10 +54,10 @@ fn column<const K: usize>(curve: &Curve<K>, term: &Term) -> algebra::Vector<K> {
     column
 }
 
-/// A curve, a model, and the columns of that model: what a fit works on.
+/// A curve, a model, and the columns of that model. This is what a fit works on.
 ///
-/// Variances and squared coefficients are counted in the curve's `variance_unit` here, so that their
-/// squares stay within the range of single precision.
+/// Variances and squared coefficients are counted in the curve's `variance_unit`, so that their squares
+/// stay within the range of single precision.
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'a, const K: usize> {
     pub(crate) curve: &'a Curve<K>,
@@ -113,7 +113,8 @@ impl<'a, const K: usize> Problem<'a, K> {
         column.map_or(0.0, |column| real(column[k]))
     }
 
-    /// The share of effect `i` in the model's variance of octave `k`; 0 beyond the model.
+    /// The share of effect `i` in the model's variance of octave `k`, from 0 to 1. It is 0 for an
+    /// effect beyond the model.
     pub(crate) fn share(&self, k: usize, i: usize, squares: &Vector) -> Real {
         if i < self.count() {
             self.unit(i, k) * squares[i] / self.variance(k, squares)
@@ -122,7 +123,7 @@ impl<'a, const K: usize> Problem<'a, K> {
         }
     }
 
-    /// The coefficients that are held at zero.
+    /// The choice of coefficients that are held at zero.
     pub(crate) fn held(&self) -> Free {
         Free::of(|i| self.model.terms().get(i).is_some_and(|term| term.held))
     }
@@ -140,7 +141,7 @@ impl<'a, const K: usize> Problem<'a, K> {
     }
 }
 
-/// Checks that a curve can be fitted: it has `needed` octaves or more, and noise in each.
+/// Checks that a curve can be fitted: it must have at least `needed` octaves, and noise in each.
 pub(crate) fn check(points: &[Point], needed: usize) -> Result<(), Error> {
     if points.len() < needed {
         return Err(Error::TooFewOctaves {
@@ -154,7 +155,7 @@ pub(crate) fn check(points: &[Point], needed: usize) -> Result<(), Error> {
     Ok(())
 }
 
-/// The relative accuracy of an octave after Lv, Liu, Lai & Huang 2015: `δ = 1/√(2(N/m − 1))`.
+/// The relative accuracy of an octave by Lv, Liu, Lai & Huang 2015: `δ = 1/√(2(N/m − 1))`.
 pub(crate) fn relative_accuracy(point: &Point) -> Real {
     1.0 / math::sqrt(2.0 * (clusters(point) - 1.0))
 }

@@ -1,4 +1,4 @@
-//! What a fit returns.
+//! The result of a fit.
 
 use super::method::{ADEQUATE_P, Method};
 use crate::{
@@ -34,19 +34,22 @@ pub struct Fit {
     pub coefficients: Vec<Coefficient, MAX_EFFECTS>,
     /// The shape parameters that were fitted.
     pub shape: Vec<ShapeEstimate, MAX_SHAPE>,
-    /// χ²: squared residuals in units of their covariance. NaN for the methods without an error model,
-    /// `Ordinary` and `ClusterCount`; too large for `RelativeAccuracy`, which takes the octaves for
+    /// χ²: the squared residuals in units of their covariance. NaN for `Ordinary` and `ClusterCount`,
+    /// which have no error model. Too large for `RelativeAccuracy`, which takes the octaves for
     /// independent.
     pub chi_squared: Real,
-    /// Number of octaves, less coefficients above zero and their fitted shapes.
+    /// The number of octaves, less the number of coefficients above zero and of their fitted shape
+    /// parameters.
     pub degrees_of_freedom: usize,
-    /// Probability of a larger χ² if the model is true. NaN without χ² or degrees of freedom.
+    /// Probability of a larger χ² if the model is true. NaN without χ² or without degrees of freedom.
     pub p_value: Real,
-    /// `−2 ln L = r'C⁻¹r + ln det C`, up to a constant: ranks models of one curve. NaN where χ² is.
+    /// `−2 ln L = r'C⁻¹r + ln det C`, up to a constant. It ranks models of one curve. NaN where χ² is
+    /// NaN.
     pub minus_two_log_likelihood: Real,
-    /// The tolerance that was granted: [`Options::tolerance`](super::Options::tolerance) or 0.
+    /// The tolerance that was granted, which is [`Options::tolerance`](super::Options::tolerance) or 0.
     pub tolerance: Real,
-    /// Share that the correlations had to lose for the covariance to be positive definite; usually 0.
+    /// The share that the correlations had to lose before the covariance was positive definite; usually
+    /// 0.
     pub shrinkage: Real,
 }
 
@@ -67,8 +70,8 @@ impl Fit {
         }
     }
 
-    /// Whether the model explains the curve: `Some(true)` where the p-value is [`ADEQUATE_P`] or more,
-    /// `None` where there is none, because the curve is too short or the method has no error model.
+    /// Whether the model explains the curve: `Some(true)` if the p-value is [`ADEQUATE_P`] or more.
+    /// `None` if there is no p-value, because the curve is too short or the method has no error model.
     pub fn is_adequate(&self) -> Option<bool> {
         (!self.p_value.is_nan()).then_some(self.p_value >= ADEQUATE_P)
     }

@@ -1,4 +1,4 @@
-//! Uncertainty of fitted shapes, and what they add to that of the coefficients.
+//! The uncertainty of fitted shapes, and what it adds to the uncertainty of the coefficients.
 
 use super::{problem::Problem, result::ShapeEstimate, weights::Weights};
 use crate::{
@@ -12,11 +12,11 @@ use crate::{
 };
 use heapless::Vec;
 
-/// Relative step of the numerical derivatives.
+/// The relative step of the numerical derivatives.
 const STEP: Real = 0.01;
 
 /// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
-/// linear around the solution.
+/// linearised around the solution.
 pub(crate) struct ShapeEquations {
     equations: NormalEquations,
     parameters: Vec<(usize, usize, Term), MAX_SHAPE>,
@@ -32,8 +32,8 @@ impl ShapeEquations {
         }
     }
 
-    /// Takes a solution. `false` for a model without fitted shapes, or where they cannot be told from
-    /// the rest.
+    /// Sets the equations at a solution. Returns `false` if the model has no fitted shapes, or if they
+    /// cannot be told from the rest.
     #[inline(never)]
     pub(crate) fn set<const K: usize>(
         &mut self,
@@ -52,7 +52,7 @@ impl ShapeEquations {
         if self.parameters.is_empty() {
             return false;
         }
-        // Coefficients first, the shapes behind them.
+        // The coefficients come first, the shapes follow.
         let mut derivatives: Vec<algebra::Vector<K, f32>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
             let column = |factor: Real| {
@@ -62,7 +62,7 @@ impl ShapeEquations {
             };
             let change = *column(math::exp(STEP)) - *column(math::exp(-STEP));
             let scale = 0.5 * squares[i] / STEP;
-            // As many as parameters.
+            // There is a place for every parameter.
             let _ = derivatives.push(change.map(|change| single(change * scale)).into());
         }
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
@@ -79,8 +79,8 @@ impl ShapeEquations {
         self.equations.count().saturating_sub(self.parameters.len())
     }
 
-    /// The step of Gauss and Newton: by how much the logarithms of the shapes ought to change for the
-    /// least χ², all of the free coefficients following; `each(effect, parameter, change)`.
+    /// The step of Gauss and Newton: the change of the shapes' logarithms that leads to the smallest
+    /// χ², with all free coefficients fitted anew. Calls `each(effect, parameter, change)`.
     pub(crate) fn steps(&self, free: &Free, mut each: impl FnMut(usize, usize, Real)) {
         let count = self.count();
         let free = self.with_shapes(free, count);
@@ -92,19 +92,20 @@ impl ShapeEquations {
         }
     }
 
-    /// Variance of a squared coefficient with the shapes free.
+    /// The variance of a squared coefficient with the shapes free.
     pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<Real> {
         let free = self.with_shapes(free, self.count());
         self.equations.variance(i, &free)
     }
 
-    /// Covariances of a squared coefficient with all of them, the shapes free.
+    /// The covariances of a squared coefficient with all coefficients, with the shapes free.
     pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector> {
         let free = self.with_shapes(free, self.count());
         self.equations.column(i, &free)
     }
 
-    /// Largest standard error of a shape's logarithm, infinite where the curve does not tell it.
+    /// The largest standard error of a shape's logarithm. It is infinite where the curve does not
+    /// determine a shape.
     pub(crate) fn worst_error(&self, free: &Free) -> Real {
         let count = self.count();
         let free = self.with_shapes(free, count);
@@ -114,7 +115,7 @@ impl ShapeEquations {
             .fold(0.0, Real::max)
     }
 
-    /// The fitted parameters with their intervals, which are even in the logarithm.
+    /// The fitted parameters with their intervals, which are symmetric in the logarithm.
     pub(crate) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
         let count = self.count();
         let free = self.with_shapes(free, count);

@@ -1,5 +1,6 @@
-//! Generalised least squares: octaves weighted by the covariance of the curve at the model that the
-//! weights lead to, found by alternating the two.
+//! Generalised least squares. The weights of the octaves come from the covariance of the curve at the
+//! fitted model, and the fitted model depends on the weights. The solver alternates between the two
+//! until they agree.
 
 use super::{
     independent, method::ADEQUATE_P, problem::Problem, shape::ShapeEquations, weights::Weights,
@@ -13,52 +14,53 @@ use crate::{
     real::Real,
 };
 
-/// The most rounds of covariance and solution. Two to four bring the model to within 0.1 %, hardly ever
-/// more than eight.
+/// The limit of the rounds of covariance and solution. Two to four bring the model to within 0.1 %, and
+/// more than eight are hardly ever needed.
 const ROUNDS: u8 = 8;
-/// A p-value after the first round that no further round makes plausible.
+/// The p-value after the first round below which no further round can make the model plausible.
 const HOPELESS_P: Real = 1e-6;
-/// A relative change of the model that ends the rounds.
+/// The rounds end when the relative change of the model is smaller than this.
 const CONVERGED: Real = 3e-3;
-/// A shape parameter with a larger standard error of its logarithm is not determined.
+/// A shape parameter is not determined if the standard error of its logarithm is larger than this.
 const UNDETERMINED: Real = 0.3;
-/// The error of an undetermined shape has to fall by this factor when a coefficient is held at zero.
+/// A coefficient is held at zero if this makes the error of an undetermined shape fall by this factor.
 const DETERMINED_BY: Real = 3.0;
 
 /// The tolerance of a model: how far an octave may be off, relative to its variance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Tolerance {
-    /// Granted only to a model that is not adequate without it.
+    /// The tolerance is granted only to a model that is not adequate without it.
     IfNeeded(Real),
-    /// Granted in any case, because it was granted to the model that this one is compared with; 0 where
-    /// it was not.
+    /// The tolerance is granted in any case, because it was granted to the model that this one is
+    /// compared with. It is 0 if it was not granted there.
     Fixed(Real),
 }
 
-/// Where the rounds start.
+/// The squared coefficients with which the rounds start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Start {
-    /// From the solution for independent octaves.
+    /// The rounds start with the solution for independent octaves.
     Independent,
-    /// From these squared coefficients.
+    /// The rounds start with these squared coefficients.
     From(Vector),
-    /// From these squared coefficients, for a single round: a caller that changes shapes comes again.
+    /// There is a single round, with these squared coefficients: a caller that changes shapes begins
+    /// again.
     Once(Vector),
 }
 
-/// How many rounds there are.
+/// The number of rounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rounds {
-    /// A single one.
+    /// There is a single round.
     One,
-    /// Until covariance and solution agree, or the first says that no fit without tolerance explains the
-    /// curve.
+    /// The rounds go on until covariance and solution agree. They end after the first one if it shows
+    /// that no fit without a tolerance explains the curve.
     Promising,
-    /// Until they agree.
+    /// The rounds go on until covariance and solution agree.
     All,
 }
 
-/// Squared coefficients and the covariance that they were found with. One call of
+/// Squared coefficients, and the covariance with which they were found. One call of
 /// [`advance`](Self::advance) computes a row of the covariance or solves the normal equations, so that
 /// a caller can do something else in between.
 pub(crate) struct Solver<const K: usize> {
@@ -67,10 +69,10 @@ pub(crate) struct Solver<const K: usize> {
     pub(crate) squares: Vector,
     pub(crate) free: Free,
     pub(crate) chi_squared: Real,
-    /// The squares that the covariance is taken at; they approach those that it gives.
+    /// The squares at which the covariance is taken. They approach the squares that it leads to.
     pub(crate) assumed: Vector,
     degrees_of_freedom: usize,
-    /// Relative change of the model in the last round, and the share of it that was taken.
+    /// The relative change of the model in the last round, and the share of the change that was taken.
     last: Option<algebra::Vector<K>>,
     stride: Real,
     round: u8,
@@ -102,7 +104,8 @@ impl<const K: usize> Solver<K> {
     /// Begins with a problem.
     ///
     /// # Errors
-    /// [`Error::Singular`].
+    /// [`Error::Singular`] if a column is zero or not finite, or if the model has no variance in an
+    /// octave.
     #[inline(never)]
     pub(crate) fn begin(
         &mut self,
@@ -147,10 +150,11 @@ impl<const K: usize> Solver<K> {
     }
 
     /// Does one piece of work and returns whether the solution is complete. The problem must be the one
-    /// that was begun with.
+    /// that the solver began with.
     ///
     /// # Errors
-    /// [`Error::Singular`].
+    /// [`Error::Singular`] if the covariance cannot be made positive definite, if a column is zero or
+    /// not finite, or if the model has no variance in an octave.
     #[inline(never)]
     pub(crate) fn advance(&mut self, problem: &Problem<'_, K>) -> Result<bool, Error> {
         if !self.weights.advance(problem, &self.assumed)? {
@@ -168,8 +172,8 @@ impl<const K: usize> Solver<K> {
         }
     }
 
-    /// Solves the normal equations with the weights at hand. Returns whether this was the last round;
-    /// otherwise the next one has begun.
+    /// Solves the normal equations with the present weights. Returns whether this was the last round.
+    /// If it was not, the next round has begun.
     #[inline(never)]
     fn end_round(&mut self, problem: &Problem<'_, K>) -> Result<bool, Error> {
         let curve = |k: usize| problem.measured(k);
@@ -198,7 +202,8 @@ impl<const K: usize> Solver<K> {
             return Ok(true);
         }
         if let Some(last) = self.last {
-            // Rounds that swing to and fro, or creep, have a ratio: go where it leads (Aitken 1926).
+            // The changes of rounds that swing to and fro, or that creep, have a ratio. The next round
+            // starts where this ratio leads (Aitken 1926).
             let ratio = change.dot(&last) / last.norm_squared();
             self.stride = (self.stride / (1.0 - ratio.min(0.5))).clamp(0.3, 2.0);
         }
@@ -211,7 +216,8 @@ impl<const K: usize> Solver<K> {
         Ok(false)
     }
 
-    /// Octaves less coefficients above zero and their fitted shapes.
+    /// The number of octaves, less the number of coefficients above zero and of their fitted shape
+    /// parameters.
     pub(crate) const fn degrees_of_freedom(&self) -> usize {
         self.degrees_of_freedom
     }
@@ -226,8 +232,8 @@ impl<const K: usize> Solver<K> {
         self.chi_squared + self.weights.log_determinant
     }
 
-    /// An effect above zero that a fitted shape could take the place of: held at zero, it leaves the
-    /// shape determined.
+    /// The effect above zero whose place a fitted shape could take. If the effect is held at zero, the
+    /// shape becomes determined. `None` if all shapes are determined or no such effect exists.
     pub(crate) fn confused(
         &self,
         problem: &Problem<'_, K>,
@@ -250,9 +256,9 @@ impl<const K: usize> Solver<K> {
             .map(|(i, _)| i)
     }
 
-    /// The standard error of a squared coefficient with its neighbours in the model free, although they
-    /// may have been held at zero: what one of them has, this one may have taken over. Infinite where
-    /// they cannot be told apart.
+    /// The standard error of a squared coefficient with its neighbours in the model free, even if they
+    /// were held at zero: this coefficient may have taken over what belongs to a neighbour. It is
+    /// infinite if they cannot be told apart.
     pub(crate) fn error_beside(&self, problem: &Problem<'_, K>, i: usize) -> Real {
         let neighbours = [i.saturating_sub(1), i, i.saturating_add(1)];
         let known = neighbours.into_iter().filter(|&j| j < problem.count());
@@ -262,7 +268,8 @@ impl<const K: usize> Solver<K> {
     }
 }
 
-/// Octaves less coefficients above zero and their fitted shapes.
+/// The number of octaves, less the number of coefficients above zero and of their fitted shape
+/// parameters.
 fn degrees_of_freedom<const K: usize>(problem: &Problem<'_, K>, free: &Free) -> usize {
     let terms = numbered(problem.model.terms().iter());
     let active = terms.filter(|&(i, _)| free.has(i));

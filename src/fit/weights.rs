@@ -1,4 +1,4 @@
-//! The covariance of a curve, factored: the units in which octaves are independent.
+//! The covariance of a curve, factored. It gives the units in which octaves are independent.
 
 use super::problem::Problem;
 use crate::{
@@ -13,22 +13,23 @@ use crate::{
 };
 use heapless::Vec;
 
-/// Shares that the correlations lose, tried in turn until the covariance is positive definite.
+/// The shares that the correlations lose. They are tried in turn until the covariance is positive
+/// definite.
 const SHRINKAGES: [Real; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
 
 /// The covariance of a curve relative to a model, factored.
 pub(crate) struct Weights<const K: usize> {
     /// The model's variances.
     pub(crate) model: algebra::Vector<K>,
-    /// The Cholesky factor of the covariance relative to them; the covariance itself is no better than
-    /// single precision.
+    /// The Cholesky factor of the covariance relative to the model's variances. Single precision is
+    /// enough for it, because the covariance itself is no more precise.
     factor: Triangle<K, K, f32>,
     /// The logarithm of the determinant of the covariance, in rate units.
     pub(crate) log_determinant: Real,
     pub(crate) tolerance: Real,
     pub(crate) shrinkage: Real,
-    /// The next row of the covariance, and the attempt at a positive definite one: what
-    /// [`advance`](Self::advance) does next.
+    /// The next row of the covariance, and the present attempt at a positive definite one. They are
+    /// where [`advance`](Self::advance) goes on.
     row: usize,
     attempt: usize,
 }
@@ -48,7 +49,7 @@ impl<const K: usize> Weights<K> {
         }
     }
 
-    /// Computes the weights of a model with these squared coefficients in one go.
+    /// Computes the weights of a model with these squared coefficients, in one go.
     pub(crate) fn set(
         &mut self,
         problem: &Problem<'_, K>,
@@ -60,10 +61,10 @@ impl<const K: usize> Weights<K> {
         Ok(())
     }
 
-    /// Begins with the weights of a model with these squared coefficients.
+    /// Begins to compute the weights of a model with these squared coefficients.
     ///
     /// # Errors
-    /// [`Error::Singular`] where the model has no variance in an octave.
+    /// [`Error::Singular`] if the model has no variance in an octave.
     pub(crate) fn begin(
         &mut self,
         problem: &Problem<'_, K>,
@@ -83,11 +84,11 @@ impl<const K: usize> Weights<K> {
         Ok(())
     }
 
-    /// Computes one more row of the covariance, or factors it when all rows are there. Returns `true`
-    /// when the weights are complete.
+    /// Computes one more row of the covariance, or factors the covariance when all rows are there.
+    /// Returns `true` when the weights are complete.
     ///
     /// # Errors
-    /// [`Error::Singular`] where no shrinkage makes the covariance positive definite.
+    /// [`Error::Singular`] if no shrinkage makes the covariance positive definite.
     #[inline(never)]
     pub(crate) fn advance(
         &mut self,
@@ -112,7 +113,8 @@ impl<const K: usize> Weights<K> {
         Ok(true)
     }
 
-    /// Computes one row of the covariance relative to the model, of which the correlations keep a share.
+    /// Computes one row of the covariance relative to the model. The correlations are multiplied by
+    /// `keep`.
     fn set_row(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: Real) {
         let (row, model, tolerance) = (self.row, &self.model, self.tolerance);
         let factor = &mut self.factor;
@@ -135,7 +137,7 @@ impl<const K: usize> Weights<K> {
         );
     }
 
-    /// Standard error of octave `k`, relative to the model's variance.
+    /// The standard error of octave `k`, relative to the model's variance.
     pub(crate) fn relative_error(&self, k: usize) -> Real {
         let element = |j: usize| real(self.factor[(k, j)]);
         let row = (0..k).map(|j| element(j) * element(j));
@@ -143,14 +145,15 @@ impl<const K: usize> Weights<K> {
         math::sqrt(row.sum::<Real>() + diagonal * diagonal)
     }
 
-    /// χ² of the curve beside the model with these squared coefficients.
+    /// χ² of the curve for the model with these squared coefficients.
     pub(crate) fn chi_squared(&self, problem: &Problem<'_, K>, squares: &Vector) -> Real {
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
         self.whiten(problem, &|_| 1.0, &residual).norm_squared()
     }
 
-    /// The normal equations `A'C⁻¹A β = A'C⁻¹y`, one column at a time, with the standard error of octave
-    /// `k` enlarged by `scatter(k)`. Behind the model's own columns there may be `more`.
+    /// Sets the normal equations `A'C⁻¹A β = A'C⁻¹y`, one column at a time. The standard error of
+    /// octave `k` is enlarged by the factor `scatter(k)`. `more` holds further columns behind those of
+    /// the model.
     #[inline(never)]
     pub(crate) fn equations(
         &self,
@@ -168,7 +171,7 @@ impl<const K: usize> Weights<K> {
         };
         let per_error = |k: usize| 1.0 / (self.model[k] * scatter(k));
         equations.set(count.saturating_add(more.len()), &|i, row| {
-            // C⁻¹ of this column, in units of the errors squared.
+            // This is C⁻¹ times the column, in units of the squared errors.
             let mut column = self.whiten(problem, scatter, &|k| unit(i, k));
             cholesky::backward(&self.factor, n, &mut column);
             for k in 0..n {
@@ -181,8 +184,8 @@ impl<const K: usize> Weights<K> {
         })
     }
 
-    /// Curve and columns in units in which octaves are independent and have a variance of one,
-    /// with the standard error of octave `k` enlarged by `scatter(k)`.
+    /// Expresses the curve and the columns in units in which octaves are independent and have a
+    /// variance of one. The standard error of octave `k` is enlarged by the factor `scatter(k)`.
     #[inline(never)]
     pub(crate) fn whiten_into(
         &self,
@@ -192,7 +195,7 @@ impl<const K: usize> Weights<K> {
     ) {
         whitened.columns.clear();
         for column in problem.columns() {
-            // As many columns as effects.
+            // There is a place for the column of every effect.
             let _ = whitened
                 .columns
                 .push(self.whiten(problem, scatter, &|k| real(column[k])));
@@ -217,9 +220,9 @@ impl<const K: usize> Weights<K> {
         column
     }
 
-    /// The same in single precision, for a shape on trial: a core that has it in hardware spends a tenth
-    /// of the time, and with a tolerance granted, numbers are below some hundred standard errors. In
-    /// units of its largest number, which is returned too.
+    /// Does the same in single precision, for a shape on trial. A core that has single precision in
+    /// hardware takes a tenth of the time. With a tolerance granted, the numbers stay below some
+    /// hundred standard errors. The column is in units of its largest number, which is returned too.
     pub(crate) fn whiten_trial(
         &self,
         problem: &Problem<'_, K>,
@@ -238,8 +241,8 @@ impl<const K: usize> Weights<K> {
     }
 }
 
-/// Curve and columns in units in which octaves are independent. Octaves that the curve does not have
-/// are zero.
+/// The curve and the columns in units in which octaves are independent. Octaves that the curve does not
+/// have are zero.
 pub(crate) struct Whitened<const K: usize> {
     pub(crate) columns: Vec<algebra::Vector<K>, MAX_EFFECTS>,
     pub(crate) curve: algebra::Vector<K>,

@@ -1,4 +1,4 @@
-//! Positions, powers and sums of the lattice against direct evaluation.
+//! Positions, powers and sums of the lattice are compared with direct evaluation.
 
 use super::*;
 use crate::{
@@ -6,10 +6,10 @@ use crate::{
     test_random::Random,
 };
 
-/// Rounding errors of a sum or a product.
+/// The tolerance for the rounding errors of a sum or a product.
 const ROUNDING: Real = by_precision(1e-13, 1e-5);
 
-/// Averaging factors, the short ones that have no quarters included.
+/// Averaging factors, including the short ones whose quarters are not whole samples.
 const FACTORS: [u32; 5] = [1, 2, 4, 8, 1024];
 
 #[test]
@@ -17,7 +17,7 @@ fn positions_are_one_by_one_up_to_sixteen_and_then_four_an_octave() {
     let mut expected = 0_u32;
     for slot in 0..LEN {
         assert_eq!(position(slot), expected, "slot {slot}");
-        // A quarter of the greatest power of two that is not greater.
+        // The distance is a quarter of the greatest power of two that does not exceed the position.
         expected += if expected < 16 {
             1
         } else {
@@ -31,7 +31,8 @@ fn positions_are_one_by_one_up_to_sixteen_and_then_four_an_octave() {
 fn powers_are_those_of_repeated_multiplication() {
     let mut random = Random::new(21);
     for _ in 0..20 {
-        // On the unit circle and within: a line, and a resonance that dies away.
+        // The numbers lie on the unit circle or inside it: the first stand for a line, the others for a
+        // resonance that dies away.
         let angle = 0.01 * random.signed();
         let size = libm::exp(-1e-4 * (random.signed() + 1.0));
         let w = Complex::new(real(size * libm::cos(angle)), real(size * libm::sin(angle)));
@@ -59,17 +60,17 @@ fn powers_are_those_of_repeated_multiplication() {
     }
 }
 
-/// A smooth even function and its values at lags in samples.
+/// A smooth even function of the lag in samples.
 fn bump(lag: Real) -> Real {
     1.0 / (1.0 + 1e-3 * lag * lag)
 }
 
-/// The value of every slot, in units of the first.
+/// The value of every slot.
 fn values(differences: &SecondDifferences) -> [Real; LEN] {
     differences.values
 }
 
-/// Slots whose lag is a whole number of samples.
+/// The slots whose lag is a whole number of samples, with that lag.
 fn whole(m: u32) -> impl Iterator<Item = (usize, Real)> {
     let slots =
         (0..LEN).filter(move |&slot| (u64::from(position(slot)) * u64::from(m)).is_multiple_of(4));
@@ -139,7 +140,7 @@ fn contributions_add_up() {
     for (slot, lag) in whole(8) {
         let at = match slot {
             3 => 100.0,
-            // Beyond 16 quarters there is no place of its own.
+            // There is no place of its own beyond 16 quarters.
             16 => 1000.0,
             _ => 0.0,
         };
@@ -152,7 +153,7 @@ fn contributions_add_up() {
 #[test]
 fn rounded_differences_are_in_units_of_the_variance() {
     for (unit, expected) in [(3.0, 3.0), (1e-7, 1e-7), (0.0, 1.0), (-2.0, 1.0)] {
-        // Of an effect whose second difference is `unit` at a cluster, 0 elsewhere.
+        // The effect has a second difference of `unit` at one cluster, and of 0 elsewhere.
         let mut sum = SecondDifferences::zero(4, END);
         sum.add_at(4, unit);
         let rounded = sum.rounded();
@@ -177,7 +178,7 @@ fn between_positions_values_lie_on_straight_lines() {
     let value = |slot: usize| double(table[slot]) + f64::from(u8::from(slot == 4));
     let far = core::iter::repeat_with(|| random.bits() % END).take(2000);
     for lag in (0..4096).chain(far).chain([END - 1]) {
-        // The last position that is not beyond, found one by one.
+        // This is the last position that is not beyond the lag, found one by one.
         let low = (0..LEN).take_while(|&slot| position(slot) <= lag).count() - 1;
         let (from, to) = (position(low), position((low + 1).min(LEN - 1)));
         let share = match to - from {
@@ -193,7 +194,7 @@ fn between_positions_values_lie_on_straight_lines() {
 #[test]
 fn starts_advance_by_whole_samples() {
     for m in FACTORS {
-        // Quarters that are whole samples, of which the first is the stride.
+        // The stride is the smallest number of quarters that is a whole number of samples.
         let first = (1..=4).find(|quarters| (quarters * m).is_multiple_of(4));
         assert_eq!(Some(stride(m)), first, "m {m}");
     }

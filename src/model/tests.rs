@@ -1,4 +1,4 @@
-//! Models against plain lists of names.
+//! Models are compared with plain lists of names.
 
 use super::*;
 use crate::{
@@ -64,7 +64,7 @@ fn effects_that_are_taken_out_leave_the_order_of_the_others() {
         }
         assert_names(&without, &rest);
         assert_names(&removed, &rest);
-        // It comes back where it stood.
+        // The effect comes back to its old place.
         let effect = IEEE_952[place];
         assert_eq!(removed.restore(effect), Ok(()));
         assert_names(&removed, &FIVE);
@@ -89,7 +89,7 @@ fn an_exchange_restores_what_was_replaced_and_replaces_in_turn() {
     let mut model = Model::ieee_952();
     model.remove("angle_random_walk");
     assert_eq!(model.add(Term::fitted(&LowPass)), Ok(()));
-    // A low pass replaces the angle random walk, a sinusoid nothing.
+    // A low pass replaces the angle random walk, and a sinusoid replaces nothing.
     assert_eq!(model.exchange(&LowPass, Term::new(&Sinusoid)), Ok(()));
     let mut expected = [""; 6];
     expected[..5].copy_from_slice(&FIVE);
@@ -106,7 +106,8 @@ fn only_shapes_that_are_fitted_and_no_whole_numbers_are_parameters_of_the_fit() 
     assert!(Term::fitted(&Resonance).fitted_parameters().eq([0, 1]));
     assert!(Term::fitted(&GaussMarkov).fitted_parameters().eq([0]));
     assert!(!Term::fitted(&RateRamp).fitted);
-    // The width of a decimation filter is fitted, the number of its stages is a whole one.
+    // The width of a decimation filter is fitted. The number of its stages is a whole number and is
+    // not.
     assert!(Term::fitted(&DecimationFilter).fitted_parameters().eq([0]));
 }
 
@@ -126,7 +127,7 @@ fn parameters_beyond_the_last_are_zero_and_stay_so() {
 
 #[test]
 fn variances_add_up() {
-    // Formulas of IEEE Std 952 at τ = 0.64 s: 3 Q²/τ², N²/τ, (2 ln 2/π) B², K²τ/3, R²τ²/2.
+    // The formulas of IEEE Std 952 at τ = 0.64 s are 3 Q²/τ², N²/τ, (2 ln 2/π) B², K²τ/3 and R²τ²/2.
     let (interval_s, m) = (0.01, 64);
     let tau: f64 = 0.64;
     let squares = [1e-4, 2e-3, 3e-3, 4e-3, 5e-3];
@@ -134,7 +135,7 @@ fn variances_add_up() {
         3.0 / (tau * tau),
         1.0 / tau,
         2.0 * core::f64::consts::LN_2 / core::f64::consts::PI,
-        // Of a walk that is sampled: (2m² + 1)/6m of the interval.
+        // The walk is sampled, so that its factor is (2m² + 1)/6m of the interval.
         interval_s * f64::from(2 * m * m + 1) / f64::from(6 * m),
         0.5 * tau * tau,
     ];

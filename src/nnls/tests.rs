@@ -1,4 +1,4 @@
-//! The non-negative solution against the best of all choices of unknowns above zero.
+//! The non-negative solution is compared with the best one of all choices of unknowns above zero.
 
 mod problem;
 
@@ -9,12 +9,12 @@ use crate::{
 };
 use problem::Problem;
 
-/// Observations of a random problem.
+/// The number of observations of a random problem.
 const ROWS: usize = 24;
-/// Unknowns of the largest random problem.
+/// The number of unknowns of the largest random problem.
 const MOST: usize = 8;
 
-/// What a solution of well separated columns may differ by, relative to the largest unknown.
+/// The tolerance for solutions of well separated columns, relative to the largest unknown.
 const DIGITS: f64 = if cfg!(feature = "double") {
     1e-11
 } else {
@@ -25,7 +25,7 @@ fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most, x| x.abs().max(most))
 }
 
-/// Calls with well separated columns: every pivot of the scaled equations is above a tenth.
+/// Calls `check` with well separated columns: every pivot of the scaled equations is above a tenth.
 fn separated(mut check: impl FnMut(&Problem, &mut Random)) {
     let mut random = Random::new(952);
     let mut checked = 0;
@@ -142,7 +142,7 @@ fn an_exchanged_unknown_leaves_the_equations_that_it_would_have_made() {
     separated(|problem, random| {
         let place = random.below(problem.count);
         let mut before = problem.equations();
-        // Another column stood there before.
+        // Another column stands in this place first.
         let other = |j| real(if j == place { 7.0 } else { 0.5 });
         assert!(before.exchange(place, &other, 3.0).is_ok());
         let entry = |j: usize| real(problem.h[place][j]);
@@ -161,7 +161,7 @@ fn an_exchanged_unknown_leaves_the_equations_that_it_would_have_made() {
 #[test]
 fn what_a_solution_explains_is_what_it_takes_off_the_squares() {
     separated(|problem, random| {
-        // Of any unknowns, the best ones or not.
+        // The unknowns are random, so that they are usually not the best ones.
         let solution = Vector::from_fn(|i| {
             if i < problem.count {
                 real(random.signed() / problem.length(i))
@@ -178,7 +178,7 @@ fn what_a_solution_explains_is_what_it_takes_off_the_squares() {
 
 #[test]
 fn columns_of_any_scale_make_no_difference() {
-    // The squares of the lengths fill the range of single precision.
+    // The squares of the columns' lengths fill the range of single precision.
     let decades = if cfg!(feature = "double") { 60.0 } else { 8.0 };
     let mut random = Random::new(3);
     for _ in 0..300 {
@@ -211,7 +211,7 @@ fn data_of_any_size_make_no_difference() {
     for _ in 0..300 {
         let count = 2 + random.below(MOST - 1);
         let plain = Problem::random(count, &mut random, |_, _| {});
-        // From a hundredth of a standard error to a million.
+        // The data range from a hundredth of a standard error to a million standard errors.
         let factor = libm::pow(10.0, 2.0 + 4.0 * random.signed());
         let scaled = Problem {
             b: plain.b.map(|b| b * factor),
@@ -228,7 +228,8 @@ fn data_of_any_size_make_no_difference() {
 
 #[test]
 fn columns_that_resemble_one_another_cost_little_of_what_can_be_explained() {
-    // A pivot below the least one is refused: it would explain a difference of its size at most.
+    // A pivot below the smallest allowed one is refused. It would explain a difference of its own size
+    // at most.
     let most = 10.0 * libm::sqrt(double(LEAST_PIVOT));
     let mut random = Random::new(4);
     let mut refused = 0;
@@ -253,7 +254,8 @@ fn columns_that_resemble_one_another_cost_little_of_what_can_be_explained() {
         let (_, best) = problem.best(0);
         let lost = (best - problem.explained(&found)) / problem.size;
         assert!(lost <= most, "{lost:e} of {best}, {difference:e} apart");
-        // Pivots below the least one: nothing is told of two columns that differ by their rounding.
+        // Such pivots are below the smallest allowed one: two columns that differ by their rounding
+        // cannot be told apart.
         if difference < 0.3 * libm::sqrt(double(LEAST_PIVOT)) {
             assert!(equations.solve().is_err(), "{difference:e} apart");
             refused += 1;

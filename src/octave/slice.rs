@@ -1,25 +1,26 @@
-//! The bulk path: many counts at once, to the same state.
+//! The bulk path of the accumulator: it takes many counts at once and leads to the same state.
 
 use super::{Accumulator, FIRST, RING};
 
-/// Counts that are taken together.
+/// The number of counts that are taken together.
 const BATCH: usize = 128;
 
-/// Levels above 0 that complete blocks within a batch.
+/// The number of levels above 0 that complete blocks within a batch.
 const DEPTH: usize = BATCH.trailing_zeros() as usize;
 
-/// Sample number from which on every level up to [`DEPTH`] has a full ring.
+/// The sample number from which on every level up to [`DEPTH`] has a full ring.
 const FULL: u32 = (RING * BATCH) as u32;
 
-/// Angles within a window of this span have second differences below 2^28 in magnitude, which 32
-/// bits hold, and squares of which a batch adds up to at most 2^63.
+/// The span of a window of angles. Within it, second differences are below 2^28 in magnitude, which 32
+/// bits hold, and their squares add up to at most 2^63 in a batch.
 const SPAN: u64 = 1 << 27;
 
-/// Angles less a common base: eight older ones, then those of the batch.
+/// Angles relative to a common base. Eight older ones come first, those of the batch follow.
 type Offsets = [u32; RING + BATCH];
 
 impl<const OCTAVES: usize> Accumulator<OCTAVES> {
-    /// Adds counts: the state afterwards is that of pushing them one by one, sooner.
+    /// Adds counts. The state afterwards is the same as if they were pushed one by one, but it is
+    /// reached sooner.
     pub fn push_slice(&mut self, counts: &[i32]) {
         let mut rest = counts;
         while !rest.is_empty() {
@@ -40,8 +41,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
     }
 
-    /// Adds a batch at a sample number that is a multiple of its length and at least [`FULL`],
-    /// unless its angles are too far apart for 32 bits: then it does nothing and returns `false`.
+    /// Adds a batch at a sample number that is a multiple of the batch's length and at least [`FULL`].
+    /// If the angles are too far apart for 32 bits, it does nothing and returns `false`.
     fn push_batch(&mut self, counts: &[i32; BATCH]) -> bool {
         let n = self.number;
         let base = self.angle.wrapping_sub(SPAN / 2);
@@ -66,8 +67,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
         self.store::<BATCH>(0, n + 1, base, &offsets);
 
-        // Level 1 and those above still wait for the boundary at n, the last of the older ones,
-        // and leave the batch's last to their next turn.
+        // Level 1 and those above still wait for the boundary at n, which is the last of the older
+        // ones. They leave the last boundary of the batch to their next turn.
         self.take::<{ BATCH >> 1 }>(1, n, base, &mut offsets, RING - 1);
         self.take::<{ BATCH >> 2 }>(2, n, base, &mut offsets, RING);
         self.take::<{ BATCH >> 3 }>(3, n, base, &mut offsets, RING);
@@ -88,7 +89,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         true
     }
 
-    /// The level takes `COUNT` boundaries: every other one of those that the level below took.
+    /// Hands the level `COUNT` boundaries: every other one of those that the level below took.
     #[inline(always)]
     fn take<const COUNT: usize>(
         &mut self,
@@ -115,8 +116,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
     }
 
-    /// Puts what the level's ring holds, the boundaries before `block`, in front of the offsets.
-    /// Returns the bits that any of their distances from the base has set.
+    /// Puts the boundaries before `block`, which the level's ring holds, in front of the offsets.
+    /// Returns all bits that are set in any of their distances from the base.
     #[inline(always)]
     fn recall(&self, level: usize, block: u32, base: u64, offsets: &mut Offsets) -> u64 {
         let mut bits = 0;
@@ -128,8 +129,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         bits
     }
 
-    /// Puts the last of `COUNT` new boundaries, of which `block` is the first, into the level's
-    /// ring.
+    /// Puts the last of `COUNT` new boundaries into the level's ring. The first of the new boundaries
+    /// is `block`.
     #[inline(always)]
     fn store<const COUNT: usize>(
         &mut self,
@@ -145,7 +146,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     }
 }
 
-/// Sum of squared second differences at distance `LAG`, of `COUNT` angles after the older ones.
+/// The sum of squared second differences at distance `LAG`, over the `COUNT` angles after the older
+/// ones.
 #[inline(always)]
 fn squares<const LAG: usize, const COUNT: usize>(offsets: &Offsets) -> u64 {
     let mut magnitudes = [0; COUNT];
@@ -159,10 +161,10 @@ fn squares<const LAG: usize, const COUNT: usize>(offsets: &Offsets) -> u64 {
     sum_of_squares(&magnitudes)
 }
 
-/// Not inlined: a compiler that knows the length unrolls the loop instead of vectorising it.
+/// This is not inlined: a compiler that knows the length unrolls the loop instead of vectorising it.
 #[inline(never)]
 fn sum_of_squares(magnitudes: &[u32]) -> u64 {
     let square = |&magnitude: &u32| u64::from(magnitude) * u64::from(magnitude);
-    // Below 2^63, as of SPAN.
+    // The sum stays below 2^63, as [`SPAN`] says.
     magnitudes.iter().map(square).fold(0, u64::wrapping_add)
 }

@@ -6,12 +6,12 @@ use crate::{
     real::{Real, real},
 };
 
-/// Values of a shape parameter at equal distances of the logarithm, or whole numbers.
+/// Values of a shape parameter, at equal distances of the logarithm or at whole numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grid {
     pub(super) low: Real,
     pub(super) high: Real,
-    /// The distance of the logarithms; zero for whole numbers.
+    /// The distance between the logarithms of neighbouring values; zero for whole numbers.
     pub(super) log_step: Real,
     pub(super) steps: u32,
 }
@@ -27,7 +27,7 @@ impl Grid {
         }
     }
 
-    /// The grid of a parameter, of a single step if the effect does not have it.
+    /// The grid of a parameter. It has a single step if the effect does not have the parameter.
     pub(super) fn of(effect: &dyn Effect, parameter: usize, span: &Span) -> Self {
         let Some(range) = effect.search_range(parameter, span) else {
             return Self::only(0.0);
@@ -46,7 +46,7 @@ impl Grid {
     fn new(range: SearchRange) -> Self {
         let high = range.high.max(range.low);
         let octaves = math::log2_roughly(high / range.low);
-        // A step more or less does not matter: the last is held at the upper end.
+        // One step more or less does not matter, because the last step is held at the upper end.
         let steps = ((octaves * range.steps_per_octave) as u32).saturating_add(2);
         Self {
             low: range.low,
@@ -56,7 +56,7 @@ impl Grid {
         }
     }
 
-    /// The value after so many steps.
+    /// The value after `step` steps.
     pub(super) fn at(&self, step: u32) -> Real {
         if step == 0 {
             return self.low;

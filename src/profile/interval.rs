@@ -14,21 +14,23 @@ use crate::{
     real::Real,
 };
 
-/// By how much χ² rises to the ends of a 95 % interval.
+/// The rise of χ² from the best value to the ends of a 95 % interval.
 const RISE: Real = CHI_SQUARED_95 as Real;
-/// The first step of the logarithm away from the best value; steps double until they lead outside.
+/// The first step of the logarithm away from the best value. Steps double until they lead outside the
+/// interval.
 const FIRST_STEP: Real = 0.005;
-/// How often the last step is halved then.
+/// How often the last step is halved after that.
 const HALVINGS: u8 = 6;
 
-/// One end of an interval: the way to where χ² has risen by [`RISE`].
+/// The search for one end of an interval, where χ² has risen by [`RISE`].
 struct End {
-    /// 1 upwards, −1 downwards.
+    /// The direction of the search: 1 upwards, −1 downwards.
     direction: Real,
-    /// Distances of the logarithm that are known to lie inside, and that is tried next beyond.
+    /// The distance of the logarithm that is known to lie inside, and the step beyond it that is tried
+    /// next.
     inside: Real,
     step: Real,
-    /// Halvings so far, once the way has led outside.
+    /// The number of halvings so far; `None` until a step has led outside.
     halvings: Option<u8>,
 }
 
@@ -42,7 +44,7 @@ impl End {
         }
     }
 
-    /// Does one evaluation; returns the end when it is found.
+    /// Does one evaluation. Returns the end when it is found.
     fn advance<const K: usize>(
         &mut self,
         best: &Found,
@@ -74,7 +76,7 @@ impl End {
             value * math::exp(self.direction * (self.inside + self.step)),
         );
         let rise = evaluation.found(term).chi_squared - best.chi_squared;
-        // NaN counts as outside.
+        // A NaN counts as outside.
         let is_inside = rise <= RISE;
         if is_inside {
             self.inside += self.step;
@@ -91,29 +93,30 @@ impl End {
     }
 }
 
-/// The interval of a fitted parameter in which χ² stays within that of 95 % of the least, all
-/// coefficients free, also where another effect could take the shape's place. It is joined with the
-/// intervals at the other values of a whole-numbered parameter that explain the curve as well.
+/// The 95 % interval of a fitted parameter: the values at which χ² exceeds its minimum by no more than
+/// [`RISE`]. All coefficients are free, even where another effect could take the shape's place. The
+/// interval is joined with the intervals at those values of a whole-numbered parameter that explain the
+/// curve as well.
 pub(crate) struct JointInterval {
     /// The parameter.
     j: usize,
     grid: Grid,
     known: Found,
-    /// The best shape of the whole numbers that are bounded now.
+    /// The best shape at the whole numbers whose interval is being computed.
     best: Found,
     ends: [End; 2],
     lower: Real,
     upper: Real,
-    /// The whole-numbered parameter and the step of its grid that come next.
+    /// The whole-numbered parameter that comes next, and the step of its grid.
     whole: usize,
     step: u32,
     stage: Stage,
 }
 
 enum Stage {
-    /// One end of the interval is looked for.
+    /// One end of the interval is being searched for.
     Bounding { upper: bool },
-    /// Other whole numbers come next.
+    /// The next value of a whole-numbered parameter is chosen.
     Choosing,
     /// Their best shape is looked for.
     Searching(GridSearch),
@@ -143,7 +146,7 @@ impl JointInterval {
         }
     }
 
-    /// Does some evaluations; returns the interval when no more are to do.
+    /// Does some evaluations. Returns the interval when there are no more to do.
     #[inline(never)]
     pub(crate) fn advance<const K: usize>(
         &mut self,
@@ -186,7 +189,7 @@ impl JointInterval {
                             Stage::Choosing
                         };
                     }
-                    // A search has done as many evaluations as a call may.
+                    // A refinement has done all the evaluations that a call may do.
                     return None;
                 }
             }

@@ -1,4 +1,4 @@
-//! χ² as a function of the shape of one effect, all coefficients fitted anew.
+//! χ² as a function of the shape of one effect, with all coefficients fitted anew.
 
 use crate::{
     error::Error,
@@ -9,15 +9,15 @@ use crate::{
     real::{Real, real},
 };
 
-/// The fit of a curve with one effect of any shape among others whose shapes are known, in units in
-/// which octaves are independent.
+/// The fit of a curve with one effect of any shape, beside other effects of known shapes. It is
+/// computed in units in which octaves are independent.
 pub(crate) struct Profile<const K: usize> {
-    /// Standard errors of the octaves are those of the measured curve instead of the model's.
+    /// Whether the standard errors of the octaves are those of the measured curve instead of the model.
     to_measured: bool,
     whitened: Whitened<K>,
-    /// The equations of the others, and of the shape that was tried last.
+    /// The equations of the other effects, and of the effect with the shape that was tried last.
     equations: NormalEquations,
-    /// The effect's place among the others.
+    /// The effect's place in the model.
     place: usize,
     free: Free,
     held: Free,
@@ -37,9 +37,9 @@ impl<const K: usize> Profile<K> {
         }
     }
 
-    /// Begins with a solved problem. With `to_measured`, the covariance is rescaled to the measured
-    /// curve: before an effect is found, the model is too far off to say how much the octaves that it
-    /// dominates scatter.
+    /// Begins with a solved problem. If `to_measured` is true, the covariance is scaled to the measured
+    /// curve. This is necessary before an effect is found: the model is then too far off to tell how
+    /// much the octaves scatter that the effect dominates.
     #[inline(never)]
     pub(crate) fn begin(
         &mut self,
@@ -52,11 +52,13 @@ impl<const K: usize> Profile<K> {
         weights.whiten_into(problem, &scatter, &mut self.whitened);
     }
 
-    /// Chooses an effect by its `place`: that of the effect that it replaces, or the first behind the
-    /// others. The effects above zero are guessed to be those for which `squares` are.
+    /// Chooses an effect by its `place`, which is that of the effect that it replaces, or the first one
+    /// behind the others. The first guess is that the effects above zero are those with positive
+    /// `squares`.
     ///
     /// # Errors
-    /// [`Error::TooManyEffects`] without such a place, [`Error::Singular`].
+    /// [`Error::TooManyEffects`] if there is no such place, [`Error::Singular`] if a column is zero or
+    /// not finite.
     #[inline(never)]
     pub(crate) fn choose(
         &mut self,
@@ -91,13 +93,13 @@ impl<const K: usize> Profile<K> {
         Ok(())
     }
 
-    /// Frees the effects that are held at zero as well.
+    /// Frees also the effects that are held at zero.
     pub(crate) fn release(&mut self) {
         self.held = Free::default();
     }
 }
 
-/// A profile with what it is evaluated on.
+/// A profile, with the problem and the weights for which it is evaluated.
 pub(crate) struct Evaluation<'a, const K: usize> {
     profile: &'a mut Profile<K>,
     problem: &'a Problem<'a, K>,
@@ -117,7 +119,7 @@ impl<'a, const K: usize> Evaluation<'a, K> {
         }
     }
 
-    /// The best fit with the effect in this shape; χ² is infinite where there is none.
+    /// The best fit with the effect in this shape. Its χ² is infinite if there is no fit.
     #[inline(never)]
     pub(crate) fn found(&mut self, term: Term) -> Found {
         let Self {
@@ -151,7 +153,7 @@ impl<'a, const K: usize> Evaluation<'a, K> {
     }
 }
 
-/// How much more than the model says octave `k` scatters.
+/// The factor by which the standard error of octave `k` exceeds that of the model.
 fn scatter<const K: usize>(
     problem: &Problem<'_, K>,
     weights: &Weights<K>,
@@ -169,12 +171,12 @@ fn scatter<const K: usize>(
 pub(crate) struct Found {
     pub(crate) term: Term,
     pub(crate) chi_squared: Real,
-    /// The squared coefficients, the effect's own at its place in the profile.
+    /// The squared coefficients. The effect's own is at its place in the profile.
     pub(crate) squares: Vector,
 }
 
 impl Found {
-    /// No fit with this shape.
+    /// The shape without a fit.
     pub(crate) fn none(term: Term) -> Self {
         Self {
             term,
@@ -183,7 +185,8 @@ impl Found {
         }
     }
 
-    /// Becomes the other one if that explains the curve better, and returns whether it does.
+    /// Replaces this shape by the other one if that explains the curve better, and returns whether it
+    /// does.
     pub(crate) fn improve(&mut self, other: Self) -> bool {
         let better = other.chi_squared < self.chi_squared;
         if better {

@@ -1,9 +1,9 @@
 //! Which shape of an effect explains a curve best, and which shapes explain it nearly as well.
 //!
-//! The profile of a shape parameter is χ² as a function of it, all coefficients fitted anew at every
-//! value. A [`GridSearch`] finds its minimum, a [`Refinement`] polishes one, a [`JointInterval`] bounds
-//! the values around it. Each does a few evaluations a call, so that a caller can do something else in
-//! between.
+//! The profile of a shape parameter is χ² as a function of the parameter, with all coefficients fitted
+//! anew at every value. A [`GridSearch`] finds its minimum, a [`Refinement`](refinement::Refinement)
+//! polishes a minimum, and a [`JointInterval`] finds the interval around it. Each of them does a few
+//! evaluations per call, so that a caller can do something else in between.
 
 mod grid;
 mod interval;
@@ -15,7 +15,8 @@ pub(crate) use interval::JointInterval;
 pub(crate) use likelihood::{Evaluation, Found, Profile};
 pub(crate) use search::GridSearch;
 
-/// Evaluations of a profile that one call does: some 40 000 instructions each on a Cortex-M4F.
+/// The number of evaluations of a profile in one call. Each takes some 40 000 instructions on a
+/// Cortex-M4F.
 const EVALUATIONS_A_CALL: u32 = 8;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The best shape near one that is known.
+//! The search for the best shape near a known one.
 
 use super::{
     EVALUATIONS_A_CALL,
@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{limits::MAX_PARAMETERS, math, real::Real};
 
-/// How often the step is halved: from half a grid step to a 32nd.
+/// How often the step is halved: it goes from half a grid step to a 32nd of one.
 const HALVINGS: u8 = 5;
 
 /// A way downhill from a shape, one parameter after the other, in steps of the logarithm that are

@@ -1,4 +1,4 @@
-//! The best shape of an effect anywhere.
+//! The search for the best shape of an effect over the whole range of shapes.
 
 use super::{
     EVALUATIONS_A_CALL,
@@ -13,7 +13,7 @@ use crate::{
     real::Real,
 };
 
-/// A search over the grid of an effect's shapes, whose best is refined.
+/// A search over the grid of an effect's shapes. The best shape of the grid is then refined.
 pub(crate) struct GridSearch {
     term: Term,
     grids: [Grid; MAX_PARAMETERS],

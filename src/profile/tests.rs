@@ -1,4 +1,4 @@
-//! Searches and intervals against a brute-force scan of the profile.
+//! Searches and intervals are compared with a brute-force scan of the profile.
 
 use super::*;
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
 const OCTAVES: usize = 14;
 const INTERVAL_S: Real = 0.01;
 
-/// White noise as an effect leaves it, and flicker noise, with a known scatter.
+/// A curve of white noise, an effect and flicker noise, with a known scatter.
 fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real, white: Real) -> Curve<OCTAVES> {
     let shape = SampledShape {
         interval_s: INTERVAL_S,
@@ -31,7 +31,7 @@ fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real, white: Real) 
     Curve::new(1.0 / INTERVAL_S, octaves).unwrap()
 }
 
-/// The five terms, solved on a curve.
+/// The five terms of IEEE Std 952, solved on a curve.
 fn solved(curve: &Curve<OCTAVES>) -> (Model, Columns<OCTAVES>, Solver<OCTAVES>) {
     let model = Model::ieee_952();
     let columns = Columns::new(curve, &model);
@@ -65,7 +65,7 @@ fn a_search_finds_the_least_of_a_fine_grid() {
     let mut least = Found::none(found.term);
     for step in 0..4000 {
         let mut term = Term::fitted(&Sinusoid);
-        // From 0.05 to 50 Hz.
+        // The scan goes from 0.05 to 50 Hz.
         term.set_parameter(0, 0.05 * math::exp(real(step) * math::log(1000.0) / 4000.0));
         least.improve(evaluation.found(term));
     }
@@ -114,7 +114,7 @@ fn an_interval_ends_where_chi_squared_has_risen_by_that_of_95_percent() {
 
 #[test]
 fn an_interval_joins_the_whole_numbers_that_explain_a_curve_as_well() {
-    // Over 1.5 samples, one stage and two differ by less than the scatter.
+    // At 1.5 samples, one stage and two stages differ by less than the scatter.
     let filter = [0.015, 2.0];
     let curve = curve(&DecimationFilter, filter, 2.5e-5, 0.0);
     let replaced = Term {
@@ -157,8 +157,8 @@ fn an_interval_joins_the_whole_numbers_that_explain_a_curve_as_well() {
     }
     let (lower, upper) = bounded(&mut evaluation, best.term);
     assert!(lower < 0.015 && 0.015 < upper);
-    // Every value that a brute-force scan over both parameters finds as good lies inside, and more than one
-    // number of stages does.
+    // Every value that the brute-force scan over both parameters finds as good must lie inside. More
+    // than one number of stages must have such values.
     let mut inside = [0; 5];
     for (stages, step) in (1..=2).flat_map(|stages| (0..200).map(move |step| (stages, step))) {
         let term = shape(stages, step);

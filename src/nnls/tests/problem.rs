@@ -1,4 +1,4 @@
-//! A least-squares problem in double precision, and all its solutions by elimination.
+//! A least-squares problem in double precision, and all of its solutions by elimination.
 
 use super::{MOST, ROWS};
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     test_random::Random,
 };
 
-/// A least-squares problem in double precision: `H = A'A` and `b = A'y`, with `|y|²`.
+/// A least-squares problem in double precision: `H = A'A`, `b = A'y` and `|y|²`.
 pub(super) struct Problem {
     pub(super) count: usize,
     pub(super) h: [[f64; MOST]; MOST],
@@ -16,7 +16,7 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    /// Random columns and random data, with the columns changed by `shape(columns, random)` first.
+    /// A problem of random columns and random data. `shape(columns, random)` changes the columns first.
     pub(super) fn random(
         count: usize,
         random: &mut Random,
@@ -24,7 +24,8 @@ impl Problem {
     ) -> Self {
         let mut columns = [[0.0; ROWS]; MOST];
         for column in &mut columns[..count] {
-            // Positive in the mean, as variances are: columns resemble one another.
+            // The elements are positive on average, as variances are, so that the columns resemble one
+            // another.
             *column = core::array::from_fn(|_| random.signed() + 0.3);
         }
         shape(&mut columns[..count], random);
@@ -74,15 +75,15 @@ impl Problem {
         libm::sqrt(self.h[i][i])
     }
 
-    /// The unknowns of a choice, in units of one over their columns' length, by Gauss's elimination with
-    /// pivots. `None` if a pivot is rounding.
+    /// The unknowns of a choice, in units of one over the length of their columns, by Gaussian
+    /// elimination with pivots. `None` if a pivot is no more than rounding.
     pub(super) fn eliminated(
         &self,
         chosen: u32,
         right: impl Fn(usize) -> f64,
     ) -> Option<[f64; MOST]> {
         let places = || (0..self.count).filter(|i| chosen >> i & 1 == 1);
-        // The identity, where nothing is chosen.
+        // The rows of unknowns that are not chosen are those of the identity.
         let mut rows: [[f64; MOST + 1]; MOST] =
             core::array::from_fn(|i| core::array::from_fn(|j| f64::from(u8::from(i == j))));
         for i in places() {
@@ -117,24 +118,25 @@ impl Problem {
         }))
     }
 
-    /// The same for the data.
+    /// The unknowns of a choice for the problem's data.
     pub(super) fn unknowns(&self, chosen: u32) -> Option<[f64; MOST]> {
         self.eliminated(chosen, |i| self.b[i] / self.length(i))
     }
 
-    /// The slope `b − H x` of scaled unknowns, in scaled units.
+    /// The slope `b − H x` at scaled unknowns, in scaled units.
     pub(super) fn slope(&self, x: &[f64; MOST], i: usize) -> f64 {
         let products = (0..self.count).map(|j| self.h[i][j] / self.length(j) * x[j]);
         (self.b[i] - products.sum::<f64>()) / self.length(i)
     }
 
-    /// How far scaled unknowns lower the sum of squared residuals.
+    /// By how much scaled unknowns lower the sum of squared residuals.
     pub(super) fn explained(&self, x: &[f64; MOST]) -> f64 {
         let part = |i: usize| x[i] * (self.b[i] / self.length(i) + self.slope(x, i));
         (0..self.count).map(part).sum()
     }
 
-    /// The best of all choices without a negative unknown, those of `held` at zero.
+    /// The best solution without a negative unknown, of all choices that leave the unknowns of `held`
+    /// at zero.
     pub(super) fn best(&self, held: u32) -> ([f64; MOST], f64) {
         let choices = (0..1_u32 << self.count).filter(|chosen| chosen & held == 0);
         let solutions = choices.filter_map(|chosen| self.unknowns(chosen));

@@ -1,5 +1,4 @@
-//! The parts of an axis that a type may leave out: those that are left out take no memory, no flash and no
-//! time.
+//! The optional parts of an axis. A part that a type leaves out takes no memory, no flash and no time.
 
 use super::{gate::Gate, sample::Sample};
 use crate::{
@@ -8,22 +7,23 @@ use crate::{
 };
 use core::fmt::Debug;
 
-/// Leaves out odd samples before anything is summed: `G` of [`Axes`](super::Axes).
+/// The part that leaves out odd samples before anything is summed: `G` of [`Axes`](super::Axes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gated;
 
-/// Sums fourth powers, which tell jumps from Gaussian noise: `M` of [`Axes`](super::Axes).
+/// The part that sums fourth powers, which distinguish jumps from Gaussian noise: `M` of
+/// [`Axes`](super::Axes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moments;
 
-/// What can stand for `G` of [`Axes`](super::Axes): [`Gated`], or `()` for no gate.
+/// The types allowed for `G` of [`Axes`](super::Axes): [`Gated`], or `()` for no gate.
 pub trait GatePart: Clone + Debug + PartialEq + Eq {
     /// The state of the gate.
     #[doc(hidden)]
     type State<const AXES: usize, const COVARIATES: usize>: Passing<AXES, COVARIATES>;
 }
 
-/// What can stand for `M` of [`Axes`](super::Axes): [`Moments`], or `()` for none.
+/// The types allowed for `M` of [`Axes`](super::Axes): [`Moments`], or `()` for no fourth moments.
 pub trait MomentPart: Clone + Debug + PartialEq + Eq {
     /// The sums of one axis.
     #[doc(hidden)]
@@ -46,46 +46,46 @@ impl MomentPart for () {
     type Sums<const OCTAVES: usize> = ();
 }
 
-/// What a gate lets go.
+/// The output of a gate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Passed<const AXES: usize, const COVARIATES: usize> {
-    /// Nothing yet: the sample is held back.
+    /// There is no output yet: the sample is held back.
     Nothing,
-    /// A sample.
+    /// A sample passes.
     Sample(Sample<AXES, COVARIATES>),
-    /// The place of a sample that was left out or lost.
+    /// A gap passes in place of samples that were left out or lost.
     Gap,
 }
 
-/// How samples pass a gate. Without one, everything passes at once.
+/// The interface of a gate. Without a gate, every sample passes at once.
 pub trait Passing<const AXES: usize, const COVARIATES: usize>:
     Clone + Debug + PartialEq + Eq
 {
-    /// Nothing seen yet.
+    /// A gate that has seen no sample.
     const NEW: Self;
 
     /// Whether there is a gate.
     const EXISTS: bool;
 
-    /// The same with limits of what is odd.
+    /// Sets the limits beyond which a sample is odd.
     fn set_limits(&mut self, limits: &'static Limits) -> Result<(), InvalidLimit>;
 
-    /// A sample comes; what passes now.
+    /// Takes a sample and returns what passes now.
     fn push(&mut self, sample: Sample<AXES, COVARIATES>) -> Passed<AXES, COVARIATES>;
 
-    /// The next sample does not adjoin the last; what passes now.
+    /// Notes that the next sample does not adjoin the last one, and returns what passes now.
     fn gap(&mut self) -> Passed<AXES, COVARIATES>;
 
-    /// The oldest that is held back; [`Passed::Nothing`] where nothing is.
+    /// Returns the oldest entry that is held back, or [`Passed::Nothing`] if there is none.
     fn release(&mut self) -> Passed<AXES, COVARIATES>;
 
-    /// Adds what another gate saw, which holds nothing back.
+    /// Adds what another gate saw. The other gate must hold nothing back.
     fn merge(&mut self, other: &Self);
 
-    /// The gate itself, if there is one.
+    /// The gate, or `None` if there is no gate.
     fn gate(&self) -> Option<&Gate<AXES, COVARIATES>>;
 
-    /// The gate itself, if there is one.
+    /// The gate, or `None` if there is no gate.
     #[cfg(feature = "storage")]
     fn gate_mut(&mut self) -> Option<&mut Gate<AXES, COVARIATES>>;
 }
@@ -123,15 +123,15 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES> for (
     }
 }
 
-/// The fourth moments of one axis, or nothing.
+/// The fourth moments of one axis, or `()` if they are not kept.
 pub trait MomentSums<const OCTAVES: usize>: Clone + Debug + PartialEq + Eq {
-    /// Nothing summed yet.
+    /// Empty sums.
     const NEW: Self;
 
     /// Whether sums are kept.
     const EXIST: bool;
 
-    /// Adds a difference of an octave.
+    /// Adds a difference of the given octave.
     fn add(&mut self, octave: usize, difference: i64);
 
     /// Adds the sums of another record.

@@ -1,14 +1,14 @@
-//! Effects: what makes up the noise of a gyro, and the catalogue of those that are known.
+//! The effects that make up the noise of a gyro, and the catalogue of the known ones.
 //!
 //! An effect is a [`Description`] and a kernel. The kernel is the generalised covariance `G(n)` of
 //! the angle at a lag of `n` samples, an even function whose negative second derivative `−G″` is the
-//! autocovariance of the rate. Allan variances and the covariance of an Allan curve need second
-//! differences of `G` only, on both sides. These remove a constant and a multiple of `n²` from `G`,
-//! so that `G` exists even for an effect whose autocovariance does not.
+//! autocovariance of the rate. Allan variances and the covariance of an Allan curve need only second
+//! differences of second differences of `G`. These remove a constant and a multiple of `n²` from `G`, so
+//! that `G` exists even for an effect whose autocovariance does not.
 //!
-//! A new effect takes one file beside the others and one line in the catalogue below: the file
-//! defines the type with its [`Effect`], its [`Explain`] and a constant `DESCRIPTION`. An effect of
-//! a firmware's own takes the same file anywhere and a place in the list that the firmware hands to
+//! A new effect takes one file beside the others and one line in the catalogue below. The file
+//! defines the type, its [`Effect`], its [`Explain`] and a constant `DESCRIPTION`. A firmware can define
+//! an effect of its own in the same way, in any file, and add it to the list that it gives to
 //! [`Diagnosis`](crate::Diagnosis).
 
 mod description;
@@ -26,7 +26,7 @@ pub use search_range::{SearchRange, Span};
 
 /// Declares the module of every effect, exports its type and lists it.
 ///
-/// `cargo fmt` does not see modules that a macro declares: `cargo xtask test` names their files to it.
+/// `cargo fmt` does not find modules that a macro declares; `cargo xtask test` formats them by name.
 macro_rules! catalogue {
     ($($file:ident::$effect:ident,)*) => {
         $(
@@ -34,7 +34,7 @@ macro_rules! catalogue {
             pub use $file::$effect;
         )*
 
-        /// Every known effect: what a diagnosis tries unless it is given another list.
+        /// Every known effect. A diagnosis tries these unless it is given another list.
         pub const CATALOGUE: [&dyn Effect; [$(stringify!($effect)),*].len()] = [$(&$effect),*];
 
         /// The effects of [`CATALOGUE`] with their explanations.
@@ -42,7 +42,7 @@ macro_rules! catalogue {
         /// An image that names this list holds the words of every effect.
         pub const EXPLAINED: [&dyn Explain; CATALOGUE.len()] = [$(&$effect),*];
 
-        /// Record code and name of every effect of [`CATALOGUE`], without its mathematics.
+        /// The code and the name of every effect of [`CATALOGUE`], without its mathematics.
         pub(crate) const CODES: [(u8, &str); CATALOGUE.len()] =
             [$(($file::DESCRIPTION.code, $file::DESCRIPTION.name)),*];
     };
@@ -71,7 +71,7 @@ pub const IEEE_952: [&dyn Effect; 5] = [
     &RateRamp,
 ];
 
-// No two effects share a code, and none has one that is reserved.
+// No two effects share a code, and no effect has a reserved code.
 const _: () = {
     let mut i = 0;
     while i < CODES.len() {
@@ -85,14 +85,14 @@ const _: () = {
     }
 };
 
-/// The explanation of the effect of the catalogue that has a name; `None` if there is none.
+/// The explanation of the effect of the catalogue with this name; `None` if there is no such effect.
 pub fn explanation(name: &str) -> Option<Explanation> {
     let mut effects = EXPLAINED.iter();
     let named = effects.find(|effect| effect.description().name == name);
     named.map(|effect| effect.explanation())
 }
 
-/// The differences of adjacent cluster means that a deterministic effect makes.
+/// The differences of adjacent cluster means that a deterministic effect causes.
 ///
 /// The mean product of two such differences is `amplitude(m_j) · amplitude(m_k) · cos(phase · y)`,
 /// divided by τ_j τ_k, where `m_j` and `m_k` are the averaging factors and `y` is the distance of
@@ -100,47 +100,47 @@ pub fn explanation(name: &str) -> Option<Explanation> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Response {
-    /// Root-mean-square of a difference, times τ, in seconds times the rate unit per unit of the
-    /// coefficient. The sign tells two differences in phase from two in opposition.
+    /// The root mean square of a difference, times τ, in seconds times the rate unit per unit of the
+    /// coefficient. Two differences with amplitudes of opposite sign are in opposition of phase.
     pub amplitude: Real,
-    /// Phase from one sample to the next, in radians: 0 for a ramp, whose differences are all the
-    /// same.
+    /// The phase from one sample to the next, in radians; 0 for a ramp, whose differences are all equal.
     pub phase: Real,
 }
 
-/// A physical effect that shows in an Allan curve.
+/// A physical effect that is visible in an Allan curve.
 ///
-/// Only the description and the kernel have to be given. Everything else has a default that follows
-/// from the kernel; an effect overrides it where a closed form is faster or cancels less.
+/// Only the description and the kernel are required. Everything else has a default that follows
+/// from the kernel. An effect overrides a default if a closed form is faster or cancels less.
 ///
-/// The coefficient enters every covariance squared. All functions are for a coefficient of one, take
-/// lags `lag`, `x` and averaging factors `m` in samples, and expect `m ≥ 1` and finite arguments.
+/// Every covariance is proportional to the square of the coefficient. All functions are for a coefficient
+/// of one, take lags `lag`, `x` and averaging factors `m` in samples, and expect `m ≥ 1` and finite
+/// arguments.
 pub trait Effect: Sync {
-    /// Name, parameters, unit and relations of the effect.
+    /// The name, the parameters, the unit and the relations of the effect.
     fn description(&self) -> &'static Description;
 
     /// The generalised covariance `G(n)` of the angle, for `lag = n ≥ 0` samples, in s² times the
-    /// rate unit squared per coefficient squared. A constant and a multiple of `n²` are free.
+    /// rate unit squared per coefficient squared. A constant and a multiple of `n²` may be added freely.
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real;
 
     /// The second difference `G(x + m) − 2 G(x) + G(|x − m|)` of the kernel for `x ≥ 0`, up to a
     /// constant, in the unit of the kernel.
     ///
-    /// The default cancels for `x ≫ m`: an effect that has a closed form overrides it.
+    /// The default loses digits by cancellation for `x ≫ m`. An effect that has a closed form overrides it.
     fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
         let apart = if x < m { m - x } else { x - m };
         self.kernel(x + m, shape) - 2.0 * self.kernel(x, shape) + self.kernel(apart, shape)
     }
 
-    /// Allan variance `σ²(mτ₀)`, in the rate unit squared per coefficient squared.
+    /// The Allan variance `σ²(mτ₀)`, in the rate unit squared per coefficient squared.
     fn variance(&self, m: Real, shape: &SampledShape) -> Real {
         let tau_s = m * shape.interval_s;
         let at_m = self.second_difference(m, m, shape);
         (at_m - self.second_difference(0.0, m, shape)) / (tau_s * tau_s)
     }
 
-    /// Hands the Allan variances at ascending averaging factors to `each`. An effect overrides it
-    /// where the variance of one octave leads to that of the next.
+    /// Calls `each` with the Allan variances at ascending averaging factors. An effect overrides this if the
+    /// variance of one octave leads to that of the next.
     fn variances(
         &self,
         factors: &mut dyn Iterator<Item = Real>,
@@ -166,8 +166,8 @@ pub trait Effect: Sync {
 
     /// The response of a deterministic effect to clusters of `m` samples; `None` for a random one.
     ///
-    /// A deterministic effect is the same in every record but for its phase. It shifts the curve,
-    /// but scatters it only where random effects beat against it.
+    /// A deterministic effect is the same in every record except for its phase. It shifts the curve. It adds
+    /// to the scatter of the curve only by its products with random effects.
     fn response(&self, m: Real, shape: &SampledShape) -> Option<Response> {
         let _ = (m, shape);
         None

@@ -27,8 +27,9 @@ pub(super) struct State {
     pub(super) neighbours: Watch,
     pub(super) spikes: u64,
     pub(super) steps: u64,
-    /// Σ D² of the spikes, and below it that of the steps.
+    /// Σ D² of the spikes.
     pub(super) spike_squares: u128,
+    /// Σ D² of the steps.
     pub(super) step_squares: u128,
     /// Σ D² of the excursion that has not ended yet.
     pub(super) pending_squares: u128,

@@ -47,7 +47,7 @@ fn tail(z: Real) -> Real {
 
 /// Decides with the quantiles of passing and failing. `beside` is the standard error of the square when the
 /// coefficients of neighbouring slopes are free. If the fit holds a neighbour at zero that is not zero, this
-/// coefficient absorbs its share, and the standard error of the fit is too small; `beside` is not.
+/// coefficient absorbs its share, and the standard error of the fit is too small. `beside` allows for that.
 pub(super) fn side(
     coefficient: &Coefficient,
     beside: Real,

@@ -38,8 +38,9 @@ pub struct Pace {
     interval_ns: NonZeroU64,
     /// The timestamp before.
     previous_us: Option<u32>,
-    /// The time since the window began, in µs, and below it the number of intervals.
+    /// The time since the window began, in µs.
     elapsed_us: u64,
+    /// The number of intervals since the window began.
     intervals: u32,
     /// The duration of the last complete window, in µs.
     window_us: Option<u64>,

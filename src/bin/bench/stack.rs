@@ -4,8 +4,9 @@
 
 use core::ptr;
 
-/// The largest number of bytes that are painted, and below it the word they are painted with.
+/// The largest number of bytes that are painted.
 const MOST: usize = 256 * 1024;
+/// The word that they are painted with.
 const PAINT: u32 = 0x5AFE_57AC;
 
 unsafe extern "C" {

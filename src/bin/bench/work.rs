@@ -28,9 +28,9 @@ pub(crate) fn nothing<const OCTAVES: usize>(accumulator: &mut Accumulator<OCTAVE
     black_box((accumulator, count));
 }
 
-/// The number of counts that a mean is taken over, which fit into 16 KiB, and below it the number of
-/// repetitions.
+/// The number of counts in memory, small enough to fit into 16 KiB.
 const LENGTH: usize = 1024;
+/// How often these counts are repeated for a mean.
 const ROUNDS: u32 = 64;
 const SAMPLES: f64 = ROUNDS as f64 * LENGTH as f64;
 

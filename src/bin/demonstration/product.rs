@@ -31,8 +31,9 @@ const SEED: u64 = 3952;
 const SPIKES: [(u32, usize, i32); 3] = [(9000, 0, 20_000), (21_000, 1, -9000), (33_000, 2, 32_767)];
 /// The samples during which the second axis turns.
 const MOTION: core::ops::Range<u32> = 40_000..40_500;
-/// The sample at which a snapshot is taken, and below it the sample at which the power fails.
+/// The sample at which a snapshot is taken.
 const SNAPSHOT: u32 = 50_000;
+/// The sample at which the power fails.
 const POWER_LOSS: u32 = 52_000;
 /// The number of samples from one overflow of the queue to the next, and the number of samples that are
 /// made while the main loop is late.

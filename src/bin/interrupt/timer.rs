@@ -42,8 +42,9 @@ mod machine_timer {
     /// The ticks per sample of the timer, which runs at 10 MHz: 20 000 instructions in QEMU.
     const INTERVAL: u64 = 200;
 
-    /// The address of `mtimecmp` of the first hart on QEMU's `virt`, and below it that of `mtime`.
+    /// The address of `mtimecmp` of the first hart on QEMU's `virt`.
     const COMPARE: *mut u64 = 0x0200_4000 as *mut u64;
+    /// The address of `mtime`.
     const TIME: *const u32 = 0x0200_BFF8 as *const u32;
 
     pub(crate) fn start() {

@@ -1,4 +1,4 @@
-//! What a record tells of one axis: its curve, and all that a diagnosis takes beside it.
+//! The evidence that a record gives about one axis: its curve, and the other inputs of a diagnosis.
 
 use super::{
     Axes,
@@ -16,25 +16,26 @@ use crate::{
 };
 use heapless::Vec;
 
-/// What a record tells of one axis.
+/// The evidence that a record gives about one axis.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct AxisEvidence<const OCTAVES: usize, const COVARIATES: usize = 0> {
-    /// Samples that are kept.
+    /// The number of samples that are kept.
     pub samples: u64,
     /// The Allan curve.
     pub curve: Curve<OCTAVES>,
-    /// Whether the differences are Gaussian; `None` where fourth moments are not kept.
+    /// The kurtosis of the differences, which tells whether they are Gaussian; `None` if fourth moments
+    /// are not kept.
     pub kurtosis: Option<Kurtosis<OCTAVES>>,
-    /// What the axis shares with every covariate.
+    /// What the axis has in common with each covariate.
     pub covariates: Vec<CrossCurve<OCTAVES>, COVARIATES>,
-    /// Why the curve is not valid; `None` where it is.
+    /// The reason why the curve is not valid; `None` if it is valid.
     pub invalid: Option<Reason>,
 }
 
 impl<const OCTAVES: usize, const COVARIATES: usize> AxisEvidence<OCTAVES, COVARIATES> {
-    /// What a diagnosis takes beside the curve.
+    /// The evidence that a diagnosis takes in addition to the curve.
     pub fn evidence(&self) -> Evidence<'_, OCTAVES> {
         Evidence {
             kurtosis: self.kurtosis.as_ref(),
@@ -50,11 +51,12 @@ where
     G: GatePart,
     M: MomentPart,
 {
-    /// What the record tells of an axis as of now, without the samples that the gate holds back.
-    /// `per_count` is the unit of every covariate per count.
+    /// The evidence about an axis at this moment, without the samples that the gate holds back.
+    /// `per_count` gives, for each covariate, its unit per count.
     ///
     /// # Errors
-    /// [`Error::InvalidScale`] unless every unit is positive and finite; [`Error::UnknownAxis`].
+    /// [`Error::InvalidScale`] if a unit is not positive and finite; [`Error::UnknownAxis`] if there is no
+    /// such axis.
     pub fn evidence(
         &self,
         axis: usize,
@@ -68,7 +70,7 @@ where
         for ((covariate, products), per_count) in all {
             let gyro = &sums.accumulator;
             let cross = CrossCurve::new(gyro, covariate, products, scale, per_count)?;
-            // There are as many as there is room for.
+            // The vector has room for every covariate.
             let _ = covariates.push(cross);
         }
         let moments = sums.moments.moments();
@@ -81,12 +83,12 @@ where
         })
     }
 
-    /// Why the curve of an axis is not valid; `None` where it is.
+    /// The reason why the curve of an axis is not valid; `None` if it is valid.
     ///
-    /// The verdict is that of [`Integrity`] on the record that is kept. Motion in any axis makes all of them
-    /// invalid, because a gyro that turns about one axis was not at rest about another. A record of which
-    /// the gate left out more than [`left_out_per_mille`](crate::Limits::left_out_per_mille), one sample in
-    /// four by default, is invalid too.
+    /// The verdict is that of [`Integrity`] on the record that is kept. Motion in one axis makes all axes
+    /// invalid, because a gyro that turns about one axis is not at rest about the others. A record is also
+    /// invalid if the gate left out a larger share of its samples than
+    /// [`left_out_per_mille`](crate::Limits::left_out_per_mille) allows, which is one in four by default.
     pub fn verdict(&self, axis: usize) -> Option<Reason> {
         let verdict = |integrity: &Integrity| integrity.verdict();
         let own = self.kept.axes.get(axis).map(|axis| &axis.integrity);

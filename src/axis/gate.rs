@@ -1,4 +1,4 @@
-//! The gate: leaves out what integrity finds odd, before anything is summed.
+//! The gate leaves out samples that integrity finds odd, before anything is summed.
 
 use super::sample::Sample;
 use crate::integrity::{Integrity, InvalidLimit, Limits, Observation};
@@ -100,59 +100,59 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES> for (
     }
 }
 
-/// Samples of a cluster that integrity takes to see motion.
+/// The number of samples in the shortest cluster by which integrity detects motion.
 const CLUSTER: u8 = 64;
 
-/// Samples held back: those of a cluster, and of the one before, in which motion may have begun.
+/// The number of samples held back: one cluster, and the cluster before it, in which motion may have begun.
 pub(super) const HELD: usize = 2 * CLUSTER as usize;
 
-/// Slots that one word of flags has room for.
+/// The number of slots whose flags fit into one word.
 const WORD: usize = u32::BITS as usize;
 
-/// Leaves out stuck values, hits of rails, spikes and motion: a gap takes their place, and they are
-/// counted. What is odd in one axis is left out of all, so that axes and covariates stay in step.
+/// Leaves out stuck values, samples at a rail, spikes and motion. It puts a gap in their place and counts
+/// them. A sample that is odd in one axis is left out of all axes, so that axes and covariates stay aligned.
 ///
-/// Integrity sees motion at the end of a cluster of 64 samples, so the last 128 samples are held back
-/// until they are known to be at rest, and 64 more are left out when motion ends. What begins more
-/// gradually is seen in clusters of 1024, and its first samples are in the record by then. The same holds
-/// for a run of equal values, which is at least 128 samples long when it is found to be too long.
+/// Integrity detects motion at the end of a cluster of 64 samples. The gate therefore holds the last 128
+/// samples back until they are known to be at rest, and it leaves out 64 more samples after motion ends.
+/// More gradual motion is detected in clusters of 1024 samples, so its first samples are already in the
+/// record by then. The same is true of a run of equal values, which is at least 128 samples long before it
+/// is found to be too long.
 ///
-/// A sample takes the same time whether it is odd or not: what is left out and what was lost wait for
-/// their turn in the same queue.
+/// Every sample takes the same time, odd or not, because samples and gaps wait in the same queue.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gate<const AXES: usize, const COVARIATES: usize> {
-    /// What was seen of every sample, those that were left out included.
+    /// The integrity of all samples, including those that were left out.
     integrity: [Integrity; AXES],
     held: [Sample<AXES, COVARIATES>; HELD],
-    /// A bit for every slot: it marks a gap, and holds no sample.
+    /// One bit for each slot, which is set if the slot marks a gap and holds no sample.
     is_gap: [u32; HELD / WORD],
-    /// The slot of the oldest.
+    /// The slot of the oldest entry.
     first: u8,
-    /// Slots in use.
+    /// The number of slots in use.
     length: u8,
-    /// Samples yet to leave out behind a motion.
+    /// The number of samples that are still to be left out after a motion.
     behind: u8,
     left_out: u64,
 }
 
 impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
-    /// What was seen of every axis.
+    /// The integrity of all samples, axis by axis.
     pub(super) fn integrity(&self) -> &[Integrity; AXES] {
         &self.integrity
     }
 
-    /// Samples left out.
+    /// The number of samples left out.
     pub(super) fn left_out(&self) -> u64 {
         self.left_out
     }
 
-    /// What was seen, to be restored with the number of samples left out.
+    /// The integrity and the number of samples left out, for a restore from a snapshot.
     #[cfg(feature = "storage")]
     pub(super) fn state_mut(&mut self) -> (&mut [Integrity; AXES], &mut u64) {
         (&mut self.integrity, &mut self.left_out)
     }
 
-    /// Puts a sample behind the others, and takes the oldest where there is no room.
+    /// Appends a sample to the queue, and returns the oldest entry if the queue was full.
     #[inline(always)]
     fn hold(&mut self, sample: Sample<AXES, COVARIATES>) -> Passed<AXES, COVARIATES> {
         let passed = if usize::from(self.length) == HELD {
@@ -166,7 +166,7 @@ impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
         passed
     }
 
-    /// Marks a gap behind the others: one, however many samples are left out or lost in a row.
+    /// Appends a gap to the queue. Consecutive samples that are left out or lost share one gap.
     #[inline(never)]
     fn hold_gap(&mut self) -> Passed<AXES, COVARIATES> {
         if self.length > 0 {
@@ -181,7 +181,7 @@ impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
         passed
     }
 
-    /// Leaves out everything that is held back.
+    /// Leaves out all samples that are held back.
     #[cold]
     #[inline(never)]
     fn leave_out_held(&mut self) {
@@ -192,7 +192,7 @@ impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
         self.length = 0;
     }
 
-    /// The slot of the one that is so many behind the oldest.
+    /// The slot at this distance from the oldest entry.
     #[inline(always)]
     fn slot(&self, behind: u8) -> usize {
         usize::from(self.first.wrapping_add(behind)) % HELD

@@ -1,4 +1,4 @@
-//! What is kept of a record, behind the gate.
+//! The sums of a record, which receive the samples that pass the gate.
 
 use super::{
     moments::{MomentPart, MomentSums},
@@ -10,15 +10,15 @@ use crate::{
     octave::{Accumulator, Observer},
 };
 
-/// The sums of all axes and covariates. They all take the same samples and gaps, so that everything that
-/// is read from them tells of the same record.
+/// The sums of all axes and covariates. They all receive the same samples and gaps, so that all results
+/// describe the same record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Kept<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize>
 where
     M: MomentPart,
 {
     pub(super) axes: [AxisSums<OCTAVES, COVARIATES, M>; AXES],
-    /// One accumulator a covariate, which all axes share.
+    /// One accumulator for each covariate, shared by all axes.
     pub(super) covariates: [Accumulator<OCTAVES>; COVARIATES],
 }
 
@@ -31,7 +31,8 @@ pub(super) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M: Mom
     pub(super) cross: [CrossSums<OCTAVES>; COVARIATES],
 }
 
-/// Differences of a covariate that a sample completes: of octaves 0, 1 and 2, and of one other.
+/// The differences of a covariate that one sample completes: those of octaves 0, 1 and 2, and at most one
+/// of a higher octave.
 #[derive(Clone, Copy)]
 struct Completed([i64; 4]);
 
@@ -50,7 +51,7 @@ impl Observer for Completed {
     }
 }
 
-/// What is summed beside the accumulator of an axis, while it takes a sample.
+/// The sums that are updated together with the accumulator of an axis when it takes a sample.
 struct Beside<'a, S, const OCTAVES: usize, const COVARIATES: usize> {
     moments: &'a mut S,
     cross: &'a mut [CrossSums<OCTAVES>; COVARIATES],
@@ -99,7 +100,7 @@ where
         accumulator.push_observed(count, &mut beside);
     }
 
-    /// Adds what the accumulators still have pending, which they lose at a gap.
+    /// Adds the pending differences of the accumulators, which a gap discards.
     fn add_pending(&mut self, covariates: &[Accumulator<OCTAVES>; COVARIATES]) {
         for octave in 0..OCTAVES {
             let Some(difference) = self.accumulator.pending_difference(octave) else {
@@ -163,7 +164,7 @@ where
 
     pub(super) fn merge(&mut self, other: &Self) {
         self.gap();
-        // What is pending there belongs to its sums.
+        // The pending differences of the other record belong to its own sums.
         let mut other = other.clone();
         other.gap();
         for (own, other) in self.axes.iter_mut().zip(&other.axes) {

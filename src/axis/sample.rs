@@ -1,9 +1,9 @@
-//! One sample of everything that is recorded together.
+//! One sample of all axes and covariates that are recorded together.
 
-/// The counts of all axes at one moment, and those of the covariates beside them.
+/// The counts of all axes at one moment, and those of the covariates at the same moment.
 ///
-/// A count converts into the sample of one axis, an array into one of several; a pair is a sample with
-/// covariates:
+/// A single count converts into a sample of one axis, and an array of counts into a sample of several axes.
+/// A pair converts into a sample with covariates:
 ///
 /// ```
 /// use allanite::axis::Sample;
@@ -23,7 +23,7 @@ pub struct Sample<const AXES: usize, const COVARIATES: usize> {
 }
 
 impl<const AXES: usize, const COVARIATES: usize> Sample<AXES, COVARIATES> {
-    /// All counts are zero.
+    /// The sample whose counts are all zero.
     pub(crate) const ZERO: Self = Self {
         counts: [0; AXES],
         covariates: [0; COVARIATES],

@@ -1,21 +1,22 @@
-//! Snapshots of everything that is kept of a record, self-tests included: version 2 of the format.
+//! Snapshots of everything that is kept of a record, including the self-tests: version 2 of the format.
 //!
-//! The payload of the [envelope](crate::storage::envelope), as postcard writes it: numbers of more than a byte are
-//! varints, seven bits a byte, lowest first; signed ones are zigzag.
+//! This table describes the payload of the [envelope](crate::storage::envelope). The payload is in
+//! postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits first,
+//! and signed numbers are zigzag-encoded.
 //!
 //! | content | type |
 //! |---|---|
 //! | number of octaves, axes, covariates, self-tests | 4 × u8 |
 //! | parts: 1 for a gate, 2 for fourth moments, 3 for both | u8 |
-//! | samples; gaps, one for the end of the snapshot included | 2 × u64 |
-//! | of each octave, `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
-//! | of each axis, then of each covariate: Σ D² of each octave in counts², lowest limb first | 3 × u64 |
-//! | of each axis: its integrity, as the structure `integrity::State` has it | |
-//! | of each axis, with fourth moments: Σ D⁴ of each octave, lowest limb first | 3 × u64 |
-//! | of each axis, of each covariate, of each octave: Σ D_g D_x as `low + 2^64 · upper` | i64, i128 |
+//! | samples; gaps, including one at the end of the snapshot | 2 × u64 |
+//! | for each octave `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
+//! | for each axis, then for each covariate: Σ D² of each octave in counts², lowest limb first | 3 × u64 |
+//! | for each axis: its integrity, as the structure `integrity::State` has it | |
+//! | for each axis, with fourth moments: Σ D⁴ of each octave, lowest limb first | 3 × u64 |
+//! | for each axis, each covariate, each octave: Σ D_g D_x as `low + 2^64 · upper` | i64, i128 |
 //! | losses | u64 |
-//! | with a gate: samples left out, and of each axis the integrity of what it saw | u64, … |
-//! | of each self-test: plan, next look, probability left, limits kept, verdict | |
+//! | with a gate: samples left out, then for each axis the integrity of all samples | u64, … |
+//! | for each self-test: plan, next look, remaining probability, limits kept, verdict | |
 
 use super::{Axes, GatePart, MomentPart, gate::Passing, moments::MomentSums};
 use crate::{
@@ -33,10 +34,10 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 const VERSION: u8 = 2;
 
-/// Bytes that the integrity of an axis takes at most.
+/// The largest number of bytes that the integrity of an axis takes.
 const INTEGRITY: usize = 520;
 
-/// Bytes of the longest varint of 128 bits.
+/// The number of bytes of the longest varint of 128 bits.
 const LONGEST_128: usize = 19;
 
 #[derive(PartialEq, Eq, Serialize, Deserialize)]
@@ -54,7 +55,7 @@ struct Counts {
     gaps: u64,
 }
 
-/// What is yet to be read.
+/// The bytes that have not been read yet.
 struct Reader<'b>(&'b [u8]);
 
 impl Reader<'_> {
@@ -75,8 +76,8 @@ where
     const HAS_GATE: bool = <G::State<AXES, COVARIATES> as Passing<AXES, COVARIATES>>::EXISTS;
     const HAS_MOMENTS: bool = <M::Sums<OCTAVES> as MomentSums<OCTAVES>>::EXIST;
 
-    /// Bytes that a snapshot of any record fits into, with so many self-tests. What a record of a gyro at
-    /// rest takes is a third of it.
+    /// The size in bytes of a buffer that holds a snapshot of any record with this number of self-tests.
+    /// The snapshot of a gyro at rest takes about a third of it.
     pub const fn snapshot_bytes(self_tests: usize) -> usize {
         let sums = OCTAVES * 3 * LONGEST;
         let moments = if Self::HAS_MOMENTS { sums } else { 0 };
@@ -97,14 +98,14 @@ where
         }
     }
 
-    /// Writes everything to a buffer, and the state of the self-tests that judge these axes, and returns the
+    /// Writes the record and the state of the self-tests that judge these axes to a buffer, and returns the
     /// part of the buffer that was used.
     ///
-    /// The state is untouched. Samples that the gate holds back are not in the snapshot: whoever restores it
-    /// has lost them, like those that come after it.
+    /// The record does not change. The snapshot does not contain the samples that the gate holds back. After
+    /// a restore they are lost, like the samples that came after the snapshot.
     ///
     /// # Errors
-    /// [`Error::BufferTooSmall`]; never with [`snapshot_bytes`](Self::snapshot_bytes).
+    /// [`Error::BufferTooSmall`], which never occurs with [`snapshot_bytes`](Self::snapshot_bytes).
     ///
     /// # Example
     ///
@@ -120,7 +121,7 @@ where
     /// let mut buffer = [0; Gyro::snapshot_bytes(0)];
     /// let stored = gyro.snapshot(&[], &mut buffer)?;
     ///
-    /// // After a restart: as if a gap lay between.
+    /// // After a restart, the restored record equals one that had a gap at this moment.
     /// let mut restored = Gyro::new();
     /// restored.restore(&mut [], stored)?;
     /// gyro.gap();
@@ -186,16 +187,16 @@ where
         Ok(())
     }
 
-    /// Restores what a [snapshot](Self::snapshot) was taken of, after a [`gap`](Self::gap), and the
-    /// self-tests, which were made by the same plans. The limits of integrity are not stored and stay as they
-    /// are. A snapshot of an [`Accumulator`] alone is restored into one axis without moments and
-    /// covariates, with an integrity that has seen nothing.
+    /// Restores the record that a [snapshot](Self::snapshot) holds, as it is after a [`gap`](Self::gap),
+    /// and the state of the self-tests, which must have been made with the same plans. The snapshot does not
+    /// contain the limits of integrity, so the present limits stay. A snapshot of an [`Accumulator`] alone
+    /// can be restored into one axis without moments and covariates; its integrity is then empty.
     ///
     /// # Errors
     /// [`Error::UnknownMagic`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::WrongKind`],
     /// [`Error::UnknownVersion`], [`Error::WrongOctaves`], [`Error::OtherParts`], [`Error::OtherPlan`];
-    /// [`Error::Impossible`] for contents that no record has. The record is empty after any of them, and the
-    /// self-tests are to be made anew.
+    /// [`Error::Impossible`] if no record can have such contents. After any error the record is empty, and
+    /// the self-tests must be made anew.
     pub fn restore(
         &mut self,
         self_tests: &mut [SelfTest<OCTAVES>],

@@ -1,15 +1,15 @@
-//! The image that shows a microcontroller characterising a simulated gyro: every figure is logged
-//! with its bits, and the exit status tells whether the gyro came out as simulated. It runs on every
-//! core in QEMU, see `cargo xtask test`, and on the host, which prints the same lines.
+//! An image in which a microcontroller characterises a simulated gyro. Every figure is logged
+//! with its bits, and the exit status tells whether the fit agrees with the simulated gyro. It runs on every
+//! core in QEMU (see `cargo xtask test`), and on the host, where it prints the same lines.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[path = "demonstration/mod.rs"]
-// Every image uses some of it.
+// Every image uses only a part of this module.
 #[allow(dead_code, unreachable_pub)]
 mod demonstration;
 
-/// The arguments are seeds to characterise gyros with, instead of the image's.
+/// The arguments are seeds of gyros, which replace the image's own seed.
 #[cfg(not(target_os = "none"))]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     use crate::demonstration::{characterise, lines};
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[cfg(target_os = "none")]
 mod image {
     use crate::demonstration::{characterise, lines};
-    // Critical sections of a single core.
+    // This crate provides critical sections for a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;
     use defmt_semihosting as _;

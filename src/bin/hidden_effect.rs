@@ -1,16 +1,16 @@
-//! The image that shows a microcontroller finding what a gyro lacks beyond the five terms, with no host:
-//! every step of the diagnosis is logged, error before and after. What is hidden in the simulated gyro is
-//! named by the first argument that the image is started with, and the diagnosis is not told. The host
-//! prints the same lines.
+//! An image in which a microcontroller finds, without a host, an effect of a gyro that the five terms do not
+//! describe. Every step of the diagnosis is logged, with the errors before and after it. The first argument
+//! of the image names the effect that is hidden in the simulated gyro. The diagnosis does not see it. The
+//! host prints the same lines.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[path = "demonstration/mod.rs"]
-// Every image uses some of it.
+// Every image uses only a part of this module.
 #[allow(dead_code, unreachable_pub)]
 mod demonstration;
 
-/// Behind the name there may be seeds to diagnose gyros with, instead of the image's.
+/// The seeds of gyros may follow the name, and replace the image's own seed.
 #[cfg(not(target_os = "none"))]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     use crate::demonstration::{diagnose, lines};
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[cfg(target_os = "none")]
 mod image {
     use crate::demonstration::{diagnose, lines};
-    // Critical sections of a single core.
+    // This crate provides critical sections for a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;
     use defmt_semihosting as _;
@@ -46,7 +46,7 @@ mod image {
             defmt::error!("no arguments: start the image with what to hide");
             semihosting::process::exit(2);
         };
-        // The first is the image's own name.
+        // The first argument is the name of the image.
         let name = (&arguments).nth(1).and_then(Result::ok).unwrap_or("");
         let step = |step: &_| {
             lines::step(step, |line| {

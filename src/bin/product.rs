@@ -1,10 +1,10 @@
-//! The image that does all that a product does, every part of the library switched on. Whatever it finds is
-//! logged with its bits, and the host prints the same lines.
+//! An image that does everything a product does, with every part of the library. Its results are
+//! logged with their bits, and the host prints the same lines.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[path = "demonstration/mod.rs"]
-// Every image uses some of it.
+// Every image uses only a part of this module.
 #[allow(dead_code, unreachable_pub)]
 mod demonstration;
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 mod image {
     use crate::demonstration::product::{Gyro, run};
     use core::cell::RefCell;
-    // Critical sections of a single core.
+    // This crate provides critical sections for a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;
     use critical_section::Mutex;
@@ -30,9 +30,9 @@ mod image {
     #[cfg(target_arch = "riscv32")]
     use riscv as _;
 
-    /// Empty, it is all zero: it takes no flash for an initial value.
+    /// An empty gyro is all zero, so that it takes no flash for an initial value.
     static GYRO: Mutex<RefCell<Gyro>> = Mutex::new(RefCell::new(Gyro::new()));
-    /// Stands for flash.
+    /// A buffer in RAM that takes the place of flash.
     static FLASH: Mutex<RefCell<[u8; Gyro::snapshot_bytes(1)]>> =
         Mutex::new(RefCell::new([0; Gyro::snapshot_bytes(1)]));
 

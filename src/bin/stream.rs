@@ -1,5 +1,5 @@
-//! The image that sends the counts of a simulated gyro for as long as somebody reads them, a line of text
-//! each, as a firmware would through a serial port: `cargo allanite watch --image`.
+//! An image that sends the counts of a simulated gyro for as long as a host reads them. Each count is a line
+//! of text, as a firmware would send it through a serial port: `cargo allanite watch --image`.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -8,7 +8,7 @@ fn main() {}
 
 #[cfg(target_os = "none")]
 #[path = "demonstration/mod.rs"]
-// Every image uses some of it.
+// Every image uses only a part of this module.
 #[allow(dead_code, unreachable_pub)]
 mod demonstration;
 
@@ -19,7 +19,7 @@ mod image {
     use heapless::String;
     use semihosting::io::{self, Write as _};
 
-    /// Bytes of the longest count, its sign and the end of its line.
+    /// The number of bytes of the longest count, with its sign and the end of its line.
     const LINE: usize = 12;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]

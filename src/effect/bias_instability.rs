@@ -49,7 +49,7 @@ impl Effect for BiasInstability {
             return self.kernel(x + m, shape) - 2.0 * self.kernel(x, shape)
                 + self.kernel(apart, shape);
         }
-        // The three terms would cancel, so that this takes the Taylor series of their sum in m/x.
+        // The three terms would cancel. Therefore this is the Taylor series of their sum in m/x.
         let (tau_s, ratio) = (m * shape.interval_s, m / x);
         let square = ratio * ratio;
         let series = square * (1.0 / 6.0 + square * (1.0 / 30.0 + square / 84.0));
@@ -99,7 +99,7 @@ const fn scale_free(position: u32) -> f64 {
         (square_log(position + 4) - 2.0 * square_log(position) + square_log(position.abs_diff(4)))
             / 16.0
     } else {
-        // The three terms would cancel, so that this takes the Taylor series of their sum.
+        // The three terms would cancel. Therefore this is the Taylor series of their sum.
         let i2 = i * i;
         2.0 * math::log_of_integer(position) + 3.0 - 8.0 / (3.0 * i2) - 128.0 / (15.0 * i2 * i2)
     }

@@ -5,14 +5,14 @@ use super::{
 use crate::math;
 use crate::real::Real;
 
-/// Angle random walk behind a decimation filter, which takes the place of [`AngleRandomWalk`]. The
+/// Angle random walk that passed a decimation filter. It takes the place of [`AngleRandomWalk`]. The
 /// coefficient is `N` in rate · √s; the shape parameters are the width of the filter in seconds, up to
 /// 64 samples, and the number of its stages. One stage is a moving average, two are a Bartlett
 /// (triangular) window.
 ///
-/// The width is that of the one boxcar which spreads a pulse as far as all stages together: each stage
-/// is a boxcar of length `w = width/√stages`. So the width is known even where the filter reaches over
-/// so few samples that the number of stages is not.
+/// The width is that of the single boxcar that spreads a pulse as far as all stages together: each stage
+/// is a boxcar of length `w = width/√stages`. Therefore the width is known even if the filter spans so few
+/// samples that the number of stages is not.
 ///
 /// The autocovariance of the rate is a sampled B-spline of order `2 · stages`, `r_i ∝ B(iτ₀/w)` with
 /// `τ₀ Σ r_i = N²`, and `G(n) = −½ τ₀² [n r₀ + 2 Σ_{0<i<n} (n−i) r_i]`.
@@ -22,7 +22,7 @@ pub struct DecimationFilter;
 /// The largest width in samples, which bounds the sums over the autocovariance.
 const WIDEST: Real = 64.0;
 
-/// The autocovariance at a lag of `x` lengths of a stage, up to a factor.
+/// The autocovariance at a lag of `x` lengths of a stage, up to a constant factor.
 fn spline(x: Real, stages: Real) -> Real {
     if stages < 1.5 {
         return (1.0 - x).max(0.0);
@@ -39,15 +39,15 @@ fn spline(x: Real, stages: Real) -> Real {
 
 /// The sampled autocovariance `r_i`, scaled so that its sum over all lags is 1.
 struct Filter {
-    /// Reciprocal of a stage's length in samples.
+    /// The reciprocal of a stage's length in samples.
     per_sample: Real,
-    /// Number of stages.
+    /// The number of stages.
     stages: Real,
     /// The lag in samples from which on the autocovariance is zero.
     support: Real,
     /// The factor that scales the spline.
     scale: Real,
-    /// 2 Σ_{i>0} i r_i.
+    /// The sum 2 Σ_{i>0} i r_i.
     moment: Real,
 }
 
@@ -76,12 +76,12 @@ impl Filter {
         filter
     }
 
-    /// `r_i`.
+    /// The autocovariance `r_i`.
     fn at(&self, i: Real) -> Real {
         self.scale * spline(i * self.per_sample, self.stages)
     }
 
-    /// `n r₀ + 2 Σ_{0<i<n} (n−i) r_i`.
+    /// The sum `n r₀ + 2 Σ_{0<i<n} (n−i) r_i`.
     fn sum(&self, n: Real) -> Real {
         if n >= self.support {
             return n - self.moment;

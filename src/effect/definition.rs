@@ -7,9 +7,9 @@ use super::{
 use crate::{lattice::SecondDifferences, real::Real};
 use core::fmt;
 
-/// What an effect is called, and how it relates to others: everything about it but its mathematics.
+/// The name of an effect and its relations to others: everything about it except its mathematics.
 ///
-/// Each effect has one constant of this type. The record's format, the command line, the search for
+/// Each effect has one constant of this type. The format of certificates, the command line, the search for
 /// shapes, the simulator and the reports read it, so that none of them needs to know any effect by
 /// name.
 pub struct Description {
@@ -18,17 +18,17 @@ pub struct Description {
     pub name: &'static str,
     /// The coefficient's customary symbol, such as `N`.
     pub symbol: &'static str,
-    /// What the coefficient is: `amplitude`, `rms`, or a name such as `angle_random_walk` where that
-    /// says it.
+    /// The meaning of the coefficient: `amplitude`, `rms`, or a name such as `angle_random_walk` that says
+    /// it by itself.
     pub coefficient: &'static str,
     /// The power of √s in the coefficient's unit, which is rate unit · s^(`half_seconds`/2): 1 for the
     /// angle random walk, whose unit is rate · √s.
     pub half_seconds: i8,
     /// The shape parameters, at most [`MAX_PARAMETERS`](super::MAX_PARAMETERS).
     pub parameters: &'static [Parameter],
-    /// The number that stands for the effect in a stored record. The catalogue has 1 to 127, and a
-    /// number never changes its meaning. An effect outside of the catalogue takes a number from
-    /// [`FIRST_OWN_CODE`] on, or 0 if no record needs to tell it from others.
+    /// The number that stands for the effect in a certificate. The catalogue uses 1 to 127, and a number
+    /// never changes its meaning. An effect outside of the catalogue takes a number from
+    /// [`FIRST_OWN_CODE`] on, or 0 if no certificate needs to distinguish it from others.
     pub code: u8,
     /// The effect whose place this one takes in a model: a filter on white noise takes that of the
     /// angle random walk.
@@ -36,14 +36,14 @@ pub struct Description {
     /// The effect that has the same Allan variance. A curve cannot tell the two apart, so that a
     /// diagnosis searches for the mirrored effect only and lets the kurtosis decide between them.
     pub mirror: Option<&'static dyn Effect>,
-    /// How the values are distributed, which the kernel does not say.
+    /// The distribution of the values, which the kernel does not determine.
     pub distribution: Distribution,
 }
 
-/// The first of the record codes that the catalogue never uses: 128.
+/// The first of the codes that the catalogue never uses: 128.
 pub const FIRST_OWN_CODE: u8 = 128;
 
-/// How the values of an effect are distributed. A simulator needs it beside the kernel.
+/// The distribution of the values of an effect. A simulator needs it in addition to the kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Distribution {
@@ -52,8 +52,7 @@ pub enum Distribution {
     /// The rate jumps between two levels of the same size and opposite sign, at times that are
     /// independent of each other. The autocovariance is exponential.
     TwoLevels,
-    /// The rate is a ramp or a sinusoid of random phase, which
-    /// [`Effect::response`] determines.
+    /// The rate is a ramp, or a sinusoid of random phase, which [`Effect::response`] determines.
     Deterministic,
 }
 
@@ -164,7 +163,7 @@ impl dyn Effect + '_ {
         self.description().symbol
     }
 
-    /// What the coefficient is, such as `amplitude`.
+    /// The meaning of the coefficient, such as `amplitude`.
     pub fn coefficient(&self) -> &'static str {
         self.description().coefficient
     }
@@ -179,13 +178,13 @@ impl dyn Effect + '_ {
         self.description().parameters
     }
 
-    /// Whether the shape parameter of that index takes whole numbers only; false if there is none.
+    /// Whether the shape parameter of this index takes whole numbers only; false if there is none.
     pub fn is_whole(&self, parameter: usize) -> bool {
         let parameter = self.parameters().get(parameter);
         parameter.is_some_and(|parameter| parameter.is_whole)
     }
 
-    /// The values of the shape parameter of that index which a search tries; `None` if there is none.
+    /// The values that a search tries for the shape parameter of this index; `None` if there is none.
     pub fn search_range(&self, parameter: usize, span: &Span) -> Option<SearchRange> {
         let parameter = self.parameters().get(parameter);
         parameter.map(|parameter| (parameter.search_range)(span))

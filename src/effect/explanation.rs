@@ -1,19 +1,19 @@
 use super::{Effect, MAX_PARAMETERS};
 use crate::real::Real;
 
-/// What a person reads whose gyro has an effect.
+/// The explanation of an effect for a person whose gyro has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Explanation {
-    /// What the effect is physically.
+    /// The physical nature of the effect.
     pub what: &'static str,
-    /// Where it usually comes from in a gyro.
+    /// The usual origin of the effect in a gyro.
     pub origin: &'static str,
-    /// What to check on the bench.
+    /// The checks to make on the bench.
     pub check: &'static str,
 }
 
-/// What an effect tells a person, as opposed to what it computes.
+/// The words about an effect, as opposed to its mathematics.
 ///
 /// This trait stands apart from [`Effect`] for the sake of flash: an image that prints no
 /// explanation never refers to an `&dyn Explain`, so that the linker drops the words. A field of

@@ -27,7 +27,7 @@ pub(super) const DESCRIPTION: Description = Description {
         name: "correlation_time_s",
         unit: "s",
         is_whole: false,
-        // The curve has its peak at 1.89 T_c, which has to lie within the octaves.
+        // The curve peaks at 1.89 T_c, and the peak must lie within the octaves.
         search_range: |span| SearchRange {
             low: span.interval_s,
             high: 0.5 * span.longest_tau_s,

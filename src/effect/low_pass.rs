@@ -4,7 +4,7 @@ use super::{
 };
 use crate::real::Real;
 
-/// Angle random walk behind a low pass of first order, which takes the place of [`AngleRandomWalk`].
+/// Angle random walk that passed a low pass of first order. It takes the place of [`AngleRandomWalk`].
 /// The coefficient is `N` in rate · √s, the shape parameter the time constant `T` of the filter in
 /// seconds, above zero.
 ///

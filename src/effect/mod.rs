@@ -1,14 +1,14 @@
-//! Effects: what makes up the noise of a gyro, and the catalogue of those that are known.
+//! The effects that make up the noise of a gyro, and the catalogue of the known ones.
 //!
 //! An effect is a [`Description`] and a kernel. The kernel is the generalised covariance `G(n)` of
 //! the angle at a lag of `n` samples, an even function whose negative second derivative `−G″` is the
-//! autocovariance of the rate. Allan variances and the covariance of an Allan curve need second
-//! differences of `G` only, on both sides. These remove a constant and a multiple of `n²` from `G`,
-//! so that `G` exists even for an effect whose autocovariance does not.
+//! autocovariance of the rate. Allan variances and the covariance of an Allan curve need only second
+//! differences of second differences of `G`. These remove a constant and a multiple of `n²` from `G`, so
+//! that `G` exists even for an effect whose autocovariance does not.
 //!
-//! A new effect takes one file beside the others and one line in the catalogue below: the file
-//! defines the type with its [`Effect`], its [`Explain`] and a constant `DESCRIPTION`. An effect of
-//! a firmware's own takes the same file anywhere and a place in the list that the firmware hands to
+//! A new effect takes one file beside the others and one line in the catalogue below. The file
+//! defines the type, its [`Effect`], its [`Explain`] and a constant `DESCRIPTION`. A firmware can define
+//! an effect of its own in the same way, in any file, and add it to the list that it gives to
 //! [`Diagnosis`](crate::Diagnosis).
 
 mod definition;
@@ -25,7 +25,7 @@ pub use search_range::{SearchRange, Span};
 
 /// Declares the module of every effect, exports its type and lists it.
 ///
-/// `cargo fmt` does not see modules that a macro declares: `cargo xtask test` names their files to it.
+/// `cargo fmt` does not find modules that a macro declares; `cargo xtask test` formats them by name.
 macro_rules! catalogue {
     ($($file:ident::$effect:ident,)*) => {
         $(
@@ -33,7 +33,7 @@ macro_rules! catalogue {
             pub use $file::$effect;
         )*
 
-        /// Every known effect: what a diagnosis tries unless it is given another list.
+        /// Every known effect. A diagnosis tries these unless it is given another list.
         pub const CATALOGUE: [&dyn Effect; [$(stringify!($effect)),*].len()] = [$(&$effect),*];
 
         /// The effects of [`CATALOGUE`] with their explanations.
@@ -41,7 +41,7 @@ macro_rules! catalogue {
         /// An image that names this list holds the words of every effect.
         pub const EXPLAINED: [&dyn Explain; CATALOGUE.len()] = [$(&$effect),*];
 
-        /// Record code and name of every effect of [`CATALOGUE`], without its mathematics.
+        /// The code and the name of every effect of [`CATALOGUE`], without its mathematics.
         pub(crate) const CODES: [(u8, &str); CATALOGUE.len()] =
             [$(($file::DESCRIPTION.code, $file::DESCRIPTION.name)),*];
     };
@@ -70,7 +70,7 @@ pub const IEEE_952: [&dyn Effect; 5] = [
     &RateRamp,
 ];
 
-// No two effects share a code, and none has one that is reserved.
+// No two effects share a code, and no effect has a reserved code.
 const _: () = {
     let mut i = 0;
     while i < CODES.len() {
@@ -84,7 +84,7 @@ const _: () = {
     }
 };
 
-/// The explanation of the effect of the catalogue that has a name; `None` if there is none.
+/// The explanation of the effect of the catalogue with this name; `None` if there is no such effect.
 pub fn explanation(name: &str) -> Option<Explanation> {
     let mut effects = EXPLAINED.iter();
     let named = effects.find(|effect| effect.description().name == name);

@@ -7,17 +7,20 @@ use crate::{
 };
 use nalgebra::Complex;
 
-/// Decays of a cluster beyond this leave nothing of what lies past it, and reach the range's end.
+/// The decay exponent of a cluster above which nothing remains of the pole beyond the cluster, and the
+/// reciprocal of what remains approaches the end of the floating-point range.
 const GONE: Real = by_precision(200.0, 40.0);
 
-/// Exponents below this have their exponential's remainders summed by Taylor's series: beyond, what
-/// cancels leaves twelve digits, or six.
+/// The magnitude of an exponent below which Taylor's series gives the remainders of the exponential. Above
+/// it, cancellation leaves twelve digits in double precision, or six in single precision.
 const SMALL: Real = by_precision(0.1, 1.0);
 
-/// Exponents of a sample below this have κ by its series: beyond, what cancels leaves it to as many digits.
+/// The magnitude of a sample's exponent below which κ is computed by its series. Above it, cancellation
+/// leaves as many digits as above [`SMALL`].
 const SLOW: Real = by_precision(0.01, 0.3);
 
-/// `1/11` to `1/4`, of that series: the next power is below 1e-17 of the first, or 1e-8.
+/// The factors `1/11` to `1/4` of Taylor's series. The next power is below 1e-17 of the first in double
+/// precision, or 1e-8 in single precision.
 const RECIPROCALS: [Real; 8] = {
     let mut reciprocals = [0.0; 8];
     let mut i = 0;
@@ -30,22 +33,21 @@ const RECIPROCALS: [Real; 8] = {
 
 const ONE: Complex<Real> = Complex::new(1.0, 0.0);
 
-/// A rate whose autocovariance is `Re zⁿ` at a lag of `n` samples, `z = e^(−s)`.
+/// A rate whose autocovariance at a lag of `n` samples is `Re zⁿ`, with `z = e^(−s)`.
 ///
 /// ```text
 /// G(n) = −½ τ₀² Re[ n (1+z)/(1−z) − 2z (1−zⁿ)/(1−z)² ] = τ₀² Re[ κ n − (e^(−sn) − 1 + sn) z/(1−z)² ],
 /// κ = s z/(1−z)² − ½ (1+z)/(1−z)
 /// ```
 ///
-/// of which the second form does not cancel where the pole is slow. All functions leave the factor τ₀² to
-/// the caller.
+/// The second form does not cancel if the pole is slow. All functions leave the factor τ₀² to the caller.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pole {
-    /// Decay a sample, τ₀/T.
+    /// The decay per sample, τ₀/T.
     decay: Real,
-    /// Cycles a sample, fτ₀.
+    /// The cycles per sample, fτ₀.
     cycles: Real,
-    /// `s`, of the frequency's alias below half the sample rate.
+    /// The exponent `s`, for the alias of the frequency below half the sample rate.
     exponent: Complex<Real>,
     /// Re κ.
     slope: Real,
@@ -56,7 +58,7 @@ pub(super) struct Pole {
 }
 
 impl Pole {
-    /// A pole of time constant `time_s` and frequency `frequency_hz`.
+    /// A pole with time constant `time_s` and frequency `frequency_hz`.
     pub(super) fn new(time_s: Real, frequency_hz: Real, interval_s: Real) -> Self {
         let decay = interval_s / time_s;
         let cycles = frequency_hz * interval_s;
@@ -69,7 +71,7 @@ impl Pole {
         let rest = sample.rest();
         let (factor, long) = (z / (rest * rest), (z + 1.0) / rest);
         let slope = if s.norm_sqr() < SLOW * SLOW {
-            // Its series, of which the next term is s⁵/5040.
+            // This is the series of κ, whose next term is s⁵/5040.
             -s * (ONE - s * s / 30.0) / 6.0
         } else {
             s * factor - long * 0.5
@@ -84,12 +86,12 @@ impl Pole {
         }
     }
 
-    /// The variance that a long mean has, times its samples.
+    /// The variance of the mean of many samples, times the number of samples.
     pub(super) fn long_mean(&self) -> Real {
         self.long
     }
 
-    /// `z^n`, with its exponent.
+    /// The power `z^n` with its exponent.
     fn power(&self, n: Real) -> Exponential {
         self.known(n, power(self.decay, self.cycles, n))
     }
@@ -127,20 +129,20 @@ impl Pole {
             let product = self.factor * (ONE - w) * (Complex::new(3.0, 0.0) - w);
             return (m * self.long - product.re) / (m * m);
         }
-        // In the form that does not cancel, with φ = W − 1 + v: Re factor [4 φ − (W² − 1 + 2v)] − 2 κ m,
-        // where the brackets are 2vφ − φ² − 2 (v²/2 − φ).
+        // This form does not cancel. With φ = W − 1 + v it is Re factor [4 φ − (W² − 1 + 2v)] − 2 κ m, where
+        // the brackets equal 2vφ − φ² − 2 (v²/2 − φ).
         let (v, third) = (power.exponent, power.third_rest());
         let second = v * v * 0.5 - third;
         let product = self.factor * (v * second * 2.0 - second * second - third * 2.0);
         product.re / (m * m) - 2.0 * self.slope / m
     }
 
-    /// Allan variance.
+    /// The Allan variance `σ²(mτ₀)`.
     pub(super) fn variance(&self, m: Real) -> Real {
         self.variance_of(m, self.power(m).power)
     }
 
-    /// Allan variances at ascending averaging factors: powers by squaring from octave to octave.
+    /// The Allan variances at ascending averaging factors. The power is squared from octave to octave.
     pub(super) fn variances(
         &self,
         factors: impl Iterator<Item = Real>,
@@ -157,8 +159,8 @@ impl Pole {
         }
     }
 
-    /// Adds `weight` times the second differences for clusters of `m` samples: powers by
-    /// multiplication along the lattice.
+    /// Adds `weight` times the second differences for clusters of `m` samples. The powers follow from one
+    /// another by multiplication along the lattice.
     pub(super) fn add_second_differences(
         &self,
         m: Real,
@@ -195,7 +197,7 @@ impl Pole {
     }
 }
 
-/// `e^(−v)`.
+/// The exponential `e^(−v)`.
 struct Exponential {
     /// `v`.
     exponent: Complex<Real>,

@@ -6,7 +6,7 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SampledShape {
-    /// Sample interval τ₀, in seconds, above zero.
+    /// The sample interval τ₀, in seconds, above zero.
     pub interval_s: Real,
     /// The shape parameters, in the order of [`Description::parameters`](super::Description::parameters).
     /// Entries beyond those that the effect has are ignored.

@@ -4,9 +4,9 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Span {
-    /// Sample interval τ₀, in seconds.
+    /// The sample interval τ₀, in seconds.
     pub interval_s: Real,
-    /// Averaging time of the longest octave, in seconds.
+    /// The averaging time of the longest octave, in seconds.
     pub longest_tau_s: Real,
 }
 
@@ -16,10 +16,10 @@ pub struct Span {
 pub struct SearchRange {
     /// The lowest value, above zero, in the parameter's unit.
     pub low: Real,
-    /// The highest value. A search takes `low` instead where the curve is so short that `high` lies
-    /// below it.
+    /// The highest value. If the curve is so short that `high` lies below `low`, a search takes `low`
+    /// instead.
     pub high: Real,
-    /// The number of values for each factor of two. It has no effect on a whole-numbered parameter,
-    /// of which a search tries every value.
+    /// The number of values for each factor of two. It has no effect on a parameter that takes whole numbers
+    /// only, because a search tries all of these.
     pub steps_per_octave: Real,
 }

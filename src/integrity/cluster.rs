@@ -1,17 +1,17 @@
-//! Means of clusters, which show motion.
+//! The means of clusters of samples, which show motion.
 
 use super::watch::{Fate, Rule, Watch, square};
 
-/// Clusters of one length.
+/// The clusters of one length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Cluster {
     pub(super) sum: i64,
-    /// Samples in the sum.
+    /// The number of samples in the sum.
     pub(super) filled: u16,
     pub(super) watch: Watch,
-    /// Σ D² where the rate had left its level.
+    /// Σ D² of the clusters whose mean was outside its usual level.
     pub(super) squares: u128,
     pub(super) motions: u64,
 }
@@ -32,7 +32,7 @@ impl Cluster {
         self.filled = self.filled.wrapping_add(1);
     }
 
-    /// The cluster is full.
+    /// Judges a full cluster and begins the next one.
     #[inline(never)]
     pub(super) fn judge(&mut self, rule: &Rule) {
         let (fate, difference) = self.watch.push(self.sum, rule);

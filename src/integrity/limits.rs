@@ -1,41 +1,41 @@
-//! From when on a record is not to be believed.
+//! The limits beyond which a record is not valid.
 
-/// Limits of [`Integrity`](crate::integrity::Integrity). Shares are in thousandths, `0 … 1000`: 0 allows none,
-/// 1000 any.
+/// The limits of [`Integrity`](crate::integrity::Integrity). Shares are in thousandths, from 0, which allows
+/// no such sample, to 1000, which allows any number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits {
-    /// The values at which the sensor clips, by default those of `i16` and `i32`. One of 14 bits
+    /// The values at which the sensor clips, by default those of `i16` and `i32`. A sensor of 14 bits
     /// has `[-8192, 8191, i32::MIN, i32::MAX]`.
     pub rails: [i32; 4],
-    /// Share of samples at a rail. Default 1.
+    /// The largest share of samples at a rail. Default 1.
     pub rail_per_mille: u16,
-    /// A run of equal values is implausible from so many times the record's mean run on,
+    /// A run of equal values is implausible if it is longer than this multiple of the record's mean run,
     /// `8 … 256`. Default 128.
     pub run_factor: u16,
-    /// Share of samples in such runs. Default 1.
+    /// The largest share of samples in implausibly long runs. Default 1.
     pub stuck_per_mille: u16,
-    /// Least share of samples that differ from the one before, judged from 1000 samples on.
-    /// Default 1.
+    /// The smallest share of samples that differ from the sample before. It is judged from 1000 samples
+    /// on. Default 1.
     pub change_per_mille: u16,
-    /// A sample is outlying from so many times the mean absolute difference of neighbours on,
-    /// `8 … 256`. Default 20.
+    /// A sample is an outlier if it deviates by more than this multiple of the mean absolute difference
+    /// of neighbours, `8 … 256`. Default 20.
     pub spike_factor: u16,
-    /// Share of ΣD² at `m = 1` that spikes may have. Default 50.
+    /// The largest share of ΣD² at `m = 1` that may come from spikes. Default 50.
     pub spike_per_mille: u16,
-    /// A cluster of samples has moved from so many times the mean absolute difference of
-    /// neighbouring clusters on, `8 … 256`. Default 64.
+    /// A cluster of samples has moved if its mean deviates by more than this multiple of the mean
+    /// absolute difference of neighbouring clusters, `8 … 256`. Default 64.
     pub motion_factor: u16,
-    /// Share of ΣD² of the clusters that motion may have. Default 50.
+    /// The largest share of ΣD² of the clusters that may come from motion. Default 50.
     pub motion_per_mille: u16,
-    /// Share of samples that may be missing. Default 100.
+    /// The largest share of samples that may be missing. Default 100.
     pub missing_per_mille: u16,
-    /// Share of samples that a gate may leave out. Default 250.
+    /// The largest share of samples that a gate may leave out. Default 250.
     pub left_out_per_mille: u16,
 }
 
 impl Limits {
-    /// What every field says its default is.
+    /// The limits with the default of every field.
     pub const DEFAULT: Self = Self {
         rails: [i16::MIN as i32, i16::MAX as i32, i32::MIN, i32::MAX],
         rail_per_mille: 1,
@@ -81,7 +81,7 @@ impl Limits {
 }
 
 const SHARE: (u16, u16) = (0, 1000);
-/// Less would find ordinary noise odd, more would find nothing.
+/// A smaller factor would find ordinary noise odd, and a larger one would find nothing.
 const FACTOR: (u16, u16) = (8, 256);
 
 impl Default for Limits {
@@ -90,17 +90,17 @@ impl Default for Limits {
     }
 }
 
-/// A limit that no record could be judged by.
+/// A limit outside the range in which a record can be judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InvalidLimit {
-    /// The field of [`Limits`].
+    /// The name of the field of [`Limits`].
     pub name: &'static str,
-    /// Its value.
+    /// The value of the field.
     pub value: u16,
-    /// The least that it may be.
+    /// The smallest value allowed.
     pub least: u16,
-    /// The most that it may be.
+    /// The largest value allowed.
     pub most: u16,
 }
 

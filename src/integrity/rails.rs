@@ -1,11 +1,11 @@
-//! Where a converter clips.
+//! The rails: the values at which a converter clips.
 
-/// Hits of the record's extremes where they are rails.
+/// The extremes of the record, and the number of samples at each of them if it is a rail.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Rails {
-    /// Whether there was a count, so that `lowest` and `highest` are some.
+    /// Whether there was a count, so that `lowest` and `highest` are valid.
     begun: bool,
     lowest: i32,
     highest: i32,
@@ -22,14 +22,14 @@ impl Rails {
         highest_hits: 0,
     };
 
-    /// Whether the count is no extreme of the record, and so no hit of a rail either. No count is between the
-    /// zeros that an empty record has.
+    /// Whether the count lies strictly between the record's extremes, so that it cannot be at a rail. This
+    /// is false for every count while the record is empty, because both extremes are zero then.
     #[inline(always)]
     pub(super) fn is_between(&self, count: i32) -> bool {
         count > self.lowest && count < self.highest
     }
 
-    /// Whether the count is a rail and the record's extreme.
+    /// Whether the count is a rail and an extreme of the record.
     pub(super) fn push(&mut self, count: i32, rails: &[i32; 4]) -> bool {
         if self.is_between(count) {
             return false;

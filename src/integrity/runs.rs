@@ -1,9 +1,9 @@
-//! How long values repeat.
+//! Runs of equal values.
 
-/// Changes of value after which the mean run is known well enough to judge a run by it.
+/// The number of ended runs from which the mean run is known well enough to judge a run by it.
 const KNOWN: u32 = 16;
 
-/// Samples that a mean is over at most: half of what 32 bits hold.
+/// The largest number of samples that the mean run covers: half the range of 32 bits.
 const HALF: u32 = 1 << 31;
 
 /// Runs of equal values.
@@ -11,11 +11,12 @@ const HALF: u32 = 1 << 31;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Runs {
-    /// Samples of the present run; 0 after a gap.
+    /// The number of samples in the present run; 0 after a gap.
     pub(super) present: u32,
     pub(super) value: i32,
     pub(super) longest: u32,
-    /// Samples in runs that have ended, and how many these are; both halved before they overflow.
+    /// The number of samples in runs that have ended, and the number of these runs. Both are halved before
+    /// they overflow.
     ended_samples: u32,
     ended: u32,
     pub(super) stuck: u64,
@@ -33,7 +34,7 @@ impl Runs {
         stuck_samples: 0,
     };
 
-    /// The count differs from the one before, which belongs to the same stretch.
+    /// Begins a new run, because the count differs from the one before it, and no gap lies between them.
     #[inline(always)]
     pub(super) fn change(&mut self, count: i32) {
         self.end();
@@ -41,7 +42,7 @@ impl Runs {
         self.present = 1;
     }
 
-    /// Whether the present run is implausibly long.
+    /// Adds a count and returns whether the present run is implausibly long.
     #[inline(always)]
     pub(super) fn push(&mut self, count: i32, factor: u16) -> bool {
         if self.present == 0 || self.value != count {
@@ -53,7 +54,7 @@ impl Runs {
         self.longest = self.longest.max(self.present);
         let stuck = self.is_implausible(self.present, self.ended_samples, factor);
         if stuck {
-            // The first time with all samples of the run so far.
+            // When the run becomes implausible, all its samples so far count.
             let before = self.is_implausible(self.present - 1, self.ended_samples, factor);
             let new = if before { 1 } else { self.present };
             self.stuck = self.stuck.saturating_add(u64::from(!before));
@@ -62,7 +63,7 @@ impl Runs {
         stuck
     }
 
-    /// A value has followed that is not the run's.
+    /// Ends the present run, because a different value has followed.
     #[inline(always)]
     fn end(&mut self) {
         if self.present > 0 {
@@ -84,7 +85,7 @@ impl Runs {
     #[cold]
     #[inline(never)]
     fn fade(&mut self, samples: u32, runs: u32) {
-        // The mean is kept, what is older than 2^31 samples fades.
+        // The mean stays the same, while the weight of samples older than 2^31 fades.
         let sum = u64::from(self.ended_samples) + u64::from(samples);
         let fade = sum.checked_ilog2().unwrap_or(0).saturating_sub(30);
         self.ended_samples = (sum >> fade) as u32;
@@ -99,7 +100,7 @@ impl Runs {
     }
 
     pub(super) fn is_longest_implausible(&self, factor: u16) -> bool {
-        // Without itself, if it has ended.
+        // The mean of the other runs: the longest run is excluded if it has ended.
         let others = if self.longest == self.present {
             self.ended_samples
         } else {

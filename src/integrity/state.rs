@@ -1,4 +1,4 @@
-//! What has been seen of a record, whatever the limits.
+//! What has been seen of a record, independently of the limits.
 
 use super::{
     cluster::Cluster,
@@ -9,16 +9,16 @@ use super::{
     watch::{Fate, Rule, Watch, square},
 };
 
-/// How many samples a cluster has whose mean shows motion: 0.64 s and 10 s at 100 Hz, 8 ms and
+/// The lengths in samples of the clusters whose means show motion: 0.64 s and 10 s at 100 Hz, 8 ms and
 /// 0.13 s at 8 kHz.
 pub(super) const CLUSTERS: [u16; 2] = [64, 1024];
 
-/// Everything but the configuration.
+/// The whole state of integrity, without its configuration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct State {
-    /// Samples that begin a stretch: the others either repeat the one before or change.
+    /// The samples that begin a stretch. All other samples either repeat the sample before or change.
     pub(super) firsts: u64,
     pub(super) missing: u64,
     pub(super) repeats: u64,
@@ -28,13 +28,14 @@ pub(super) struct State {
     pub(super) neighbours: Watch,
     pub(super) spikes: u64,
     pub(super) steps: u64,
-    /// Σ D² of the spikes and of the steps.
+    /// Σ D² of the spikes.
     pub(super) spike_squares: u128,
+    /// Σ D² of the steps.
     pub(super) step_squares: u128,
-    /// Of the excursion that goes on.
+    /// Σ D² of the excursion that has not ended yet.
     pub(super) pending_squares: u128,
     pub(super) clusters: [Cluster; CLUSTERS.len()],
-    /// Whether the last cluster of either length lay far from the ordinary ones.
+    /// Whether the last cluster of either length deviates far from the ordinary ones.
     pub(super) moving: bool,
 }
 
@@ -56,19 +57,19 @@ impl State {
         moving: false,
     };
 
-    /// Samples seen.
+    /// The number of samples seen.
     pub(super) fn samples(&self) -> u64 {
         let others = self.repeats.saturating_add(self.changes);
         self.firsts.saturating_add(others)
     }
 
-    /// Adds a count to which nothing happens that is worth a closer look, and returns whether that was so:
-    /// the way of nearly every sample. Otherwise nothing is added.
+    /// Adds a count if it needs no closer look, and returns whether it was added. Nearly every sample takes
+    /// this path. If the result is `false`, nothing has changed.
     #[inline(always)]
     pub(super) fn push_usual(&mut self, count: i32, limits: &Limits) -> bool {
         let [short, long] = &mut self.clusters;
         let [short_length, long_length] = CLUSTERS;
-        // A longer cluster that is full is judged at the sample after. A repeated value is looked at.
+        // A full longer cluster is judged at the sample after it. A repeated value needs a closer look.
         let repeats = self.runs.value == count;
         if !self.rails.is_between(count) || long.filled == long_length || repeats {
             return false;
@@ -86,7 +87,7 @@ impl State {
         true
     }
 
-    /// Adds any count; what is odd about it.
+    /// Adds any count and returns what is odd about it.
     #[inline(never)]
     pub(super) fn push(&mut self, count: i32, limits: &Limits) -> Observation {
         let counter = match (self.runs.present, self.runs.value == count) {
@@ -98,7 +99,7 @@ impl State {
         let stuck = self.runs.push(count, limits.run_factor);
         let railed = self.rails.push(count, &limits.rails);
         let mut outlying = false;
-        // What is stuck says nothing of the noise.
+        // A stuck value says nothing about the noise.
         if !stuck {
             let ordinary;
             (outlying, ordinary) = self.push_neighbour(count, limits.spike_factor);
@@ -114,8 +115,8 @@ impl State {
         }
     }
 
-    /// Whether the count is far from the last ordinary one, and what clusters take in its place,
-    /// once the scale is known.
+    /// Returns whether the count is far from the last ordinary one, and the count that the clusters take
+    /// instead of it. The latter is `None` until the scale is known.
     fn push_neighbour(&mut self, count: i32, factor: u16) -> (bool, Option<i32>) {
         let (fate, difference) = self
             .neighbours
@@ -155,8 +156,8 @@ impl State {
         self.pending_squares = 0;
     }
 
-    /// At most one length is judged at a sample, the shorter at the end of its cluster, the longer
-    /// at the sample after.
+    /// Adds a count to the clusters. At most one cluster is judged at each sample: a short cluster at its
+    /// last sample, a long one at the sample after it.
     fn push_clusters(&mut self, count: i32, factor: u16) {
         let [short, long] = &mut self.clusters;
         let [short_length, long_length] = CLUSTERS;
@@ -176,7 +177,7 @@ impl State {
     fn end_short_cluster(&mut self, factor: u16) {
         let [short, long] = &mut self.clusters;
         let [short_length, _] = CLUSTERS;
-        // 1024 counts of 32 bits are far from 64.
+        // The sum of 1024 counts of 32 bits is far from the limit of 64 bits.
         long.sum = long.sum.wrapping_add(short.sum);
         long.filled = long.filled.wrapping_add(short_length);
         short.judge(&Rule::clusters(factor, short_length));
@@ -195,7 +196,7 @@ impl State {
         self.moving = false;
     }
 
-    /// Whether a record can have left this behind a gap.
+    /// Whether a record that ended with a gap can have left this state.
     #[cfg(feature = "storage")]
     pub(super) fn is_possible(&self) -> bool {
         let clusters = self.clusters.iter();

@@ -1,77 +1,80 @@
-//! What lies far outside the differences of neighbours that a sequence is used to.
+//! Detects values that deviate from their neighbours by far more than is usual in their sequence.
 
-/// A sequence of values, the scale of its neighbours' differences, and where it left its level.
+/// A sequence of values, the scale of the differences of its neighbours, and its departures from its level.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Watch {
-    /// Running mean of absolute differences, each cut at [`CUT`] times the mean, in 2^−12. While it
-    /// is learnt, the least of the blocks' means. It stays below 2^55, since a difference stays below
-    /// 2^42.
+    /// The running mean of absolute differences, each limited to [`CUT`] times the mean, in units of
+    /// 2^−12. While the scale is learnt, it is the smallest of the blocks' means. It stays below 2^55,
+    /// because a difference stays below 2^42.
     scale: u64,
-    /// Σ of absolute differences in the present block, while the scale is learnt.
+    /// The sum of absolute differences in the present block, while the scale is learnt.
     block: u64,
-    /// The largest difference until then.
+    /// The largest difference while the scale is learnt.
     largest: u64,
     previous: i64,
     /// The last value that was not far from the one before it.
     reference: i64,
-    /// Σ D² of all, lower limb first: a carry is rare.
+    /// Σ D² of all differences of neighbours, lower limb first. A carry between the limbs is rare.
     total: [u64; 2],
-    /// Differences learnt from.
+    /// The number of differences that the scale was learnt from.
     learnt: u8,
-    /// Values since the last ordinary one.
+    /// The number of values since the last ordinary one.
     outside: u8,
-    /// Whether `previous` and `reference` are values of this stretch.
+    /// Whether `previous` and `reference` belong to the present stretch, without a gap after them.
     running: bool,
-    /// Whether the scale is known and the last value was ordinary: `previous` is the reference, and
+    /// Whether the scale is known and the last value was ordinary. Then `previous` is the reference, and
     /// `reference` is out of date.
     steady: bool,
 }
 
-/// How a sequence is judged.
+/// The rule by which a sequence is judged.
 pub(super) struct Rule {
-    /// Binary logarithm of the differences in a block; four blocks are learnt from.
+    /// The binary logarithm of the number of differences in a block. The scale is learnt from four blocks.
     block: u32,
-    /// Binary logarithm of the differences that the running mean spans.
+    /// The binary logarithm of the number of differences that the running mean covers.
     span: u32,
-    /// What quantisation may hide of the scale, in 2^−12.
+    /// The part of the scale that quantisation may hide, in units of 2^−12.
     floor: u64,
-    /// The scale that is assumed at least, in 2^−12.
+    /// The smallest scale that is assumed, in units of 2^−12.
     least: u64,
     factor: u16,
-    /// Values after which an excursion is the new level.
+    /// The number of values after which an excursion is taken for the new level.
     patience: u8,
 }
 
-/// What has become of a value.
+/// The judgement of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fate {
-    /// The first of a stretch.
+    /// It is the first value of a stretch.
     Start,
     /// The scale is not known yet.
     Learning,
-    /// It is now. The square of the largest difference so far, if that was far beyond it.
+    /// The scale is known from this value on. `outlier` is the square of the largest difference so far if
+    /// that exceeds the limit, and 0 otherwise.
     Learnt { outlier: u128 },
-    /// As usual.
+    /// The value is as usual.
     Ordinary,
-    /// Far from the last ordinary one.
+    /// The value is far from the last ordinary one.
     Out { first: bool },
-    /// Ordinary again.
+    /// The value is ordinary again after an excursion.
     Back,
-    /// Outside for so long that this is the level now.
+    /// Values were outside for so long that this is the new level.
     Accepted,
 }
 
-/// Fraction bits of a scale.
+/// The number of fraction bits of a scale.
 const FRACTION: u32 = 12;
-/// Blocks learnt from. The quietest counts, so that a disturbance may last for all but one.
+/// The number of blocks that the scale is learnt from. The quietest block counts, so that a disturbance may
+/// last for all blocks but one.
 const BLOCKS: u8 = 4;
-/// No difference counts for more than so many times the usual.
+/// A difference enters the scale with at most this multiple of the usual difference.
 const CUT: u64 = 2;
 
 impl Rule {
-    /// Half a count of quantisation: noise may hide for a while in the middle of a quantum.
+    /// The rule for neighbouring samples. Its floor is half a count, because noise may be hidden for a while
+    /// in the middle of a quantum.
     pub(super) const fn neighbours(factor: u16) -> Self {
         Self {
             block: 4,
@@ -83,7 +86,8 @@ impl Rule {
         }
     }
 
-    /// A sixteenth of a count in the mean, so that a quiet level may change by some quanta.
+    /// The rule for clusters of the given length. Its floor is a sixteenth of a count in the mean, so that a
+    /// quiet level may change by some quanta.
     pub(super) const fn clusters(factor: u16, length: u16) -> Self {
         Self {
             block: 2,
@@ -95,7 +99,8 @@ impl Rule {
         }
     }
 
-    /// The same, and no mean is expected to be steadier than that of clusters `times` shorter.
+    /// The same rule with a smallest scale: the scale of clusters `times` shorter, multiplied by `times`.
+    /// The mean of a longer cluster is not expected to be steadier than that of a shorter one.
     pub(super) const fn with_least(self, shorter: &Watch, times: u16) -> Self {
         Self {
             least: shorter.scale.wrapping_mul(times as u64),
@@ -118,9 +123,9 @@ impl Watch {
         steady: false,
     };
 
-    /// Adds a value if it is as usual, and returns whether it is: the way of nearly every sample, in 32 bits.
-    /// Where something may be odd or a number is long, nothing is added, and [`push`](Self::push) is to
-    /// decide.
+    /// Adds a value if it is as usual, and returns whether it was added. Nearly every sample takes this path,
+    /// which computes in 32 bits. If the value may be odd or a number does not fit, nothing is added, and
+    /// [`push`](Self::push) decides.
     #[inline(always)]
     pub(super) fn push_usual(&mut self, value: i32, rule: &Rule) -> bool {
         let scale = self.scale as u32;
@@ -138,7 +143,7 @@ impl Watch {
             return false;
         };
         *low = sum;
-        // No more than 2^31.
+        // The result is at most 2^31.
         let new = long.min(u64::from(usual.wrapping_mul(CUT as u32))) as u32;
         let scale = scale.wrapping_sub(scale.wrapping_shr(rule.span));
         self.scale = scale.wrapping_add(new.wrapping_shr(rule.span)).into();
@@ -169,7 +174,7 @@ impl Watch {
             self.reference = value;
             return (self.learn(difference, rule), difference);
         }
-        // Below 2^56, and so below 2^64 with the largest factor.
+        // `usual` is below 2^56, so that the product is below 2^64 for the largest factor.
         let usual = self.usual(rule);
         let limit = usual.wrapping_mul(rule.factor.into());
         let far = value.abs_diff(self.reference) << FRACTION > limit;
@@ -246,7 +251,7 @@ impl Watch {
         if self.is_learning(rule) {
             return Fate::Learning;
         }
-        // The least of four means of four differences lies at two thirds of the mean.
+        // The smallest of four means of four differences is about two thirds of the mean.
         self.scale = self.scale.saturating_add(self.scale / 2);
         let usual = self.usual(rule);
         let outlying = self.largest << FRACTION > usual.saturating_mul(rule.factor.into());
@@ -255,14 +260,14 @@ impl Watch {
         }
     }
 
-    /// The next value does not adjoin the last.
+    /// Notes that the next value does not adjoin the last one.
     pub(super) fn gap(&mut self) {
         (self.running, self.steady) = (false, false);
         self.outside = 0;
         (self.previous, self.reference) = (0, 0);
     }
 
-    /// Adds the sums of another sequence; its scale is taken by one that knows less.
+    /// Adds the sums of another sequence, and takes over its scale if that was learnt from more differences.
     pub(super) fn merge(&mut self, other: &Self) {
         let total = self.total().saturating_add(other.total());
         if other.learnt > self.learnt {
@@ -292,7 +297,7 @@ impl Watch {
         low as u128 | (high as u128) << 64
     }
 
-    /// Whether a sequence can have left this state behind a gap.
+    /// Whether a sequence that ended with a gap can have left this state.
     #[cfg(feature = "storage")]
     pub(super) const fn is_possible(&self) -> bool {
         let quiet = !self.running && !self.steady && self.outside == 0;

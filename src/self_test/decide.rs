@@ -1,4 +1,4 @@
-//! Whether a coefficient lies above or below a limit.
+//! Decides whether a coefficient lies above or below a limit.
 
 use crate::{
     coefficient::{Coefficient, State},
@@ -7,25 +7,26 @@ use crate::{
     real::{Real, consts::FRAC_1_SQRT_2, real},
 };
 
-/// Where a limit stands beside an estimate.
+/// The side of a limit on which a coefficient lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Side {
-    /// The limit is kept.
+    /// The coefficient is below the limit.
     Below,
-    /// It is not.
+    /// The coefficient is above the limit.
     Above,
-    /// It is within the interval: `standard_errors` apart, with sign.
+    /// The limit lies within the coefficient's interval.
     Open {
-        /// How far the estimate lies above the limit, in standard errors.
+        /// The distance of the estimate above the limit, in standard errors; negative below the limit.
         standard_errors: Real,
     },
 }
 
-/// A square less sure than this share of itself is not called too large: it may have taken over what others
-/// have, and its distribution is known too little.
+/// The largest relative standard error with which a square is called too large. A less certain square may
+/// have absorbed the share of other coefficients, and its distribution is not known well enough.
 const SURE: Real = 0.25;
 
-/// The least standard errors that an estimate and a limit must be apart for a probability.
+/// The smallest distance between an estimate and a limit, in standard errors, at which the probability of a
+/// wrong decision is at most `probability`.
 pub(super) fn quantile(probability: Real) -> Real {
     let (mut low, mut high) = (0.0, 40.0);
     for _ in 0..60 {
@@ -39,14 +40,14 @@ pub(super) fn quantile(probability: Real) -> Real {
     high
 }
 
-/// Probability of a normal deviate above `z`.
+/// The probability that a standard normal deviate exceeds `z`.
 fn tail(z: Real) -> Real {
     0.5 * math::erfc(z * FRAC_1_SQRT_2)
 }
 
-/// Decides with the quantiles of passing and failing. `beside` is the standard error of the square with the
-/// coefficients of neighbouring slopes free: where the fit holds one at zero that is not, this one has its
-/// share, and is surer of it than it should be.
+/// Decides with the quantiles of passing and failing. `beside` is the standard error of the square when the
+/// coefficients of neighbouring slopes are free. If the fit holds a neighbour at zero that is not zero, this
+/// coefficient absorbs its share, and the standard error of the fit is too small. `beside` allows for that.
 pub(super) fn side(
     coefficient: &Coefficient,
     beside: Real,
@@ -75,7 +76,8 @@ pub(super) fn side(
             open(above)
         };
     }
-    // Of a sum of squares the one is right, of a small part of others' the other: both must agree.
+    // The χ² distribution suits a coefficient that dominates its octaves, and the normal distribution suits
+    // one that is a small part of them. Both must agree, so the one that is nearer to the limit decides.
     let nearer = normal.max(skewed(coefficient.square, coefficient.square_error, limit));
     if nearer < -pass {
         Side::Below
@@ -84,8 +86,8 @@ pub(super) fn side(
     }
 }
 
-/// Standard error of the square; of one that is only bounded, that of its bound, where it may scatter
-/// more.
+/// The standard error of the square. For an upper bound it is the larger of the fit's error and the error
+/// that the bound implies.
 fn error(coefficient: &Coefficient) -> Real {
     let bound = coefficient.upper * coefficient.upper - coefficient.square;
     match coefficient.state {
@@ -94,11 +96,12 @@ fn error(coefficient: &Coefficient) -> Real {
     }
 }
 
-/// The square taken for a mean of squares: it is distributed as χ² with `2 (β/σ)²` degrees of freedom,
-/// whose cube root is nearly normal (Wilson & Hilferty 1931).
+/// The distance of the square above the limit, in standard deviations, if the square is a mean of squares.
+/// Such a mean is distributed as χ² with `2 (β/σ)²` degrees of freedom, whose cube root is nearly normal
+/// (Wilson & Hilferty 1931).
 fn skewed(square: Real, error: Real, limit: Real) -> Real {
     let relative = error / square;
-    // 2/(9ν).
+    // This is 2/(9ν), with ν degrees of freedom.
     let variance = relative * relative / 9.0;
     let ratio = math::cbrt(square / limit);
     (ratio - (1.0 - variance)) / math::sqrt(variance)

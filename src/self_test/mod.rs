@@ -1,4 +1,4 @@
-//! A self-test with limits: it looks at a growing record, and gives a verdict as soon as the record bears one.
+//! A self-test with limits. It looks at a growing record and gives a verdict as early as the record allows.
 
 mod decide;
 mod look;
@@ -23,48 +23,48 @@ use crate::{
 };
 use decide::{Side, quantile, side};
 
-/// How a self-test stands.
+/// The state of a self-test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
-    /// Push more samples.
+    /// The test needs more samples.
     Running {
-        /// Share of the longest record that is there, 0 to 1.
+        /// The length of the record as a share of the longest record, 0 to 1.
         progress: f32,
-        /// Seconds from now to the look at which a verdict is expected: the last one until the first
-        /// has been taken.
+        /// The time from now to the look at which a verdict is expected, in seconds. Until the first look,
+        /// the last look is expected to decide.
         expected_s: Real,
     },
-    /// Every limit is kept.
+    /// The gyro keeps every limit.
     Passed,
-    /// One is not.
+    /// The gyro does not keep a limit.
     Failed(Failure),
-    /// The longest record did not tell.
+    /// The longest record did not decide the test.
     Undecided {
-        /// The limit that is open.
+        /// The limit that is undecided.
         limit: Limit,
-        /// Length of a record that would decide if its estimate is right, in seconds; `None` where no
-        /// length up to 2³⁰ samples would.
+        /// The length in seconds of a record that would decide if its estimate is right; `None` if no
+        /// record of up to 2³⁰ samples would.
         decided_by_s: Option<Real>,
     },
-    /// The samples cannot be those of a gyro at rest.
+    /// The samples cannot come from a gyro at rest.
     Invalid(Reason),
 }
 
-/// What a gyro failed.
+/// The requirement that a gyro did not meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Failure {
-    /// A coefficient above its limit.
+    /// A coefficient is above its limit.
     Limit {
-        /// The limit.
+        /// The limit that the coefficient exceeds.
         limit: Limit,
-        /// What was measured.
+        /// The measured value of the coefficient, in the unit of the limit.
         value: Real,
     },
     /// The five terms do not explain the curve.
     Misfit {
-        /// Probability of a larger χ² if they did.
+        /// The probability of a χ² this large or larger if the five terms explained the curve.
         p_value: Real,
     },
 }
@@ -73,17 +73,18 @@ pub enum Failure {
 ///
 /// # The statistics
 ///
-/// A look is taken at the shortest length, and whenever the record has doubled, and at the longest:
-/// the coefficients are fitted, and a limit is decided as soon as an interval leaves it. Each look is
-/// a chance to err, so the probabilities of the plan are divided among the looks (Bonferroni 1936), that
-/// of a false fail also among the limits; a false pass needs the coefficient that lies above its limit,
-/// whatever the others do. A decision stands: later looks do not ask again.
+/// The test looks at the record at the shortest length, whenever the record has doubled, and at the
+/// longest length. At each look it fits the coefficients, and it decides a limit as soon as the limit is
+/// outside the coefficient's interval. Each look is a chance of an error. Therefore the probabilities of
+/// the plan are divided among the looks (Bonferroni 1936), and that of a false fail also among the limits.
+/// That of a false pass is not, because a false pass requires one particular coefficient above its limit
+/// to pass, whatever the others do. A decision is final: later looks do not repeat it.
 ///
-/// # How it is used
+/// # How to use it
 ///
-/// The test owns no samples. It says at every sample whether a look [is due](Self::is_due), which takes a
-/// comparison, and takes the [look](Self::look) at a curve when the caller has time for a
-/// [`fit`](crate::fit()). Nothing is lost by looking late.
+/// The test holds no samples. [`is_due`](Self::is_due) says after each sample whether a look is due, at the
+/// cost of one comparison. The caller then takes the [`look`](Self::look) at a curve when it has time for a
+/// [`fit`](crate::fit()). A late look loses nothing.
 ///
 /// # Example
 ///
@@ -98,7 +99,7 @@ pub enum Failure {
 ///     shortest_s: 1.0,
 ///     longest_s: 600.0,
 /// };
-/// // 131 counts per °/s, 100 Hz.
+/// // 131 counts per °/s, at 100 Hz.
 /// let scale = Scale::new(1.0 / 131.0, 100.0)?;
 /// let mut gyro = Axis::<16>::new();
 /// let mut test = SelfTest::<16>::new(plan, scale)?;
@@ -122,34 +123,35 @@ pub enum Failure {
 pub struct SelfTest<const OCTAVES: usize> {
     plan: Plan,
     scale: Scale,
-    /// Samples at the last look.
+    /// The number of samples at the last look.
     last: u64,
-    /// Standard errors that pass a gyro.
+    /// The distance below a limit at which a gyro passes, in standard errors.
     pass: Real,
-    /// Looks that the plan has.
+    /// The number of looks in the plan.
     looks: u32,
     progress: Progress,
 }
 
-/// What changes while a test runs.
+/// The state that changes while a test runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Progress {
-    /// Samples at the next look.
+    /// The number of samples at the next look.
     next: u64,
-    /// Probability of a false fail that is left for the looks to come: each spends half of it, the last
-    /// one all. Early looks have most need of it, and a gyro that is far off fails at one.
+    /// The probability of a false fail that is left for the coming looks. Each look spends half of it, and
+    /// the last look spends all of it. Early looks get the most, because they need it most, and a gyro far
+    /// above a limit fails at one of them.
     fail_left: Real,
-    /// Limits that are known to be kept.
+    /// The limits that are known to be kept.
     kept: Choice,
-    /// As of the last look.
+    /// The status at the last look.
     status: Status,
 }
 
 impl<const OCTAVES: usize> SelfTest<OCTAVES> {
-    /// A test of a record with so many octaves.
+    /// Makes a test of a record with `OCTAVES` octaves.
     ///
     /// # Errors
-    /// [`InvalidPlan`].
+    /// [`InvalidPlan`] if the plan cannot be carried out.
     pub fn new(plan: Plan, scale: Scale) -> Result<Self, InvalidPlan> {
         let (first, last) = plan.check(scale, OCTAVES)?;
         let looks = 1 + last.div_ceil(first).next_power_of_two().ilog2();
@@ -172,13 +174,13 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         })
     }
 
-    /// Whether the test runs and a [`look`](Self::look) is due, at this number of samples.
+    /// Whether the test is running and a [`look`](Self::look) is due at this number of samples.
     #[inline]
     pub fn is_due(&self, samples: u64) -> bool {
         samples >= self.progress.next && matches!(self.progress.status, Status::Running { .. })
     }
 
-    /// How the test stands as of the last look, at this number of samples.
+    /// The status after the last look, with the progress at this number of samples.
     pub fn status(&self, samples: u64) -> Status {
         match self.progress.status {
             Status::Running { expected_s, .. } => Status::Running {
@@ -297,7 +299,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         }
     }
 
-    /// Length of a record that would decide, if the estimate is right: errors fall with its root.
+    /// The length in seconds of a record that would decide, if the estimate is right. Standard errors fall
+    /// with the square root of the length.
     fn needed_s(
         &self,
         coefficient: &Coefficient,
@@ -323,7 +326,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         }
     }
 
-    /// The look after that many seconds, or the last.
+    /// The status that expects a verdict at the first look after `needed_s` seconds, or at the last look.
     fn running(&self, samples: u64, needed_s: Real) -> Status {
         let mut look = self.progress.next;
         while look < self.last && (look as Real) < needed_s * self.scale.rate_hz() {

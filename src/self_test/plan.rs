@@ -1,4 +1,4 @@
-//! What a gyro has to meet, and how long the test may take.
+//! The plan of a self-test: what a gyro must meet, and how long the test may take.
 
 use crate::{
     curve::{Curve, Scale},
@@ -8,65 +8,65 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The most that a coefficient may be.
+/// The largest value that a coefficient may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limit {
-    /// One of the five IEEE-952 terms, by name: `angle_random_walk`.
+    /// The name of one of the five IEEE-952 terms, such as `angle_random_walk`.
     pub effect: &'static str,
-    /// In the coefficient's unit: rate unit · s^(half_seconds/2).
+    /// The largest value, in the coefficient's unit: rate unit · s^(half_seconds/2).
     pub most: Real,
 }
 
-/// What a self-test asks of a gyro.
+/// The requirements of a self-test.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Plan {
-    /// Limits of coefficients, each at most once.
+    /// The limits of coefficients, at most one for each coefficient.
     pub limits: Vec<Limit, MAX_EFFECTS>,
-    /// A gyro fails whose five-term fit has a lower p-value, which is then divided among the looks;
-    /// 0 asks for nothing.
+    /// The smallest p-value of the five-term fit, 0 ≤ `least_p` < 1. It is divided among the looks, and a
+    /// gyro with a smaller p-value fails. 0 requires nothing.
     pub least_p: Real,
-    /// Probability that a gyro at one of its limits passes, at most; below 0.5.
+    /// The largest probability that a gyro at one of its limits passes; above 0 and below 0.5.
     pub false_pass: Real,
-    /// Probability that a gyro at all of its limits fails, at most; below 0.5.
+    /// The largest probability that a gyro at all of its limits fails; above 0 and below 0.5.
     pub false_fail: Real,
-    /// Length of the record at the first look, in seconds.
+    /// The length of the record at the first look, in seconds.
     pub shortest_s: Real,
-    /// Length of the record at the last, in seconds.
+    /// The length of the record at the last look, in seconds.
     pub longest_s: Real,
 }
 
-/// Why a plan is none.
+/// The reason why a plan is not valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum InvalidPlan {
-    /// Neither a limit nor a least p-value.
+    /// The plan has neither a limit nor a smallest p-value.
     NothingAsked,
-    /// A limit of something else than the five terms.
+    /// A limit names something other than one of the five terms.
     UnknownEffect(&'static str),
-    /// Two limits of one coefficient.
+    /// Two limits name the same coefficient.
     TwoLimits(&'static str),
-    /// A limit that is not a positive, finite number.
+    /// A limit is not a positive, finite number.
     InvalidLimit(Limit),
-    /// A probability of false pass or false fail outside 0 to 0.5, or a least p-value that is no
-    /// probability.
+    /// A probability of false pass or false fail is not between 0 and 0.5, or the smallest p-value is not
+    /// a probability.
     InvalidProbability(Real),
-    /// The shortest length takes fewer samples than a fit of two octaves, the longest is shorter than the
-    /// shortest, or takes more samples than 2³⁰ or than the octaves have a use for.
+    /// The shortest length has fewer samples than a fit of two octaves needs, or the longest length is
+    /// shorter than the shortest, or it has more than 2³⁰ samples, or more than the octaves can use.
     InvalidLength {
-        /// As planned, in seconds.
+        /// The shortest length of the plan, in seconds.
         shortest_s: Real,
-        /// As planned, in seconds.
+        /// The longest length of the plan, in seconds.
         longest_s: Real,
-        /// The longest of any use, in seconds.
+        /// The longest length that the octaves can use, in seconds.
         most_s: Real,
     },
 }
 
 impl Plan {
-    /// Samples at the first and the last look of a test with so many octaves.
+    /// Returns the numbers of samples at the first and the last look of a test with this many octaves.
     pub(super) fn check(&self, scale: Scale, octaves: usize) -> Result<(u64, u64), InvalidPlan> {
         if self.limits.is_empty() && self.least_p == 0.0 {
             return Err(InvalidPlan::NothingAsked);
@@ -91,11 +91,11 @@ impl Plan {
         if !(0.0..1.0).contains(&self.least_p) {
             return Err(InvalidPlan::InvalidProbability(self.least_p));
         }
-        // Beyond it no octave is added.
+        // A longer record adds no octave.
         let most = (8_u64 << octaves.min(MAX_SAMPLES.ilog2() as usize - 3)).min(MAX_SAMPLES);
         let samples = |seconds: Real| (seconds * scale.rate_hz()) as u64;
         let (first, last) = (samples(self.shortest_s), samples(self.longest_s));
-        // Two octaves, of one and of two samples.
+        // The number of samples that two octaves need, those of one and of two samples.
         let least = Curve::<2>::MIN_DIFFERENCES + 4;
         if first < least || last < first || last > most {
             return Err(InvalidPlan::InvalidLength {

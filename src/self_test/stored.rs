@@ -1,4 +1,4 @@
-//! What a snapshot holds of a self-test: the looks taken, the limits kept, the error probability left.
+//! The state of a self-test in a snapshot: the next look, the limits kept, the error probability left.
 
 use super::{Failure, Limit, Plan, Progress, SelfTest, Status};
 use crate::{
@@ -9,12 +9,12 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Bytes of a stored test at most.
+/// The largest number of bytes of a stored test.
 pub(crate) const LONGEST: usize = 80;
 
 #[derive(Serialize, Deserialize)]
 struct Stored {
-    /// CRC-32 of the plan and the scale.
+    /// The CRC-32 of the plan and the scale.
     plan: u32,
     next: u64,
     fail_left: f64,
@@ -22,7 +22,7 @@ struct Stored {
     verdict: Verdict,
 }
 
-/// A [`Status`], limits by their place in the plan.
+/// A [`Status`] that names a limit by its position in the plan.
 #[derive(Serialize, Deserialize)]
 enum Verdict {
     Running {
@@ -45,7 +45,7 @@ enum Verdict {
 }
 
 impl<const OCTAVES: usize> SelfTest<OCTAVES> {
-    /// What a snapshot holds.
+    /// The state that a snapshot holds.
     pub(crate) fn stored(&self) -> impl Serialize + use<OCTAVES> {
         let Progress {
             next,
@@ -90,7 +90,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         }
     }
 
-    /// Goes on where the test was when it was [stored](Self::stored), and returns the bytes behind it.
+    /// Continues the test from the state that was [stored](Self::stored), and returns the bytes after it.
     pub(crate) fn restore<'b>(&mut self, bytes: &'b [u8]) -> Result<&'b [u8], Error> {
         let taken = postcard::take_from_bytes::<Stored>(bytes);
         let (stored, rest) = taken.map_err(|_| Error::Impossible)?;
@@ -141,7 +141,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         })
     }
 
-    /// What tells one plan and scale from another.
+    /// The CRC-32 that distinguishes one plan and scale from another.
     fn fingerprint(&self) -> u32 {
         let Plan {
             limits,

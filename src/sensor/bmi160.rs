@@ -9,24 +9,24 @@ pub static BMI160: Description = Description {
     // Register (0x00) CHIPID.
     identity: 0x00,
     identities: &[0xD1],
-    // Without a soft reset, which would put the interface back to I²C: all that matters is written,
-    // and the offsets that a reset clears are constants, which cancel.
+    // There is no soft reset, because it would return the interface to I²C. It is not needed: every register
+    // that matters is written, and the offsets that a reset clears are constants, which cancel.
     start_up: &[
-        // Register (0x7E) CMD: gyr_set_pmu_mode normal; longer than a start from suspend takes.
+        // Register (0x7E) CMD: gyr_set_pmu_mode normal; the pause is longer than a start from suspend takes.
         Write::new(0x7E, 0x15).wait_us(100_000),
         // Register (0x43) GYR_RANGE: 0b011, ±250 °/s. 450 µs between writes is enough in any mode
         // (chapter 3, t_IDLE_wacc_sum).
         Write::new(0x43, 0x03).wait_us(450),
-        // Register (0x42) GYR_CONF: gyr_bwp 0b10 (normal), gyr_odr 0b1000 (100 Hz); settling.
+        // Register (0x42) GYR_CONF: gyr_bwp 0b10 (normal), gyr_odr 0b1000 (100 Hz); the gyro settles.
         Write::new(0x42, 0x28).wait_us(100_000),
     ],
     interface: Interface {
-        // Chapter 3: the first bit of an SPI access is 1 for a read; data follow at once.
+        // Chapter 3: the first bit of an SPI access is 1 for a read; the data follow without dummy bytes.
         spi_read: 0x80,
         spi_dummies: 0,
-        // "Protocol selection": a read of 0x7F before any other makes the rising edge that selects SPI.
+        // "Protocol selection": an initial read of 0x7F makes the rising edge that selects SPI.
         spi_wake: Some(0x7F),
-        // SDO at ground.
+        // The address with the SDO pin at ground.
         i2c_address: 0x68,
         i2c_read: 0,
     },
@@ -38,7 +38,7 @@ pub static BMI160: Description = Description {
     },
     // Register (0x04-0x17) DATA: GYR_X<7:0>.
     gyro: 0x0C,
-    // Register (0x20-0x21) TEMPERATURE: 0 is 23 °C, 2⁻⁹ K a count.
+    // Register (0x20-0x21) TEMPERATURE: a count of 0 is 23 °C, and one count is 2⁻⁹ K.
     temperature: Some(Temperature {
         register: 0x20,
         at_zero_c: 23.0,

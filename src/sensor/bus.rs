@@ -4,27 +4,27 @@ use embedded_hal::{
     spi::{Operation, SpiDevice},
 };
 
-/// Dummy bytes that a read over SPI may have.
+/// The largest number of dummy bytes of a read over SPI.
 const MAX_DUMMIES: usize = 3;
 
-/// A bus with one sensor on it, as registers of 8 bits.
+/// A bus with one sensor on it, which is accessed as registers of 8 bits.
 pub trait Registers {
-    /// What the bus may fail with.
+    /// The error of the bus.
     type Error;
 
-    /// Whether the writes that [`Write::spi_only`](super::Write::spi_only) marks are due.
+    /// Whether the bus is SPI. Writes marked [`spi_only`](super::Write::spi_only) are sent only if it is.
     const IS_SPI: bool;
 
     /// Makes the sensor listen to this bus.
     ///
     /// # Errors
-    /// That of the bus.
+    /// The error of the bus.
     fn wake(&mut self, interface: &Interface) -> Result<(), Self::Error>;
 
-    /// Reads consecutive registers, from `register` on, in one transaction.
+    /// Reads consecutive registers in one transaction, beginning with `register`.
     ///
     /// # Errors
-    /// That of the bus.
+    /// The error of the bus.
     fn read(
         &mut self,
         interface: &Interface,
@@ -35,21 +35,21 @@ pub trait Registers {
     /// Writes one register.
     ///
     /// # Errors
-    /// That of the bus.
+    /// The error of the bus.
     fn write(&mut self, interface: &Interface, register: u8, value: u8) -> Result<(), Self::Error>;
 }
 
-/// A sensor on an SPI bus. `SPI` drives its chip select; a `&mut` of a device is a device too.
+/// A sensor on an SPI bus. `SPI` also drives the chip select. A `&mut` of a device is a device as well.
 #[derive(Clone, Debug)]
 pub struct SpiBus<SPI>(SPI);
 
 impl<SPI: SpiDevice> SpiBus<SPI> {
-    /// Takes the device.
+    /// A bus that owns the device.
     pub const fn new(spi: SPI) -> Self {
         Self(spi)
     }
 
-    /// Gives the device back.
+    /// Returns the device.
     pub fn release(self) -> SPI {
         self.0
     }
@@ -93,12 +93,12 @@ pub struct I2cBus<I2C> {
 }
 
 impl<I2C: I2c> I2cBus<I2C> {
-    /// Takes the bus; the sensor is at the address of its description.
+    /// A bus whose sensor is at the address in its description.
     pub const fn new(i2c: I2C) -> Self {
         Self { i2c, address: None }
     }
 
-    /// Takes the bus; the sensor is at another 7-bit address.
+    /// A bus whose sensor is at another 7-bit address.
     pub const fn at(i2c: I2C, address: u8) -> Self {
         Self {
             i2c,
@@ -106,7 +106,7 @@ impl<I2C: I2c> I2cBus<I2C> {
         }
     }
 
-    /// Gives the bus back.
+    /// Returns the bus.
     pub fn release(self) -> I2C {
         self.i2c
     }

@@ -3,22 +3,22 @@ use crate::{
     real::{Real, real},
 };
 
-/// Registers that are read at once, at most.
+/// The largest number of registers that are read in one transaction.
 pub(super) const MAX_BLOCK: usize = 24;
 
-/// Bytes of a gyro reading: three counts of 16 bits.
+/// The number of bytes of a gyro reading: three counts of 16 bits.
 const GYRO_BYTES: u8 = 6;
 
-/// Bytes of a temperature.
+/// The number of bytes of a temperature.
 const TEMPERATURE_BYTES: u8 = 2;
 
-/// How a count of 16 bits lies in two consecutive registers.
+/// The order of the two bytes of a 16-bit count in consecutive registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ByteOrder {
-    /// Low byte in the lower register.
+    /// The low byte is in the lower register.
     LittleEndian,
-    /// High byte in the lower register.
+    /// The high byte is in the lower register.
     BigEndian,
 }
 
@@ -26,18 +26,18 @@ pub enum ByteOrder {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Write {
-    /// Where.
+    /// The address of the register.
     pub register: u8,
-    /// What.
+    /// The value to write.
     pub value: u8,
-    /// Pause before anything else is said, in µs.
+    /// The pause after the write, in µs, before the next access.
     pub wait_us: u32,
-    /// Left out over I²C.
+    /// Whether the write is left out over I²C.
     pub spi_only: bool,
 }
 
 impl Write {
-    /// Writes `value`, over either bus, without a pause.
+    /// Writes `value` over either bus, without a pause.
     pub const fn new(register: u8, value: u8) -> Self {
         Self {
             register,
@@ -47,12 +47,12 @@ impl Write {
         }
     }
 
-    /// And then pauses, for `wait_us` µs.
+    /// Adds a pause of `wait_us` µs after the write.
     pub const fn wait_us(self, wait_us: u32) -> Self {
         Self { wait_us, ..self }
     }
 
-    /// Over SPI alone.
+    /// Restricts the write to SPI.
     pub const fn spi_only(self) -> Self {
         Self {
             spi_only: true,
@@ -61,95 +61,96 @@ impl Write {
     }
 }
 
-/// How register addresses go over the bus.
+/// How register addresses are sent over the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Interface {
-    /// Bits added to the address of a read over SPI.
+    /// The bits that are set in the address of a read over SPI.
     pub spi_read: u8,
-    /// Bytes between the address and the data of a read over SPI, three at most.
+    /// The number of dummy bytes between the address and the data of a read over SPI, at most three.
     pub spi_dummies: u8,
-    /// A register to read first, for a sensor that wakes up on I²C and takes SPI from the first
-    /// edge of its chip select.
+    /// The register to read first, for a sensor that starts on I²C and changes to SPI at the first edge of
+    /// its chip select.
     pub spi_wake: Option<u8>,
-    /// 7-bit I²C address, with the address pin at ground.
+    /// The 7-bit I²C address when the address pin is at ground.
     pub i2c_address: u8,
-    /// Bits added to the address of a read over I²C.
+    /// The bits that are set in the address of a read over I²C.
     pub i2c_read: u8,
 }
 
-/// Where a sensor says that a sample waits.
+/// The register and the bits that tell whether a sample is ready.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
-    /// The status register.
+    /// The address of the status register.
     pub register: u8,
-    /// Bits of which one is set when a gyro sample waits, best one that reading the sample clears:
-    /// one that only its own reading clears offers a sample twice to a reader who is a whole
-    /// interval late.
+    /// The bits of which one is set when a gyro sample is ready. The best choice is a bit that is cleared
+    /// when the sample is read. A bit that is cleared only when the status is read offers a sample twice to
+    /// a reader that is a whole interval late.
     pub ready: u8,
-    /// Bits of which one is set when a sample was overwritten unread; 0 if the sensor has none.
+    /// The bits of which one is set when a sample was overwritten before it was read; 0 if the sensor has
+    /// no such bit.
     pub overrun: u8,
 }
 
-/// Where and how a sensor gives its temperature.
+/// The registers and the scale of a sensor's temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Temperature {
-    /// The lower of its two registers.
+    /// The lower of the two registers.
     pub register: u8,
-    /// What a count of zero means, in °C.
+    /// The temperature of a count of zero, in °C.
     pub at_zero_c: Real,
-    /// Counts per kelvin.
+    /// The scale in counts per kelvin.
     pub counts_per_k: Real,
 }
 
 impl Temperature {
-    /// The temperature that `count` stands for, in °C.
+    /// The temperature of `count`, in °C.
     pub fn celsius(&self, count: i16) -> Real {
         self.at_zero_c + real(count) / self.counts_per_k
     }
 }
 
-/// All that [`Imu`](super::Imu) has to know of a sensor: another sensor is another such value.
+/// Everything that [`Imu`](super::Imu) needs to know about a sensor. A new sensor needs only a new value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Description {
-    /// As on the package.
+    /// The name on the package.
     pub name: &'static str,
-    /// The register that tells which sensor this is.
+    /// The register that identifies the sensor.
     pub identity: u8,
-    /// What that register may say.
+    /// The values that the identity register may have.
     pub identities: &'static [u8],
-    /// What to write before the first sample, in this order.
+    /// The writes before the first sample, in this order.
     pub start_up: &'static [Write],
-    /// Addresses and how they are sent.
+    /// The addresses and how they are sent.
     pub interface: Interface,
-    /// Whether a sample waits.
+    /// The status register, which tells whether a sample is ready.
     pub status: Status,
-    /// First of the six consecutive registers of the gyro: x, y and z, in two's complement.
+    /// The first of the six consecutive registers of the gyro: x, y and z, in two's complement.
     pub gyro: u8,
-    /// The temperature, unless the sensor has none of 16 bits.
+    /// The temperature; `None` if the sensor has no temperature of 16 bits.
     pub temperature: Option<Temperature>,
-    /// How gyro and temperature lie in their registers.
+    /// The byte order of gyro and temperature.
     pub byte_order: ByteOrder,
-    /// °/s per count, nominal, after the start-up writes.
+    /// The nominal scale after the start-up writes, in °/s per count.
     pub scale_dps: Real,
-    /// Samples per second, nominal, after the start-up writes. An oscillator of its own sets the
-    /// true rate, a few per cent off: see [`Pace`](super::Pace).
+    /// The nominal rate after the start-up writes, in samples per second. The true rate is set by the
+    /// sensor's own oscillator and differs by a few per cent: see [`Pace`](super::Pace).
     pub rate_hz: Real,
 }
 
 impl Description {
-    /// What makes an accumulator's counts a curve in °/s.
+    /// The scale that converts the counts of an accumulator to a curve in °/s.
     ///
     /// # Errors
-    /// [`Error::InvalidScale`], [`Error::InvalidRate`]: never for the descriptions of this crate.
+    /// [`Error::InvalidScale`], [`Error::InvalidRate`]; neither occurs for the descriptions of this crate.
     pub fn scale(&self) -> Result<Scale, Error> {
         Scale::new(self.scale_dps, self.rate_hz)
     }
 
-    /// The registers that hold gyro and temperature: the first, and how many.
+    /// The first of the registers that hold gyro and temperature, and their number.
     pub(super) fn block(&self) -> (u8, usize) {
         let (mut first, mut last) = (self.gyro, self.gyro.saturating_add(GYRO_BYTES - 1));
         if let Some(temperature) = self.temperature {
@@ -160,7 +161,7 @@ impl Description {
         (first, usize::from(last - first) + 1)
     }
 
-    /// The count at `register`, out of a block that begins at `first`.
+    /// The count at `register`, taken from a block that begins at `first`.
     pub(super) fn count(&self, block: &[u8], first: u8, register: u8) -> Option<i16> {
         let start = usize::from(register.checked_sub(first)?);
         let bytes = block.get(start..)?.first_chunk::<2>()?;

@@ -1,7 +1,7 @@
 use super::description::MAX_BLOCK;
 use core::fmt;
 
-/// Why a sensor did not start, or gave no sample. `E` is what its bus fails with.
+/// The reason why a sensor did not start or a read failed. `E` is the error of its bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -10,25 +10,25 @@ pub enum Error<E> {
     Bus {
         /// The first register of the transaction.
         register: u8,
-        /// What the bus says.
+        /// The error of the bus.
         error: E,
     },
-    /// Another sensor answered, or none.
+    /// Another sensor answered, or no sensor did.
     WrongIdentity {
-        /// The sensor that was described.
+        /// The name of the expected sensor.
         sensor: &'static str,
-        /// Its identity register.
+        /// The address of its identity register.
         register: u8,
-        /// What that says.
+        /// The value found in that register.
         found: u8,
-        /// What it may say.
+        /// The values expected in that register.
         expected: &'static [u8],
     },
-    /// Gyro and temperature of a description lie too far apart to be read at once.
+    /// The registers of gyro and temperature in a description lie too far apart to be read at once.
     TooWide {
-        /// The sensor that was described.
+        /// The name of the described sensor.
         sensor: &'static str,
-        /// Registers from the first to the last.
+        /// The number of registers from the first to the last.
         registers: usize,
     },
 }

@@ -23,7 +23,7 @@ pub static ICM_42688_P: Description = Description {
         spi_read: 0x80,
         spi_dummies: 0,
         spi_wake: None,
-        // AP_AD0 at ground.
+        // The address with the AP_AD0 pin at ground.
         i2c_address: 0x68,
         i2c_read: 0,
     },

@@ -5,22 +5,22 @@ use embedded_hal::delay::DelayNs;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reading {
-    /// x, y and z, as [`Accumulator::push`](crate::Accumulator::push) takes them;
-    /// [`Description::scale_dps`] °/s each.
+    /// The rates about x, y and z, as [`Accumulator::push`](crate::Accumulator::push) takes them.
+    /// One count is [`Description::scale_dps`] °/s.
     pub gyro: [i32; 3],
-    /// To be understood by [`Temperature::celsius`](super::Temperature::celsius); `None` of a
-    /// sensor without.
+    /// The temperature count, which [`Temperature::celsius`](super::Temperature::celsius) converts;
+    /// `None` if the sensor has no temperature.
     pub temperature: Option<i16>,
-    /// Samples were lost before this one. Few sensors tell, so a caller who knows better may set
-    /// it: see [`Pace`](super::Pace).
+    /// Whether samples were lost before this one. Few sensors report this, so a caller that knows better
+    /// may set it: see [`Pace`](super::Pace).
     pub overrun: bool,
 }
 
-/// A described sensor on its bus: a source of samples.
+/// A described sensor on its bus, as a source of samples.
 ///
-/// Asks for the sample's flag and then for the sample: it never waits for one. A sample that is
-/// overwritten unread is lost without a word on most sensors: poll several times a sample, or on
-/// the data-ready pin, and let [`Pace`](super::Pace) watch the time.
+/// It reads the sample's flag and, if the flag is set, the sample; it never waits for a sample. Most sensors
+/// do not report a sample that was overwritten before it was read. Poll several times per sample, or
+/// read when the data-ready pin signals, and let [`Pace`](super::Pace) check the timestamps.
 #[derive(Clone, Debug)]
 pub struct Imu<B> {
     bus: B,
@@ -28,13 +28,13 @@ pub struct Imu<B> {
 }
 
 impl<B: Registers> Imu<B> {
-    /// Makes sure that the sensor is the described one, sets it up, waits until it has settled and
-    /// drops the sample that grew old meanwhile. The supply should have been up for 100 ms.
+    /// Checks that the sensor is the described one, sets it up, waits until it has settled and
+    /// discards the sample that is outdated by then. The supply should have been up for 100 ms.
     ///
-    /// The bus is lost with an error; one that was lent (`SpiBus::new(&mut spi)`) is not.
+    /// If this fails, the bus is dropped. To keep it, lend it: `SpiBus::new(&mut spi)`.
     ///
     /// # Errors
-    /// [`Error::WrongIdentity`], [`Error::Bus`], or [`Error::TooWide`] of a description.
+    /// [`Error::WrongIdentity`], [`Error::Bus`], or [`Error::TooWide`] for an unsuitable description.
     pub fn start(
         bus: B,
         description: &'static Description,
@@ -86,11 +86,11 @@ impl<B: Registers> Imu<B> {
         }
     }
 
-    /// The sample that waits; `None` if none does.
+    /// Reads the sample that is ready; `None` if no sample is ready.
     ///
     /// # Errors
-    /// [`Error::Bus`]. The sensor stays usable: reading on is all that is needed, and
-    /// [`Axes::record`](crate::Axes::record) makes it a gap.
+    /// [`Error::Bus`]. The sensor stays usable: the caller only has to continue reading, and
+    /// [`Axes::record`](crate::Axes::record) turns the error into a gap.
     pub fn read(&mut self) -> Result<Option<Reading>, Error<B::Error>> {
         let status = self.description.status;
         let flags = self.register(status.register)?;
@@ -100,12 +100,12 @@ impl<B: Registers> Imu<B> {
         self.sample(flags & status.overrun != 0).map(Some)
     }
 
-    /// The description that it was started with.
+    /// The description that the sensor was started with.
     pub const fn description(&self) -> &'static Description {
         self.description
     }
 
-    /// Gives the bus back; the sensor goes on sampling.
+    /// Returns the bus. The sensor continues to sample.
     pub fn release(self) -> B {
         self.bus
     }
@@ -117,7 +117,7 @@ impl<B: Registers> Imu<B> {
         Ok(byte)
     }
 
-    /// Gyro and temperature, whether new or not.
+    /// Reads gyro and temperature, whether they are new or not.
     fn sample(&mut self, overrun: bool) -> Result<Reading, Error<B::Error>> {
         let description = self.description;
         let (first, registers) = description.block();

@@ -12,20 +12,20 @@ pub static LSM6DSO: Description = Description {
     start_up: &[
         // CTRL3_C: SW_RESET, which takes well below a millisecond.
         Write::new(0x12, 0x01).wait_us(10_000),
-        // CTRL3_C: BDU, no sample changes while it is read; IF_INC, addresses ascend.
+        // CTRL3_C: BDU (a sample does not change while it is read), IF_INC (addresses ascend).
         Write::new(0x12, 0x44),
-        // CTRL2_G: ODR_G 0b0100 (104 Hz), FS_G 0b00 (±250 °/s); settling.
+        // CTRL2_G: ODR_G 0b0100 (104 Hz), FS_G 0b00 (±250 °/s); the gyro settles.
         Write::new(0x11, 0x40).wait_us(100_000),
     ],
     interface: Interface {
         spi_read: 0x80,
         spi_dummies: 0,
         spi_wake: None,
-        // SDO/SA0 at ground.
+        // The address with the SDO/SA0 pin at ground.
         i2c_address: 0x6A,
         i2c_read: 0,
     },
-    // STATUS_REG: GDA, bit 1, reset when a high byte is read.
+    // STATUS_REG: GDA, bit 1, is reset when a high byte is read.
     status: Status {
         register: 0x1E,
         ready: 1 << 1,
@@ -33,7 +33,7 @@ pub static LSM6DSO: Description = Description {
     },
     // OUTX_L_G.
     gyro: 0x22,
-    // OUT_TEMP_L; table "Temperature sensor characteristics": 0 is 25 °C, 256 LSB/°C.
+    // OUT_TEMP_L; table "Temperature sensor characteristics": a count of 0 is 25 °C, 256 LSB/°C.
     temperature: Some(Temperature {
         register: 0x20,
         at_zero_c: 25.0,

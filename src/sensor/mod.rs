@@ -1,10 +1,10 @@
 //! Samples from an IMU on an SPI or I²C bus, through embedded-hal 1.0.
 //!
-//! Most IMUs look alike: an identity register, a flag that says when a sample waits, three
-//! consecutive counts of 16 bits and a temperature. So a sensor is a value, a [`Description`];
-//! [`CATALOGUE`] holds some, one's own is one more. An [`Imu`] reads it, [`Axes`](crate::Axes) makes a gap of
-//! whatever was lost, and [`Pace`] finds the samples that a sensor does not say were lost, and a
-//! configured rate that is not the true one.
+//! Most IMUs look alike: an identity register, a flag that says when a sample is ready, three
+//! consecutive counts of 16 bits, and a temperature. Therefore a sensor is described by a value, a
+//! [`Description`]. [`CATALOGUE`] holds some descriptions, and a program can add its own. An [`Imu`] reads
+//! the sensor, and [`Axes`](crate::Axes) turns every lost sample into a gap. [`Pace`] detects lost samples
+//! that the sensor does not report, and a configured rate that differs from the true one.
 //!
 //! ```
 //! use allanite::{Axes, sensor::{Error, ICM_42688_P, Imu, Pace, SpiBus}};
@@ -32,8 +32,8 @@
 //! }
 //! ```
 //!
-//! What this is not: a driver for all that a sensor can do. Samples of any other driver go into
-//! [`Axes::push`](crate::Axes::push).
+//! This module is not a driver for all functions of a sensor. The samples of any other driver can be given
+//! to [`Axes::push`](crate::Axes::push).
 
 mod bmi160;
 mod bus;
@@ -60,7 +60,7 @@ pub use mpu_6050::MPU_6050;
 pub use mpu_6500::MPU_6500;
 pub use pace::Pace;
 
-/// Every description here.
+/// All descriptions of this module.
 pub static CATALOGUE: [&Description; 6] = [
     &BMI160,
     &ICM_42688_P,

@@ -17,7 +17,7 @@ pub static MPU_6500: Description = Description {
         Write::new(0x68, 0x07).wait_us(100_000).spi_only(),
         // Register 106, USER_CTRL: I2C_IF_DIS.
         Write::new(0x6A, 0x10).spi_only(),
-        // Register 107, PWR_MGMT_1: awake, on the best clock there is.
+        // Register 107, PWR_MGMT_1: awake, with the best clock available.
         Write::new(0x6B, 0x01),
         // Register 26, CONFIG: DLPF_CFG 3, gyro at 1 kHz.
         Write::new(0x1A, 0x03),
@@ -34,7 +34,7 @@ pub static MPU_6500: Description = Description {
         spi_read: 0x80,
         spi_dummies: 0,
         spi_wake: None,
-        // AD0 at ground.
+        // The address with the AD0 pin at ground.
         i2c_address: 0x68,
         i2c_read: 0,
     },

@@ -2,21 +2,22 @@ use crate::Error;
 use crate::real::{Real, real};
 use core::num::NonZeroU64;
 
-/// Intervals that a verdict takes: a timestamp late by a whole interval moves it by 0.4 %.
+/// The number of intervals in a window. A timestamp that is late by a whole interval changes the measured
+/// rate by 0.4 %.
 const WINDOW: u32 = 256;
 
-/// How far a rate may be off, in per cent, unless told otherwise: above what the oscillators of
-/// cheap sensors are off.
+/// The default tolerance of the rate, in per cent. It is larger than the error of the oscillators in cheap
+/// sensors.
 const TOLERANCE_PERCENT: u8 = 5;
 
 const NS_PER_S: Real = 1e9;
 const NS_PER_US: u64 = 1000;
 
-/// Watches the samples' timestamps: were samples skipped, and is the configured rate the true one?
-/// A wrong rate shifts a whole curve along τ, and nothing in the counts tells.
+/// Checks the samples' timestamps for skipped samples and for a configured rate that is not the true one.
+/// A wrong rate shifts a whole curve along τ, and the counts do not show it.
 ///
-/// Timestamps are microseconds of any free-running counter of 32 bits, which may wrap, of the
-/// moments when samples were read. A stamp costs one division of integers; 48 bytes.
+/// A timestamp is the time at which a sample was read, in microseconds of any free-running 32-bit counter,
+/// which may wrap. A stamp costs one integer division, and the state takes 48 bytes.
 ///
 /// ```
 /// use allanite::{Error, sensor::Pace};
@@ -25,7 +26,7 @@ const NS_PER_US: u64 = 1000;
 /// let mut now = u32::MAX - 500_000;
 /// for _ in 0..=256 {
 ///     assert_eq!(pace.stamp(now), 1); // the next sample
-///     now = now.wrapping_add(12_000); // of a sensor at 83 Hz
+///     now = now.wrapping_add(12_000); // a sensor at 83 Hz
 /// }
 /// assert!(matches!(pace.check(), Err(Error::RateContradicted { .. })));
 /// assert_eq!(pace.stamp(now.wrapping_add(18_000)), 3); // two samples were skipped
@@ -35,23 +36,25 @@ const NS_PER_US: u64 = 1000;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pace {
     interval_ns: NonZeroU64,
-    /// Of the timestamp before.
+    /// The timestamp before.
     previous_us: Option<u32>,
-    /// Since the window began.
+    /// The time since the window began, in µs.
     elapsed_us: u64,
+    /// The number of intervals since the window began.
     intervals: u32,
-    /// How long the last complete window took.
+    /// The duration of the last complete window, in µs.
     window_us: Option<u64>,
     tolerance_percent: u8,
 }
 
 impl Pace {
-    /// Samples should come at `rate_hz`, within 5 %.
+    /// Expects samples at `rate_hz`, within 5 %.
     ///
     /// # Errors
-    /// [`Error::InvalidRate`] unless it is positive and below 1 GHz.
+    /// [`Error::InvalidRate`] if the rate is not positive or is 1 GHz or more.
     pub fn new(rate_hz: Real) -> Result<Self, Error> {
-        // Zero of a rate that is negative, infinite or not a number, saturated of one near zero.
+        // The cast gives zero for a rate that is negative, infinite or not a number, and saturates for a
+        // rate near zero.
         let interval_ns = (NS_PER_S / rate_hz + 0.5) as u64;
         match NonZeroU64::new(interval_ns) {
             Some(interval_ns) if interval_ns < NonZeroU64::MAX => Ok(Self {
@@ -66,16 +69,17 @@ impl Pace {
         }
     }
 
-    /// Within `tolerance_percent` of the configured rate instead.
+    /// Sets another tolerance of the configured rate, in per cent.
     pub const fn with_tolerance(mut self, tolerance_percent: u8) -> Self {
         self.tolerance_percent = tolerance_percent;
         self
     }
 
-    /// A sample was read at `timestamp_us`. How many sample intervals have passed since the one
-    /// before, rounded: above 1, samples were skipped; 0, one may have been read twice.
+    /// Takes the time at which a sample was read, and returns how many sample intervals have passed since the
+    /// sample before, rounded. If it is above 1, samples were skipped; if it is 0, one sample may have been
+    /// read twice.
     ///
-    /// The first sample, and the first after [`restart`](Self::restart), count as 1.
+    /// The first sample, and the first after [`restart`](Self::restart), return 1.
     pub fn stamp(&mut self, timestamp_us: u32) -> u32 {
         let Some(previous_us) = self.previous_us.replace(timestamp_us) else {
             return 1;
@@ -91,20 +95,20 @@ impl Pace {
         u32::try_from(rounded / self.interval_ns).unwrap_or(u32::MAX)
     }
 
-    /// Reading was interrupted on purpose, or for longer than the counter takes to wrap: the next
-    /// timestamp is the first of a new window.
+    /// Begins a new window with the next timestamp. This is needed after reading was interrupted on purpose,
+    /// or for longer than the counter takes to wrap.
     pub fn restart(&mut self) {
         self.previous_us = None;
         (self.elapsed_us, self.intervals) = (0, 0);
     }
 
-    /// Samples per second over the last complete window of 256; `None` before.
+    /// The rate over the last complete window of 256 intervals, in samples per second; `None` before that.
     pub fn measured_hz(&self) -> Option<Real> {
         self.window_us.map(|us| real(WINDOW) * 1e6 / us as Real)
     }
 
-    /// Whether the last complete window agrees with the configured rate. Before there is one,
-    /// nothing contradicts.
+    /// Checks that the last complete window agrees with the configured rate. Before the first window is
+    /// complete, the check succeeds.
     ///
     /// # Errors
     /// [`Error::RateContradicted`] if the measured rate is off by more than the tolerance.
@@ -112,7 +116,7 @@ impl Pace {
         let Some(window_us) = self.window_us else {
             return Ok(());
         };
-        // |n T − t| ≤ tolerance · t is |f − f₀| ≤ tolerance · f₀ with f = n/t, f₀ = 1/T.
+        // With f = n/t and f₀ = 1/T, |n T − t| ≤ tolerance · t is the same as |f − f₀| ≤ tolerance · f₀.
         let expected_ns = u128::from(self.interval_ns.get()) * u128::from(WINDOW);
         let elapsed_ns = u128::from(window_us) * u128::from(NS_PER_US);
         let off = expected_ns.abs_diff(elapsed_ns) * 100;

@@ -1,4 +1,4 @@
-//! From what a sensor's driver returns to what is kept of the record.
+//! Records what a sensor's driver returns.
 
 use super::{Error, Reading};
 use crate::axis::{Axes, GatePart, MomentPart};
@@ -8,9 +8,9 @@ where
     G: GatePart,
     M: MomentPart,
 {
-    /// Takes what [`Imu::read`](super::Imu::read) returned, so that no sample is lost in silence: a sample
-    /// is pushed, behind a gap if others were lost before it, and an error is a gap. `covariates` are the
-    /// counts beside a sample. Returns whether there was a sample.
+    /// Records the result of [`Imu::read`](super::Imu::read), so that no loss goes unnoticed. A sample is
+    /// pushed, after a gap if samples were lost before it. An error becomes a gap. `covariates` returns the
+    /// counts of the covariates at that sample. The result says whether there was a sample.
     ///
     /// ```
     /// use allanite::{Axes, sensor::{Error, Reading}};
@@ -19,7 +19,7 @@ where
     /// let temperature = |reading: &Reading| [reading.temperature.unwrap_or(0).into()];
     /// let reading = Reading { gyro: [3, -1, 0], temperature: Some(25), overrun: false };
     /// axes.record::<()>(&Ok(Some(reading)), temperature);
-    /// axes.record::<()>(&Ok(None), temperature); // none waited: nothing happens
+    /// axes.record::<()>(&Ok(None), temperature); // no sample was ready: nothing happens
     /// let failed = Err(Error::Bus { register: 0x43, error: "no acknowledge" });
     /// axes.record(&failed, temperature);
     /// assert_eq!(axes.losses(), 1);

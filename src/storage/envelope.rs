@@ -1,34 +1,35 @@
-//! What surrounds everything that is stored: what it is, how long it is, and whether it is intact.
+//! The envelope around everything that is stored. It tells the kind and the length of the content, and a
+//! checksum tells whether the content is intact.
 //!
 //! | offset | bytes | content |
 //! |---|---|---|
 //! | 0 | 4 | magic, `ALNT` |
-//! | 4 | 1 | kind: 1 is a snapshot, 2 a record |
+//! | 4 | 1 | kind: 1 is a snapshot, 2 a certificate |
 //! | 5 | 1 | version of the payload's format |
 //! | 6 | 2 | length `n` of the payload in bytes, little endian |
 //! | 8 | n | payload, [postcard](https://postcard.jamesmunns.com) |
-//! | 8 + n | 4 | CRC-32/ISO-HDLC (that of Ethernet and zip) of all before it, little endian |
+//! | 8 + n | 4 | CRC-32/ISO-HDLC (that of Ethernet and zip) of all bytes before it, little endian |
 //!
-//! The envelope stays as it is in every version. A CRC-32 detects every change within 32
-//! consecutive bits, so that of any one byte, and others but for one in 2^32.
+//! The envelope is the same in every version. A CRC-32 detects every change within 32 consecutive bits,
+//! and so every change of a single byte. Of all other changes it misses one in 2^32.
 
 use super::error::Error;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use serde::Serialize;
 
 const MAGIC: [u8; 4] = *b"ALNT";
-/// Bytes in front of the payload.
+/// The number of bytes before the payload.
 const HEAD: usize = 8;
-/// Bytes behind it.
+/// The number of bytes after the payload.
 const TAIL: usize = 4;
 
-/// Bytes around a payload.
+/// The number of bytes around a payload.
 pub(crate) const OVERHEAD: usize = HEAD + TAIL;
 
-/// Without a table: what is stored is short, and flash is dear.
+/// The CRC computes without a table, because stored data are short and flash is scarce.
 pub(crate) const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// What a payload is.
+/// The kind of a payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Kind {
@@ -91,7 +92,7 @@ impl<'b> Writer<'b> {
     }
 }
 
-/// The payload of an intact envelope of this kind and version.
+/// Returns the payload of an intact envelope of this kind and version.
 pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> {
     let (version, payload) = open_any(bytes, kind)?;
     if version != known {
@@ -103,7 +104,7 @@ pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> 
     Ok(payload)
 }
 
-/// The version and the payload of an intact envelope of this kind.
+/// Returns the version and the payload of an intact envelope of this kind.
 pub(crate) fn open_any(bytes: &[u8], kind: Kind) -> Result<(u8, &[u8]), Error> {
     let (head, _) = bytes.split_at(bytes.len().min(MAGIC.len()));
     if !MAGIC.starts_with(head) {
@@ -128,7 +129,7 @@ pub(crate) fn open_any(bytes: &[u8], kind: Kind) -> Result<(u8, &[u8]), Error> {
     if digest.finalize() != u32::from_le_bytes(*tail) {
         return Err(Error::Corrupt);
     }
-    // Past the checksum, so that a changed byte is called that.
+    // The kind is checked after the checksum, so that a changed byte is reported as corruption.
     if found != kind as u8 {
         return Err(Error::WrongKind {
             found,

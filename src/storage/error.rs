@@ -1,60 +1,60 @@
-//! What can be wrong with what is stored.
+//! The errors of storing and of reading what is stored.
 
-/// Why something could not be stored, or why stored bytes could not be read.
+/// The reason why something could not be stored, or why stored bytes could not be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error {
-    /// A buffer that what is to be stored may not fit into.
+    /// The buffer may be too small for what is to be stored.
     BufferTooSmall {
-        /// Bytes that always suffice.
+        /// The number of bytes that always suffices.
         needed: usize,
     },
-    /// Bytes that this library did not write: they start with another magic number.
+    /// This library did not write the bytes: they do not begin with its magic number.
     UnknownMagic,
-    /// More or fewer bytes than were stored.
+    /// There are more or fewer bytes than were stored.
     WrongLength {
-        /// Bytes that were given.
+        /// The number of bytes given.
         found: usize,
-        /// Bytes that were stored; the least that can be, where not even the head is there.
+        /// The number of bytes stored; the smallest possible number if the bytes do not even hold the head.
         stored: usize,
     },
-    /// Stored bytes that have changed: their checksum is wrong.
+    /// The stored bytes have changed: their checksum is wrong.
     Corrupt,
-    /// A record where a snapshot was to be read, or the other way round.
+    /// The bytes hold a certificate where a snapshot was expected, or the other way round.
     WrongKind {
-        /// The kind's code: 1 is a snapshot, 2 a record.
+        /// The code of the kind found: 1 is a snapshot, 2 a certificate.
         found: u8,
-        /// The code of the kind that was to be read.
+        /// The code of the kind expected.
         wanted: u8,
     },
-    /// Written in a version of the format that this library does not know.
+    /// The bytes have a version of the format that this library does not know.
     UnknownVersion {
-        /// The version that it is of.
+        /// The version found.
         found: u8,
-        /// The version that is known.
+        /// The version that this library knows.
         known: u8,
     },
-    /// A snapshot of an accumulator of another number of octaves.
+    /// The snapshot has another number of octaves than the accumulator.
     WrongOctaves {
-        /// Octaves of the snapshot.
+        /// The number of octaves in the snapshot.
         found: usize,
-        /// Octaves of the accumulator that was to be restored.
+        /// The number of octaves of the accumulator.
         wanted: usize,
     },
-    /// A snapshot of other axes, covariates or parts than those that were to be restored, or of another
-    /// number of self-tests.
+    /// The snapshot has other axes, covariates or parts, or another number of self-tests, than the values
+    /// that are to be restored.
     OtherParts,
-    /// A snapshot of a self-test by another plan.
+    /// The snapshot holds a self-test with another plan.
     OtherPlan,
-    /// A device's identity of more bytes than a record has room for.
+    /// The identity of a device has more bytes than a certificate has room for.
     DeviceTooLong {
-        /// How many it has.
+        /// The number of bytes of the identity.
         length: usize,
-        /// How many there is room for.
+        /// The number of bytes that fit.
         capacity: usize,
     },
-    /// Contents that no record of a gyro has, although the checksum is right.
+    /// The checksum is right, but no record of a gyro can have these contents.
     Impossible,
 }
 

@@ -9,15 +9,15 @@ use sequential_storage::{
     map::{MapConfig, MapStorage, SerializationError, Value},
 };
 
-/// Snapshots of several axes in a range of flash, each by its number: the newest of each axis, and
-/// after a power cut the newest or the one before.
+/// Stores snapshots of several axes in a range of flash, each under its number. It returns the newest
+/// snapshot of each axis, or the one before if the power failed while the newest was written.
 ///
-/// For every driver that implements `embedded_storage_async::nor_flash::NorFlash`; one that blocks
-/// becomes one in a line, by `embassy_embedded_hal::adapter::BlockingAsync`. What is written and
-/// where is up to `sequential_storage::map`: it appends, page after page, and erases a page only when
-/// whatever of it is the newest has been copied. Its range is two pages or more, and
-/// one snapshot of every axis fits into a page with room to spare. A word whose write was torn is
-/// written over with zeros, which flash with error correction allows too.
+/// It works with every driver that implements `embedded_storage_async::nor_flash::NorFlash`. One line with
+/// `embassy_embedded_hal::adapter::BlockingAsync` adapts a driver that blocks. `sequential_storage::map`
+/// decides what is written and where: it appends, page after page, and erases a page only after it has copied
+/// the snapshots that are the newest of their axis. The range must have at least two pages, and one snapshot
+/// of every axis must fit into a page with room to spare. A word whose write was interrupted is overwritten
+/// with zeros, which flash with error correction allows too.
 ///
 /// # Example
 ///
@@ -25,7 +25,7 @@ use sequential_storage::{
 /// use allanite::{Accumulator, storage::{SnapshotInterval, SnapshotStore, StoreError}};
 /// use embedded_storage_async::nor_flash::NorFlash;
 ///
-/// /// What a task does at every sample.
+/// /// The work of a task at every sample.
 /// async fn sample<F: NorFlash>(
 ///     accumulator: &mut Accumulator<20>,
 ///     count: i32,
@@ -34,7 +34,7 @@ use sequential_storage::{
 /// ) -> Result<(), StoreError<F::Error>> {
 ///     accumulator.push(count);
 ///     if interval.is_due(accumulator.samples()) {
-///         // One byte more for the number of the axis, up to a multiple of what the flash writes.
+///         // One more byte for the number of the axis, rounded up to a multiple of the write size.
 ///         let mut buffer = [0; Accumulator::<20>::SNAPSHOT_BYTES.next_multiple_of(32) + 32];
 ///         store.save(0, accumulator, &mut buffer).await?;
 ///     }
@@ -45,16 +45,16 @@ pub struct SnapshotStore<F: NorFlash> {
     map: MapStorage<u8, F, Cache<Uncached, Uncached, Uncached, u8>>,
 }
 
-/// Why a snapshot was not stored or not found.
+/// The reason why a snapshot was not stored or not read.
 #[derive(Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum StoreError<E> {
-    /// The range is not of two whole pages or more, within the flash.
+    /// The range does not consist of at least two whole pages within the flash.
     InvalidRange,
-    /// Of the flash, or of how it is used.
+    /// The flash failed, or it was not used as it must be.
     Flash(sequential_storage::Error<E>),
-    /// Of the snapshot.
+    /// The snapshot could not be written or restored.
     Snapshot(Error),
 }
 
@@ -73,7 +73,7 @@ impl<E: core::fmt::Debug> core::fmt::Display for StoreError<E> {
 
 impl<E: core::fmt::Debug> core::error::Error for StoreError<E> {}
 
-/// What the map writes: whatever a function puts into a buffer.
+/// The item that the map stores: the bytes that a function writes into a buffer.
 struct Stored<W>(W);
 
 impl<'d, W> Value<'d> for Stored<W>
@@ -88,16 +88,17 @@ where
     }
 
     fn deserialize_from(_: &'d [u8]) -> Result<(Self, usize), SerializationError> {
-        // Bytes are read instead, and restored.
+        // The bytes are read instead, and restored from there.
         Err(SerializationError::InvalidFormat)
     }
 }
 
 impl<F: NorFlash> SnapshotStore<F> {
-    /// A store in a range of flash, in bytes from its start; erased flash is an empty one.
+    /// A store in a range of flash, given in bytes from the start of the flash. Erased flash is an empty
+    /// store.
     ///
     /// # Errors
-    /// [`StoreError::InvalidRange`].
+    /// [`StoreError::InvalidRange`] if the range is not at least two whole pages of the flash.
     pub fn new(flash: F, range: Range<u32>) -> Result<Self, StoreError<F::Error>> {
         let inside = range.start < range.end && range.end as usize <= flash.capacity();
         let config = inside.then(|| MapConfig::try_new(range).ok()).flatten();
@@ -106,13 +107,13 @@ impl<F: NorFlash> SnapshotStore<F> {
         Ok(Self { map })
     }
 
-    /// Writes the snapshot that `write` puts into a buffer, such as that of [`Axes`](crate::Axes), under a
-    /// number: `store.save_with(0, |buffer| axes.snapshot(&tests, buffer), &mut buffer)`. The buffer is one
-    /// byte longer than the snapshot, rounded up to what the flash writes at once. The snapshot fits into
+    /// Stores the snapshot that `write` puts into a buffer under a number. For [`Axes`](crate::Axes), write
+    /// `store.save_with(0, |buffer| axes.snapshot(&tests, buffer), &mut buffer)`. The buffer must be one
+    /// byte longer than the snapshot, rounded up to the write size of the flash. The snapshot must fit into
     /// a page of the flash.
     ///
     /// # Errors
-    /// [`StoreError::Flash`]: what was stored before is still there.
+    /// [`StoreError::Flash`]; the snapshot stored before is then still there.
     pub async fn save_with(
         &mut self,
         number: u8,
@@ -123,11 +124,11 @@ impl<F: NorFlash> SnapshotStore<F> {
         stored.map_err(StoreError::Flash)
     }
 
-    /// Reads the newest snapshot under a number, for [`Axes::restore`](crate::Axes::restore); `None` where
-    /// there never was one. The buffer is as large as to [`save_with`](Self::save_with).
+    /// Reads the newest snapshot under a number, for [`Axes::restore`](crate::Axes::restore); `None` if no
+    /// snapshot was stored. The buffer must be as large as for [`save_with`](Self::save_with).
     ///
     /// # Errors
-    /// [`StoreError::Flash`].
+    /// [`StoreError::Flash`] if the flash cannot be read.
     pub async fn load_bytes<'b>(
         &mut self,
         number: u8,
@@ -137,11 +138,11 @@ impl<F: NorFlash> SnapshotStore<F> {
         fetched.map_err(StoreError::Flash)
     }
 
-    /// Writes an axis' snapshot. The buffer takes [`Accumulator::SNAPSHOT_BYTES`] and one byte more,
-    /// rounded up to what the flash writes at once.
+    /// Stores the snapshot of an axis. The buffer must have one byte more than
+    /// [`Accumulator::SNAPSHOT_BYTES`], rounded up to the write size of the flash.
     ///
     /// # Errors
-    /// [`StoreError::Flash`]: what was stored before is still there.
+    /// [`StoreError::Flash`]; the snapshot stored before is then still there.
     pub async fn save<const OCTAVES: usize>(
         &mut self,
         axis: u8,
@@ -152,11 +153,11 @@ impl<F: NorFlash> SnapshotStore<F> {
             .await
     }
 
-    /// Restores an axis' newest snapshot; `None` where there never was one. The buffer is as large as
-    /// to [`save`](Self::save).
+    /// Restores the newest snapshot of an axis; `None` if no snapshot was stored. The buffer must be as large
+    /// as for [`save`](Self::save).
     ///
     /// # Errors
-    /// [`StoreError::Flash`]; [`StoreError::Snapshot`] with that of [`Accumulator::restore`].
+    /// [`StoreError::Flash`]; [`StoreError::Snapshot`] with the error of [`Accumulator::restore`].
     pub async fn load<const OCTAVES: usize>(
         &mut self,
         axis: u8,
@@ -169,7 +170,7 @@ impl<F: NorFlash> SnapshotStore<F> {
         Ok(Some(restored))
     }
 
-    /// The flash, for other uses.
+    /// Returns the flash for other uses.
     pub fn into_flash(self) -> F {
         self.map.destroy().0
     }

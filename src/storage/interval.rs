@@ -1,11 +1,11 @@
-//! When to write.
+//! The times at which snapshots are due.
 
 use core::num::NonZeroU64;
 
-/// Says when a snapshot is due: every so many samples.
+/// Says when a snapshot is due: once per interval of a fixed number of samples.
 ///
-/// What lies between two snapshots is what a power cut costs. Two pages of 4 KiB that can be erased
-/// 10 000 times take 280 000 snapshots of 250 bytes: one an hour for 30 years.
+/// A power cut loses the samples since the last snapshot. Two pages of 4 KiB that can be erased 10 000 times
+/// hold 280 000 snapshots of 250 bytes in their life: one per hour for 30 years.
 ///
 /// # Example
 ///
@@ -32,8 +32,8 @@ pub struct SnapshotInterval {
 }
 
 impl SnapshotInterval {
-    /// One every so many samples, from an accumulator's present number of samples on: 0, or that of a
-    /// restored one.
+    /// An interval of `every` samples, which begins at the present number of samples of an accumulator: 0, or
+    /// the number that was restored.
     pub const fn new(every: NonZeroU64, samples: u64) -> Self {
         Self {
             every,
@@ -41,10 +41,10 @@ impl SnapshotInterval {
         }
     }
 
-    /// Whether one is due, at this number of samples. Says so once: where the snapshot fails, the next
-    /// is due as if it had been written.
+    /// Whether a snapshot is due at this number of samples. Each snapshot is announced once: if it fails, the
+    /// next one is due after a whole interval.
     pub const fn is_due(&mut self, samples: u64) -> bool {
-        // An accumulator that was reset starts again.
+        // A smaller number of samples means that the accumulator was reset and starts again.
         let due = samples < self.last || samples - self.last >= self.every.get();
         if due {
             self.last = samples;

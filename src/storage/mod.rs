@@ -1,5 +1,5 @@
-//! What outlives the power: snapshots of a record in progress, certificates of a finished one, and flash to
-//! keep them in. Everything is stored in an [`envelope`] with a checksum.
+//! Data that survive a loss of power: snapshots of a record in progress, certificates of a finished record,
+//! and a store in flash for them. Everything is stored in an [`envelope`] with a checksum.
 
 pub mod certificate;
 pub mod envelope;

@@ -1,15 +1,16 @@
-//! Snapshots of an accumulator alone: its sums as bytes that survive a restart.
+//! Snapshots of an accumulator alone: its sums, as bytes that survive a restart.
 //!
-//! The payload of the [envelope](crate::storage::envelope), version 1, as postcard writes it: numbers of more
-//! than a byte are varints, seven bits a byte, lowest first. [`Axes`](crate::Axes) write version 2.
+//! This table describes version 1 of the payload of the [envelope](crate::storage::envelope). The payload is
+//! in postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits
+//! first. [`Axes`](crate::Axes) writes version 2.
 //!
 //! | content | type |
 //! |---|---|
 //! | number of octaves | u8 |
 //! | samples | u64 |
-//! | gaps, one for the end of the snapshot included | u64 |
-//! | of each octave, `m = 1, 2, 4, …`: number of differences | u64 |
-//! | of each octave, behind its number: Σ D² in counts², lowest limb first | 3 × u64 |
+//! | gaps, including one at the end of the snapshot | u64 |
+//! | for each octave, `m = 1, 2, 4, …`: number of differences | u64 |
+//! | for each octave, after its number of differences: Σ D² in counts², lowest limb first | 3 × u64 |
 
 use super::envelope::{self, Kind, OVERHEAD, Writer};
 use crate::{
@@ -19,10 +20,10 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The version of an accumulator alone.
+/// The version of the format for an accumulator alone.
 pub(crate) const VERSION: u8 = 1;
 
-/// Bytes of the longest varint of 64 bits.
+/// The number of bytes of the longest varint of 64 bits.
 pub(crate) const LONGEST: usize = 10;
 
 #[derive(Serialize, Deserialize)]
@@ -38,12 +39,12 @@ struct Octave {
     sum: [u64; 3],
 }
 
-/// Bytes of a payload with as many octaves at most.
+/// The largest number of bytes of a payload with this many octaves.
 const fn longest(octaves: usize) -> usize {
     1 + 2 * LONGEST + octaves * 4 * LONGEST
 }
 
-/// A stored accumulator, checked, of any number of octaves: what it knows can be read without
+/// A stored accumulator of any number of octaves, which has been checked. Its contents can be read without
 /// restoring it.
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot<'b> {
@@ -54,11 +55,11 @@ pub struct Snapshot<'b> {
 }
 
 impl<'b> Snapshot<'b> {
-    /// Opens what [`Accumulator::snapshot`] wrote, and checks all of it.
+    /// Opens the bytes that [`Accumulator::snapshot`] wrote, and checks all of them.
     ///
     /// # Errors
     /// [`Error::UnknownMagic`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::WrongKind`],
-    /// [`Error::UnknownVersion`]; [`Error::Impossible`] for sums that so many samples cannot have.
+    /// [`Error::UnknownVersion`]; [`Error::Impossible`] if no record of that many samples has such sums.
     pub fn open(bytes: &'b [u8]) -> Result<Self, Error> {
         let payload = envelope::open(bytes, Kind::Snapshot, VERSION)?;
         let (head, sums) =
@@ -84,17 +85,17 @@ impl<'b> Snapshot<'b> {
         rest.is_empty().then_some(snapshot).ok_or(Error::Impossible)
     }
 
-    /// Samples of the record.
+    /// The number of samples in the record.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Ends of contiguous stretches, that of the snapshot included.
+    /// The number of ends of contiguous stretches, including the end of the snapshot.
     pub const fn gaps(&self) -> u64 {
         self.gaps
     }
 
-    /// The octaves, shortest averaging time first.
+    /// The octaves, in order of increasing averaging time.
     pub fn octaves(&self) -> impl ExactSizeIterator<Item = OctaveSum> + use<'b> {
         let mut rest = self.sums;
         (0..usize::from(self.octaves)).map(move |k| match take(k, rest) {
@@ -102,7 +103,7 @@ impl<'b> Snapshot<'b> {
                 rest = after;
                 octave
             }
-            // It was there when the snapshot was opened.
+            // The octave was there when the snapshot was opened.
             None => OctaveSum {
                 m: 1 << k,
                 differences: 0,
@@ -112,12 +113,12 @@ impl<'b> Snapshot<'b> {
     }
 }
 
-/// Whether a record of so many samples can have so many gaps, that at its end included.
+/// Whether a record of this many samples can have this many gaps, including the gap at its end.
 pub(crate) const fn has_possible_gaps(samples: u64, gaps: u64) -> bool {
     gaps <= samples && (gaps == 0) == (samples == 0)
 }
 
-/// Whether so many samples and gaps can have left this in octave `k`, which is below 30.
+/// Whether a record of this many samples and gaps can have this octave `k`, with `k` below 30.
 pub(crate) fn is_possible(samples: u64, gaps: u64, k: usize, octave: &OctaveSum) -> bool {
     let (level, first) = match k {
         0 => (0, 1),
@@ -127,17 +128,17 @@ pub(crate) fn is_possible(samples: u64, gaps: u64, k: usize, octave: &OctaveSum)
     let most = samples.wrapping_shr(level as u32).saturating_sub(first);
     let possible = match gaps {
         0 | 1 => octave.differences == most,
-        // Merged without end, the counters stop at their ends.
+        // The counters of records that are merged without end stay at their largest value.
         _ => octave.differences <= most || samples == u64::MAX,
     };
-    // |D| < 2^32 m: above its lowest limb, a sum is less than differences · m².
+    // |D| is below 2^32 m. Therefore the sum without its lowest limb is less than differences · m².
     let [low, middle, high] = octave.sum.limbs();
     let above = u128::from(high) << 64 | u128::from(middle);
     let bound = u128::from(octave.differences).wrapping_shl(2 * k as u32);
     possible && (above < bound || (above, low, bound) == (0, 0, 0))
 }
 
-/// Octave `k` and what stands behind it.
+/// Reads octave `k`, and returns it with the bytes after it.
 fn take(k: usize, bytes: &[u8]) -> Option<(OctaveSum, &[u8])> {
     let (octave, rest) = postcard::take_from_bytes::<Octave>(bytes).ok()?;
     let octave = OctaveSum {
@@ -149,14 +150,14 @@ fn take(k: usize, bytes: &[u8]) -> Option<(OctaveSum, &[u8])> {
 }
 
 impl<const OCTAVES: usize> Accumulator<OCTAVES> {
-    /// Bytes that a snapshot of any record fits into: 833 for 20 octaves, of which four million samples
-    /// of a gyro at rest take 248.
+    /// The size in bytes of a buffer that holds a snapshot of any record: 833 for 20 octaves. Four million
+    /// samples of a gyro at rest take 248 of these.
     pub const SNAPSHOT_BYTES: usize = longest(OCTAVES) + OVERHEAD;
 
-    /// Writes the sums to a buffer and returns the part of it that was used. The state is untouched.
+    /// Writes the sums to a buffer and returns the part of it that was used. The accumulator does not change.
     ///
     /// # Errors
-    /// [`Error::BufferTooSmall`]; never with [`SNAPSHOT_BYTES`](Self::SNAPSHOT_BYTES).
+    /// [`Error::BufferTooSmall`], which never occurs with [`SNAPSHOT_BYTES`](Self::SNAPSHOT_BYTES).
     ///
     /// # Example
     ///
@@ -168,7 +169,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// let mut buffer = [0; Accumulator::<10>::SNAPSHOT_BYTES];
     /// let stored = accumulator.snapshot(&mut buffer)?;
     ///
-    /// // After a restart: as if a gap lay between.
+    /// // After a restart, the restored accumulator equals one that had a gap at this moment.
     /// let restored = Accumulator::<10>::restore(stored)?;
     /// accumulator.gap();
     /// assert_eq!(restored, accumulator);
@@ -190,11 +191,11 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         writer.finish()
     }
 
-    /// The accumulator that a snapshot was taken of, after a [`gap`](Self::gap): what was lost since
-    /// then, and no difference spans the moment.
+    /// Restores an accumulator from its snapshot, as it is after a [`gap`](Self::gap). The samples since the
+    /// snapshot are lost, and no difference spans that moment.
     ///
     /// # Errors
-    /// Of [`Snapshot::open`]; [`Error::WrongOctaves`].
+    /// The errors of [`Snapshot::open`]; [`Error::WrongOctaves`].
     pub fn restore(bytes: &[u8]) -> Result<Self, Error> {
         let snapshot = Snapshot::open(bytes)?;
         let found = usize::from(snapshot.octaves);

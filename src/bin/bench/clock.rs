@@ -1,7 +1,7 @@
-//! Instructions counted by a clock, calibrated against a known number of them.
+//! Counts instructions with a clock, which is calibrated against a known number of instructions.
 //!
-//! QEMU lets an instruction take 1 ns with `-icount shift=0`. How many fit into a tick depends on the
-//! board's clock, so that one is found out and not assumed.
+//! With `-icount shift=0`, QEMU lets an instruction take 1 ns. The number of instructions per tick depends on
+//! the clock of the board, so it is measured and not assumed.
 
 #![allow(unsafe_code)]
 
@@ -10,18 +10,18 @@ use core::arch::asm;
 #[cfg(target_arch = "arm")]
 use systick as counter;
 
-/// Calls of either function that a calibration takes.
+/// The number of calls of each function in a calibration.
 const CALLS: u32 = 1000;
-/// Instructions that one does more than the other.
+/// The number of instructions that [`many`] executes more than [`few`].
 const DIFFERENCE: u32 = 2000;
 
-/// A clock that runs.
+/// A running clock.
 pub(crate) struct Clock {
     instructions_per_tick: f64,
 }
 
 impl Clock {
-    /// Starts and calibrates it; `None` if it does not count.
+    /// Starts and calibrates the clock; `None` if it does not count.
     pub(crate) fn start() -> Option<Self> {
         counter::start()?;
         let mut clock = Self {
@@ -41,19 +41,19 @@ impl Clock {
         Some(clock)
     }
 
-    /// Ticks that work takes.
+    /// The number of ticks that `work` takes.
     pub(crate) fn ticks(&self, work: impl FnOnce()) -> u64 {
         let start = counter::now();
         work();
         counter::now() - start
     }
 
-    /// Instructions in so many ticks.
+    /// The number of instructions in this many ticks.
     pub(crate) fn instructions_of(&self, ticks: u64) -> f64 {
         ticks as f64 * self.instructions_per_tick
     }
 
-    /// Instructions that work takes, to a tick.
+    /// The number of instructions that `work` takes, with the resolution of a tick.
     pub(crate) fn instructions(&self, work: impl FnOnce()) -> f64 {
         self.instructions_of(self.ticks(work))
     }
@@ -61,17 +61,17 @@ impl Clock {
 
 #[inline(never)]
 fn few() {
-    // SAFETY: they do nothing.
+    // SAFETY: the instructions do nothing.
     unsafe { asm!(".rept 500", "nop", ".endr", options(nomem, nostack)) };
 }
 
 #[inline(never)]
 fn many() {
-    // SAFETY: they do nothing.
+    // SAFETY: the instructions do nothing.
     unsafe { asm!(".rept 2500", "nop", ".endr", options(nomem, nostack)) };
 }
 
-/// Arm: SysTick counts down 24 bits, and an exception counts how often.
+/// The counter of Arm. SysTick counts down 24 bits, and an exception counts its laps.
 #[cfg(target_arch = "arm")]
 mod systick {
     use core::sync::atomic::{AtomicU32, Ordering};
@@ -93,14 +93,14 @@ mod systick {
 
     #[cortex_m_rt::exception]
     fn SysTick() {
-        // A core without atomic additions: nobody else writes.
+        // The core may lack atomic additions, and nothing else writes here.
         LAPS.store(LAPS.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
     }
 
     pub(super) fn now() -> u64 {
         loop {
             let laps = LAPS.load(Ordering::Relaxed);
-            // Zero, where it starts too, begins a lap: the exception has counted it.
+            // The counter starts a lap at zero, which the exception has then counted.
             let rest = SYST::get_current().wrapping_neg() & LAST;
             if laps == LAPS.load(Ordering::Relaxed) {
                 return (u64::from(laps) << 24) + u64::from(rest);
@@ -109,7 +109,7 @@ mod systick {
     }
 }
 
-/// RISC-V counts instructions by itself.
+/// The counter of RISC-V, which counts instructions itself.
 #[cfg(target_arch = "riscv32")]
 mod counter {
     pub(super) fn start() -> Option<()> {

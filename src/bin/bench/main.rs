@@ -1,6 +1,6 @@
-//! The image that measures the library in QEMU, where instructions can be counted but not cycles:
-//! `cargo xtask bench`. Its first argument is how much to measure: `full` is everything, `small` what
-//! 16 KiB of RAM have room for.
+//! An image that measures the library in QEMU, which counts instructions but not cycles:
+//! `cargo xtask bench`. Its first argument says how much to measure: `full` is everything, and `small` is
+//! what fits into 16 KiB of RAM.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -11,7 +11,7 @@ fn main() {}
 mod clock;
 #[cfg(target_os = "none")]
 #[path = "../demonstration/mod.rs"]
-// Every image uses some of it.
+// Every image uses only a part of this module.
 #[allow(dead_code, unreachable_pub)]
 mod demonstration;
 #[cfg(target_os = "none")]
@@ -32,7 +32,7 @@ mod image {
     use cortex_m as _;
     use defmt_semihosting as _;
 
-    /// Octaves of an axis whose fit 16 KiB have room for.
+    /// The number of octaves of an axis whose fit still fits into 16 KiB.
     const SMALL: usize = 14;
     const USUAL: usize = 20;
 
@@ -67,7 +67,7 @@ mod image {
         semihosting::process::exit(i32::from(!done))
     }
 
-    /// Calls with the first argument; the image's own name stands before it.
+    /// Calls `measure` with the first argument. The name of the image precedes it.
     fn with_extent(measure: impl FnOnce(&str) -> bool) -> bool {
         let arguments = semihosting::experimental::env::args::<64>();
         let mut words = arguments.iter().flatten();
@@ -84,7 +84,7 @@ mod image {
         );
     }
 
-    /// Three axes with every part of the library, and a covariate.
+    /// Measures three axes with every part of the library and one covariate.
     #[inline(never)]
     fn axes(clock: &Clock) {
         let mean = work::mean_of_axes::<1, Gated, Moments>(clock);
@@ -99,7 +99,8 @@ mod image {
         defmt::info!("instructions_per_sample_slice {=f64}", mean);
     }
 
-    /// The schedule has every level due once up to the one of half as many samples.
+    /// The numbers of samples near which the worst sample is sought. By then, the schedule has served every
+    /// level up to half as many samples at least once.
     const SOON: u32 = 1 << 16;
     const LATE: u32 = 1 << 20;
 
@@ -140,7 +141,7 @@ mod image {
         let stack = stack::used_by(|| {
             black_box(work::diagnose(black_box(&curve), &model));
         });
-        // The diagnosis holds the curve.
+        // The size of the curve is not added, because the diagnosis contains the curve.
         let ram = size_of::<Accumulator<USUAL>>() * 3 + stack;
         defmt::info!(
             "instructions_diagnosis_{=usize} {=f64}",
@@ -152,7 +153,7 @@ mod image {
         found
     }
 
-    /// How long a main loop waits for a fit or a diagnosis to return, whatever is hidden in the gyro.
+    /// Measures how long a main loop waits for a fit or a diagnosis to return, for each hidden effect.
     #[inline(never)]
     fn stretches(clock: &Clock) -> bool {
         let model = Model::ieee_952();

@@ -1,4 +1,4 @@
-//! What is measured.
+//! The work that is measured.
 
 use crate::clock::Clock;
 use crate::demonstration::{
@@ -17,7 +17,7 @@ use allanite::{
 };
 use core::hint::black_box;
 
-/// A push as a call of its own. What it costs beyond [`nothing`] is the push.
+/// A push in a separate call. Its cost above that of [`nothing`] is the cost of the push.
 #[inline(never)]
 pub(crate) fn push<const OCTAVES: usize>(accumulator: &mut Accumulator<OCTAVES>, count: i32) {
     accumulator.push(count);
@@ -28,18 +28,19 @@ pub(crate) fn nothing<const OCTAVES: usize>(accumulator: &mut Accumulator<OCTAVE
     black_box((accumulator, count));
 }
 
-/// Counts that a mean is over, so few that 16 KiB have room for them, and how often they come.
+/// The number of counts in memory, small enough to fit into 16 KiB.
 const LENGTH: usize = 1024;
+/// How often these counts are repeated for a mean.
 const ROUNDS: u32 = 64;
 const SAMPLES: f64 = ROUNDS as f64 * LENGTH as f64;
 
-/// Of a gyro at rest.
+/// The counts of a gyro at rest.
 fn counts() -> [i32; LENGTH] {
     let mut gyro = SimulatedGyro::new(AMPLITUDES, 1);
     core::array::from_fn(|_| gyro.next().unwrap_or(0))
 }
 
-/// Mean instructions of what is done with every count, the loop around it included.
+/// The mean number of instructions of `work` for one count, including the loop around it.
 pub(crate) fn mean(clock: &Clock, work: fn(&mut Accumulator<24>, i32)) -> f64 {
     let counts = counts();
     let mut accumulator = Accumulator::<24>::new();
@@ -54,7 +55,7 @@ pub(crate) fn mean(clock: &Clock, work: fn(&mut Accumulator<24>, i32)) -> f64 {
     total / SAMPLES
 }
 
-/// Mean instructions of a sample of three axes, with or without some parts, the loop around it included.
+/// The mean number of instructions of a sample of three axes with the given parts, including the loop.
 pub(crate) fn mean_of_axes<const COVARIATES: usize, G: GatePart, M: MomentPart>(
     clock: &Clock,
 ) -> f64 {
@@ -72,7 +73,7 @@ pub(crate) fn mean_of_axes<const COVARIATES: usize, G: GatePart, M: MomentPart>(
     total / SAMPLES
 }
 
-/// Mean instructions of a count in a slice.
+/// The mean number of instructions of one count in a slice.
 pub(crate) fn mean_of_slices(clock: &Clock) -> f64 {
     let counts = counts();
     let mut accumulator = Accumulator::<24>::new();
@@ -85,10 +86,11 @@ pub(crate) fn mean_of_slices(clock: &Clock) -> f64 {
     total / SAMPLES
 }
 
-/// The most expensive sample of full-scale counts of random signs, of those around `deepest`.
+/// The number of instructions of the most expensive sample near `deepest`. The counts are full-scale and of
+/// random sign.
 pub(crate) fn worst<const OCTAVES: usize>(clock: &Clock, deepest: u32) -> u64 {
     const AROUND: u32 = 256;
-    /// Resolves half an instruction.
+    /// The number of repetitions, which resolves half an instruction.
     const REPETITIONS: u32 = 200;
     let mut random = Random::new(1);
     let mut count = || {
@@ -122,10 +124,10 @@ pub(crate) fn worst<const OCTAVES: usize>(clock: &Clock, deepest: u32) -> u64 {
     (instructions / f64::from(REPETITIONS) + 0.5) as u64
 }
 
-/// An effect that is hidden in a curve: its shape and its coefficient.
+/// An effect that is hidden in a curve, with its shape and its coefficient.
 pub(crate) type Hidden = (&'static dyn Effect, [Real; 2], Real);
 
-/// The cases of the study of hidden effects, and the name of each in the figures.
+/// The cases of `cargo xtask study hidden-effect`, and their names in the figures.
 pub(crate) const HIDDEN: [(&str, &[Hidden]); 11] = [
     ("nothing", &[]),
     ("sinusoid_0_3_hz", &[(&Sinusoid, [0.3, 0.0], 0.005)]),
@@ -155,7 +157,7 @@ pub(crate) const HIDDEN: [(&str, &[Hidden]); 11] = [
 /// An oscillation at 7.7 Hz.
 pub(crate) const SINUSOID: Hidden = (&Sinusoid, [7.7, 0.0], 0.02);
 
-/// Octaves of a gyro with all five terms, each off by a few per cent, and hidden effects.
+/// The curve of a gyro with all five terms and hidden effects. Each octave deviates by a few per cent.
 pub(crate) fn curve<const OCTAVES: usize>(hidden: &[Hidden]) -> Option<Curve<OCTAVES>> {
     let is_filter = |(effect, ..): &Hidden| effect.replaces().is_some();
     let white = if hidden.iter().any(is_filter) {
@@ -192,7 +194,7 @@ pub(crate) fn characterise<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Resu
     fit(curve, &Model::ieee_952(), Options::default())
 }
 
-/// Whether it finds something.
+/// Diagnoses the curve, and returns whether the diagnosis found an effect.
 #[inline(never)]
 pub(crate) fn diagnose<const OCTAVES: usize>(curve: &Curve<OCTAVES>, model: &Model) -> bool {
     let mut diagnosis = begin(curve, model);
@@ -211,7 +213,8 @@ fn begin<'a, const OCTAVES: usize>(
     Diagnosis::new(curve.clone(), Evidence::NONE, model, &CATALOGUE, options)
 }
 
-/// The most instructions that a diagnosis takes before it returns. `None` where it fails.
+/// The largest number of instructions between two returns of a diagnosis, including its start; `None` if
+/// it fails.
 #[inline(never)]
 pub(crate) fn longest_stretch_of_diagnosis<const OCTAVES: usize>(
     clock: &Clock,
@@ -236,7 +239,7 @@ pub(crate) fn longest_stretch_of_diagnosis<const OCTAVES: usize>(
     Some(longest)
 }
 
-/// The most instructions that a fit takes before it returns: a look of the self-test is one.
+/// The largest number of instructions between two returns of a fit; a look of the self-test is such a fit.
 #[inline(never)]
 pub(crate) fn longest_stretch_of_fit<const OCTAVES: usize>(
     clock: &Clock,

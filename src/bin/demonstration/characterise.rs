@@ -1,4 +1,4 @@
-//! From counts to coefficients.
+//! The characterisation of a simulated gyro, from counts to coefficients.
 
 use super::{AMPLITUDES, double, simulated::SimulatedGyro};
 use allanite::{
@@ -6,16 +6,16 @@ use allanite::{
     fit::{Fit, Options, fit},
 };
 
-/// Octaves of averaging time.
+/// The number of octaves of averaging time.
 pub const OCTAVES: usize = 20;
 
-/// Length of the record: 44 minutes.
+/// The number of samples in the record: 44 minutes.
 pub const SAMPLES: usize = 1 << 18;
 
-/// The seed of its noise, where there is no reason for another.
+/// The default seed of the noise.
 pub const SEED: u64 = 952;
 
-/// What came out.
+/// The results of the characterisation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Characterised {
     /// The Allan curve, in °/s.
@@ -27,10 +27,10 @@ pub struct Characterised {
 }
 
 impl Characterised {
-    /// Simulates a gyro whose noise has a seed, accumulates and fits.
+    /// Simulates a gyro with noise from this seed, accumulates its counts and fits the curve.
     ///
     /// # Errors
-    /// Those of [`fit`].
+    /// The errors of [`fit`].
     pub fn run(seed: u64) -> Result<Self, Error> {
         let scale = Scale::new(1.0 / 131.0, 100.0)?;
         let curve = accumulated(scale, seed);
@@ -42,8 +42,8 @@ impl Characterised {
         })
     }
 
-    /// Whether the curve is explained (p > 0.1 %), and every coefficient within four standard
-    /// errors of the simulated one.
+    /// Whether the model explains the curve (p > 0.1 %) and the square of every coefficient is within four
+    /// standard errors of the simulated one.
     pub fn passed(&self) -> bool {
         let within = |(coefficient, truth): (&Coefficient, &f64)| {
             let square = double(coefficient.square);
@@ -53,7 +53,8 @@ impl Characterised {
     }
 }
 
-/// A call of its own: on a core of 16 KiB of RAM, gyro and record leave the stack to the fit.
+/// Accumulates in a separate call, so that on a core with 16 KiB of RAM the gyro and the record leave the
+/// stack before the fit.
 #[inline(never)]
 fn accumulated(scale: Scale, seed: u64) -> Curve<OCTAVES> {
     let mut gyro = Axis::<OCTAVES, 0, (), ()>::new();

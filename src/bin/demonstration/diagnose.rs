@@ -1,5 +1,5 @@
-//! From counts to a hidden effect: a simulated gyro that has more than the five terms is recorded and
-//! diagnosed. An image computes this on the target, and the host computes it again, to compare the bits.
+//! The diagnosis of a simulated gyro that has an effect beyond the five terms, from counts to the effect's
+//! name. An image computes it on the target, and the host computes it again to compare the bits.
 
 use super::{
     AMPLITUDES,
@@ -12,19 +12,19 @@ use allanite::{
     effect::CATALOGUE,
 };
 
-/// Octaves of averaging time.
+/// The number of octaves of averaging time.
 pub const OCTAVES: usize = 20;
 
-/// Length of the record: 22 minutes.
+/// The number of samples in the record: 22 minutes.
 pub const SAMPLES: usize = 1 << 17;
 
-/// Samples per second.
+/// The sample rate, in samples per second.
 pub const RATE_HZ: Real = 100.0;
 
-/// Names of what can be hidden, those of the effects.
+/// The effects that can be hidden, with their names in the catalogue.
 pub const HIDDEN: [(&str, Disturbance); 3] = [
     (
-        // 0.12 °/s at 7.7 Hz.
+        // The amplitude is 0.12 °/s at 7.7 Hz.
         "sinusoid",
         Disturbance::Sinusoid {
             amplitude: 16 << 24,
@@ -32,7 +32,7 @@ pub const HIDDEN: [(&str, Disturbance); 3] = [
         },
     ),
     (
-        // 0.03 °/s, correlated over 1.28 s.
+        // The rms is 0.03 °/s, with a correlation time of 1.28 s.
         "gauss_markov",
         Disturbance::GaussMarkov {
             deviation: 4 << 24,
@@ -40,23 +40,23 @@ pub const HIDDEN: [(&str, Disturbance); 3] = [
         },
     ),
     (
-        // 30 ms.
+        // The width is 30 ms.
         "decimation_filter",
         Disturbance::MovingAverage { length: 3 },
     ),
 ];
 
-/// The disturbance of that name.
+/// The disturbance with this name; `None` if there is none.
 pub fn hidden(name: &str) -> Option<Disturbance> {
     let named = HIDDEN.iter().find(|(hidden, _)| *hidden == name);
     named.map(|&(_, disturbance)| disturbance)
 }
 
-/// Simulates a gyro with a disturbance, its noise of a seed, and diagnoses it; every step is handed to
-/// `report`. The diagnosis knows the counts alone.
+/// Simulates a gyro with a disturbance and with noise from this seed, and diagnoses it. The diagnosis
+/// receives only the counts. `report` is called with every step.
 ///
 /// # Errors
-/// As of [`Diagnosis::run`].
+/// The errors of [`Diagnosis::run`].
 pub fn diagnose(
     disturbance: Option<Disturbance>,
     seed: u64,
@@ -68,7 +68,7 @@ pub fn diagnose(
     Diagnosis::new(curve, record.evidence(), &model, &CATALOGUE, options).run(report)
 }
 
-/// A call of its own: gyro and record leave the stack to the diagnosis.
+/// Records in a separate call, so that the gyro and the record leave the stack before the diagnosis.
 #[inline(never)]
 fn recorded(disturbance: Option<Disturbance>, seed: u64) -> Result<AxisEvidence<OCTAVES>, Error> {
     let mut gyro = Axis::<OCTAVES>::new();
@@ -79,5 +79,5 @@ fn recorded(disturbance: Option<Disturbance>, seed: u64) -> Result<AxisEvidence<
     gyro.evidence(0, Scale::new(1.0 / 131.0, RATE_HZ)?, [])
 }
 
-/// The seed of its noise, where there is no reason for another.
+/// The default seed of the noise.
 pub const SEED: u64 = 1952;

@@ -1,5 +1,5 @@
-//! The lines that images log and the host prints. They hold the bits of every number, so that equal lines
-//! mean equal bits.
+//! The lines that the images log and the host prints. They hold the bits of every number, so that equal
+//! lines mean equal bits.
 
 use super::{characterise::Characterised, double};
 use allanite::{
@@ -9,7 +9,7 @@ use allanite::{
 };
 use core::fmt::{self, Arguments, Display, Formatter};
 
-/// A number, and the bits that it has in double precision.
+/// A number, printed with its bits in double precision.
 struct Exact(Real);
 
 impl Display for Exact {
@@ -18,7 +18,7 @@ impl Display for Exact {
     }
 }
 
-/// A line an octave.
+/// Prints one line for each octave of a curve.
 pub fn curve<const K: usize>(curve: &Curve<K>, mut line: impl FnMut(Arguments<'_>)) {
     for point in curve.points() {
         line(format_args!(
@@ -30,7 +30,7 @@ pub fn curve<const K: usize>(curve: &Curve<K>, mut line: impl FnMut(Arguments<'_
     }
 }
 
-/// The curve of an axis, and all that a diagnosis takes beside it.
+/// Prints the curve of an axis and the other evidence for a diagnosis.
 pub fn evidence<const K: usize, const C: usize>(
     axis: &AxisEvidence<K, C>,
     mut line: impl FnMut(Arguments<'_>),
@@ -50,7 +50,7 @@ pub fn evidence<const K: usize, const C: usize>(
     line(format_args!("invalid {:?}", axis.invalid));
 }
 
-/// The curve, a line a coefficient, and one of the fit.
+/// Prints the curve, one line for each coefficient, and one line for the fit.
 pub fn characterised(test: &Characterised, mut line: impl FnMut(Arguments<'_>)) {
     curve(&test.curve, &mut line);
     for (coefficient, truth) in test.fit.coefficients.iter().zip(test.truth) {
@@ -71,7 +71,7 @@ pub fn characterised(test: &Characterised, mut line: impl FnMut(Arguments<'_>)) 
     ));
 }
 
-/// A step of a diagnosis: error by octave, what was fitted, what was tried, what was added.
+/// Prints a step of a diagnosis: the error of each octave, the fit, the candidates, and the effect added.
 pub fn step<const K: usize>(step: &Step<K>, mut line: impl FnMut(Arguments<'_>)) {
     for octave in &step.comparison.octaves {
         line(format_args!(

@@ -1,5 +1,5 @@
-//! The whole chain on a simulated gyro. The images compute it on the target, and the host computes it again
-//! from the same files, to compare the bits.
+//! The whole chain from counts to results on a simulated gyro. The images compute it on the target, and the
+//! host computes it again from the same source files to compare the bits.
 
 pub mod characterise;
 pub mod diagnose;
@@ -21,7 +21,7 @@ pub const AMPLITUDES: Amplitudes = Amplitudes {
     ramp: 110,
 };
 
-/// A number in double precision, whatever the precision of the library.
+/// A number in double precision, for either precision of the library.
 fn double(x: impl Into<f64>) -> f64 {
     x.into()
 }

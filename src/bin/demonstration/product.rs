@@ -1,6 +1,7 @@
-//! All that a product does with three axes, every part switched on: samples come through a queue that
-//! overflows now and then, beside a temperature; three samples are corrupt, the gyro is moved once, and the
-//! power fails once after a snapshot. At the end there are a verdict of the self-test and a diagnosis.
+//! Everything that a product does with three axes and every part of the library. Samples pass through a queue
+//! that overflows now and then, together with a temperature. Three samples are corrupt, the gyro is moved
+//! once, and the power fails once after a snapshot. At the end there are a verdict of the self-test and a
+//! diagnosis.
 
 use super::{AMPLITUDES, lines, simulated::SimulatedGyro};
 use allanite::{
@@ -15,31 +16,33 @@ use allanite::{
 use core::fmt::Arguments;
 use heapless::{Vec, spsc::Queue};
 
-/// Octaves of averaging time.
+/// The number of octaves of averaging time.
 pub const OCTAVES: usize = 16;
 
-/// Three axes beside a temperature, with a gate and with fourth moments.
+/// Three axes and a temperature, with a gate and with fourth moments.
 pub type Gyro = Axes<OCTAVES, 1>;
 
-/// Samples that the sensor makes: 11 minutes.
+/// The number of samples that the sensor makes: 11 minutes.
 pub const SAMPLES: u32 = 1 << 16;
 
-/// The seed of the first axis' noise.
+/// The seed of the first axis' noise. Each further axis adds one.
 const SEED: u64 = 3952;
-/// Sample, axis and count of what the bus corrupts.
+/// The sample, the axis and the count of each corruption on the bus.
 const SPIKES: [(u32, usize, i32); 3] = [(9000, 0, 20_000), (21_000, 1, -9000), (33_000, 2, 32_767)];
-/// Samples in which the second axis is turned.
+/// The samples during which the second axis turns.
 const MOTION: core::ops::Range<u32> = 40_000..40_500;
-/// Samples at which a snapshot is taken, and at which the power fails.
+/// The sample at which a snapshot is taken.
 const SNAPSHOT: u32 = 50_000;
+/// The sample at which the power fails.
 const POWER_LOSS: u32 = 52_000;
-/// Samples between the overflows of the queue, and what the main loop is late by then.
+/// The number of samples from one overflow of the queue to the next, and the number of samples that are
+/// made while the main loop is late.
 const LATE: (u32, u32) = (7000, 40);
-/// Samples that the main loop usually takes at once.
+/// The number of samples that are usually made before the main loop takes them.
 const USUAL: u32 = 8;
 
 const RATE_HZ: Real = 100.0;
-/// Kelvin a count of temperature.
+/// The scale of the temperature in kelvin per count.
 const KELVIN: Real = 0.01;
 
 /// Three simulated gyros and a thermometer.
@@ -63,7 +66,8 @@ impl Sensor {
         for (count, gyro) in counts.iter_mut().zip(&mut self.gyros) {
             *count = gyro.next().unwrap_or(0);
         }
-        // Ten kelvin up and down in eleven minutes, which the first axis follows: 0.06 °/s per kelvin.
+        // The temperature rises by ten kelvin and falls again within eleven minutes. The first axis follows
+        // it by 0.06 °/s per kelvin.
         let half = SAMPLES / 2;
         let temperature = (n.min(SAMPLES - n) * 1000 / half) as i32;
         counts[0] += temperature * 8 / 100;
@@ -79,7 +83,7 @@ impl Sensor {
     }
 }
 
-/// The test that the first axis is put to.
+/// The self-test of the first axis.
 fn self_test(scale: Scale) -> Option<SelfTest<OCTAVES>> {
     let limit = Limit {
         effect: "angle_random_walk",
@@ -98,7 +102,7 @@ fn self_test(scale: Scale) -> Option<SelfTest<OCTAVES>> {
     SelfTest::new(plan, scale).ok()
 }
 
-/// Why the product stopped: a defect, unless the snapshot does not fit its buffer.
+/// The reason why the product stopped. It is a defect, unless the snapshot does not fit its buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
     /// The plan of the self-test is not valid.
@@ -121,7 +125,8 @@ impl From<storage::Error> for Failure {
     }
 }
 
-/// Runs the product with the bytes that survive a loss of power, and tells what it finds.
+/// Runs the product and reports its results line by line. `flash` holds the bytes that survive a loss of
+/// power.
 ///
 /// # Errors
 /// [`Failure`].
@@ -139,7 +144,7 @@ pub fn run(
     let mut queue = Queue::<Queued<Sample<3, 1>>, 16>::new();
     let (mut interrupt, mut main_loop) = queue::split(&mut queue);
     while sensor.made < SAMPLES {
-        // What the interrupt does while the main loop is busy.
+        // The interrupt sends these samples while the main loop is busy.
         let (every, late) = LATE;
         let more = if sensor.made % every < USUAL {
             late

@@ -1,4 +1,4 @@
-//! A simulated gyro in integers alone: the same counts on every machine.
+//! A simulated gyro that computes in integers only, so that it gives the same counts on every machine.
 
 mod disturbance;
 
@@ -9,25 +9,26 @@ use allanite::Scale;
 use core::f64::consts::{LN_2, PI};
 use disturbance::Source;
 
-/// Fraction bits of every amplitude.
+/// The number of fraction bits of every amplitude.
 const FRACTION: u32 = 24;
 
-/// Relaxations behind the flicker noise: down to one in 2^23 samples.
+/// The number of relaxation processes that make up the flicker noise. The slowest has a relaxation time of
+/// 2^23 samples.
 const POLES: usize = 24;
 
-/// Amplitudes of the five terms of IEEE Std 952, in 2^-24 counts: up to 256 counts each.
+/// The amplitudes of the five terms of IEEE Std 952, in 2^-24 counts; each is below 256 counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Amplitudes {
-    /// Standard deviation of the angle's jitter, in count · samples. The rounding of the angle to
-    /// whole counts comes on top, with a variance of 1/12.
+    /// The standard deviation of the angle's jitter, in count · samples. The rounding of the angle to
+    /// whole counts adds a variance of 1/12.
     pub quantization: u32,
-    /// Standard deviation of the white noise of one sample.
+    /// The standard deviation of the white noise of one sample.
     pub white: u32,
-    /// Standard deviation of each of the flicker noise's relaxations.
+    /// The standard deviation of each of the flicker noise's relaxation processes.
     pub flicker: u32,
-    /// Standard deviation of the random walk's step from sample to sample.
+    /// The standard deviation of the random walk's step from sample to sample.
     pub walk: u32,
-    /// Increase of the rate from sample to sample.
+    /// The increase of the rate from sample to sample.
     pub ramp: i32,
 }
 
@@ -57,20 +58,21 @@ impl Amplitudes {
 
 /// A gyro at rest with the five terms of IEEE Std 952: an endless iterator over its counts.
 ///
-/// The rate is the sum of white noise, flicker noise, a random walk and a ramp. Its angle plus a
-/// jitter, rounded to whole counts, is what the sensor has given out at any moment, so that the
-/// rounding is quantization noise too.
+/// The rate is the sum of white noise, flicker noise, a random walk and a ramp. At any moment, the sensor's
+/// counts add up to its angle plus a jitter, rounded to whole counts. Therefore the rounding is quantization
+/// noise too.
 ///
-/// Flicker noise is the sum of 24 first-order Gauss–Markov processes `x ← x − x/2^p ± a √(2/2^p)`,
-/// `p = 0 … 23`, an octave apart and of variance `a²` each, more below 8 samples (van der Ziel
-/// 1950; Kasdin 1995, section III). Their spectral density adds up to `a²/(2 ln 2 · f)`, two-sided:
-/// `B² = π a²/ln 2`. Its Allan variance is flat to 1 % from `m = 8` to 2^17; below, flicker noise
-/// that is averaged over each sample would have less: by 3, 14 and 38 % at `m = 4, 2, 1`. The signs
-/// are random bits, which the sum over a relaxation time turns normal.
+/// Flicker noise is the sum of 24 first-order Gauss–Markov processes `x ← x − x/2^p ± a √(2/2^p)`
+/// with `p = 0 … 23`. Their time constants are an octave apart. Each has the variance `a²`, or a
+/// larger one if its time constant is below 8 samples (van der Ziel 1950; Kasdin 1995, section III).
+/// Their two-sided spectral densities add up to `a²/(2 ln 2 · f)`, so that `B² = π a²/ln 2`. The
+/// Allan variance is flat to 1 % from `m = 8` to 2^17. At smaller `m`, flicker noise averaged over
+/// each sample would have a smaller variance: by 3, 14 and 38 % at `m = 4, 2, 1`. The signs are
+/// random bits, whose sum over a relaxation time is nearly normal.
 ///
-/// Normal numbers are the number of ones in 32 random bits, plus a uniform one, scaled to unit
-/// variance: excess kurtosis −0.06, none beyond 5.8 standard deviations. Random bits come from
-/// xoshiro128++ (Blackman & Vigna 2021), seeded by SplitMix64.
+/// A normal number is the number of ones in 32 random bits plus a uniform number, scaled to unit
+/// variance. Its excess kurtosis is −0.06, and it never exceeds 5.8 standard deviations. The random bits come
+/// from xoshiro128++ (Blackman & Vigna 2021), seeded by SplitMix64.
 #[derive(Clone, Debug)]
 pub struct SimulatedGyro {
     amplitudes: Amplitudes,
@@ -79,18 +81,18 @@ pub struct SimulatedGyro {
     source: Source,
     walk: i64,
     ramp: i64,
-    /// Angle that has not been given out yet, of magnitude below a count and the jitter.
+    /// The angle that the counts do not contain yet. Its magnitude is below one count plus the jitter.
     rest: i64,
 }
 
 impl SimulatedGyro {
-    /// A gyro whose flicker noise has gone on for ever, and whose random walk and ramp start at
-    /// zero.
+    /// A gyro whose flicker noise is stationary from the first sample, and whose random walk and ramp start
+    /// at zero.
     pub fn new(amplitudes: Amplitudes, seed: u64) -> Self {
         Self::disturbed(amplitudes, None, seed)
     }
 
-    /// The same with something that the five terms lack.
+    /// The same gyro with a disturbance that the five terms do not describe.
     pub fn disturbed(amplitudes: Amplitudes, disturbance: Option<Disturbance>, seed: u64) -> Self {
         let mut random = Random::new(seed);
         let mut relaxation = 0;
@@ -136,12 +138,12 @@ impl Iterator for SimulatedGyro {
         let angle = self.rest + white + flicker + self.walk + self.ramp;
         let count = rounded(angle + self.random.normal(quantization), FRACTION);
         self.rest = angle - (count << FRACTION);
-        // A walk or ramp that leaves 32 bits clips, as a sensor does.
+        // A walk or a ramp that leaves 32 bits clips, as it does in a sensor.
         Some(count.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
     }
 }
 
-/// A first-order Gauss–Markov process of relaxation time 2^p samples, in 2^-24 counts.
+/// A first-order Gauss–Markov process with a relaxation time of 2^p samples, in 2^-24 counts.
 #[derive(Clone, Copy, Debug)]
 struct Pole {
     state: i64,
@@ -164,21 +166,21 @@ impl Pole {
     }
 }
 
-/// `value/2^bits` to the nearest integer.
+/// `value/2^bits`, rounded to the nearest integer.
 fn rounded(value: i64, bits: u32) -> i64 {
     (value + (1 << bits >> 1)) >> bits
 }
 
-/// xoshiro128++: random bits, the same on every machine.
+/// The generator xoshiro128++, whose random bits are the same on every machine.
 #[derive(Clone, Debug)]
 pub struct Random {
     state: [u32; 4],
 }
 
 impl Random {
-    /// A generator of its own for every seed.
+    /// A generator whose sequence depends on the seed.
     pub fn new(seed: u64) -> Self {
-        // SplitMix64: no seed makes two successive words, and so xoshiro's state, zero.
+        // SplitMix64 never returns two successive words of zero, so that xoshiro's state is never zero.
         let mut seed = seed;
         let mut word = || {
             seed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -211,12 +213,12 @@ impl Random {
         result
     }
 
-    /// A normal number of this standard deviation, to 1e-5.
+    /// A normal number with this standard deviation, exact to 1e-5.
     fn normal(&mut self, deviation: u32) -> i64 {
         if deviation == 0 {
             return 0;
         }
-        // Variance 8 of the number of ones, 1/12 of the uniform number: √(97/12) · 23051 = 2^16.
+        // The number of ones has the variance 8, and the uniform number 1/12. √(97/12) · 23051 = 2^16.
         const SCALE: i64 = 23_051;
         let ones = i64::from(self.bits().count_ones()) - 16;
         let uniform = i64::from(self.bits() >> 16) - (1 << 15);

@@ -1,4 +1,4 @@
-//! A gyro that is watched while it sends.
+//! The gyro whose counts are sent to a host.
 
-/// The seed of its noise.
+/// The seed of the noise.
 pub const SEED: u64 = 2952;

@@ -1,4 +1,4 @@
-//! The accumulator alone, as an interrupt has it: counts and gaps come in, nothing is read.
+//! The accumulator alone, as in an interrupt: counts and gaps come in, and no result is read.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

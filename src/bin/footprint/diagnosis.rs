@@ -1,4 +1,4 @@
-//! The same, and a diagnosis with every effect of the catalogue.
+//! The image of `fit.rs` with a diagnosis that tries every effect of the catalogue.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -1,5 +1,5 @@
-//! Nearly all that a product runs on a sensor's counts, but for its bus and its flash: to be searched for
-//! panics. Started, it does nothing.
+//! Nearly everything that a product does with a sensor's counts, except for its bus and its flash. The image
+//! is searched for panics. It does nothing when it is started.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -19,7 +19,7 @@ mod image {
     use core::hint::black_box;
     use heapless::{Vec, spsc::Queue};
 
-    /// Three axes beside a temperature, with every part.
+    /// Three axes and a temperature, with every part.
     type Gyro = Axes<20, 1>;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]

@@ -1,4 +1,4 @@
-//! The smallest image that takes counts, makes the curve and fits it.
+//! The smallest image that takes counts, computes the curve and fits it.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

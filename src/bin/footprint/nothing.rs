@@ -1,5 +1,5 @@
-//! An image that does nothing: what start-up and end cost in flash. The other images here are weighed
-//! against it.
+//! An image that does nothing. Its size is the flash that start-up and exit take, and it is subtracted from
+//! the sizes of the other images.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

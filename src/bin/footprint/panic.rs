@@ -1,7 +1,7 @@
-//! What the images that are weighed share.
+//! The panic handler of the images whose size is measured.
 
-/// Never reached where nothing can panic, and then the linker leaves it out: an image that has no
-/// symbol of a panic has no path to one. Inlined, it would go unseen.
+/// The linker leaves this function out of an image in which nothing can panic. Therefore an image without
+/// this symbol has no path to a panic. The function must not be inlined, or the symbol would be missing.
 #[inline(never)]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {

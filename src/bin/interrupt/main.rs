@@ -1,9 +1,9 @@
-//! The image that shows samples going from an interrupt to the main loop, and none lost silently.
+//! An image in which samples pass from an interrupt to the main loop, and every lost sample is reported.
 //!
-//! A timer is the sensor's data-ready interrupt: it makes a sample of the simulated gyro and hands it to
-//! the queue. Some reads fail, and now and then the main loop is late, so that the queue overflows.
-//! Whatever is lost becomes a gap of the record, and is logged with its place, so that a host can
-//! repeat it. The exit status tells whether taken and lost samples add up to those made.
+//! A timer takes the place of the sensor's data-ready interrupt. It makes a sample of the simulated gyro and
+//! puts it into the queue. Some reads fail, and now and then the main loop is late, so that the queue
+//! overflows. Every loss becomes a gap of the record and is logged with its place, so that a host can
+//! repeat the record. The exit status tells whether the taken and the lost samples add up to all samples.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -15,7 +15,7 @@ mod timer;
 
 #[cfg(target_os = "none")]
 #[path = "../demonstration/mod.rs"]
-// Every image uses some of it.
+// Every image uses only a part of this module.
 #[allow(dead_code, unreachable_pub)]
 mod demonstration;
 
@@ -35,17 +35,17 @@ mod image {
 
     const OCTAVES: usize = 12;
     const SEED: u64 = 1024;
-    /// Samples that the sensor has.
+    /// The number of samples that the sensor makes.
     const SAMPLES: u32 = 1 << 14;
-    /// Every so many, the interrupt fails to read one.
+    /// The interrupt fails to read one sample in this many.
     const FAILS: u32 = 3000;
-    /// Room for fifteen.
+    /// The size of the queue, which has room for fifteen samples.
     const ROOM: usize = 16;
-    /// When the main loop is late: how many it has taken by then, and how many more are made before it
-    /// takes the next. The last of them lasts to the end of the record.
+    /// The delays of the main loop: the number of samples that it has taken by then, and the number of
+    /// samples that are made before it takes the next one. The last delay lasts to the end of the record.
     const LATE: [(u32, u32); 4] = [(1000, 40), (1200, 15), (5000, 500), (15_700, SAMPLES)];
 
-    /// What the interrupt has.
+    /// The state that the interrupt uses.
     struct Sensor {
         gyro: SimulatedGyro,
         sender: Sender<'static, i32>,
@@ -54,7 +54,7 @@ mod image {
 
     static SENSOR: Mutex<RefCell<Option<Sensor>>> = Mutex::new(RefCell::new(None));
 
-    /// A sample is ready.
+    /// Handles the interrupt that says that a sample is ready.
     pub(crate) fn ready() {
         with_sensor(|sensor| {
             if sensor.made == SAMPLES {
@@ -99,7 +99,7 @@ mod image {
         semihosting::process::exit(i32::from(!take_all(receiver)))
     }
 
-    /// The main loop; whether every sample that was made is accounted for.
+    /// Runs the main loop, and returns whether every sample that was made is accounted for.
     fn take_all(mut receiver: Receiver<'static, i32>) -> bool {
         let mut gyro = Axis::<OCTAVES, 0, (), ()>::new();
         let mut late = LATE.iter().copied();
@@ -107,7 +107,7 @@ mod image {
         let mut taken = 0;
         defmt::info!("record seed {=u64} octaves {=usize}", SEED, OCTAVES);
         loop {
-            // In this order: what the interrupt made last is in the queue by then.
+            // The end is read before the queue, so that the last sample is in the queue if the end is seen.
             let end = made() == SAMPLES;
             let Some(Queued { sample, lost }) = receiver.receive() else {
                 if end {

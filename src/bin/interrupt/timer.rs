@@ -1,5 +1,5 @@
-//! A timer that interrupts when a sample is ready. The sample itself takes a fraction of the time
-//! between two.
+//! A timer that interrupts when a sample is ready. The handler takes a fraction of the time between two
+//! samples.
 
 #[cfg(target_arch = "arm")]
 pub(crate) use systick::start;
@@ -11,7 +11,7 @@ pub(crate) use machine_timer::start;
 mod systick {
     use cortex_m::peripheral::{Peripherals, syst::SystClkSource};
 
-    /// 10 000 to 30 000 instructions in QEMU.
+    /// The timer's ticks per sample: 10 000 to 30 000 instructions in QEMU.
     const INTERVAL: u32 = 400;
 
     pub(crate) fn start() {
@@ -39,16 +39,17 @@ mod machine_timer {
     use riscv::interrupt::{self, Interrupt};
     use riscv::register::mie;
 
-    /// Of the timer's 10 MHz: 20 000 instructions in QEMU.
+    /// The ticks per sample of the timer, which runs at 10 MHz: 20 000 instructions in QEMU.
     const INTERVAL: u64 = 200;
 
-    /// `mtimecmp` of the first hart on QEMU's virt, and `mtime`.
+    /// The address of `mtimecmp` of the first hart on QEMU's `virt`.
     const COMPARE: *mut u64 = 0x0200_4000 as *mut u64;
+    /// The address of `mtime`.
     const TIME: *const u32 = 0x0200_BFF8 as *const u32;
 
     pub(crate) fn start() {
         next();
-        // SAFETY: the handler is there, and what it shares lies in critical sections.
+        // SAFETY: the handler exists, and it accesses shared data only in critical sections.
         unsafe {
             mie::set_mtimer();
             interrupt::enable();
@@ -63,7 +64,7 @@ mod machine_timer {
 
     /// Sets the time of the next interrupt.
     fn next() {
-        // SAFETY: registers that every `virt` has. Seconds of a record do not fill 32 bits, so the
+        // SAFETY: every `virt` has these registers. A record lasts seconds, which do not fill 32 bits, so the
         // upper half of the time is zero.
         unsafe {
             let now = u64::from(ptr::read_volatile(TIME));

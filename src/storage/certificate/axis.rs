@@ -1,4 +1,4 @@
-//! What a record keeps of an axis.
+//! The part of a certificate that describes one axis.
 
 use super::EffectCode;
 use crate::{
@@ -12,57 +12,58 @@ use crate::{
 };
 use heapless::Vec;
 
-/// A fit and what came of it, in single precision: far below what any record tells.
+/// A fit and its verdict, in single precision, whose rounding is far below the uncertainty of any record.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AxisCertificate {
-    /// The model's terms, in its order.
+    /// The terms of the model, in the order of the model.
     pub terms: Vec<CertifiedTerm, MAX_EFFECTS>,
-    /// Correlations of their squared coefficients.
+    /// The correlations of the terms' squared coefficients.
     pub correlations: Correlations,
-    /// χ² of the fit; NaN for methods without error model.
+    /// χ² of the fit; NaN for a method without error model.
     pub chi_squared: f64,
-    /// Degrees of freedom.
+    /// The degrees of freedom of the fit.
     pub degrees_of_freedom: u16,
-    /// Probability of a larger χ² if the model is true; NaN where there is none.
+    /// The probability of a larger χ² if the model is true; NaN if there is none.
     pub p_value: f64,
-    /// The tolerance that was granted to the model, relative to its variance.
+    /// The tolerance granted to the model, relative to its variance.
     pub tolerance: f32,
-    /// What a diagnosis said; `None` where there was none.
+    /// The verdict of a diagnosis; `None` if there was no diagnosis.
     pub verdict: Option<Verdict>,
 }
 
-/// A term of a model: an effect, its coefficient, its shape.
+/// A term of a model: an effect with its coefficient and its shape.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CertifiedTerm {
     /// The effect.
     pub effect: EffectCode,
-    /// Best value of the coefficient, in rate unit · s^(half_seconds/2) of the effect.
+    /// The best value of the coefficient, in rate unit · s^(half_seconds/2) of the effect.
     pub value: f32,
-    /// Lower end of the 95 % interval; zero unless measured.
+    /// The lower end of the 95 % interval; zero unless the coefficient was measured.
     pub lower: f32,
-    /// Upper end of it, or the one-sided 95 % bound; infinite if the effect cannot be told from others.
+    /// The upper end of the 95 % interval, or the one-sided 95 % bound; infinite if the record cannot
+    /// distinguish the effect from others.
     pub upper: f32,
-    /// Standard error of the squared coefficient; infinite as `upper`.
+    /// The standard error of the squared coefficient; infinite if `upper` is infinite.
     pub square_error: f32,
-    /// Whether it was measured.
+    /// Whether the coefficient was measured.
     pub state: CertifiedState,
     /// The shape parameters, in the order in which the effect names them.
     pub shape: Vec<CertifiedShape, MAX_PARAMETERS>,
 }
 
-/// [`State`] in single precision.
+/// The [`State`] of a coefficient, in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum CertifiedState {
     /// The 95 % interval excludes zero.
     Measured,
-    /// `upper` bounds it, one-sided, at 95 %.
+    /// `upper` is a one-sided 95 % bound.
     UpperBound,
-    /// The record says nothing of it.
+    /// The record says nothing about the coefficient.
     NotObservable {
-        /// Length of a record, in seconds, that would measure it; `None` where none would.
+        /// The length of a record that would measure it, in seconds; `None` if no length would.
         after_s: Option<f32>,
     },
 }
@@ -71,22 +72,22 @@ pub enum CertifiedState {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CertifiedShape {
-    /// Best value.
+    /// The best value.
     pub value: f32,
-    /// Lower end of the 95 % interval; NaN of one that was not fitted.
+    /// The lower end of the 95 % interval; NaN if the parameter was not fitted.
     pub lower: f32,
-    /// Upper end of it.
+    /// The upper end of the 95 % interval; NaN if the parameter was not fitted.
     pub upper: f32,
 }
 
 impl AxisCertificate {
-    /// What is kept of a fit of this model to this curve: the one that was asked about, or the last
-    /// [`Step`](crate::Step) of a diagnosis. Its verdict is set apart.
+    /// The certificate of a fit of this model to this curve, which is either a single fit or the last
+    /// [`Step`](crate::Step) of a diagnosis. Its verdict is `None` until it is set.
     ///
-    /// Weighs the octaves once more, for the correlations: a few per cent of what a fit costs.
+    /// This weighs the octaves once more for the correlations, at a few per cent of the cost of a fit.
     ///
     /// # Errors
-    /// Of [`Fit::correlations`].
+    /// The errors of [`Fit::correlations`].
     pub fn new<const K: usize>(curve: &Curve<K>, model: &Model, fit: &Fit) -> Result<Self, Error> {
         Ok(Self {
             terms: (0..fit.coefficients.len())
@@ -101,7 +102,7 @@ impl AxisCertificate {
         })
     }
 
-    /// The covariance of two squared coefficients, by their places; NaN where it is not known.
+    /// The covariance of the squared coefficients of terms `i` and `j`; NaN if it is not known.
     pub fn covariance(&self, i: usize, j: usize) -> f64 {
         let error = |i: usize| {
             let term = self.terms.get(i);
@@ -110,7 +111,7 @@ impl AxisCertificate {
         double(self.correlations.get(i, j)) * error(i) * error(j)
     }
 
-    /// The effects beyond the five of IEEE Std 952.
+    /// The effects other than the five of IEEE Std 952.
     pub fn found(&self) -> impl Iterator<Item = &CertifiedTerm> {
         let usual = |term: &&CertifiedTerm| {
             let mut names = IEEE_952.iter().map(|effect| effect.name());

@@ -1,8 +1,9 @@
-//! Factory records: who a gyro is, under which conditions it was measured, and what came of it.
+//! Certificates of a gyro's calibration: the identity of the gyro, the conditions of the measurement,
+//! and its results.
 //!
-//! The payload of the [envelope](crate::storage::envelope), version 1, as postcard writes it: f32 and f64 are
-//! little endian, integers of more than a byte are varints, an option is a byte 0 or a byte 1 and its
-//! content. NaN is what is not known.
+//! This table describes version 1 of the payload of the [envelope](crate::storage::envelope). The payload is
+//! in postcard's encoding: f32 and f64 are little endian, integers longer than one byte are varints, and an
+//! option is a byte 0, or a byte 1 followed by its content. NaN stands for an unknown number.
 //!
 //! | content | type |
 //! |---|---|
@@ -12,16 +13,16 @@
 //! | duration in s, sample rate in Hz | 2 × f64 |
 //! | samples, gaps | 2 × u64 |
 //! | rate unit: 0 is deg/s, 1 rad/s | u8 |
-//! | number of axes up to 3; of each axis: | u8 |
+//! | number of axes up to 3; for each axis: | u8 |
 //! | – χ², p-value | 2 × f64 |
 //! | – degrees of freedom | u16 |
-//! | – tolerance that was granted | f32 |
+//! | – tolerance granted | f32 |
 //! | – verdict: 0 none, 1 adequate, 2 improved, 3 unexplained, 4 invalid and why, 5 too short | u8, reason |
-//! | – number of terms up to 8; of each term: | u8 |
-//! | – – [code](EffectCode) of the effect, 0 for one that has none | u8 |
+//! | – number of terms up to 8; for each term: | u8 |
+//! | – – [code](EffectCode) of the effect, 0 for an effect that has none | u8 |
 //! | – – value, lower, upper, standard error of the square | 4 × f32 |
 //! | – – state: 0 measured, 1 upper bound, 2 not observable and the length in s that would do | u8, option of f32 |
-//! | – – number of shape parameters up to 2; of each: value, lower, upper | u8, 3 × f32 |
+//! | – – number of shape parameters up to 2; for each: value, lower, upper | u8, 3 × f32 |
 //! | – correlations of the squares, lower triangle row by row without diagonal | f32 each |
 //!
 //! A reason is 0 stuck (longest run u32, changes u64, samples u64), 1 railed (hits u64, samples u64),
@@ -40,13 +41,13 @@ pub(crate) use verdict::WireReason;
 use super::Error;
 use heapless::Vec;
 
-/// Axes that one record has room for.
+/// The largest number of axes in a certificate.
 pub const MAX_AXES: usize = 3;
 
-/// Bytes of a device's identity.
+/// The largest number of bytes of a device's identity.
 pub const MAX_DEVICE_BYTES: usize = 16;
 
-/// The unit of a record's rates.
+/// The unit of the rates in a certificate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RateUnit {
@@ -56,24 +57,24 @@ pub enum RateUnit {
     RadiansPerSecond,
 }
 
-/// Under which conditions a gyro was measured.
+/// The conditions under which a gyro was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Conditions {
-    /// Lowest and highest temperature, in °C, where it was measured.
+    /// The lowest and the highest temperature in °C; `None` if the temperature was not measured.
     pub temperature_c: Option<(f32, f32)>,
-    /// Duration of the measurement, in seconds.
+    /// The duration of the measurement, in seconds.
     pub duration_s: f64,
-    /// Samples per second.
+    /// The sample rate, in samples per second.
     pub rate_hz: f64,
-    /// Samples.
+    /// The number of samples.
     pub samples: u64,
-    /// Ends of contiguous stretches among them.
+    /// The number of ends of contiguous stretches among the samples.
     pub gaps: u64,
 }
 
 impl Conditions {
-    /// Whether a gyro can have been measured so.
+    /// Whether a gyro can have been measured under these conditions.
     fn are_possible(&self) -> bool {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let temperature = self
@@ -83,7 +84,7 @@ impl Conditions {
     }
 }
 
-/// A gyro's factory calibration.
+/// The certificate of a gyro's factory calibration.
 ///
 /// # Example
 ///
@@ -115,23 +116,23 @@ impl Conditions {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Certificate {
-    /// Identity of the device: a serial number, as text or not.
+    /// The identity of the device, such as a serial number; it need not be text.
     pub device: Vec<u8, MAX_DEVICE_BYTES>,
-    /// Version of its firmware: major, minor, patch.
+    /// The version of its firmware: major, minor, patch.
     pub firmware: [u16; 3],
-    /// How it was measured.
+    /// The conditions of the measurement.
     pub conditions: Conditions,
-    /// The unit of its rates.
+    /// The unit of the rates.
     pub unit: RateUnit,
-    /// What was found of each axis.
+    /// The results for each axis.
     pub axes: Vec<AxisCertificate, MAX_AXES>,
 }
 
 impl Certificate {
-    /// A record without axes yet.
+    /// A certificate without axes.
     ///
     /// # Errors
-    /// [`Error::DeviceTooLong`].
+    /// [`Error::DeviceTooLong`] if the identity is longer than [`MAX_DEVICE_BYTES`].
     pub fn new(
         device: &[u8],
         firmware: [u16; 3],

@@ -1,4 +1,4 @@
-//! Verdicts as they are stored: apart from the public ones, which may be reordered.
+//! Verdicts as they are stored. They are separate from the public verdicts, which may be reordered.
 
 use crate::{diagnosis::Verdict, integrity::Reason};
 use serde::{Deserialize, Serialize};

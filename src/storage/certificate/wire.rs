@@ -1,4 +1,4 @@
-//! Records as bytes.
+//! The encoding of certificates as bytes.
 
 use super::{
     AxisCertificate, Certificate, CertifiedShape, CertifiedState, CertifiedTerm, Conditions,
@@ -56,24 +56,24 @@ enum WireState {
     NotObservable(Option<f32>),
 }
 
-/// Value, lower, upper.
+/// The value, the lower end and the upper end of a shape parameter's interval.
 type WireShape = (f32, f32, f32);
 
-// In bytes, varints at their longest.
+// The sizes are in bytes, with every varint at its longest.
 const HEAD_BYTES: usize = 1 + MAX_DEVICE_BYTES + 9 + 9 + 16 + 20 + 2;
 const AXIS_BYTES: usize = 16 + 3 + 4 + 27 + 1 + 4 * PAIRS;
 const TERM_BYTES: usize = 1 + 16 + 6 + 1 + 12 * MAX_PARAMETERS;
 const PAYLOAD_BYTES: usize = HEAD_BYTES + MAX_AXES * (AXIS_BYTES + MAX_EFFECTS * TERM_BYTES);
 
 impl Certificate {
-    /// Bytes that every record fits into; three axes of five terms take 600.
+    /// The size in bytes of a buffer that holds any certificate; three axes of five terms take 600.
     pub const MAX_BYTES: usize = PAYLOAD_BYTES + OVERHEAD;
 
-    /// Writes the record to a buffer and returns the part of it that was used.
+    /// Writes the certificate to a buffer and returns the part of it that was used.
     ///
     /// # Errors
-    /// [`Error::Impossible`] for conditions that are; [`Error::BufferTooSmall`], never with
-    /// [`MAX_BYTES`](Self::MAX_BYTES).
+    /// [`Error::Impossible`] if the conditions are impossible; [`Error::BufferTooSmall`], which never occurs
+    /// with [`MAX_BYTES`](Self::MAX_BYTES).
     pub fn encode<'b>(&self, buffer: &'b mut [u8]) -> Result<&'b [u8], Error> {
         let conditions = &self.conditions;
         if !conditions.are_possible() {
@@ -100,11 +100,11 @@ impl Certificate {
         writer.finish()
     }
 
-    /// Reads what [`encode`](Self::encode) wrote, and checks all of it.
+    /// Reads the bytes that [`encode`](Self::encode) wrote, and checks all of them.
     ///
     /// # Errors
     /// [`Error::UnknownMagic`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::WrongKind`],
-    /// [`Error::UnknownVersion`]; [`Error::Impossible`] for numbers that no fit has.
+    /// [`Error::UnknownVersion`]; [`Error::Impossible`] if no fit has such numbers.
     pub fn decode(bytes: &[u8]) -> Result<Self, Error> {
         let mut rest = envelope::open(bytes, Kind::Certificate, VERSION)?;
         let record = decode_payload(&mut rest).ok_or(Error::Impossible)?;
@@ -145,7 +145,7 @@ fn encode_axis(axis: &AxisCertificate, writer: &mut Writer<'_>) -> Result<(), Er
     Ok(())
 }
 
-/// The next part of a payload.
+/// Reads the next part of a payload.
 fn take<'b, T: Deserialize<'b>>(rest: &mut &'b [u8]) -> Option<T> {
     let (part, after) = postcard::take_from_bytes(rest).ok()?;
     *rest = after;
@@ -195,7 +195,7 @@ fn decode_axis(rest: &mut &[u8]) -> Option<AxisCertificate> {
     let pairs = terms.len() * terms.len().saturating_sub(1) / 2;
     for slot in below.iter_mut().take(pairs) {
         *slot = take(rest)?;
-        // Rounding may exceed one.
+        // Rounding can make a correlation slightly larger than one.
         if slot.abs() > 1.001 {
             return None;
         }

@@ -1,32 +1,32 @@
-//! What the five terms of a simulated gyro lack.
+//! Effects of a simulated gyro that the five terms do not describe.
 
 use super::{FRACTION, Pole, Random, rounded};
 
-/// An effect that hides in a simulated gyro, in integers too.
+/// An effect that is hidden in a simulated gyro, also computed in integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Disturbance {
     /// A sinusoid.
     Sinusoid {
-        /// Amplitude in 2^-24 counts.
+        /// The amplitude in 2^-24 counts.
         amplitude: u32,
-        /// `2 sin(π f τ₀)` for a frequency `f`, in 2^-24.
+        /// The value `2 sin(π f τ₀)` for the frequency `f`, in 2^-24.
         turn: u32,
     },
     /// Exponentially correlated noise.
     GaussMarkov {
-        /// Standard deviation in 2^-24 counts.
+        /// The standard deviation in 2^-24 counts.
         deviation: u32,
-        /// Binary logarithm of the correlation time in samples.
+        /// The binary logarithm of the correlation time in samples.
         relaxation: u32,
     },
-    /// A moving average over so many samples of the white noise, up to 16.
+    /// A moving average of the white noise.
     MovingAverage {
-        /// Samples.
+        /// The number of samples that are averaged, at most 16.
         length: u8,
     },
 }
 
-/// A disturbance on its way.
+/// The state of a disturbance.
 #[derive(Clone, Debug)]
 pub(super) enum Source {
     None,
@@ -68,12 +68,12 @@ impl Source {
         }
     }
 
-    /// The white noise and the disturbance of the next sample.
+    /// The sum of the white noise and the disturbance for the next sample.
     pub(super) fn next(&mut self, white: i64, random: &mut Random) -> i64 {
         match self {
             Self::None => white,
             Self::Sinusoid { turn, state } => {
-                // Two shears: a rotation whose ellipse never grows (Minsky, HAKMEM 1972, item 149).
+                // Two shears make a rotation on an ellipse that never grows (Minsky, HAKMEM 1972, item 149).
                 let [sine, cosine] = state;
                 *sine += rounded(*turn * *cosine, FRACTION);
                 *cosine -= rounded(*turn * *sine, FRACTION);

@@ -219,7 +219,7 @@ fn words_say_what_the_figures_say() {
         }
         let name = axis["axis"].as_str().unwrap();
         assert!(
-            text.contains(&format!("\n{name}: the five terms lack ")),
+            text.contains(&format!("\n{name}: missing effect")),
             "{name}"
         );
     }

@@ -185,5 +185,5 @@ fn covariates_that_are_none_are_refused() {
         &["measure", "log.csv", "--output", "curve.json"],
     );
     let of_a_curve = ["diagnose", "curve.json", "--covariates", "temp_C"];
-    assert!(refusal(folder.path(), &of_a_curve).contains("a curve knows no covariates"));
+    assert!(refusal(folder.path(), &of_a_curve).contains("a curve file has no covariates"));
 }

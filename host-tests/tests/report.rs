@@ -400,12 +400,12 @@ fn pages_that_cannot_be_written_are_refused_before_anything_is_read() {
         (
             ADIS16405,
             "report.pdf",
-            "report.pdf: a page's extension is .html; name the output so",
+            "report.pdf: a page must end in .html; rename the output",
         ),
         (
             ADIS16405,
             "absent/report.html",
-            "its folder does not exist; make the folder first",
+            "its folder does not exist; create the folder first",
         ),
         (
             "absent.json",

@@ -211,7 +211,7 @@ fn every_candidate_shows_its_own_fit() {
             }
             let name = candidate["effect"].as_str().unwrap().replace('_', " ");
             assert!(
-                heading.starts_with("If it were") && heading.contains(&name),
+                heading.starts_with("With this candidate") && heading.contains(&name),
                 "{heading}"
             );
             // The search ends early with those that lag behind by more than 60.

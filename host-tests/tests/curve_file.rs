@@ -157,7 +157,7 @@ fn impossible_figures_are_refused_with_axis_and_octave() {
         ),
         (
             |f| f.axes[0].octaves[4].sum = u128::MAX,
-            "octave m = 16: a sum of 340282366920938463463374607431768211455 exceeds what counts",
+            "octave m = 16: a sum of 340282366920938463463374607431768211455 is too large",
         ),
     ];
     assert!(read(&file().to_json().unwrap()).is_ok());

@@ -273,7 +273,7 @@ fn drawing_has_its_marks_where_the_figures_are_and_words_for_everything() {
         "angle random walk",
         "0.1",
         "1 s",
-        "farthest off: +58",
+        "worst octave: +58",
     ] {
         assert!(words.contains(&expected), "{expected}: {words:?}");
     }

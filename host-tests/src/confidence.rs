@@ -40,8 +40,8 @@ pub fn limits(curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Vec<Limits> {
 
 /// The interval of a variance with these degrees of freedom.
 fn interval(variance: f64, freedom: f64) -> Limits {
-    // No estimate has less than one degree of freedom, and no model is accurate enough for more than 10¹² to
-    // matter.
+    // No estimate has less than one degree of freedom, and no model is accurate enough for more than
+    // 10¹² to matter.
     let freedom = if freedom.is_finite() {
         freedom.clamp(1.0, 1e12)
     } else {

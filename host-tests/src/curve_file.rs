@@ -1,7 +1,7 @@
 //! The curve file, which `measure` writes and `fit` reads: one Allan curve for each axis of a log.
 //!
-//! The format is JSON. It is exact, because the sums of squares are integers, from which the variances follow.
-//! The whole file is checked before any number of it is used.
+//! The format is JSON. It is exact, because the sums of squares are integers, from which the variances
+//! follow. The whole file is checked before any number of it is used.
 
 use crate::{
     failure::{Failure, Place, quoted},
@@ -99,8 +99,8 @@ impl CurveFile {
     /// Reads a file and checks every number in it.
     ///
     /// # Errors
-    /// When the file cannot be read or a number is impossible. The failure names the file, the axis, the octave
-    /// and the remedy.
+    /// When the file cannot be read or a number is impossible. The failure names the file, the axis, the
+    /// octave and the remedy.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let fail = |error| Place::file(path).io(&error);
         let mut text = Vec::new();
@@ -183,8 +183,8 @@ impl AxisCurve {
         let scale =
             Scale::new(axis.rate_per_count, rate_hz).map_err(|error| fail(error.to_string()))?;
         let curve = axis.accumulator.curve(scale);
-        // The curve has the first octaves of the accumulator, because the number of differences falls from octave
-        // to octave.
+        // The curve has the first octaves of the accumulator, because the number of differences falls
+        // from octave to octave.
         let octaves =
             curve
                 .points()

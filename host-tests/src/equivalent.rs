@@ -1,8 +1,9 @@
 //! A Gauss–Markov process in place of bias instability, for filters that have no model of flicker noise.
 //!
-//! Flicker noise has no state-space model of finite order, so filters use a Gauss–Markov process. Its Allan
-//! deviation has a maximum near one averaging time and falls on both sides. It therefore replaces flicker noise
-//! in a limited range of τ. How good the replacement is depends on how far the other effects cover the rest.
+//! Flicker noise has no state-space model of finite order, so filters use a Gauss–Markov process. Its
+//! Allan deviation has a maximum near one averaging time and falls on both sides. It therefore replaces
+//! flicker noise in a limited range of τ. How good the replacement is depends on how far the other
+//! effects cover the rest.
 
 use crate::{
     log::OCTAVES,
@@ -25,10 +26,10 @@ pub struct Equivalent {
 }
 
 impl Equivalent {
-    /// The process that comes closest to flicker noise with this coefficient of bias instability. It minimises
-    /// the sum over the octaves of the squared relative changes of the model's Allan variance. `squares` are the
-    /// model's squared coefficients; the one of its flicker noise is not used. `None` if the model has no flicker
-    /// noise.
+    /// The process that comes closest to flicker noise with this coefficient of bias instability. It
+    /// minimises the sum over the octaves of the squared relative changes of the model's Allan variance.
+    /// `squares` are the model's squared coefficients; the one of its flicker noise is not used. `None`
+    /// if the model has no flicker noise.
     pub fn of(
         curve: &Curve<OCTAVES>,
         model: &Model,

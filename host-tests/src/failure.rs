@@ -116,7 +116,8 @@ impl Failure {
     }
 }
 
-/// Text of an input for a message: quoted, with control characters escaped, and of 40 characters at most.
+/// Text of an input for a message: quoted, with control characters escaped, and of 40 characters at
+/// most.
 pub fn quoted(text: &[u8]) -> String {
     const LONGEST: usize = 40;
     let text = String::from_utf8_lossy(text);

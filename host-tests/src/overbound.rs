@@ -1,22 +1,25 @@
 //! The overbound: a conservative model of simple noise that no octave of a curve exceeds.
 //!
 //! Navigation filters have models of white noise, of a random walk of the bias and, some of them, of a
-//! Gauss–Markov process. The best fit of these to a curve lies below it about as often as above. A filter that
-//! assumes too little noise becomes overconfident. The overbound lies above the curve everywhere.
+//! Gauss–Markov process. The best fit of these to a curve lies below it about as often as above. A
+//! filter that assumes too little noise becomes overconfident. The overbound lies above the curve
+//! everywhere.
 //!
 //! # Definition
 //!
-//! Let `u_k` be the upper end of the 95 % interval of octave `k`, and `A_i(τ)` the Allan variance of effect
-//! `i` for a coefficient of one. The squared coefficients `β` of the overbound solve the linear program
+//! Let `u_k` be the upper end of the 95 % interval of octave `k`, and `A_i(τ)` the Allan variance of
+//! effect `i` for a coefficient of one. The squared coefficients `β` of the overbound solve the linear
+//! program
 //!
 //! ```text
 //! minimise  Σ_k (Σ_i β_i A_i(τ_k) / u_k − 1)   subject to   Σ_i β_i A_i(τ_k) ≥ u_k for every k,   β ≥ 0
 //! ```
 //!
-//! Of all models that are above the limit at every octave, the overbound has the smallest total relative excess
-//! of variance. The correlation time of a Gauss–Markov process is taken from a grid with four values per octave,
-//! from the shortest to the longest averaging time; the value with the smallest excess is used. Every coefficient
-//! above zero is needed: if any one of them were lower, the limit of some octave would be above the model.
+//! Of all models that are above the limit at every octave, the overbound has the smallest total relative
+//! excess of variance. The correlation time of a Gauss–Markov process is taken from a grid with four
+//! values per octave, from the shortest to the longest averaging time; the value with the smallest
+//! excess is used. Every coefficient above zero is needed: if any one of them were lower, the limit of
+//! some octave would be above the model.
 //!
 //! The overbound says nothing about averaging times beyond the longest one of the record.
 
@@ -65,8 +68,8 @@ impl GaussMarkovProcess {
 }
 
 impl Overbound {
-    /// The smallest white noise and random walk above the upper limits of a curve. `None` if there are no octaves
-    /// or a limit is not finite.
+    /// The smallest white noise and random walk above the upper limits of a curve. `None` if there are
+    /// no octaves or a limit is not finite.
     pub fn of(curve: &Curve<OCTAVES>, limits: &[Limits]) -> Option<Self> {
         let plain = SampledShape::new(curve.interval_s());
         let effects: [(&dyn Effect, SampledShape); 2] =
@@ -79,7 +82,8 @@ impl Overbound {
         })
     }
 
-    /// The overbound with white noise, a random walk and a Gauss–Markov process. `None` as for [`of`](Self::of).
+    /// The overbound with white noise, a random walk and a Gauss–Markov process. `None` as for
+    /// [`of`](Self::of).
     pub fn with_gauss_markov(curve: &Curve<OCTAVES>, limits: &[Limits]) -> Option<Self> {
         let plain = SampledShape::new(curve.interval_s());
         let candidates = correlation_times(curve).filter_map(|time_s| {
@@ -157,8 +161,8 @@ fn least(
     limits: &[Limits],
     effects: &[(&dyn Effect, SampledShape)],
 ) -> Option<Least> {
-    // Row k has the variance of each effect relative to the limit, for a squared coefficient of one. Each column
-    // is scaled so that its maximum is one.
+    // Row k has the variance of each effect relative to the limit, for a squared coefficient of one.
+    // Each column is scaled so that its maximum is one.
     let mut rows = vec![[0.0; MOST]; curve.points().len().min(limits.len())];
     let mut scales = [1.0; MOST];
     for (i, (effect, shape)) in effects.iter().enumerate() {
@@ -182,8 +186,9 @@ fn least(
     })
 }
 
-/// The optimal vertex and its cost. The optimum of a linear program is at a vertex, where the model touches as
-/// many octaves as it has coefficients above zero. There are so few vertices that all of them are tried.
+/// The optimal vertex and its cost. The optimum of a linear program is at a vertex, where the model
+/// touches as many octaves as it has coefficients above zero. There are so few vertices that all of them
+/// are tried.
 fn vertex(rows: &[[f64; MOST]], effects: usize) -> Option<([f64; MOST], f64)> {
     const ROUNDING: f64 = 1e-9;
     let cost: [f64; MOST] = std::array::from_fn(|i| rows.iter().map(|row| row[i]).sum());
@@ -204,8 +209,8 @@ fn vertex(rows: &[[f64; MOST]], effects: usize) -> Option<([f64; MOST], f64)> {
     best
 }
 
-/// The squared coefficients of the effects in `support` for which the model touches these octaves, or `None` if
-/// one is negative or they are not unique. There are as many octaves as effects.
+/// The squared coefficients of the effects in `support` for which the model touches these octaves, or
+/// `None` if one is negative or they are not unique. There are as many octaves as effects.
 fn touch(rows: &[[f64; MOST]], support: u32, octaves: &[usize]) -> Option<[f64; MOST]> {
     let (mut matrix, mut right) = (Matrix3::<f64>::identity(), Vector3::<f64>::zeros());
     let effects: Vec<usize> = (0..MOST).filter(|i| support >> i & 1 == 1).collect();

@@ -45,7 +45,8 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let several = places.len() > 1;
     let work = |log: &Path| {
         let place = places.get(log).unwrap_or(&arguments.output);
-        // The file comes first, so that an output that cannot be written is refused before the measurement.
+        // The file comes first, so that an output that cannot be written is refused before the
+        // measurement.
         let mut file = OutputFile::create(place)?;
         let mut curves = record::measure(log, &arguments.about_log)?;
         for curve in &mut curves {
@@ -76,8 +77,8 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
 /// The output path of each log.
 ///
 /// # Errors
-/// When the output is no folder but there are several logs, when its extension is not that of a curve file,
-/// or when two logs would get the same path.
+/// When the output is no folder but there are several logs, when its extension is not that of a curve
+/// file, or when two logs would get the same path.
 fn places(logs: &[PathBuf], output: &Path) -> Result<HashMap<PathBuf, PathBuf>, Failure> {
     if !output.is_dir() {
         if logs.len() > 1 {

@@ -27,7 +27,8 @@ pub(super) struct Arguments {
     /// The axis to draw [default: all axes, one below the other]
     #[arg(long, value_name = "NAME")]
     axis: Option<String>,
-    /// The step of the diagnosis whose model to draw, 0 for the five terms; an axis with fewer steps shows its last [default: the last]
+    /// The step of the diagnosis whose model to draw, 0 for the five terms; an axis with fewer steps
+    /// shows its last [default: the last]
     #[arg(long, value_name = "N")]
     step: Option<usize>,
 }

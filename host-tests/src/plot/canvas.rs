@@ -3,7 +3,8 @@
 /// The dots of a character's two columns from top to bottom, as bits of the Unicode block at U+2800.
 const DOTS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 
-/// The cells, row by row from the top. Positions are shares of the width and the height, from the lower left.
+/// The cells, row by row from the top. Positions are shares of the width and the height, from the lower
+/// left.
 pub(super) struct Canvas {
     columns: usize,
     rows: usize,

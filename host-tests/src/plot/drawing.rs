@@ -39,7 +39,8 @@ const MODEL: Stroke = Stroke {
     width: 2.5,
     dashes: "none",
 };
-/// Lines of effects. The colours are legible on white, and the dashes distinguish the lines without colour.
+/// Lines of effects. The colours are legible on white, and the dashes distinguish the lines without
+/// colour.
 const EFFECTS: [(&str, &str); 8] = [
     ("#6e7781", "2 4"),
     ("#b35900", "8 4"),

@@ -11,8 +11,8 @@ use serde::Serialize;
 /// An effect is shown if its share of the model's variance is at least this large in some octave.
 const LEAST_SHARE: f32 = 0.005;
 
-/// A record and a model octave by octave, with deviations in rate units. Single precision is enough for a
-/// drawing.
+/// A record and a model octave by octave, with deviations in rate units. Single precision is enough for
+/// a drawing.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figure {
     /// Averaging times, in seconds.
@@ -90,8 +90,8 @@ impl Figure {
     }
 }
 
-/// Index of an effect's colour: its place among those effects of the catalogue that neither mirror nor replace
-/// another one. An effect that does so has the colour of the other effect.
+/// Index of an effect's colour: its place among those effects of the catalogue that neither mirror nor
+/// replace another one. An effect that does so has the colour of the other effect.
 fn colour(effect: &dyn Effect) -> usize {
     let shown = effect.replaces().or(effect.mirror());
     let name = shown.map_or(effect.name(), |shown| shown.name());

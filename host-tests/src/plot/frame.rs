@@ -1,5 +1,5 @@
-//! The spans of a plot's panels, and the positions of values in them. They are the same in a terminal, in a
-//! file and on a page.
+//! The spans of a plot's panels, and the positions of values in them. They are the same in a terminal,
+//! in a file and on a page.
 
 use super::ticks;
 use crate::log::OCTAVES;

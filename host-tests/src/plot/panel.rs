@@ -11,7 +11,8 @@ const RULE: &str = "#d8dee4";
 const INSET: f64 = 14.0;
 const TICK: f64 = 5.0;
 
-/// A rectangle of the drawing. Positions in it are shares of its width and its height, from the lower left.
+/// A rectangle of the drawing. Positions in it are shares of its width and its height, from the lower
+/// left.
 #[derive(Clone, Copy)]
 pub(super) struct Panel {
     pub(super) left: f64,

@@ -1,6 +1,7 @@
 //! Ticks: round numbers along an axis, and their labels.
 
-/// Powers of ten between two positive numbers. If there are fewer than two, also 2 and 5 times a power of ten.
+/// Powers of ten between two positive numbers. If there are fewer than two, also 2 and 5 times a power
+/// of ten.
 pub(super) fn logarithmic(low: f64, high: f64) -> Vec<f64> {
     let between = |factors: &[f64]| -> Vec<f64> {
         let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;

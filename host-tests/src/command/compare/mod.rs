@@ -98,8 +98,8 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisC
 /// A variance below this share of the squared coefficient is taken for a rounding error.
 const LEAST_VARIANCE: f64 = 1e-15;
 
-/// Refuses an effect that contributes to no octave, because it cannot be fitted. An example is an oscillation
-/// at a multiple of the sample rate.
+/// Refuses an effect that contributes to no octave, because it cannot be fitted. An example is an
+/// oscillation at a multiple of the sample rate.
 fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
     for term in model.terms() {
         let shape = term.sampled_shape(curve.interval_s());

@@ -24,8 +24,8 @@ impl ModelArguments {
     /// Builds the model.
     ///
     /// # Errors
-    /// When an effect is unknown, lacks a parameter, is in the model twice or not in it, or when the model
-    /// gets too large or empty.
+    /// When an effect is unknown, lacks a parameter, is in the model twice or not in it, or when the
+    /// model gets too large or empty.
     pub(super) fn model(&self) -> Result<Model, Failure> {
         let mut model = Model::ieee_952();
         for name in &self.without {

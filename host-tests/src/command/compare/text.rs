@@ -83,8 +83,8 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
     writeln!(output, "{}: {comparison}", axis.axis)
 }
 
-/// The table of octaves: measured and model deviations, their difference, and the share of each effect in
-/// the model's variance.
+/// The table of octaves: measured and model deviations, their difference, and the share of each effect
+/// in the model's variance.
 fn octaves(compared: &Compared) -> Table {
     let unit = compared.axis.unit;
     // Effects with a coefficient of zero have no column.

@@ -176,8 +176,8 @@ impl Diagnosed {
             .chain(self.added().map(|term| term.effect.name()))
     }
 
-    /// The addition of each step that has ambiguous alternatives, with the names of these alternatives: they
-    /// explain the curve about as well. Steps whose addition was dropped later are not among them.
+    /// The addition of each step that has ambiguous alternatives, with the names of these alternatives:
+    /// they explain the curve about as well. Steps whose addition was dropped later are not among them.
     pub(crate) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
         let swaps = self.steps.iter().skip(1).map(|next| next.swap().is_some());
         let kept = self

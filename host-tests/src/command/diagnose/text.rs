@@ -81,7 +81,8 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     writeln!(output, "{}: {}", axis.axis, verdict(diagnosed))
 }
 
-/// Prints one line with the error before and after, then the addition, its explanation and the candidates.
+/// Prints one line with the error before and after, then the addition, its explanation and the
+/// candidates.
 fn print_step(
     number: usize,
     before: &Step<OCTAVES>,

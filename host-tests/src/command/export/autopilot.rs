@@ -8,10 +8,10 @@
 //! ```
 //!
 //! The code is `Ekf::predictCovariance` in PX4, where dt is about `EKF2_PREDICT_US`, and
-//! `NavEKF3_core::CovariancePrediction` in ArduPilot, where dt is about `EKF_TARGET_DT` and the bias is an
-//! angle per dt. Continuous-time noise adds `N² dt` and `K² dt`, so the parameters are `N/√dt` in rad/s and
-//! `K/√dt` in rad/s². The defaults of both autopilots are far larger than any gyro's own noise, because they
-//! also cover vibration and the errors of the filter's model.
+//! `NavEKF3_core::CovariancePrediction` in ArduPilot, where dt is about `EKF_TARGET_DT` and the bias is
+//! an angle per dt. Continuous-time noise adds `N² dt` and `K² dt`, so the parameters are `N/√dt` in
+//! rad/s and `K/√dt` in rad/s². The defaults of both autopilots are far larger than any gyro's own
+//! noise, because they also cover vibration and the errors of the filter's model.
 
 use super::{
     arguments::Arguments, characterisation::Characterisation, decimal::decimal, given::Given,

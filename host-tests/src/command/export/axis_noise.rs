@@ -86,7 +86,8 @@ impl AxisNoise {
         })
     }
 
-    /// The number that a filter may use for the coefficient with this symbol: its value or its upper bound.
+    /// The number that a filter may use for the coefficient with this symbol: its value or its upper
+    /// bound.
     pub(super) fn best(&self, symbol: &str) -> Given {
         let found = self.coefficients.iter().find(|one| one.symbol == symbol);
         found.map_or_else(
@@ -107,8 +108,8 @@ impl AxisNoise {
         self.needed(self.overbound.random_walk, "K", "white noise")
     }
 
-    /// A coefficient of the overbound. It is zero if the other coefficient alone is above the curve; then the
-    /// upper bound of the fit stands in for it.
+    /// A coefficient of the overbound. It is zero if the other coefficient alone is above the curve;
+    /// then the upper bound of the fit stands in for it.
     fn needed(&self, value: f64, symbol: &str, other: &str) -> Given {
         if value > 0.0 {
             return Given::plain(value);

@@ -7,8 +7,8 @@ use csv::{QuoteStyle, WriterBuilder};
 const COMMENT: &str = "# deviations in rad/s; lower and upper: 95 % interval of each octave; model: best \
                        fit of the five terms; overbound: white noise and random walk above every upper limit\n";
 
-/// The table of every octave of every axis: the measured Allan deviation, its 95 % interval, the best fit and
-/// the overbound.
+/// The table of every octave of every axis: the measured Allan deviation, its 95 % interval, the best
+/// fit and the overbound.
 pub(super) fn table(known: &Characterisation) -> Result<String, csv::Error> {
     let columns = [
         "axis",

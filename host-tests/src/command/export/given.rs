@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn largest_axis_stands_for_all_and_those_without_a_number_are_named() {
+    fn largest_number_stands_for_all_axes_and_axes_without_one_are_named() {
         let axes = [
             ("x", Given::plain(1.0)),
             ("y", Given::plain(3.0)),

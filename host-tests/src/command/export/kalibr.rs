@@ -25,7 +25,8 @@ pub(super) fn kalibr(known: &Characterisation, arguments: &Arguments) -> String 
     text
 }
 
-/// OpenVINS' kalibr_imu_chain.yaml, which has the same entries under `imu0`, in the YAML dialect of OpenCV.
+/// OpenVINS' kalibr_imu_chain.yaml, which has the same entries under `imu0`, in the YAML dialect of
+/// OpenCV.
 pub(super) fn openvins(known: &Characterisation, arguments: &Arguments) -> String {
     let mut text = format!("%YAML:1.0\n\n{}\nimu0:\n", summary::comment(known, "#"));
     matrix(&mut text, "T_i_b", 4, "1.0");

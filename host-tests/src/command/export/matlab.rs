@@ -1,9 +1,9 @@
 //! JSON for `loadparams` of MATLAB's imuSensor.
 //!
 //! The file has named parts, each with the properties of `gyroparams` under `Gyroscope`: `NoiseDensity`
-//! in (rad/s)/√Hz, `BiasInstability` in rad/s, and `RandomWalk` in (rad/s)·√Hz, which is K. The part with the
-//! gyro's name is the best fit, and `NAME_overbound` is the overbound. JSON has no comments, so the remarks
-//! are in `NAME_notes`, which loadparams ignores.
+//! in (rad/s)/√Hz, `BiasInstability` in rad/s, and `RandomWalk` in (rad/s)·√Hz, which is K. The part
+//! with the gyro's name is the best fit, and `NAME_overbound` is the overbound. JSON has no comments, so
+//! the remarks are in `NAME_notes`, which loadparams ignores.
 
 use super::{
     arguments::Arguments, axis_noise::AxisNoise, characterisation::Characterisation, given::Given,
@@ -64,8 +64,8 @@ pub(super) fn json(known: &Characterisation, arguments: &Arguments) -> String {
     format!("{file:#}\n")
 }
 
-/// Adds a property and its notes. Three axes make a row of three numbers; for any other number of axes, MATLAB
-/// takes one number for all.
+/// Adds a property and its notes. Three axes make a row of three numbers; for any other number of axes,
+/// MATLAB takes one number for all.
 fn property(
     known: &Characterisation,
     part: &mut Map<String, Value>,

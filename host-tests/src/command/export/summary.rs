@@ -8,7 +8,8 @@ use crate::{
 use allanite::Coefficient;
 use allanite::fit::ADEQUATE_P;
 
-/// The lines of the comments, without comment marks. Names are quoted, so that no name can end a comment.
+/// The lines of the comments, without comment marks. Names are quoted, so that no name can end a
+/// comment.
 pub(super) fn lines(known: &Characterisation) -> Vec<String> {
     let mut lines = vec![
         format!(

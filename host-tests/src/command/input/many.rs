@@ -27,7 +27,8 @@ pub(crate) struct FilesArguments {
     /// Print the result as JSON
     #[arg(long, conflicts_with = "json_lines")]
     pub(crate) json: bool,
-    /// Print each file's JSON object on a line of its own, as soon as it and all files before it are done
+    /// Print each file's JSON object on a line of its own, as soon as it and all files before it are
+    /// done
     #[arg(long)]
     pub(crate) json_lines: bool,
 }
@@ -55,8 +56,8 @@ pub(crate) trait Findings: Sized + Send {
     /// Prints the findings as text.
     fn print(&self, output: &mut impl Write) -> io::Result<()>;
 
-    /// Prints the findings of several files as text. By default each file follows the one before it, below its
-    /// name.
+    /// Prints the findings of several files as text. By default each file follows the one before it,
+    /// below its name.
     fn print_many(found: &[(&Path, Self)], output: &mut impl Write) -> io::Result<()> {
         for (i, (path, one)) in found.iter().enumerate() {
             if i > 0 {
@@ -107,8 +108,8 @@ impl<D: Serialize> Outcome<D> {
     }
 }
 
-/// Does `work` on every file and prints the findings. A file that fails has its line on standard error and
-/// does not stop the others.
+/// Does `work` on every file and prints the findings. A file that fails has its line on standard error
+/// and does not stop the others.
 ///
 /// # Errors
 /// With the last failure; the other failures have been printed.
@@ -207,8 +208,8 @@ pub(crate) fn each<'a, T: Send>(
     let work = &work;
     let outcome = thread::scope(|scope| {
         scope.spawn(move || {
-            // Files are begun in order as cores become free, so that early files are done early. Once the
-            // receiver is gone, no further file is begun.
+            // Files are begun in order as cores become free, so that early files are done early. Once
+            // the receiver is gone, no further file is begun.
             let _ = files
                 .iter()
                 .enumerate()

@@ -24,8 +24,8 @@ pub(crate) struct LogArguments {
     #[arg(long)]
     unit: Option<Unit>,
     /// Columns to take as axes, by name or by number from 1, such as `gyro_x,gyro_y` or `gx=2,gy=3`
-    /// [default: those with the names of a gyro's axes, else of an accelerometer's axes, else all columns of
-    /// numbers except time and temperature]
+    /// [default: those with the names of a gyro's axes, else of an accelerometer's axes, else all
+    /// columns of numbers except time and temperature]
     #[arg(long, value_delimiter = ',', value_name = "[AXIS=]COLUMN,…")]
     columns: Option<Vec<ColumnChoice>>,
     /// The sensor whose axes to take [default: the sensor of --unit, else the gyro if there is one]
@@ -70,7 +70,8 @@ pub(crate) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisC
     curves(&log)
 }
 
-/// The curves of a log with the evidence that it holds beside them. The evidence of a curve file is empty.
+/// The curves of a log with the evidence that it holds beside them. The evidence of a curve file is
+/// empty.
 pub(crate) fn read_with_evidence(
     path: &Path,
     arguments: &LogArguments,

@@ -23,9 +23,10 @@ pub(crate) fn unit(unit: Unit, half_seconds: i8) -> String {
     }
 }
 
-/// The factor from the log's unit to a coefficient's customary unit, and the name of that unit. A gyro has arc
-/// seconds for an angle, and otherwise degrees and hours. An accelerometer has metres per second for a
-/// velocity, and otherwise thousandths and millionths of g. `None` if the power of time has no customary unit.
+/// The factor from the log's unit to a coefficient's customary unit, and the name of that unit. A gyro
+/// has arc seconds for an angle, and otherwise degrees and hours. An accelerometer has metres per second
+/// for a velocity, and otherwise thousandths and millionths of g. `None` if the power of time has no
+/// customary unit.
 pub(crate) fn customary(unit: Unit, half_seconds: i8) -> Option<(f64, &'static str)> {
     let in_g = Unit::StandardGravity.in_usual().recip();
     let (factor, name) = match (unit.sensor(), half_seconds) {

@@ -1,5 +1,5 @@
-//! The data of a report's page: the diagnosis as `diagnose --json` prints it, and the figures and words of
-//! every step and of every candidate.
+//! The data of a report's page: the diagnosis as `diagnose --json` prints it, and the figures and words
+//! of every step and of every candidate.
 
 use crate::{
     command::{
@@ -197,7 +197,8 @@ fn fitted(diagnosed: &Diagnosed, at: usize, tried: &Tried, frame: &Frame) -> Opt
     })
 }
 
-/// The view of a step. All steps share the frame of the deviations, but each has its own for the residuals.
+/// The view of a step. All steps share the frame of the deviations, but each has its own for the
+/// residuals.
 fn view(model: String, step: &Step<OCTAVES>, frame: &Frame) -> View {
     let own = Frame::of([&step.comparison]);
     let figure = Figure::new(&step.model, &step.comparison, frame);

@@ -40,10 +40,12 @@ impl HiddenArguments {
         self.effects.iter().map(String::as_str)
     }
 
-    /// The effects. A filter of white noise filters the record's own white noise unless a coefficient is given.
+    /// The effects. A filter of white noise filters the record's own white noise unless a coefficient is
+    /// given.
     ///
     /// # Errors
-    /// When an effect is unknown, is one of the five terms, lacks a parameter, or conflicts with another.
+    /// When an effect is unknown, is one of the five terms, lacks a parameter, or conflicts with
+    /// another.
     pub(super) fn effects(&self, coefficients: Coefficients) -> Result<HiddenEffects, Failure> {
         let mut effects = HiddenEffects::default();
         for text in &self.effects {

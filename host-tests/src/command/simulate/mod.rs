@@ -201,8 +201,8 @@ impl Record {
         })
     }
 
-    /// One simulator for each axis. The seeds of the axes are far apart, so that no axis of one record equals an
-    /// axis of another.
+    /// One simulator for each axis. The seeds of the axes are far apart, so that no axis of one record
+    /// equals an axis of another.
     fn simulators(&self) -> Vec<Simulator> {
         const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
         let axis = |axis: u64| {

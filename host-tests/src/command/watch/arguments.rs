@@ -26,7 +26,8 @@ pub(in crate::command) struct Arguments {
     /// Unit of the scaled counts
     #[arg(long, default_value = "deg/s")]
     pub(super) unit: Unit,
-    /// Names of the axes, one for each number in a line [default: x,y,z, as many as the first line has numbers]
+    /// Names of the axes, one for each number in a line [default: x,y,z, as many as the first line has
+    /// numbers]
     #[arg(long, value_delimiter = ',', value_name = "NAME,…")]
     pub(super) axes: Option<Vec<String>>,
     /// Serial port to read, such as /dev/ttyACM0 [default: standard input]

@@ -29,8 +29,8 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// An empty recording of a gyro with this rate and scale. Without names, the first line gives the number of
-    /// axes.
+    /// An empty recording of a gyro with this rate and scale. Without names, the first line gives the
+    /// number of axes.
     ///
     /// # Errors
     /// When the rate or the scale is not a positive, finite number, or a name is empty or repeated.
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn line_that_is_no_sample_is_a_gap_and_an_unfinished_one_is_nothing() {
+    fn invalid_line_leaves_a_gap_and_unfinished_line_is_ignored() {
         let garbled = [
             "1 2\n",
             "1.5\n",

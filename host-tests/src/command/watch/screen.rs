@@ -163,7 +163,8 @@ fn curves(frame: &mut Frame<'_>, area: Rect, status: &Status) {
     frame.render_widget(chart, area);
 }
 
-/// The ranges of both coordinates, in powers of ten. The vertical one has a margin. `None` without points.
+/// The ranges of both coordinates, in powers of ten. The vertical one has a margin. `None` without
+/// points.
 fn bounds<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> Option<([f64; 2], [f64; 2])> {
     const ROOM: f64 = 0.1;
     let mut bounds: Option<([f64; 2], [f64; 2])> = None;
@@ -175,7 +176,8 @@ fn bounds<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> Option<([f64; 2],
     bounds.map(|(x, [low, high])| (x, [low - ROOM, high + ROOM]))
 }
 
-/// Draws the table of an axis: its coefficients, and how much longer to record for those not yet measured.
+/// Draws the table of an axis: its coefficients, and how much longer to record for those not yet
+/// measured.
 fn table(frame: &mut Frame<'_>, area: Rect, axis: &AxisStatus, colour: Color, length_s: f64) {
     let title = match &axis.fitted {
         Some(fitted) => format!("{}: {}", axis.name, verdict(&fitted.fit)),

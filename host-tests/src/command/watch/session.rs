@@ -1,8 +1,9 @@
 //! The session of `watch`: reads, accumulates, shows and saves a recording.
 //!
-//! A thread reads the input. The main thread accumulates it and at intervals fits and shows it. At the end of
-//! the input, and on SIGINT (Ctrl-C) or SIGTERM, everything that has been read is accumulated, the curve is
-//! saved and the last fit is printed. The curve is also saved at intervals, each time as a complete file.
+//! A thread reads the input. The main thread accumulates it and at intervals fits and shows it. At the
+//! end of the input, and on SIGINT (Ctrl-C) or SIGTERM, everything that has been read is accumulated,
+//! the curve is saved and the last fit is printed. The curve is also saved at intervals, each time as a
+//! complete file.
 
 use super::{
     arguments::Arguments,
@@ -56,7 +57,8 @@ pub(in crate::command) fn run(
                 Place::file(path).failure("a curve file must end in .json", "rename the output")
             );
         }
-        // The file is dropped at once: an output that cannot be written is refused before hours of recording.
+        // The file is dropped at once: an output that cannot be written is refused before hours of
+        // recording.
         drop(OutputFile::create(path)?);
     }
     let Arguments {

@@ -40,7 +40,8 @@ pub(super) enum Source {
 pub(super) enum Received {
     /// The next bytes.
     Bytes(Vec<u8>),
-    /// The failure that ended the source. A source whose input has ended closes the channel without a message.
+    /// The failure that ended the source. A source whose input has ended closes the channel without a
+    /// message.
     Failure(Failure),
 }
 
@@ -78,8 +79,8 @@ impl Source {
                     if let Some(output) = emulator.stdout.take() {
                         pass_on(output, "the image", &sender);
                     }
-                    // The image sends for ever, so this point is reached when the receiver has gone. An error is
-                    // ignored, because an emulator that has ended cannot be killed.
+                    // The image sends for ever, so this point is reached when the receiver has gone. An
+                    // error is ignored, because an emulator that has ended cannot be killed.
                     let _ = emulator.kill();
                     let _ = emulator.wait();
                 });
@@ -141,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn port_is_read_from_the_next_line_on_whatever_the_pieces() {
+    fn port_is_read_from_the_next_line_on_for_pieces_of_any_length() {
         let text = b"23,4\n1,2\n3,4\n";
         for piece in 1..=text.len() {
             let pieces = text.chunks(piece).map(<[u8]>::to_vec);

@@ -106,12 +106,14 @@ pub(super) fn verdict(fit: &Fit) -> String {
     }
 }
 
-/// How much longer to record until a coefficient is measured, in words; empty for a measured coefficient.
+/// How much longer to record until a coefficient is measured, in words; empty for a measured
+/// coefficient.
 ///
-/// A coefficient that is not observable is assumed to be at its bound, as in the fit. For a coefficient whose
-/// interval includes zero, the squared coefficient is assumed to be its best value or one standard error,
-/// whichever is larger. The standard error is assumed to fall with the square root of the record's length. The
-/// record is long enough when 1.96 standard errors are less than the squared coefficient.
+/// A coefficient that is not observable is assumed to be at its bound, as in the fit. For a coefficient
+/// whose interval includes zero, the squared coefficient is assumed to be its best value or one standard
+/// error, whichever is larger. The standard error is assumed to fall with the square root of the
+/// record's length. The record is long enough when 1.96 standard errors are less than the squared
+/// coefficient.
 pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
     let needed_s = match coefficient.state {
         State::Measured => return String::new(),

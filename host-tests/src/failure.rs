@@ -6,10 +6,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Why a command could not do its work.
+/// The reason why a command could not do its work.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// An input that cannot be used: printed as `FILE:ROW: what; remedy`.
+    /// An input or option that cannot be used. It is printed as `FILE:ROW: what; remedy`.
     #[error("{place}{what}; {remedy}")]
     Input {
         /// Where it was found.

@@ -15,7 +15,7 @@
 //! minimise  Σ_k (Σ_i β_i A_i(τ_k) / u_k − 1)   subject to   Σ_i β_i A_i(τ_k) ≥ u_k for every k,   β ≥ 0
 //! ```
 //!
-//! Of all models that are above the limit at every octave, the overbound has the smallest total relative
+//! The overbound is the model above the limit at every octave that has the smallest total relative
 //! excess of variance. The correlation time of a Gauss–Markov process is taken from a grid with four
 //! values per octave, from the shortest to the longest averaging time; the value with the smallest
 //! excess is used. Every coefficient above zero is needed: if any one of them were lower, the limit of

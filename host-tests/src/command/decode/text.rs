@@ -161,7 +161,10 @@ fn terms(axis: &AxisCertificate, unit: Unit) -> Table {
                 CertifiedState::NotObservable { after_s: None } => "not observable".into(),
                 CertifiedState::NotObservable {
                     after_s: Some(after_s),
-                } => format!("not observable; {} would do", duration(after_s.into())),
+                } => format!(
+                    "not observable; a record of {} would show it",
+                    duration(after_s.into())
+                ),
             },
             shape(term, effect),
         ]);

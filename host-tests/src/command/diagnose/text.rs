@@ -114,7 +114,7 @@ fn print_step(
     if let Some(ambiguous) = &finding.ambiguous {
         writeln!(output, "  ambiguous: {ambiguous}")?;
     }
-    writeln!(output, "  now {}", after.comparison)
+    writeln!(output, "  after this step: {}", after.comparison)
 }
 
 fn print_candidates(step: &Step<OCTAVES>, output: &mut impl Write) -> io::Result<()> {

@@ -120,7 +120,7 @@ impl AxisNoise {
             Given::Number {
                 value: bound,
                 remark: format!(
-                    "{other} alone is above the curve; this is the 95 % bound of the fit"
+                    "{other} alone is above the curve; this is the upper bound (95 %) of the fit"
                 ),
             }
         } else {

@@ -84,7 +84,7 @@ pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Fa
     for axis in record::read(path, &arguments.about_log)? {
         if axis.unit.sensor() != Sensor::Gyro {
             let what = format!(
-                "axis {} is of an accelerometer, in {}",
+                "axis {} is from an accelerometer, in {}",
                 axis.axis, axis.unit
             );
             let remedy = "export a gyro; `fit` prints the coefficients of an accelerometer";

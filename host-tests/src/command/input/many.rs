@@ -112,7 +112,7 @@ impl<D: Serialize> Outcome<D> {
 /// and does not stop the others.
 ///
 /// # Errors
-/// With the last failure; the other failures have been printed.
+/// The last failure is returned; the other failures have been printed.
 pub(crate) fn run<F: Findings>(
     files: &FilesArguments,
     work: impl Fn(&Path) -> Result<F, Failure> + Sync,
@@ -236,7 +236,7 @@ pub(crate) fn each<'a, T: Send>(
 /// Prints all failures but the last, one line each.
 ///
 /// # Errors
-/// With the last failure, if there is any.
+/// The last failure is returned, if there is any.
 pub(crate) fn failed(mut failures: Vec<Failure>) -> Result<(), Failure> {
     let Some(last) = failures.pop() else {
         return Ok(());

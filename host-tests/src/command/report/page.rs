@@ -164,7 +164,7 @@ fn settings(content: &Content) -> Markup {
             "model tolerance",
             format!("{} %", 100.0 * options.tolerance),
         ),
-        ("adequate from", format!("p = {ADEQUATE_P}")),
+        ("model is adequate from", format!("p = {ADEQUATE_P}")),
         (
             "largest number of effects to add",
             options.max_effects.to_string(),

@@ -342,7 +342,7 @@ fn coefficients(arguments: &Arguments) -> Result<Coefficients, Failure> {
         if arguments.unit.sensor() != Sensor::Gyro {
             return Err(Failure::option(
                 format!(
-                    "presets are gyros, but --unit {} is of an accelerometer",
+                    "presets describe gyros, but --unit {} is for accelerometers",
                     arguments.unit.name()
                 ),
                 "give coefficients such as --angle-random-walk, or another --unit",

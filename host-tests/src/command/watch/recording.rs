@@ -119,12 +119,12 @@ impl Recording {
         }
     }
 
-    /// Samples of an axis so far.
+    /// Number of samples of each axis so far.
     pub(super) fn samples(&self) -> u64 {
         self.axes.first().map_or(0, Gyro::samples)
     }
 
-    /// Ends of contiguous stretches so far.
+    /// Number of gaps so far.
     pub(super) fn gaps(&self) -> u64 {
         self.axes.first().map_or(0, |axis| {
             let [accumulator] = axis.accumulators();

@@ -251,7 +251,7 @@ mod tests {
             rows[1].contains("Allan deviation, deg/s, over τ, s"),
             "{text}"
         );
-        assert!(rows[39].starts_with("curve.json saved 3 s ago   Ctrl-C saves and ends"));
+        assert!(rows[39].starts_with("curve.json was saved 3 s ago   Ctrl-C saves and ends"));
         // The dots of the curves cover rows over the height of the chart.
         let braille = |row: &String| row.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c));
         assert!(

@@ -203,9 +203,13 @@ impl Watch<'_> {
         let saving = match (&self.trouble, self.path, self.saved) {
             (Some(trouble), ..) => format!("not saved: {trouble}"),
             (None, None, _) => "not saved: --output was not given".into(),
-            (None, Some(path), None) => format!("{} not saved yet", path.display()),
+            (None, Some(path), None) => format!("{} is not saved yet", path.display()),
             (None, Some(path), Some(at)) => {
-                format!("{} saved {} s ago", path.display(), at.elapsed().as_secs())
+                format!(
+                    "{} was saved {} s ago",
+                    path.display(),
+                    at.elapsed().as_secs()
+                )
             }
         };
         Status::of(&self.recording, one_line(&saving))

@@ -159,7 +159,7 @@ pub(super) mod tests {
                 recording.take(b"oops\n");
             }
         }
-        Status::of(&recording, "curve.json saved 3 s ago".into())
+        Status::of(&recording, "curve.json was saved 3 s ago".into())
     }
 
     #[test]

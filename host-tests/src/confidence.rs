@@ -1,4 +1,4 @@
-//! Confidence limits of a curve, octave by octave.
+//! Confidence limits of each octave of a curve.
 
 use crate::log::OCTAVES;
 use allanite::{
@@ -7,23 +7,24 @@ use allanite::{
 };
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Probability below the lower limit, and above the upper one: 95 % lie between them.
+/// Probability below the lower limit and above the upper limit, which leaves 95 % between them.
 const TAIL: f64 = 0.025;
 
-/// Where an octave's true Allan variance lies, in rate units squared.
+/// The confidence limits of an octave's true Allan variance, in rate units squared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Lower end of the 95 % interval.
     pub lower: f64,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub upper: f64,
 }
 
-/// The two-sided 95 % interval of every octave by itself.
+/// The two-sided 95 % interval of every octave, each by itself.
 ///
 /// An estimate of variance `σ̂²` is distributed as `σ² χ²_ν/ν` with the equivalent degrees of freedom
-/// `ν = 2 σ⁴ / Var(σ̂²)` (NIST SP 1065, 2008, section 5.4), for which the covariance of the curve at
-/// the fitted model is taken: `σ̂² ν/χ²_ν(0.975) … σ̂² ν/χ²_ν(0.025)`.
+/// `ν = 2 σ⁴ / Var(σ̂²)` (NIST SP 1065, 2008, section 5.4). σ² is the variance of the fitted model, and
+/// Var(σ̂²) is taken from the covariance of the curve at this model. The interval is
+/// `σ̂² ν/χ²_ν(0.975) … σ̂² ν/χ²_ν(0.025)`.
 pub fn limits(curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Vec<Limits> {
     let squares = fit.squares();
     let covariance = curve_covariance(curve, model, &squares);
@@ -37,9 +38,10 @@ pub fn limits(curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Vec<Limits> {
         .collect()
 }
 
-/// The interval of a variance with so many degrees of freedom.
+/// The interval of a variance with these degrees of freedom.
 fn interval(variance: f64, freedom: f64) -> Limits {
-    // No estimate has less than one, nor is any model known so well that more would matter.
+    // No estimate has less than one degree of freedom, and no model is accurate enough for more than
+    // 10¹² to matter.
     let freedom = if freedom.is_finite() {
         freedom.clamp(1.0, 1e12)
     } else {

@@ -1,7 +1,7 @@
-//! The file between `measure` and `fit`: what is left of a log, one curve an axis.
+//! The curve file, which `measure` writes and `fit` reads: one Allan curve for each axis of a log.
 //!
-//! JSON, exact: the sums of squares are integers, from which the variances follow. A file is
-//! checked whole before any number of it is used.
+//! The format is JSON. It is exact, because the sums of squares are integers, from which the variances
+//! follow. The whole file is checked before any number of it is used.
 
 use crate::{
     failure::{Failure, Place, quoted},
@@ -12,16 +12,16 @@ use allanite::{Curve, Scale};
 use serde::{Deserialize, Serialize};
 use std::{fs::File, io::Read, path::Path};
 
-/// The name of the format, in the file.
+/// The name of the format, as it is written in the file.
 pub const FORMAT: &str = "allanite-curve";
 
 /// The version of the format that is written and read.
 pub const VERSION: u32 = 1;
 
-/// Curves take a few kilobytes an axis; beyond this it is something else.
+/// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis.
 const LARGEST: u64 = 1 << 24;
 
-/// Figures that follow from others agree to this.
+/// Largest relative error of a number that follows from other numbers of the file.
 const TOLERANCE: f64 = 1e-9;
 
 /// The curves of a log's axes.
@@ -38,17 +38,17 @@ pub struct CurveFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AxisCurve {
-    /// The axis' name.
+    /// Name of the axis.
     pub axis: String,
     /// Samples per second.
     pub rate_hz: f64,
     /// The unit of the rate.
     pub unit: Unit,
-    /// Rate units per count; for a log of floats, per quantum.
+    /// Rate units per count, or per quantum if the log has floating-point numbers.
     pub rate_per_count: f64,
-    /// Samples of the record.
+    /// Number of samples of the record.
     pub samples: u64,
-    /// Ends of contiguous stretches within the record.
+    /// Number of gaps, each of which ends a contiguous stretch of the record.
     pub gaps: u64,
     /// Where the record comes from.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -68,9 +68,9 @@ pub struct Octave {
     pub m: u32,
     /// Averaging time, in seconds.
     pub tau_s: f64,
-    /// Quarter-overlapping differences of adjacent clusters.
+    /// Number of quarter-overlapping differences of adjacent clusters.
     pub differences: u64,
-    /// The sum of their squares, in counts², exact.
+    /// The exact sum of their squares, in counts².
     pub sum: u128,
     /// Allan variance, in rate units squared.
     pub variance: f64,
@@ -86,17 +86,21 @@ impl CurveFile {
         }
     }
 
-    /// The file's text.
+    /// The text of the file.
+    ///
+    /// # Errors
+    /// When a number cannot be written as JSON.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let mut text = serde_json::to_string_pretty(self)?;
         text.push('\n');
         Ok(text)
     }
 
-    /// Reads a file and checks every figure of it.
+    /// Reads a file and checks every number in it.
     ///
     /// # Errors
-    /// With the file, the axis, the octave and the remedy.
+    /// When the file cannot be read or a number is impossible. The failure names the file, the axis, the
+    /// octave and the remedy.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let fail = |error| Place::file(path).io(&error);
         let mut text = Vec::new();
@@ -105,15 +109,15 @@ impl CurveFile {
             .map_err(fail)?;
         if text.len() as u64 > LARGEST {
             return Err(Place::file(path).failure(
-                format!("more than {} MiB are not a curve", LARGEST >> 20),
-                "name the file that measure wrote",
+                format!("a curve file is smaller than {} MiB", LARGEST >> 20),
+                "give the file that measure wrote",
             ));
         }
         Self::parse(path, &text)
     }
 
     fn parse(path: &Path, text: &[u8]) -> Result<Self, Failure> {
-        /// What every version has.
+        /// The fields that every version of the format has.
         #[derive(Deserialize)]
         struct Head {
             format: String,
@@ -126,13 +130,13 @@ impl CurveFile {
                     "the format is {}, not {FORMAT}",
                     quoted(head.format.as_bytes())
                 ),
-                "name the file that measure wrote",
+                "give the file that measure wrote",
             ));
         }
         if head.version != VERSION {
             return Err(Place::file(path).failure(
                 format!(
-                    "version {} of the format, and this program reads {VERSION}",
+                    "the format has version {}, but this program reads version {VERSION}",
                     head.version
                 ),
                 "measure the log again",
@@ -147,7 +151,7 @@ impl CurveFile {
 
     fn check(&self) -> Result<(), String> {
         if self.axes.is_empty() {
-            return Err("no axes".into());
+            return Err("the file has no axes".into());
         }
         for (i, axis) in self.axes.iter().enumerate() {
             let name = quoted(axis.axis.as_bytes());
@@ -168,7 +172,7 @@ impl AxisCurve {
     /// The curve of one axis of a log.
     ///
     /// # Errors
-    /// When a sum exceeds 128 bits, which only full-scale input kept up for days can reach.
+    /// When a sum exceeds 128 bits, which takes days of full-scale input.
     pub fn of(axis: &log::Axis, rate_hz: f64, unit: Unit) -> Result<Self, Failure> {
         let fail = |what: String| {
             Failure::option(
@@ -179,7 +183,8 @@ impl AxisCurve {
         let scale =
             Scale::new(axis.rate_per_count, rate_hz).map_err(|error| fail(error.to_string()))?;
         let curve = axis.accumulator.curve(scale);
-        // The curve's octaves are the first ones of the accumulator, as differences only fall.
+        // The curve has the first octaves of the accumulator, because the number of differences falls
+        // from octave to octave.
         let octaves =
             curve
                 .points()
@@ -191,8 +196,9 @@ impl AxisCurve {
                         m: point.m,
                         tau_s: point.tau_s,
                         differences: point.differences,
-                        sum: sum
-                            .ok_or_else(|| fail(format!("m = {}: sum beyond 128 bits", point.m)))?,
+                        sum: sum.ok_or_else(|| {
+                            fail(format!("octave m = {}: the sum exceeds 128 bits", point.m))
+                        })?,
                         variance: point.variance,
                     })
                 });
@@ -209,10 +215,10 @@ impl AxisCurve {
         })
     }
 
-    /// The curve as the library knows it.
+    /// The curve as the library's type.
     ///
     /// # Errors
-    /// Of the library, for figures that reading a file would have refused.
+    /// When the library refuses a number. [`CurveFile::read`] would have refused it too.
     pub fn curve(&self) -> Result<Curve<OCTAVES>, allanite::Error> {
         let octaves = self.octaves.iter();
         Curve::new(
@@ -232,7 +238,7 @@ impl AxisCurve {
         positive("rate_per_count", self.rate_per_count)?;
         if self.octaves.len() < 2 {
             return Err(format!(
-                "{} octaves, and a fit needs two",
+                "a fit needs two octaves, and the file has {}",
                 self.octaves.len()
             ));
         }
@@ -270,10 +276,10 @@ impl AxisCurve {
         }
         let count = octave.differences as f64;
         let sum = octave.sum as f64;
-        // A cluster of m counts differs from its neighbour by less than 2^32 m.
+        // The sums of two clusters of m counts differ by less than 2^32 m.
         if sum > count * (m * 2f64.powi(32)).powi(2) {
             return Err(format!(
-                "a sum of {} exceeds what counts can reach",
+                "a sum of {} is too large for 32-bit counts",
                 octave.sum
             ));
         }
@@ -288,7 +294,7 @@ impl AxisCurve {
     }
 }
 
-/// Quarter-overlapping differences in a record without gaps.
+/// Number of quarter-overlapping differences in a record without gaps.
 fn differences(samples: u64, m: u32) -> u64 {
     let (blocks, first) = match m {
         1 => (samples, 1),
@@ -302,7 +308,7 @@ fn close(value: f64, expected: f64) -> bool {
     (value - expected).abs() <= TOLERANCE * expected
 }
 
-/// What the parser did not like, and in which line.
+/// The failure of a file that the JSON parser refuses, with the line.
 fn syntax(path: &Path, error: &serde_json::Error) -> Failure {
     let text = error.to_string();
     let what = text
@@ -310,6 +316,6 @@ fn syntax(path: &Path, error: &serde_json::Error) -> Failure {
         .map_or(text.as_str(), |(what, _)| what);
     Place::row(path, error.line() as u64).failure(
         format!("not a curve file: {what}"),
-        "name the file that measure wrote",
+        "give the file that measure wrote",
     )
 }

@@ -1,8 +1,9 @@
-//! Bias instability as filters know it: a Gauss–Markov process in place of flicker noise.
+//! A Gauss–Markov process in place of bias instability, for filters that have no model of flicker noise.
 //!
-//! Flicker noise has no state-space model of finite order. What filters take instead has its maximum
-//! near one averaging time and falls on both sides of it: a replacement for a stretch of τ, and how
-//! good a one depends on how far the other effects cover its flanks.
+//! Flicker noise has no state-space model of finite order, so filters use a Gauss–Markov process. Its
+//! Allan deviation has a maximum near one averaging time and falls on both sides. It therefore replaces
+//! flicker noise in a limited range of τ. How good the replacement is depends on how far the other
+//! effects cover the rest.
 
 use crate::{
     log::OCTAVES,
@@ -13,22 +14,22 @@ use allanite::{
     effect::{BiasInstability, Effect, GaussMarkov, SampledShape},
 };
 
-/// A Gauss–Markov process in place of flicker noise, and what that does to the model's deviation.
+/// A Gauss–Markov process in place of flicker noise, and how much it changes the model's deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equivalent {
     /// The process, in rate units.
     pub process: GaussMarkovProcess,
-    /// The octave whose deviation changes most, in percent of it.
+    /// Largest change of the deviation over the octaves, in percent.
     pub max_percent: f64,
-    /// Root-mean-square change over the octaves, in percent.
+    /// Root-mean-square change of the deviation over the octaves, in percent.
     pub rms_percent: f64,
 }
 
 impl Equivalent {
-    /// The process that comes closest: of the models that have it instead of a bias instability of this
-    /// coefficient, the one whose Allan variance differs least, in relative least squares over the
-    /// octaves of the curve. `squares` are the model's squared coefficients; its flicker noise among
-    /// them is not used. `None` without flicker noise.
+    /// The process that comes closest to flicker noise with this coefficient of bias instability. It
+    /// minimises the sum over the octaves of the squared relative changes of the model's Allan variance.
+    /// `squares` are the model's squared coefficients; the one of its flicker noise is not used. `None`
+    /// if the model has no flicker noise.
     pub fn of(
         curve: &Curve<OCTAVES>,
         model: &Model,
@@ -65,7 +66,7 @@ impl Equivalent {
     }
 }
 
-/// The best process of a correlation time, and its sum of squared relative differences.
+/// The best process with this correlation time, and its sum of squared relative differences.
 fn closest(
     octaves: &[(u32, f64, f64)],
     correlation_time_s: f64,

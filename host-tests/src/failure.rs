@@ -1,4 +1,4 @@
-//! What a command ends with when its input is bad: one line that says where, what and what to do.
+//! The failure of a command: one line with the place, what is wrong and the remedy.
 
 use std::{
     fmt,
@@ -6,10 +6,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Why a command could not do its work.
+/// The reason why a command could not do its work.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// An input that cannot be used: printed as `FILE:ROW: what; remedy`.
+    /// An input or option that cannot be used. It is printed as `FILE:ROW: what; remedy`.
     #[error("{place}{what}; {remedy}")]
     Input {
         /// Where it was found.
@@ -19,12 +19,12 @@ pub enum Failure {
         /// What to do about it.
         remedy: String,
     },
-    /// Whoever read standard output has closed it: no reason to say anything.
+    /// The reader of standard output has closed it. The command ends without a message.
     #[error("standard output was closed")]
     Closed,
 }
 
-/// A file, a row of it, or neither.
+/// A file, a row of a file, or neither.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     file: Option<PathBuf>,
@@ -48,7 +48,7 @@ impl Place {
         }
     }
 
-    /// The failure that lies here.
+    /// The failure at this place.
     pub fn failure(self, what: impl fmt::Display, remedy: impl fmt::Display) -> Failure {
         Failure::Input {
             place: self,
@@ -57,7 +57,7 @@ impl Place {
         }
     }
 
-    /// The failure of a read, write or open here.
+    /// The failure of opening, reading or writing the file at this place.
     pub fn io(self, error: &io::Error) -> Failure {
         let (what, remedy) = match error.kind() {
             ErrorKind::NotFound => ("no such file".into(), "check the path"),
@@ -90,16 +90,16 @@ impl fmt::Display for Place {
 }
 
 impl Failure {
-    /// A failure that lies in an option rather than in a file.
+    /// A failure in an option rather than in a file.
     pub fn option(what: impl fmt::Display, remedy: impl fmt::Display) -> Self {
         Place::default().failure(what, remedy)
     }
 
-    /// A part of the program that was left out when it was built.
+    /// The failure of a part that was left out when the program was built.
     pub fn not_built_in(part: &str) -> Self {
         Self::option(
-            format!("{part} is not built in"),
-            "run `cargo allanite-full` in place of `cargo allanite`: its first build takes minutes longer",
+            format!("{part} is not part of this build"),
+            "run `cargo allanite-full` instead of `cargo allanite`; its first build takes minutes longer",
         )
     }
 
@@ -116,7 +116,8 @@ impl Failure {
     }
 }
 
-/// Text of an input as it may stand in a message: quoted, without control characters, short.
+/// Text of an input for a message: quoted, with control characters escaped, and of 40 characters at
+/// most.
 pub fn quoted(text: &[u8]) -> String {
     const LONGEST: usize = 40;
     let text = String::from_utf8_lossy(text);

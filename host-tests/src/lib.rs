@@ -1,4 +1,4 @@
-//! What surrounds the library on a host: simulator, logs and curve files, command line, studies.
+//! The host's side of the project: simulator, logs, curve files, command line and studies.
 
 pub mod command;
 pub mod confidence;

@@ -1,25 +1,27 @@
-//! A conservative model: simple noise that no octave of a curve exceeds.
+//! The overbound: a conservative model of simple noise that no octave of a curve exceeds.
 //!
-//! Navigation filters know white noise, a random walk of the bias and, some of them, a Gauss–Markov
-//! process. The best fit of those to a curve lies below it about as often as above, and a filter that
-//! believes less noise than there is becomes overconfident. The overbound lies above everywhere.
+//! Navigation filters have models of white noise, of a random walk of the bias and, some of them, of a
+//! Gauss–Markov process. The best fit of these to a curve lies below it about as often as above. A
+//! filter that assumes too little noise becomes overconfident. The overbound lies above the curve
+//! everywhere.
 //!
 //! # Definition
 //!
-//! With `u_k` the upper end of the 95 % interval of octave `k`, and `A_i(τ)` the Allan variance of effect
-//! `i` for a coefficient of one, its squared coefficients `β` are those of
+//! Let `u_k` be the upper end of the 95 % interval of octave `k`, and `A_i(τ)` the Allan variance of
+//! effect `i` for a coefficient of one. The squared coefficients `β` of the overbound solve the linear
+//! program
 //!
 //! ```text
-//! least  Σ_k (Σ_i β_i A_i(τ_k) / u_k − 1)   subject to   Σ_i β_i A_i(τ_k) ≥ u_k for every k,   β ≥ 0
+//! minimise  Σ_k (Σ_i β_i A_i(τ_k) / u_k − 1)   subject to   Σ_i β_i A_i(τ_k) ≥ u_k for every k,   β ≥ 0
 //! ```
 //!
-//! the least total relative excess of variance of all models that are above the limit at every octave:
-//! a linear program. With a Gauss–Markov process its correlation time is that of a grid, four to the
-//! octave from the shortest to the longest averaging time, whose excess is least. Every coefficient
-//! above zero is needed: lower any one alone, and some octave's limit is above the model.
+//! The overbound is the model above the limit at every octave that has the smallest total relative
+//! excess of variance. The correlation time of a Gauss–Markov process is taken from a grid with four
+//! values per octave, from the shortest to the longest averaging time; the value with the smallest
+//! excess is used. Every coefficient above zero is needed: if any one of them were lower, the limit of
+//! some octave would be above the model.
 //!
-//! Above the curve is above the record only: what happens beyond its longest averaging time nobody has
-//! seen.
+//! The overbound says nothing about averaging times beyond the longest one of the record.
 
 use crate::{confidence::Limits, log::OCTAVES};
 use allanite::{
@@ -28,27 +30,27 @@ use allanite::{
 };
 use nalgebra::{Matrix3, Vector3};
 
-/// Most effects of an overbound.
+/// Largest number of effects in an overbound.
 const MOST: usize = 3;
 
-/// Correlation times tried for each factor of two.
+/// Number of correlation times tried for each factor of two.
 const STEPS_PER_OCTAVE: u32 = 4;
 
-/// How far above the limit the model is put, so that rounding its coefficients leaves it above.
+/// Relative margin of the model above the limit, so that rounding its coefficients leaves it above.
 const MARGIN: f64 = 1e-12;
 
 /// White noise, a random walk and perhaps a Gauss–Markov process, in rate units and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overbound {
-    /// Angle random walk N: density of the white noise, in rate · √s.
+    /// Angle random walk N, the density of the white noise, in rate units · √s.
     pub noise_density: f64,
-    /// Rate random walk K, in rate / √s; 0 where the curve never needs it.
+    /// Rate random walk K, in rate units / √s; 0 if the curve does not need it.
     pub random_walk: f64,
-    /// A Gauss–Markov process, where one was asked for and lowers the excess.
+    /// A Gauss–Markov process, if one was requested and lowers the excess.
     pub gauss_markov: Option<GaussMarkovProcess>,
 }
 
-/// Exponentially correlated noise.
+/// A Gauss–Markov process: exponentially correlated noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussMarkovProcess {
     /// Root-mean-square of the process, in rate units.
@@ -66,8 +68,8 @@ impl GaussMarkovProcess {
 }
 
 impl Overbound {
-    /// The least white noise and random walk above a curve's upper limits. `None` without octaves, or
-    /// where a limit is not finite.
+    /// The smallest white noise and random walk above the upper limits of a curve. `None` if there are
+    /// no octaves or a limit is not finite.
     pub fn of(curve: &Curve<OCTAVES>, limits: &[Limits]) -> Option<Self> {
         let plain = SampledShape::new(curve.interval_s());
         let effects: [(&dyn Effect, SampledShape); 2] =
@@ -80,7 +82,8 @@ impl Overbound {
         })
     }
 
-    /// The same with a Gauss–Markov process.
+    /// The overbound with white noise, a random walk and a Gauss–Markov process. `None` as for
+    /// [`of`](Self::of).
     pub fn with_gauss_markov(curve: &Curve<OCTAVES>, limits: &[Limits]) -> Option<Self> {
         let plain = SampledShape::new(curve.interval_s());
         let candidates = correlation_times(curve).filter_map(|time_s| {
@@ -114,7 +117,7 @@ impl Overbound {
             + self.gauss_markov.map_or(0.0, of_process)
     }
 
-    /// The same in units of which `factor` make one of these.
+    /// The overbound in another rate unit; `factor` is the size of the present unit in that unit.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -128,7 +131,7 @@ impl Overbound {
     }
 }
 
-/// Correlation times from the shortest averaging time to the longest.
+/// The grid of correlation times, from the shortest averaging time to the longest.
 pub(crate) fn correlation_times(curve: &Curve<OCTAVES>) -> impl Iterator<Item = f64> + use<> {
     let ends = curve.points().first().zip(curve.points().last());
     let (first, octaves) = ends.map_or((1.0, 0), |(first, last)| {
@@ -138,7 +141,7 @@ pub(crate) fn correlation_times(curve: &Curve<OCTAVES>) -> impl Iterator<Item = 
         .map(move |step| first * (f64::from(step) / f64::from(STEPS_PER_OCTAVE)).exp2())
 }
 
-/// Where a Gauss–Markov process is evaluated.
+/// The shape at which a Gauss–Markov process is evaluated.
 pub(crate) fn gauss_markov_shape(correlation_time_s: f64, interval_s: f64) -> SampledShape {
     let mut shape = SampledShape::new(interval_s);
     shape.parameters[0] = correlation_time_s;
@@ -148,17 +151,18 @@ pub(crate) fn gauss_markov_shape(correlation_time_s: f64, interval_s: f64) -> Sa
 /// A solution of the linear program.
 struct Least {
     coefficients: [f64; MOST],
-    /// What is minimised, but for a constant.
+    /// The minimised sum, except for a constant.
     excess: f64,
 }
 
-/// The least model of these effects above the limits.
+/// The smallest model of these effects above the limits.
 fn least(
     curve: &Curve<OCTAVES>,
     limits: &[Limits],
     effects: &[(&dyn Effect, SampledShape)],
 ) -> Option<Least> {
-    // Row k: what each effect reaches of the limit, per squared coefficient; columns scaled to one.
+    // Row k has the variance of each effect relative to the limit, for a squared coefficient of one.
+    // Each column is scaled so that its maximum is one.
     let mut rows = vec![[0.0; MOST]; curve.points().len().min(limits.len())];
     let mut scales = [1.0; MOST];
     for (i, (effect, shape)) in effects.iter().enumerate() {
@@ -172,7 +176,7 @@ fn least(
         rows.iter_mut().for_each(|row| row[i] /= scales[i]);
     }
     let (squares, excess) = vertex(&rows, effects.len())?;
-    // Just above, where rounding might leave it just below.
+    // The model is lifted just above the limit, because rounding might leave it just below.
     let lowest = rows.iter().map(|row| dot(row, &squares));
     let lift = (1.0 + MARGIN) / lowest.fold(f64::INFINITY, f64::min);
     let coefficients = std::array::from_fn(|i| (lift * squares[i] / scales[i]).sqrt());
@@ -182,8 +186,9 @@ fn least(
     })
 }
 
-/// The optimum lies in a vertex: as many octaves touch the model as it has coefficients above zero.
-/// There are so few vertices that all are tried.
+/// The optimal vertex and its cost. The optimum of a linear program is at a vertex, where the model
+/// touches as many octaves as it has coefficients above zero. There are so few vertices that all of them
+/// are tried.
 fn vertex(rows: &[[f64; MOST]], effects: usize) -> Option<([f64; MOST], f64)> {
     const ROUNDING: f64 = 1e-9;
     let cost: [f64; MOST] = std::array::from_fn(|i| rows.iter().map(|row| row[i]).sum());
@@ -204,7 +209,8 @@ fn vertex(rows: &[[f64; MOST]], effects: usize) -> Option<([f64; MOST], f64)> {
     best
 }
 
-/// The coefficients of some effects that touch as many octaves, if none is negative.
+/// The squared coefficients of the effects in `support` for which the model touches these octaves, or
+/// `None` if one is negative or they are not unique. There are as many octaves as effects.
 fn touch(rows: &[[f64; MOST]], support: u32, octaves: &[usize]) -> Option<[f64; MOST]> {
     let (mut matrix, mut right) = (Matrix3::<f64>::identity(), Vector3::<f64>::zeros());
     let effects: Vec<usize> = (0..MOST).filter(|i| support >> i & 1 == 1).collect();
@@ -227,7 +233,7 @@ fn dot(a: &[f64; MOST], b: &[f64; MOST]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Every set of `count` of the numbers below `end`, ascending.
+/// Calls `each` with every set of `count` numbers below `end`, in ascending order.
 fn each_subset(end: usize, count: usize, each: &mut impl FnMut(&[usize])) {
     let mut chosen: Vec<usize> = (0..count).collect();
     if count > end {
@@ -235,7 +241,7 @@ fn each_subset(end: usize, count: usize, each: &mut impl FnMut(&[usize])) {
     }
     loop {
         each(&chosen);
-        // The last that can still go up, and all behind it as low as they can be.
+        // The last number that can still rise is raised, and all behind it are set as low as possible.
         let Some(i) = (0..count).rev().find(|&i| chosen[i] < end - count + i) else {
             return;
         };

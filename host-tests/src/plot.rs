@@ -1,9 +1,9 @@
-//! An Allan curve beside a model: σ over τ on logarithmic axes, and below it, over the same τ, how far
-//! each octave lies off, in standard errors.
+//! Plots of an Allan curve beside a model: σ over τ on logarithmic axes, and below it, over the same τ,
+//! the residual of each octave in standard errors.
 //!
-//! It is drawn in three places: in a [terminal](Plot), in a file by [`svg()`] and `png`, and on the
-//! page of `report`, by `report/figure.js`. What they show is a [`Figure`], where they show it a
-//! [`Frame`], with the same ticks.
+//! A plot is drawn in a [terminal](Plot), in a file by [`svg()`] and `png`, and on the page of `report`
+//! by `report/figure.js`. In all three, a [`Figure`] has the data, and a [`Frame`] has the spans and
+//! ticks.
 
 mod canvas;
 mod drawing;

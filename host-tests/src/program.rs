@@ -1,4 +1,4 @@
-//! The program as people run it: what the tests of the command line share.
+//! Runs the program as a user does, for the tests of the command line.
 
 use serde_json::Value;
 use std::{
@@ -10,31 +10,31 @@ use std::{
 /// Curves of a real gyro.
 pub const ADIS16405: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/adis16405.json");
 
-/// Where cargo has put the program for a test that it runs; elsewhere, the one on the path.
+/// The path of the program: where cargo put it for a test, or otherwise a program on the search path.
 pub fn path() -> OsString {
     std::env::var_os("CARGO_BIN_EXE_allanite").unwrap_or_else(|| "allanite".into())
 }
 
-/// A command, in a folder.
+/// A command with its arguments, to be run in a folder.
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(path());
     command.current_dir(folder).args(arguments);
     command
 }
 
-/// What became of a command.
+/// Runs a command and returns its output and exit status.
 ///
 /// # Panics
-/// Without the program.
+/// When the program cannot be started.
 pub fn run(folder: &Path, arguments: &[&str]) -> Output {
     let run = command(folder, arguments).output();
     run.unwrap_or_else(|error| panic!("{}: {error}", path().display()))
 }
 
-/// The standard output of a command that works.
+/// The standard output of a command that succeeds.
 ///
 /// # Panics
-/// If it does not work.
+/// When the command fails.
 pub fn output(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -42,18 +42,18 @@ pub fn output(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// The same as JSON.
+/// The JSON document that a command prints with `--json`.
 ///
 /// # Panics
-/// If the command does not work, or prints something else.
+/// When the command fails or prints something else.
 pub fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).expect("JSON")
 }
 
-/// The one line of a command that refuses.
+/// The line on standard error of a command that refuses its input.
 ///
 /// # Panics
-/// If it does something else than that.
+/// When the command does anything else than to print one line with a remedy and end with exit status 2.
 pub fn refusal(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     let errors = String::from_utf8(output.stderr).expect("UTF-8");

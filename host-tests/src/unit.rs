@@ -1,14 +1,14 @@
-//! The units that logs are kept in.
+//! The units of logs.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What a log was recorded of.
+/// The sensor that a log was recorded with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Sensor {
-    /// Rates of turn.
+    /// A gyro, which measures angular rates.
     Gyro,
-    /// Specific forces.
+    /// An accelerometer, which measures specific forces.
     #[value(name = "accel", alias = "accelerometer")]
     Accelerometer,
 }
@@ -52,7 +52,7 @@ impl Unit {
         }
     }
 
-    /// What has this unit.
+    /// The sensor that has this unit.
     pub const fn sensor(self) -> Sensor {
         match self {
             Self::DegreesPerSecond | Self::RadiansPerSecond => Sensor::Gyro,
@@ -60,7 +60,7 @@ impl Unit {
         }
     }
 
-    /// The unit that a sensor's log has which does not say.
+    /// The unit that is assumed for a sensor's log without a unit.
     pub const fn usual(sensor: Sensor) -> Self {
         match sensor {
             Sensor::Gyro => Self::DegreesPerSecond,
@@ -68,7 +68,7 @@ impl Unit {
         }
     }
 
-    /// This unit in the usual one of its sensor: in deg/s or m/s².
+    /// The factor from this unit to the usual unit of its sensor, deg/s or m/s².
     pub const fn in_usual(self) -> f64 {
         match self {
             Self::DegreesPerSecond | Self::MetresPerSecondSquared => 1.0,
@@ -77,7 +77,7 @@ impl Unit {
         }
     }
 
-    /// This unit in the SI's: in rad/s or m/s².
+    /// The factor from this unit to the SI unit, rad/s or m/s².
     pub const fn in_si(self) -> f64 {
         match self {
             Self::DegreesPerSecond => std::f64::consts::PI / 180.0,
@@ -86,7 +86,7 @@ impl Unit {
         }
     }
 
-    /// The unit of that name.
+    /// The unit with this name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|unit| unit.name() == name)
     }

@@ -138,7 +138,7 @@ fn impossible_questions_are_refused() {
         ),
         (
             &["--with", "sinusoid:frequency_hz=100"],
-            "nothing of it shows at 100 Hz",
+            "the effect is invisible at a sample rate of 100 Hz",
         ),
         (
             &["--with", "resonance:frequency_hz=1"],
@@ -161,7 +161,10 @@ fn impossible_questions_are_refused() {
         assert!(refused.contains(message), "{arguments:?}: {refused}");
     }
     let refused = refusal(folder.path(), &["compare", ADIS16405, "--hold-out", "0.5"]);
-    assert!(refused.contains("a curve cannot be divided"), "{refused}");
+    assert!(
+        refused.contains("a curve file cannot be divided"),
+        "{refused}"
+    );
     let without = [
         "quantization",
         "angle_random_walk",
@@ -175,5 +178,8 @@ fn impossible_questions_are_refused() {
         folder.path(),
         &[&["compare", "log.csv"], &without[..]].concat(),
     );
-    assert!(refused.contains("no effects are left"), "{refused}");
+    assert!(
+        refused.contains("the model has no effects left"),
+        "{refused}"
+    );
 }

@@ -109,7 +109,7 @@ fn impossible_figures_are_refused_with_axis_and_octave() {
         ),
         (
             |f| f.axes[0].octaves.truncate(1),
-            "axis \"gx\": 1 octaves, and a fit needs two",
+            "axis \"gx\": a fit needs two octaves, and the file has 1",
         ),
         (
             |f| f.axes[0].octaves[1].m = 3,
@@ -157,7 +157,7 @@ fn impossible_figures_are_refused_with_axis_and_octave() {
         ),
         (
             |f| f.axes[0].octaves[4].sum = u128::MAX,
-            "octave m = 16: a sum of 340282366920938463463374607431768211455 exceeds what counts",
+            "octave m = 16: a sum of 340282366920938463463374607431768211455 is too large",
         ),
     ];
     assert!(read(&file().to_json().unwrap()).is_ok());
@@ -188,7 +188,7 @@ fn text_that_is_no_curve_is_refused_with_its_line() {
         ("[1, 2]".into(), "c.json:1: not a curve file"),
         (
             good.replace("\"version\": 1", "\"version\": 2"),
-            "c.json: version 2 of the format",
+            "c.json: the format has version 2",
         ),
         (
             good.replace(FORMAT, "another"),
@@ -261,5 +261,8 @@ fn file_that_cannot_be_read_is_named() {
     let huge = folder.path().join("huge.json");
     fs::write(&huge, vec![b' '; (1 << 24) + 1]).unwrap();
     let line = CurveFile::read(&huge).unwrap_err().to_string();
-    assert!(line.contains("more than 16 MiB are not a curve"), "{line}");
+    assert!(
+        line.contains("a curve file is smaller than 16 MiB"),
+        "{line}"
+    );
 }

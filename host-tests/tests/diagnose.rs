@@ -219,7 +219,7 @@ fn words_say_what_the_figures_say() {
         }
         let name = axis["axis"].as_str().unwrap();
         assert!(
-            text.contains(&format!("\n{name}: the five terms lack ")),
+            text.contains(&format!("\n{name}: missing effect")),
             "{name}"
         );
     }
@@ -280,10 +280,13 @@ fn effects_that_cannot_be_hidden_are_refused() {
             "there is no parameter \"rms\"",
         ),
         ("thermal:kelvin=5,time_s=1", "slope is missing"),
-        ("thermal:slope=1,kelvin=5", "a temperature has one course"),
+        (
+            "thermal:slope=1,kelvin=5",
+            "a temperature needs either time_s or period_s",
+        ),
         (
             "thermal:slope=1,kelvin=5,time_s=1,period_s=1",
-            "a temperature has one course",
+            "a temperature needs either time_s or period_s",
         ),
     ] {
         let refused = refusal(folder.path(), &["simulate", "mems", "--effect", effect]);

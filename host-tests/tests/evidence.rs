@@ -76,7 +76,7 @@ fn a_record_that_cannot_be_believed_is_invalid_and_blames_no_effect() {
             "{name}: {notes:?}"
         );
         let text = output(folder.path(), &["diagnose", "log.csv"]);
-        assert!(text.contains("gx: the record is invalid: "), "{text}");
+        assert!(text.contains("because the curve is not valid: "), "{text}");
         assert!(notes.iter().all(|note| text.contains(note)), "{text}");
     }
 }
@@ -107,7 +107,7 @@ fn a_temperature_is_found_with_its_slope_and_named_in_the_words() {
     assert!(!list(&blind["axes"][0]["missing"]).contains(&"covariate"));
     let text = output(folder.path(), &diagnose);
     assert!(text.contains("1. + covariate temp_C: "), "{text}");
-    assert!(text.contains("lack covariate temp_C: "), "{text}");
+    assert!(text.contains("missing effect: covariate temp_C"), "{text}");
 }
 
 #[test]
@@ -185,5 +185,5 @@ fn covariates_that_are_none_are_refused() {
         &["measure", "log.csv", "--output", "curve.json"],
     );
     let of_a_curve = ["diagnose", "curve.json", "--covariates", "temp_C"];
-    assert!(refusal(folder.path(), &of_a_curve).contains("a curve knows no covariates"));
+    assert!(refusal(folder.path(), &of_a_curve).contains("a curve file has no covariates"));
 }

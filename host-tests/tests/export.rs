@@ -338,7 +338,7 @@ fn log_in_radians_is_exported_as_it_is() {
 fn coefficient_that_is_not_observable_is_left_out_with_the_reason() {
     let (folder, _) = folder();
     assert_eq!(expected(folder.path(), "short.json", "K"), [None]);
-    let reason = "not observable in this record; one of ";
+    let reason = "not observable in this record; a record of ";
     let text = export(folder.path(), "short.json", &["kalibr"]);
     let file = yaml(&text);
     assert!(file.as_mapping_get("gyroscope_random_walk").is_none());

@@ -33,7 +33,7 @@ fn help_of_every_command_has_examples_that_the_program_takes() {
             assert!(parsed.is_ok(), "{example}: {}", parsed.unwrap_err());
         }
         assert!(
-            help.contains("Exit status: 0 when all is done; 2 for bad input"),
+            help.contains("Exit status: 0 on success; 2 for bad input"),
             "{help}"
         );
     }

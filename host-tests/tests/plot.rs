@@ -273,7 +273,7 @@ fn drawing_has_its_marks_where_the_figures_are_and_words_for_everything() {
         "angle random walk",
         "0.1",
         "1 s",
-        "farthest off: +58",
+        "worst octave: +58",
     ] {
         assert!(words.contains(&expected), "{expected}: {words:?}");
     }
@@ -320,11 +320,11 @@ fn pictures_that_cannot_be_drawn_are_refused() {
     for (arguments, message) in [
         (
             &["plot", ADIS16405, "--output", "curve.jpg"][..],
-            "curve.jpg: a picture's extension is .svg or .png; name the output so",
+            "curve.jpg: a picture must end in .svg or .png; rename the output",
         ),
         (
             &["plot", ADIS16405, "--output", "curve"],
-            "a picture's extension is .svg or .png",
+            "a picture must end in .svg or .png",
         ),
         (
             &["plot", ADIS16405, "--output", "absent/curve.svg"],
@@ -334,7 +334,7 @@ fn pictures_that_cannot_be_drawn_are_refused() {
             &["plot", "absent.csv", "--output", "curve.svg"],
             "absent.csv: no such file",
         ),
-        (&absent, "no axis \"gq\"; choose from gx, gy, gz"),
+        (&absent, "there is no axis \"gq\"; choose from gx, gy, gz"),
     ] {
         let refused = refusal(folder.path(), arguments);
         assert!(refused.contains(message), "{refused}");

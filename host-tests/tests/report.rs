@@ -211,7 +211,7 @@ fn every_candidate_shows_its_own_fit() {
             }
             let name = candidate["effect"].as_str().unwrap().replace('_', " ");
             assert!(
-                heading.starts_with("If it were") && heading.contains(&name),
+                heading.starts_with("With this candidate") && heading.contains(&name),
                 "{heading}"
             );
             // The search ends early with those that lag behind by more than 60.
@@ -400,12 +400,12 @@ fn pages_that_cannot_be_written_are_refused_before_anything_is_read() {
         (
             ADIS16405,
             "report.pdf",
-            "report.pdf: a page's extension is .html; name the output so",
+            "report.pdf: a page must end in .html; rename the output",
         ),
         (
             ADIS16405,
             "absent/report.html",
-            "its folder does not exist; make the folder first",
+            "its folder does not exist; create the folder first",
         ),
         (
             "absent.json",

@@ -240,12 +240,7 @@ fn input_that_ends_is_saved_to_its_last_complete_line() {
     assert_eq!(check_prefix(folder.path(), &sent), samples as u64);
     let garbled = sent.len() - samples;
     let errors = String::from_utf8(ended.stderr).unwrap();
-    assert!(
-        garbled > 0
-            && errors.starts_with(&format!(
-                "allanite: lines that were no samples: {garbled}, "
-            ))
-    );
+    assert!(garbled > 0 && errors.starts_with(&format!("allanite: invalid lines: {garbled}, ")));
 }
 
 #[test]
@@ -325,7 +320,7 @@ fn impossible_options_are_refused_before_anything_is_read() {
         ),
         (
             &["--rate", "9", "--axes", "a,a"],
-            "--axes: a name is empty or there twice; ",
+            "--axes: a name is empty or repeated; ",
         ),
         (
             &["--rate", "9", "--save-every", "0"],
@@ -333,7 +328,7 @@ fn impossible_options_are_refused_before_anything_is_read() {
         ),
         (
             &["--rate", "9", "--output", "a.csv"],
-            "a.csv: a curve file's extension is .json; ",
+            "a.csv: a curve file must end in .json; ",
         ),
         (
             &["--rate", "9", "--output", "no/a.json"],

@@ -1,54 +1,56 @@
-//! In words, why a record is not to be believed.
+//! The reasons why a record is invalid, with a sentence for each.
 
-/// Why the Allan curve of a record cannot mean what it says.
+/// Why the Allan curve of a record is not valid. `Display` writes the finding, its numbers and a remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Reason {
-    /// The sensor, or who reads it, hung, or its quanta are too coarse for its noise.
+    /// The values change too seldom: the sensor or its reader hung, or the quanta are too coarse for the
+    /// noise.
     Stuck {
         /// Samples in the longest run of equal values.
         longest_run: u32,
-        /// Samples that differ from the one before.
+        /// Number of samples that differ from the one before.
         changes: u64,
         /// Samples of the record.
         samples: u64,
     },
-    /// The rate left the sensor's range, or the sensor marks bad data by a rail.
+    /// Too many values are extreme values of the converter: the rate left the sensor's range, or the
+    /// sensor marks bad data with such a value.
     Railed {
-        /// Samples at a rail.
+        /// Samples at either end of the scale.
         hits: u64,
         /// Samples of the record.
         samples: u64,
     },
-    /// Single samples far beyond the noise make up a good part of the curve.
+    /// Single samples far beyond the noise contribute a large share of the variance.
     Spiked {
-        /// How many.
+        /// Number of spikes.
         spikes: u64,
-        /// Their share of ΣD² at `m = 1`.
+        /// Share of ΣD² at averaging factor `m = 1` that the spikes contribute, in percent.
         percent: u8,
     },
     /// The gyro was not at rest.
     Moved {
-        /// Stretches of motion.
+        /// Number of stretches of motion.
         motions: u64,
-        /// Samples of the clusters that showed it.
+        /// Samples in each of the clusters whose means showed the motion.
         cluster: u16,
-        /// Their share of ΣD² of such clusters.
+        /// Share of ΣD² of these clusters that the motion contributes, in percent.
         percent: u8,
     },
     /// Too many samples were lost.
     Missing {
-        /// How many.
+        /// Number of samples lost.
         missing: u64,
-        /// Samples that the sensor must have sent.
+        /// Number of samples that the sensor must have sent.
         sent: u64,
     },
-    /// A gate left out too many samples that were odd.
+    /// A gate left out too many samples because of what it saw in them.
     LeftOut {
-        /// How many.
+        /// Number of samples left out.
         left_out: u64,
-        /// Samples of the record, those that were left out included.
+        /// Samples of the record, including those that were left out.
         samples: u64,
     },
 }
@@ -62,19 +64,20 @@ impl core::fmt::Display for Reason {
                 samples,
             } => write!(
                 f,
-                "stuck: {longest_run} equal values in a row, {changes} changes in {samples} \
-                 samples; check that the sensor is read as often as it measures, or use a finer \
+                "the values are stuck: up to {longest_run} equal values in a row, {changes} changes \
+                 in {samples} samples; check that the sensor is read at its own rate, or use a finer \
                  range"
             ),
             Self::Railed { hits, samples } => write!(
                 f,
-                "railed: {hits} of {samples} samples at the end of the scale; record at rest, on a \
+                "{hits} of {samples} samples are at the end of the scale; record at rest, use a \
                  wider range, or check the bus"
             ),
             Self::Spiked { spikes, percent } => write!(
                 f,
-                "spiked: {spikes} single samples far beyond the noise make up {percent} % of the \
-                 squares at one sample; check supply and bus, or leave them out as gaps"
+                "the record has spikes: single samples far beyond the noise ({spikes}) explain \
+                 {percent} % of the variance of one sample; check the supply and the bus, or leave \
+                 the spikes out as gaps"
             ),
             Self::Moved {
                 motions,
@@ -82,17 +85,17 @@ impl core::fmt::Display for Reason {
                 percent,
             } => write!(
                 f,
-                "moved: {motions} times the mean of {cluster} samples left its level, {percent} % \
-                 of the squares there; record again at rest, untouched"
+                "the gyro was moved: {motions} jumps explain {percent} % of the variance of means of \
+                 {cluster} samples; record again at rest, untouched"
             ),
             Self::Missing { missing, sent } => write!(
                 f,
-                "missing: {missing} of {sent} samples lost; read faster or record at a lower rate"
+                "{missing} of {sent} samples are missing; read faster or record at a lower rate"
             ),
             Self::LeftOut { left_out, samples } => write!(
                 f,
-                "left out: {left_out} of {samples} samples were odd (moved, stuck, railed or \
-                 spiked); record again at rest, untouched"
+                "the gate left out {left_out} of {samples} samples (motion, stuck values, end of the \
+                 scale or spikes); record again at rest, untouched"
             ),
         }
     }

@@ -1,11 +1,11 @@
-//! `completions`: what a shell needs to complete commands and options.
+//! `completions`: prints the script with which a shell completes commands and options.
 
 use crate::{command::examples, failure::Failure};
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 use std::io::Write;
 
-/// Print a shell's completions: source them, or put them where the shell looks
+/// Print a shell's completion script, to be sourced or put where the shell looks for it
 #[derive(Debug, Args)]
 #[command(after_help = examples::COMPLETIONS)]
 pub(super) struct Arguments {
@@ -19,7 +19,7 @@ pub(super) fn run(
     mut command: Command,
     output: &mut impl Write,
 ) -> Result<(), Failure> {
-    // Generating cannot fail into memory; a pipe can be closed.
+    // The script is generated in memory, where writing cannot fail; standard output can be closed.
     let mut script = Vec::new();
     generate(arguments.shell, &mut command, "allanite", &mut script);
     output

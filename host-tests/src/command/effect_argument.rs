@@ -1,20 +1,23 @@
-//! Effects as the command line writes them: `EFFECT[:parameter=value,…]`.
+//! Effects as options of the command line: `EFFECT[:parameter=value,…]`.
 
 use crate::failure::{Failure, quoted};
 use allanite::effect::{CATALOGUE, Effect, MAX_PARAMETERS, Span};
 
-/// An option's effect: its name, and values that wait to be asked for.
+/// The effect that an option names, with the values that have not been taken from it yet.
 #[derive(Clone, Debug)]
 pub(super) struct EffectArgument<'a> {
     option: &'static str,
     pub(super) name: &'a str,
     values: Vec<(&'a str, f64)>,
-    /// Names that were asked for.
+    /// Names of the parameters that the command has looked for.
     known: Vec<&'static str>,
 }
 
 impl<'a> EffectArgument<'a> {
     /// Splits the text of an option such as `--with`.
+    ///
+    /// # Errors
+    /// When a parameter has no value, a value that is not a finite number, or two values.
     pub(super) fn parse(option: &'static str, text: &'a str) -> Result<Self, Failure> {
         let (name, list) = text.split_once(':').unwrap_or((text, ""));
         let mut values: Vec<(&str, f64)> = Vec::new();
@@ -52,12 +55,15 @@ impl<'a> EffectArgument<'a> {
         })
     }
 
-    /// The failure of this option.
+    /// The failure of this option, with what is wrong and the remedy.
     pub(super) fn failure(&self, what: impl std::fmt::Display, remedy: &str) -> Failure {
         Failure::option(format!("{} {}: {what}", self.option, self.name), remedy)
     }
 
-    /// The effect of the catalogue that has the name.
+    /// The effect of the catalogue that has this name.
+    ///
+    /// # Errors
+    /// When there is no such effect.
     pub(super) fn effect(&self) -> Result<&'static dyn Effect, Failure> {
         let mut catalogue = CATALOGUE.into_iter();
         catalogue
@@ -75,14 +81,17 @@ impl<'a> EffectArgument<'a> {
             })
     }
 
-    /// The value of that name, if there is one.
+    /// Takes the value of that name, if there is one.
     pub(super) fn take(&mut self, name: &'static str) -> Option<f64> {
         self.known.push(name);
         let at = self.values.iter().position(|(other, _)| *other == name)?;
         Some(self.values.swap_remove(at).1)
     }
 
-    /// The value of that name, if there is one, which cannot be but positive.
+    /// Takes the value of that name, if there is one.
+    ///
+    /// # Errors
+    /// When the value is not positive.
     pub(super) fn take_positive(&mut self, name: &'static str) -> Result<Option<f64>, Failure> {
         match self.take(name) {
             Some(value) if value <= 0.0 => Err(self.failure(
@@ -93,7 +102,10 @@ impl<'a> EffectArgument<'a> {
         }
     }
 
-    /// The positive value of that name, which must not be missing.
+    /// Takes the value of that name.
+    ///
+    /// # Errors
+    /// When the value is missing or not positive.
     pub(super) fn require(&mut self, name: &'static str) -> Result<f64, Failure> {
         let value = self.take_positive(name)?;
         value.ok_or_else(|| {
@@ -102,12 +114,15 @@ impl<'a> EffectArgument<'a> {
         })
     }
 
-    /// The shape parameters of an effect; whole-numbered ones are 1 unless given.
+    /// Takes the shape parameters of an effect. A parameter that is a whole number is 1 unless given.
+    ///
+    /// # Errors
+    /// When another parameter is missing, or a value is out of range.
     pub(super) fn shape(
         &mut self,
         effect: &'static dyn Effect,
     ) -> Result<[f64; MAX_PARAMETERS], Failure> {
-        /// Ranges of whole numbers depend on nothing.
+        /// Any span will do: the range of a whole number does not depend on it.
         const ANY: Span = Span {
             interval_s: 1.0,
             longest_tau_s: 1.0,
@@ -130,14 +145,17 @@ impl<'a> EffectArgument<'a> {
         Ok(shape)
     }
 
-    /// Refuses values that nobody asked for.
+    /// Ends the reading of the option.
+    ///
+    /// # Errors
+    /// When a value is left that the effect has no parameter for.
     pub(super) fn finish(self) -> Result<(), Failure> {
         let Some((name, _)) = self.values.first() else {
             return Ok(());
         };
         let what = format!("there is no parameter {}", quoted(name.as_bytes()));
         let remedy = if self.known.is_empty() {
-            "give none".into()
+            "give no parameters".into()
         } else {
             format!("choose from {}", self.known.join(", "))
         };
@@ -173,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_is_wrong_is_said_with_a_remedy() {
+    fn every_bad_option_is_refused_with_its_remedy() {
         for (text, message) in [
             (
                 "sinusiod:frequency_hz=1",
@@ -206,7 +224,7 @@ mod tests {
             ),
             (
                 "rate_ramp:slope=1",
-                "there is no parameter \"slope\"; give none",
+                "there is no parameter \"slope\"; give no parameters",
             ),
         ] {
             let refused = shape(text).unwrap_err();

@@ -1,11 +1,11 @@
-//! What stands below the help of every command. A test parses each example.
+//! The examples below the help of every command. A test parses each of them.
 
 macro_rules! examples {
     ($($line:literal)+) => {
         concat!(
             "Examples:\n",
             $("  ", $line, "\n",)+
-            "\nExit status: 0 when all is done; 2 for bad input, one line each on standard error."
+            "\nExit status: 0 on success; 2 for bad input, with one line on standard error for each."
         )
     };
 }

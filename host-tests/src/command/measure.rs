@@ -1,4 +1,4 @@
-//! `measure`: from a log to its curves.
+//! `measure`: computes the Allan curves of logs.
 
 use crate::{
     command::{
@@ -26,15 +26,15 @@ pub(super) struct Arguments {
     /// Recorded logs: .csv, .csv.gz, .npy, .mcap or .ulg
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
-    /// The curve file to write: .json; or a folder, for one file a log
+    /// The curve file to write, .json, or an existing folder that gets one file for each log
     #[arg(long, short, value_name = "CURVE.json")]
     output: PathBuf,
     #[command(flatten)]
     about_log: LogArguments,
-    /// Where the record comes from, kept in the curve file
+    /// Where the record comes from; the curve file keeps this text
     #[arg(long, value_name = "TEXT")]
     source: Option<String>,
-    /// The record's licence, kept in the curve file
+    /// The record's licence; the curve file keeps this text
     #[arg(long, value_name = "TEXT")]
     licence: Option<String>,
 }
@@ -45,7 +45,8 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let several = places.len() > 1;
     let work = |log: &Path| {
         let place = places.get(log).unwrap_or(&arguments.output);
-        // First, so that a place that cannot be written to costs no measurement.
+        // The file comes first, so that an output that cannot be written is refused before the
+        // measurement.
         let mut file = OutputFile::create(place)?;
         let mut curves = record::measure(log, &arguments.about_log)?;
         for curve in &mut curves {
@@ -73,24 +74,29 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     many::failed(failures)
 }
 
-/// Where the curves of each log go.
+/// The output path of each log.
+///
+/// # Errors
+/// When the output is no folder but there are several logs, when its extension is not that of a curve
+/// file, or when two logs would get the same path.
 fn places(logs: &[PathBuf], output: &Path) -> Result<HashMap<PathBuf, PathBuf>, Failure> {
     if !output.is_dir() {
         if logs.len() > 1 {
             return Err(Place::file(output).failure(
-                "several logs need a folder, and there is none of this name",
-                "make the folder first",
+                "several logs need a folder as output, and this one does not exist",
+                "create the folder first",
             ));
         }
         if !record::is_curve(output) {
-            return Err(Place::file(output)
-                .failure("a curve file's extension is .json", "name the output so"));
+            return Err(
+                Place::file(output).failure("a curve file must end in .json", "rename the output")
+            );
         }
     }
     let mut places: HashMap<PathBuf, PathBuf> = HashMap::new();
     for log in logs {
         let place = if output.is_dir() {
-            // Without `.csv` or `.npy`, nor `.csv.gz`.
+            // The name without its extension; `.csv.gz` counts as one extension.
             let stem = Path::new(log.file_stem().unwrap_or_default());
             let stem = match stem.extension() {
                 Some(extension) if extension.eq_ignore_ascii_case("csv") => stem.with_extension(""),
@@ -104,8 +110,8 @@ fn places(logs: &[PathBuf], output: &Path) -> Result<HashMap<PathBuf, PathBuf>, 
         };
         if places.values().any(|other| *other == place) {
             return Err(Place::file(&place).failure(
-                "two logs have this name",
-                "measure them one by one, with a file each for --output",
+                "two logs would write this file",
+                "measure them one by one, each with its own --output",
             ));
         }
         places.insert(log.clone(), place);
@@ -119,7 +125,7 @@ fn write(file: &mut OutputFile, place: &Path, curves: &CurveFile) -> Result<(), 
     file.write_all(json.as_bytes()).map_err(fail)
 }
 
-/// A line an axis, behind the name of the log where there are several.
+/// Prints one line for each axis; the name of the log comes first if there are several logs.
 fn summarize(log: Option<&str>, curves: &[AxisCurve], output: &mut impl Write) -> io::Result<()> {
     for curve in curves {
         if let Some(log) = log {

@@ -23,15 +23,15 @@ use std::io::{self, BufWriter, Write};
 
 /// Noise coefficients of gyros and accelerometers, from recorded logs or from curves.
 ///
-/// Exit status: 0 when all is done; 2 for bad input, with one line on standard error that names the
-/// file, the row and the remedy. Of several files those that can be used are worked on and printed, and
-/// every bad one has its line.
+/// Exit status: 0 on success; 2 for bad input, with one line on standard error that names the file, the
+/// row and the remedy. If only some of several files are bad, the others are processed and printed, and
+/// each bad file has its own line.
 ///
-/// With NO_COLOR in the environment nothing is coloured.
+/// The environment variable NO_COLOR turns colours off.
 #[derive(Debug, Parser)]
 #[command(name = "allanite", version)]
 pub struct CommandLine {
-    /// Show no progress and no notes: results and failures only
+    /// Print only results and failures, without progress and notes
     #[arg(long, short, global = true)]
     quiet: bool,
     #[command(subcommand)]
@@ -57,7 +57,7 @@ impl CommandLine {
     /// Runs the command; results go to standard output, everything else to standard error.
     ///
     /// # Errors
-    /// Of every kind of bad input.
+    /// For bad input of any kind, and when standard output cannot be written.
     pub fn run(&self) -> Result<(), Failure> {
         if self.quiet {
             progress::be_quiet();

@@ -1,4 +1,4 @@
-//! `plot`: a record beside a model, as a picture.
+//! `plot`: draws a record beside a model as a picture.
 
 use crate::{
     command::{
@@ -15,7 +15,7 @@ use crate::{
 use clap::Args;
 use std::{io::Write, path::Path, path::PathBuf};
 
-/// Draw the Allan curve beside the model that `diagnose` ends with, and where the two differ
+/// Draw the Allan curve beside the last model of `diagnose`, and the difference of the two
 #[derive(Debug, Args)]
 #[command(after_help = examples::PLOT)]
 pub(super) struct Arguments {
@@ -24,15 +24,16 @@ pub(super) struct Arguments {
     /// The picture to write: .svg or .png
     #[arg(long, short, value_name = "CURVE.svg|CURVE.png")]
     output: PathBuf,
-    /// The axis to draw [default: all, one below the other]
+    /// The axis to draw [default: all axes, one below the other]
     #[arg(long, value_name = "NAME")]
     axis: Option<String>,
-    /// The model of that step of the diagnosis, 0 for the five terms; an axis of fewer steps shows its last [default: the last]
+    /// The step of the diagnosis whose model to draw, 0 for the five terms; an axis with fewer steps
+    /// shows its last [default: the last]
     #[arg(long, value_name = "N")]
     step: Option<usize>,
 }
 
-/// What can be left out of the program.
+/// The part of the program that a build without the feature `pictures` leaves out.
 const PNG: &str = "drawing .png pictures";
 
 #[derive(Clone, Copy)]
@@ -48,10 +49,8 @@ impl Format {
             Some("svg") => Ok(Self::Svg),
             Some("png") if cfg!(feature = "pictures") => Ok(Self::Png),
             Some("png") => Err(Failure::not_built_in(PNG)),
-            _ => Err(Place::file(path).failure(
-                "a picture's extension is .svg or .png",
-                "name the output so",
-            )),
+            _ => Err(Place::file(path)
+                .failure("a picture must end in .svg or .png", "rename the output")),
         }
     }
 }
@@ -59,7 +58,7 @@ impl Format {
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let format = Format::of(&arguments.output)?;
-    // First, so that a place that cannot be written to costs no diagnosis.
+    // The file comes first, so that an output that cannot be written is refused before the diagnosis.
     let mut file = OutputFile::create(&arguments.output)?;
     let diagnosed = arguments.diagnosis.diagnosed()?;
     let drawings = chosen(&diagnosed, arguments)?;
@@ -89,7 +88,7 @@ fn png(_: &str, _: Place) -> Result<Vec<u8>, Failure> {
     Err(Failure::not_built_in(PNG))
 }
 
-/// The axes that were asked for.
+/// The axis that the option names, or all axes.
 fn chosen<'a>(
     diagnosed: &'a [Diagnosed],
     arguments: &Arguments,
@@ -104,14 +103,14 @@ fn chosen<'a>(
     };
     let chosen = chosen.ok_or_else(|| {
         Place::file(&arguments.diagnosis.input).failure(
-            format!("no axis {}", quoted(name.as_bytes())),
+            format!("there is no axis {}", quoted(name.as_bytes())),
             format!("choose from {}", names()),
         )
     })?;
     Ok(vec![chosen])
 }
 
-/// The figure of a step; where the diagnosis has fewer, of the last.
+/// The drawing of a step, or of the last step if the diagnosis has fewer.
 fn drawing(diagnosed: &Diagnosed, step: Option<usize>) -> Drawing {
     let last = diagnosed.steps.len() - 1;
     let at = step.map_or(last, |step| step.min(last));

@@ -1,14 +1,15 @@
-//! A grid of characters, with eight dots of braille in each.
+//! The canvas of a terminal plot: a grid of characters, each with eight braille dots.
 
-/// Dots of a character's two columns, top to bottom, as bits of the Unicode block at U+2800.
+/// The dots of a character's two columns from top to bottom, as bits of the Unicode block at U+2800.
 const DOTS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 
-/// Cells, row by row from the top. Positions are shares of width and height, from the lower left.
+/// The cells, row by row from the top. Positions are shares of the width and the height, from the lower
+/// left.
 pub(super) struct Canvas {
     columns: usize,
     rows: usize,
     dots: Vec<u8>,
-    /// What lies over the dots.
+    /// Characters that cover the dots.
     marks: Vec<Option<char>>,
 }
 
@@ -22,12 +23,12 @@ impl Canvas {
         }
     }
 
-    /// The row, from the top, of a share of the height.
+    /// The row, counted from the top, at a share of the height.
     pub(super) fn row(&self, up: f64) -> usize {
         place(1.0 - up, self.rows)
     }
 
-    /// A character in a column, at a share of the height.
+    /// Puts a character into a column, at a share of the height.
     pub(super) fn mark(&mut self, column: usize, up: f64, mark: char) {
         let row = self.row(up);
         if column < self.columns {
@@ -35,12 +36,12 @@ impl Canvas {
         }
     }
 
-    /// A horizontal rule.
+    /// Draws a horizontal rule over the width.
     pub(super) fn rule(&mut self, row: usize) {
         self.marks[row * self.columns..(row + 1) * self.columns].fill(Some('─'));
     }
 
-    /// A vertical line in a column.
+    /// Draws a vertical line in a column.
     pub(super) fn stem(&mut self, column: usize, from: f64, to: f64) {
         let (one, other) = (self.row(from), self.row(to));
         for row in one.min(other)..=one.max(other) {
@@ -50,7 +51,7 @@ impl Canvas {
         }
     }
 
-    /// A line of dots.
+    /// Draws a line of dots.
     pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
         let (wide, high) = (2 * self.columns, 4 * self.rows);
         let steps = ((to.0 - from.0).abs() * wide as f64).max((to.1 - from.1).abs() * high as f64);
@@ -75,7 +76,7 @@ impl Canvas {
     }
 }
 
-/// The place, of so many, of a share; shares beyond lie at the ends.
+/// The index of a share among so many places; shares outside 0 to 1 are at the ends.
 fn place(share: f64, places: usize) -> usize {
     (share.clamp(0.0, 1.0) * (places - 1) as f64).round() as usize
 }

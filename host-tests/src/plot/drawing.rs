@@ -1,4 +1,4 @@
-//! The plot as a file: an SVG drawing, one figure below the other.
+//! The plot in a file: an SVG drawing with one figure below the other.
 
 use super::{
     figure::{Figure, Share},
@@ -12,7 +12,7 @@ use svg::{
 };
 
 const WIDTH: f64 = 1030.0;
-/// Of one figure, its axis of averaging times included.
+/// Height of one figure, including its axis of averaging times.
 const HEIGHT: f64 = 664.0;
 const MARGIN: f64 = 24.0;
 const CURVE: Panel = Panel {
@@ -29,9 +29,9 @@ const RESIDUAL: Panel = Panel {
 };
 const LEGEND: (f64, f64) = (CURVE.left + CURVE.width + 22.0, CURVE.top + 12.0);
 const LEGEND_ROW: f64 = 24.0;
-/// Characters that there is room for: of a title, and of the smaller words below.
+/// Largest numbers of characters in a title and in the smaller subtitle.
 const LONGEST: [usize; 2] = [72, 120];
-/// Residuals within so many standard errors are no disagreement.
+/// A residual is noticeable beyond this many standard errors.
 const NOTICEABLE: f64 = 2.0;
 
 const MODEL: Stroke = Stroke {
@@ -39,7 +39,8 @@ const MODEL: Stroke = Stroke {
     width: 2.5,
     dashes: "none",
 };
-/// Lines of effects: colours that stand out from white, and dashes that tell them apart without.
+/// Lines of effects. The colours are legible on white, and the dashes distinguish the lines without
+/// colour.
 const EFFECTS: [(&str, &str); 8] = [
     ("#6e7781", "2 4"),
     ("#b35900", "8 4"),
@@ -50,21 +51,21 @@ const EFFECTS: [(&str, &str); 8] = [
     ("#8250df", "10 3 2 3"),
     ("#9a6700", "4 3"),
 ];
-/// Of the octave that lies farthest off.
+/// Colour of the ring around the octave with the largest residual.
 const WORST: &str = "#cf222e";
 
 /// One figure of a drawing.
 #[derive(Clone, Debug)]
 pub struct Drawing {
-    /// What it shows.
+    /// The title.
     pub title: String,
-    /// What else to know.
+    /// The subtitle, in smaller letters.
     pub subtitle: String,
     /// The unit of the rate.
     pub unit: Unit,
-    /// What is drawn …
+    /// The data to draw.
     pub figure: Figure,
-    /// … and where.
+    /// The spans of the panels.
     pub frame: Frame,
 }
 
@@ -115,7 +116,7 @@ impl Drawing {
             .add(self.legend())
     }
 
-    /// Places of the octaves, and of what they have.
+    /// The positions of the octaves' averaging times and of their deviations.
     fn points<'a>(&'a self, sigma: &'a [f32]) -> impl Iterator<Item = (f64, f64)> + 'a {
         let tau_s = self.figure.tau_s.iter().zip(sigma);
         tau_s.map(|(tau_s, sigma)| (self.across(*tau_s), self.up(*sigma)))
@@ -199,7 +200,7 @@ impl Drawing {
         self.frame.up(f64::from(self.figure.z[at]))
     }
 
-    /// The octave that lies farthest off, if that is noticeable.
+    /// The octave with the largest residual, if that is noticeable.
     fn worst(&self) -> Option<usize> {
         let worst = self.figure.worst();
         let z = self.figure.z.get(worst)?;
@@ -252,7 +253,7 @@ impl Drawing {
             top: RESIDUAL.top + 36.0 - 8.0,
             ..sample
         };
-        let words = format!("farthest off: {:+.0}", self.figure.z[worst]).replace('-', "−");
+        let words = format!("worst octave: {:+.0}", self.figure.z[worst]).replace('-', "−");
         group
             .add(sample.mark(0.1, 0.5))
             .add(ring(&sample, 0.1, 0.5))
@@ -260,7 +261,7 @@ impl Drawing {
     }
 }
 
-/// Ticks at their places.
+/// The ticks with their positions instead of their values.
 fn placed(span: &Span, ticks: Vec<(f64, String)>) -> Vec<(f64, String)> {
     let ticks = ticks.into_iter();
     ticks
@@ -289,7 +290,7 @@ fn effect(share: &Share) -> Stroke {
     }
 }
 
-/// Words of an input as XML can have them, and no longer than there is room.
+/// Text of an input without characters that XML forbids, and no longer than there is room.
 fn shown(words: &str, longest: usize) -> String {
     let words = one_line(words).replace(['\u{fffe}', '\u{ffff}'], " ");
     if words.chars().count() <= longest {
@@ -298,7 +299,7 @@ fn shown(words: &str, longest: usize) -> String {
     words.chars().take(longest).chain(['…']).collect()
 }
 
-/// The same lines for a page: a class of CSS each, `effect-` and the colour's place.
+/// The lines of effects for a page: a CSS class for each, named `effect-` and the index of the colour.
 pub fn effect_styles() -> String {
     let rule = |(place, (colour, dashes)): (usize, (&str, &str))| {
         format!(".effect-{place}{{stroke:{colour};stroke-dasharray:{dashes}}}\n")

@@ -1,4 +1,4 @@
-//! What a plot shows of a comparison.
+//! The data that a plot shows of a comparison.
 
 use super::frame::Frame;
 use crate::log::OCTAVES;
@@ -8,41 +8,42 @@ use allanite::{
 };
 use serde::Serialize;
 
-/// An effect whose share of the model's variance is nowhere as large does not show.
+/// An effect is shown if its share of the model's variance is at least this large in some octave.
 const LEAST_SHARE: f32 = 0.005;
 
-/// A record and a model, octave by octave: deviations in rate units, as exact as a drawing needs.
+/// A record and a model octave by octave, with deviations in rate units. Single precision is enough for
+/// a drawing.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figure {
     /// Averaging times, in seconds.
     pub tau_s: Vec<f32>,
     /// Measured deviations.
     pub measured: Vec<f32>,
-    /// One standard error below them …
+    /// The measured deviations less one standard error.
     pub lower: Vec<f32>,
-    /// … and above.
+    /// The measured deviations plus one standard error.
     pub upper: Vec<f32>,
-    /// The model's.
+    /// Deviations of the model.
     pub model: Vec<f32>,
     /// Residuals, in standard errors.
     pub z: Vec<f32>,
-    /// The effects that show in the model.
+    /// The effects that are large enough to be shown.
     pub shares: Vec<Share>,
 }
 
-/// What an effect contributes to a model.
+/// The contribution of an effect to a model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Share {
-    /// The effect.
+    /// Name of the effect.
     pub effect: &'static str,
-    /// Its place among the colours: effects that take each other's place have one.
+    /// Index of its colour. Effects that replace each other share a colour.
     pub colour: usize,
-    /// Its deviations, in rate units.
+    /// Deviations of the effect, in rate units.
     pub sigma: Vec<f32>,
 }
 
 impl Figure {
-    /// The figure of a model beside a record; effects that lie below the frame do not show.
+    /// The figure of a model beside a record. Effects that lie below the frame are left out.
     pub fn new(model: &Model, comparison: &Comparison<OCTAVES>, frame: &Frame) -> Self {
         let octaves = comparison.octaves.iter();
         let roots = |variance: &dyn Fn(&allanite::comparison::ComparedOctave) -> f64| {
@@ -52,7 +53,7 @@ impl Figure {
                 .map(|octave| root(variance(octave)))
                 .collect()
         };
-        // An octave that agrees to the last bit has no error to show.
+        // The standard error of an octave that agrees to the last bit is NaN; it is drawn as zero.
         let error = |octave: &allanite::comparison::ComparedOctave| match octave.standard_error() {
             error if error.is_finite() => error,
             _ => 0.0,
@@ -81,7 +82,7 @@ impl Figure {
         }
     }
 
-    /// The octave that lies farthest off; 0 of no octaves.
+    /// Index of the octave with the largest residual, or 0 if there are no octaves.
     pub fn worst(&self) -> usize {
         let sizes = self.z.iter().map(|z| z.abs()).enumerate();
         let worst = sizes.max_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -89,8 +90,8 @@ impl Figure {
     }
 }
 
-/// An effect's place in the catalogue without mirrors and without those that replace another: these have
-/// the other's.
+/// Index of an effect's colour: its place among those effects of the catalogue that neither mirror nor
+/// replace another one. An effect that does so has the colour of the other effect.
 fn colour(effect: &dyn Effect) -> usize {
     let shown = effect.replaces().or(effect.mirror());
     let name = shown.map_or(effect.name(), |shown| shown.name());

@@ -1,43 +1,43 @@
-//! What the panels of a plot span, and where in them a value lies: the same in a terminal, in a file
-//! and on a page.
+//! The spans of a plot's panels, and the positions of values in them. They are the same in a terminal,
+//! in a file and on a page.
 
 use super::ticks;
 use crate::log::OCTAVES;
 use allanite::{Comparison, comparison::ComparedOctave};
 
-/// A logarithmic axis.
+/// The span of a logarithmic axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// The lowest value, above zero.
+    /// The lowest value, which is above zero.
     pub low: f64,
-    /// The highest.
+    /// The highest value.
     pub high: f64,
 }
 
 impl Span {
-    /// Where a value lies, 0 at the low end to 1 at the high one.
+    /// The position of a value, from 0 at the low end to 1 at the high end.
     pub fn along(&self, value: f64) -> f64 {
         (value / self.low).ln() / (self.high / self.low).ln()
     }
 
-    /// Round numbers.
+    /// Round numbers within the span.
     pub fn ticks(&self) -> Vec<f64> {
         ticks::logarithmic(self.low, self.high)
     }
 
-    /// The same, with labels of numbers.
+    /// The ticks, labelled as numbers.
     pub fn labelled(&self) -> Vec<(f64, String)> {
         let labelled = |value| (value, ticks::plain(value));
         self.ticks().into_iter().map(labelled).collect()
     }
 
-    /// The same, with labels of times.
+    /// The ticks, labelled as times.
     pub fn times(&self) -> Vec<(f64, String)> {
         let labelled = |value| (value, ticks::time(value));
         self.ticks().into_iter().map(labelled).collect()
     }
 
-    /// The same span in another unit.
+    /// The span in another unit; `factor` is the size of the present unit in that unit.
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
             low: factor * self.low,
@@ -53,12 +53,12 @@ pub struct Frame {
     pub tau_s: Span,
     /// Allan deviations, in rate units.
     pub sigma: Span,
-    /// The residual's panel reaches from −z to z standard errors.
+    /// The panel of residuals reaches from −z to z standard errors.
     pub z: f64,
 }
 
 impl Frame {
-    /// Has room for all octaves of these comparisons.
+    /// A frame with room for all octaves of these comparisons.
     pub fn of<'a>(comparisons: impl IntoIterator<Item = &'a Comparison<OCTAVES>> + Clone) -> Self {
         let octaves = || {
             let comparisons = comparisons.clone().into_iter();
@@ -71,7 +71,7 @@ impl Frame {
             .filter(|variance| *variance > 0.0);
         let (first, last) = ends(times).unwrap_or((1.0, 2.0));
         let (low, high) = ends(positive.map(f64::sqrt)).unwrap_or((1.0, 1.0));
-        // At least a factor of two, and a little room.
+        // The span is at least a factor of 2.25, with a margin of 5 % at each end.
         let middle = (low * high).sqrt();
         let half = (high / low).sqrt().max(1.5) * 1.05;
         let sizes = octaves().map(|octave| octave.z.abs());
@@ -88,7 +88,7 @@ impl Frame {
         }
     }
 
-    /// Labelled residuals, from the top.
+    /// The labelled ticks of the panel of residuals, from the top.
     pub fn residuals(&self) -> [(f64, String); 3] {
         [self.z, 0.0, -self.z].map(|z| match z > 0.0 {
             true => (z, format!("+{z}")),
@@ -96,13 +96,13 @@ impl Frame {
         })
     }
 
-    /// Where a residual lies, 0 at the bottom to 1 at the top of its panel.
+    /// The position of a residual, from 0 at the bottom to 1 at the top of its panel.
     pub fn up(&self, z: f64) -> f64 {
         0.5 * (z / self.z + 1.0)
     }
 }
 
-/// The smallest and the largest.
+/// The smallest and the largest value, or `None` if there are none.
 fn ends(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.fold(None, |ends, value| {
         let (low, high) = ends.unwrap_or((value, value));

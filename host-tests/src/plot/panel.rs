@@ -1,12 +1,13 @@
-//! One panel of a drawing: a frame with ticks, and what lies in it.
+//! One panel of a drawing: a frame with ticks, curves and marks.
 
 use svg::node::element::{Circle, Group, Line, Path, Rectangle, Text, path::Data};
 
-/// Ink of words and axes, and the lighter one of ticks and rules.
+/// Colour of text, bars and marks.
 pub(super) const INK: &str = "#1b1f24";
+/// Paler colour of frames, ticks and their labels.
 pub(super) const PALE: &str = "#57606a";
 const RULE: &str = "#d8dee4";
-/// Room inside the frame, left of the first octave and right of the last.
+/// Margin inside the frame, left of the first octave and right of the last.
 const INSET: f64 = 14.0;
 const TICK: f64 = 5.0;
 
@@ -20,7 +21,7 @@ pub(super) struct Panel {
     pub(super) height: f64,
 }
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Clone, Copy)]
 pub(super) struct Stroke {
     pub(super) colour: &'static str,
@@ -37,7 +38,7 @@ impl Panel {
         self.top + (1.0 - up) * self.height
     }
 
-    /// The frame, with labelled ticks at its left and rules across.
+    /// The frame, with labelled ticks on its left and horizontal rules.
     pub(super) fn framed(&self, ticks: &[(f64, String)]) -> Group {
         let mut group = Group::new();
         for (up, label) in ticks {
@@ -58,7 +59,7 @@ impl Panel {
         group.add(outline)
     }
 
-    /// Rules of averaging times; with labels below.
+    /// Vertical rules at averaging times, with labels below the panel if `labels` is set.
     pub(super) fn times(&self, ticks: &[(f64, String)], labels: bool) -> Group {
         let bottom = self.top + self.height;
         let mut group = Group::new();
@@ -74,7 +75,7 @@ impl Panel {
         group
     }
 
-    /// A line through points, as far as it lies in the panel.
+    /// A line through points, clipped to the panel.
     pub(super) fn curve(&self, points: impl Iterator<Item = (f64, f64)>, stroke: Stroke) -> Path {
         let mut data = Data::new();
         let mut before: Option<(f64, f64)> = None;
@@ -96,7 +97,7 @@ impl Panel {
             .set("stroke-linecap", "round")
     }
 
-    /// A vertical line, as far as it lies in the panel.
+    /// A vertical line, clipped to the panel.
     pub(super) fn stem(&self, across: f64, from: f64, to: f64, width: f64) -> Line {
         let (x, [from, to]) = (self.x(across), [from, to].map(|up| up.clamp(0.0, 1.0)));
         line((x, self.y(from)), (x, self.y(to)), INK).set("stroke-width", width)
@@ -111,7 +112,7 @@ impl Panel {
     }
 }
 
-/// The part of a line between two points that lies between heights 0 and 1.
+/// The part of the line between two points that lies between the heights 0 and 1, if any.
 fn inside(from: (f64, f64), to: (f64, f64)) -> Option<((f64, f64), (f64, f64))> {
     let finite = [from.1, to.1].iter().all(|up| up.is_finite());
     if !finite || from.1.max(to.1) < 0.0 || from.1.min(to.1) > 1.0 {
@@ -128,7 +129,7 @@ fn inside(from: (f64, f64), to: (f64, f64)) -> Option<((f64, f64), (f64, f64))> 
     Some((at(from), at(to)))
 }
 
-/// Hundredths are finer than any screen.
+/// Rounds to hundredths, which are finer than any screen.
 fn round(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
 }

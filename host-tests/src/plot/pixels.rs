@@ -1,4 +1,4 @@
-//! A drawing as pixels, with a font of its own: what a machine has installed does not matter.
+//! A drawing as pixels. The program brings its own font, so the fonts of the machine do not matter.
 
 use resvg::{
     tiny_skia::{Pixmap, Transform},
@@ -6,19 +6,19 @@ use resvg::{
 };
 use thiserror::Error;
 
-/// Pixels of one unit of the drawing: sharp on paper.
+/// Pixels for one unit of the drawing. Two make a picture that is sharp in print.
 const SCALE: f32 = 2.0;
 
-/// Why there is no picture.
+/// The reason why a picture cannot be made.
 #[derive(Debug, Error)]
 pub enum PixelError {
-    /// The drawing is no SVG.
+    /// The drawing is not valid SVG.
     #[error(transparent)]
     Svg(#[from] usvg::Error),
     /// The picture would be too large.
-    #[error("too many figures for one picture")]
+    #[error("the picture has too many figures")]
     TooLarge,
-    /// The picture could not be written down.
+    /// The picture could not be encoded as PNG.
     #[error("{0}")]
     Png(String),
 }
@@ -26,7 +26,7 @@ pub enum PixelError {
 /// The pixels of an SVG drawing, as the bytes of a PNG file.
 ///
 /// # Errors
-/// Where the drawing is no SVG, or too large.
+/// When the drawing is not valid SVG, is too large, or cannot be encoded.
 pub fn png(svg: &str) -> Result<Vec<u8>, PixelError> {
     let mut options = Options::default();
     for font in [dejavu::sans::regular(), dejavu::sans::bold()] {

@@ -1,4 +1,4 @@
-//! The plot in a terminal: lines of text, with braille for the model.
+//! The plot in a terminal: lines of text, with the model in braille dots.
 
 use super::{canvas::Canvas, frame::Frame, ticks};
 use crate::{log::OCTAVES, unit::Unit};
@@ -6,18 +6,18 @@ use allanite::Comparison;
 use console::{Term, style};
 use std::fmt;
 
-/// Columns of labels left of the panels, the axis included.
+/// Columns of the labels left of the panels, including the axis.
 const MARGIN: usize = 11;
-/// Rows of the curve.
+/// Rows of the panel of the curve.
 const CURVE_ROWS: usize = 14;
-/// Rows of the disagreement: odd, zero lies in the middle.
+/// Rows of the panel of residuals. The number is odd, so that zero is in the middle row.
 const RESIDUAL_ROWS: usize = 11;
-/// Widths between which a plot is readable.
+/// Range of widths, in columns, in which a plot is readable.
 const WIDTHS: std::ops::RangeInclusive<usize> = 50..=120;
-/// The width where nobody says.
+/// The width, in columns, if standard output is not a terminal.
 const USUAL_WIDTH: usize = 80;
 
-/// The plot of a comparison: it displays as lines of text.
+/// The plot of a comparison, which `Display` writes as lines of text.
 #[derive(Debug)]
 pub struct Plot<'a> {
     title: &'a str,
@@ -28,7 +28,7 @@ pub struct Plot<'a> {
 }
 
 impl<'a> Plot<'a> {
-    /// As wide as the terminal, or 80 columns where standard output is none.
+    /// A plot as wide as the terminal, or 80 columns wide if standard output is not a terminal.
     pub fn new(title: &'a str, unit: Unit, comparison: &'a Comparison<OCTAVES>) -> Self {
         let terminal = Term::stdout().size_checked();
         let width = terminal.map_or(USUAL_WIDTH, |(_, columns)| usize::from(columns));
@@ -41,12 +41,12 @@ impl<'a> Plot<'a> {
         }
     }
 
-    /// Columns of the panels.
+    /// Number of columns of the panels.
     fn columns(&self) -> usize {
         self.width - MARGIN - 1
     }
 
-    /// The cell of an averaging time.
+    /// The column of an averaging time.
     fn column(&self, tau_s: f64) -> usize {
         (self.frame.tau_s.along(tau_s) * (self.columns() - 1) as f64).round() as usize
     }
@@ -85,11 +85,11 @@ impl<'a> Plot<'a> {
         }
         let labels = [(largest, "+"), (0.0, ""), (-largest, "")];
         let labels = labels.map(|(z, sign)| (canvas.row(up(z)), format!("{sign}{z}")));
-        writeln!(f, "{:>9}  measured less model, in standard errors", "σ")?;
+        writeln!(f, "{:>9}  measured minus model, in standard errors", "σ")?;
         write_panel(f, &canvas, &labels)
     }
 
-    /// The axis of averaging times.
+    /// Writes the axis of averaging times.
     fn write_times(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut axis = vec!['─'; self.columns()];
         let mut labels = String::new();
@@ -105,7 +105,7 @@ impl<'a> Plot<'a> {
             labels += &" ".repeat(column - written);
             labels += &label;
             written = column + length;
-            // No label touches another.
+            // A space keeps the labels apart.
             labels.push(' ');
             written += 1;
         }
@@ -135,7 +135,7 @@ impl fmt::Display for Legend {
     }
 }
 
-/// The rows of a canvas, labelled. Colours come and go with the terminal.
+/// Writes the rows of a canvas with their labels. Colours are written only if the terminal shows them.
 fn write_panel(
     f: &mut fmt::Formatter<'_>,
     canvas: &Canvas,

@@ -1,7 +1,7 @@
-//! Round numbers along an axis.
+//! Ticks: round numbers along an axis, and their labels.
 
-/// Powers of ten between two positive numbers; where those are fewer than two, also 2 and 5 times
-/// them.
+/// Powers of ten between two positive numbers. If there are fewer than two, also 2 and 5 times a power
+/// of ten.
 pub(super) fn logarithmic(low: f64, high: f64) -> Vec<f64> {
     let between = |factors: &[f64]| -> Vec<f64> {
         let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
@@ -28,15 +28,15 @@ pub(super) fn round_up(value: f64) -> f64 {
         .unwrap_or(value)
 }
 
-/// A number as a digit and a power of ten.
+/// A number as a digit and a power of ten, such as `2e1`.
 pub(super) fn power(value: f64) -> String {
     format!("{value:.0e}")
 }
 
-/// A number as people write it: with its zeros where these are few.
+/// A number as people write it: with its zeros if they are few, otherwise with a power of ten.
 pub(super) fn plain(value: f64) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    // Rounding leaves powers of ten a little short.
+    // Rounding can leave the logarithm of a power of ten slightly too small.
     let exponent = (value.log10() + 1e-9).floor() as i32;
     if (-3..5).contains(&exponent) {
         return format!("{value:.*}", usize::try_from(-exponent).unwrap_or(0));
@@ -53,7 +53,7 @@ pub(super) fn plain(value: f64) -> String {
     }
 }
 
-/// A length of time.
+/// A length of time in µs, ms or s.
 pub(super) fn time(seconds: f64) -> String {
     let short = |value: f64, unit: &str| format!("{} {unit}", (value * 1e6).round() / 1e6);
     match seconds {

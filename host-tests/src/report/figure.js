@@ -1,5 +1,5 @@
-// Draws a model beside a record: the Allan deviation over the averaging time, and below it, over the
-// same times, the residual. Spans and ticks come with the data.
+// Draws a model beside a record: the Allan deviation over the averaging time, and below it the residual
+// over the same times. The data contain the spans and the ticks.
 "use strict";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -16,7 +16,7 @@ function make(namespace, name, attributes, children) {
 
 const draw = (name, attributes, ...children) => make(SVG, name, attributes, children);
 
-/// Where things lie in a drawing of that width.
+/// The layout of a drawing of this width: the positions and sizes of its panels, and the size of its text.
 function layout(width) {
   const narrow = width < 560;
   const left = narrow ? 62 : 84;
@@ -37,8 +37,8 @@ function inside([x0, y0], [x1, y1]) {
   return [at(x0, y0), at(x1, y1)];
 }
 
-/// Draws a view of an axis. `unit` is one of the axis' units; octaves that lie off are marked if
-/// `marked`.
+/// Draws a view of an axis. `unit` is one of the axis' units, and `width` is in pixels. The octave with the
+/// largest residual is marked if that exceeds two standard errors.
 function drawFigure(axis, view, unit, width) {
   const { left, right, inset, curve, residual, height, size } = layout(width);
   const { figure } = view;
@@ -119,7 +119,7 @@ function drawFigure(axis, view, unit, width) {
     const k = view.worst;
     dot(curve, k, up(figure.measured[k]), "worst");
     dot(residual, k, zUp(z), "worst");
-    // Beside the ring, where the others do not reach.
+    // The label is on the side of the ring that has more room.
     const begin = across[k] < 0.6;
     const place = [x(across[k]) + (begin ? 13 : -13), y(residual, zUp(z)) + 4];
     text(place, { "text-anchor": begin ? "start" : "end", class: "worst-label" },

@@ -1,4 +1,4 @@
-// Walks through a diagnosis: steps, candidates, units.
+// Shows a diagnosis step by step, with its candidates, in either unit.
 "use strict";
 
 const data = JSON.parse(document.getElementById("data").textContent);
@@ -17,7 +17,7 @@ function number(value) {
 
 const tenth = (value) => (value === null ? "unknown" : value.toFixed(1));
 
-/// One axis: its diagnosis, its figures, and what is shown of them.
+/// One axis: its diagnosis, its figures, and the step and candidate that are shown.
 class Walk {
   constructor(root, index) {
     this.root = root;
@@ -28,7 +28,7 @@ class Walk {
     this.candidate = null;
     this.build();
     this.show(0);
-    // Print and phones have widths of their own.
+    // The figure is drawn again whenever its width changes, as for printing.
     new ResizeObserver(() => this.draw()).observe(this.place);
   }
 
@@ -60,11 +60,11 @@ class Walk {
       html("div", { class: "control" },
         html("div", { class: "turns" }, this.previous, this.next),
         list,
-        html("p", { class: "key" }, "χ², on a logarithmic scale; the mark is at the degrees of freedom")),
+        html("p", { class: "key" }, "The bar is χ² on a logarithmic scale; the mark is at the degrees of freedom.")),
       panel);
   }
 
-  /// A step, with its error as a number and as a bar.
+  /// The tab of a step, with its χ² as a number and as a bar.
   tab(at, id) {
     const { chi2, dof } = this.steps[at];
     const view = this.axis.steps[at];
@@ -107,7 +107,7 @@ class Walk {
     this.update();
   }
 
-  /// The fit and the figure that are shown: the step's, or those of a candidate.
+  /// The fit and the view that are shown: those of the step, or those of the chosen candidate.
   shown() {
     const { step, candidate } = this;
     if (candidate === null) return { fit: this.steps[step], view: this.axis.steps[step] };
@@ -119,7 +119,7 @@ class Walk {
   update() {
     const { fit, view } = this.shown();
     const strong = (words) => html("strong", {}, words);
-    this.heading.textContent = `${this.candidate === null ? "Model" : "If it were"}: ${view.model}`;
+    this.heading.textContent = `${this.candidate === null ? "Model" : "With this candidate"}: ${view.model}`;
     this.error.replaceChildren(
       html("span", { class: "figures chi2" }, "χ² ", strong(tenth(fit.chi2)), ` for ${fit.dof} degrees of freedom`),
       html("span", { class: "figures" }, "misfit ", strong(tenth(fit.rms_percent)), " % rms"),
@@ -169,7 +169,7 @@ class Walk {
     const tried = this.steps[this.step].candidates;
     const views = this.axis.steps[this.step].candidates;
     if (tried.length === 0) {
-      const words = this.step > 0 || this.steps.length === 1 ? "Nothing further was tried." : "";
+      const words = this.step > 0 || this.steps.length === 1 ? "No further effect was tried." : "";
       return this.candidates.replaceChildren(html("p", { class: "hint" }, words));
     }
     const group = `axis-${this.index}-candidate`;
@@ -189,14 +189,14 @@ class Walk {
     this.candidates.replaceChildren(
       html("h3", {}, "What was tried next"),
       html("p", { class: "hint" },
-        "Best first. Choose one to see its fit in full: the search ends earlier, with a χ² that is not final."),
+        "Best first. The table has the χ² at which the search stopped; choose a candidate to see its complete fit."),
       html("table", {},
         html("thead", {}, html("tr", {}, html("th", {}, "candidate"), html("th", { class: "number" }, "χ²"),
           html("th", { class: "number" }, "improvement"))),
         html("tbody", {}, row(null, "none: the model of this step", tenth(this.steps[this.step].chi2), "0"), ...rows)));
   }
 
-  /// Coefficients of the five terms beside those that are shown.
+  /// The coefficients of the five terms beside those of the model that is shown.
   showCoefficients(fit, view) {
     const before = this.steps[0].coefficients;
     const custom = (one) => (unitIndex === 1 ? this.axis.customary[one.unit] : undefined);
@@ -238,6 +238,6 @@ units.addEventListener("change", (event) => {
   unitIndex = Number(event.target.value);
   walks.forEach((walk) => walk.update());
 });
-// A link to a step: #step=2, of every axis that goes as far.
+// A link such as #step=2 shows that step of every axis, or the last step of an axis with fewer.
 const step = /^#step=(\d+)$/.exec(location.hash);
 if (step) walks.forEach((walk) => walk.show(Number(step[1])));

@@ -99,7 +99,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
     for (input, expected) in [
         (
             "old.json",
-            "old.json: version 0 of the format, and this program reads 1; ",
+            "old.json: the format has version 0, but this program reads version 1; ",
         ),
         ("odd.json", "odd.json: axis \"gx\": octave m = 3: "),
         ("none.json", "none.json: no such file; "),
@@ -109,7 +109,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
     }
     let line = refusal(path, &["fit", "curve.json", "--rate", "100"]);
     assert!(
-        line.starts_with("curve.json: a curve knows its rate"),
+        line.starts_with("curve.json: a curve file contains its rate"),
         "{line}"
     );
 }
@@ -130,11 +130,11 @@ fn failure_leaves_an_earlier_output_as_it_was() {
     let line = refusal(path, &["measure", "log.csv", "--output", "log.csv"]);
     assert_eq!(
         line,
-        "log.csv: a curve file's extension is .json; name the output so"
+        "log.csv: a curve file must end in .json; rename the output"
     );
     let line = refusal(path, &["measure", "log.csv", "--output", "none/curve.json"]);
     assert_eq!(
         line,
-        "none/curve.json: its folder does not exist; make the folder first"
+        "none/curve.json: its folder does not exist; create the folder first"
     );
 }

@@ -242,7 +242,7 @@ fn accelerometers_are_spoken_of_in_their_own_words_and_units() {
     );
     let line = refusal(path, &["simulate", "mems", "--unit", "g"]);
     assert!(
-        line.starts_with("presets are gyros, and --unit g is not; "),
+        line.starts_with("presets describe gyros, but --unit g is for accelerometers; "),
         "{line}"
     );
 }

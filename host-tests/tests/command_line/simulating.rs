@@ -57,7 +57,7 @@ fn simulation_depends_on_the_seed_and_nothing_else() {
 fn impossible_simulations_are_refused() {
     let folder = TempDir::new().unwrap();
     for (arguments, expected) in [
-        (&[][..], "nothing to simulate; "),
+        (&[][..], "no preset and no coefficient is given; "),
         (&["mems", "--rate", "0"], "--rate 0 is impossible; "),
         (&["mems", "--rate", "nan"], "--rate NaN is impossible; "),
         (

@@ -75,8 +75,8 @@ fn a_reason_is_one_sentence_with_numbers_and_a_remedy() {
     let reason = integrity(&counts).verdict().expect("a reason").to_string();
     assert_eq!(
         reason,
-        "spiked: 1 single samples far beyond the noise make up 98 % of the squares at one sample; \
-         check supply and bus, or leave them out as gaps"
+        "the record has spikes: single samples far beyond the noise (1) explain 98 % of the variance \
+         of one sample; check the supply and the bus, or leave the spikes out as gaps"
     );
 }
 

@@ -1,4 +1,4 @@
-//! A model fitted to an axis, and where it fails.
+//! A model fitted to an axis, and its comparison with the record.
 
 use crate::{curve_file::AxisCurve, log::OCTAVES};
 use allanite::{
@@ -6,12 +6,12 @@ use allanite::{
     fit::{Fit, Options, fit},
 };
 
-/// One axis, the model that was fitted to it, and where that fails.
+/// One axis, the model that was fitted to it, and the comparison octave by octave.
 pub(super) struct Compared {
     pub(super) axis: AxisCurve,
     pub(super) model: Model,
     pub(super) fit: Fit,
-    /// With what was fitted; with what was held out, where something was.
+    /// The comparison with the held-out part, or with the fitted record if nothing was held out.
     pub(super) comparison: Comparison<OCTAVES>,
     pub(super) held_out: Option<HeldOut>,
 }

@@ -1,4 +1,4 @@
-//! A comparison for programs.
+//! The JSON document of a comparison.
 
 use super::compared::Compared;
 use crate::{
@@ -15,7 +15,7 @@ use allanite::{
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// What a command prints of one file.
+/// The document of one file.
 #[derive(Serialize)]
 pub(super) struct Document<'a> {
     axes: Vec<Axis<'a>>,
@@ -39,7 +39,7 @@ struct Axis<'a> {
     held_out: Option<HeldOut>,
 }
 
-/// Deviations in the log's unit; the difference is one of variances.
+/// An octave: deviations in the log's unit, and the difference of the variances in percent.
 #[derive(Serialize)]
 struct Octave {
     m: u32,
@@ -58,8 +58,7 @@ struct Stretch {
     to_s: f64,
 }
 
-/// What the model was compared with instead of the samples that it was fitted to, and how well it
-/// fits those.
+/// The number of held-out samples, with which the model was compared, and how well it fits the others.
 #[derive(Serialize)]
 struct HeldOut {
     samples: u64,
@@ -75,7 +74,7 @@ struct Fitted {
     rms_percent: f64,
 }
 
-/// What to print.
+/// The document of the axes of one file.
 pub(super) fn document(compared: &[Compared]) -> Document<'_> {
     Document {
         axes: compared.iter().map(axis).collect(),

@@ -1,4 +1,4 @@
-//! `compare`: where a model fails, octave by octave.
+//! `compare`: shows octave by octave where a model fails.
 
 mod compared;
 mod json;
@@ -26,7 +26,7 @@ use std::{
     path::Path,
 };
 
-/// Compare a model with a record octave by octave: the five IEEE-952 terms, and what is added
+/// Compare a record octave by octave with the five IEEE-952 terms and with effects of your choice
 #[derive(Debug, Args)]
 #[command(after_help = examples::COMPARE)]
 pub(super) struct Arguments {
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     files: FilesArguments,
     #[command(flatten)]
     model: ModelArguments,
-    /// Fit the model to the first part of a log, and compare it with the last, this share of it
+    /// Hold out this last share of the log: fit the model to the rest and compare it with this part
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     hold_out: Option<f64>,
     #[command(flatten)]
@@ -80,7 +80,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     many::run(&arguments.files, work, output)
 }
 
-/// The curves to fit, and those to compare with where a part is held out.
+/// The curves to fit, and the curves of the held-out part, if there is one.
 fn read(path: &Path, arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisCurve>), Failure> {
     let Some(share) = arguments.hold_out else {
         let axes = record::read(path, &arguments.about_log)?;
@@ -88,18 +88,18 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisC
     };
     if record::is_curve(path) {
         return Err(Place::file(path).failure(
-            "a curve cannot be divided into a part to fit and one to hold out",
-            "give the log, or leave --hold-out",
+            "a curve file cannot be divided into a part to fit and a part to hold out",
+            "give the log, or drop --hold-out",
         ));
     }
     record::measure_in_two(path, &arguments.about_log, share)
 }
 
-/// Less than this share of a coefficient's square, in every octave, is rounding.
+/// A variance below this share of the squared coefficient is taken for a rounding error.
 const LEAST_VARIANCE: f64 = 1e-15;
 
-/// An effect that shows in no octave, such as an oscillation at a multiple of the sample rate,
-/// cannot be fitted.
+/// Refuses an effect that contributes to no octave, because it cannot be fitted. An example is an
+/// oscillation at a multiple of the sample rate.
 fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
     for term in model.terms() {
         let shape = term.sampled_shape(curve.interval_s());
@@ -109,11 +109,11 @@ fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
         if !(finite && octaves.any(|variance| variance > LEAST_VARIANCE)) {
             return Err(Failure::option(
                 format!(
-                    "--with {}: nothing of it shows at {} Hz",
+                    "--with {}: the effect is invisible at a sample rate of {} Hz",
                     term.effect.name(),
                     curve.rate_hz()
                 ),
-                "give another shape",
+                "give other parameters",
             ));
         }
     }

@@ -1,4 +1,4 @@
-//! The model that `compare` is asked about: the five terms, with and without effects.
+//! The model of `compare`: the five terms, with the effects that options add or leave out.
 
 use crate::{
     command::effect_argument::EffectArgument,
@@ -7,12 +7,12 @@ use crate::{
 use allanite::{Model, Term, model::MAX_EFFECTS};
 use clap::Args;
 
-/// Effects to add and to leave out.
+/// Effects to add and terms to leave out.
 #[derive(Debug, Args)]
 pub(super) struct ModelArguments {
     /// Add an effect with its shape, such as `sinusoid:frequency_hz=0.3` or
-    /// `decimation_filter:width_s=0.014,stages=2`; its coefficient is fitted. One that replaces a
-    /// term takes its place
+    /// `decimation_filter:width_s=0.014,stages=2`; its coefficient is fitted. If the effect
+    /// replaces a term, that term is removed
     #[arg(long, value_name = "EFFECT[:parameter=value,…]")]
     with: Vec<String>,
     /// Leave out a term, such as `rate_ramp`
@@ -21,7 +21,11 @@ pub(super) struct ModelArguments {
 }
 
 impl ModelArguments {
-    /// The model.
+    /// Builds the model.
+    ///
+    /// # Errors
+    /// When an effect is unknown, lacks a parameter, is in the model twice or not in it, or when the
+    /// model gets too large or empty.
     pub(super) fn model(&self) -> Result<Model, Failure> {
         let mut model = Model::ieee_952();
         for name in &self.without {
@@ -38,20 +42,20 @@ impl ModelArguments {
             let mut argument = EffectArgument::parse("--with", text)?;
             let effect = argument.effect()?;
             if model.position(effect.name()).is_some() {
-                return Err(argument.failure("is in the model already", "leave it away"));
+                return Err(argument.failure("is in the model already", "drop this option"));
             }
             let mut term = Term::new(effect);
             term.parameters = argument.shape(effect)?;
             if argument.take(effect.coefficient()).is_some() {
                 let what = format!("{} is fitted, not given", effect.coefficient());
-                return Err(argument.failure(what, "give the shape alone"));
+                return Err(argument.failure(what, "give only the shape parameters"));
             }
             if let Some(replaced) = effect.replaces() {
                 model = model.without(replaced.name());
             }
             model.add(term).map_err(|_| {
                 argument.failure(
-                    format!("more than {MAX_EFFECTS} effects"),
+                    format!("the model would have more than {MAX_EFFECTS} effects"),
                     "leave some out with --without",
                 )
             })?;
@@ -59,8 +63,8 @@ impl ModelArguments {
         }
         if model.terms().is_empty() {
             return Err(Failure::option(
-                "no effects are left",
-                "leave fewer --without",
+                "the model has no effects left",
+                "drop one of the options --without",
             ));
         }
         Ok(model)

@@ -1,4 +1,4 @@
-//! A comparison for people.
+//! The text of a comparison.
 
 use super::compared::Compared;
 use crate::{
@@ -15,10 +15,10 @@ use allanite::fit::State;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
-/// A share below this is not worth a number.
+/// A smaller share of the model's variance is shown as a dot: it would round to 0 %.
 const LEAST_SHARE: f32 = 0.005;
 
-/// Prints a table and a plot an axis.
+/// Prints a table and a plot of every axis, then what misfit and χ² weigh.
 pub(super) fn print(compared: &[Compared], output: &mut impl Write) -> io::Result<()> {
     for (i, compared) in compared.iter().enumerate() {
         if i > 0 {
@@ -26,7 +26,7 @@ pub(super) fn print(compared: &[Compared], output: &mut impl Write) -> io::Resul
         }
         print_axis(compared, output)?;
     }
-    Ok(())
+    writeln!(output, "\n{}", words::MISFIT)
 }
 
 fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
@@ -50,19 +50,22 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
     if let Some(held_out) = held_out {
         writeln!(
             output,
-            "\nin what was fitted: χ² {:.1}, {} degrees of freedom, misfit {:.1} % rms",
+            "\nin the fitted part: χ² {:.1}, {} degrees of freedom, misfit {:.1} % rms",
             fit.chi_squared, fit.degrees_of_freedom, held_out.fitted_rms_percent
         )?;
         let rest = &held_out.axis;
         let record = words::record(rest.samples, rest.rate_hz, rest.octaves.len());
-        writeln!(output, "compared with the last {record}, held out")?;
+        writeln!(
+            output,
+            "compared with the last {record}, which were held out"
+        )?;
     }
     writeln!(output)?;
     writeln!(output, "{}", octaves(compared).trim_fmt())?;
     writeln!(output)?;
     let against = held_out
         .as_ref()
-        .map_or("the record", |_| "what was held out");
+        .map_or("the record", |_| "the held-out part");
     let title = format!(
         "{}: Allan deviation of {against} and of the model",
         axis.axis
@@ -80,10 +83,11 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
     writeln!(output, "{}: {comparison}", axis.axis)
 }
 
-/// The octaves: measured, model, difference, and who makes up the model.
+/// The table of octaves: measured and model deviations, their difference, and the share of each effect
+/// in the model's variance.
 fn octaves(compared: &Compared) -> Table {
     let unit = compared.axis.unit;
-    // Effects that are not there have no column.
+    // Effects with a coefficient of zero have no column.
     let coefficients = compared.fit.coefficients.iter().enumerate();
     let shown: Vec<(usize, &'static str)> = coefficients
         .filter(|(_, coefficient)| coefficient.square > 0.0 || coefficient.state == State::Measured)

@@ -1,28 +1,28 @@
-//! What a file holds, and what its parts are called.
+//! The decoded content of a file, and the names of its parts.
 
 use allanite::{octave::OctaveSum, storage::Certificate};
 use std::path::PathBuf;
 
-/// What a file holds.
+/// A file with its decoded content.
 pub(super) struct Decoded {
     pub(super) file: PathBuf,
     pub(super) stored: Stored,
 }
 
-/// A record or a snapshot.
+/// A factory record or a snapshot.
 pub(super) enum Stored {
     Certificate(Box<Certificate>),
     Snapshot(StoredSnapshot),
 }
 
-/// A snapshot's octaves.
+/// A snapshot with its octaves.
 pub(super) struct StoredSnapshot {
     pub(super) samples: u64,
     pub(super) gaps: u64,
     pub(super) octaves: Vec<OctaveSum>,
 }
 
-/// A device's identity: text where it is, else its bytes.
+/// A device's identity as text, or in hexadecimal digits if it is not printable text.
 pub(super) fn device(record: &Certificate) -> String {
     match std::str::from_utf8(&record.device) {
         Ok(text) if !text.is_empty() && !text.contains(char::is_control) => text.to_owned(),
@@ -36,12 +36,12 @@ pub(super) fn hex(record: &Certificate) -> String {
     digits.collect()
 }
 
-/// `1.2.0`.
+/// The version of a device's firmware, such as `1.2.0`.
 pub(super) fn firmware(record: &Certificate) -> String {
     record.firmware.map(|part| part.to_string()).join(".")
 }
 
-/// Axes have the order of the record, and no other name.
+/// The name of an axis by its position: a record stores the order of the axes but no names.
 pub(super) fn axis_name(i: usize) -> String {
     ["x", "y", "z"].get(i).copied().unwrap_or("?").into()
 }

@@ -1,4 +1,4 @@
-//! What was stored, for programs.
+//! Factory records and snapshots as a JSON document.
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
 use crate::{command::output::units, unit::Unit};
@@ -34,7 +34,7 @@ struct Device {
     axes: Vec<Axis>,
 }
 
-/// Numbers that are not finite are `null`.
+/// One axis of a record; numbers that are not finite are `null`.
 #[derive(Serialize)]
 struct Axis {
     axis: String,
@@ -42,7 +42,7 @@ struct Axis {
     reason: Option<String>,
     found: Vec<&'static str>,
     coefficients: Vec<Term>,
-    /// Of the squared coefficients.
+    /// Covariance of the squared coefficients, as a lower triangle.
     covariance: Vec<Vec<f64>>,
     chi2: f64,
     dof: u16,
@@ -76,11 +76,11 @@ struct Snapshot {
 struct Octave {
     m: u32,
     differences: u64,
-    /// `null` beyond 128 bits.
+    /// The sum of squared differences; `null` if it exceeds 128 bits.
     sum: Option<u128>,
 }
 
-/// Prints one JSON document.
+/// Prints all records and snapshots as one JSON document.
 pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<()> {
     let mut document = Document {
         records: Vec::new(),

@@ -1,4 +1,4 @@
-//! `decode`: from stored bytes to what they say.
+//! `decode`: prints the factory records and snapshots that a gyro stored.
 
 mod decoded;
 mod json;
@@ -17,14 +17,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// An envelope is shorter; beyond this it is something else.
+/// Largest number of bytes read from a file. Every stored envelope is shorter.
 const LARGEST: u64 = 1 << 17;
 
 /// Decode factory records and snapshots that a gyro stored
 #[derive(Debug, Args)]
 #[command(after_help = examples::DECODE)]
 pub(super) struct Arguments {
-    /// Files of one record or snapshot each; several records make one table
+    /// Files with one record or snapshot each; several records are printed as one table
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Print the result as JSON
@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// Runs the command: what can be decoded is printed, whatever the others are.
+/// Runs the command. Files that can be decoded are printed even if others cannot.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let (mut decoded, mut failures) = (Vec::new(), Vec::new());
     for file in &arguments.files {

@@ -1,4 +1,4 @@
-//! What was stored, for people.
+//! Factory records and snapshots as text.
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
 use crate::{
@@ -16,7 +16,7 @@ use allanite::{
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
-/// Prints a record in full, or a table of several; then the snapshots.
+/// Prints one factory record in full, or a table of several, and then the snapshots.
 pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<()> {
     let mut records = Vec::new();
     for one in decoded {
@@ -93,7 +93,7 @@ fn p_value(axis: &AxisCertificate, before: &str) -> String {
     }
 }
 
-/// The verdict with what was found.
+/// The verdict, with the effects that were found.
 fn judgement(axis: &AxisCertificate) -> String {
     let found = words::list(axis.found().map(|term| term.effect.name()));
     match axis.verdict {
@@ -125,7 +125,7 @@ fn finish(mut table: Table, right: impl Fn(usize) -> bool) -> Table {
     table
 }
 
-/// The terms of one axis.
+/// The table of one axis: one row for each term.
 fn terms(axis: &AxisCertificate, unit: Unit) -> Table {
     let header = [
         "effect",
@@ -149,7 +149,7 @@ fn terms(axis: &AxisCertificate, unit: Unit) -> Table {
                     number(term.lower.into()),
                     number(term.upper.into())
                 ),
-                CertifiedState::UpperBound => "0 inside".into(),
+                CertifiedState::UpperBound => "interval includes 0".into(),
                 CertifiedState::NotObservable { .. } => "–".into(),
             },
             effect.map_or(String::new(), |effect| {
@@ -161,7 +161,10 @@ fn terms(axis: &AxisCertificate, unit: Unit) -> Table {
                 CertifiedState::NotObservable { after_s: None } => "not observable".into(),
                 CertifiedState::NotObservable {
                     after_s: Some(after_s),
-                } => format!("not observable; {} would do", duration(after_s.into())),
+                } => format!(
+                    "not observable; a record of {} would show it",
+                    duration(after_s.into())
+                ),
             },
             shape(term, effect),
         ]);
@@ -194,7 +197,7 @@ fn shape(term: &CertifiedTerm, effect: Option<&dyn Effect>) -> String {
     parameters.collect::<Vec<_>>().join(", ")
 }
 
-/// One row a device and axis, in customary units, so that any two compare.
+/// The table of several devices: one row for each axis, in customary units, which makes rows comparable.
 fn devices(records: &[&Certificate]) -> Table {
     let customary = |effect: &&dyn Effect| {
         let customary = units::customary(Unit::DegreesPerSecond, effect.half_seconds());

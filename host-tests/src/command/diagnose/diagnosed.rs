@@ -1,4 +1,4 @@
-//! A record and the way of its diagnosis: what `diagnose` prints, `report` shows and `plot` draws.
+//! A record and the steps of its diagnosis, which `diagnose` prints, `report` shows and `plot` draws.
 
 use crate::{
     command::{
@@ -20,7 +20,7 @@ use allanite::{
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// What to diagnose, and how.
+/// The input of a diagnosis and its settings.
 #[derive(Debug, Args)]
 pub(crate) struct DiagnosisArguments {
     /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
@@ -30,19 +30,22 @@ pub(crate) struct DiagnosisArguments {
 }
 
 impl DiagnosisArguments {
-    /// Diagnoses every axis.
+    /// Diagnoses every axis of the input.
+    ///
+    /// # Errors
+    /// When the input cannot be read, or an axis cannot be fitted.
     pub(crate) fn diagnosed(&self) -> Result<Vec<Diagnosed>, Failure> {
         self.settings.diagnosed(&self.input)
     }
 }
 
-/// How to diagnose.
+/// The settings of a diagnosis.
 #[derive(Debug, Args)]
 pub(crate) struct DiagnosisSettings {
-    /// Most effects to add [default: 3]
+    /// Largest number of effects to add [default: 3]
     #[arg(long, value_name = "N")]
     max_effects: Option<usize>,
-    /// Columns of the log that the rate may follow, or their rates of change, such as
+    /// Columns of the log, or their rates of change, that the gyro's rate may depend on, such as
     /// `temp_C,rate(temp_C)`
     #[arg(long, value_delimiter = ',', value_name = "COLUMN,…")]
     covariates: Vec<CovariateChoice>,
@@ -63,16 +66,17 @@ impl DiagnosisSettings {
     }
 }
 
-/// One axis, and the way from the five terms to what explains it.
+/// One axis, and the steps from the five terms to the last model.
 pub(crate) struct Diagnosed {
     pub(crate) axis: AxisCurve,
-    /// At least one: the last is the model that the diagnosis ends with.
+    /// The steps, at least one; the last one has the model that the diagnosis ends with.
     pub(crate) steps: Vec<Step<OCTAVES>>,
     pub(crate) verdict: Verdict,
-    /// How effects were looked for.
+    /// The options of the search for effects.
     pub(crate) options: Options,
-    /// Names of the covariates, and what the axis shares with each.
+    /// Names of the covariates.
     covariates: Vec<String>,
+    /// What the axis has in common with each covariate, octave by octave.
     cross: Vec<CrossCurve<OCTAVES>>,
 }
 
@@ -104,7 +108,7 @@ impl Diagnosed {
         })
     }
 
-    /// The model that was asked about, and the one that the diagnosis ends with.
+    /// The first step, which has the five terms, and the last one.
     pub(crate) fn ends(&self) -> Option<(&Step<OCTAVES>, &Step<OCTAVES>)> {
         self.steps.first().zip(self.steps.last())
     }
@@ -126,7 +130,10 @@ impl Diagnosed {
         parts.collect::<Vec<_>>().join(" + ")
     }
 
-    /// The step that would have followed a step's candidate, had it been added.
+    /// The step that would have followed if this candidate had been added.
+    ///
+    /// # Errors
+    /// When the model with the candidate cannot be fitted in full.
     pub(crate) fn alternative(
         &self,
         step: usize,
@@ -143,7 +150,7 @@ impl Diagnosed {
         alternative(&curve, step, before, candidate)
     }
 
-    /// The effects that were added and kept, without covariates, as the last model has them.
+    /// The effects that were added and kept, as in the last model. Covariates are not among them.
     fn added(&self) -> impl Iterator<Item = &Term> {
         self.steps
             .last()
@@ -151,7 +158,7 @@ impl Diagnosed {
             .flat_map(|last| self.added_in(last))
     }
 
-    /// The effects of a step that the model that was asked about has not.
+    /// The effects of a step that are not in the model of the first step.
     fn added_in<'a>(&'a self, step: &'a Step<OCTAVES>) -> impl Iterator<Item = &'a Term> {
         let asked = self.steps.first();
         step.model.terms().iter().filter(move |term| {
@@ -160,7 +167,7 @@ impl Diagnosed {
         })
     }
 
-    /// Names of all that was added and kept.
+    /// Names of the covariate and the effects that were added and kept.
     pub(crate) fn missing(&self) -> impl Iterator<Item = &'static str> {
         let followed = self.steps.last().and_then(|last| last.covariate);
         let covariate = followed.map(|_| covariate::NAME);
@@ -169,8 +176,8 @@ impl Diagnosed {
             .chain(self.added().map(|term| term.effect.name()))
     }
 
-    /// What every step added, with the effects that explain its curve about as well: without steps whose
-    /// addition was dropped later.
+    /// The addition of each step that has ambiguous alternatives, with the names of these alternatives:
+    /// they explain the curve about as well. Steps whose addition was dropped later are not among them.
     pub(crate) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
         let swaps = self.steps.iter().skip(1).map(|next| next.swap().is_some());
         let kept = self
@@ -185,12 +192,12 @@ impl Diagnosed {
         })
     }
 
-    /// The covariate that the rate follows, by name.
+    /// The name of the covariate that the rate depends on.
     pub(crate) fn covariate(&self, followed: &FollowedCovariate) -> &str {
         &self.covariates[followed.index]
     }
 
-    /// What is worth knowing beside the figures, one line each.
+    /// Notes on the result, one line each.
     pub(crate) fn notes(&self) -> Vec<String> {
         let Some((first, last)) = self.ends() else {
             return Vec::new();
@@ -204,9 +211,9 @@ impl Diagnosed {
         }
         for (added, others) in self.ambiguous() {
             notes.push(format!(
-                "{} is ambiguous: {} explains this curve as well",
+                "{} is ambiguous: {} would explain this curve as well",
                 words::plain(added),
-                words::list(others.iter().copied())
+                words::alternatives(others.iter().copied())
             ));
         }
         if self.missing().count() > 0 {
@@ -220,7 +227,7 @@ impl Diagnosed {
     }
 }
 
-/// What was added, by its name in files.
+/// The name of an addition as it is written in files.
 pub(crate) fn added_name(added: &Addition) -> &'static str {
     match added {
         Addition::Effect(term) => term.effect.name(),

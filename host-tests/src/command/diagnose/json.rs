@@ -1,4 +1,4 @@
-//! A diagnosis for programs.
+//! The JSON document of a diagnosis.
 
 use super::diagnosed::{Diagnosed, added_name};
 use crate::{
@@ -13,7 +13,7 @@ use allanite::diagnosis::{Candidate as Tried, Step as Taken};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// What a command prints of one file.
+/// The document of one file.
 #[derive(Serialize)]
 pub(crate) struct Document<'a> {
     axes: Vec<Axis<'a>>,
@@ -48,7 +48,7 @@ struct Candidate {
     parameters: Map<String, Value>,
     chi2: f64,
     improvement: f64,
-    /// What else changes if it is added.
+    /// The effects that are exchanged if the candidate is added.
     #[serde(skip_serializing_if = "Option::is_none")]
     swap: Option<Swap>,
 }
@@ -59,7 +59,7 @@ struct Swap {
     taken: &'static str,
 }
 
-/// The diagnoses as one document.
+/// Puts the diagnoses of all axes into one document.
 pub(crate) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
     Document {
         axes: diagnosed.iter().map(axis).collect(),

@@ -1,4 +1,4 @@
-//! `diagnose`: which effects a curve has that the five terms lack.
+//! `diagnose`: finds the effects of a curve that the five terms do not describe.
 
 pub(super) mod diagnosed;
 pub(super) mod json;
@@ -19,7 +19,7 @@ use std::{
     path::Path,
 };
 
-/// Find the physical effects that the five IEEE-952 terms lack, one after the other
+/// Find, one by one, the physical effects that are missing from the five IEEE-952 terms
 #[derive(Debug, Args)]
 #[command(after_help = examples::DIAGNOSE)]
 pub(super) struct Arguments {

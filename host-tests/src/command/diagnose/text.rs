@@ -1,4 +1,4 @@
-//! A diagnosis for people.
+//! The text of a diagnosis.
 
 use super::{
     diagnosed::Diagnosed,
@@ -12,7 +12,7 @@ use crate::{
 use allanite::diagnosis::{Candidate, Step};
 use std::io::{self, Write};
 
-/// Prints the way of every axis, from the five terms to the model that the diagnosis ends with.
+/// Prints the steps of every axis, from the five terms to the last model, then what misfit and χ² weigh.
 pub(crate) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
     for (i, diagnosed) in diagnosed.iter().enumerate() {
         if i > 0 {
@@ -20,7 +20,7 @@ pub(crate) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Res
         }
         print_axis(diagnosed, output)?;
     }
-    Ok(())
+    writeln!(output, "\n{}", words::MISFIT)
 }
 
 fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> {
@@ -46,12 +46,15 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
         }
     }
     if last.added.is_none() && !last.candidates.is_empty() {
-        writeln!(output, "\nnothing in the catalogue helps further; tried:")?;
+        writeln!(
+            output,
+            "\nno further effect of the catalogue improves the model; candidates:"
+        )?;
         print_candidates(last, output)?;
     }
     let notes = diagnosed.notes();
     if !notes.is_empty() {
-        writeln!(output, "\nto note:")?;
+        writeln!(output, "\nnotes:")?;
     }
     for note in notes {
         writeln!(output, "  {note}")?;
@@ -78,7 +81,8 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     writeln!(output, "{}: {}", axis.axis, verdict(diagnosed))
 }
 
-/// One line “error before → after”, then what was added and why.
+/// Prints one line with the error before and after, then the addition, its explanation and the
+/// candidates.
 fn print_step(
     number: usize,
     before: &Step<OCTAVES>,
@@ -110,7 +114,7 @@ fn print_step(
     if let Some(ambiguous) = &finding.ambiguous {
         writeln!(output, "  ambiguous: {ambiguous}")?;
     }
-    writeln!(output, "  now {}", after.comparison)
+    writeln!(output, "  after this step: {}", after.comparison)
 }
 
 fn print_candidates(step: &Step<OCTAVES>, output: &mut impl Write) -> io::Result<()> {

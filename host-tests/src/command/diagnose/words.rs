@@ -1,4 +1,4 @@
-//! A diagnosis in words: those that `diagnose` prints and the page of `report` shows.
+//! The words of a diagnosis, which `diagnose` prints and the page of `report` shows.
 
 use super::diagnosed::Diagnosed;
 use crate::{
@@ -14,21 +14,21 @@ use allanite::{
     effect::{Explanation, explanation},
 };
 
-/// What a step of a diagnosis added, and why.
+/// What a step of a diagnosis added, with its explanation.
 pub(crate) struct Finding {
-    /// The effect or the covariate.
+    /// The name of the effect or of the covariate.
     pub(crate) name: String,
-    /// Its shape and its size, with intervals.
+    /// Its shape and its coefficient, with intervals.
     pub(crate) found: Option<String>,
     explanation: Option<Explanation>,
-    /// What it changes in the model or in the curve.
+    /// A label, and what the addition changes in the model or in the curve.
     change: Option<(&'static str, String)>,
-    /// What cannot be told from it.
+    /// The effects that would explain the curve as well.
     pub(crate) ambiguous: Option<String>,
 }
 
 impl Finding {
-    /// Between a step and the next; `None` where nothing was added.
+    /// The finding that leads from one step to the next, or `None` if nothing was added.
     pub(crate) fn new(
         diagnosed: &Diagnosed,
         before: &Step<OCTAVES>,
@@ -39,8 +39,8 @@ impl Finding {
             Addition::Covariate(follows) => Self::covariate(diagnosed, follows),
         };
         if !before.ambiguous.is_empty() {
-            let others = words::list(before.ambiguous.iter().copied());
-            finding.ambiguous = Some(format!("{others} cannot be told from it on this curve"));
+            let others = words::alternatives(before.ambiguous.iter().copied());
+            finding.ambiguous = Some(format!("{others} would explain this curve as well"));
         }
         Some(finding)
     }
@@ -53,7 +53,7 @@ impl Finding {
     ) -> Self {
         let effect = added.effect;
         let name = words::plain(effect.name()) + &instead(before.swap());
-        let place = |replaced: &str| format!("takes the place of {}", words::plain(replaced));
+        let place = |replaced: &str| format!("replaces {}", words::plain(replaced));
         let change = effect.replaces().map(|replaced| place(replaced.name()));
         Self {
             name,
@@ -75,7 +75,7 @@ impl Finding {
             number::number(upper),
             slope.z()
         );
-        let change = format!("what follows {channel} is taken off, here and below");
+        let change = format!("the part that follows {channel} is subtracted from this step on");
         Self {
             name: format!("{} {channel}", words::plain(covariate::NAME)),
             found: Some(found),
@@ -85,7 +85,8 @@ impl Finding {
         }
     }
 
-    /// What it is, where it comes from, what to check, and what it changes: each with its label.
+    /// Lines of the explanation, each with its label: what the effect is, where it comes from, what to
+    /// check, and what it changes.
     pub(crate) fn lines(&self) -> Vec<(&'static str, &str)> {
         let explanation = self.explanation.map(|explanation| {
             [
@@ -100,7 +101,7 @@ impl Finding {
     }
 }
 
-/// Shape and coefficient of an effect in a step, with their intervals.
+/// The shape and the coefficient of an effect in a step, with their 95 % intervals.
 pub(crate) fn found(step: &Step<OCTAVES>, effect: &str, diagnosed: &Diagnosed) -> Option<String> {
     let at = step.model.position(effect)?;
     let term = step.model.terms().get(at)?;
@@ -113,7 +114,7 @@ pub(crate) fn found(step: &Step<OCTAVES>, effect: &str, diagnosed: &Diagnosed) -
     Some(found + ", 95 % intervals")
 }
 
-/// What else changes with an addition: `, sinusoid instead of resonance`.
+/// The effect that an addition also exchanges: `, sinusoid instead of resonance`, or nothing.
 fn instead(swap: Option<Swap>) -> String {
     swap.map_or(String::new(), |swap| {
         let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| words::plain(effect.name()));
@@ -121,7 +122,7 @@ fn instead(swap: Option<Swap>) -> String {
     })
 }
 
-/// An effect that was tried, with its shape and what else changes with it.
+/// A candidate with its shape, and with the effect that it also exchanges, if any.
 pub(crate) fn candidate_name(candidate: &Candidate) -> String {
     let shape = words::shape(&candidate.term, None);
     let name = words::plain(candidate.term.effect.name());
@@ -133,7 +134,7 @@ pub(crate) fn candidate_name(candidate: &Candidate) -> String {
     }
 }
 
-/// A probability with its relation, where there is one.
+/// A p-value with its relation, such as `= 0.338`, or `unknown` if there is none.
 pub(crate) fn shown_p(p: f64) -> String {
     if p.is_finite() {
         probability(p)
@@ -142,22 +143,22 @@ pub(crate) fn shown_p(p: f64) -> String {
     }
 }
 
-/// What the diagnosis ends with, in a sentence.
+/// The result of the diagnosis in a sentence.
 pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
     let Some((first, last)) = diagnosed.ends() else {
         return String::new();
     };
     let p = shown_p(last.fit.p_value);
     match diagnosed.verdict {
-        Verdict::Invalid(_) => "the record is invalid: its curve cannot mean what it says, and no \
-                                effect was looked for."
-            .into(),
+        Verdict::Invalid(reason) => {
+            format!("no effect was looked for, because the curve is not valid: {reason}.")
+        }
         Verdict::Adequate => format!("the five terms are adequate (p {p}): no effect is missing."),
         Verdict::TooShort => {
             "there are too few octaves to judge the five terms: record longer.".into()
         }
         Verdict::Unexplained => format!(
-            "the five terms are not adequate (p {p}), and no effect in the catalogue explains it."
+            "the five terms are not adequate (p {p}), and no effect in the catalogue explains the difference."
         ),
         _ => {
             let names = diagnosed.missing().map(|name| match &last.covariate {
@@ -168,7 +169,7 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
             });
             let names = words::list_of(names.collect());
             let alike = if diagnosed.ambiguous().next().is_some() {
-                " (or what is ambiguous with it)"
+                " (or an ambiguous alternative)"
             } else {
                 ""
             };
@@ -179,23 +180,27 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
                 first.comparison.rms_percent,
                 last.comparison.rms_percent
             );
-            let lack = if first.fit.is_adequate() == Some(true) {
-                "the five terms explain the curve, and yet lack"
+            let effects = if diagnosed.missing().count() == 1 {
+                "missing effect"
             } else {
-                "the five terms lack"
+                "missing effects"
             };
-            let missing = format!("{lack} {names}{alike}: {error}");
+            let missing = if first.fit.is_adequate() == Some(true) {
+                format!("{effects}: {names}{alike}, although the five terms fit the curve; {error}")
+            } else {
+                format!("{effects}: {names}{alike}; {error}")
+            };
             if last.fit.is_adequate() == Some(true) {
                 format!("{missing}; the model is adequate now (p {p}).")
             } else {
-                format!("{missing}; something small is left that no effect explains (p {p}).")
+                format!("{missing}; a small difference remains that no effect explains (p {p}).")
             }
         }
     }
 }
 
-/// The whole diagnosis in one sentence: where the five terms fail, what they lack, how far the error
-/// falls.
+/// The whole diagnosis in one sentence: where the five terms fail, which effect is missing, and how much
+/// the error falls.
 pub(crate) fn lead(diagnosed: &Diagnosed) -> String {
     let verdict = verdict(diagnosed);
     let Some((first, _)) = diagnosed.ends() else {

@@ -1,25 +1,25 @@
-//! What `export` is told.
+//! The options of `export`.
 
 use crate::command::{examples, input::record::LogArguments};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// Write the noise of a gyro as Kalibr, OpenVINS, PX4, ArduPilot, MATLAB or C take it
+/// Write the noise of a gyro in the format of Kalibr, OpenVINS, PX4, ArduPilot, MATLAB or C
 #[derive(Debug, Args)]
 #[command(after_help = examples::EXPORT)]
 pub(in crate::command) struct Arguments {
     /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
     pub(super) input: PathBuf,
-    /// What to write
+    /// Format of the file
     #[arg(long, short)]
     pub(super) format: Format,
     /// The file to write [default: standard output]
     #[arg(long, short, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
-    /// Give the conservative overbound to the filter, and the best fit in comments
+    /// Give the conservative overbound to the filter and put the best fit into comments
     #[arg(long)]
     pub(super) overbound: bool,
-    /// What the gyro is called: the part's name for MATLAB, the prefix of C names
+    /// Name of the gyro, which is the name of the part for MATLAB and the prefix of names in C
     #[arg(long, default_value = "gyro")]
     pub(super) name: String,
     /// The topic of the IMU, for Kalibr and OpenVINS
@@ -39,7 +39,7 @@ pub(in crate::command) struct Arguments {
     pub(super) about_log: LogArguments,
 }
 
-/// What other programs read.
+/// The formats of other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
     /// Kalibr's imu.yaml
@@ -47,14 +47,14 @@ pub(super) enum Format {
     /// OpenVINS' kalibr_imu_chain.yaml
     #[value(alias = "vins")]
     Openvins,
-    /// A parameter file of PX4's EKF2, as QGroundControl loads it
+    /// A parameter file for PX4's EKF2, which QGroundControl loads
     Px4,
-    /// A parameter file of ArduPilot's EKF3, as Mission Planner and MAVProxy load it
+    /// A parameter file for ArduPilot's EKF3, which Mission Planner and MAVProxy load
     Ardupilot,
     /// JSON for loadparams of MATLAB's imuSensor
     Matlab,
     /// A C header
     C,
-    /// The curve with its limits and models as a table
+    /// A table of the curve with its limits and models
     Csv,
 }

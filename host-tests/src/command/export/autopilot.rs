@@ -1,17 +1,17 @@
 //! Parameter files of autopilots.
 //!
 //! The noise parameters of PX4's EKF2 and of ArduPilot's EKF3 are discrete-time, although their units
-//! do not show it. A prediction over an interval dt adds to the variances
+//! do not show it. A prediction over an interval dt adds these terms to the variances:
 //!
 //! ```text
 //! (dt · gyro noise)²  of the angle,    (dt · gyro bias noise)²  of the bias
 //! ```
 //!
-//! (PX4: `Ekf::predictCovariance`, where dt is about `EKF2_PREDICT_US`; ArduPilot:
-//! `NavEKF3_core::CovariancePrediction`, which has the bias as an angle per dt, and dt about
-//! `EKF_TARGET_DT`). Continuous-time noise adds `N² dt` and `K² dt`: the parameters are `N/√dt` in rad/s
-//! and `K/√dt` in rad/s². Both autopilots' defaults are far larger than any gyro's own noise: they
-//! stand for vibration and for what the filter's model lacks.
+//! The code is `Ekf::predictCovariance` in PX4, where dt is about `EKF2_PREDICT_US`, and
+//! `NavEKF3_core::CovariancePrediction` in ArduPilot, where dt is about `EKF_TARGET_DT` and the bias is
+//! an angle per dt. Continuous-time noise adds `N² dt` and `K² dt`, so the parameters are `N/√dt` in
+//! rad/s and `K/√dt` in rad/s². The defaults of both autopilots are far larger than any gyro's own
+//! noise, because they also cover vibration and the errors of the filter's model.
 
 use super::{
     arguments::Arguments, characterisation::Characterisation, decimal::decimal, given::Given,
@@ -19,18 +19,18 @@ use super::{
 };
 use std::fmt::Write;
 
-/// One autopilot's names and ways.
+/// The parameters of an autopilot and the syntax of its files.
 struct Autopilot {
     noise: &'static str,
     bias_noise: &'static str,
     interval_s: f64,
     interval: &'static str,
-    /// A line of the file.
+    /// Writes a line of the file from a name and a value.
     line: fn(&str, f64) -> String,
     notes: [&'static str; 2],
 }
 
-/// For QGroundControl: vehicle, component, name, value and type, between tabs.
+/// A line for QGroundControl has vehicle, component, name, value and type, separated by tabs.
 const PX4: Autopilot = Autopilot {
     noise: "EKF2_GYR_NOISE",
     bias_noise: "EKF2_GYR_B_NOISE",
@@ -39,12 +39,12 @@ const PX4: Autopilot = Autopilot {
     // Type 9 of MAVLink is a float of 32 bits.
     line: |name, value| format!("1\t1\t{name}\t{}\t9", decimal(value)),
     notes: [
-        "PX4's default EKF2_GYR_NOISE of 0.015 rad/s covers vibration too: lower it with care.",
+        "PX4's default EKF2_GYR_NOISE of 0.015 rad/s also covers vibration: lower it with care.",
         "Vehicle-Id\tComponent-Id\tName\tValue\tType",
     ],
 };
 
-/// For Mission Planner and MAVProxy: name and value.
+/// A line for Mission Planner and MAVProxy has name and value, separated by a comma.
 const ARDUPILOT: Autopilot = Autopilot {
     noise: "EK3_GYRO_P_NSE",
     bias_noise: "EK3_GBIAS_P_NSE",
@@ -52,17 +52,17 @@ const ARDUPILOT: Autopilot = Autopilot {
     interval: "EKF_TARGET_DT, 0.012 s, or the period of a slower main loop",
     line: |name, value| format!("{name},{}", decimal(value)),
     notes: [
-        "ArduPilot's default EK3_GYRO_P_NSE of 0.015 rad/s covers vibration too: lower it with care.",
+        "ArduPilot's default EK3_GYRO_P_NSE of 0.015 rad/s also covers vibration: lower it with care.",
         "name,value",
     ],
 };
 
-/// A parameter file of PX4.
+/// The parameter file for PX4.
 pub(super) fn px4(known: &Characterisation, arguments: &Arguments) -> String {
     parameters(known, arguments, &PX4)
 }
 
-/// A parameter file of ArduPilot.
+/// The parameter file for ArduPilot.
 pub(super) fn ardupilot(known: &Characterisation, arguments: &Arguments) -> String {
     parameters(known, arguments, &ARDUPILOT)
 }
@@ -92,7 +92,7 @@ fn parameters(known: &Characterisation, arguments: &Arguments, of: &Autopilot) -
         ];
         for (name, given) in both {
             let given: Given = given.times(per_step);
-            // On lines of their own: not every reader knows comments behind a value.
+            // Remarks have lines of their own, because not every reader accepts a comment after a value.
             if !given.words().is_empty() {
                 let _ = writeln!(text, "# {name}: {}", given.words());
             }

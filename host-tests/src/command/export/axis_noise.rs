@@ -1,4 +1,4 @@
-//! One axis in radians and seconds: best fit, limits, overbounds.
+//! The noise of one axis in radians and seconds: best fit, limits and overbounds.
 
 use super::given::Given;
 use crate::{
@@ -9,22 +9,22 @@ use crate::{
 };
 use allanite::{Coefficient, Model, fit::State};
 
-/// What is known of one axis.
+/// The noise of one axis.
 pub(super) struct AxisNoise {
     pub(super) name: String,
     pub(super) rate_hz: f64,
     pub(super) samples: u64,
-    /// The five, in radians and seconds.
+    /// The five coefficients, in radians and seconds.
     pub(super) coefficients: Vec<Coefficient>,
     pub(super) p_value: f64,
     pub(super) overbound: Overbound,
     pub(super) overbound_with_process: Overbound,
-    /// A Gauss–Markov process in place of the bias instability, unless that is not observable.
+    /// A Gauss–Markov process in place of the bias instability; `None` if that is not observable.
     pub(super) equivalent: Option<Equivalent>,
     pub(super) octaves: Vec<Octave>,
 }
 
-/// One octave: deviations in rad/s.
+/// One octave, with deviations in rad/s.
 pub(super) struct Octave {
     pub(super) tau_s: f64,
     pub(super) m: u32,
@@ -37,7 +37,7 @@ pub(super) struct Octave {
 }
 
 impl AxisNoise {
-    /// Of a fit of the five terms. `None` where the limits of its curve are not finite.
+    /// The noise of a fitted axis, or `None` if the limits of its curve are not finite.
     pub(super) fn of(fitted: Fitted) -> Option<Self> {
         let Fitted {
             axis, curve, fit, ..
@@ -86,7 +86,8 @@ impl AxisNoise {
         })
     }
 
-    /// The coefficient of that symbol as a filter may take it: its value, or its bound.
+    /// The number that a filter may use for the coefficient with this symbol: its value or its upper
+    /// bound.
     pub(super) fn best(&self, symbol: &str) -> Given {
         let found = self.coefficients.iter().find(|one| one.symbol == symbol);
         found.map_or_else(
@@ -97,18 +98,18 @@ impl AxisNoise {
         )
     }
 
-    /// White noise of the overbound.
+    /// White noise of the overbound, in rad/s/√Hz.
     pub(super) fn overbound_density(&self) -> Given {
         self.needed(self.overbound.noise_density, "N", "the random walk")
     }
 
-    /// Random walk of the overbound.
+    /// Random walk of the overbound, in rad/s²/√Hz.
     pub(super) fn overbound_walk(&self) -> Given {
         self.needed(self.overbound.random_walk, "K", "white noise")
     }
 
-    /// A coefficient of the overbound, which is zero where the other one is above by itself: then the
-    /// bound that the fit gives.
+    /// A coefficient of the overbound. It is zero if the other coefficient alone is above the curve;
+    /// then the upper bound of the fit stands in for it.
     fn needed(&self, value: f64, symbol: &str, other: &str) -> Given {
         if value > 0.0 {
             return Given::plain(value);
@@ -119,7 +120,7 @@ impl AxisNoise {
             Given::Number {
                 value: bound,
                 remark: format!(
-                    "{other} alone is above the curve; this is the 95 % bound of the fit"
+                    "{other} alone is above the curve; this is the upper bound (95 %) of the fit"
                 ),
             }
         } else {
@@ -130,18 +131,18 @@ impl AxisNoise {
     }
 }
 
-/// A coefficient as a filter may take it.
+/// The number that a filter may use for a coefficient, or the reason why there is none.
 fn usable(coefficient: &Coefficient) -> Given {
     match coefficient.state {
         State::Measured => Given::plain(coefficient.value),
         State::UpperBound => Given::Number {
             value: coefficient.upper,
-            remark: "upper bound: zero is within its interval".into(),
+            remark: "upper bound: its interval includes 0".into(),
         },
         State::NotObservable { after_s } => Given::Missing {
             why: match after_s {
                 Some(after_s) => format!(
-                    "not observable in this record; one of {} would show it",
+                    "not observable in this record; a record of {} would show it",
                     duration(after_s)
                 ),
                 None => "not observable in this record".into(),

@@ -1,4 +1,4 @@
-//! A C header: every number a macro, its unit beside it.
+//! A C header with a macro for every number and its unit in a comment.
 
 use super::{
     axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal, given::Given,
@@ -13,8 +13,8 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
     let mut text = summary::comment(known, "//");
     let _ = write!(
         text,
-        "//\n// *_SIGMA are discrete-time: standard deviation of a sample, *_STEP of the bias from one sample\n\
-         // to the next, both at {prefix}_RATE_HZ. *_ALL_* is the largest of the axes.\n\n\
+        "//\n// *_SIGMA and *_STEP are discrete-time, at {prefix}_RATE_HZ: the standard deviations of a sample and of\n\
+         // the change of the bias from one sample to the next. *_ALL_* is the largest of the axes.\n\n\
          #ifndef {prefix}_NOISE_H\n#define {prefix}_NOISE_H\n\n"
     );
     define(
@@ -64,7 +64,7 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
         with_process(&mut text, &above, axis);
     }
     let all = format!("{prefix}_ALL");
-    let _ = writeln!(text, "\n// largest of all axes");
+    let _ = writeln!(text, "\n// the largest of all axes");
     let (best, above) = (known.best(), known.overbound());
     pair(
         &mut text,
@@ -85,7 +85,7 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
     text
 }
 
-/// White noise and random walk, continuous and discrete.
+/// Defines white noise and random walk, continuous-time and discrete-time.
 fn pair(text: &mut String, prefix: &str, rate_hz: f64, density: Given, walk: Given) {
     number(
         text,
@@ -131,7 +131,7 @@ fn process(text: &mut String, prefix: &str, process: GaussMarkovProcess) {
     number(text, &format!("{prefix}_GAUSS_MARKOV_TIME_S"), &time, "s");
 }
 
-/// The overbound that has a Gauss–Markov process: its own three coefficients and the time.
+/// Defines the overbound with a Gauss–Markov process: its three coefficients and its correlation time.
 fn with_process(text: &mut String, prefix: &str, axis: &AxisNoise) {
     let Overbound {
         noise_density,
@@ -185,7 +185,7 @@ fn define(text: &mut String, name: &str, value: &str, remark: &str) {
     let _ = writeln!(text, "#define {name} {value}{remark}");
 }
 
-/// A name as part of C's: letters of ASCII, digits and underscores, no digit first.
+/// A name as a C identifier: upper-case ASCII letters, digits and underscores, without a leading digit.
 fn identifier(name: &str) -> String {
     let letter = |c: char| {
         if c.is_ascii_alphanumeric() {

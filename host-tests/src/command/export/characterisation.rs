@@ -1,4 +1,4 @@
-//! What is known of a gyro, for other programs.
+//! The characterisation of a gyro, from which every format is written.
 
 use super::{arguments::Arguments, axis_noise::AxisNoise, given::Given};
 use crate::{
@@ -10,14 +10,14 @@ use crate::{
     unit::Sensor,
 };
 
-/// What is known of the gyro, in radians and seconds.
+/// The characterisation of a gyro, in radians and seconds.
 pub(super) struct Characterisation {
     pub(super) axes: Vec<AxisNoise>,
     pub(super) rate_hz: f64,
 }
 
 impl Characterisation {
-    /// What a format takes that has one number for all axes: the largest.
+    /// The largest number of all axes, for a format with one number for all of them.
     pub(super) fn common(&self, of_axis: impl Fn(&AxisNoise) -> Given) -> Given {
         Given::largest(
             self.axes
@@ -26,7 +26,7 @@ impl Characterisation {
         )
     }
 
-    /// White noise and random walk as the best fit has them.
+    /// White noise and random walk of the best fit.
     pub(super) fn best(&self) -> Pair {
         Pair {
             noise_density: self.common(|axis| axis.best("N")),
@@ -34,7 +34,7 @@ impl Characterisation {
         }
     }
 
-    /// Those of the overbound.
+    /// White noise and random walk of the overbound.
     pub(super) fn overbound(&self) -> Pair {
         Pair {
             noise_density: self.common(AxisNoise::overbound_density),
@@ -42,7 +42,7 @@ impl Characterisation {
         }
     }
 
-    /// What the filter is to take, and what stands beside it in comments.
+    /// The pair for the filter, and the pair for the comments.
     pub(super) fn chosen(&self, overbound: bool) -> (Choice, Choice) {
         let best = Choice {
             name: "best fit",
@@ -60,27 +60,33 @@ impl Characterisation {
     }
 }
 
-/// What most filters know of a gyro, continuous-time.
+/// The two continuous-time densities that most filters use.
 pub(super) struct Pair {
-    /// In rad/s/√Hz.
+    /// White noise, in rad/s/√Hz.
     pub(super) noise_density: Given,
-    /// In rad/s²/√Hz.
+    /// Random walk, in rad/s²/√Hz.
     pub(super) random_walk: Given,
 }
 
-/// One of the two kinds of numbers.
+/// The best fit or the overbound, with its name.
 pub(super) struct Choice {
     pub(super) name: &'static str,
     pub(super) pair: Pair,
 }
 
-/// Reads, fits and bounds every axis.
+/// Reads the input, and fits and bounds every axis.
+///
+/// # Errors
+/// When the input cannot be read or fitted, is of an accelerometer, or has axes of different rates.
 pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Failure> {
     let path = &arguments.input;
     let mut axes = Vec::new();
     for axis in record::read(path, &arguments.about_log)? {
         if axis.unit.sensor() != Sensor::Gyro {
-            let what = format!("axis {} is an accelerometer's, in {}", axis.axis, axis.unit);
+            let what = format!(
+                "axis {} is from an accelerometer, in {}",
+                axis.axis, axis.unit
+            );
             let remedy = "export a gyro; `fit` prints the coefficients of an accelerometer";
             return Err(Place::file(path).failure(what, remedy));
         }
@@ -92,13 +98,16 @@ pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Fa
         })?;
         axes.push(noise);
     }
-    // Logs have one rate; a curve file could have several.
+    // A log has one rate, but the axes of a curve file could have several.
     let rate_hz = axes
         .first()
         .map_or(f64::NAN, |axis: &AxisNoise| axis.rate_hz);
     if let Some(other) = axes.iter().find(|axis| axis.rate_hz != rate_hz) {
-        let what = format!("axes of {rate_hz} Hz and {} Hz", other.rate_hz);
-        return Err(Place::file(path).failure(what, "export axes of one rate at a time"));
+        let what = format!(
+            "the axes have rates of {rate_hz} Hz and {} Hz",
+            other.rate_hz
+        );
+        return Err(Place::file(path).failure(what, "export only axes with the same rate"));
     }
     Ok(Characterisation { axes, rate_hz })
 }

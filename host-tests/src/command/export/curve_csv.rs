@@ -1,14 +1,14 @@
-//! The curve as a table: deviations in rad/s.
+//! The curve as a CSV table, with deviations in rad/s.
 
 use super::characterisation::Characterisation;
 use csv::{QuoteStyle, WriterBuilder};
 
-/// What the columns are, for people.
-const COMMENT: &str = "# deviations in rad/s; lower and upper: 95 % interval of each octave; model: \
-                       best fit of the five terms; overbound: white noise and random walk above every upper\n";
+/// The comment that explains the columns.
+const COMMENT: &str = "# deviations in rad/s; lower and upper: 95 % interval of each octave; model: best \
+                       fit of the five terms; overbound: white noise and random walk above every upper limit\n";
 
-/// Every octave of every axis: measured Allan deviation, its 95 % interval, the best fit's and the
-/// overbound's.
+/// The table of every octave of every axis: the measured Allan deviation, its 95 % interval, the best
+/// fit and the overbound.
 pub(super) fn table(known: &Characterisation) -> Result<String, csv::Error> {
     let columns = [
         "axis",
@@ -21,7 +21,7 @@ pub(super) fn table(known: &Characterisation) -> Result<String, csv::Error> {
         "model",
         "overbound",
     ];
-    // Names in quotes, so that none is taken for a comment or a number.
+    // Names are quoted, so that none of them is taken for a comment or a number.
     let mut writer = WriterBuilder::new()
         .quote_style(QuoteStyle::NonNumeric)
         .from_writer(COMMENT.as_bytes().to_vec());

@@ -1,7 +1,7 @@
-//! Numbers that every parser takes for numbers.
+//! Numbers in a notation that every parser reads as a number.
 
-/// The shortest decimal that reads back the same, with a point and, where there is an exponent, its
-/// sign: parsers of YAML 1.1 take `1e-5` for a word.
+/// The shortest decimal that reads back as the same number. It has a point, and a sign in the exponent
+/// if there is one, because parsers of YAML 1.1 take `1e-5` for a string.
 pub(super) fn decimal(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 || (1e-3..1e7).contains(&magnitude) {

@@ -1,16 +1,16 @@
-//! A number for a filter, or why there is none: never a zero that means "not known".
+//! A number for a filter, or the reason why there is none. A zero never stands for "not known".
 
-/// What a record gives for a parameter.
+/// The number that a record gives for a parameter, or the reason why it gives none.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Given {
-    /// A positive number, and what is to be known of it.
+    /// A positive number, with a remark that may be empty.
     Number { value: f64, remark: String },
-    /// Why there is none.
+    /// There is no number, for this reason.
     Missing { why: String },
 }
 
 impl Given {
-    /// A number that speaks for itself.
+    /// A number without a remark.
     pub(super) fn plain(value: f64) -> Self {
         Self::Number {
             value,
@@ -26,7 +26,7 @@ impl Given {
         }
     }
 
-    /// What is said of it.
+    /// The remark or the reason.
     pub(super) fn words(&self) -> &str {
         match self {
             Self::Number { remark, .. } => remark,
@@ -45,7 +45,7 @@ impl Given {
         }
     }
 
-    /// The largest of the axes' numbers, with what is said of any of them.
+    /// The largest number of the axes, with the remarks and reasons of all axes.
     pub(super) fn largest<'a>(axes: impl Iterator<Item = (&'a str, Self)>) -> Self {
         let axes: Vec<(&str, Self)> = axes.collect();
         if let [(_, only)] = axes.as_slice() {
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn largest_axis_stands_for_all_and_those_without_a_number_are_named() {
+    fn largest_number_stands_for_all_axes_and_axes_without_one_are_named() {
         let axes = [
             ("x", Given::plain(1.0)),
             ("y", Given::plain(3.0)),

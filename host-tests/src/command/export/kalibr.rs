@@ -2,8 +2,8 @@
 //!
 //! Both take continuous-time densities in SI units, one number for all axes: the white noise of the
 //! rate in rad/s/√Hz and the white noise that drives its bias in rad/s²/√Hz, which is the rate random
-//! walk coefficient K (Kalibr's wiki, "IMU Noise Model"). Kalibr refuses a density that is missing, or
-//! not above zero: what a record does not give is left out, with the reason.
+//! walk coefficient K (Kalibr's wiki, "IMU Noise Model"). Kalibr refuses a density that is missing or
+//! not above zero. A density that a record does not give is left out, and a comment gives the reason.
 
 use super::{
     arguments::Arguments,
@@ -14,8 +14,8 @@ use super::{
 };
 use std::fmt::Write;
 
-/// What has to be filled in by whoever measured the accelerometer.
-const ACCELEROMETER: &str = "not of a gyro's record: fill it in, or give it with";
+/// The reason why the densities of the accelerometer are missing, up to the name of an option.
+const ACCELEROMETER: &str = "not part of a gyro record: fill it in, or give it with";
 
 /// Kalibr's imu.yaml.
 pub(super) fn kalibr(known: &Characterisation, arguments: &Arguments) -> String {
@@ -25,13 +25,14 @@ pub(super) fn kalibr(known: &Characterisation, arguments: &Arguments) -> String 
     text
 }
 
-/// OpenVINS' kalibr_imu_chain.yaml: the same for `imu0`, in the dialect of OpenCV.
+/// OpenVINS' kalibr_imu_chain.yaml, which has the same entries under `imu0`, in the YAML dialect of
+/// OpenCV.
 pub(super) fn openvins(known: &Characterisation, arguments: &Arguments) -> String {
     let mut text = format!("%YAML:1.0\n\n{}\nimu0:\n", summary::comment(known, "#"));
     matrix(&mut text, "T_i_b", 4, "1.0");
     body(&mut text, "  ", known, arguments);
     text += "  time_offset: 0.0\n  model: \"kalibr\"\n";
-    // Intrinsics, which noise says nothing of: OpenVINS wants them there.
+    // OpenVINS requires the intrinsics. A noise record says nothing about them, so they are neutral.
     for name in ["Tw", "R_IMUtoGYRO", "Ta", "R_IMUtoACC"] {
         matrix(&mut text, name, 3, "1.0");
     }
@@ -39,7 +40,7 @@ pub(super) fn openvins(known: &Characterisation, arguments: &Arguments) -> Strin
     text
 }
 
-/// A square matrix with one number in its diagonal, zero else.
+/// Writes a square matrix with one number on the diagonal and zeros elsewhere.
 fn matrix(text: &mut String, name: &str, size: usize, diagonal: &str) {
     let _ = writeln!(text, "  {name}:");
     for row in 0..size {
@@ -96,11 +97,11 @@ fn body(text: &mut String, indent: &str, known: &Characterisation, arguments: &A
             let sigma = number_at(density, known.rate_hz);
             let _ = writeln!(
                 text,
-                "{indent}# discrete-time: {sigma} rad/s standard deviation of a sample at update_rate"
+                "{indent}# discrete-time: {sigma} rad/s is the standard deviation of a sample at update_rate"
             );
         }
     }
-    // A string of JSON is one of YAML.
+    // A JSON string is also a YAML string.
     let topic = serde_json::Value::from(arguments.rostopic.as_str());
     let _ = writeln!(text, "{indent}rostopic: {topic}");
     let _ = writeln!(
@@ -114,7 +115,7 @@ fn number_at(density: f64, rate_hz: f64) -> String {
     decimal(density * rate_hz.sqrt())
 }
 
-/// `key: value  # unit; remark`, or a comment that says why there is no value.
+/// Writes `key: value  # unit; remark`, or a comment with the reason why there is no value.
 fn line(text: &mut String, indent: &str, mark: &str, key: &str, given: &Given, unit: &str) {
     let words = given.words();
     let _ = match given.value() {

@@ -1,9 +1,9 @@
 //! JSON for `loadparams` of MATLAB's imuSensor.
 //!
-//! A file has parts by name, each with the properties of `gyroparams` under `Gyroscope`:
-//! `NoiseDensity` in (rad/s)/√Hz, `BiasInstability` in rad/s, `RandomWalk` in (rad/s)·√Hz, which is K.
-//! The part of the gyro's name is the best fit, `NAME_overbound` the overbound; what JSON has no comments
-//! for is in `NAME_notes`, which loadparams does not look at.
+//! The file has named parts, each with the properties of `gyroparams` under `Gyroscope`: `NoiseDensity`
+//! in (rad/s)/√Hz, `BiasInstability` in rad/s, and `RandomWalk` in (rad/s)·√Hz, which is K. The part
+//! with the gyro's name is the best fit, and `NAME_overbound` is the overbound. JSON has no comments, so
+//! the remarks are in `NAME_notes`, which loadparams ignores.
 
 use super::{
     arguments::Arguments, axis_noise::AxisNoise, characterisation::Characterisation, given::Given,
@@ -11,10 +11,10 @@ use super::{
 };
 use serde_json::{Map, Value, json};
 
-/// What a part gets wrong if nobody knows it.
+/// Notes on settings and properties that are easily wrong in MATLAB.
 const NOTES: [&str; 3] = [
-    "NoiseType must be \"double-sided\", as it is unless changed; set SampleRate of imuSensor by hand.",
-    "A property that is left out is zero in MATLAB: see the reasons below.",
+    "NoiseType must be \"double-sided\", which is the default; set SampleRate of imuSensor by hand.",
+    "A property that is left out is zero in MATLAB; the reasons are given below.",
     "BiasInstability is B itself: gyroparams shapes it with BiasInstabilityCoefficients.",
 ];
 
@@ -64,7 +64,8 @@ pub(super) fn json(known: &Characterisation, arguments: &Arguments) -> String {
     format!("{file:#}\n")
 }
 
-/// Three axes are a row of three; of any other number, MATLAB takes one for all.
+/// Adds a property and its notes. Three axes make a row of three numbers; for any other number of axes,
+/// MATLAB takes one number for all.
 fn property(
     known: &Characterisation,
     part: &mut Map<String, Value>,

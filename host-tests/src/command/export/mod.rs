@@ -1,4 +1,4 @@
-//! `export`: coefficients as other programs take them.
+//! `export`: writes coefficients in the formats of other programs.
 
 mod arguments;
 mod autopilot;
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
             ));
         }
     }
-    // First, so that a place that cannot be written to costs no fit.
+    // The file comes first, so that an output that cannot be written is refused before the fit.
     let file = arguments.output.as_deref().map(OutputFile::create);
     let file = file.transpose()?;
     let known = characterise(arguments)?;

@@ -1,4 +1,4 @@
-//! What stands in the comments of every format: where the numbers come from, axis by axis.
+//! The comments of every format, which tell axis by axis where the numbers come from.
 
 use super::{axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal};
 use crate::{
@@ -8,14 +8,15 @@ use crate::{
 use allanite::Coefficient;
 use allanite::fit::ADEQUATE_P;
 
-/// The lines, without the marks of a comment. Names in them are quoted: no name can end a comment.
+/// The lines of the comments, without comment marks. Names are quoted, so that no name can end a
+/// comment.
 pub(super) fn lines(known: &Characterisation) -> Vec<String> {
     let mut lines = vec![
         format!(
             "Noise of a gyro, by allanite {}.",
             env!("CARGO_PKG_VERSION")
         ),
-        "Radians and seconds; densities are continuous-time and two-sided.".into(),
+        "Units are radians and seconds; densities are continuous-time and two-sided.".into(),
     ];
     for axis in &known.axes {
         lines.push(String::new());
@@ -24,7 +25,7 @@ pub(super) fn lines(known: &Characterisation) -> Vec<String> {
     lines
 }
 
-/// The same as a block of comments.
+/// The lines as a block of comments.
 pub(super) fn comment(known: &Characterisation, mark: &str) -> String {
     let lines = lines(known).into_iter();
     lines
@@ -44,14 +45,14 @@ fn of_axis(axis: &AxisNoise) -> Vec<String> {
     }
     if axis.p_value < ADEQUATE_P {
         lines.push(format!(
-            "  not adequate: p {}: something else is in this record; the overbound is the safer choice",
+            "  not adequate (p {}): the record has another effect, and the overbound is the safer choice",
             probability(axis.p_value)
         ));
     }
     if let Some(equivalent) = axis.equivalent {
         lines.push(format!(
-            "  B as a Gauss-Markov process: sigma {} rad/s, correlation time {} s; in its place the \
-             model's deviation is off by {:.1} % at most, {:.1} % rms",
+            "  B as a Gauss-Markov process: sigma {} rad/s, correlation time {} s; this replacement \
+             changes the model's deviation by {:.1} % at most, {:.1} % rms",
             number(equivalent.process.sigma),
             number(equivalent.process.correlation_time_s),
             equivalent.max_percent,
@@ -61,12 +62,12 @@ fn of_axis(axis: &AxisNoise) -> Vec<String> {
     lines.push(format!("  overbound: {}", of_overbound(&axis.overbound)));
     let with_process = match axis.overbound_with_process.gauss_markov {
         Some(_) => of_overbound(&axis.overbound_with_process),
-        None => "the same: it needs none".into(),
+        None => "the same, because it needs no such process".into(),
     };
     lines.push(format!(
         "  overbound with a Gauss-Markov process: {with_process}"
     ));
-    lines.push("  (above the upper end of the 95 % interval of every octave)".into());
+    lines.push("  (both lie above the upper end of the 95 % interval of every octave)".into());
     lines
 }
 
@@ -104,7 +105,7 @@ fn of_overbound(overbound: &Overbound) -> String {
     text
 }
 
-/// The unit of a coefficient in letters that every file takes.
+/// The unit of a coefficient in characters that every format accepts.
 pub(super) fn unit(half_seconds: i8) -> &'static str {
     match half_seconds {
         2 => "rad",

@@ -8,16 +8,16 @@ use allanite::{
 use clap::ValueEnum;
 use std::path::Path;
 
-/// The weights by name.
+/// The names of the methods, which differ in how they weight the octaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MethodName {
-    /// Unweighted least squares, unconstrained: the baseline
+    /// Unweighted, unconstrained least squares, as a baseline
     Ordinary,
-    /// Each octave by its relative accuracy times its value, unconstrained
+    /// The standard error of each octave is its relative accuracy times its value; unconstrained
     RelativeAccuracy,
-    /// Each octave by its number of clusters, unconstrained: for comparison only
+    /// The weight of each octave follows from its number of clusters; unconstrained, for comparison only
     ClusterCount,
-    /// The covariance of the curve, coefficients not negative
+    /// The weights follow from the covariance of the curve; coefficients cannot be negative
     Covariance,
 }
 
@@ -42,7 +42,7 @@ impl MethodName {
     }
 }
 
-/// One axis with its fit.
+/// An axis with its curve and its fit.
 pub(crate) struct Fitted {
     pub(crate) axis: AxisCurve,
     pub(crate) curve: Curve<OCTAVES>,
@@ -52,6 +52,9 @@ pub(crate) struct Fitted {
 
 impl Fitted {
     /// Fits the five terms to an axis of a file.
+    ///
+    /// # Errors
+    /// When the curve cannot be fitted; the failure names the file and the axis.
     pub(crate) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
         let options = Options {
             method: method.method(),

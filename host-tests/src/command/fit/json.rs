@@ -1,11 +1,11 @@
-//! Coefficients for programs.
+//! The JSON document of a fit.
 
 use super::fitted::Fitted;
 use crate::{command::output::units, unit::Unit};
 use allanite::{Coefficient, fit::State};
 use serde::Serialize;
 
-/// What a command prints of one file.
+/// The document of one file.
 #[derive(Serialize)]
 pub(crate) struct Document<'a> {
     axes: Vec<Axis<'a>>,
@@ -32,7 +32,7 @@ struct Octave {
     variance: f64,
 }
 
-/// A coefficient in the log's unit; infinite ends of an interval are `null`.
+/// A coefficient in a unit that follows from the log's; infinite ends of an interval are `null`.
 #[derive(Serialize)]
 pub(crate) struct Term {
     effect: &'static str,
@@ -44,7 +44,7 @@ pub(crate) struct Term {
     unit: String,
 }
 
-/// What to print.
+/// The document of the axes of one file.
 pub(crate) fn document(fitted: &[Fitted]) -> Document<'_> {
     Document {
         axes: fitted.iter().map(axis).collect(),

@@ -1,4 +1,4 @@
-//! `fit`: from curves to coefficients.
+//! `fit`: computes the coefficients of curves.
 
 pub(super) mod fitted;
 pub(super) mod json;
@@ -28,7 +28,7 @@ use std::{
 pub(super) struct Arguments {
     #[command(flatten)]
     files: FilesArguments,
-    /// How octaves are weighted
+    /// Method that weights the octaves
     #[arg(long, default_value = "covariance")]
     method: MethodName,
     #[command(flatten)]

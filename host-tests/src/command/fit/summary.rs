@@ -1,4 +1,4 @@
-//! Coefficients of many files for people: one table, a row an axis.
+//! The coefficients of many files in one table, with one row for each axis.
 
 use super::{fitted::Fitted, table::customary};
 use crate::command::{input::many::shown, output::number::probability};
@@ -9,7 +9,7 @@ use std::{
     path::Path,
 };
 
-/// Customary units, as the coefficients come.
+/// The columns; coefficients are in customary units, in the order of the fit.
 const HEADER: [&str; 10] = [
     "file",
     "axis",
@@ -23,7 +23,7 @@ const HEADER: [&str; 10] = [
     "adequate",
 ];
 
-/// Prints the table, and what its signs mean.
+/// Prints the table, and a line that explains its signs.
 pub(super) fn print(found: &[(&Path, Vec<Fitted>)], output: &mut impl Write) -> io::Result<()> {
     if found.is_empty() {
         return Ok(());
@@ -43,7 +43,7 @@ pub(super) fn print(found: &[(&Path, Vec<Fitted>)], output: &mut impl Write) -> 
         }
     }
     writeln!(output, "{}", table.trim_fmt())?;
-    writeln!(output, "< upper bound, – not observable in that record")
+    writeln!(output, "<: upper bound; –: not observable in that record")
 }
 
 fn row(path: &Path, fitted: &Fitted) -> Vec<String> {

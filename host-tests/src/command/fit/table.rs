@@ -1,4 +1,4 @@
-//! Coefficients for people.
+//! The table of coefficients.
 
 use super::fitted::{Fitted, MethodName};
 use crate::{
@@ -15,7 +15,7 @@ use allanite::{
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
-/// Prints a table an axis.
+/// Prints one table for each axis, with the verdict below it.
 pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()> {
     for (i, fitted) in fitted.iter().enumerate() {
         if i > 0 {
@@ -41,7 +41,7 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
     Ok(())
 }
 
-/// The coefficients of a fit.
+/// The table of a fit: one row for each coefficient.
 pub(crate) fn table(fit: &Fit, unit: Unit) -> Table {
     let mut table = Table::new();
     table.load_style(NOTHING);
@@ -67,7 +67,7 @@ pub(crate) fn table(fit: &Fit, unit: Unit) -> Table {
     table
 }
 
-/// A value, a bound, or a dash.
+/// The value of a coefficient times a factor, its upper bound, or a dash.
 fn shown(coefficient: &Coefficient, factor: f64) -> String {
     match coefficient.state {
         State::Measured => number(factor * coefficient.value),
@@ -80,7 +80,7 @@ fn customary_unit(coefficient: &Coefficient, unit: Unit) -> (f64, &'static str) 
     units::customary(unit, coefficient.half_seconds).unwrap_or((1.0, ""))
 }
 
-/// The same in the customary unit.
+/// The value, the bound or the dash in the customary unit.
 pub(crate) fn customary(coefficient: &Coefficient, unit: Unit) -> String {
     shown(coefficient, customary_unit(coefficient, unit).0)
 }
@@ -98,7 +98,7 @@ fn scaled_interval(coefficient: &Coefficient, factor: f64) -> String {
             number(factor * coefficient.lower),
             number(factor * coefficient.upper)
         ),
-        State::UpperBound => "0 inside".into(),
+        State::UpperBound => "interval includes 0".into(),
         State::NotObservable { .. } => "–".into(),
     }
 }
@@ -117,7 +117,7 @@ fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
     ]
 }
 
-/// What the record says of a coefficient.
+/// The state of a coefficient in words, with the length of the record that would show it.
 pub(crate) fn state(coefficient: &Coefficient) -> String {
     match coefficient.state {
         State::Measured => "measured".into(),
@@ -132,11 +132,11 @@ pub(crate) fn state(coefficient: &Coefficient) -> String {
     }
 }
 
-/// χ² and what it says, one line each.
+/// One line with χ² and one with the judgement that follows from it.
 fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
     if !fit.chi_squared.is_finite() {
         return vec![
-            "This method has no error model, so no χ²: judge the model with --method covariance."
+            "This method has no error model and no χ²: judge the model with --method covariance."
                 .into(),
         ];
     }
@@ -148,7 +148,7 @@ fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
         first += &format!(", p {}", probability(fit.p_value));
     }
     if fit.tolerance > 0.0 {
-        first += &format!(", a tolerance of {} % granted", 100.0 * fit.tolerance);
+        first += &format!(", with a model tolerance of {} %", 100.0 * fit.tolerance);
     }
     if fit.shrinkage > 0.0 {
         first += &format!(
@@ -159,12 +159,12 @@ fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
     let judgement = if !fit.p_value.is_finite() {
         "There are too few octaves to judge the five-term model: record longer."
     } else if method == MethodName::RelativeAccuracy {
-        "This method takes octaves for independent: judge the model with --method covariance."
+        "This method treats octaves as independent: judge the model with --method covariance."
     } else if fit.is_adequate() == Some(true) {
         "The five-term model is adequate for this record."
     } else {
-        "The five-term model is not adequate: something else is in this record, and the \
-         coefficients carry its mark."
+        "The five-term model is not adequate: the record has another effect, which distorts the \
+         coefficients."
     };
     vec![first, judgement.into()]
 }

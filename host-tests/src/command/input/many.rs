@@ -1,4 +1,4 @@
-//! Many files at once: every core at work, results in the order of the arguments.
+//! Work on many files at once, on all cores, with results in the order of the arguments.
 
 use crate::{
     command::output::progress,
@@ -15,10 +15,10 @@ use std::{
     thread,
 };
 
-/// Results on their way to be put in order.
+/// Number of results that may wait to be put in order.
 const ON_THE_WAY: usize = 64;
 
-/// What to work on, and how to print it.
+/// The input files, and the form of the output.
 #[derive(Debug, Args)]
 pub(crate) struct FilesArguments {
     /// Logs (.csv, .csv.gz, .npy, .mcap, .ulg), or curve files (.json) that `measure` wrote
@@ -27,13 +27,14 @@ pub(crate) struct FilesArguments {
     /// Print the result as JSON
     #[arg(long, conflicts_with = "json_lines")]
     pub(crate) json: bool,
-    /// Print one JSON object a line for each file, as soon as it and all before it are done
+    /// Print each file's JSON object on a line of its own, as soon as it and all files before it are
+    /// done
     #[arg(long)]
     pub(crate) json_lines: bool,
 }
 
 impl FilesArguments {
-    /// The only file, where one stands for itself: an option that several could not share.
+    /// The only file, or `None` if there are several.
     pub(crate) fn single(&self) -> Option<&Path> {
         match self.inputs.as_slice() {
             [only] => Some(only),
@@ -42,20 +43,21 @@ impl FilesArguments {
     }
 }
 
-/// What a command finds in a file, axis by axis.
+/// The findings of a command in one file, axis by axis.
 pub(crate) trait Findings: Sized + Send {
-    /// For programs: a struct with named fields.
+    /// The JSON document: a struct with named fields.
     type Document<'a>: Serialize
     where
         Self: 'a;
 
-    /// For programs.
+    /// The findings as a JSON document.
     fn document(&self) -> Self::Document<'_>;
 
-    /// For people.
+    /// Prints the findings as text.
     fn print(&self, output: &mut impl Write) -> io::Result<()>;
 
-    /// For people, of several files: one after the other under their names, unless there is better.
+    /// Prints the findings of several files as text. By default each file follows the one before it,
+    /// below its name.
     fn print_many(found: &[(&Path, Self)], output: &mut impl Write) -> io::Result<()> {
         for (i, (path, one)) in found.iter().enumerate() {
             if i > 0 {
@@ -73,7 +75,7 @@ pub(crate) fn shown(path: &Path) -> String {
     one_line(&path.to_string_lossy())
 }
 
-/// A file with what was found, or what is wrong with it.
+/// A file with its document, or with the message of its failure.
 #[derive(Serialize)]
 struct Outcome<D: Serialize> {
     file: String,
@@ -106,8 +108,11 @@ impl<D: Serialize> Outcome<D> {
     }
 }
 
-/// Does `work` on every file and prints what it finds. Files that fail are named on standard error, one
-/// line each, and stop nothing; the last of them is what this returns.
+/// Does `work` on every file and prints the findings. A file that fails has its line on standard error
+/// and does not stop the others.
+///
+/// # Errors
+/// The last failure is returned; the other failures have been printed.
 pub(crate) fn run<F: Findings>(
     files: &FilesArguments,
     work: impl Fn(&Path) -> Result<F, Failure> + Sync,
@@ -143,7 +148,7 @@ pub(crate) fn run<F: Findings>(
     failed(failures.into_iter().map(|(_, failure)| failure).collect())
 }
 
-/// Prints what was found: of one file by itself, of several together.
+/// Prints the findings: those of a single file alone, those of several files together.
 fn print<F: Findings>(
     files: &FilesArguments,
     found: &[(&Path, F)],
@@ -163,7 +168,7 @@ fn print<F: Findings>(
     if !files.json {
         return F::print_many(found, output);
     }
-    // In the order of the arguments, of which each comes once in one of the two.
+    // The order is that of the arguments. Each argument is in exactly one of the two lists.
     let (mut found, mut failures) = (found.iter().peekable(), failures.iter());
     let outcomes: Vec<Outcome<F::Document<'_>>> = files
         .inputs
@@ -188,7 +193,7 @@ fn print<F: Findings>(
 /// Does `work` on every file, on all cores, and hands the results over in the order of the files.
 ///
 /// # Errors
-/// Of `done` only, which ends the work early.
+/// Only those of `done`, which end the work early.
 pub(crate) fn each<'a, T: Send>(
     files: &'a [PathBuf],
     work: impl Fn(&Path) -> Result<T, Failure> + Sync,
@@ -203,8 +208,8 @@ pub(crate) fn each<'a, T: Send>(
     let work = &work;
     let outcome = thread::scope(|scope| {
         scope.spawn(move || {
-            // One after the other as cores become free: early files are done early. Whoever takes
-            // the results gone, nothing more is begun.
+            // Files are begun in order as cores become free, so that early files are done early. Once
+            // the receiver is gone, no further file is begun.
             let _ = files
                 .iter()
                 .enumerate()
@@ -213,7 +218,7 @@ pub(crate) fn each<'a, T: Send>(
         });
         let mut waiting = BTreeMap::new();
         let mut next = 0;
-        // Dropped with an early end, which lets the workers go.
+        // An early return drops the receiver, which ends the workers.
         for (i, result) in incoming {
             waiting.insert(i, result);
             while let Some(result) = waiting.remove(&next) {
@@ -228,7 +233,10 @@ pub(crate) fn each<'a, T: Send>(
     outcome
 }
 
-/// What several failures end with: one line each, and the last one as the command's own.
+/// Prints all failures but the last, one line each.
+///
+/// # Errors
+/// The last failure is returned, if there is any.
 pub(crate) fn failed(mut failures: Vec<Failure>) -> Result<(), Failure> {
     let Some(last) = failures.pop() else {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What commands are given: records and curves, many files at once.
+//! The inputs of commands: records, curve files, and many files at once.
 
 pub(super) mod many;
 pub(super) mod record;

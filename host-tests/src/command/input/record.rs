@@ -1,4 +1,4 @@
-//! Logs and curves as inputs of commands.
+//! Logs and curve files as inputs of commands.
 
 use crate::{
     command::output::progress,
@@ -10,37 +10,37 @@ use crate::{
 use clap::Args;
 use std::path::Path;
 
-/// What to know about a log.
+/// Options that tell how to read a log.
 #[derive(Debug, Args)]
 pub(crate) struct LogArguments {
-    /// Samples per second [default: the log's own comment `# rate_hz=…`, else by its time stamps]
+    /// Samples per second [default: from the log's comment `# rate_hz=…`, else from its time stamps]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     rate: Option<f64>,
-    /// Units per count [default: the log's own comment `# scale=…`, else 1]
+    /// Units per count [default: from the log's comment `# scale=…`, else 1]
     #[arg(long, value_name = "RATE_PER_COUNT", allow_negative_numbers = true)]
     scale: Option<f64>,
-    /// Unit of the scaled values [default: the log's own comment `# unit=…`, else by the names of
-    /// the columns, else deg/s or m/s^2]
+    /// Unit of the scaled values [default: from the log's comment `# unit=…`, else from the
+    /// names of the columns, else deg/s or m/s^2]
     #[arg(long)]
     unit: Option<Unit>,
     /// Columns to take as axes, by name or by number from 1, such as `gyro_x,gyro_y` or `gx=2,gy=3`
-    /// [default: those named like a gyro's axes, else an accelerometer's, else all numbers that are
-    /// no time or temperature]
+    /// [default: those with the names of a gyro's axes, else of an accelerometer's axes, else all
+    /// columns of numbers except time and temperature]
     #[arg(long, value_delimiter = ',', value_name = "[AXIS=]COLUMN,…")]
     columns: Option<Vec<ColumnChoice>>,
-    /// The sensor whose axes to take [default: that of --unit, else a gyro if there is one]
+    /// The sensor whose axes to take [default: the sensor of --unit, else the gyro if there is one]
     #[arg(long)]
     sensor: Option<Sensor>,
-    /// Column of time stamps, by name or by number from 1 [default: the one named like a time; none
-    /// if the rate is given]
+    /// Column of time stamps, by name or by number from 1 [default: the column with the name of a
+    /// time, or none if --rate is given]
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
-    /// Unit of the time stamps [default: by the column's name, else the one that gives a plausible
-    /// rate]
+    /// Unit of the time stamps [default: from the column's name, else the unit that gives a
+    /// plausible rate]
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<TimeUnit>,
-    /// Topic of a bag [default: that of the only IMU], or of a ULog, such as `sensor_gyro:0`
-    /// [default: the one with the most samples]
+    /// Topic of a bag [default: the topic of the only IMU] or of a ULog, such as `sensor_gyro:0`
+    /// [default: the topic with the most samples]
     #[arg(long)]
     topic: Option<String>,
 }
@@ -70,8 +70,8 @@ pub(crate) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisC
     curves(&log)
 }
 
-/// The curves of a log with all that it tells beside them, or those of a curve file, which tells no
-/// more.
+/// The curves of a log with the evidence that it holds beside them. The evidence of a curve file is
+/// empty.
 pub(crate) fn read_with_evidence(
     path: &Path,
     arguments: &LogArguments,
@@ -80,8 +80,8 @@ pub(crate) fn read_with_evidence(
     if is_curve(path) {
         if !covariates.is_empty() {
             return Err(Place::file(path).failure(
-                "a curve knows no covariates",
-                "give the log, or leave --covariates",
+                "a curve file has no covariates",
+                "give the log, or drop --covariates",
             ));
         }
         let axes = read(path, arguments)?.into_iter();
@@ -97,7 +97,7 @@ pub(crate) fn read_with_evidence(
     Ok(curves(&log)?.into_iter().zip(evidence).collect())
 }
 
-/// Measures the curves of a log's first part and those of the rest, which is this share of it.
+/// Measures the curves of a log's first part and those of its last part, which is this share of the log.
 pub(crate) fn measure_in_two(
     path: &Path,
     arguments: &LogArguments,
@@ -127,15 +127,15 @@ fn curves(log: &Log) -> Result<Vec<AxisCurve>, Failure> {
         .collect()
 }
 
-/// The curves of a log, or of a curve file by its extension `.json`.
+/// The curves of a log, or of a curve file, which has the extension `.json`.
 pub(crate) fn read(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
     if !is_curve(path) {
         return measure(path, arguments);
     }
     if arguments.options() != log::Options::default() {
         return Err(Place::file(path).failure(
-            "a curve knows its rate, scale, unit and axes",
-            "leave options about logs to measure",
+            "a curve file contains its rate, scale, unit and axes",
+            "drop the options about logs",
         ));
     }
     Ok(CurveFile::read(path)?.axes)
@@ -147,7 +147,7 @@ pub(crate) fn is_curve(path: &Path) -> bool {
         .is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
-/// What the library has against an axis; its errors read `what: remedy`.
+/// The failure for an error of the library about an axis. The library's errors read `what: remedy`.
 pub(crate) fn library_failure(path: &Path, axis: &str, error: allanite::Error) -> Failure {
     let text = error.to_string();
     let (what, remedy) = text.rsplit_once(": ").unwrap_or((&text, "record longer"));

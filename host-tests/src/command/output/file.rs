@@ -1,4 +1,4 @@
-//! Files that appear when they are complete, or not at all.
+//! Output files that appear only when they are complete.
 
 use crate::failure::{Failure, Place};
 use std::{
@@ -7,8 +7,8 @@ use std::{
 };
 use tempfile::{Builder, NamedTempFile};
 
-/// A file under construction: beside its final place until [`commit`](Self::commit), gone if that
-/// never comes.
+/// A file that is being written. It is a temporary file in the folder of its final path until
+/// [`commit`](Self::commit) moves it there; without that it is removed.
 pub(crate) struct OutputFile {
     path: PathBuf,
     temporary: NamedTempFile,
@@ -16,6 +16,9 @@ pub(crate) struct OutputFile {
 
 impl OutputFile {
     /// Starts a file.
+    ///
+    /// # Errors
+    /// When the path is a directory, or its folder does not exist or cannot be written to.
     pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
         if path.is_dir() {
             return Err(Place::file(path).failure("is a directory", "name a file in it"));
@@ -28,12 +31,13 @@ impl OutputFile {
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            // What any new file gets, less the process' mask; a temporary file is private else.
+            // The permissions of any new file, to which the process' mask applies. Without this line a
+            // temporary file would be private.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         let temporary = builder.tempfile_in(folder).map_err(|error| {
             if error.kind() == io::ErrorKind::NotFound {
-                Place::file(path).failure("its folder does not exist", "make the folder first")
+                Place::file(path).failure("its folder does not exist", "create the folder first")
             } else {
                 Place::file(path).io(&error)
             }
@@ -44,7 +48,10 @@ impl OutputFile {
         })
     }
 
-    /// Puts the file in its place, over one that was there.
+    /// Moves the file to its final path and replaces a file that was there.
+    ///
+    /// # Errors
+    /// When the file cannot be written or moved.
     pub(crate) fn commit(mut self) -> Result<(), Failure> {
         let fail = |error: &io::Error| Place::file(&self.path).io(error);
         self.temporary.flush().map_err(|error| fail(&error))?;

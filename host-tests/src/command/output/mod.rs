@@ -1,4 +1,5 @@
-//! What commands give: whole files, progress, and the words, numbers and units of tables and JSON.
+//! The output of commands: files, progress, and the words, numbers and units of tables and JSON
+//! documents.
 
 pub(super) mod file;
 pub(super) mod model_json;

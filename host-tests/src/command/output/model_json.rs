@@ -1,4 +1,4 @@
-//! Models and how they fail, for programs.
+//! The parts that the JSON documents of `compare` and `diagnose` share.
 
 use super::words;
 use crate::{command::fit, log::OCTAVES, unit::Unit};
@@ -9,17 +9,17 @@ use allanite::{
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// An effect of a model, with its shape and its amplitude.
+/// An effect of a model, with its shape and its coefficient.
 #[derive(Serialize)]
 pub(crate) struct Effect {
     name: &'static str,
     parameters: Map<String, Value>,
-    /// Of a covariate: its column.
+    /// The column of a covariate; other effects have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     channel: Option<String>,
 }
 
-/// A covariate that the rate follows: its slope, and the slope's 95 % interval.
+/// A covariate that the rate depends on: its slope, and the slope's 95 % interval.
 pub(crate) fn covariate(followed: &FollowedCovariate, channel: &str) -> Effect {
     let (lower, upper) = followed.slope.interval();
     let numbers = [
@@ -37,7 +37,7 @@ pub(crate) fn covariate(followed: &FollowedCovariate, channel: &str) -> Effect {
     }
 }
 
-/// The octave that disagrees most.
+/// The octave with the largest disagreement.
 #[derive(Serialize)]
 pub(crate) struct Worst {
     tau_s: f64,
@@ -45,7 +45,7 @@ pub(crate) struct Worst {
     percent: f64,
 }
 
-/// A shape with its coefficient, by name; numbers that are not finite are `null`.
+/// The shape and the coefficient of a term by name; numbers that are not finite are `null`.
 pub(crate) fn parameters(term: &Term, coefficient: f64) -> Map<String, Value> {
     words::parameters(term, Some(coefficient))
         .into_iter()

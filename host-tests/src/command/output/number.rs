@@ -1,6 +1,6 @@
-//! Numbers as people read them.
+//! Numbers in tables and sentences.
 
-/// Four significant digits.
+/// A number with four significant digits; `∞` if it is not finite.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -16,19 +16,19 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// A p-value, with its relation.
+/// A p-value with its relation, such as `= 0.338`.
 pub(crate) fn probability(p: f64) -> String {
     if p >= 0.001 {
         format!("= {p:.3}")
     } else if p > 0.0 {
         format!("= {p:.1e}")
     } else {
-        // Below the smallest float.
+        // The probability is smaller than any floating-point number.
         "< 1e-307".into()
     }
 }
 
-/// A length of time in the unit that suits it.
+/// A length of time in seconds, minutes, hours or days, whichever is readable.
 pub(crate) fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{s:.3} s"),

@@ -1,4 +1,4 @@
-//! How far long work has come: on standard error, and on a terminal only.
+//! Progress bars of long work. They appear on standard error, and only if that is a terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
@@ -6,29 +6,29 @@ use std::{
     sync::atomic::{AtomicBool, Ordering::Relaxed},
 };
 
-/// Whether nothing is to be shown, nor noted.
+/// Whether progress and notes are suppressed.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// Whether several files are read at once, so that each by itself shows nothing.
+/// Whether several files are read at once, in which case no file has a bar of its own.
 static SHARED: AtomicBool = AtomicBool::new(false);
 
-/// A file that is read in a moment needs no bar.
+/// A smaller file is read so quickly that it needs no bar.
 const BYTES_OF_A_MOMENT: u64 = 1 << 24;
 
-/// Nor do samples that are simulated in one.
+/// Fewer samples are simulated so quickly that they need no bar.
 const SAMPLES_OF_A_MOMENT: u64 = 1 << 22;
 
-/// Shows nothing from now on.
+/// Suppresses progress and notes from now on.
 pub(crate) fn be_quiet() {
     QUIET.store(true, Relaxed);
 }
 
-/// Whether to say nothing that was not asked for.
+/// Whether progress and notes are suppressed.
 pub(crate) fn is_quiet() -> bool {
     QUIET.load(Relaxed)
 }
 
-/// Leaves the terminal to the bar over files from now on.
+/// Hides the bars of single files from now on, so that the bar over all files has the terminal.
 pub(crate) fn share_terminal() {
     SHARED.store(true, Relaxed);
 }
@@ -63,7 +63,7 @@ pub(crate) fn simulating(samples: u64) -> ProgressBar {
 
 fn styled(length: u64, template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template);
-    // Hidden by itself where standard error is no terminal.
+    // The target hides itself if standard error is not a terminal.
     let target = if is_quiet() {
         ProgressDrawTarget::hidden()
     } else {

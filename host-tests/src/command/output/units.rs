@@ -1,12 +1,12 @@
-//! The units of coefficients: those of the log, and those that data sheets are written in.
+//! The units of coefficients: those that follow from the log's unit, and those customary in data sheets.
 
 use crate::unit::{Sensor, Unit};
 
 const SECONDS_PER_HOUR: f64 = 3600.0;
 
-/// The unit of a coefficient, rate unit · s^(half_seconds/2), as it is usually written.
+/// The unit of a coefficient, which is the rate unit · s^(half_seconds/2), in its usual spelling.
 pub(crate) fn unit(unit: Unit, half_seconds: i8) -> String {
-    // The unit times a second, and divided by one.
+    // The unit times a second, and the unit divided by a second.
     let (integral, derivative) = match unit {
         Unit::DegreesPerSecond => ("deg", "deg/s²"),
         Unit::RadiansPerSecond => ("rad", "rad/s²"),
@@ -23,9 +23,10 @@ pub(crate) fn unit(unit: Unit, half_seconds: i8) -> String {
     }
 }
 
-/// The factor to a coefficient's customary unit, and that unit: of a gyro arc seconds for an angle,
-/// else degrees and hours; of an accelerometer metres per second for a velocity, else thousandths
-/// and millionths of g. `None` for a power of time that has no custom.
+/// The factor from the log's unit to a coefficient's customary unit, and the name of that unit. A gyro
+/// has arc seconds for an angle, and otherwise degrees and hours. An accelerometer has metres per second
+/// for a velocity, and otherwise thousandths and millionths of g. `None` if the power of time has no
+/// customary unit.
 pub(crate) fn customary(unit: Unit, half_seconds: i8) -> Option<(f64, &'static str)> {
     let in_g = Unit::StandardGravity.in_usual().recip();
     let (factor, name) = match (unit.sensor(), half_seconds) {

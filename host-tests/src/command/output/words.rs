@@ -1,4 +1,4 @@
-//! What is said of effects: to people in tables and sentences, to programs as notes.
+//! Effects, coefficients and records in words, for tables, sentences and the notes of JSON documents.
 
 use super::{
     number::{duration, number},
@@ -20,7 +20,8 @@ pub(crate) fn plain(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// A coefficient's name as people write it, of an accelerometer by what it is of there.
+/// A coefficient's name as people write it. An accelerometer has velocity and acceleration where a gyro
+/// has angle and rate.
 pub(crate) fn of_sensor(name: &str, unit: Unit) -> String {
     match (unit.sensor(), name) {
         (Sensor::Accelerometer, "angle_random_walk") => "velocity random walk".into(),
@@ -30,12 +31,12 @@ pub(crate) fn of_sensor(name: &str, unit: Unit) -> String {
     }
 }
 
-/// Names as a list in a sentence.
+/// Names of effects as a list in a sentence: `sinusoid, low pass and resonance`.
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     list_of(names.into_iter().map(plain).collect())
 }
 
-/// The same of what people read already.
+/// Texts that are readable already, as a list in a sentence: `a, b and c`.
 pub(crate) fn list_of(names: Vec<String>) -> String {
     match names.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
@@ -43,7 +44,19 @@ pub(crate) fn list_of(names: Vec<String>) -> String {
     }
 }
 
-/// A shape: `frequency 19.6 Hz (19.5 … 19.7), quality 4`, with intervals where a fit gives them.
+/// Names of effects as alternatives in a sentence: `low pass or resonance`.
+pub(crate) fn alternatives<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<String> = names.into_iter().map(plain).collect();
+    names.join(" or ")
+}
+
+/// What the misfit and χ² of a comparison weigh, to be printed below both.
+pub(crate) const MISFIT: &str = "\
+Misfit is the rms difference of the variances in percent: the longest octaves,
+whose scatter is largest, dominate it. χ² weights each octave by its error.";
+
+/// The shape parameters of a term: `frequency 19.6 Hz (19.5 … 19.7), quality 4`. Intervals are shown
+/// where a fit gives them.
 pub(crate) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
     let parameters = term.effect.parameters().iter().zip(term.parameters);
     let one = |(parameter, value): (&Parameter, f64)| {
@@ -65,7 +78,7 @@ pub(crate) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
 
 /// A shape parameter and its value: `frequency 19.6 Hz`.
 pub(crate) fn shape_value(parameter: &Parameter, value: f64) -> String {
-    // The unit stands behind the value.
+    // The unit is written after the value, so the name goes without its suffix.
     let suffix = format!("_{}", parameter.unit.to_lowercase());
     let name = plain(
         parameter
@@ -79,7 +92,7 @@ pub(crate) fn shape_value(parameter: &Parameter, value: f64) -> String {
     }
 }
 
-/// Four digits, whole numbers without a fraction.
+/// Four significant digits; a whole number below 10 000 has no fraction.
 fn short(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() < 1e4 {
         format!("{value}")
@@ -88,10 +101,10 @@ fn short(value: f64) -> String {
     }
 }
 
-/// A coefficient and what it is: `angle random walk 1.95 °/√h (1.93 … 1.97)`.
+/// A coefficient with its value and interval: `angle random walk 1.95 °/√h (1.93 … 1.97)`.
 pub(crate) fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: Unit) -> String {
     let name = of_sensor(effect.coefficient(), unit);
-    // Amplitudes are rates, and not the drifts that hours are the unit for.
+    // Amplitudes are rates and keep the log's unit; customary units in hours are for drifts.
     let (factor, unit) = match effect.coefficient() {
         "amplitude" | "rms" => (1.0, units::unit(unit, coefficient.half_seconds)),
         _ => customary(unit, coefficient.half_seconds),
@@ -109,7 +122,7 @@ pub(crate) fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: 
     }
 }
 
-/// The customary unit where there is one.
+/// The factor to the customary unit and its name, or 1 and the log's own unit if there is none.
 fn customary(unit: Unit, half_seconds: i8) -> (f64, String) {
     match units::customary(unit, half_seconds) {
         Some((factor, name)) => (factor, name.into()),
@@ -117,8 +130,8 @@ fn customary(unit: Unit, half_seconds: i8) -> (f64, String) {
     }
 }
 
-/// An effect's shape parameters and, where it is not called like the effect itself, its
-/// coefficient: by the names that options have.
+/// An effect's shape parameters by the names that options use. The coefficient is added where its name
+/// differs from that of the effect.
 pub(crate) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static str, f64)> {
     let shape = term.effect.parameters().iter().take(MAX_PARAMETERS);
     let mut named: Vec<_> = shape
@@ -132,12 +145,12 @@ pub(crate) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static
     named
 }
 
-/// What a frequency may be instead of itself.
+/// A note that names the frequencies of which a term's frequency may be the alias.
 pub(crate) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
     let mut parameters = term.effect.parameters().iter().zip(term.parameters);
     let (_, frequency_hz) = parameters.find(|(parameter, _)| parameter.name == "frequency_hz")?;
     Some(format!(
-        "{}: sampled at {rate_hz} Hz, {} Hz may be the alias of {} Hz, {} Hz or any other k × {rate_hz} Hz ± {} Hz",
+        "{}: at a sample rate of {rate_hz} Hz, {} Hz may be the alias of {} Hz, {} Hz or any other k × {rate_hz} Hz ± {} Hz",
         plain(term.effect.name()),
         short(frequency_hz),
         short(rate_hz - frequency_hz),
@@ -146,7 +159,7 @@ pub(crate) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
     ))
 }
 
-/// What the effects that were missing had done to the coefficients.
+/// How the coefficients of the first step were wrong because effects were missing from its model.
 pub(crate) fn damage(first: &Step<OCTAVES>, last: &Step<OCTAVES>, unit: Unit) -> Vec<String> {
     let before = first.model.terms().iter().zip(&first.fit.coefficients);
     let same = |name: &str| {
@@ -179,22 +192,22 @@ fn changed(name: &str, was: &Coefficient, is: &Coefficient, unit: Unit) -> Optio
     if measured(was) {
         return match is.state {
             State::UpperBound if was.value > is.upper => Some(format!(
-                "{name} was at least {} too high: {}, where there are at most {}",
+                "{name} was at least {} too high: {} instead of at most {}",
                 shown(was.value - is.upper),
                 shown(was.value),
                 shown(is.upper)
             )),
             State::NotObservable { .. } => Some(format!(
-                "{name} was claimed to be {}: this record does not tell it",
+                "{name} is no longer supported by the data (was {})",
                 shown(was.value)
             )),
             _ => None,
         };
     }
-    measured(is).then(|| format!("{name} was not seen: it is {}", shown(is.value)))
+    measured(is).then(|| format!("{name} is now measured: {}", shown(is.value)))
 }
 
-/// `1000000 samples at 100 Hz (2.8 h), 18 octaves`.
+/// The size of a record: `1000000 samples at 100 Hz (2.8 h), 18 octaves`.
 pub(crate) fn record(samples: u64, rate_hz: f64, octaves: usize) -> String {
     let length = duration(samples as f64 / rate_hz);
     format!("{samples} samples at {rate_hz} Hz ({length}), {octaves} octaves")

@@ -1,5 +1,5 @@
-//! What the page of a report shows: the diagnosis as `diagnose --json` prints it, and beside it the
-//! figures and words of every step and of every candidate.
+//! The data of a report's page: the diagnosis as `diagnose --json` prints it, and the figures and words
+//! of every step and of every candidate.
 
 use crate::{
     command::{
@@ -22,18 +22,19 @@ use std::collections::BTreeMap;
 #[derive(Serialize)]
 pub(super) struct Document<'a> {
     diagnosis: diagnose::json::Document<'a>,
-    /// In the diagnosis' order.
+    /// The axes, in the order of the diagnosis.
     axes: Vec<Axis>,
 }
 
 #[derive(Serialize)]
 struct Axis {
-    /// Units of the deviation: the log's, then the customary one.
+    /// Units of the deviation: first the log's unit, then the customary one.
     units: Vec<DeviationUnit>,
-    /// From a unit of the log to the customary one, for coefficients.
+    /// The customary unit of a coefficient, by the unit that follows from the log's.
     customary: BTreeMap<String, Customary>,
-    /// Ends of the axis of averaging times, in seconds, and of that of deviations, in the log's unit.
+    /// Ends of the axis of averaging times, in seconds.
     tau_s: [f64; 2],
+    /// Ends of the axis of deviations, in the log's unit.
     sigma: [f64; 2],
     times: Vec<(f64, String)>,
     steps: Vec<View>,
@@ -42,7 +43,7 @@ struct Axis {
 #[derive(Serialize)]
 struct DeviationUnit {
     name: String,
-    /// What one unit of the log is in it.
+    /// The factor from the log's unit to this unit.
     factor: f64,
     ticks: Vec<(f64, String)>,
 }
@@ -53,23 +54,24 @@ struct Customary {
     unit: &'static str,
 }
 
-/// A model beside the record.
+/// The view of one model beside the record.
 #[derive(Serialize)]
 struct View {
     model: String,
     figure: Figure,
-    /// Where the residual's panel ends, with its ticks.
+    /// The panel of residuals reaches from −z to z standard errors.
     z: f64,
+    /// The ticks of that panel.
     residuals: [(f64, String); 3],
-    /// The octave that lies farthest off.
+    /// Index of the octave with the largest residual.
     worst: usize,
-    /// Where the model fails.
+    /// The comparison of model and record in words.
     words: String,
     /// The p-value with its relation.
     p: String,
-    /// What the record says of each coefficient.
+    /// The state of each coefficient in words.
     states: Vec<String>,
-    /// What the step before had added to come here.
+    /// The addition of the step before, which led to this step.
     found: Option<Found>,
     candidates: Vec<Candidate>,
 }
@@ -85,9 +87,9 @@ struct Found {
 #[derive(Serialize)]
 struct Candidate {
     name: String,
-    /// Whether it was added: its fit is the next step.
+    /// Whether the candidate was added; then its fit is the next step.
     added: bool,
-    /// Else its fit in full; `None` where there is none.
+    /// The complete fit of a candidate that was not added; `None` if it cannot be fitted.
     fitted: Option<Fitted>,
 }
 
@@ -101,7 +103,7 @@ struct Fitted {
     view: View,
 }
 
-/// The diagnoses as one document; every candidate is fitted in full.
+/// Puts the diagnoses of all axes into one document. Every candidate is fitted in full.
 pub(super) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
     Document {
         diagnosis: diagnose::json::document(diagnosed),
@@ -180,7 +182,7 @@ fn step(diagnosed: &Diagnosed, at: usize, frame: &Frame) -> View {
     }
 }
 
-/// A candidate that was not added; one that cannot be fitted in full has nothing to show.
+/// The complete fit of a candidate that was not added; `None` if it cannot be fitted in full.
 fn fitted(diagnosed: &Diagnosed, at: usize, tried: &Tried, frame: &Frame) -> Option<Fitted> {
     let step = diagnosed.alternative(at, tried).ok()?;
     let name = candidate_name(tried);
@@ -195,7 +197,8 @@ fn fitted(diagnosed: &Diagnosed, at: usize, tried: &Tried, frame: &Frame) -> Opt
     })
 }
 
-/// What is shown of a step: its deviations in the frame of all, its residuals in one of their own.
+/// The view of a step. All steps share the frame of the deviations, but each has its own for the
+/// residuals.
 fn view(model: String, step: &Step<OCTAVES>, frame: &Frame) -> View {
     let own = Frame::of([&step.comparison]);
     let figure = Figure::new(&step.model, &step.comparison, frame);

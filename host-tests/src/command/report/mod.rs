@@ -1,4 +1,4 @@
-//! `report`: a diagnosis as a page.
+//! `report`: writes a diagnosis as an HTML page.
 
 mod json;
 mod page;
@@ -17,7 +17,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Write the diagnosis as a page to walk through: one HTML file that needs nothing else
+/// Write the diagnosis as an interactive page: one HTML file that needs no other file
 #[derive(Debug, Args)]
 #[command(after_help = examples::REPORT)]
 pub(super) struct Arguments {
@@ -32,9 +32,9 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let place = || Place::file(&arguments.output);
     if !is_page(&arguments.output) {
-        return Err(place().failure("a page's extension is .html", "name the output so"));
+        return Err(place().failure("a page must end in .html", "rename the output"));
     }
-    // First, so that a place that cannot be written to costs no diagnosis.
+    // The file comes first, so that an output that cannot be written is refused before the diagnosis.
     let mut file = OutputFile::create(&arguments.output)?;
     let diagnosed = arguments.diagnosis.diagnosed()?;
     let fail = |error: io::Error| place().io(&error);

@@ -1,4 +1,4 @@
-//! The page of a report: what stands in it without a script, and what the script takes.
+//! The page of a report: its static content, and the data for its script.
 
 use crate::{
     command::{
@@ -15,32 +15,32 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::{collections::BTreeSet, path::Path};
 
 const STYLE: &str = include_str!("../../report/page.css");
-/// Draws a figure, walks through the steps.
+/// The scripts: the first one draws a figure, the second one walks through the steps.
 const SCRIPTS: [&str; 2] = [
     include_str!("../../report/figure.js"),
     include_str!("../../report/page.js"),
 ];
-/// The page takes nothing from anywhere.
+/// The policy with which a browser loads nothing from elsewhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 
-/// What the page is made of.
+/// The content of the page.
 pub(super) struct Content<'a> {
     pub(super) input: &'a Path,
     pub(super) diagnosed: &'a [Diagnosed],
-    /// What the script shows.
+    /// The data that the script shows.
     pub(super) json: &'a str,
-    /// What is shown without a script.
+    /// The text that is shown if scripts are off.
     pub(super) text: &'a str,
 }
 
-/// The page.
+/// The page as HTML.
 pub(super) fn page(content: &Content) -> String {
     let name = content
         .input
         .file_name()
         .unwrap_or(content.input.as_os_str());
     let name = name.to_string_lossy();
-    // No `<` in a script element can end it.
+    // Without `<`, no text in the data can end the script element.
     let json = content.json.replace('<', "\\u003c");
     let page = html! {
         (DOCTYPE)
@@ -75,7 +75,7 @@ pub(super) fn page(content: &Content) -> String {
     page.into_string()
 }
 
-/// One sentence an axis.
+/// The list of axes, with one sentence for each.
 fn summary(diagnosed: &[Diagnosed]) -> Markup {
     html! {
         ul.summary {
@@ -91,7 +91,7 @@ fn summary(diagnosed: &[Diagnosed]) -> Markup {
     }
 }
 
-/// The verdict in a word or two, and its class.
+/// The class of the verdict in CSS, and the verdict in a few words.
 fn badge(diagnosed: &Diagnosed) -> (&'static str, &'static str) {
     match diagnosed.verdict {
         Verdict::Adequate => ("good", "five terms suffice"),
@@ -108,14 +108,17 @@ fn introduction() -> Markup {
         section.introduction aria-label="How to read this page" {
             p {
                 "The Allan deviation σ(τ) is how much the rate, averaged over a time τ, typically "
-                "changes from one average to the next. Five noise terms (IEEE 952) should add up to "
-                "it. Where the measured dots leave the model’s line, something else is in the record. "
-                "χ² sums up how far they do, in units of their scatter: about as large as the degrees "
-                "of freedom is as good as it gets. Each step adds the effect that explains most."
+                "changes from one average to the next. In a simple record, the five noise terms of "
+                "IEEE 952 add up to the measured curve. Where the measured dots leave the model’s line, "
+                "the record has another effect. χ² is the squared distance of the dots from the line, "
+                "each octave weighted by its error: for an adequate model, χ² is about as large as the "
+                "number of degrees of freedom. The misfit is the rms difference of the variances in "
+                "percent. The longest octaves, whose scatter is largest, dominate it, so it can rise "
+                "while χ² falls. Each step adds the effect that explains most."
             }
             fieldset #units hidden {
                 legend { "Units" }
-                label { input type="radio" name="unit" value="0" checked; " those of the log" }
+                label { input type="radio" name="unit" value="0" checked; " as in the log" }
                 label { input type="radio" name="unit" value="1"; " customary (°/h, °/√h)" }
             }
         }
@@ -130,11 +133,11 @@ fn axis(number: usize, diagnosed: &Diagnosed) -> Markup {
         section.axis id={ "axis-" (number) } aria-label={ "Axis " (axis.axis) } {
             h2 { (axis.axis) }
             p.record { (record) }
-            // Filled by the script.
+            // The script fills this element.
             div.walk data-axis=(number) {}
             @if !notes.is_empty() {
                 div.notes {
-                    h3 { "To note" }
+                    h3 { "Notes" }
                     ul { @for note in &notes { li { (note) } } }
                 }
             }
@@ -142,7 +145,7 @@ fn axis(number: usize, diagnosed: &Diagnosed) -> Markup {
     }
 }
 
-/// All that it takes to make the page again.
+/// The settings with which the page can be made again.
 fn settings(content: &Content) -> Markup {
     let default = Options::default();
     let options = content.diagnosed.first().map_or(default, |one| one.options);
@@ -158,11 +161,14 @@ fn settings(content: &Content) -> Markup {
         ("command", command),
         ("version", format!("allanite {}", env!("CARGO_PKG_VERSION"))),
         (
-            "tolerance of the model",
+            "model tolerance",
             format!("{} %", 100.0 * options.tolerance),
         ),
-        ("adequate from", format!("p = {ADEQUATE_P}")),
-        ("effects at most", options.max_effects.to_string()),
+        ("model is adequate from", format!("p = {ADEQUATE_P}")),
+        (
+            "largest number of effects to add",
+            options.max_effects.to_string(),
+        ),
     ];
     html! {
         section.settings {
@@ -175,7 +181,7 @@ fn settings(content: &Content) -> Markup {
     }
 }
 
-/// Where the records come from, each place once.
+/// The sources and licences of the records, each of them once.
 fn sources(diagnosed: &[Diagnosed]) -> BTreeSet<String> {
     let axes = diagnosed.iter().map(|one| &one.axis);
     let named = axes.map(|axis| axis.source.iter().chain(&axis.licence));
@@ -183,7 +189,7 @@ fn sources(diagnosed: &[Diagnosed]) -> BTreeSet<String> {
     named.filter(|words| !words.is_empty()).collect()
 }
 
-/// A word as a shell takes it.
+/// A word with the quotes that a shell needs.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+%@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

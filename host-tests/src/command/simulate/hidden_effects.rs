@@ -1,4 +1,4 @@
-//! What `simulate --effect` hides in a record.
+//! The effects that `simulate --effect` hides in a record.
 
 use crate::{
     command::effect_argument::EffectArgument,
@@ -8,21 +8,21 @@ use crate::{
 use allanite::effect::{CATALOGUE, Effect, IEEE_952};
 use clap::Args;
 
-/// The name of the effect that no curve alone shows.
+/// The name of the thermal effect, which a curve without a temperature does not reveal.
 const THERMAL: &str = "thermal";
 
-/// Effects to hide.
+/// The options for effects to hide.
 #[derive(Debug, Args)]
 pub(super) struct HiddenArguments {
     /// Hide an effect, such as `sinusoid:frequency_hz=0.3,amplitude=0.005`,
     /// `gauss_markov:correlation_time_s=5,rms=0.01`, `decimation_filter:width_s=0.02,stages=2`, or a
-    /// temperature that the rate follows: `thermal:slope=0.01,kelvin=10,time_s=600` for a warm-up,
+    /// temperature on which the rate depends: `thermal:slope=0.01,kelvin=10,time_s=600` for a warm-up,
     /// `thermal:slope=0.01,kelvin=5,period_s=1200` for a cycle
     #[arg(long = "effect", value_name = "NAME:parameter=value,…")]
     effects: Vec<String>,
 }
 
-/// Effects of a record beyond the five terms.
+/// The effects of a record other than the five terms.
 #[derive(Default)]
 pub(super) struct HiddenEffects {
     pub(super) hidden: Vec<Hidden>,
@@ -35,19 +35,24 @@ impl HiddenArguments {
         self.effects.is_empty()
     }
 
-    /// The options' texts.
+    /// The texts of the options.
     pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
         self.effects.iter().map(String::as_str)
     }
 
-    /// The effects; a filter on white noise has the record's own unless it is given.
+    /// The effects. A filter of white noise filters the record's own white noise unless a coefficient is
+    /// given.
+    ///
+    /// # Errors
+    /// When an effect is unknown, is one of the five terms, lacks a parameter, or conflicts with
+    /// another.
     pub(super) fn effects(&self, coefficients: Coefficients) -> Result<HiddenEffects, Failure> {
         let mut effects = HiddenEffects::default();
         for text in &self.effects {
             let mut argument = EffectArgument::parse("--effect", text)?;
             if argument.name == THERMAL {
                 if effects.thermal.is_some() {
-                    return Err(argument.failure("is given twice", "a record has one temperature"));
+                    return Err(argument.failure("is given twice", "give it once"));
                 }
                 effects.thermal = Some(thermal(&mut argument)?);
             } else {
@@ -56,8 +61,8 @@ impl HiddenArguments {
                     |other: &Hidden| other.replaces_white_noise() && hidden.replaces_white_noise();
                 if effects.hidden.iter().any(twice) {
                     return Err(argument.failure(
-                        "two filters take the place of the same white noise",
-                        "hide one of them",
+                        "two filters replace the same white noise",
+                        "drop one of them",
                     ));
                 }
                 effects.hidden.push(hidden);
@@ -102,7 +107,7 @@ fn hidden(
 }
 
 fn thermal(argument: &mut EffectArgument<'_>) -> Result<Thermal, Failure> {
-    // A rate may fall as the temperature rises, and some do not follow it at all.
+    // The slope may be negative, and it may be zero.
     let slope = argument.take("slope").ok_or_else(|| {
         argument.failure(
             "slope is missing",
@@ -119,7 +124,7 @@ fn thermal(argument: &mut EffectArgument<'_>) -> Result<Thermal, Failure> {
         (None, Some(period_s)) => Course::Cycle { period_s },
         _ => {
             return Err(argument.failure(
-                "a temperature has one course",
+                "a temperature needs either time_s or period_s",
                 "give time_s for a warm-up or period_s for a cycle",
             ));
         }

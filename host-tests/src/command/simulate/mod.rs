@@ -1,4 +1,4 @@
-//! `simulate`: the log of a gyro with known coefficients.
+//! `simulate`: writes the log of a gyro with known coefficients.
 
 mod hidden_effects;
 
@@ -20,10 +20,10 @@ use std::{
     path::PathBuf,
 };
 
-/// Axes of a sensor.
+/// Number of axes of a sensor.
 const AXES: usize = 3;
 
-/// Their names.
+/// Names of the axes of a sensor.
 const fn axes(sensor: Sensor) -> [&'static str; AXES] {
     match sensor {
         Sensor::Gyro => ["gx", "gy", "gz"],
@@ -31,14 +31,14 @@ const fn axes(sensor: Sensor) -> [&'static str; AXES] {
     }
 }
 
-/// The name of the temperature's column.
+/// Name of the column of temperatures.
 const TEMPERATURE: &str = "temp_C";
 
 /// Simulate the log of a gyro at rest
 #[derive(Debug, Args)]
 #[command(after_help = examples::SIMULATE)]
 pub(super) struct Arguments {
-    /// A typical gyro, whose coefficients the options below override one by one
+    /// A typical gyro; the options below override its coefficients one by one
     #[arg(value_name = "PRESET")]
     gyro: Option<Preset>,
     /// The same as PRESET
@@ -69,7 +69,7 @@ pub(super) struct Arguments {
         allow_negative_numbers = true
     )]
     rate: f64,
-    /// Length of the record: seconds, or such as 10min, 2h, 1d
+    /// Length of the record, in seconds or with a unit, such as 10min, 2h, 1d
     #[arg(
         long,
         value_name = "TIME",
@@ -77,16 +77,16 @@ pub(super) struct Arguments {
         allow_negative_numbers = true
     )]
     duration: String,
-    /// Number of the record: the same seed gives the same record
+    /// Seed of the random numbers: the same seed gives the same record
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How many axes: gx, gy, gz, or of an accelerometer ax, ay, az
+    /// Number of axes: gx, gy, gz, or ax, ay, az for an accelerometer
     #[arg(long, default_value_t = 1)]
     axes: usize,
     /// The unit of coefficients and rates
     #[arg(long, default_value = "deg/s")]
     unit: Unit,
-    /// Write counts of this many rate units, rounded, instead of rates
+    /// Write rounded counts instead of rates; one count is this many rate units
     #[arg(long, value_name = "RATE_PER_COUNT", allow_negative_numbers = true)]
     scale: Option<f64>,
     /// The log to write: .csv, .csv.gz or .npy [default: CSV on standard output]
@@ -129,7 +129,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     }
     if name.ends_with(".npy") && record.effects.thermal.is_some() {
         return Err(Place::file(path).failure(
-            "columns of an array have no names, and a temperature must not be taken for an axis",
+            "columns of an array have no names, so the temperature would be taken for an axis",
             "name the output .csv or .csv.gz",
         ));
     }
@@ -145,7 +145,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
 struct Record {
     coefficients: Coefficients,
     effects: HiddenEffects,
-    /// The effects as they were asked for.
+    /// The effects as the options give them.
     effects_text: String,
     rate_hz: f64,
     samples: u64,
@@ -201,8 +201,8 @@ impl Record {
         })
     }
 
-    /// One simulator an axis. Seeds of neighbours are far apart, so that no axis of one record is
-    /// an axis of another.
+    /// One simulator for each axis. The seeds of the axes are far apart, so that no axis of one record
+    /// equals an axis of another.
     fn simulators(&self) -> Vec<Simulator> {
         const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
         let axis = |axis: u64| {
@@ -212,7 +212,7 @@ impl Record {
         (0..self.axes as u64).map(axis).collect()
     }
 
-    /// Hands every row to `write`: the rates of the axes, and the temperature if there is one.
+    /// Calls `write` for every row, with the rates of the axes and the temperature, if there is one.
     fn each(&self, mut write: impl FnMut(&[f64], Option<f64>) -> io::Result<()>) -> io::Result<()> {
         const STRIDE: u64 = 1 << 16;
         let bar = progress::simulating(self.samples);
@@ -259,7 +259,7 @@ impl Record {
         })
     }
 
-    /// What `measure` has to know, and what the record was made of.
+    /// Writes the comment with the facts that `measure` needs and the coefficients of the record.
     fn write_comment(&self, output: &mut impl Write) -> io::Result<()> {
         write!(
             output,
@@ -310,7 +310,7 @@ impl Record {
         })
     }
 
-    /// Counts beyond `i32` are the record's fault, everything else the output's.
+    /// The failure of a record whose counts exceed `i32`, or otherwise the failure of the output.
     fn failure(&self, error: &io::Error, otherwise: impl FnOnce() -> Failure) -> Failure {
         if error.kind() == io::ErrorKind::InvalidData {
             Failure::option(error, "give a larger --scale")
@@ -320,18 +320,21 @@ impl Record {
     }
 }
 
-/// A rate as a count, where it fits.
+/// A rate as a count.
+///
+/// # Errors
+/// When the count does not fit into 32 bits.
 fn count(rate: f64, scale: f64) -> io::Result<i32> {
     let count = (rate / scale).round();
     if (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&count) {
         Ok(count as i32)
     } else {
-        let what = format!("a rate of {rate} is beyond 32-bit counts of {scale}");
+        let what = format!("a rate of {rate} does not fit into a 32-bit count of {scale}");
         Err(io::Error::new(io::ErrorKind::InvalidData, what))
     }
 }
 
-/// The preset's coefficients in the chosen unit, overridden by those given.
+/// The coefficients of the preset in the chosen unit, with those that options override.
 fn coefficients(arguments: &Arguments) -> Result<Coefficients, Failure> {
     let mut coefficients = Coefficients::default();
     let preset = arguments.gyro.or(arguments.preset);
@@ -339,7 +342,7 @@ fn coefficients(arguments: &Arguments) -> Result<Coefficients, Failure> {
         if arguments.unit.sensor() != Sensor::Gyro {
             return Err(Failure::option(
                 format!(
-                    "presets are gyros, and --unit {} is not",
+                    "presets describe gyros, but --unit {} is for accelerometers",
                     arguments.unit.name()
                 ),
                 "give coefficients such as --angle-random-walk, or another --unit",
@@ -396,14 +399,14 @@ fn coefficients(arguments: &Arguments) -> Result<Coefficients, Failure> {
     }
     if !anything {
         return Err(Failure::option(
-            "nothing to simulate",
+            "no preset and no coefficient is given",
             "name a preset (tactical, fog, mems) or give coefficients such as --angle-random-walk",
         ));
     }
     Ok(coefficients)
 }
 
-/// Seconds, plain or with units.
+/// A length of time in seconds, from a number or a text with units.
 fn seconds(text: &str) -> Result<f64, Failure> {
     text.parse()
         .ok()
@@ -415,7 +418,7 @@ fn seconds(text: &str) -> Result<f64, Failure> {
         .ok_or_else(|| {
             Failure::option(
                 format!("--duration {text:?} is not a length of time"),
-                "give seconds, or such as 10min, 2h, 1d",
+                "give seconds, or a number with a unit, such as 10min, 2h, 1d",
             )
         })
 }

@@ -1,4 +1,4 @@
-//! What `watch` is told.
+//! The options of `watch`.
 
 use crate::{command::examples, unit::Unit};
 use clap::Args;
@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 /// Watch a gyro: curve, coefficients and verdict while counts arrive
 ///
-/// A line is a sample: one whole number an axis, between commas, semicolons, tabs or blanks. Lines that
-/// begin with # are comments. A line that is neither is counted and leaves a gap, which no difference
-/// spans; so does nothing else.
+/// Each line is one sample: one whole number for each axis, separated by commas, semicolons, tabs or
+/// blanks. Lines that begin with # are comments. Any other line is counted as invalid and leaves a gap,
+/// which no difference spans.
 #[derive(Debug, Args)]
 #[command(after_help = examples::WATCH)]
 pub(in crate::command) struct Arguments {
@@ -26,25 +26,26 @@ pub(in crate::command) struct Arguments {
     /// Unit of the scaled counts
     #[arg(long, default_value = "deg/s")]
     pub(super) unit: Unit,
-    /// Names of the axes, as many as a line has numbers [default: x,y,z or as many as the first line has]
+    /// Names of the axes, one for each number in a line [default: x,y,z, as many as the first line has
+    /// numbers]
     #[arg(long, value_delimiter = ',', value_name = "NAME,…")]
     pub(super) axes: Option<Vec<String>>,
     /// Serial port to read, such as /dev/ttyACM0 [default: standard input]
     #[arg(long, value_name = "DEVICE")]
     pub(super) port: Option<String>,
-    /// Read a simulated gyro that an image sends from a Cortex-M4F in QEMU
+    /// Read the gyro that a firmware image simulates on a Cortex-M4F in QEMU
     #[arg(long, conflicts_with = "port")]
     pub(super) image: bool,
     /// Bits per second of the serial port
     #[arg(long, default_value_t = 115_200, requires = "port")]
     pub(super) baud: u32,
-    /// The curve file to write at the end, on an interruption and from time to time: .json
+    /// The curve file (.json) to write at the end, on an interruption and at intervals
     #[arg(long, short, value_name = "CURVE.json")]
     pub(super) output: Option<PathBuf>,
-    /// Seconds between savings of the curve
+    /// Seconds from one saving of the curve to the next
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
     pub(super) save_every: f64,
-    /// Seconds between lines where standard output is no terminal
+    /// Seconds from one line to the next, if standard output is not a terminal
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0)]
     pub(super) print_every: f64,
 }

@@ -1,4 +1,4 @@
-//! `watch`: a gyro's curve and coefficients while it is being recorded.
+//! `watch`: shows a gyro's curve and coefficients while it is being recorded.
 
 mod arguments;
 #[cfg(feature = "watch")]
@@ -16,7 +16,7 @@ pub(super) use arguments::Arguments;
 #[cfg(feature = "watch")]
 pub(super) use session::run;
 
-/// Says how to get the command.
+/// Refuses the command with a message that tells how to get it.
 #[cfg(not(feature = "watch"))]
 pub(super) fn run(
     _: &Arguments,

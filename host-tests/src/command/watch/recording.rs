@@ -1,4 +1,4 @@
-//! Lines of counts on their way into the accumulators.
+//! A recording: splits the input into lines and pushes their counts into the accumulators.
 
 use crate::{
     curve_file::AxisCurve,
@@ -8,28 +8,32 @@ use crate::{
 };
 use allanite::Axis as Record;
 
-/// A line longer than this is none.
+/// A longer line, in bytes, is invalid.
 const LONGEST_LINE: usize = 4096;
 
-/// An axis without a gate: what is sent is watched as it is.
+/// An axis without a gate, so that every sample that is sent is shown.
 type Gyro = Record<OCTAVES, 0, (), ()>;
 
-/// What has been recorded.
+/// The samples recorded so far, as accumulators, and the line that is being received.
 pub(super) struct Recording {
     rate_hz: f64,
     rate_per_count: f64,
     unit: Unit,
     names: Option<Vec<String>>,
-    /// Known from the first sample on.
+    /// The axes; their number is known from the first sample on.
     axes: Vec<Gyro>,
-    /// What has come of the next line.
+    /// The bytes received of the next line.
     line: Vec<u8>,
     counts: Vec<i32>,
     garbled: u64,
 }
 
 impl Recording {
-    /// Nothing yet, of a gyro with that scale. Axes are named as given, or as the first line has many.
+    /// An empty recording of a gyro with this rate and scale. Without names, the first line gives the
+    /// number of axes.
+    ///
+    /// # Errors
+    /// When the rate or the scale is not a positive, finite number, or a name is empty or repeated.
     pub(super) fn new(
         rate_hz: f64,
         rate_per_count: f64,
@@ -48,7 +52,7 @@ impl Recording {
             let twice = |(i, name): (usize, &String)| names[..i].contains(name);
             if names.iter().any(String::is_empty) || names.iter().enumerate().any(twice) {
                 return Err(Failure::option(
-                    "--axes: a name is empty or there twice",
+                    "--axes: a name is empty or repeated",
                     "give each axis a name of its own",
                 ));
             }
@@ -65,10 +69,10 @@ impl Recording {
         })
     }
 
-    /// Takes bytes as they come; samples are those of complete lines.
+    /// Takes bytes in pieces of any length; a line counts as soon as it is complete.
     pub(super) fn take(&mut self, bytes: &[u8]) {
         for piece in bytes.split_inclusive(|&byte| byte == b'\n') {
-            // One byte beyond the longest is enough to know that it is too long.
+            // One byte more than the longest line is enough to show that a line is too long.
             let room = (LONGEST_LINE + 1).saturating_sub(self.line.len());
             match piece.strip_suffix(b"\n") {
                 Some(end) => {
@@ -115,12 +119,12 @@ impl Recording {
         }
     }
 
-    /// Samples of an axis so far.
+    /// Number of samples of each axis so far.
     pub(super) fn samples(&self) -> u64 {
         self.axes.first().map_or(0, Gyro::samples)
     }
 
-    /// Ends of contiguous stretches so far.
+    /// Number of gaps so far.
     pub(super) fn gaps(&self) -> u64 {
         self.axes.first().map_or(0, |axis| {
             let [accumulator] = axis.accumulators();
@@ -128,7 +132,7 @@ impl Recording {
         })
     }
 
-    /// Lines that were no samples.
+    /// Number of invalid lines so far.
     pub(super) const fn garbled(&self) -> u64 {
         self.garbled
     }
@@ -138,7 +142,7 @@ impl Recording {
         self.rate_hz
     }
 
-    /// The curves as of now; `None` as long as they have not two octaves.
+    /// The curves of the samples so far, or `None` while there are fewer than two octaves.
     pub(super) fn curves(&self) -> Result<Option<Vec<AxisCurve>>, Failure> {
         let of_axis = |(i, axis): (usize, &Gyro)| {
             let [accumulator] = axis.accumulators();
@@ -199,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn line_that_is_no_sample_is_a_gap_and_an_unfinished_one_is_nothing() {
+    fn invalid_line_leaves_a_gap_and_unfinished_line_is_ignored() {
         let garbled = [
             "1 2\n",
             "1.5\n",

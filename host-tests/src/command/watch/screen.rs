@@ -1,4 +1,4 @@
-//! A recording on the terminal: curves above, coefficients below.
+//! The screen of a recording: the curves above, the coefficients below.
 
 use super::status::{AxisStatus, Status, verdict, waiting};
 use crate::command::{
@@ -24,7 +24,7 @@ use ratatui::{
 };
 use std::io::{self, Stdout};
 
-/// One colour an axis, and again from the first.
+/// The colours of the axes; further axes start again with the first colour.
 const COLOURS: [Color; 6] = [
     Color::Cyan,
     Color::Yellow,
@@ -34,22 +34,25 @@ const COLOURS: [Color; 6] = [
     Color::Red,
 ];
 
-/// The terminal as long as the recording is shown; as it was afterwards.
+/// The terminal while a recording is shown. Dropping the screen restores the terminal.
 pub(super) struct Screen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
 }
 
 impl Screen {
-    /// Takes the terminal.
+    /// Switches the terminal to the screen.
+    ///
+    /// # Errors
+    /// When the terminal cannot be written to.
     pub(super) fn open() -> io::Result<Self> {
         let terminal = Terminal::new(CrosstermBackend::new(io::stdout()))?;
-        // Dropped with an error too, which gives the terminal back.
+        // The screen exists before the switch, so that an error drops it and restores the terminal.
         let screen = Self { terminal };
         execute!(io::stdout(), EnterAlternateScreen, Hide)?;
         Ok(screen)
     }
 
-    /// Shows a recording as it is.
+    /// Draws the status of a recording.
     pub(super) fn draw(&mut self, status: &Status) -> io::Result<()> {
         self.terminal.draw(|frame| draw(frame, status))?;
         Ok(())
@@ -58,12 +61,12 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // Nothing can be done about a terminal that is gone.
+        // An error is ignored, because nothing can be done about a terminal that is gone.
         let _ = execute!(io::stdout(), LeaveAlternateScreen, Show);
     }
 }
 
-/// Lines of an axis' table: a title, a header and five coefficients, between borders.
+/// Lines of an axis' table: a border with the title, a header, five coefficients and a border.
 const TABLE_ROWS: u16 = 8;
 
 fn draw(frame: &mut Frame<'_>, status: &Status) {
@@ -160,7 +163,8 @@ fn curves(frame: &mut Frame<'_>, area: Rect, status: &Status) {
     frame.render_widget(chart, area);
 }
 
-/// Of both coordinates, with some room.
+/// The ranges of both coordinates, in powers of ten. The vertical one has a margin. `None` without
+/// points.
 fn bounds<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> Option<([f64; 2], [f64; 2])> {
     const ROOM: f64 = 0.1;
     let mut bounds: Option<([f64; 2], [f64; 2])> = None;
@@ -172,7 +176,8 @@ fn bounds<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> Option<([f64; 2],
     bounds.map(|(x, [low, high])| (x, [low - ROOM, high + ROOM]))
 }
 
-/// Coefficients of an axis, and how much longer for those that are not measured.
+/// Draws the table of an axis: its coefficients, and how much longer to record for those not yet
+/// measured.
 fn table(frame: &mut Frame<'_>, area: Rect, axis: &AxisStatus, colour: Color, length_s: f64) {
     let title = match &axis.fitted {
         Some(fitted) => format!("{}: {}", axis.name, verdict(&fitted.fit)),
@@ -239,15 +244,15 @@ mod tests {
     fn screen_has_the_record_its_curves_coefficients_and_verdicts() {
         let rows = drawn(100, 40, &status());
         let text = rows.join("\n");
-        assert!(rows[0].starts_with(
-            "30.000 s: 3000 samples at 100 Hz   lines that were no samples: 1, gaps: 1"
-        ));
+        assert!(
+            rows[0].starts_with("30.000 s: 3000 samples at 100 Hz   invalid lines: 1, gaps: 1")
+        );
         assert!(
             rows[1].contains("Allan deviation, deg/s, over τ, s"),
             "{text}"
         );
-        assert!(rows[39].starts_with("curve.json saved 3 s ago   Ctrl-C saves and ends"));
-        // Dots of the curves, from one side of the chart to the other.
+        assert!(rows[39].starts_with("curve.json was saved 3 s ago   Ctrl-C saves and ends"));
+        // The dots of the curves cover rows over the height of the chart.
         let braille = |row: &String| row.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c));
         assert!(
             rows[2..22].iter().filter(|row| braille(row)).count() >= 8,

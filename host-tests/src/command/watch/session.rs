@@ -1,8 +1,9 @@
-//! A recording on its way: read, accumulated, shown and saved.
+//! The session of `watch`: reads, accumulates, shows and saves a recording.
 //!
-//! A thread reads what arrives; the main thread accumulates it, and once a moment fits and shows. At
-//! the end of the input, on SIGINT (Ctrl-C) or SIGTERM, whatever has been read is accumulated, the curve
-//! is saved and the last fit is printed. It is also saved from time to time, each time as a whole.
+//! A thread reads the input. The main thread accumulates it and at intervals fits and shows it. At the
+//! end of the input, and on SIGINT (Ctrl-C) or SIGTERM, everything that has been read is accumulated,
+//! the curve is saved and the last fit is printed. The curve is also saved at intervals, each time as a
+//! complete file.
 
 use super::{
     arguments::Arguments,
@@ -32,15 +33,15 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long input is waited for before signals and the clock are looked at.
+/// Longest wait for input before signals and the clock are checked.
 const MOMENT: Duration = Duration::from_millis(50);
 
-/// On an interruption, input that arrives with no longer pauses has been received before it …
+/// After an interruption, input that arrives without a longer pause counts as received before it.
 const PAUSE: Duration = Duration::from_millis(20);
-/// … but a source that never pauses is not listened to for longer.
+/// After an interruption, a source that never pauses is read for this long at most.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How often the screen is drawn anew.
+/// Time from one drawing of the screen to the next.
 const FRAME: Duration = Duration::from_millis(1000);
 
 /// Runs the command.
@@ -52,10 +53,12 @@ pub(in crate::command) fn run(
     let print_every = seconds("--print-every", arguments.print_every)?;
     if let Some(path) = &arguments.output {
         if !record::is_curve(path) {
-            return Err(Place::file(path)
-                .failure("a curve file's extension is .json", "name the output so"));
+            return Err(
+                Place::file(path).failure("a curve file must end in .json", "rename the output")
+            );
         }
-        // Dropped at once: a place that cannot be written to is to be known before hours of recording.
+        // The file is dropped at once: an output that cannot be written is refused before hours of
+        // recording.
         drop(OutputFile::create(path)?);
     }
     let Arguments {
@@ -74,8 +77,8 @@ pub(in crate::command) fn run(
     let flag = interrupted.clone();
     ctrlc::set_handler(move || flag.store(true, Relaxed)).map_err(|error| {
         Failure::option(
-            format!("signals cannot be caught: {error}"),
-            "start it elsewhere",
+            format!("interruptions cannot be caught: {error}"),
+            "start the program in another environment",
         )
     })?;
     let received = source.listen()?;
@@ -99,7 +102,7 @@ pub(in crate::command) fn run(
         print_every
     };
     let ended = watch.follow(every, save_every, output);
-    // Whatever happened: what was received is kept, and the terminal is as it was.
+    // Even after a failure the terminal is restored and the samples received so far are saved.
     watch.screen = None;
     let saved = watch.save();
     ended?;
@@ -107,7 +110,10 @@ pub(in crate::command) fn run(
     watch.finish(output)
 }
 
-/// A length of time.
+/// The length of time that an option gives in seconds.
+///
+/// # Errors
+/// When the value is not a positive number of seconds.
 fn seconds(option: &str, value: f64) -> Result<Duration, Failure> {
     let valid = Duration::try_from_secs_f64(value).ok();
     valid.filter(|time| !time.is_zero()).ok_or_else(|| {
@@ -118,20 +124,20 @@ fn seconds(option: &str, value: f64) -> Result<Duration, Failure> {
     })
 }
 
-/// A recording on its way.
+/// The state of a session.
 struct Watch<'a> {
     recording: Recording,
     received: Receiver<Received>,
     interrupted: Arc<AtomicBool>,
     path: Option<&'a Path>,
     saved: Option<Instant>,
-    /// Why the last saving on the way failed.
+    /// The message of the last saving, if it failed.
     trouble: Option<String>,
     screen: Option<Screen>,
 }
 
 impl Watch<'_> {
-    /// Records and shows until the input ends or somebody interrupts.
+    /// Records and shows until the input ends or the user interrupts.
     fn follow(
         &mut self,
         show_every: Duration,
@@ -158,7 +164,7 @@ impl Watch<'_> {
         }
     }
 
-    /// Takes what arrives next, if it does within a time; true when nothing more will.
+    /// Takes the next bytes, if they arrive within this time. Returns true when the input has ended.
     fn receive(&mut self, time: Duration) -> Result<bool, Failure> {
         match self.received.recv_timeout(time) {
             Ok(Received::Bytes(bytes)) => {
@@ -171,7 +177,7 @@ impl Watch<'_> {
         }
     }
 
-    /// Takes what had arrived when somebody interrupted.
+    /// Takes the bytes that had arrived before the interruption.
     fn drain(&mut self) -> Result<(), Failure> {
         let begun = Instant::now();
         while begun.elapsed() < PATIENCE {
@@ -196,21 +202,25 @@ impl Watch<'_> {
     fn status(&self) -> Status {
         let saving = match (&self.trouble, self.path, self.saved) {
             (Some(trouble), ..) => format!("not saved: {trouble}"),
-            (None, None, _) => "not saved: no --output given".into(),
-            (None, Some(path), None) => format!("{} not saved yet", path.display()),
+            (None, None, _) => "not saved: --output was not given".into(),
+            (None, Some(path), None) => format!("{} is not saved yet", path.display()),
             (None, Some(path), Some(at)) => {
-                format!("{} saved {} s ago", path.display(), at.elapsed().as_secs())
+                format!(
+                    "{} was saved {} s ago",
+                    path.display(),
+                    at.elapsed().as_secs()
+                )
             }
         };
         Status::of(&self.recording, one_line(&saving))
     }
 
-    /// Puts the curve in its place, as a whole.
+    /// Saves the curve as a complete file, if there is an output and the record is long enough.
     fn save(&mut self) -> Result<(), Failure> {
         let Some(path) = self.path else {
             return Ok(());
         };
-        // Too short for a curve: later, perhaps; `finish` says so at the end.
+        // The record is still too short for a curve. If it stays so, `finish` reports that.
         let Some(curves) = self.recording.curves()? else {
             return Ok(());
         };
@@ -224,16 +234,16 @@ impl Watch<'_> {
         Ok(())
     }
 
-    /// The last fit, as `fit` prints it.
+    /// Prints the last fit in the form of `fit`.
     fn finish(&self, output: &mut impl Write) -> Result<(), Failure> {
         if self.recording.curves()?.is_none() {
             return Err(Failure::option(
                 format!(
-                    "{} samples and {} lines that are none; a curve needs 9 samples",
+                    "received {} samples and {} invalid lines, but a curve needs 9 samples",
                     self.recording.samples(),
                     self.recording.garbled()
                 ),
-                "record longer, and check that a line is one whole number an axis",
+                "record longer, and check that each line has one whole number for each axis",
             ));
         }
         let status = self.status();

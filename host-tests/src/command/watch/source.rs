@@ -1,4 +1,4 @@
-//! Where counts come from: one variant a source, bytes from all of them.
+//! The sources of counts. Each of them gives bytes, which a thread of its own reads.
 
 use crate::{
     failure::{Failure, one_line},
@@ -11,21 +11,21 @@ use std::{
     time::Duration,
 };
 
-/// Bytes that are taken at a time.
+/// Largest number of bytes read at a time.
 const CHUNK: usize = 1 << 16;
 
-/// Chunks that wait to be accumulated.
+/// Number of chunks that may wait to be accumulated.
 const WAITING: usize = 64;
 
-/// How long a port is waited for before it is asked again.
+/// Longest wait for a serial port before it is read again.
 const PORT_TIMEOUT: Duration = Duration::from_millis(100);
 
-/// A stream of lines.
+/// A source of lines of counts.
 #[derive(Clone, Debug)]
 pub(super) enum Source {
-    /// What is piped in.
+    /// Standard input.
     StandardInput,
-    /// A serial port, from the next line on.
+    /// A serial port, read from the beginning of the next line on.
     SerialPort {
         /// Its name.
         port: String,
@@ -36,16 +36,20 @@ pub(super) enum Source {
     Image,
 }
 
-/// What a source has to say.
+/// A message of a source.
 pub(super) enum Received {
     /// The next bytes.
     Bytes(Vec<u8>),
-    /// Nothing more, for this reason. A source that has come to its end just goes.
+    /// The failure that ended the source. A source whose input has ended closes the channel without a
+    /// message.
     Failure(Failure),
 }
 
 impl Source {
     /// Opens the source and reads it in a thread of its own.
+    ///
+    /// # Errors
+    /// When the serial port cannot be opened, or the image cannot be built or started.
     pub(super) fn listen(self) -> Result<Receiver<Received>, Failure> {
         let (sender, receiver) = sync_channel(WAITING);
         match self {
@@ -60,7 +64,7 @@ impl Source {
                         "check the name, the cable and the permission",
                     )
                 })?;
-                // It is opened in the middle of a line.
+                // A port is usually opened in the middle of a line, which is left out.
                 let lines = FromNextLine {
                     source: opened,
                     begun: false,
@@ -75,7 +79,8 @@ impl Source {
                     if let Some(output) = emulator.stdout.take() {
                         pass_on(output, "the image", &sender);
                     }
-                    // It sends for ever: whoever listened has gone. One that has ended cannot be killed.
+                    // The image sends for ever, so this point is reached when the receiver has gone. An
+                    // error is ignored, because an emulator that has ended cannot be killed.
                     let _ = emulator.kill();
                     let _ = emulator.wait();
                 });
@@ -85,7 +90,7 @@ impl Source {
     }
 }
 
-/// Reads to the end, or until nobody listens.
+/// Reads the source to its end, or until the receiver has gone.
 fn pass_on(mut source: impl Read, name: &str, sender: &SyncSender<Received>) {
     let mut chunk = vec![0; CHUNK];
     loop {
@@ -97,7 +102,7 @@ fn pass_on(mut source: impl Read, name: &str, sender: &SyncSender<Received>) {
             }
             Err(error) => Received::Failure(Failure::option(
                 format!("{}: {error}", one_line(name)),
-                "check the cable; what was received is kept",
+                "check the cable; the samples received so far are kept",
             )),
         };
         let last = matches!(received, Received::Failure(_));
@@ -107,7 +112,7 @@ fn pass_on(mut source: impl Read, name: &str, sender: &SyncSender<Received>) {
     }
 }
 
-/// Leaves out what comes before the first end of a line.
+/// A reader that leaves out everything up to the first line break.
 struct FromNextLine<R> {
     source: R,
     begun: bool,
@@ -137,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn port_is_read_from_the_next_line_on_whatever_the_pieces() {
+    fn port_is_read_from_the_next_line_on_for_pieces_of_any_length() {
         let text = b"23,4\n1,2\n3,4\n";
         for piece in 1..=text.len() {
             let pieces = text.chunks(piece).map(<[u8]>::to_vec);

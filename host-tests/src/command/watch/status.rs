@@ -1,4 +1,4 @@
-//! What there is to be said of a recording at a moment.
+//! The status of a recording: its length, losses, fits and verdicts at a moment.
 
 use super::recording::Recording;
 use crate::command::{
@@ -15,34 +15,34 @@ use allanite::{
 };
 use std::path::Path;
 
-/// Two-sided 95 % of a normal distribution, in standard errors.
+/// Half-width of the two-sided 95 % interval of a normal distribution, in standard errors.
 const TWO_SIDED: f64 = 1.96;
 
-/// A recording at a moment.
+/// The status of a recording at a moment.
 pub(super) struct Status {
     pub(super) rate_hz: f64,
     pub(super) samples: u64,
     pub(super) gaps: u64,
     pub(super) garbled: u64,
-    /// When and where the curve was saved, in words.
+    /// A sentence that tells where and when the curve was saved.
     pub(super) saving: String,
     pub(super) axes: Vec<AxisStatus>,
 }
 
-/// One axis.
+/// The status of one axis.
 pub(super) struct AxisStatus {
     pub(super) name: String,
-    /// Nothing as long as the record is too short, or the axis does not move.
+    /// The fit, or `None` while the record is too short or the values do not change.
     pub(super) fitted: Option<Fitted>,
 }
 
 impl Status {
-    /// Fits every axis as it is now.
+    /// Fits the samples that every axis has so far.
     pub(super) fn of(recording: &Recording, saving: String) -> Self {
         let curves = recording.curves().ok().flatten().unwrap_or_default();
         let axes = curves.into_iter().map(|curve| AxisStatus {
             name: curve.axis.clone(),
-            // What cannot be fitted yet may be later.
+            // An axis that cannot be fitted yet may be fitted later.
             fitted: Fitted::new(Path::new(""), curve, MethodName::Covariance).ok(),
         });
         Self {
@@ -60,15 +60,12 @@ impl Status {
         self.samples as f64 / self.rate_hz
     }
 
-    /// What was lost.
+    /// The numbers of invalid lines and of gaps, in words.
     pub(super) fn losses(&self) -> String {
-        format!(
-            "lines that were no samples: {}, gaps: {}",
-            self.garbled, self.gaps
-        )
+        format!("invalid lines: {}, gaps: {}", self.garbled, self.gaps)
     }
 
-    /// All in one line.
+    /// The whole status in one line.
     pub(super) fn line(&self) -> String {
         let mut parts = vec![format!(
             "{} ({} samples)",
@@ -100,7 +97,7 @@ impl Status {
     }
 }
 
-/// Whether the five terms are enough.
+/// The verdict on the five terms, with the p-value.
 pub(super) fn verdict(fit: &Fit) -> String {
     match fit.p_value {
         p if p >= ADEQUATE_P => format!("adequate, p {}", probability(p)),
@@ -109,11 +106,14 @@ pub(super) fn verdict(fit: &Fit) -> String {
     }
 }
 
-/// How much longer to record for a coefficient; nothing for one that is measured.
+/// How much longer to record until a coefficient is measured, in words; empty for a measured
+/// coefficient.
 ///
-/// One that is not observable is taken to be at its bound, as the fit does. Of one with zero within its
-/// interval the square is taken to be the best value or one standard error, whichever is larger, and the
-/// standard error to fall with the root of the record's length until 1.96 of it are less.
+/// A coefficient that is not observable is assumed to be at its bound, as in the fit. For a coefficient
+/// whose interval includes zero, the squared coefficient is assumed to be its best value or one standard
+/// error, whichever is larger. The standard error is assumed to fall with the square root of the
+/// record's length. The record is long enough when 1.96 standard errors are less than the squared
+/// coefficient.
 pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
     let needed_s = match coefficient.state {
         State::Measured => return String::new(),
@@ -129,7 +129,7 @@ pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
     if needed_s > length_s {
         format!("{} more", duration(needed_s - length_s))
     } else {
-        // Gaps have made less of this record than its length.
+        // The record is long enough by its length, but gaps have made it worth less.
         format!("{} without gaps", duration(needed_s))
     }
 }
@@ -139,7 +139,7 @@ pub(super) mod tests {
     use super::*;
     use crate::unit::Unit;
 
-    /// Half a minute of white counts, with a line that is none.
+    /// The status of half a minute of white noise with one invalid line.
     pub(in super::super) fn status() -> Status {
         let mut recording = Recording::new(
             100.0,
@@ -159,15 +159,13 @@ pub(super) mod tests {
                 recording.take(b"oops\n");
             }
         }
-        Status::of(&recording, "curve.json saved 3 s ago".into())
+        Status::of(&recording, "curve.json was saved 3 s ago".into())
     }
 
     #[test]
     fn line_has_every_axis_with_values_bounds_and_a_verdict() {
         let line = status().line();
-        assert!(line.starts_with(
-            "30.000 s (3000 samples); lines that were no samples: 1, gaps: 1; left: Q "
-        ));
+        assert!(line.starts_with("30.000 s (3000 samples); invalid lines: 1, gaps: 1; left: Q "));
         assert_eq!(line.matches("adequate, p = 0.").count(), 2, "{line}");
         assert!(
             line.contains("; right: Q ") && line.contains(" N 2."),

@@ -153,7 +153,7 @@ fn impossible_questions_are_refused() {
         (&["--hold-out", "-0.5"], "--hold-out -0.5 is impossible"),
         (
             &["--hold-out", "0.99999"],
-            "1 samples, and two octaves need 9",
+            "1 samples are too few: two octaves need 9",
         ),
     ] {
         let arguments = [&["compare", "log.csv"], arguments].concat();

@@ -55,7 +55,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
         (
             "short.csv",
             &[],
-            "short.csv: 3 samples, and two octaves need 9; record longer",
+            "short.csv: 3 samples are too few: two octaves need 9; record longer",
         ),
         (
             "stuck.csv",

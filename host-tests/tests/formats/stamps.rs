@@ -76,7 +76,7 @@ fn seconds_and_nanoseconds_are_one_stamp() {
         let log = read_text(&text, &Options::default()).unwrap();
         assert_eq!((log.rate_hz, log.axes.len()), (200.0, 1), "{sec}");
         assert!(log.axes[0].accumulator.gaps() == 0 && log.axes[0].accumulator.samples() == 600);
-        let name = format!("200 Hz by the time stamps of {sec} and {nanosec}, in ns");
+        let name = format!("200 Hz from the time stamps of {sec} and {nanosec}, in ns");
         assert!(log.notes[0].ends_with(&name), "{}", log.notes[0]);
     }
 }
@@ -111,7 +111,7 @@ fn gaps_end_stretches_and_repeated_rows_are_left_out() {
         let notes = log.notes.join("\n");
         assert!(
             notes.contains("1 gap, the longest 105ms, about 20 samples lost")
-                && notes.contains("1 row with the stamp before it left out"),
+                && notes.contains("1 row with a repeated stamp left out"),
             "{notes}"
         );
     }
@@ -127,17 +127,17 @@ fn stamps_that_say_nothing_are_refused_with_their_row() {
         (
             slower.collect::<Vec<_>>(),
             "a.csv:3017: two rates in one log: time stamps are 10ms apart up to here, and were 5ms \
-             apart before; cut the record there, or give --rate to leave the stamps out",
+             apart before; cut the record there, or give --rate to ignore the stamps",
         ),
         (
             back.collect(),
             "a.csv:3002: time stamps go back from 14995000 to 7; \
-             cut the record there, or give --rate to leave the stamps out",
+             cut the record there, or give --rate to ignore the stamps",
         ),
         (
             coarse.collect(),
             "a.csv: time stamps repeat in 2250 of 3000 rows: too coarse, or written in bursts; \
-             give --rate to leave them out",
+             give --rate to ignore the stamps",
         ),
     ] {
         let text = stamped("time_us,gx [deg/s]", stamps.into_iter());

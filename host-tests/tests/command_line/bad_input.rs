@@ -1,4 +1,4 @@
-//! One line, and nothing lost.
+//! Bad input ends with one line, and no existing output is lost.
 
 use super::folder;
 use host_tests::program::refusal;

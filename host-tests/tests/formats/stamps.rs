@@ -1,4 +1,4 @@
-//! The rate, and gaps, follow from time stamps.
+//! The sampling rate and the gaps follow from the time stamps.
 
 use super::{counts, read_text};
 use allanite::Accumulator;
@@ -68,7 +68,7 @@ fn seconds_and_nanoseconds_are_one_stamp() {
         let mut text = format!("Time,{sec},{nanosec},angular_velocity.x\n");
         for (i, count) in (0i64..).zip(counts().iter().flatten().cycle().take(600)) {
             let stamp = 1_700_000_000_900_000_000 + 5_000_000 * i;
-            // When it was recorded, in bursts.
+            // This is the time of recording, which comes in bursts.
             let recorded = 1_700_000_001 + i / 50;
             let (sec, nanosec) = (stamp / 1_000_000_000, stamp % 1_000_000_000);
             let _ = writeln!(text, "{recorded},{sec},{nanosec},{count}");
@@ -82,7 +82,7 @@ fn seconds_and_nanoseconds_are_one_stamp() {
 }
 
 #[test]
-fn gaps_end_stretches_and_repeated_rows_are_left_out() {
+fn gaps_split_the_record_and_repeated_rows_are_left_out() {
     let noise = counts();
     let mut expected = Accumulator::<OCTAVES>::new();
     let mut text = String::from("timestamp [us],gx [deg/s]\n");
@@ -118,7 +118,7 @@ fn gaps_end_stretches_and_repeated_rows_are_left_out() {
 }
 
 #[test]
-fn stamps_that_say_nothing_are_refused_with_their_row() {
+fn unusable_stamps_are_refused_with_their_row() {
     let regular = || (0..3000).map(|i| 5000 * i);
     let slower = regular().chain((1..500).map(|i| 5000 * 2999 + 10_000 * i));
     let back = regular().chain([7]);

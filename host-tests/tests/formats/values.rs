@@ -1,4 +1,4 @@
-//! What was written is read, and what cannot be meant is refused.
+//! Values that were written are read back, and contradictory requests are refused.
 
 use super::{
     ACCELEROMETER, GYRO, assert_sums, counts, fixture, of, read, read_text, topic, try_read,
@@ -62,7 +62,7 @@ fn every_format_gives_the_values_that_were_written() {
 }
 
 #[test]
-fn what_was_found_is_said_on_one_line() {
+fn detected_columns_units_and_rate_are_noted_on_one_line() {
     let notes = read("euroc.csv", &Options::default()).notes;
     assert_eq!(
         notes,
@@ -84,7 +84,7 @@ fn what_was_found_is_said_on_one_line() {
 }
 
 #[test]
-fn bags_and_logs_of_no_or_several_sensors_are_refused_by_what_they_hold() {
+fn bags_and_logs_of_no_or_several_sensors_are_refused_with_a_list_of_their_topics() {
     for (name, options, expected) in [
         (
             "two-imus.mcap",
@@ -142,7 +142,7 @@ fn bags_and_logs_of_no_or_several_sensors_are_refused_by_what_they_hold() {
 }
 
 #[test]
-fn units_that_contradict_or_cannot_be_are_refused_and_doubtful_ones_doubted() {
+fn contradictory_and_impossible_units_are_refused_and_doubtful_ones_noted() {
     let rows = |scale: f64| {
         counts().iter().fold(String::new(), |mut text, row| {
             let _ = writeln!(text, "{},{}", f64::from(row[0]) * scale, row[1]);

@@ -1,11 +1,11 @@
-//! What is refused, in a line.
+//! Bad logs are refused in one line.
 
 use super::{at_100_hz, columns, counts, gzip, header, npy, refusal, rows_of_text, try_read};
 use host_tests::log::{Options, npy_header::Kind};
 use std::fmt::Write as _;
 
 #[test]
-fn outlier_that_leaves_the_noise_no_counts_is_refused() {
+fn outlier_that_makes_the_noise_smaller_than_a_count_is_refused() {
     let mut text = String::from("gx\n1e9\n");
     for [x, ..] in counts(500) {
         let _ = writeln!(text, "{}", f64::from(x) * 1e-4);

@@ -71,7 +71,7 @@ fn numbers_of_a_fit_are_kept_in_single_precision() {
 /// The curve has no noise, so that the derivatives of a fit with respect to the octaves show how
 /// errors propagate.
 #[test]
-fn covariance_is_that_of_errors_propagated_through_the_fit() {
+fn covariance_agrees_with_errors_propagated_through_the_fit() {
     let squares = [0.04_f64, 0.004, 0.0009].map(|x| x * x);
     let model = Model::new(&[&AngleRandomWalk, &BiasInstability, &RateRandomWalk]).unwrap();
     let octaves = |changed: usize, step: f64| {
@@ -150,7 +150,7 @@ fn every_change_of_one_byte_is_refused() {
 }
 
 #[test]
-fn contents_of_every_kind_are_refused_or_make_a_record() {
+fn arbitrary_contents_are_refused_or_give_a_valid_record() {
     let bytes = encoded(&three_axes());
     let payload = &bytes[8..bytes.len() - 4];
     let mut accepted = 0;

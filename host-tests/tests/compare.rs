@@ -78,7 +78,7 @@ fn effect_takes_the_place_of_what_it_replaces() {
 }
 
 #[test]
-fn held_out_part_judges_a_fit_to_the_other() {
+fn held_out_part_judges_the_fit_to_the_first_part() {
     let folder = folder();
     let arguments = ["compare", "log.csv", "--hold-out", "0.25"];
     let document = json(folder.path(), &arguments);

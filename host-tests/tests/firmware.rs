@@ -42,7 +42,10 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
         let begun = Instant::now();
         while !curve.exists() {
             assert!(watch.try_wait().is_ok_and(|status| status.is_none()));
-            assert!(begun.elapsed().as_secs() < 300, "nothing is saved");
+            assert!(
+                begun.elapsed().as_secs() < 300,
+                "no curve was saved in time"
+            );
             thread::sleep(Duration::from_millis(1));
         }
         thread::sleep(Duration::from_millis(milliseconds));

@@ -75,7 +75,7 @@ fn broken_file_among_many_is_named_and_the_others_make_one_table() {
 }
 
 #[test]
-fn json_of_many_has_each_file_as_it_is_by_itself() {
+fn json_of_many_files_contains_each_as_for_a_single_file() {
     let (folder, names) = folder();
     let (text, errors, status) = run(folder.path(), &["fit", "--json"], &names);
     assert_eq!(status, Some(2));

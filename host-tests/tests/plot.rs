@@ -115,7 +115,7 @@ fn marks_lie_where_the_figures_are() {
 }
 
 #[test]
-fn words_plot_and_figures_agree() {
+fn text_plot_and_json_agree() {
     for command in ["compare", "diagnose"] {
         let text = output(Path::new("."), &[command, ADIS16405]);
         let document = json(Path::new("."), &[command, ADIS16405]);
@@ -215,7 +215,7 @@ fn marks(drawing: &Document) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn drawing_has_its_marks_where_the_figures_are_and_words_for_everything() {
+fn drawing_has_its_marks_at_the_figures_and_describes_them_in_words() {
     let folder = TempDir::new().unwrap();
     let arguments = [
         "plot",

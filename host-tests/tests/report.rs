@@ -74,7 +74,7 @@ const CONTRAST: &str = "((a, b) => {
 })";
 
 #[test]
-fn the_page_carries_the_diagnosis_as_it_is_printed_and_nothing_from_elsewhere() {
+fn the_page_contains_the_printed_diagnosis_and_loads_nothing_external() {
     let folder = TempDir::new().unwrap();
     let diagnosis = reported(folder.path(), &[ADIS16405]);
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();

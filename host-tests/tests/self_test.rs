@@ -61,7 +61,7 @@ fn run(plan: Plan) -> (Status, u64) {
 }
 
 #[test]
-fn a_gyro_within_its_limits_passes_and_one_beyond_fails_by_how_much() {
+fn a_gyro_within_its_limits_passes_and_one_beyond_fails_with_the_excess() {
     // The angle random walk is 0.005 °/s/√Hz.
     let (status, samples) = run(plan("angle_random_walk", 0.02));
     assert_eq!((status, samples), (Status::Passed, 1000));
@@ -149,7 +149,7 @@ fn a_gyro_that_is_moved_or_hangs_is_invalid_with_the_reason() {
 }
 
 #[test]
-fn a_curve_that_the_five_terms_do_not_explain_fails_where_that_is_asked() {
+fn a_curve_that_the_five_terms_do_not_explain_fails_if_the_plan_demands_a_fit() {
     let wave = |at: u64, count: i32| {
         let phase = std::f64::consts::TAU * 7.7 * at as f64 / RATE_HZ;
         count + (0.1 / UNIT * phase.sin()) as i32

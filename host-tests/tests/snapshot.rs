@@ -237,7 +237,7 @@ fn contents_that_no_record_has_are_refused() {
 }
 
 #[test]
-fn contents_of_every_kind_are_refused_or_make_a_snapshot() {
+fn arbitrary_contents_are_refused_or_give_a_valid_snapshot() {
     let bytes = snapshot(&recorded::<13>(1000));
     let payload = &bytes[8..bytes.len() - 4];
     let mut accepted = 0;

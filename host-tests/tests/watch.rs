@@ -97,7 +97,7 @@ fn wait_for_curve(folder: &Path, child: &mut Child) {
         }
         assert!(
             begun.elapsed() < Duration::from_secs(60),
-            "nothing is saved"
+            "no curve was saved in time"
         );
         thread::sleep(Duration::from_millis(1));
     }
@@ -184,7 +184,7 @@ fn send(
 }
 
 #[test]
-fn interrupted_record_is_a_prefix_that_has_all_that_was_flushed_well_before() {
+fn interrupted_record_is_a_prefix_with_all_samples_flushed_before() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(11);
     for (seed, name) in [(1, "INT"), (2, "TERM"), (3, "INT"), (4, "INT")] {
         let folder = TempDir::new().unwrap();

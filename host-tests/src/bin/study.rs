@@ -378,7 +378,7 @@ fn self_tests(devices: u64) {
         for missed in shares.into_iter().filter(|_| case.compared) {
             let fixed = self_test::fixed_length_s(case, devices, missed);
             println!(
-                "a test of one look that misjudges at most {:.2} % of devices at 1.3 times the limit or its inverse: {fixed:.1} s",
+                "a test of one look that misses at most {:.2} % of devices a factor of 1.3 off the limit: {fixed:.1} s",
                 100.0 * missed
             );
         }

@@ -172,7 +172,7 @@ fn logs_in_radians_and_in_degrees_give_the_same_coefficients() {
 }
 
 #[test]
-fn source_and_licence_are_kept_and_axes_renamed() {
+fn source_and_licence_are_kept_and_axes_can_be_renamed() {
     let folder = folder();
     let path = folder.path();
     let measure = [
@@ -238,7 +238,7 @@ fn accelerometers_have_their_own_words_and_units() {
     assert_eq!(
         text,
         output(path, &["fit", "a.json"]),
-        "curves keep the unit"
+        "the curve file keeps the unit"
     );
     let line = refusal(path, &["simulate", "mems", "--unit", "g"]);
     assert!(

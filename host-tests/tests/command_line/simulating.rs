@@ -27,7 +27,7 @@ fn simulation_depends_on_the_seed_and_nothing_else() {
     assert_eq!(
         first(&one),
         first(&axes),
-        "the first axis is that of a single one"
+        "the first of several axes equals a single axis"
     );
     let named = output(
         folder.path(),

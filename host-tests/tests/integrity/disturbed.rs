@@ -231,7 +231,7 @@ fn missing_samples_are_refused_from_a_tenth_on() {
 }
 
 #[test]
-fn a_gap_hides_no_level_that_changed_across_it() {
+fn a_change_of_level_across_a_gap_is_not_counted() {
     let mut integrity = Integrity::default();
     for (part, counts) in mems(5).chunks(8192).enumerate() {
         integrity.gap();

@@ -200,7 +200,7 @@ fn bad_arrays_are_refused() {
 }
 
 #[test]
-fn missing_columns_are_named_with_those_there_are() {
+fn missing_columns_are_reported_with_the_existing_ones() {
     let good = rows_of_text(&counts(50));
     let named = format!("gx,gy,gz\n{good}");
     for (text, list, expected) in [

@@ -66,7 +66,7 @@ fn diagnosed(hidden: Hidden) -> (Curve<OCTAVES>, Vec<Step<OCTAVES>>) {
 }
 
 #[test]
-fn it_is_simulated_with_its_own_allan_variance() {
+fn own_effect_is_simulated_with_its_own_allan_variance() {
     for hidden in hidden() {
         let curve = curve(Coefficients::default(), hidden, 1 << 19, 7);
         let shape = SampledShape {
@@ -84,7 +84,7 @@ fn it_is_simulated_with_its_own_allan_variance() {
 }
 
 #[test]
-fn it_is_found_and_explained() {
+fn own_effect_is_found_and_explained() {
     for hidden in hidden() {
         let (_, steps) = diagnosed(hidden);
         let found: Vec<_> = steps
@@ -106,7 +106,7 @@ fn it_is_found_and_explained() {
 }
 
 #[test]
-fn it_is_stored_and_read_back() {
+fn own_effect_is_stored_and_read_back() {
     for hidden in hidden() {
         let (curve, steps) = diagnosed(hidden);
         let last = steps.last().expect("a step");

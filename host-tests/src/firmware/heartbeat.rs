@@ -12,8 +12,8 @@ pub const PERIOD: Duration = Duration::from_secs(8);
 
 /// Prints on standard error what has begun, and then repeats it until it is dropped.
 ///
-/// It does not use what a test captures, because these lines are for the person who waits for the
-/// test.
+/// It writes directly to standard error, past the capture of the test runner, because these lines are
+/// for the person who waits for the test.
 #[derive(Debug)]
 pub struct Heartbeat {
     end: Option<Sender<()>>,

@@ -1,4 +1,4 @@
-//! Time a sample of the accumulator on this host: `cargo xtask bench` reads it.
+//! Times the accumulator per sample on this host. `cargo xtask bench` reads the output.
 
 use allanite::Accumulator;
 use host_tests::demonstration::{AMPLITUDES, simulated::SimulatedGyro};
@@ -21,7 +21,7 @@ fn main() {
     println!("ns_per_sample {single:.3}");
 }
 
-/// Median of several runs, in ns a sample.
+/// The median of several runs, in ns per sample.
 fn median(counts: &[i32], work: impl Fn(&mut Axis, &[i32])) -> f64 {
     let mut times = [(); RUNS].map(|()| {
         let mut axis = Axis::new();

@@ -1,4 +1,5 @@
-//! Axes: one record of samples and gaps behind everything, whatever was left out, lost, merged or restored.
+//! Axes keep one record of samples and gaps for all their parts, whatever was left out, lost,
+//! merged or restored.
 
 #[path = "common/seeded.rs"]
 mod seeded;
@@ -17,7 +18,7 @@ use seeded::seeded;
 
 const OCTAVES: usize = 12;
 const RATE_HZ: f64 = 100.0;
-/// °/s a count.
+/// The size of a count, in °/s.
 const UNIT: f64 = 1e-3;
 const SAMPLES: usize = 1 << 16;
 
@@ -27,7 +28,7 @@ fn scale() -> Scale {
 
 type Counts = ([i32; 3], [i32; 1]);
 
-/// Three axes at rest beside a temperature.
+/// The counts of three axes at rest and of a temperature.
 fn rest() -> Vec<Counts> {
     let mut axes = [3, 4, 5].map(|seed| Simulator::new(Preset::Mems.coefficients(), RATE_HZ, seed));
     let mut sample = |n: usize| {
@@ -40,7 +41,7 @@ fn rest() -> Vec<Counts> {
     (0..SAMPLES).map(&mut sample).collect()
 }
 
-/// The same with three spikes, one in each axis, and a motion about the second.
+/// The same counts with one spike in each axis, and with a motion about the second axis.
 fn disturbed() -> Vec<Counts> {
     let mut samples = rest();
     samples[9000].0[0] = 32_767;
@@ -52,13 +53,14 @@ fn disturbed() -> Vec<Counts> {
     samples
 }
 
-/// What is kept of a record: the places of samples, and `None` for gaps.
+/// An independent statement of what the gate keeps of a record: the indices of samples, and `None`
+/// for gaps.
 ///
-/// It says in other words what the gate does: what is odd in any axis is a gap; motion and stuck values take
-/// the 128 places before them with them, and motion the 64 samples after it.
+/// A sample that is odd in any axis becomes a gap. Motion and stuck values also remove the 128
+/// samples before them, and motion removes the 64 samples after it.
 struct Cleaning {
     seen: [Integrity; 3],
-    /// Let go already.
+    /// The samples that have left the gate.
     kept: Vec<Option<usize>>,
     held: Vec<Option<usize>>,
     behind: usize,
@@ -95,7 +97,7 @@ impl Cleaning {
         }
     }
 
-    /// The power fails: what is held back is lost.
+    /// Simulates a power failure: the samples that the gate holds back are lost.
     fn cut(&mut self) {
         self.held = vec![None];
         self.behind = 0;
@@ -119,7 +121,7 @@ fn plan() -> Plan {
     }
 }
 
-/// Takes a look at the first axis where one is due.
+/// Takes a look at the first axis if one is due.
 fn look<G: GatePart, M: MomentPart>(
     axes: &Axes<OCTAVES, 1, G, M>,
     test: &mut SelfTest<OCTAVES>,
@@ -132,7 +134,7 @@ fn look<G: GatePart, M: MomentPart>(
 }
 
 #[test]
-fn spikes_a_motion_and_a_power_loss_leave_what_the_cleaned_record_leaves() {
+fn spikes_a_motion_and_a_power_loss_give_the_same_result_as_the_cleaned_record() {
     type Gyro = Axes<OCTAVES, 1>;
     let samples = disturbed();
     let new_test = || SelfTest::<OCTAVES>::new(plan(), scale()).unwrap();
@@ -140,7 +142,7 @@ fn spikes_a_motion_and_a_power_loss_leave_what_the_cleaned_record_leaves() {
     let mut cleaning = Cleaning::new();
     let mut buffer = vec![0; Gyro::snapshot_bytes(1)];
     for (n, &sample) in samples.iter().enumerate() {
-        // The power fails a while after a snapshot, and the product starts again.
+        // The power fails some time after a snapshot, and the product starts again.
         if n == 20_000 {
             let length = gyro
                 .snapshot(std::slice::from_ref(&test), &mut buffer)
@@ -162,7 +164,8 @@ fn spikes_a_motion_and_a_power_loss_leave_what_the_cleaned_record_leaves() {
     gyro.release();
     look(&gyro, &mut test, &mut looks);
 
-    // The cleaned record, without a gate, and a self-test that was never interrupted.
+    // The reference is the cleaned record without a gate, with a self-test that was never
+    // interrupted.
     let mut places = cleaning.kept;
     places.extend(cleaning.held);
     let mut clean = Axes::<OCTAVES, 1, ()>::new();
@@ -189,14 +192,16 @@ fn spikes_a_motion_and_a_power_loss_leave_what_the_cleaned_record_leaves() {
     }
     assert!(looks.len() >= 5, "{looks:?}");
     assert_eq!(looks, clean_looks);
-    // 9 bytes of envelope and parts before what is kept, and behind it losses and checksum.
+    // The envelope and the parts take 9 bytes before the kept record. The losses and the checksum
+    // follow it.
     let (mut buffer, mut clean_buffer) = ([0; 16_384], [0; 16_384]);
     let stored = gyro.snapshot(&[], &mut buffer).unwrap();
     let of_clean = clean.snapshot(&[], &mut clean_buffer).unwrap();
     let kept = 13..of_clean.len() - 4 - 1;
     assert!(kept.len() > 500);
     assert_eq!(stored[kept.clone()], of_clean[kept]);
-    // Three spikes with the cluster of none of them, the motion, and the clusters of 1024 that it ends in.
+    // The gate leaves out three spikes, the motion, and the clusters of 1024 samples in which the
+    // motion ends. The spikes take no cluster with them.
     assert!(
         (600..4000).contains(&gyro.left_out()),
         "{}",
@@ -208,7 +213,7 @@ fn spikes_a_motion_and_a_power_loss_leave_what_the_cleaned_record_leaves() {
 }
 
 #[test]
-fn a_gyro_that_is_moved_and_hit_now_and_then_keeps_its_noise() {
+fn motions_and_shocks_now_and_then_do_not_change_the_measured_noise() {
     let mut counts: Vec<i32> = rest().iter().map(|(counts, _)| counts[0]).collect();
     for at in [9000, 30_000, 50_000] {
         for (i, count) in counts[at..at + 500].iter_mut().enumerate() {
@@ -236,7 +241,7 @@ fn a_gyro_that_is_moved_and_hit_now_and_then_keeps_its_noise() {
 }
 
 #[test]
-fn a_record_of_which_too_much_is_left_out_is_invalid_and_says_so() {
+fn a_record_of_which_too_much_is_left_out_is_invalid() {
     let mut gyro = Axis::<OCTAVES>::new();
     for (n, (counts, _)) in rest().iter().take(20_000).enumerate() {
         let hangs = (5000..12_000).contains(&n);
@@ -251,7 +256,7 @@ fn a_record_of_which_too_much_is_left_out_is_invalid_and_says_so() {
 }
 
 #[test]
-fn values_that_are_stuck_are_left_out_to_the_first() {
+fn stuck_values_are_left_out_from_the_first_one_on() {
     let mut samples = rest();
     let value = samples[20_000].0[0];
     for (counts, _) in &mut samples[20_000..20_500] {
@@ -306,7 +311,7 @@ fn three_axes_at_rest_are_three_single_axes() {
 }
 
 #[test]
-fn limits_are_kept_when_all_else_is_forgotten() {
+fn limits_survive_a_reset() {
     static LIMITS: Limits = Limits {
         spike_factor: 200,
         ..Limits::DEFAULT
@@ -367,7 +372,7 @@ fn snapshots_of_other_parts_and_plans_are_refused_and_leave_nothing() {
 }
 
 #[test]
-fn snapshot_of_an_accumulator_alone_is_restored_into_an_axis_without_more() {
+fn snapshot_of_an_accumulator_is_restored_into_an_axis_without_other_parts() {
     let mut accumulator = allanite::Accumulator::<OCTAVES>::new();
     accumulator.push_slice(&[3, 1, -2, 4, 0, 7, 2, 2]);
     let mut buffer = [0; 1000];
@@ -380,7 +385,7 @@ fn snapshot_of_an_accumulator_alone_is_restored_into_an_axis_without_more() {
     assert_eq!(more.restore(&mut [], stored), Err(Error::OtherParts));
 }
 
-/// Stretches of three axes and a covariate, of any counts.
+/// Stretches of three axes and a covariate with any counts.
 fn stretches() -> impl Strategy<Value = Vec<Vec<Counts>>> {
     let count = || prop_oneof![4 => -100..100, 1 => any::<i32>(), 1 => Just(i32::MIN)];
     let sample = ([count(), count(), count()], [count()]);
@@ -431,7 +436,8 @@ fn merge_and_restore<G: GatePart>(stretches: &[Vec<Counts>]) -> Result<(), TestC
         let expected = batch.evidence(axis, scale(), [0.01]).unwrap();
         let after = restored.evidence(axis, scale(), [0.01]).unwrap();
         prop_assert_eq!(&after, &expected);
-        // What a record that is merged has learnt of its noise comes late to another.
+        // The noise level that a merged record has learnt reaches the other record late, so that
+        // their gates may decide differently.
         if std::mem::size_of::<G>() == 0 && merged.left_out() == batch.left_out() {
             let merged = merged.evidence(axis, scale(), [0.01]).unwrap();
             if merged.samples == expected.samples {

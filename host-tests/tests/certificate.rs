@@ -1,4 +1,5 @@
-//! Factory records: what a fit and a diagnosis said, refused where anything has changed.
+//! Factory records keep what a fit and a diagnosis reported, and are refused if anything has
+//! changed.
 
 #[path = "common/factory.rs"]
 mod factory;
@@ -22,7 +23,7 @@ fn three_axes() -> Certificate {
 }
 
 #[test]
-fn record_keeps_what_fit_and_diagnosis_said() {
+fn record_keeps_the_results_of_fit_and_diagnosis() {
     let written = three_axes();
     let bytes = encoded(&written);
     let read = Certificate::decode(&bytes).unwrap();
@@ -67,10 +68,10 @@ fn numbers_of_a_fit_are_kept_in_single_precision() {
     }
 }
 
-/// A curve without noise, so that the derivatives of a fit by the curve's octaves say how errors
-/// propagate.
+/// The curve has no noise, so that the derivatives of a fit with respect to the octaves show how
+/// errors propagate.
 #[test]
-fn covariance_is_that_of_errors_propagated_through_the_fit() {
+fn covariance_agrees_with_errors_propagated_through_the_fit() {
     let squares = [0.04_f64, 0.004, 0.0009].map(|x| x * x);
     let model = Model::new(&[&AngleRandomWalk, &BiasInstability, &RateRandomWalk]).unwrap();
     let octaves = |changed: usize, step: f64| {
@@ -149,7 +150,7 @@ fn every_change_of_one_byte_is_refused() {
 }
 
 #[test]
-fn contents_of_every_kind_are_refused_or_make_a_record() {
+fn arbitrary_contents_are_refused_or_give_a_valid_record() {
     let bytes = encoded(&three_axes());
     let payload = &bytes[8..bytes.len() - 4];
     let mut accepted = 0;
@@ -175,7 +176,7 @@ fn contents_of_every_kind_are_refused_or_make_a_record() {
 }
 
 #[test]
-fn every_effect_of_the_catalogue_has_a_code_that_stays() {
+fn every_effect_of_the_catalogue_has_a_permanent_code() {
     let codes = CATALOGUE.map(|effect| EffectCode::of(effect).number());
     assert_eq!(codes, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]);
     for effect in CATALOGUE {
@@ -188,7 +189,7 @@ fn every_effect_of_the_catalogue_has_a_code_that_stays() {
 }
 
 #[test]
-fn largest_record_fits_and_what_does_not_is_refused() {
+fn largest_record_fits_and_a_larger_one_is_refused() {
     let mut largest = three_axes();
     let axes = largest.axes;
     largest = Certificate::new(&[0xFF; 16], [0; 3], largest.conditions, largest.unit).unwrap();
@@ -243,7 +244,7 @@ fn largest_record_fits_and_what_does_not_is_refused() {
 }
 
 #[test]
-fn format_is_the_one_that_was_frozen() {
+fn format_has_not_changed_since_it_was_frozen() {
     let bytes: Vec<u8> = (0..FROZEN.len())
         .step_by(2)
         .map(|i| u8::from_str_radix(&FROZEN[i..i + 2], 16).unwrap())
@@ -291,7 +292,8 @@ fn format_is_the_one_that_was_frozen() {
     assert_eq!(axis.covariance(1, 0), -0.5 * 0.125 * 0.5);
 }
 
-/// One axis of two terms, in version 1; packed by hand from the table in `src/record/mod.rs`.
+/// A record of one axis with two terms in version 1 of the format, packed by hand from the table in
+/// `src/storage/certificate/mod.rs`.
 const FROZEN: &str = "414c4e5402017f0004534e2d310102ac02010000b4410000c2417b14ae47e17a844000000000000059408080\
     040301010000000000002940000000000000d03f0b0000003f040305ac022802020000003f0000803e000040\
     3f0000003e0000070000004000000000000080400000003f02010000004101000000410000e0400000104100\

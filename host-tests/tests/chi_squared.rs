@@ -1,10 +1,10 @@
-//! The tail of the χ² distribution against tables and two other ways of computing it.
+//! Compares the tail of the χ² distribution with tables and with two other computations.
 
 use allanite::fit::chi_squared_tail;
 use statrs::function::gamma::{gamma_ur, ln_gamma};
 
-/// Quantiles of Abramowitz & Stegun 1964, table 26.8: degrees of freedom, then the χ² that is
-/// exceeded with probability 0.995, 0.95, 0.5, 0.05, 0.01 and 0.001.
+/// The quantiles of Abramowitz & Stegun 1964, table 26.8. Each row has the degrees of freedom and
+/// then the values of χ² that are exceeded with probability 0.995, 0.95, 0.5, 0.05, 0.01 and 0.001.
 #[rustfmt::skip]
 const TABLE: [(usize, [f64; 6]); 8] = [
     ( 1, [3.92704e-5,  3.93214e-3, 0.454937, 3.84146, 6.63490, 10.828]),
@@ -34,10 +34,10 @@ fn published_quantiles_have_their_probability() {
 }
 
 #[test]
-fn the_regularized_gamma_function_says_the_same() {
+fn the_regularized_gamma_function_agrees() {
     for degrees in (1..=40).chain([60, 99, 100, 200]) {
         for step in 1..400 {
-            // Up to six times the degrees of freedom, finest near zero.
+            // The points go up to six times the degrees of freedom and are densest near zero.
             let x = degrees as f64 * 6.0 * (f64::from(step) / 400.0).powi(2);
             let (found, expected) = (
                 chi_squared_tail(x, degrees),
@@ -51,8 +51,8 @@ fn the_regularized_gamma_function_says_the_same() {
     }
 }
 
-/// Legendre's continued fraction of the upper incomplete gamma function (Abramowitz & Stegun
-/// 1964, eq. 6.5.31), for `x` beyond the degrees of freedom.
+/// Legendre's continued fraction of the upper incomplete gamma function (Abramowitz & Stegun 1964,
+/// eq. 6.5.31). It is used for `x` above the degrees of freedom.
 fn continued_fraction(x: f64, degrees: usize) -> f64 {
     let (a, y) = (0.5 * degrees as f64, 0.5 * x);
     let mut fraction = 0.0;
@@ -86,7 +86,7 @@ fn extreme_tails_keep_their_relative_accuracy() {
 
 #[test]
 fn even_degrees_are_the_poisson_sum() {
-    // Q(x, 2) = exp(−x/2), Q(x, 4) = exp(−x/2)(1 + x/2).
+    // The closed forms are Q(x, 2) = exp(−x/2) and Q(x, 4) = exp(−x/2)(1 + x/2).
     for x in [1e-9, 0.3, 2.0, 45.0, 1000.0] {
         let y = 0.5 * x;
         assert!((chi_squared_tail(x, 2) / f64::exp(-y) - 1.0).abs() < 1e-15);
@@ -102,7 +102,7 @@ fn a_tail_falls_with_its_start_and_rises_with_the_degrees_of_freedom() {
             let x = f64::from(step) * 0.5;
             let tail = chi_squared_tail(x, degrees);
             assert!((0.0..=1.0).contains(&tail));
-            // Next to 1, by no more than rounding.
+            // Near 1, rounding may reverse the order.
             assert!(tail <= before + 1e-14, "χ²({degrees}) > {x}");
             assert!(
                 chi_squared_tail(x, degrees + 1) >= tail - 1e-14,
@@ -114,7 +114,7 @@ fn a_tail_falls_with_its_start_and_rises_with_the_degrees_of_freedom() {
 }
 
 #[test]
-fn edges_are_defined() {
+fn tail_is_defined_at_the_edges_of_its_domain() {
     for degrees in [1, 2, 11, 30] {
         for x in [0.0, -0.0, -1.0, f64::NEG_INFINITY] {
             assert_eq!(chi_squared_tail(x, degrees), 1.0);

@@ -1,4 +1,5 @@
-//! `compare`: models with and without effects, beside what they were fitted to or not.
+//! Tests `compare`: models with and without effects are compared with the curve they were fitted
+//! to, or with another.
 
 use host_tests::program::{ADIS16405, json, output, refusal};
 use serde_json::Value;
@@ -9,7 +10,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-/// A log with a sinusoid, 2^16 samples at 100 Hz.
+/// A folder with a log of 2^16 samples at 100 Hz that contains a sinusoid.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
     let effect = "sinusoid:frequency_hz=7.7,amplitude=0.03";
@@ -77,7 +78,7 @@ fn effect_takes_the_place_of_what_it_replaces() {
 }
 
 #[test]
-fn held_out_part_judges_a_fit_to_the_other() {
+fn held_out_part_judges_the_fit_to_the_first_part() {
     let folder = folder();
     let arguments = ["compare", "log.csv", "--hold-out", "0.25"];
     let document = json(folder.path(), &arguments);
@@ -85,7 +86,7 @@ fn held_out_part_judges_a_fit_to_the_other() {
     let held_out = &axis["held_out"];
     assert_eq!(held_out["samples"], 16_384);
     assert_eq!(held_out["fitted"]["samples"], 49_152);
-    // No degree of freedom is spent on what no coefficient was fitted to.
+    // The held-out part loses no degree of freedom, because no coefficient was fitted to it.
     assert_eq!(axis["dof"], axis["octaves"].as_array().unwrap().len());
     assert!(number(&axis["p_value"]) < 1e-3);
     let with = ["--with", "sinusoid:frequency_hz=7.7"];
@@ -98,7 +99,7 @@ fn held_out_part_judges_a_fit_to_the_other() {
 }
 
 #[test]
-fn words_are_those_of_the_figures() {
+fn text_and_json_agree() {
     let text = output(Path::new("."), &["compare", ADIS16405]);
     let document = json(Path::new("."), &["compare", ADIS16405]);
     for axis in document["axes"].as_array().unwrap() {
@@ -153,7 +154,7 @@ fn impossible_questions_are_refused() {
         (&["--hold-out", "-0.5"], "--hold-out -0.5 is impossible"),
         (
             &["--hold-out", "0.99999"],
-            "1 samples, and two octaves need 9",
+            "1 samples are too few: two octaves need 9",
         ),
     ] {
         let arguments = [&["compare", "log.csv"], arguments].concat();

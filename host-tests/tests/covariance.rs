@@ -1,4 +1,4 @@
-//! The covariance of a curve against the sum over every pair of its differences.
+//! Compares the covariance of a curve with the sum over every pair of its differences.
 
 use allanite::{
     Curve, Model,
@@ -6,32 +6,32 @@ use allanite::{
     fit::curve_covariance,
 };
 
-/// Octaves of every curve here; a record of so few samples has fewer.
+/// The capacity of every curve here, in octaves. Records this short fill fewer.
 const OCTAVES: usize = 12;
 const INTERVAL_S: f64 = 0.01;
 
-/// Second differences' weights.
+/// The weights of a second difference.
 const WEIGHTS: [f64; 3] = [1.0, -2.0, 1.0];
 
-/// Squared coefficients, in the order of the IEEE-952 model.
+/// The squared coefficients, in the order of the IEEE-952 model.
 type Squares = [f64; 5];
 
 const WHITE: Squares = [0.0, 1.0, 0.0, 0.0, 0.0];
 const FLICKER: Squares = [0.0, 0.0, 1.0, 0.0, 0.0];
 const WALK: Squares = [0.0, 0.0, 0.0, 1.0, 0.0];
 const QUANTIZATION: Squares = [1.0, 0.0, 0.0, 0.0, 0.0];
-/// The simulator's preset of this name.
+/// The squared coefficients of the simulator's preset "mems".
 const MEMS: Squares = [4e-8, 2.5e-5, 1.6e-5, 9e-8, 0.0];
-/// With a ramp that takes half of the longest octaves.
+/// The same with a ramp that makes up half of the variance of the longest octaves.
 const MEMS_ON_A_RAMP: Squares = [4e-8, 2.5e-5, 1.6e-5, 9e-8, 3e-7];
 
-/// One octave of a record.
+/// An octave of a record.
 struct Octave {
     m: usize,
     starts: Vec<usize>,
 }
 
-/// Octaves with at least six differences.
+/// The octaves with at least six differences.
 fn octaves(samples: usize) -> Vec<Octave> {
     let octave = |k: u32| {
         let m = 1_usize << k;
@@ -54,7 +54,8 @@ fn curve(octaves: &[Octave]) -> Curve<OCTAVES> {
     Curve::new(1.0 / INTERVAL_S, points).expect("possible")
 }
 
-/// How many pairs of starts lie `ℓ` apart, the second from the longer clusters, at `ℓ + offset`.
+/// The number of pairs of starts that lie `ℓ` apart. The second start belongs to the longer
+/// clusters and is shifted to `ℓ + offset`.
 struct Pairs {
     counts: Vec<u64>,
     offset: usize,
@@ -73,9 +74,9 @@ impl Pairs {
     }
 }
 
-/// `Cov(σ̂²_j, σ̂²_k) = ½ Σ_ℓ N_jk(ℓ) [(c_ℓ + g_ℓ)² − g_ℓ²]/(n_j n_k)`, with
-/// `c_ℓ = Σ w_u w_v G(ℓ + v m_k − u m_j)/(τ_j τ_k)` of the random effects, and `g = R² τ_j τ_k` for
-/// the ramp, which puts `Rτ` in every difference.
+/// `Cov(σ̂²_j, σ̂²_k) = ½ Σ_ℓ N_jk(ℓ) [(c_ℓ + g_ℓ)² − g_ℓ²]/(n_j n_k)`. The covariance of the
+/// random effects is `c_ℓ = Σ w_u w_v G(ℓ + v m_k − u m_j)/(τ_j τ_k)`. The ramp adds `Rτ` to every
+/// difference, hence `g = R² τ_j τ_k`.
 fn covariance(short: &Octave, long: &Octave, pairs: &Pairs, kernel: &[f64], ramp: f64) -> f64 {
     let tau2 = (short.m * long.m) as f64 * INTERVAL_S * INTERVAL_S;
     let g = ramp * tau2;
@@ -99,7 +100,7 @@ fn covariance(short: &Octave, long: &Octave, pairs: &Pairs, kernel: &[f64], ramp
     0.5 * sum / (short.starts.len() * long.starts.len()) as f64
 }
 
-/// `G(n)` of the random effects.
+/// The kernel `G(n)` of the random effects.
 fn kernel(squares: &Squares, longest: usize) -> Vec<f64> {
     let shape = SampledShape::new(INTERVAL_S);
     let random = || {
@@ -170,26 +171,26 @@ const CASES: [(&str, Squares); 6] = [
 ];
 
 #[test]
-fn every_pair_of_differences_counts() {
+fn covariance_is_the_sum_over_every_pair_of_differences() {
     assert_all_pairs(1 << 12, &CASES);
 }
 
 #[test]
-fn records_need_not_be_a_power_of_two_long() {
+fn covariance_is_right_for_lengths_other_than_powers_of_two() {
     assert_all_pairs(3000, &CASES);
     assert_all_pairs(5555, &CASES);
 }
 
 #[test]
-fn the_shortest_records_count_too() {
+fn covariance_is_right_for_the_shortest_records() {
     for samples in 13..40 {
         assert_all_pairs(samples, &CASES);
     }
     assert_all_pairs(100, &CASES);
 }
 
-/// Correlations of neighbouring octaves in long records, on which theory and thousands of simulated
-/// records agree.
+/// The correlations of neighbouring octaves in long records, on which theory and thousands of
+/// simulated records agree.
 #[test]
 fn long_records_have_the_correlations_of_theory() {
     let samples = 1_u64 << 17;
@@ -216,7 +217,7 @@ fn long_records_have_the_correlations_of_theory() {
 }
 
 #[test]
-fn a_ramp_alone_scatters_nothing() {
+fn a_ramp_alone_has_no_covariance() {
     let curve = curve(&octaves(4096));
     let matrix = curve_covariance(&curve, &Model::ieee_952(), &[0.0, 0.0, 0.0, 0.0, 1.0]);
     assert_eq!(matrix.abs().max(), 0.0);
@@ -232,9 +233,10 @@ fn covariances_scale_with_the_fourth_power_of_the_coefficients() {
     }
 }
 
-/// A gap costs differences, not correlation: half of them, twice the variance.
+/// A gap reduces the number of differences and leaves their correlation. Half the differences give
+/// twice the variance.
 #[test]
-fn fewer_differences_scatter_more() {
+fn half_the_differences_give_twice_the_variance() {
     let full = octaves(4096);
     let halved = full
         .iter()

@@ -1,14 +1,15 @@
-//! What a gyro shares with a covariate, against direct computation.
+//! Compares the covariance of a gyro with a covariate with a direct computation.
 
 use allanite::{Axis, Error, Scale};
 use proptest::prelude::*;
 
 const OCTAVES: usize = 10;
 
-/// A gyro beside one covariate, and no more.
+/// A gyro with one covariate and no other parts.
 type Gyro = Axis<OCTAVES, 1, (), ()>;
 
-/// Second differences of windows of `m` samples, a quarter window apart, in one stretch.
+/// The second differences of windows of `m` samples that start a quarter window apart, within one
+/// stretch.
 fn differences(counts: &[i32], m: usize) -> Vec<i128> {
     let sum = |part: &[i32]| part.iter().map(|&count| i128::from(count)).sum::<i128>();
     let starts = (0..).step_by((m / 4).max(1));
@@ -64,7 +65,7 @@ proptest! {
 }
 
 #[test]
-fn units_and_axes_that_are_none_are_refused() {
+fn impossible_units_and_axes_are_refused() {
     let mut gyro = Gyro::new();
     for n in 0..100 {
         gyro.push((n * n % 17, [n]));

@@ -1,12 +1,13 @@
-//! The curve against the published figures of the 1000-point test set, and what a curve refuses.
+//! Compares the curve with the published figures of the 1000-point test set, and checks what a
+//! curve refuses.
 
 use allanite::{Accumulator, Curve, Error, Scale};
 
-/// Modulus of the test set's generator.
+/// The modulus of the test set's generator.
 const MODULUS: u64 = 2_147_483_647;
 
 /// The 1000-point test set of NIST SP 1065 (Riley 2008, section 12.4): `n_{i+1} = 16807 n_i mod
-/// 2147483647` from 1234567890, fractional frequencies in counts of 1/2147483647.
+/// 2147483647`, starting from 1234567890. The fractional frequencies are in counts of 1/2147483647.
 fn test_set() -> Vec<i32> {
     std::iter::successors(Some(1_234_567_890_u64), |n| Some(16_807 * n % MODULUS))
         .take(1000)
@@ -25,7 +26,7 @@ fn test_curve() -> Curve<12> {
 }
 
 /// The Allan deviation by its definition, from the means of adjacent clusters whose starts advance
-/// by `advance`, and how many differences there are.
+/// by `advance`. The number of differences comes with it.
 fn direct_deviation(m: usize, advance: usize) -> (f64, u64) {
     let rates: Vec<f64> = test_set()
         .iter()
@@ -52,7 +53,7 @@ fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
 fn the_test_set_is_the_published_one() {
     let counts = test_set();
     let fractions = counts.iter().map(|&n| f64::from(n) / MODULUS as f64);
-    // Maximum, minimum, mean and standard deviation as of NIST SP 1065, section 12.4.
+    // The maximum, minimum, mean and standard deviation are those of NIST SP 1065, section 12.4.
     assert_close(
         fractions.clone().fold(0.0, f64::max),
         9.957_453e-1,
@@ -76,7 +77,8 @@ fn the_test_set_is_the_published_one() {
     );
 }
 
-/// NIST SP 1065, section 12.4, at averaging factors 1, 10 and 100.
+/// The published deviations are those of NIST SP 1065, section 12.4, at averaging factors 1, 10 and
+/// 100.
 #[test]
 fn the_direct_computation_gives_the_published_deviations() {
     let overlapping = [(1, 2.922_319e-1), (10, 9.159_953e-2), (100, 3.241_343e-2)];
@@ -116,8 +118,8 @@ fn every_octave_agrees_with_the_direct_computation() {
     }
 }
 
-/// AllanTools 2024.06, `oadev(…, data_type="freq", taus=[1, 2, 4])`: up to m = 4 a quarter of a
-/// cluster is one sample, and the overlap is full.
+/// The reference is AllanTools 2024.06, `oadev(…, data_type="freq", taus=[1, 2, 4])`. Up to m = 4,
+/// a quarter of a cluster is one sample, so the clusters overlap fully.
 #[test]
 fn short_octaves_agree_with_allan_tools() {
     let figures = [
@@ -138,7 +140,7 @@ fn short_octaves_agree_with_allan_tools() {
 #[test]
 fn variances_and_times_come_in_the_units_of_the_scale() {
     let mut accumulator = Accumulator::<4>::new();
-    // Differences of neighbours alternate between ±10 counts.
+    // Neighbouring counts differ by ±10 in turn.
     accumulator.push_slice(&[0, 10].repeat(50));
     let curve = accumulator.curve(Scale::new(0.5, 200.0).expect("both positive"));
     let first = curve.points()[0];
@@ -149,10 +151,10 @@ fn variances_and_times_come_in_the_units_of_the_scale() {
 }
 
 #[test]
-fn octaves_enter_with_as_many_differences_as_asked_for() {
+fn curve_contains_the_octaves_with_the_required_number_of_differences() {
     let mut accumulator = Accumulator::<8>::new();
     accumulator.push_slice(&[1, -1, 2, 0, 3, 5, 1, 2, 4, 4, 1, 0, 3]);
-    // Differences by octave: 12, 10, 6, none.
+    // The octaves have 12, 10, 6 and no differences.
     let lengths = |least| accumulator.curve_of(scale(), least).points().len();
     assert_eq!(
         [0, 1, 6, 7, 10, 11, 12, 13].map(lengths),
@@ -169,7 +171,7 @@ fn octaves_enter_with_as_many_differences_as_asked_for() {
 }
 
 #[test]
-fn a_stored_curve_is_the_measured_one() {
+fn a_stored_curve_equals_the_measured_one() {
     let curve = test_curve();
     let stored = curve
         .points()
@@ -199,7 +201,7 @@ fn impossible_points_are_refused_by_their_averaging_factor() {
         (3, 10, 1.0),
         (u32::MAX, 10, 1.0),
         (1 << 30, 10, 1.0),
-        (1, 10, 1.0), // not above the one before
+        (1, 10, 1.0), // m does not exceed the one before
         (2, 0, 1.0),
         (2, 10, -1e-300),
         (2, 10, f64::NAN),
@@ -251,7 +253,7 @@ fn scales_and_rates_must_be_positive_and_finite() {
 }
 
 #[test]
-fn a_curve_prints_one_line_an_octave() {
+fn a_curve_prints_one_line_per_octave() {
     let curve = Curve::<4>::new(100.0, [(1, 999, 4e-6), (2, 997, 1e-6)]).expect("possible");
     let printed = curve.to_string();
     let words: Vec<Vec<&str>> = printed
@@ -269,7 +271,7 @@ fn a_curve_prints_one_line_an_octave() {
 }
 
 #[test]
-fn errors_name_what_is_wrong_and_the_remedy() {
+fn errors_name_the_fault_and_the_remedy() {
     for (error, words) in [
         (Error::InvalidRate(-1.0), ["-1 Hz", "positive"]),
         (Error::InvalidScale(0.0), ["0", "positive"]),

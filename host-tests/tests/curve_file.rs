@@ -1,4 +1,4 @@
-//! A curve file holds all that a fit needs, to the bit, and nothing impossible.
+//! A curve file holds all that a fit needs, to the bit, and impossible values are refused.
 
 use host_tests::{
     curve_file::{AxisCurve, CurveFile, FORMAT, VERSION},
@@ -8,7 +8,7 @@ use host_tests::{
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
-/// The curve of some counts, with a gap if wanted.
+/// The curve of some counts, with or without a gap.
 fn curve(samples: u32, gap: bool) -> AxisCurve {
     let mut accumulator = allanite::Accumulator::<OCTAVES>::new();
     let mut state = 1u32;
@@ -34,7 +34,7 @@ fn file() -> CurveFile {
     CurveFile::new(vec![curve(1000, false), second])
 }
 
-/// What reading the text ends with.
+/// Reads the text and returns the file or the error message.
 fn read(text: &str) -> Result<CurveFile, String> {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("c.json");
@@ -177,7 +177,7 @@ fn impossible_figures_are_refused_with_axis_and_octave() {
 }
 
 #[test]
-fn text_that_is_no_curve_is_refused_with_its_line() {
+fn text_that_is_not_a_curve_file_is_refused_with_its_line() {
     let good = file().to_json().unwrap();
     for (text, expected) in [
         (String::new(), "c.json:1: not a curve file: EOF"),
@@ -230,7 +230,7 @@ fn text_that_is_no_curve_is_refused_with_its_line() {
 }
 
 #[test]
-fn curves_of_real_gyros_are_whole_and_name_their_source() {
+fn curve_files_of_real_gyros_are_complete_and_name_their_source() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     for (name, samples, rate_hz) in [
         ("adis16405.json", 1_000_000, 100.0),

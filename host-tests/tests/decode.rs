@@ -1,4 +1,4 @@
-//! `decode`: records and snapshots, whole and broken, one and many.
+//! Tests `decode` on whole and broken records and snapshots, one file and many.
 
 #[path = "common/factory.rs"]
 mod factory;
@@ -12,7 +12,8 @@ use tempfile::TempDir;
 static AXES: LazyLock<[AxisCertificate; 2]> =
     LazyLock::new(|| [axis(None, 1), axis(Some(SINUSOID), 2)]);
 
-/// Two devices, a snapshot, a broken record and something else.
+/// A folder with the records of two devices, a snapshot, a broken record and a file of another
+/// kind.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
@@ -63,7 +64,7 @@ fn several_records_make_one_table_in_customary_units() {
     );
     assert!(lines[2].starts_with("SN-1") && lines[2].trim_end().ends_with("with sinusoid"));
     assert!(lines[3].starts_with("0102"), "{text}");
-    // The same number of rad/s is 180/π as many degrees.
+    // A number of rad/s is 180/π times as many deg/s.
     let white = |line: &str| -> f64 {
         let mut words = line.split("  ").filter(|word| !word.trim().is_empty());
         words.nth(5).unwrap().trim().parse().unwrap()
@@ -104,7 +105,7 @@ fn json_has_every_number() {
 }
 
 #[test]
-fn snapshot_is_printed_by_its_octaves() {
+fn snapshot_is_printed_with_one_line_per_octave() {
     let folder = folder();
     let text = output(folder.path(), &["decode", "snapshot.bin"]);
     assert!(text.starts_with("snapshot.bin: snapshot of 65536 samples, 1 gap, 17 octaves"));

@@ -1,4 +1,5 @@
-//! `diagnose`: hidden effects are named, real gyros explained, and words say what the figures say.
+//! Tests `diagnose`: it names hidden effects, explains real gyros, and prints the same in words and
+//! in JSON.
 
 use allanite::{
     Model,
@@ -34,7 +35,7 @@ fn parameters<'a>(step: &'a Value, name: &str) -> Option<&'a Value> {
     Some(&effect["parameters"])
 }
 
-/// A consumer gyro's log of 2^16 samples at 100 Hz, with effects hidden in it.
+/// Writes the log of a consumer gyro, 2^16 samples at 100 Hz, with hidden effects.
 fn hide(folder: &Path, seed: &str, effects: &[&str]) {
     let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", seed];
     let mut arguments = [&simulate[..], &["--output", "log.csv"]].concat();
@@ -79,7 +80,7 @@ fn hidden_effect_is_named_with_its_shape_and_size() {
         for pair in shape.split(',') {
             let (parameter, truth) = pair.split_once('=').unwrap();
             let (found, truth) = (number(&found[parameter]), truth.parse::<f64>().unwrap());
-            // Where a filter reaches over few samples, its stages cannot be told.
+            // If a filter spans only a few samples, its number of stages cannot be determined.
             assert!(
                 parameter == "stages" || (found / truth - 1.0).abs() < 0.25,
                 "{name}: {parameter} {found} instead of {truth}"
@@ -89,7 +90,7 @@ fn hidden_effect_is_named_with_its_shape_and_size() {
 }
 
 #[test]
-fn nothing_hidden_is_nothing_found() {
+fn no_effect_is_found_where_none_is_hidden() {
     let folder = TempDir::new().unwrap();
     hide(folder.path(), "3", &[]);
     let document = json(folder.path(), &["diagnose", "log.csv"]);
@@ -103,7 +104,7 @@ fn nothing_hidden_is_nothing_found() {
 }
 
 #[test]
-fn no_more_effects_are_added_than_asked_for() {
+fn no_more_effects_are_added_than_allowed() {
     let folder = TempDir::new().unwrap();
     hide(
         folder.path(),
@@ -192,7 +193,7 @@ fn json_has_the_documented_fields_and_no_others() {
 }
 
 #[test]
-fn words_say_what_the_figures_say() {
+fn text_and_json_agree() {
     let document = json(Path::new("."), &["diagnose", ADIS16405]);
     let text = output(Path::new("."), &["diagnose", ADIS16405]);
     for axis in document["axes"].as_array().unwrap() {
@@ -234,7 +235,7 @@ fn words_say_what_the_figures_say() {
 }
 
 #[test]
-fn temperature_of_a_thermal_record_is_no_axis() {
+fn temperature_column_of_a_record_is_not_taken_as_an_axis() {
     let folder = TempDir::new().unwrap();
     for (course, at_the_end) in [("time_s=600", 31.64), ("period_s=1200", 25.0)] {
         let effect = format!("thermal:slope=0.01,kelvin=10,{course}");
@@ -309,7 +310,7 @@ fn effects_that_cannot_be_hidden_are_refused() {
 }
 
 #[test]
-fn the_way_not_taken_is_fitted_as_the_one_that_was() {
+fn alternatives_fitted_in_full_agree_with_the_candidates_of_the_search() {
     let curves = CurveFile::read(Path::new(ADIS16405)).unwrap();
     let mut compared = 0;
     for axis in &curves.axes {
@@ -326,8 +327,8 @@ fn the_way_not_taken_is_fitted_as_the_one_that_was() {
                 let other = alternative(&curve, step, before, candidate);
                 let other = other.unwrap();
                 let chi_squared = other.fit.chi_squared;
-                // The search ends early with those that lag behind by more than 60, and with the
-                // others where a round changes 0.5 at most.
+                // The search stops early for candidates whose χ² is more than 60 worse, and for the
+                // others once a round changes χ² by at most 0.5.
                 assert!(candidate.improvement > 0.0);
                 if candidate.improvement > step.candidates[0].improvement - 60.0 {
                     let change = chi_squared - candidate.chi_squared;
@@ -336,7 +337,7 @@ fn the_way_not_taken_is_fitted_as_the_one_that_was() {
                 }
                 if place == 0 && step.added.is_some() {
                     let next = &steps[at + 1].fit;
-                    // The list shows what the next step has, to the bit.
+                    // The accepted candidate in the list equals the next step, to the bit.
                     assert_eq!(candidate.chi_squared, next.chi_squared);
                     assert!(
                         (chi_squared - next.chi_squared).abs() < 1.0,

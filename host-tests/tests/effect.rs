@@ -1,5 +1,5 @@
-//! Every effect of the catalogue: its closed forms against its kernel, and its kernel against sums
-//! over single samples. A new effect is tested by its line in the catalogue alone.
+//! Tests every effect of the catalogue: its closed forms against its kernel, and its kernel against
+//! sums over single samples. A new effect is tested as soon as it is in the catalogue.
 
 use allanite::{
     Curve, Model, Term,
@@ -13,10 +13,11 @@ use allanite::{
 use nalgebra::SMatrix;
 use std::f64::consts::{LN_2, PI};
 
-/// Sample intervals, in seconds: of a fast gyro, of the design's, of one second, of a slow one.
+/// The sample intervals, in seconds: of a fast gyro, of the one that the design assumes, of one
+/// second, and of a slow gyro.
 const INTERVALS_S: [f64; 4] = [1e-4, 0.01, 1.0, 37.5];
 
-/// An effect of which only the kernel is known: everything else comes from the trait's defaults.
+/// An effect of which only the kernel is known, so that the trait's defaults compute the rest.
 struct KernelOnly(&'static dyn Effect);
 
 impl Effect for KernelOnly {
@@ -33,13 +34,13 @@ impl Effect for KernelOnly {
     }
 }
 
-/// A record of 11 minutes.
+/// The span of a record of 11 minutes.
 const SPAN: Span = Span {
     interval_s: 0.01,
     longest_tau_s: 163.84,
 };
 
-/// The typical shapes of an effect, and the corners and the middle of its search.
+/// The typical shapes of an effect, and the corners and the middle of its search range.
 fn shapes(effect: &'static dyn Explain) -> Vec<SampledShape> {
     let described: &dyn Effect = effect;
     let at = |share: f64| {
@@ -67,7 +68,7 @@ fn shapes(effect: &'static dyn Explain) -> Vec<SampledShape> {
     typical.chain(searched).map(shape).collect()
 }
 
-/// Calls `test` with every effect in each of its shapes, and with what to call it.
+/// Calls `test` with every effect in each of its shapes, and with a name for messages.
 fn for_every_shape(test: impl Fn(&'static dyn Effect, &SampledShape, &str)) {
     let mut tried = 0;
     for explained in EXPLAINED {
@@ -84,15 +85,15 @@ fn for_every_shape(test: impl Fn(&'static dyn Effect, &SampledShape, &str)) {
     assert!(tried > 40, "{tried}");
 }
 
-/// Averaging factors up to `2^last`.
+/// The averaging factors up to `2^last`.
 fn octaves(last: u32) -> impl Iterator<Item = f64> {
     (0..=last).map(|k| f64::from(1_u32 << k))
 }
 
-/// What rounding leaves where kernels up to lag `lag` cancel: 5e-13 of the largest, and for an
-/// oscillation what a phase of so many turns has lost. The largest is sought at several lags, because a
-/// kernel may have a zero, and is at least that of white noise of the same variance, because an
-/// oscillation near half the sample rate leaves little of its own terms.
+/// The rounding error where kernels up to lag `lag` cancel. It is 5e-13 of the largest kernel
+/// value, plus the phase error of an oscillation after that many turns. The largest value is sought
+/// at several lags, because a kernel may have a zero. It is at least that of white noise of the
+/// same variance, because an oscillation near half the sample rate leaves little of its own terms.
 fn rounding(effect: &dyn Effect, lag: f64, shape: &SampledShape) -> f64 {
     let lags = [0.0, 0.13, 0.29, 0.5, 0.8, 1.0].map(|share| (share * lag).round());
     let sizes = lags.map(|lag| effect.kernel(lag, shape).abs());
@@ -143,7 +144,7 @@ fn rate_random_walk_rises_with_the_averaging_time() {
     assert_variances(&RateRandomWalk, |m, interval_s| {
         interval_s * (2.0 * m * m + 1.0) / (6.0 * m)
     });
-    // The standard's walk is continuous, ours takes a step a sample.
+    // The random walk of the standard is continuous, whereas ours takes one step per sample.
     for m in octaves(29).skip(6) {
         let found = RateRandomWalk.variance(m, &SampledShape::new(0.01));
         assert_relative(found, 0.01 * m / 3.0, 0.51 / (m * m) + 1e-13, "K²τ/3");
@@ -155,7 +156,7 @@ fn rate_ramp_rises_with_the_square_of_the_averaging_time() {
     assert_variances(&RateRamp, |m, interval_s| 0.5 * (m * interval_s).powi(2));
 }
 
-/// `σ²(m) = [3 G(0) − 4 G(m) + G(2m)]/τ²`.
+/// The relation is `σ²(m) = [3 G(0) − 4 G(m) + G(2m)]/τ²`.
 #[test]
 fn variances_follow_from_the_kernel() {
     for_every_shape(|effect, shape, name| {
@@ -173,15 +174,15 @@ fn variances_follow_from_the_kernel() {
     });
 }
 
-/// The autocovariance of the rate, `−G″/τ₀²`, from single lags of the kernel, up to a constant.
+/// The autocovariance of the rate, `−G″/τ₀²`, up to a constant, from the kernel at single lags.
 fn autocovariance(effect: &dyn Effect, lag: usize, shape: &SampledShape) -> f64 {
     let at = |lag: usize| effect.kernel(lag as f64, shape);
     let second = at(lag + 1) - 2.0 * at(lag) + at(lag.abs_diff(1));
     -second / shape.interval_s.powi(2)
 }
 
-/// The Allan variance is half the mean square of a difference of two means, each over `m` samples: a
-/// double sum over the autocovariance.
+/// The Allan variance is half the mean square of the difference of two means, each over `m`
+/// samples. This is a double sum over the autocovariance.
 #[test]
 fn variances_are_double_sums_over_the_autocovariance() {
     for_every_shape(|effect, shape, name| {
@@ -201,7 +202,7 @@ fn variances_are_double_sums_over_the_autocovariance() {
     });
 }
 
-/// No process has differences whose covariance matrix has a negative eigenvalue.
+/// The covariance matrix of the differences of a process has no negative eigenvalue.
 #[test]
 fn kernels_are_covariances() {
     for_every_shape(|effect, shape, name| {
@@ -222,7 +223,7 @@ fn kernels_are_covariances() {
 }
 
 #[test]
-fn variances_of_many_octaves_are_those_of_each() {
+fn variances_computed_together_equal_those_computed_one_by_one() {
     for_every_shape(|effect, shape, name| {
         let mut found = Vec::new();
         effect.variances(&mut octaves(16), shape, &mut |variance| {
@@ -232,7 +233,7 @@ fn variances_of_many_octaves_are_those_of_each() {
         assert_eq!(found.len(), expected.len());
         let largest = expected.iter().fold(0.0, |most: f64, x| most.max(*x));
         for (found, expected) in found.iter().zip(&expected) {
-            // The recursion of an oscillation loses digits where its variance has a zero.
+            // The recursion for an oscillation loses digits where the variance is close to a zero.
             let allowed = 1e-9 * expected + 1e-13 * largest;
             assert!(
                 (found - expected).abs() <= allowed,
@@ -242,7 +243,7 @@ fn variances_of_many_octaves_are_those_of_each() {
     });
 }
 
-/// Lags on both sides of every kink, in samples.
+/// The lags on both sides of every kink, in samples.
 fn lags(m: f64) -> Vec<f64> {
     let quarters = (0..40).map(|i| 0.25 * m * f64::from(i));
     let far = (0..12).map(|k| m * (11.0 + 1.4 * f64::from(1_u32 << k)));
@@ -254,7 +255,7 @@ fn lags(m: f64) -> Vec<f64> {
         .collect()
 }
 
-/// A constant is free, because the next difference removes it.
+/// The constant is arbitrary, because the next difference removes it.
 #[test]
 fn second_differences_are_those_of_the_kernel_up_to_a_constant() {
     for_every_shape(|effect, shape, name| {
@@ -276,7 +277,7 @@ fn second_differences_are_those_of_the_kernel_up_to_a_constant() {
     });
 }
 
-/// Covariance of two differences of adjacent cluster sums, whose middles lie `offset` apart.
+/// The covariance of two differences of adjacent cluster sums whose middles lie `offset` apart.
 fn cross_difference(
     effect: &dyn Effect,
     short: f64,
@@ -294,7 +295,7 @@ fn cross_differences_are_those_of_the_kernel() {
         for short in octaves(6) {
             for long in octaves(6).filter(|&long| long >= short) {
                 for offset in lags(short).into_iter().chain(lags(long)) {
-                    // Nine terms of the definition, with G even.
+                    // The definition has nine terms, because G is even.
                     let weights = [1.0, -2.0, 1.0];
                     let mut expected = 0.0;
                     for (u, w_u) in [-1.0, 0.0, 1.0].into_iter().zip(weights) {
@@ -319,7 +320,7 @@ fn cross_differences_are_those_of_the_kernel() {
 fn variances_of_poles_are_those_of_the_sum_over_pairs() {
     let interval_s = 0.01;
     for exponent in -10..=30 {
-        // A sample's decay, from a thousandth of a millionth to some hundreds.
+        // The decay rates per sample reach from 1e-9 to some hundreds.
         let decay = 10_f64.powf(-0.3 * f64::from(exponent));
         for cycles in [0.0, 1e-4, 0.03, 0.3, 0.49, 0.8] {
             let time_s = interval_s / decay;
@@ -333,7 +334,7 @@ fn variances_of_poles_are_those_of_the_sum_over_pairs() {
                 interval_s,
                 parameters,
             };
-            // 1 − r_n, which does not cancel.
+            // This computes 1 − r_n without cancellation.
             let fallen = |n: usize| {
                 let n = n as f64;
                 let half_turn = (PI * cycles * n).sin();
@@ -350,7 +351,7 @@ fn variances_of_poles_are_those_of_the_sum_over_pairs() {
                     "{}, decay {decay:e}, cycles {cycles}, m = {m}",
                     effect.name()
                 );
-                // A pole's terms may cancel in the sum, as they do where it swings.
+                // The terms of a pole may cancel in the sum, as they do where the pole oscillates.
                 assert!(
                     (found - expected).abs() < 1e-9 * expected + 1e-13,
                     "{what}: {found:e}, not {expected:e}"
@@ -360,7 +361,7 @@ fn variances_of_poles_are_those_of_the_sum_over_pairs() {
     }
 }
 
-/// A response is that of a signal whose differences have the Allan variance and the autocovariance
+/// A response describes a signal whose differences have the Allan variance and the autocovariance
 /// of the effect.
 #[test]
 fn responses_are_those_of_the_kernel() {
@@ -372,7 +373,8 @@ fn responses_are_those_of_the_kernel() {
         }
         for m in octaves(14) {
             let response = effect.response(m, shape).expect("deterministic");
-            // σ² = ½ mean D², and the amplitude over τ is the root of the mean.
+            // The relation is σ² = ½ mean D², and the amplitude divided by τ is the root of that
+            // mean.
             let mean_square = (response.amplitude / (m * shape.interval_s)).powi(2);
             assert_relative(0.5 * mean_square, effect.variance(m, shape), 1e-9, name);
             for offset in lags(m).into_iter().filter(|&offset| offset < 1e4) {
@@ -388,7 +390,7 @@ fn responses_are_those_of_the_kernel() {
     });
 }
 
-/// The lattice that the covariance reads is filled by each effect in its own way.
+/// Each effect fills the lattice of sums that the covariance reads in its own way.
 #[test]
 fn lattice_sums_are_those_of_the_kernel() {
     const OCTAVES: usize = 12;
@@ -423,8 +425,8 @@ fn lattice_sums_are_those_of_the_kernel() {
     });
 }
 
-/// The unit of the coefficient is that power of time by which a variance changes with the unit of
-/// time.
+/// If the unit of time changes, a variance changes by a power of it. The unit of the coefficient
+/// must contain that power.
 #[test]
 fn units_are_those_of_the_variances() {
     const FACTOR: f64 = 4.0;
@@ -436,7 +438,7 @@ fn units_are_those_of_the_variances() {
                 "s" => FACTOR,
                 "Hz" => 1.0 / FACTOR,
                 "" => 1.0,
-                unit => panic!("{name}: {unit} is no power of time"),
+                unit => panic!("{name}: {unit} is not a power of time"),
             };
         }
         let ratio = effect.variance(16.0, shape) / effect.variance(16.0, &slower);
@@ -446,7 +448,7 @@ fn units_are_those_of_the_variances() {
 }
 
 #[test]
-fn descriptions_are_complete_and_their_own() {
+fn descriptions_are_complete_and_distinct() {
     for (i, explained) in EXPLAINED.into_iter().enumerate() {
         let effect: &dyn Effect = explained;
         let description = effect.description();
@@ -490,7 +492,7 @@ fn descriptions_are_complete_and_their_own() {
 }
 
 #[test]
-fn terms_bear_the_names_symbols_and_units_of_the_standard() {
+fn terms_have_the_names_symbols_and_units_of_the_standard() {
     let known = IEEE_952.map(|effect| (effect.name(), effect.symbol(), effect.half_seconds()));
     let expected = [
         ("quantization", "Q", 2),

@@ -1,11 +1,12 @@
-//! `diagnose` with what a log tells beside its curve: whether it may be believed, and what it follows.
+//! Tests `diagnose` with the evidence beside the curve: whether the record is valid, and whether it
+//! depends on a covariate.
 
 use host_tests::program::{json, output, refusal};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
-/// A consumer gyro's log of 2^16 samples at 100 Hz, with what is hidden in it.
+/// Writes the log of a consumer gyro, 2^16 samples at 100 Hz, with hidden effects.
 fn simulate(folder: &Path, effects: &[&str]) {
     let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", "5"];
     let mut arguments = [&simulate[..], &["--output", "log.csv"]].concat();
@@ -15,10 +16,10 @@ fn simulate(folder: &Path, effects: &[&str]) {
     output(folder, &arguments);
 }
 
-/// The rate that a sample is given instead of its own.
+/// Returns the rate that replaces the given one: `change(index, rate)`.
 type Change<'a> = &'a mut dyn FnMut(usize, f64) -> f64;
 
-/// The log with other rates in its first column: `change(index, rate)`.
+/// Rewrites the rates in the first column of the log: `change(index, rate)`.
 fn change(folder: &Path, mut change: impl FnMut(usize, f64) -> f64) {
     let path = folder.join("log.csv");
     let text = fs::read_to_string(&path).unwrap();
@@ -40,7 +41,7 @@ fn list(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn a_record_that_cannot_be_believed_is_invalid_and_blames_no_effect() {
+fn a_disturbed_record_is_invalid_and_blames_no_effect() {
     let folder = TempDir::new().unwrap();
     let mut held = 0.0;
     let cases: [(&str, &str, Change<'_>); 3] = [
@@ -82,7 +83,7 @@ fn a_record_that_cannot_be_believed_is_invalid_and_blames_no_effect() {
 }
 
 #[test]
-fn a_temperature_is_found_with_its_slope_and_named_in_the_words() {
+fn a_temperature_is_found_and_printed_with_its_slope() {
     let folder = TempDir::new().unwrap();
     simulate(
         folder.path(),
@@ -102,7 +103,7 @@ fn a_temperature_is_found_with_its_slope_and_named_in_the_words() {
     let slope = parameter("slope");
     assert!((slope / 0.03 - 1.0).abs() < 0.1, "{slope}");
     assert!(parameter("slope_lower") < 0.03 && 0.03 < parameter("slope_upper"));
-    // Without its column the slow part of the curve has another name, or none.
+    // Without the column of the temperature, the slow part of the curve gets another name or none.
     let blind = json(folder.path(), &["diagnose", "log.csv"]);
     assert!(!list(&blind["axes"][0]["missing"]).contains(&"covariate"));
     let text = output(folder.path(), &diagnose);
@@ -111,7 +112,7 @@ fn a_temperature_is_found_with_its_slope_and_named_in_the_words() {
 }
 
 #[test]
-fn a_rate_of_change_is_a_covariate_too_and_a_stranger_is_not_blamed() {
+fn a_rate_of_change_is_a_covariate_and_an_unrelated_column_is_not_blamed() {
     let folder = TempDir::new().unwrap();
     simulate(
         folder.path(),
@@ -124,7 +125,7 @@ fn a_rate_of_change_is_a_covariate_too_and_a_stranger_is_not_blamed() {
     );
     let effect = &document["axes"][0]["steps"][1]["effects"][0];
     assert_eq!(effect["channel"], "temp_C");
-    // The temperature of another day.
+    // This is an unrelated temperature, as if it were of another day.
     let other = fs::read_to_string(folder.path().join("log.csv")).unwrap();
     simulate(folder.path(), &[]);
     let own = fs::read_to_string(folder.path().join("log.csv")).unwrap();
@@ -141,7 +142,7 @@ fn a_rate_of_change_is_a_covariate_too_and_a_stranger_is_not_blamed() {
 }
 
 #[test]
-fn two_effects_that_look_like_a_third_are_told_from_it() {
+fn two_effects_that_resemble_a_third_are_distinguished_from_it() {
     let folder = TempDir::new().unwrap();
     let hidden = [
         "sinusoid:frequency_hz=7.7,amplitude=0.0267",
@@ -166,7 +167,7 @@ fn two_effects_that_look_like_a_third_are_told_from_it() {
 }
 
 #[test]
-fn covariates_that_are_none_are_refused() {
+fn impossible_covariates_are_refused() {
     let folder = TempDir::new().unwrap();
     simulate(
         folder.path(),

@@ -1,4 +1,4 @@
-//! Every format, read back by what its consumer reads it with.
+//! Reads every export format back as its consumer does.
 
 use host_tests::program::{ADIS16405, json, output, refusal};
 use saphyr::{LoadableYamlNode, Yaml};
@@ -12,8 +12,9 @@ fn close(value: f64, expected: f64) -> bool {
     (value / expected - 1.0).abs() <= TOLERANCE
 }
 
-/// A folder with the curves of a real gyro, one axis of which has a name that means something to
-/// every format, and those of a simulated one in `short.json`, whose random walk is not observable.
+/// A folder with the curves of a real gyro and of a simulated one. An axis of the real gyro has a
+/// name with characters that are special in every format. The simulated one in `short.json` has a
+/// random walk that is not observable.
 fn folder() -> (TempDir, String) {
     let hostile = "g\"x*/ // #: ,\\\n'{%} é".to_owned();
     let folder = TempDir::new().unwrap();
@@ -37,7 +38,8 @@ fn export(folder: &Path, input: &str, arguments: &[&str]) -> String {
     )
 }
 
-/// In radians, what a filter may take of each axis: the value, or the upper bound.
+/// The coefficient of each axis that a filter may use, in radians: the value, or else the upper
+/// bound.
 fn expected(folder: &Path, input: &str, symbol: &str) -> Vec<Option<f64>> {
     let fit = json(folder, &["fit", input]);
     let radians = std::f64::consts::PI / 180.0;
@@ -68,7 +70,7 @@ fn yaml(text: &str) -> Yaml<'_> {
     Yaml::load_from_str(text).unwrap().remove(0)
 }
 
-/// What the comments give beside the numbers that count.
+/// The number that a comment gives for a key.
 fn commented(text: &str, key: &str) -> f64 {
     let line = text
         .lines()
@@ -81,7 +83,7 @@ fn commented(text: &str, key: &str) -> f64 {
         .unwrap()
 }
 
-/// Whether the resolver of YAML 1.1, which Kalibr's parser is, takes the text for a float.
+/// Whether the resolver of YAML 1.1, which Kalibr's parser uses, takes the text for a float.
 fn is_yaml_1_1_float(text: &str) -> bool {
     let (digits, exponent) = text
         .split_once('e')
@@ -114,7 +116,7 @@ fn kalibr_reads_the_densities_of_the_fit_and_of_the_overbound() {
     }
     assert_eq!(number("update_rate"), 100.0);
     assert_eq!(file["rostopic"].as_str(), Some("/a: \"b\" #c"));
-    // A gyro's record says nothing of an accelerometer: Kalibr will ask for it.
+    // The record of a gyro does not contain an accelerometer, so Kalibr will ask for its values.
     assert!(file.as_mapping_get("accelerometer_noise_density").is_none());
 
     let above = export(folder.path(), "curve.json", &["kalibr", "--overbound"]);
@@ -136,7 +138,7 @@ fn openvins_finds_the_same_under_imu0_and_the_accelerometer_as_given() {
         "0.00003",
     ];
     let text = export(folder.path(), "curve.json", &accelerometer);
-    // OpenCV's first line is none of YAML.
+    // The first line that OpenCV writes is not valid YAML.
     let rest = text.strip_prefix("%YAML:1.0\n").unwrap();
     let file = yaml(rest);
     let imu = &file["imu0"];
@@ -156,7 +158,7 @@ fn openvins_finds_the_same_under_imu0_and_the_accelerometer_as_given() {
     assert_eq!(imu["T_i_b"][3][3].as_floating_point(), Some(1.0));
 }
 
-/// Names and values of a parameter file, comments left out.
+/// The names and values in a parameter file, without comments.
 fn parameters(text: &str, value: impl Fn(&str) -> (String, f64)) -> HashMap<String, f64> {
     let lines = text
         .lines()
@@ -203,7 +205,7 @@ fn autopilots_read_discrete_noise_per_prediction() {
 }
 
 #[test]
-fn matlab_gets_three_axes_where_all_are_known_and_one_number_else() {
+fn matlab_gets_three_values_if_all_axes_are_known_and_one_otherwise() {
     let (folder, _) = folder();
     let name = "part \"one\"\n";
     let text = export(folder.path(), "curve.json", &["matlab", "--name", name]);
@@ -314,7 +316,7 @@ fn csv_has_the_curve_its_limits_and_models() {
             number(4),
             radians * octave["measured"].as_f64().unwrap()
         ));
-        // The comparison keeps its columns in single precision.
+        // The comparison keeps these columns in single precision.
         assert!((number(7) / (radians * octave["model"].as_f64().unwrap()) - 1.0).abs() < 1e-6);
         assert!(number(5) < number(4) && number(4) < number(6));
         assert!(number(8) >= number(6) * (1.0 - 1e-15), "{row:?}");
@@ -322,7 +324,7 @@ fn csv_has_the_curve_its_limits_and_models() {
 }
 
 #[test]
-fn log_in_radians_is_exported_as_it_is() {
+fn log_in_radians_is_exported_without_conversion() {
     let (folder, _) = folder();
     let text = export(folder.path(), "log.csv", &["kalibr", "--unit", "rad/s"]);
     let density = yaml(&text)["gyroscope_noise_density"]
@@ -366,7 +368,7 @@ fn coefficient_that_is_not_observable_is_left_out_with_the_reason() {
 }
 
 #[test]
-fn file_is_written_as_a_whole_and_bad_options_are_refused() {
+fn output_file_is_written_completely_and_bad_options_are_refused() {
     let (folder, _) = folder();
     let arguments = [
         "export",

@@ -1,4 +1,4 @@
-//! The images on every core and the same computation here agree to the bit.
+//! The images on every core and the same computation on this host agree to the bit.
 
 use allanite::{Accumulator, Scale};
 use host_tests::{
@@ -42,7 +42,10 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
         let begun = Instant::now();
         while !curve.exists() {
             assert!(watch.try_wait().is_ok_and(|status| status.is_none()));
-            assert!(begun.elapsed().as_secs() < 300, "nothing is saved");
+            assert!(
+                begun.elapsed().as_secs() < 300,
+                "no curve was saved in time"
+            );
             thread::sleep(Duration::from_millis(1));
         }
         thread::sleep(Duration::from_millis(milliseconds));
@@ -75,7 +78,7 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
 }
 
 #[test]
-fn single_precision_says_what_double_says() {
+fn single_and_double_precision_reach_the_same_result() {
     let fits = precision::fits(4).unwrap_or_else(|error| panic!("{error:#}"));
     assert!(fits.standard_errors.len() > 4 * 4);
     let largest = |sorted: &[f64]| sorted.last().copied().unwrap_or(f64::NAN);
@@ -87,7 +90,7 @@ fn single_precision_says_what_double_says() {
     }
 }
 
-/// Images whose every part is free of panics, to the point that the linker finds no way to one.
+/// Images without any panic, so that the linker finds no path to one.
 const PANIC_FREE: [&str; 5] = [
     "footprint_nothing",
     "footprint_accumulator",
@@ -97,7 +100,7 @@ const PANIC_FREE: [&str; 5] = [
 ];
 
 #[test]
-fn images_have_no_path_to_a_panic_arithmetic_checked_or_not() {
+fn images_have_no_path_to_a_panic_with_and_without_checked_arithmetic() {
     for name in PANIC_FREE {
         for profile in ["firmware", "checked"] {
             for core in Precision::ALL.map(|precision| CORTEX_M4F.with(precision)) {
@@ -109,8 +112,8 @@ fn images_have_no_path_to_a_panic_arithmetic_checked_or_not() {
 }
 
 #[test]
-fn an_image_that_can_panic_is_found_to() {
-    // Its logger panics if it is entered twice.
+fn an_image_that_can_panic_is_detected() {
+    // The logger of this image panics if it is entered twice.
     let found = panic_paths("characterise", &CORTEX_M4F, "firmware");
     assert!(
         found.iter().any(|name| name.contains("rust_begin_unwind")),
@@ -183,24 +186,24 @@ fn a_whole_product_finds_on_every_core_what_the_host_finds_to_the_bit() {
     }
 }
 
-/// χ² of a line on a fit.
+/// The χ² in a line about a fit.
 fn chi_squared(line: &str) -> Option<f64> {
     let (_, rest) = line.split_once(" chi_squared ")?;
     rest.split(' ').next()?.parse().ok()
 }
 
-/// Numbers after these words in a line.
+/// The numbers that follow these words in a line.
 fn numbers<const N: usize>(line: &str, names: [&str; N]) -> [u32; N] {
     let words: Vec<&str> = line.split([' ', ',']).collect();
     names.map(|name| {
         let place = words.iter().position(|word| *word == name);
         let number = place.and_then(|place| words.get(place + 1)?.parse().ok());
-        number.unwrap_or_else(|| panic!("{line:?} does not tell {name}"))
+        number.unwrap_or_else(|| panic!("{line:?} does not contain {name}"))
     })
 }
 
 #[test]
-fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
+fn samples_that_a_late_main_loop_loses_are_counted_and_become_gaps() {
     for core in [CORES[0], CORTEX_M4F, RISCV].map(|core| core.with(Precision::Double)) {
         println!("{core}");
         let run = Image::build_for("interrupt", &core).and_then(|image| run(&image));
@@ -217,7 +220,7 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
         let [made, taken, lost] = numbers(total, ["made", "taken", "lost"]);
         assert_eq!(taken + lost, made);
 
-        // The same record here, told where samples were lost.
+        // The host replays the same record, with a gap where the image lost samples.
         let mut gyro = SimulatedGyro::new(AMPLITUDES, seed.into());
         let mut accumulator = Accumulator::<12>::new();
         assert_eq!(octaves, 12);
@@ -235,7 +238,8 @@ fn what_a_late_main_loop_loses_is_counted_and_becomes_gaps() {
         for count in gyro.take((taken - taken_here) as usize) {
             accumulator.push(count);
         }
-        // Failed reads, overflows of the queue, and the end that no later sample tells of.
+        // The losses are failed reads, overflows of the queue, and lost samples at the end that no
+        // later sample reveals.
         assert!(gaps.len() >= 5 && lost_here > 400, "{gaps:?}");
         assert!(
             lost_here + 100 < lost,

@@ -1,4 +1,4 @@
-//! Snapshots in a flash whose power is cut at every operation.
+//! Stores snapshots in a flash whose power is cut at every operation.
 
 #[path = "common/ram_flash.rs"]
 mod ram_flash;
@@ -12,7 +12,8 @@ use ram_flash::{PAGE, PowerCut, RamFlash, WORD};
 
 const OCTAVES: usize = 13;
 const AXES: u8 = 2;
-/// Snapshots of both axes that a run writes: pages are erased and used again.
+/// The number of snapshots of both axes that a run writes. It is large enough for pages to be
+/// erased and used again.
 const SNAPSHOTS: usize = 40;
 const PAGES: usize = 3;
 
@@ -26,7 +27,7 @@ fn store(flash: RamFlash) -> SnapshotStore<RamFlash> {
     SnapshotStore::new(flash, 0..(PAGES * PAGE) as u32).unwrap()
 }
 
-/// What the axis' accumulator is at its n-th snapshot.
+/// The accumulator of each axis at each of its snapshots.
 fn states() -> Vec<[Axis; AXES as usize]> {
     let mut axes = [Axis::new(), Axis::new()];
     let mut random = 1_u32;
@@ -43,7 +44,8 @@ fn states() -> Vec<[Axis; AXES as usize]> {
         .collect()
 }
 
-/// Saves one after the other; how many were saved before the power went, and the flash.
+/// Saves the snapshots one after the other. Returns how many were saved before the power failed,
+/// and the flash.
 fn run(flash: RamFlash, states: &[[Axis; AXES as usize]]) -> (usize, RamFlash) {
     let mut store = store(flash);
     let mut saved = 0;
@@ -59,12 +61,12 @@ fn run(flash: RamFlash, states: &[[Axis; AXES as usize]]) -> (usize, RamFlash) {
     (saved, store.into_flash())
 }
 
-/// What an axis restores.
+/// The accumulator that is restored for an axis.
 fn load(store: &mut SnapshotStore<RamFlash>, axis: u8) -> Option<Axis> {
     block_on(store.load(axis, &mut buffer())).unwrap()
 }
 
-/// After so many saves: the newest of each axis, as it is after a gap.
+/// The newest snapshot of an axis after the given number of saves, in its state after a gap.
 fn newest(states: &[[Axis; AXES as usize]], saved: usize, axis: u8) -> Option<Axis> {
     let count = (saved + usize::from(AXES - 1 - axis)) / usize::from(AXES);
     let mut newest = states[count.checked_sub(1)?][usize::from(axis)].clone();
@@ -87,7 +89,7 @@ fn newest_snapshot_of_each_axis_is_restored() {
 }
 
 #[test]
-fn power_cut_at_any_operation_leaves_the_old_snapshot_or_the_new() {
+fn power_cut_at_any_operation_leaves_the_old_or_the_new_snapshot() {
     let states = states();
     let (all, whole) = run(RamFlash::new(PAGES), &states);
     assert_eq!(all, SNAPSHOTS * usize::from(AXES));
@@ -112,7 +114,7 @@ fn power_cut_at_any_operation_leaves_the_old_snapshot_or_the_new() {
                     old += 1;
                 }
             }
-            // And the store goes on.
+            // The store must also keep working afterwards.
             let last = states.last().unwrap();
             for (axis, accumulator) in (0..AXES).zip(last) {
                 block_on(store.save(axis, accumulator, &mut buffer()))
@@ -126,7 +128,8 @@ fn power_cut_at_any_operation_leaves_the_old_snapshot_or_the_new() {
     assert!(new > 0 && old > new, "{old} old, {new} new");
 }
 
-/// How many bytes the last operation still changes: any number of a write's, some of an erasure's.
+/// The numbers of bytes that an interrupted operation changes: every possible number for a write,
+/// and a selection for an erasure.
 fn torn(length: usize) -> impl Iterator<Item = usize> {
     let step = if length < PAGE { 1 } else { 31 };
     (0..=length).step_by(step).chain([length])
@@ -142,7 +145,8 @@ fn damage_in_flash_is_never_restored() {
             damaged.bytes[i] ^= 1 << bit;
             let mut store = store(damaged);
             for axis in 0..AXES {
-                // An older one, none, or an error: but nothing that was never stored.
+                // The result may be an older snapshot, none or an error, but never a state that was
+                // not stored.
                 if let Ok(Some(found)) = block_on(store.load::<OCTAVES>(axis, &mut buffer())) {
                     let mut stored = (1..=saved).filter_map(|saved| newest(&states, saved, axis));
                     assert!(stored.any(|one| one == found), "byte {i}, bit {bit}");

@@ -1,4 +1,4 @@
-//! What the program says of itself.
+//! Tests the help and the notes of the program.
 
 use clap::{CommandFactory, Parser};
 use host_tests::command::CommandLine;
@@ -10,7 +10,7 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// Names of all commands.
+/// The names of all commands.
 fn commands() -> Vec<String> {
     let line = CommandLine::command();
     let names = line
@@ -20,7 +20,7 @@ fn commands() -> Vec<String> {
 }
 
 #[test]
-fn help_of_every_command_has_examples_that_the_program_takes() {
+fn help_of_every_command_has_examples_that_the_program_accepts() {
     assert!(commands().len() >= 9);
     for command in commands() {
         let help = output(Path::new("."), &[&command, "--help"]);
@@ -63,7 +63,7 @@ fn completions_name_every_command_and_bash_reads_its_own() {
 }
 
 #[test]
-fn quiet_leaves_results_alone_and_notes_out() {
+fn quiet_keeps_results_and_omits_notes() {
     let folder = TempDir::new().unwrap();
     let counts: String = (0..2000_u64)
         .map(|i| format!("{}\n", i * i * 7919 % 101))

@@ -1,4 +1,5 @@
-//! Many files at once: all that can be done is done, and printed in the order of the arguments.
+//! Tests commands with many files: every good file is processed, and results are printed in the
+//! order of the arguments.
 
 use host_tests::program::{command, json, output, refusal};
 use serde_json::Value;
@@ -6,16 +7,16 @@ use std::{fs, path::Path};
 use tempfile::TempDir;
 
 const FILES: usize = 200;
-/// The one that breaks off in a word.
+/// The index of the log that breaks off within a word.
 const BROKEN: usize = 77;
 
-/// Small logs of different noise and length, one of them broken.
+/// Small logs of different noise and length, one of which is broken.
 fn folder() -> (TempDir, Vec<String>) {
     let folder = TempDir::new().unwrap();
     let mut random = 1_u32;
     let mut names = Vec::new();
     for file in 0..FILES {
-        // Lengths that end out of order where order is not kept.
+        // The lengths differ, so that the logs finish out of order.
         let samples = if file % 10 == 0 {
             20_000
         } else {
@@ -36,7 +37,7 @@ fn folder() -> (TempDir, Vec<String>) {
     (folder, names)
 }
 
-/// Standard output, standard error and the status of a command.
+/// The standard output, the standard error and the exit status of a command.
 fn run(folder: &Path, arguments: &[&str], files: &[String]) -> (String, String, Option<i32>) {
     let run = command(folder, arguments).args(files).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
@@ -74,7 +75,7 @@ fn broken_file_among_many_is_named_and_the_others_make_one_table() {
 }
 
 #[test]
-fn json_of_many_has_each_file_as_it_is_by_itself() {
+fn json_of_many_files_contains_each_as_for_a_single_file() {
     let (folder, names) = folder();
     let (text, errors, status) = run(folder.path(), &["fit", "--json"], &names);
     assert_eq!(status, Some(2));
@@ -101,7 +102,7 @@ fn json_of_many_has_each_file_as_it_is_by_itself() {
 }
 
 #[test]
-fn comparisons_and_diagnoses_of_several_follow_each_other_under_their_names() {
+fn comparisons_and_diagnoses_of_several_files_are_printed_in_order_with_names() {
     let (folder, names) = folder();
     for command in ["compare", "diagnose"] {
         let three = [&names[5], &names[0], &names[2]];
@@ -120,7 +121,7 @@ fn comparisons_and_diagnoses_of_several_follow_each_other_under_their_names() {
 }
 
 #[test]
-fn measure_writes_a_curve_file_a_log_into_a_folder() {
+fn measure_writes_one_curve_file_per_log_into_a_folder() {
     let (folder, names) = folder();
     let refused = refusal(
         folder.path(),

@@ -1,4 +1,4 @@
-//! Models above a curve: above everywhere, and no higher than they must be.
+//! Overbounds lie above the curve everywhere, and no higher than necessary.
 
 use allanite::{Curve, Model, fit::Options};
 use host_tests::{
@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::path::Path;
 
-/// Curves of real gyros, and their limits.
+/// The curves of real gyros with their limits.
 fn curves() -> Vec<(Curve<OCTAVES>, Vec<Limits>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let model = Model::ieee_952();
@@ -27,7 +27,7 @@ fn curves() -> Vec<(Curve<OCTAVES>, Vec<Limits>)> {
     with_limits.collect()
 }
 
-/// The least ratio of a model to the limits, in variance.
+/// The smallest ratio of a model to the limits, in variance.
 fn lowest(overbound: &Overbound, curve: &Curve<OCTAVES>, limits: &[Limits]) -> f64 {
     let ratios = ratios(overbound, curve, limits);
     ratios.into_iter().fold(f64::INFINITY, f64::min)
@@ -40,7 +40,7 @@ fn ratios(overbound: &Overbound, curve: &Curve<OCTAVES>, limits: &[Limits]) -> V
         .collect()
 }
 
-/// The same model with one coefficient after the other lowered by a millionth.
+/// The same model with one coefficient lowered by a millionth, once for each coefficient.
 fn lowered(overbound: &Overbound) -> Vec<Overbound> {
     const LESS: f64 = 1.0 - 1e-6;
     let (mut white, mut walk, mut process) = (*overbound, *overbound, *overbound);
@@ -84,7 +84,7 @@ fn no_other_model_above_the_limits_has_less_excess() {
             let mut other = best;
             other.noise_density *= random.random_range(0.5..1.5);
             other.random_walk *= random.random_range(0.0..3.0);
-            // Raised or lowered as a whole until it touches.
+            // The other model is raised or lowered as a whole until it touches the limits.
             let other = other.scaled(lowest(&other, &curve, &limits).sqrt().recip());
             assert!(excess(&other) >= excess(&best) * (1.0 - 1e-9), "{other:?}");
         }
@@ -104,7 +104,7 @@ fn white_noise_alone_needs_no_random_walk() {
         })
         .collect();
     let overbound = Overbound::of(&curve, &limits).unwrap();
-    // N = 0.1 at 100 Hz, 10 % more for the limit.
+    // The coefficient N is 0.1 at 100 Hz, and the limit is 10 % above.
     assert!(
         (overbound.noise_density / 0.11 - 1.0).abs() < 1e-9,
         "{overbound:?}"
@@ -113,7 +113,7 @@ fn white_noise_alone_needs_no_random_walk() {
 }
 
 #[test]
-fn equivalent_process_differs_least_and_says_by_how_much() {
+fn equivalent_process_has_the_smallest_difference_and_reports_it() {
     let model = Model::ieee_952();
     for (curve, _) in curves() {
         let fit = allanite::fit::fit(&curve, &model, Options::default()).unwrap();

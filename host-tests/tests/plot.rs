@@ -1,4 +1,4 @@
-//! The plot of a record says what its figures and its words say.
+//! The plot of a record agrees with its figures and its text.
 
 use host_tests::program::{self, ADIS16405, json, output, refusal};
 use resvg::tiny_skia::Pixmap;
@@ -11,14 +11,14 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// Columns left of the panels.
+/// The number of columns to the left of the panels.
 const MARGIN: usize = 11;
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-/// A panel of a plot: labelled rows, and the cells of its marks, from the left.
+/// A panel of a plot: its labelled rows, and the cells of its marks from left to right.
 #[derive(Debug)]
 struct Panel {
     labels: Vec<(usize, f64)>,
@@ -48,7 +48,7 @@ impl Panel {
     }
 }
 
-/// The two panels behind the line that begins a plot.
+/// The two panels that follow the first line of a plot.
 fn panels(text: &str, axis: &str) -> (Panel, Panel) {
     let title = format!("{axis}: Allan deviation of");
     let lines: Vec<&str> = text
@@ -65,7 +65,7 @@ fn panels(text: &str, axis: &str) -> (Panel, Panel) {
     (curve, Panel::of(&lines[residual + 1..times]))
 }
 
-/// The last sentence on where a model fails, of an axis.
+/// The last sentence about where the model of an axis fails.
 fn sentence<'a>(text: &'a str, axis: &str) -> &'a str {
     let is_heading = |line: &&str| line.contains(" samples at ");
     let start = format!("{axis}: ");
@@ -92,7 +92,7 @@ fn marks_lie_where_the_figures_are() {
             assert_eq!((top.0, bottom.0), (0, residual.rows - 1));
             assert_eq!(top.1, -bottom.1);
             let step = 2.0 * top.1 / (residual.rows - 1) as f64;
-            // Rows of labels are whole, the values between them are not.
+            // Rows with labels are exact, and the values between them are interpolated.
             let (high, low) = (curve.labels[0], curve.labels[curve.labels.len() - 1]);
             let per_row = (high.1 / low.1).ln() / (low.0 - high.0) as f64;
             for (k, octave) in octaves.iter().enumerate() {
@@ -115,7 +115,7 @@ fn marks_lie_where_the_figures_are() {
 }
 
 #[test]
-fn words_plot_and_figures_agree() {
+fn text_plot_and_json_agree() {
     for command in ["compare", "diagnose"] {
         let text = output(Path::new("."), &[command, ADIS16405]);
         let document = json(Path::new("."), &[command, ADIS16405]);
@@ -125,7 +125,7 @@ fn words_plot_and_figures_agree() {
                 None => axis,
             };
             let (tau_s, z) = (number(&last["worst"]["tau_s"]), number(&last["worst"]["z"]));
-            // The sentence on the last model.
+            // This is the sentence about the last model.
             let name = axis["axis"].as_str().unwrap();
             let time = match tau_s {
                 tau_s if tau_s < 0.1 => format!("τ = {:.1} ms", 1e3 * tau_s),
@@ -141,7 +141,7 @@ fn words_plot_and_figures_agree() {
                     || sentence.contains(&format!("the worst, at {time}")),
                 "{sentence}"
             );
-            // The mark that lies farthest off, in the plot.
+            // This is the mark in the plot that lies farthest from the model.
             let (_, residual) = panels(&text, name);
             let middle = residual.rows / 2;
             let far = |row: usize| row.abs_diff(middle);
@@ -168,12 +168,12 @@ fn nothing_is_coloured_or_wider_than_usual_without_a_terminal() {
 }
 
 #[test]
-fn no_plot_is_drawn_of_what_cannot_be_compared() {
+fn no_plot_is_drawn_for_a_file_that_is_absent() {
     let refused = refusal(Path::new("."), &["compare", "absent.json"]);
     assert!(refused.contains("no such file"), "{refused}");
 }
 
-/// The program in a terminal of so many columns.
+/// The output of the program in a terminal with the given number of columns.
 fn in_a_terminal(columns: u32, variables: &[(&str, &str)]) -> String {
     let program = program::path();
     let program = program.display();
@@ -189,7 +189,7 @@ fn in_a_terminal(columns: u32, variables: &[(&str, &str)]) -> String {
 }
 
 #[test]
-fn a_terminal_has_colours_unless_it_wants_none_and_gives_the_width() {
+fn a_terminal_gets_colours_unless_disabled_and_sets_the_width() {
     assert!(in_a_terminal(100, &[]).contains('\u{1b}'));
     for columns in [60, 100] {
         let text = in_a_terminal(columns, &[("NO_COLOR", "1")]);
@@ -201,7 +201,8 @@ fn a_terminal_has_colours_unless_it_wants_none_and_gives_the_width() {
     }
 }
 
-/// Places of a drawing's marks of octaves: those of the curve, then those of the residual.
+/// The positions of a drawing's marks of octaves: first those of the curve, then those of the
+/// residual.
 fn marks(drawing: &Document) -> Vec<(f64, f64)> {
     let circles = drawing
         .descendants()
@@ -214,7 +215,7 @@ fn marks(drawing: &Document) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn drawing_has_its_marks_where_the_figures_are_and_words_for_everything() {
+fn drawing_has_its_marks_at_the_figures_and_describes_them_in_words() {
     let folder = TempDir::new().unwrap();
     let arguments = [
         "plot",
@@ -229,7 +230,7 @@ fn drawing_has_its_marks_where_the_figures_are_and_words_for_everything() {
     assert_eq!(output(folder.path(), &arguments), "");
     let text = fs::read_to_string(folder.path().join("curve.svg")).unwrap();
     let drawing = Document::parse(&text).unwrap();
-    // The first step of a diagnosis is what `compare` shows.
+    // The first step of a diagnosis equals the output of `compare`.
     let document = json(Path::new("."), &["compare", ADIS16405]);
     let octaves = document["axes"][2]["octaves"].as_array().unwrap();
     let marks = marks(&drawing);
@@ -299,7 +300,7 @@ fn picture_of_all_axes_decodes_and_has_letters_without_any_font_installed() {
     };
     assert_eq!(picture.width(), 2 * size("width"));
     assert_eq!(picture.height(), 2 * size("height"));
-    // The title of each of the three axes: dark pixels in its line, and none above.
+    // The title of each of the three axes has dark pixels in its line and none above.
     let dark = |rows: std::ops::Range<u32>| {
         let pixels = rows.flat_map(|y| (0..picture.width()).map(move |x| (x, y)));
         pixels
@@ -343,7 +344,7 @@ fn pictures_that_cannot_be_drawn_are_refused() {
 }
 
 #[test]
-fn drawing_is_well_formed_whatever_an_axis_is_called() {
+fn drawing_is_well_formed_for_any_name_of_an_axis() {
     let folder = TempDir::new().unwrap();
     let name = "<g x=\"\">&amp;\u{1}\u{fffe}</g>";
     let mut curves: Value = serde_json::from_str(&fs::read_to_string(ADIS16405).unwrap()).unwrap();

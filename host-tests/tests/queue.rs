@@ -1,4 +1,5 @@
-//! Samples on their way from an interrupt: whatever is lost is counted, with its place.
+//! Samples on their way from an interrupt are either delivered or counted as lost, with their
+//! place.
 
 use allanite::queue::{self, Queued};
 use heapless::spsc::Queue;
@@ -6,7 +7,7 @@ use proptest::prelude::*;
 
 proptest! {
     #[test]
-    fn nothing_is_lost_in_a_queue_without_being_told_where(
+    fn every_loss_in_a_queue_is_reported_with_its_place(
         bursts in proptest::collection::vec((0_usize..12, 0_usize..12, 0_u32..3), 1..60),
     ) {
         let mut queue = Queue::<Queued<u32>, 8>::new();

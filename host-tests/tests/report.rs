@@ -1,4 +1,5 @@
-//! `report`: the page says what `diagnose` says, to everybody, and can be walked through.
+//! Tests `report`: the page contains the results of `diagnose`, is accessible, and can be stepped
+//! through.
 
 #[path = "common/browser.rs"]
 mod browser;
@@ -9,14 +10,14 @@ use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
 
-/// A folder with the page of an input that lies in it or elsewhere, and its diagnosis.
+/// Writes the page of an input into a folder, and returns the diagnosis of the same input.
 fn reported(folder: &Path, arguments: &[&str]) -> Value {
     let report = [&["report"], arguments, &["--output", "report.html"]].concat();
     assert_eq!(output(folder, &report), "");
     json(folder, &[&["diagnose"], arguments].concat())
 }
 
-/// A consumer gyro's log of 2^16 samples at 100 Hz, with effects hidden in it.
+/// Writes the log of a consumer gyro, 2^16 samples at 100 Hz, with hidden effects.
 fn simulate(folder: &Path, effects: &[&str]) {
     let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", "5"];
     let effects = effects.iter().flat_map(|effect| ["--effect", *effect]);
@@ -41,27 +42,27 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-/// What the page says of a fit's error.
+/// The text of the page about the error of a fit.
 fn error(fit: &Value) -> String {
     let (chi2, dof) = (number(&fit["chi2"]), &fit["dof"]);
     let rms_percent = number(&fit["rms_percent"]);
     format!("χ² {chi2:.1} for {dof} degrees of freedom|misfit {rms_percent:.1} % rms")
 }
 
-/// What it shows, of an axis.
+/// The error that the page shows for an axis.
 fn shown_error(browser: &mut Browser, axis: usize) -> String {
     let text = |nth: usize| format!("#axis-{axis} .error .figures:nth-child({nth})");
     let [chi2, misfit] = [1, 2].map(|nth| browser.text(&text(nth)));
     format!("{chi2}|{misfit}")
 }
 
-/// The part of the page that the script takes.
+/// The data in the page that the script reads.
 fn embedded(page: &str) -> Value {
     let (_, rest) = page.split_once("id=\"data\">").unwrap();
     serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
 }
 
-/// Two numbers, the smaller of the larger: of colours like `rgb(1, 2, 3)`, as of WCAG 2.
+/// The contrast of two colours like `rgb(1, 2, 3)`, as in WCAG 2.
 const CONTRAST: &str = "((a, b) => {
     const light = (colour) => {
         const [r, g, b] = colour.match(/[0-9.]+/g).slice(0, 3).map((part) => part / 255)
@@ -73,7 +74,7 @@ const CONTRAST: &str = "((a, b) => {
 })";
 
 #[test]
-fn the_page_carries_the_diagnosis_as_it_is_printed_and_nothing_from_elsewhere() {
+fn the_page_contains_the_printed_diagnosis_and_loads_nothing_external() {
     let folder = TempDir::new().unwrap();
     let diagnosis = reported(folder.path(), &[ADIS16405]);
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
@@ -88,13 +89,13 @@ fn the_page_carries_the_diagnosis_as_it_is_printed_and_nothing_from_elsewhere() 
             .replace('<', "&lt;")
             .replace('>', "&gt;")
     };
-    // Without a script, all of it stands there.
+    // Without a script, the page shows all results.
     let (_, plain) = page.split_once("<noscript>").unwrap();
     assert!(text.lines().all(|line| plain.contains(&html(line))));
 }
 
 #[test]
-fn each_axis_is_led_by_where_it_fails_what_was_missing_and_how_far_the_error_fell() {
+fn each_axis_begins_with_its_misfit_the_missing_effect_and_the_fall_of_the_error() {
     let folder = TempDir::new().unwrap();
     let diagnosis = reported(folder.path(), &[ADIS16405]);
     let mut browser = opened(folder.path());
@@ -116,7 +117,7 @@ fn each_axis_is_led_by_where_it_fails_what_was_missing_and_how_far_the_error_fel
         for part in parts {
             assert!(lead.contains(&part), "{part}: {lead}");
         }
-        // The worst octave is marked in both panels, and named.
+        // The worst octave is marked and named in both panels.
         let figure = format!("#axis-{number_of_axis} .figure");
         let rings = browser.value(&format!(
             "document.querySelectorAll('{figure} .worst').length"
@@ -132,7 +133,7 @@ fn each_axis_is_led_by_where_it_fails_what_was_missing_and_how_far_the_error_fel
 }
 
 #[test]
-fn steps_are_walked_by_click_and_by_key_and_show_their_own_error() {
+fn steps_are_selected_by_mouse_and_keyboard_and_show_their_own_error() {
     let folder = TempDir::new().unwrap();
     let diagnosis = reported(folder.path(), &[ADIS16405]);
     let mut browser = opened(folder.path());
@@ -150,7 +151,7 @@ fn steps_are_walked_by_click_and_by_key_and_show_their_own_error() {
     expect(&mut browser, 1);
     browser.click(&next);
     expect(&mut browser, 2);
-    // Nothing lies behind the last.
+    // There is no step after the last one.
     browser.click(&next);
     expect(&mut browser, 2);
     browser.click(&previous);
@@ -170,11 +171,11 @@ fn steps_are_walked_by_click_and_by_key_and_show_their_own_error() {
             browser.value("document.activeElement.getAttribute('aria-selected')"),
             "true"
         );
-        // By key, the focus is seen.
+        // With the keyboard, the focus is visible.
         let outline = browser.value("getComputedStyle(document.activeElement).outlineStyle");
         assert_eq!(outline, "solid");
     }
-    // The bars fall with the error.
+    // The bars become shorter as the error falls.
     let widths = browser
         .value("[...document.querySelectorAll('#axis-2 .fill')].map((fill) => fill.clientWidth)");
     let widths: Vec<f64> = widths.as_array().unwrap().iter().map(number).collect();
@@ -188,7 +189,7 @@ fn steps_are_walked_by_click_and_by_key_and_show_their_own_error() {
 #[test]
 fn every_candidate_shows_its_own_fit() {
     let folder = TempDir::new().unwrap();
-    // Two that look like a third at first, so that the second step revises the first.
+    // At first, the two effects look like a third one, so that the second step revises the first.
     let hidden = [
         "sinusoid:frequency_hz=7.7,amplitude=0.0267",
         "decimation_filter:width_s=0.0235,stages=2",
@@ -214,7 +215,7 @@ fn every_candidate_shows_its_own_fit() {
                 heading.starts_with("With this candidate") && heading.contains(&name),
                 "{heading}"
             );
-            // The search ends early with those that lag behind by more than 60.
+            // The search ends early for candidates whose χ² is more than 60 worse.
             let chi2: f64 = shown.split(' ').nth(1).unwrap().parse().unwrap();
             let change = chi2 - number(&candidate["chi2"]);
             let gain = |candidate: &Value| number(&candidate["improvement"]);
@@ -224,7 +225,7 @@ fn every_candidate_shows_its_own_fit() {
             assert_ne!(shown, error(step));
         }
         if !candidates.is_empty() {
-            // By key, from the first to the step's own model.
+            // The keys move from the first candidate to the step's own model.
             browser.click("#axis-0-candidate-0");
             browser.press("ArrowUp");
             assert_eq!(shown_error(&mut browser, 0), error(step));
@@ -293,14 +294,14 @@ fn the_page_fits_a_phone_is_readable_in_the_dark_and_can_be_printed() {
                 number(&wide) <= f64::from(width),
                 "{wide} pixels of {width}"
             );
-            // Not even clipped text within.
+            // There is no clipped text inside an element either.
             let clipped = browser.value(
                 "[...document.querySelectorAll('p, td, th, dd, li, h2, h3, button')]\
                  .filter((one) => one.scrollWidth > one.clientWidth + 1 && one.clientWidth > 0)\
                  .map((one) => one.textContent)",
             );
             assert_eq!(clipped, Value::Array(Vec::new()), "{width}");
-            // Ticks and titles of the figure lie within it.
+            // Ticks and titles of the figure lie inside it.
             let outside = browser.value(
                 "[...document.querySelectorAll('.figure text')].filter((text) => {\
                  const [box, paper] = [text, text.closest('svg')].map((one) => one.getBoundingClientRect());\
@@ -336,13 +337,13 @@ fn the_page_fits_a_phone_is_readable_in_the_dark_and_can_be_printed() {
     let buttons = browser.value("document.querySelector('.turn').offsetHeight");
     assert_eq!(buttons, 0, "on paper nothing is pressed");
     let pdf = browser.call("Page.printToPDF", serde_json::json!({}));
-    // `%PDF`, in base 64.
+    // This is `%PDF` in base 64.
     assert!(pdf["data"].as_str().unwrap().starts_with("JVBERi"));
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }
 
 #[test]
-fn names_are_text_wherever_they_come_from() {
+fn names_are_shown_as_text_and_never_run_as_markup() {
     let folder = TempDir::new().unwrap();
     let hostile =
         "</script><script>window.taken=1</script><img src=x onerror='window.taken=1'>&amp;\"";
@@ -371,7 +372,7 @@ fn names_are_text_wherever_they_come_from() {
 }
 
 #[test]
-fn a_covariate_is_a_step_and_settings_tell_how_to_come_here_again() {
+fn a_covariate_is_a_step_and_the_settings_reproduce_the_page() {
     let folder = TempDir::new().unwrap();
     let thermal = "thermal:slope=0.03,kelvin=10,period_s=300";
     simulate(folder.path(), &[thermal]);
@@ -422,6 +423,6 @@ fn pages_that_cannot_be_written_are_refused_before_anything_is_read() {
         &["report", ADIS16405, "--output", "folder.html"],
     );
     assert!(refused.contains("is a directory"), "{refused}");
-    // Nothing is left behind.
+    // No partial file remains.
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }

@@ -1,4 +1,4 @@
-//! The self-test: verdicts, looks, and plans that are refused.
+//! Tests the self-test: its verdicts, its looks, and the plans that it refuses.
 
 use allanite::{
     Axis, Scale,
@@ -11,7 +11,7 @@ use host_tests::{
 };
 
 const RATE_HZ: f64 = 100.0;
-/// °/s a count.
+/// The size of a count, in °/s.
 const UNIT: f64 = 1e-4;
 
 fn plan(effect: &'static str, most: f64) -> Plan {
@@ -29,7 +29,7 @@ fn scale() -> Scale {
     Scale::new(UNIT, RATE_HZ).unwrap()
 }
 
-/// A record as it is, without a gate.
+/// A gyro without a gate.
 type Gyro = Axis<16, 0, (), ()>;
 
 fn look(test: &mut SelfTest<16>, gyro: &Gyro) -> Status {
@@ -40,7 +40,8 @@ fn look(test: &mut SelfTest<16>, gyro: &Gyro) -> Status {
     test.look(record.samples, &record.curve, record.invalid)
 }
 
-/// Pushes a consumer gyro's counts, changed by `change(index, count)`, until the verdict.
+/// Pushes the counts of a consumer gyro, changed by `change(index, count)`, until there is a
+/// verdict.
 fn verdict(test: &mut SelfTest<16>, gyro: &mut Gyro, change: impl Fn(u64, i32) -> i32) -> Status {
     for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7) {
         let count = (rate / UNIT).round() as i32;
@@ -60,8 +61,8 @@ fn run(plan: Plan) -> (Status, u64) {
 }
 
 #[test]
-fn a_gyro_within_its_limits_passes_and_one_beyond_fails_by_how_much() {
-    // 0.005 °/s/√Hz.
+fn a_gyro_within_its_limits_passes_and_one_beyond_fails_with_the_excess() {
+    // The angle random walk is 0.005 °/s/√Hz.
     let (status, samples) = run(plan("angle_random_walk", 0.02));
     assert_eq!((status, samples), (Status::Passed, 1000));
     let (status, samples) = run(plan("angle_random_walk", 0.002));
@@ -73,7 +74,7 @@ fn a_gyro_within_its_limits_passes_and_one_beyond_fails_by_how_much() {
 }
 
 #[test]
-fn a_gyro_at_its_limit_is_undecided_and_told_how_long_it_would_take() {
+fn a_gyro_at_its_limit_is_undecided_with_the_time_that_it_would_take() {
     let (status, samples) = run(plan("angle_random_walk", 0.00495));
     let Status::Undecided {
         limit,
@@ -87,13 +88,13 @@ fn a_gyro_at_its_limit_is_undecided_and_told_how_long_it_would_take() {
         decided_by_s.is_none_or(|seconds| seconds > 320.0),
         "{decided_by_s:?}"
     );
-    // A rate random walk that five minutes cannot show.
+    // The limit is on a rate random walk that does not show within five minutes.
     let (status, _) = run(plan("rate_random_walk", 1e-5));
     assert!(matches!(status, Status::Undecided { .. }), "{status:?}");
 }
 
 #[test]
-fn looks_are_taken_once_an_octave_and_progress_is_told() {
+fn looks_are_taken_once_per_octave_and_report_progress() {
     let mut test = SelfTest::<16>::new(plan("angle_random_walk", 0.00495), scale()).unwrap();
     let (mut gyro, mut changes, mut last) = (Gyro::new(), Vec::new(), None);
     for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7).take(31_999) {
@@ -134,7 +135,7 @@ fn a_gyro_that_is_moved_or_hangs_is_invalid_with_the_reason() {
         Status::Invalid(Reason::Moved { .. })
     ));
     let stuck = |at, count| if at < 500 { count } else { 5 };
-    // Its own limits can be given, such as the rails of 16 bits at another place.
+    // The limits can be configured, such as rails that differ from those of 16 bits.
     static LIMITS: Limits = Limits {
         rails: [-1, 1, 0, 0],
         ..Limits::DEFAULT
@@ -148,7 +149,7 @@ fn a_gyro_that_is_moved_or_hangs_is_invalid_with_the_reason() {
 }
 
 #[test]
-fn a_curve_that_the_five_terms_do_not_explain_fails_where_that_is_asked() {
+fn a_curve_that_the_five_terms_do_not_explain_fails_if_the_plan_demands_a_fit() {
     let wave = |at: u64, count: i32| {
         let phase = std::f64::consts::TAU * 7.7 * at as f64 / RATE_HZ;
         count + (0.1 / UNIT * phase.sin()) as i32
@@ -211,11 +212,11 @@ fn plans_that_contradict_themselves_are_refused() {
     }
 }
 
-/// The study has the figures; this is a guard.
+/// The figures come from `cargo xtask study self-test`. This test is a guard.
 #[test]
 fn devices_at_the_limit_are_seldom_passed_or_failed() {
     let at_the_limit = study(CASES[0], 1.0, 300, Looks::Early);
-    // Three standard errors above what was asked for.
+    // The tolerance is three standard errors above the planned probability.
     let most = PROBABILITY + 3.0 * (PROBABILITY / 300.0).sqrt();
     assert!(
         at_the_limit.passed <= most && at_the_limit.failed <= most,

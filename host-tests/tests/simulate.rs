@@ -1,4 +1,5 @@
-//! Each term of the simulator against its own Allan variance, and seeds that name a record.
+//! Compares each term of the simulator with its own Allan variance, and checks that a seed always
+//! gives the same record.
 
 use allanite::Model;
 use host_tests::{
@@ -7,7 +8,7 @@ use host_tests::{
 };
 use rayon::prelude::*;
 
-/// Samples of every averaged record.
+/// The number of samples of every averaged record.
 const SAMPLES: usize = 1 << 13;
 
 const NONE: Coefficients = Coefficients {
@@ -18,14 +19,14 @@ const NONE: Coefficients = Coefficients {
     rate_ramp: 0.0,
 };
 
-/// An octave's estimate, averaged over records, relative to the Allan variance.
+/// The estimate of an octave, averaged over records, relative to the Allan variance.
 struct Average {
     m: u32,
     mean: f64,
     standard_error: f64,
 }
 
-/// The model's five terms, squared.
+/// The squares of the model's five terms.
 fn squares(c: Coefficients) -> [f64; 5] {
     let terms = [
         c.quantization,
@@ -67,8 +68,8 @@ fn averages(coefficients: Coefficients, records: u64) -> Vec<Average> {
         .collect()
 }
 
-/// Every octave known to 0.3 % or better must be right to 1 %; there must be `octaves` of them. The
-/// longer ones must be right as far as they are known.
+/// Every octave that is known to 0.3 % or better must be right to 1 %, and there must be `octaves`
+/// of them. The longer ones must be right within their uncertainty.
 fn assert_averages(coefficients: Coefficients, records: u64, octaves: usize) {
     let averages = averages(coefficients, records);
     let known = |average: &&Average| average.standard_error <= 0.003;
@@ -151,7 +152,7 @@ fn rate_ramp_has_its_allan_variance() {
 }
 
 #[test]
-fn the_terms_of_a_gyro_add() {
+fn the_variances_of_the_terms_add() {
     let all = Coefficients {
         rate_ramp: 2e-4,
         ..Preset::Mems.coefficients()
@@ -179,7 +180,7 @@ fn first(preset: Preset, seed: u64) -> [f64; 4] {
 }
 
 #[test]
-fn a_seed_names_a_record() {
+fn a_seed_always_gives_the_same_record() {
     for preset in Preset::ALL {
         let bits = |seed| first(preset, seed).map(f64::to_bits);
         assert_eq!(bits(7), bits(7));
@@ -187,9 +188,9 @@ fn a_seed_names_a_record() {
     }
 }
 
-/// What takes nothing from the host but arithmetic: the same bits everywhere.
+/// These sources use only arithmetic of the host, so they give the same bits everywhere.
 #[test]
-fn a_seed_names_a_record_for_good() {
+fn records_of_a_seed_have_not_changed() {
     let bits = |coefficients| -> Vec<u64> {
         let rates = Simulator::new(coefficients, 1.0, 1).take(3);
         rates.map(f64::to_bits).collect()
@@ -232,9 +233,9 @@ fn a_seed_names_a_record_for_good() {
     );
 }
 
-/// Flicker noise takes exponentials from the host, which may differ in the last bit.
+/// Flicker noise uses exponentials of the host, which may differ in the last bit.
 #[test]
-fn presets_keep_their_records() {
+fn records_of_the_presets_have_not_changed() {
     for (preset, expected) in [
         (
             Preset::Tactical,

@@ -1,4 +1,4 @@
-//! The integer gyro against the Allan variance of each of its terms.
+//! Compares the integer gyro with the Allan variance of each of its terms.
 
 use allanite::{Accumulator, Scale};
 use host_tests::demonstration::simulated::{Amplitudes, SimulatedGyro};
@@ -13,11 +13,12 @@ const SILENT: Amplitudes = Amplitudes {
 
 const COUNT: u32 = 1 << 24;
 
-/// Octaves compared, and the length of each record: 64 clusters of the longest.
+/// The number of octaves that are compared. Each record has the length of 64 clusters of the
+/// longest octave.
 const OCTAVES: usize = 12;
 const SAMPLES: usize = 1 << 17;
 
-/// Allan variances in counts², averaged over many records.
+/// The Allan variances in counts², averaged over many records.
 fn variances(amplitudes: Amplitudes, records: u64) -> Vec<f64> {
     let scale = Scale::new(1.0, 1.0).unwrap();
     let mut sums = Accumulator::<OCTAVES>::new();
@@ -30,7 +31,7 @@ fn variances(amplitudes: Amplitudes, records: u64) -> Vec<f64> {
     curve.points().iter().map(|point| point.variance).collect()
 }
 
-/// Quantization by rounding alone, which every record has.
+/// The quantization that every record has from rounding alone.
 fn rounding(m: f64) -> f64 {
     3.0 / 12.0 / (m * m)
 }
@@ -83,7 +84,7 @@ fn a_random_walk_rises_with_time() {
         walk: 2 * COUNT,
         ..SILENT
     };
-    // K²τ₀ (2m² + 1)/6m: a walk stepped once a sample.
+    // The variance of a walk with one step per sample is K²τ₀ (2m² + 1)/6m.
     let expected = |m: f64| 4.0 * (2.0 * m * m + 1.0) / (6.0 * m) + rounding(m);
     assert_close(&variances(walk, 100), expected, 0.05, 0);
 }
@@ -112,7 +113,7 @@ fn counts_are_the_same_on_every_machine() {
 }
 
 #[test]
-fn silence_is_zero_and_the_seed_decides() {
+fn zero_amplitudes_give_zero_and_other_seeds_other_counts() {
     assert!(
         SimulatedGyro::new(SILENT, 3)
             .take(100)

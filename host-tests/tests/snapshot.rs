@@ -1,4 +1,4 @@
-//! Snapshots: exact, refused where anything has changed.
+//! Snapshots are exact, and are refused if anything has changed.
 
 #[path = "common/sealed.rs"]
 mod sealed;
@@ -31,7 +31,8 @@ fn recorded<const OCTAVES: usize>(samples: usize) -> Accumulator<OCTAVES> {
     accumulator
 }
 
-/// What is stored of an accumulator restores it as after a gap, and both go on alike.
+/// Checks that an accumulator is restored from its snapshot in its state after a gap, and that both
+/// continue alike.
 fn check<const OCTAVES: usize>(stretches: &[Vec<i32>], later: &[i32]) {
     let mut accumulator = Accumulator::<OCTAVES>::new();
     for (i, stretch) in stretches.iter().enumerate() {
@@ -69,7 +70,7 @@ proptest! {
     #![proptest_config(seeded(200))]
 
     #[test]
-    fn restored_accumulator_is_the_old_one_after_a_gap(
+    fn restored_accumulator_equals_the_old_one_after_a_gap(
         stretches in stretches(),
         later in vec(any::<i32>(), 0..300),
     ) {
@@ -120,7 +121,7 @@ fn every_change_of_one_byte_is_refused() {
 }
 
 #[test]
-fn every_truncation_and_every_byte_too_many_is_refused() {
+fn every_missing_and_every_additional_byte_is_refused() {
     let mut bytes = snapshot(&recorded::<20>(100_000));
     for length in 0..bytes.len() {
         let error = Accumulator::<20>::restore(&bytes[..length]).unwrap_err();
@@ -189,7 +190,7 @@ fn other_kind_version_and_number_of_octaves_are_named() {
 
 #[test]
 fn contents_that_no_record_has_are_refused() {
-    // Two octaves of one stretch of 4 samples: 3 differences, and 1.
+    // The snapshot has two octaves of one stretch of 4 samples, with 3 differences and 1.
     let possible = [2, 4, 1, 3, 9, 0, 0, 1, 4, 0, 0];
     let restore = |payload: &[u8]| Accumulator::<2>::restore(&sealed(1, 1, payload));
     assert_eq!(restore(&possible).unwrap().samples(), 4);
@@ -198,7 +199,8 @@ fn contents_that_no_record_has_are_refused() {
         payload[i] = value;
         restore(&payload)
     };
-    // More octaves than there are; none; other numbers of samples, gaps and differences.
+    // The changes are too many octaves, no octaves, and other numbers of samples, gaps and
+    // differences.
     for (i, value) in [
         (0, 3),
         (0, 1),
@@ -216,17 +218,17 @@ fn contents_that_no_record_has_are_refused() {
             "{i}: {value}"
         );
     }
-    // Sums beyond what three differences of 32 bits give, and beyond 158 bits.
+    // The sums exceed what three differences of 32 bits can give, and 158 bits.
     assert!(change(5, 2).is_ok());
     assert_eq!(change(5, 3).unwrap_err(), Error::Impossible);
     assert_eq!(change(6, 1).unwrap_err(), Error::Impossible);
-    // No difference has no sum.
+    // Without differences, the sum must be zero.
     assert!(restore(&[2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]).is_ok());
     assert_eq!(
         restore(&[2, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]),
         Err(Error::Impossible)
     );
-    // Too short, too long.
+    // The bytes are too few or too many.
     assert_eq!(restore(&possible[..10]), Err(Error::Impossible));
     assert_eq!(
         restore(&[&possible[..], &[0]].concat()),
@@ -235,7 +237,7 @@ fn contents_that_no_record_has_are_refused() {
 }
 
 #[test]
-fn contents_of_every_kind_are_refused_or_make_a_snapshot() {
+fn arbitrary_contents_are_refused_or_give_a_valid_snapshot() {
     let bytes = snapshot(&recorded::<13>(1000));
     let payload = &bytes[8..bytes.len() - 4];
     let mut accepted = 0;
@@ -258,7 +260,7 @@ fn contents_of_every_kind_are_refused_or_make_a_snapshot() {
 }
 
 #[test]
-fn format_is_the_one_that_was_frozen() {
+fn format_has_not_changed_since_it_was_frozen() {
     let mut accumulator = Accumulator::<3>::new();
     accumulator.push_slice(&[3, -1, 4, 1_000_000, -5, 9, 2, 6, -5, 3]);
     accumulator.gap();
@@ -276,12 +278,12 @@ fn format_is_the_one_that_was_frozen() {
     assert_eq!(Accumulator::<3>::restore(&bytes).unwrap(), accumulator);
 }
 
-/// Three octaves of 10 and 3 samples, in version 1.
+/// A snapshot of three octaves with 10 and 3 samples, in version 1 of the format.
 const FROZEN: &str =
     "414c4e5401011e00030d020b92cda2cbda390200079cbed3ffb474000003ecbfa7dea757000085b0d929";
 
 #[test]
-fn interval_counts_from_where_the_accumulator_stands() {
+fn snapshot_interval_counts_from_the_current_sample() {
     let mut interval = SnapshotInterval::new(NonZeroU64::new(100).unwrap(), 1050);
     let due: Vec<u64> = (1051..1400)
         .filter(|&samples| interval.is_due(samples))

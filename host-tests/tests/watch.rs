@@ -1,4 +1,4 @@
-//! A live record: what was received is in the curve, whatever ends it.
+//! Tests `watch`: whatever ends a live record, the curve contains what was received.
 
 use allanite::Accumulator;
 use host_tests::program::{command, refusal};
@@ -25,7 +25,7 @@ use tempfile::TempDir;
 
 const AXES: [&str; 2] = ["left", "right"];
 
-/// A line that is sent: counts, or nothing that could be any.
+/// A line that is sent: counts, or text that is not a count.
 #[derive(Clone, Copy)]
 enum Sent {
     Sample([i32; 2]),
@@ -81,7 +81,7 @@ fn signal(child: &Child, name: &str) {
     );
 }
 
-/// Until the curve has been saved for the first time.
+/// Waits until the curve has been saved for the first time.
 fn wait_for_curve(folder: &Path, child: &mut Child) {
     let begun = Instant::now();
     while !folder.join("curve.json").exists() {
@@ -97,7 +97,7 @@ fn wait_for_curve(folder: &Path, child: &mut Child) {
         }
         assert!(
             begun.elapsed() < Duration::from_secs(60),
-            "nothing is saved"
+            "no curve was saved in time"
         );
         thread::sleep(Duration::from_millis(1));
     }
@@ -107,7 +107,8 @@ fn saved(folder: &Path) -> CurveFile {
     CurveFile::read(&folder.join("curve.json")).unwrap()
 }
 
-/// The curves of the first lines that make up so many samples, to the bit.
+/// The curves of the first lines that contain the given number of samples. They must agree to the
+/// bit.
 fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
     let mut accumulators = [(); 2].map(|()| Accumulator::<OCTAVES>::new());
     let mut rest = sent.iter();
@@ -137,7 +138,8 @@ fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
     CurveFile::new(axes.collect())
 }
 
-/// Whether the saved curve is that of a prefix of what was sent; the prefix' samples.
+/// Asserts that the saved curve is that of a prefix of what was sent, and returns the number of
+/// samples in the prefix.
 fn check_prefix(folder: &Path, sent: &[Sent]) -> u64 {
     let curves = saved(folder);
     let (samples, gaps) = (curves.axes[0].samples, curves.axes[0].gaps);
@@ -145,7 +147,8 @@ fn check_prefix(folder: &Path, sent: &[Sent]) -> u64 {
     samples
 }
 
-/// Sends lines in pieces of any length, and counts the samples that were flushed, until nobody reads.
+/// Sends lines in pieces of any length until the reader is gone. Counts the samples that were
+/// flushed.
 fn send(
     mut pipe: impl Write + Send + 'static,
     sent: Vec<Sent>,
@@ -159,7 +162,7 @@ fn send(
         while !rest.is_empty() {
             let (piece, behind) = rest.split_at(random.random_range(1..200).min(rest.len()));
             let text: String = piece.iter().map(|line| line.line()).collect();
-            // Cut in the middle of a line, too.
+            // A piece may end in the middle of a line.
             let (start, end) = text.as_bytes().split_at(random.random_range(0..text.len()));
             let written = pipe.write_all(start).and_then(|()| pipe.flush());
             thread::sleep(Duration::from_millis(random.random_range(0..4)));
@@ -181,7 +184,7 @@ fn send(
 }
 
 #[test]
-fn interrupted_record_is_a_prefix_that_has_all_that_was_flushed_well_before() {
+fn interrupted_record_is_a_prefix_with_all_samples_flushed_before() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(11);
     for (seed, name) in [(1, "INT"), (2, "TERM"), (3, "INT"), (4, "INT")] {
         let folder = TempDir::new().unwrap();
@@ -244,7 +247,7 @@ fn input_that_ends_is_saved_to_its_last_complete_line() {
 }
 
 #[test]
-fn curve_is_saved_on_the_way_and_whole_at_every_moment() {
+fn curve_is_saved_regularly_and_complete_at_every_moment() {
     let folder = TempDir::new().unwrap();
     let sent = lines(2_000_000, 5);
     let mut child = watch(folder.path(), &["--save-every", "0.05"]);
@@ -257,7 +260,7 @@ fn curve_is_saved_on_the_way_and_whole_at_every_moment() {
         last = samples;
         thread::sleep(Duration::from_millis(7));
     }
-    // Not even this loses more than what came since the last saving.
+    // Even a kill loses only what came since the last save.
     child.kill().unwrap();
     child.wait().unwrap();
     sender.join().unwrap();
@@ -265,11 +268,11 @@ fn curve_is_saved_on_the_way_and_whole_at_every_moment() {
 }
 
 #[test]
-fn serial_port_is_read_from_a_whole_line_on() {
+fn serial_port_is_read_from_the_first_whole_line() {
     let folder = TempDir::new().unwrap();
     let (mut device, port) = TTYPort::pair().unwrap();
     let name = port.name().unwrap();
-    // A port has one owner.
+    // A port can have only one owner.
     drop(port);
     let sent: Vec<Sent> = lines(100_000, 9)
         .into_iter()
@@ -303,7 +306,7 @@ fn serial_port_is_read_from_a_whole_line_on() {
     let curves = saved(folder.path());
     let (samples, gaps) = (curves.axes[0].samples, curves.axes[0].gaps);
     assert!(samples > 20 && gaps == 0, "{samples} {gaps}");
-    // From whichever line it was opened in.
+    // The record begins at the line during which the port was opened or a later one.
     let start = (0..sent.len() - samples as usize)
         .find(|&start| curves == expected(&sent[start..], samples, gaps));
     assert!(start.is_some());

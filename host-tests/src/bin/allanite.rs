@@ -1,4 +1,4 @@
-//! The command line.
+//! The command line of allanite.
 
 use clap::Parser;
 use host_tests::{command::CommandLine, failure::Failure};

@@ -1,4 +1,4 @@
-//! The studies behind the README's figures: `cargo xtask study NAME`.
+//! The studies that the README's figures rest on: `cargo xtask study NAME`.
 
 use allanite::fit::Options;
 use anyhow::Result;
@@ -23,51 +23,51 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Study {
-    /// Covariance of the curve and χ² of the fit, against simulated records
+    /// Compare the theoretical covariance of the curve and χ² of the fit with simulated records
     Theory {
-        /// Records a table
+        /// Number of records per table
         #[arg(long, default_value_t = 3000)]
         records: u64,
     },
-    /// Is a hidden effect found, named, measured; is nothing claimed where nothing is hidden
+    /// Count how often a hidden effect is found, named and measured, and how often one is claimed in vain
     HiddenEffect {
-        /// Records a case
+        /// Number of records per case
         #[arg(long, default_value_t = 100)]
         records: u64,
-        /// Records a preset with nothing hidden
+        /// Number of records per preset in which nothing is hidden
         #[arg(long, default_value_t = 1000)]
         clean: u64,
-        /// Only this preset
+        /// Study only this preset
         #[arg(long)]
         preset: Option<Preset>,
-        /// Only this effect
+        /// Study only this effect
         #[arg(long)]
         effect: Option<String>,
     },
-    /// Is a temperature found that the rate follows, with its slope; is none blamed that it does not
+    /// Count how often a temperature that the rate depends on is found, and another one is blamed
     Thermal {
-        /// Records a case
+        /// Number of records per case
         #[arg(long, default_value_t = 1000)]
         records: u64,
     },
-    /// How often the self-test errs, and how much sooner than one of fixed length it ends
+    /// Count how often the self-test errs, and compare its length with a test of fixed length
     SelfTest {
-        /// Devices a case
+        /// Number of devices per case
         #[arg(long, default_value_t = 2000)]
         devices: u64,
     },
-    /// What single precision makes of the same records, beside double
+    /// Compare single with double precision on the same records
     Precision {
-        /// Records a table
+        /// Number of records per table
         #[arg(long, default_value_t = 1000)]
         records: u64,
     },
-    /// Errors of the coefficients and coverage of their intervals, for every method
+    /// Measure errors of the coefficients and coverage of their intervals, for every method
     Coefficients {
-        /// Records a method
+        /// Number of records per method
         #[arg(long, default_value_t = 1000)]
         records: u64,
-        /// Model tolerance
+        /// Relative tolerance of the model
         #[arg(long, default_value_t = Options::default().tolerance)]
         tolerance: f64,
     },
@@ -92,13 +92,13 @@ fn main() -> Result<()> {
 
 fn precisions(records: u64) -> Result<()> {
     let fits = precision::fits(records)?;
-    println!("single beside double precision: fits of {records} records of 2^18 samples");
+    println!("single compared with double precision: fits of {records} records of 2^18 samples");
     println!(
         "{:>28} {:>9} {:>9} {:>9}",
         "difference of", "median", "99 %", "largest"
     );
     for (what, sorted) in [
-        ("coefficients, in errors", &fits.standard_errors),
+        ("coefficients, std. errors", &fits.standard_errors),
         ("χ²", &fits.chi_squared),
     ] {
         let [median, most, largest] = [0.5, 0.99, 1.0].map(|share| quantile(sorted, share));
@@ -107,7 +107,7 @@ fn precisions(records: u64) -> Result<()> {
     println!("\ndiagnoses of {records} records of 2^17 samples each");
     println!(
         "{:>28} {:>9} {:>22}",
-        "hidden", "the same", "ambiguous otherwise"
+        "hidden", "the same", "differ, ambiguous"
     );
     for (name, alike) in precision::diagnoses(records)? {
         println!("{name:>28} {:>9} {:>22}", alike.same, alike.ambiguous);
@@ -285,7 +285,7 @@ fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) 
     }
     if effect.is_none() {
         println!(
-            "\ntwo strong effects at once, a sinusoid and a filter of two stages: both found in"
+            "\ntwo strong effects at once, a sinusoid and a filter of two stages; share with both found:"
         );
         for preset in presets() {
             if let Some(share) = both_found(preset, records) {
@@ -297,7 +297,7 @@ fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) 
             }
         }
     }
-    println!("\nnothing hidden, {clean} records a preset: an effect is claimed in");
+    println!("\nnothing hidden, {clean} records per preset; share with an effect claimed:");
     for preset in presets() {
         let (share, names) = false_alarms(preset, clean);
         println!(
@@ -334,7 +334,9 @@ fn temperatures(records: u64) {
             100.0 * t.blamed
         );
     }
-    println!("\nwith strong Gauss–Markov noise (T_c 1 s) and ten times the slope: both found in");
+    println!(
+        "\nwith strong Gauss–Markov noise (T_c 1 s) and ten times the slope; share with both found:"
+    );
     for (name, course, kelvin, _) in thermal::CASES {
         let share = thermal::with_gauss_markov(course, kelvin, records.min(200));
         println!("{name:<20} {:.1} %", 100.0 * share);
@@ -343,7 +345,7 @@ fn temperatures(records: u64) {
 
 fn self_tests(devices: u64) {
     println!(
-        "{devices} devices a line; a probability of {} % of false pass and of false fail is asked for",
+        "{devices} devices per line; the plan allows {} % of false pass and as much of false fail",
         100.0 * self_test::PROBABILITY
     );
     for case in self_test::CASES {
@@ -376,7 +378,7 @@ fn self_tests(devices: u64) {
         for missed in shares.into_iter().filter(|_| case.compared) {
             let fixed = self_test::fixed_length_s(case, devices, missed);
             println!(
-                "one look that misses at most {:.2} % of those a factor of 1.3 off: {fixed:.1} s",
+                "a test of one look that misses at most {:.2} % of devices a factor of 1.3 off the limit: {fixed:.1} s",
                 100.0 * missed
             );
         }

@@ -1,4 +1,4 @@
-//! Chores of the project: `cargo xtask --help`.
+//! The tasks of the project: see `cargo xtask --help`.
 
 use clap::Parser;
 use host_tests::xtask::CommandLine;

@@ -1,4 +1,4 @@
-//! Whether an image and this host compute the same bits.
+//! Checks that an image and this host compute the same bits.
 
 use super::{
     Core, Heartbeat, Image, Precision, REMEDY, cargo, run_with,
@@ -6,33 +6,35 @@ use super::{
 };
 use anyhow::{Context as _, Result, ensure};
 
-/// The first line in which `characterise` on a core and the same here differ; `None` if every number
-/// has the same bits.
+/// The first line in which the program `characterise` prints different things on a core and on this
+/// host. Returns `None` if every number has the same bits.
 ///
 /// # Errors
-/// If the image cannot be built or run, or ends with a failure.
+/// Fails if the image cannot be built or run, or if it ends with a failure.
 pub fn difference(core: &Core) -> Result<Option<String>> {
     let there = told(core, "characterise", &[])?;
     let here = told_here(core.precision, "characterise", &[])?;
     Ok(first_difference(&here, &there))
 }
 
-/// The first line in which two that should tell the same differ.
+/// The first difference between the lines of this host and those of a core.
 pub fn first_difference(here: &[String], there: &[String]) -> Option<String> {
     let differ = here.iter().zip(there).find(|(here, there)| here != there);
     match differ {
-        Some((here, there)) => Some(format!("{here:?} here, {there:?} there")),
-        None if here.len() != there.len() => {
-            Some(format!("{} lines here, {} there", here.len(), there.len()))
-        }
+        Some((here, there)) => Some(format!("{here:?} on this host, {there:?} on the core")),
+        None if here.len() != there.len() => Some(format!(
+            "{} lines on this host, {} on the core",
+            here.len(),
+            there.len()
+        )),
         None => None,
     }
 }
 
-/// What an image logs on a core.
+/// The lines that an image logs on a core.
 ///
 /// # Errors
-/// If the image cannot be built or run, or ends with a failure.
+/// Fails if the image cannot be built or run, or if it ends with a failure.
 pub fn told(core: &Core, image: &str, arguments: &[&str]) -> Result<Vec<String>> {
     let run = run_with(&Image::build_for(image, core)?, arguments)?;
     let (status, lines) = (run.status, run.lines);
@@ -41,22 +43,22 @@ pub fn told(core: &Core, image: &str, arguments: &[&str]) -> Result<Vec<String>>
     Ok(lines.iter().map(message).collect())
 }
 
-/// What the same program prints on this host.
+/// The lines that the same program prints on this host.
 ///
 /// # Errors
-/// If it cannot be built or run, or ends with a failure.
+/// Fails if the program cannot be built or run, or if it ends with a failure.
 pub fn told_here(precision: Precision, image: &str, arguments: &[&str]) -> Result<Vec<String>> {
     let _heartbeat = Heartbeat::new(format!(
         "{image} on this host, {} precision",
         precision.name()
     ));
-    // Both precisions have one path.
+    // The program has the same path in both precisions.
     let _lock = exclusive()?;
     let output = cargo()
         .args(["run", "--package", "allanite", "--bin", image])
         .args(["--features", "firmware"])
         .args(precision.arguments())
-        // The cargo that runs this program may hold the lock of the usual one.
+        // The cargo that runs this program may hold the lock of the usual target directory.
         .arg("--target-dir")
         .arg(target_directory())
         .arg("--")

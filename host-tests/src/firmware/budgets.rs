@@ -1,7 +1,7 @@
-//! What the library may cost on each core: `host-tests/budgets.json`, and whether it is kept.
+//! Budgets for the cost of the library on each core, in `host-tests/budgets.json`, and their check.
 //!
-//! The file has a column of budgets for each [`Way`] to build: under the way's name, the figures of the
-//! Cortex-M4F in detail and those of every core.
+//! The file has a column of budgets for each [`Way`] to build. A column holds detailed figures of
+//! the Cortex-M4F and a few figures of every core.
 
 use super::{CORTEX_M4F, Core, Precision, Way, measure, workspace};
 use anyhow::{Context as _, Result, ensure};
@@ -9,20 +9,22 @@ use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
-/// How far a figure may exceed its budget.
+/// The relative amount by which a figure may exceed its budget.
 const TOLERANCE: f64 = 0.05;
 
-/// What brings the file in line with what was measured.
+/// The remedy: how to bring the file in line with the measurement.
 const UPDATE: &str =
     "if the cost is worth it, `cargo xtask bench --update-budgets` writes what is measured now";
 
-/// Figures of the Cortex-M4F in detail, in single and in double precision, and of every core.
+/// Measures the detailed figures of the Cortex-M4F in single and double precision, and the figures
+/// of every core.
 ///
 /// # Errors
-/// If an image cannot be built or run.
+/// Fails if an image cannot be built or run.
 pub fn measured() -> Result<Value> {
     let cores: Vec<Core> = Core::all().collect();
-    // Images are built one at a time, and run meanwhile: instructions are counted, not timed.
+    // Images are built one at a time and run in parallel, because instructions are counted and not
+    // timed.
     let figures = cores.par_iter().map(measure::figures);
     let figures = figures.collect::<Result<Vec<_>>>()?;
     let mut measured = json!({});
@@ -38,7 +40,7 @@ pub fn measured() -> Result<Value> {
     Ok(measured)
 }
 
-/// Where the Cortex-M4F's figures are.
+/// The key of the Cortex-M4F's detailed figures.
 pub fn target(precision: Precision) -> &'static str {
     match precision {
         Precision::Single => "target",
@@ -46,15 +48,15 @@ pub fn target(precision: Precision) -> &'static str {
     }
 }
 
-/// The file.
+/// The path of the file of budgets.
 pub fn path() -> PathBuf {
     workspace().join("host-tests/budgets.json")
 }
 
-/// The column of a way.
+/// The budgets for a way to build.
 ///
 /// # Errors
-/// If the file cannot be read, or lacks the column.
+/// Fails if the file cannot be read or has no such column.
 pub fn committed(way: Way) -> Result<Value> {
     let path = path();
     let mut columns = columns().with_context(|| format!("reading {}: {UPDATE}", path.display()))?;
@@ -72,10 +74,10 @@ fn columns() -> Result<Map<String, Value>> {
     Ok(serde_json::from_slice(&std::fs::read(path())?)?)
 }
 
-/// Writes the column of a way, and keeps the other.
+/// Replaces the column of one way in the file, and keeps the other.
 ///
 /// # Errors
-/// If that fails.
+/// Fails if the file cannot be read or written.
 pub fn update(measured: &Value, way: Way) -> Result<()> {
     let path = path();
     let written = || -> Result<()> {
@@ -89,10 +91,11 @@ pub fn update(measured: &Value, way: Way) -> Result<()> {
     written().with_context(|| format!("writing {}", path.display()))
 }
 
-/// Compares what was measured with the budgets.
+/// Compares a measurement with the budgets.
 ///
 /// # Errors
-/// Every figure that exceeds its budget by more than 5 %, has none, or was not measured.
+/// Lists every figure that exceeds its budget by more than 5 %, that has no budget, or that was not
+/// measured.
 pub fn check(measured: &Value, budgets: &Value) -> Result<()> {
     let mut complaints = Vec::new();
     compare("", measured, budgets, &mut complaints);
@@ -100,7 +103,7 @@ pub fn check(measured: &Value, budgets: &Value) -> Result<()> {
     Ok(())
 }
 
-/// Both must have the same shape; numbers of the first may exceed those of the second a little.
+/// Compares two values of the same shape. A number may exceed its budget by [`TOLERANCE`].
 fn compare(place: &str, measured: &Value, budget: &Value, complaints: &mut Vec<String>) {
     match (measured, budget) {
         (Value::Object(figures), Value::Object(budgets)) => {
@@ -128,7 +131,7 @@ fn compare(place: &str, measured: &Value, budget: &Value, complaints: &mut Vec<S
         }
         (Value::Number(_), Value::Number(_)) => {
             let [figure, limit] = [measured, budget].map(|one| one.as_f64().unwrap_or(f64::NAN));
-            // What is not a number does not keep it.
+            // The comparison is false for NaN, so that it does not pass.
             let kept = figure <= limit * (1.0 + TOLERANCE);
             if !kept {
                 complaints.push(format!("{place}: {figure}, the budget is {limit}"));
@@ -152,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn up_to_5_percent_more_is_let_pass() {
+    fn figures_up_to_5_percent_above_the_budget_pass() {
         assert_eq!(complaints(json!(105), json!(100)), "");
         assert_eq!(complaints(json!(50), json!(100)), "");
         let said = complaints(json!(106), json!(100));

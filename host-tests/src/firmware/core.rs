@@ -1,27 +1,28 @@
-//! The cores that the images run on, as QEMU has them.
+//! The cores that the images run on in QEMU.
 
-/// A core, on a board.
+/// A core on a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Core {
-    /// Its name.
+    /// The name of the core.
     pub name: &'static str,
-    /// What images are built for.
+    /// The target that images are built for.
     pub target: &'static str,
-    /// The emulator.
+    /// The program of the emulator.
     pub qemu: &'static str,
     /// QEMU's name of the board.
     pub machine: &'static str,
     /// QEMU's name of the core.
     pub cpu: &'static str,
-    /// The symbol by which `memory.x` knows the board, if it is not the usual one.
+    /// The symbol that selects the board in `memory.x`, or `None` for the default board.
     pub board: Option<&'static str>,
-    /// Whether it has so little RAM, 16 KiB, that it fits fewer octaves and does not diagnose.
+    /// Whether the core has only 16 KiB of RAM. It then has room for fewer octaves and for no
+    /// diagnosis.
     pub small: bool,
-    /// What it computes in.
+    /// The precision of its computations.
     pub precision: Precision,
 }
 
-/// What curves, fits and diagnoses are computed in.
+/// The precision of curves, fits and diagnoses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     /// Single precision, the library's default.
@@ -31,10 +32,10 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Both.
+    /// Both precisions.
     pub const ALL: [Self; 2] = [Self::Single, Self::Double];
 
-    /// Its name.
+    /// The name of the precision.
     pub fn name(self) -> &'static str {
         match self {
             Self::Double => "double",
@@ -42,7 +43,7 @@ impl Precision {
         }
     }
 
-    /// Arguments of cargo that choose it.
+    /// The arguments of cargo that select the precision.
     pub fn arguments(self) -> &'static [&'static str] {
         match self {
             Self::Single => &[],
@@ -52,7 +53,7 @@ impl Precision {
 }
 
 impl Core {
-    /// The same with another precision.
+    /// The same core with another precision.
     #[must_use]
     pub const fn with(self, precision: Precision) -> Self {
         Self { precision, ..self }
@@ -65,7 +66,7 @@ impl Core {
     }
 }
 
-/// With its precision.
+/// Shows the core with its precision.
 impl std::fmt::Display for Core {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}, {} precision", self.name, self.precision.name())
@@ -75,7 +76,7 @@ impl std::fmt::Display for Core {
 /// The emulator of Arm's cores.
 const QEMU_ARM: &str = "qemu-system-arm";
 
-/// The core that figures are of, where no other is named.
+/// The core that figures refer to, unless another one is named.
 pub const CORTEX_M4F: Core = Core {
     name: "Cortex-M4F",
     target: "thumbv7em-none-eabihf",
@@ -87,7 +88,7 @@ pub const CORTEX_M4F: Core = Core {
     precision: Precision::Single,
 };
 
-/// The core of another architecture.
+/// A core of another architecture than Arm.
 pub const RISCV: Core = Core {
     name: "RISC-V RV32IMC",
     target: "riscv32imc-unknown-none-elf",
@@ -99,8 +100,8 @@ pub const RISCV: Core = Core {
     precision: Precision::Single,
 };
 
-/// Every core: with hardware for single precision, for none, for double; with 4 MiB of RAM, and with
-/// 16 KiB.
+/// Every core. They include cores with hardware for single precision, for no floats, and for double
+/// precision, and cores with 4 MiB and with 16 KiB of RAM.
 pub const CORES: [Core; 7] = [
     Core {
         name: "Cortex-M0",

@@ -1,4 +1,4 @@
-//! An image run in QEMU, and what it logged.
+//! Runs an image in QEMU and reads its log.
 
 use super::{Heartbeat, Image, REMEDY};
 use anyhow::{Context as _, Result, bail};
@@ -11,30 +11,30 @@ use std::{
 };
 use wait_timeout::ChildExt as _;
 
-/// The images take seconds; one that hangs is ended.
+/// The longest time that an image may run. Images take seconds, and one that hangs is ended.
 const LIMIT: Duration = Duration::from_secs(600);
 
-/// What came of running an image.
+/// The result of running an image.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What it logged, a line a message.
+    /// The log of the image, one line per message.
     pub lines: Vec<String>,
-    /// How it ended.
+    /// The exit status of QEMU.
     pub status: ExitStatus,
 }
 
-/// Runs an image on the board of its core. An instruction takes 1 ns there.
+/// Runs an image on the board of its core. An instruction takes 1 ns of simulated time.
 ///
 /// # Errors
-/// If QEMU does not start, the image does not end, or its log cannot be decoded.
+/// Fails if QEMU does not start, if the image does not end, or if its log cannot be decoded.
 pub fn run(image: &Image) -> Result<Run> {
     run_with(image, &[])
 }
 
-/// The same, with arguments for the image.
+/// Runs an image with arguments.
 ///
 /// # Errors
-/// As of [`run`].
+/// The errors are those of [`run`].
 pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
     let mut child = start(image, arguments)?;
     let name = image.path.file_name().unwrap_or_default();
@@ -64,10 +64,10 @@ pub fn run_with(image: &Image, arguments: &[&str]) -> Result<Run> {
     Ok(Run { lines, status })
 }
 
-/// Starts an image; what it writes is to be read.
+/// Starts an image. Its standard output has to be read.
 ///
 /// # Errors
-/// If QEMU does not start.
+/// Fails if QEMU does not start.
 pub fn start(image: &Image, arguments: &[&str]) -> Result<Child> {
     let mut semihosting = String::from("enable=on,target=native,arg=image");
     for argument in arguments {
@@ -76,7 +76,7 @@ pub fn start(image: &Image, arguments: &[&str]) -> Result<Child> {
     let qemu = image.core.qemu;
     Command::new(qemu)
         .args(["-machine", image.core.machine, "-cpu", image.core.cpu])
-        // The image is all that runs: RISC-V would start its own firmware first.
+        // No firmware runs besides the image. QEMU would otherwise start its own on RISC-V.
         .args(["-bios", "none"])
         .args(["-icount", "shift=0", "-nographic", "-monitor", "none"])
         .args(["-serial", "null"])
@@ -89,7 +89,7 @@ pub fn start(image: &Image, arguments: &[&str]) -> Result<Child> {
         .with_context(|| format!("{qemu} did not start: {REMEDY}"))
 }
 
-/// The messages of a defmt log, each with its level.
+/// The messages of a defmt log, each preceded by its level.
 fn decode(elf: &[u8], log: &[u8]) -> Result<Vec<String>> {
     let table = Table::parse(elf)?.context("the image logs nothing by defmt")?;
     let mut decoder = table.new_stream_decoder();

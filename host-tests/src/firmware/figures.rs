@@ -1,23 +1,25 @@
-//! The README's figures of the target, from the budgets that the tests hold the library to.
+//! The README's tables of the cost on the target. They follow from the budgets that the tests
+//! check.
 
 use super::{Precision, budgets::target};
 use anyhow::{Context as _, Result};
 use serde_json::Value;
 use std::fmt::Write as _;
 
-/// Samples a second of three axes, and instructions a second of a core that takes them.
+/// The number of samples per second of three axes, and the number of instructions per second of the
+/// core that takes them.
 const SAMPLES_PER_S: f64 = 3.0 * 8000.0;
 const INSTRUCTIONS_PER_S: f64 = 64e6;
 
-/// The tables as the README has them.
+/// The tables as they stand in the README.
 ///
 /// # Errors
-/// If a figure is missing.
+/// Fails if a figure is missing.
 pub fn readme(budgets: &Value) -> Result<String> {
     Ok(format!("{}\n{}", detail(budgets)?, cores(budgets)?))
 }
 
-/// Figures of a Cortex-M4F: a row a figure, a column a precision.
+/// The table of a Cortex-M4F, with a row for each figure and a column for each precision.
 fn detail(budgets: &Value) -> Result<String> {
     let [single, double] = Precision::ALL.map(|precision| {
         let figures = &budgets[target(precision)];
@@ -81,7 +83,8 @@ fn rows(target: &Figures<'_>) -> Result<Vec<(&'static str, String)>> {
     ])
 }
 
-/// A row a core and precision. What a core has no room for is a dash.
+/// The table of all cores, with a row for each core and precision. A dash marks what a core has no
+/// room for.
 fn cores(budgets: &Value) -> Result<String> {
     let mut table = String::from(
         "| core | precision | instructions a sample | worst | fit, million | diagnosis, million | flash | stack | RAM, stack included |\n\
@@ -109,7 +112,7 @@ fn cores(budgets: &Value) -> Result<String> {
     Ok(table)
 }
 
-/// Figures of one core.
+/// The name of a core, and its figures.
 struct Figures<'a>(&'a str, &'a Value);
 
 impl Figures<'_> {

@@ -1,4 +1,4 @@
-//! Signs of life while something takes long.
+//! Prints signs of life while something takes long.
 
 use std::{
     io::Write as _,
@@ -7,12 +7,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Nobody waits longer for a sign.
+/// The longest time without a sign of life.
 pub const PERIOD: Duration = Duration::from_secs(8);
 
-/// Says on standard error what has begun and, as long as it is not dropped, that it goes on.
+/// Prints on standard error what has begun, and then repeats it until it is dropped.
 ///
-/// It writes past what a test captures: these lines are for whoever waits for the test.
+/// It writes directly to standard error, past the capture of the test runner, because these lines are
+/// for the person who waits for the test.
 #[derive(Debug)]
 pub struct Heartbeat {
     end: Option<Sender<()>>,
@@ -20,7 +21,7 @@ pub struct Heartbeat {
 }
 
 impl Heartbeat {
-    /// Begins with a line that says what is done.
+    /// Prints a line that says what is done, and starts to repeat it.
     pub fn new(what: String) -> Self {
         say(&what);
         let (end, ended) = channel();
@@ -41,13 +42,13 @@ impl Drop for Heartbeat {
     fn drop(&mut self) {
         self.end = None;
         if let Some(thread) = self.thread.take() {
-            // It only prints; one that fails is no reason to.
+            // The thread only prints, so its failure is not passed on.
             let _ = thread.join();
         }
     }
 }
 
-/// A line on standard error; where that is closed nobody waits.
+/// Prints a line on standard error. If that is closed, nobody reads it.
 fn say(what: &str) {
     let _ = writeln!(std::io::stderr(), "      Doing {what}");
 }

@@ -1,4 +1,4 @@
-//! One image, built.
+//! Builds an image and examines it.
 
 use super::{
     CORTEX_M4F, Core, Heartbeat, REMEDY, Toolchain,
@@ -11,7 +11,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What the names of such functions have in common: the handler, and the way to it.
+/// Parts of the names of functions that a panic needs: the panic handler and the functions that
+/// call it.
 const PANICS: [&str; 8] = [
     "rust_begin_unwind",
     "core::panicking::",
@@ -26,11 +27,11 @@ const PANICS: [&str; 8] = [
 /// A linked image.
 #[derive(Clone, Debug)]
 pub struct Image {
-    /// What it is built for.
+    /// The core that the image is built for.
     pub core: Core,
-    /// Where it lies.
+    /// The path of the image.
     pub path: PathBuf,
-    /// The file itself.
+    /// The contents of the file.
     pub elf: Vec<u8>,
 }
 
@@ -38,23 +39,25 @@ impl Image {
     /// Builds the binary `name` of the library's package for a Cortex-M4F.
     ///
     /// # Errors
-    /// If no compiler for the target is found, the build fails, or its result holds no code.
+    /// Fails if no compiler for the target is found, if the build fails, or if the image holds no
+    /// code.
     pub fn build(name: &str) -> Result<Self> {
         Self::build_for(name, &CORTEX_M4F)
     }
 
-    /// The same for another core.
+    /// Builds an image for another core.
     ///
     /// # Errors
-    /// As of [`build`](Self::build).
+    /// The errors are those of [`build`](Self::build).
     pub fn build_for(name: &str, core: &Core) -> Result<Self> {
         Self::build_with(name, core, "firmware")
     }
 
-    /// The same with a profile of the workspace: `firmware`, or `checked` with arithmetic checked.
+    /// Builds an image with a profile of the workspace: `firmware`, or `checked` for checked
+    /// arithmetic.
     ///
     /// # Errors
-    /// As of [`build`](Self::build).
+    /// The errors are those of [`build`](Self::build).
     pub fn build_with(name: &str, core: &Core, profile: &str) -> Result<Self> {
         let target = core.target;
         let toolchain = Toolchain::find(core)?;
@@ -64,7 +67,7 @@ impl Image {
             .args(["--package", "allanite", "--bin", name])
             .args(["--features", "firmware", "--profile", profile])
             .args(core.precision.arguments());
-        // Both precisions' images have one path, and others may be building.
+        // The images of both precisions have the same path, and another program may be building.
         let lock = exclusive()?;
         let status = command
             .status()
@@ -82,7 +85,7 @@ impl Image {
             path,
             elf,
         };
-        // Flags that replaced the linker script's leave an image without code.
+        // If the linker script's flags were replaced, the image is linked without code.
         ensure!(
             image.code_bytes()? > 64,
             "the image {name} holds no code: unset RUSTFLAGS and the like"
@@ -90,11 +93,11 @@ impl Image {
         Ok(image)
     }
 
-    /// Functions in the image that something that panics would need, sorted. Nothing that remains in
-    /// it can panic if there is none.
+    /// The functions in the image that a panic needs, sorted. If there are none, no code in the
+    /// image can panic.
     ///
     /// # Errors
-    /// If the file is no ELF file, or names no functions.
+    /// Fails if the file is not an ELF file or contains no names of functions.
     pub fn panic_paths(&self) -> Result<Vec<String>> {
         let file = self.file()?;
         let functions = file
@@ -114,10 +117,10 @@ impl Image {
         Ok(names)
     }
 
-    /// The section that holds a static of the image, such as `.bss` for one that is all zero at first.
+    /// The section that holds a static of the image, such as `.bss` for one that is zero at first.
     ///
     /// # Errors
-    /// If the file is no ELF file, or has no static whose name ends so.
+    /// Fails if the file is not an ELF file, or if no static has a name with this end.
     pub fn section_of(&self, name: &str) -> Result<String> {
         let file = self.file()?;
         let is_named = |symbol: &object::Symbol<'_, '_>| {
@@ -135,16 +138,16 @@ impl Image {
         object::File::parse(&*self.elf).with_context(|| format!("reading {}", self.path.display()))
     }
 
-    /// Bytes of its sections of instructions.
+    /// The size of the sections with instructions, in bytes.
     fn code_bytes(&self) -> Result<u64> {
         self.sum(|kind| kind == SectionKind::Text)
     }
 
-    /// Bytes that the image takes of flash: instructions, constants and initial values, with the
-    /// vector table and the start-up code.
+    /// The size of the image in flash, in bytes: instructions, constants and initial values, with
+    /// the vector table and the start-up code.
     ///
     /// # Errors
-    /// If the file is no ELF file.
+    /// Fails if the file is not an ELF file.
     pub fn flash_bytes(&self) -> Result<u64> {
         self.sum(|kind| {
             matches!(
@@ -164,7 +167,7 @@ impl Image {
     }
 }
 
-/// Another may be running the file that is there: it keeps it.
+/// Replaces a file by a new one. A program that is running the old file keeps it.
 fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let mut file = tempfile::NamedTempFile::new_in(path.parent().unwrap_or(path))?;
     file.write_all(bytes)?;

@@ -1,20 +1,22 @@
-//! What the library costs on a core.
+//! Measures the cost of the library on a core.
 
 use super::{CORTEX_M4F, Core, Image, run_with};
 use anyhow::{Context as _, Result, bail};
 use serde_json::{Map, Number, Value, json};
 
-/// What the images that are weighed hold beyond start-up code, and the figure that they give.
+/// The part of the library that each image contains besides the start-up code, and the name of the
+/// figure for it.
 const PARTS: [(&str, &str); 3] = [
     ("footprint_accumulator", "flash_bytes_accumulator"),
     ("footprint_fit", "flash_bytes_with_fit"),
     ("footprint_diagnosis", "flash_bytes_with_diagnosis"),
 ];
 
-/// Whatever the image `bench` tells of a core: much more of a Cortex-M4F than of others.
+/// The figures that the image `bench` measures on a core. The image measures many more on a
+/// Cortex-M4F than on the others.
 ///
 /// # Errors
-/// If an image cannot be built or run, or ends with a failure.
+/// Fails if an image cannot be built or run, or if it ends with a failure.
 pub fn figures(core: &Core) -> Result<Map<String, Value>> {
     let extent = match core {
         _ if core.name == CORTEX_M4F.name => "full",
@@ -35,10 +37,10 @@ pub fn figures(core: &Core) -> Result<Map<String, Value>> {
     Ok(figures)
 }
 
-/// The entry of a core in a list of them; a diagnosis that it has no room for is null.
+/// The entry of a core in the list of cores. The diagnosis is null if the core has no room for it.
 ///
 /// # Errors
-/// If another figure was not measured.
+/// Fails if another figure was not measured.
 pub fn entry(core: &Core, figures: &Map<String, Value>) -> Result<Value> {
     let measured = |value: Option<u64>, of: &str| {
         value.with_context(|| format!("{}: {of} was not measured", core.name))
@@ -60,16 +62,17 @@ pub fn entry(core: &Core, figures: &Map<String, Value>) -> Result<Value> {
     }))
 }
 
-/// The largest of the figures whose names start so.
+/// The largest of the figures whose names begin with `start`.
 fn largest(figures: &Map<String, Value>, start: &str) -> Option<u64> {
     let named = figures.iter().filter(|(name, _)| name.starts_with(start));
     named.filter_map(|(_, value)| value.as_u64()).max()
 }
 
-/// What each part of the library takes of a core's flash: its image less the one that does nothing.
+/// The flash that each part of the library takes on a core: the size of its image less that of an
+/// empty one.
 ///
 /// # Errors
-/// If an image cannot be built.
+/// Fails if an image cannot be built.
 pub fn flash_by_part(core: &Core) -> Result<Map<String, Value>> {
     let nothing = Image::build_for("footprint_nothing", core)?.flash_bytes()?;
     let mut figures = Map::new();
@@ -81,10 +84,10 @@ pub fn flash_by_part(core: &Core) -> Result<Map<String, Value>> {
     Ok(figures)
 }
 
-/// Lines of a name and a number.
+/// Parses lines that consist of a name and a number.
 ///
 /// # Errors
-/// If one is something else.
+/// Fails if a line is anything else.
 pub fn named_numbers<'a>(lines: impl Iterator<Item = &'a str>) -> Result<Map<String, Value>> {
     let figure = |line: &str| {
         let (name, number) = line.split_once(' ')?;
@@ -96,7 +99,7 @@ pub fn named_numbers<'a>(lines: impl Iterator<Item = &'a str>) -> Result<Map<Str
         .collect()
 }
 
-/// A number of instructions that a clock gave, without the digits that it did not resolve.
+/// A number of instructions measured by a clock, without the digits below the clock's resolution.
 fn rounded(number: Number) -> Value {
     match number.as_f64() {
         Some(float) if float >= 1e5 => (float.round() as u64).into(),

@@ -1,4 +1,4 @@
-//! The images of `src/bin`, built for a core and run in QEMU.
+//! Builds the images of `src/bin` for a core and runs them in QEMU.
 
 pub mod agreement;
 pub mod budgets;
@@ -16,7 +16,7 @@ pub use heartbeat::{Heartbeat, PERIOD};
 pub use image::Image;
 pub use toolchain::{Toolchain, Way};
 
-/// What every failure to build or run an image ends with.
+/// The remedy at the end of every failure to build or run an image.
 pub const REMEDY: &str = "`cargo xtask setup` installs what is missing";
 
 /// The folder of the workspace.
@@ -25,7 +25,7 @@ pub fn workspace() -> &'static std::path::Path {
     here.parent().unwrap_or(here)
 }
 
-/// The cargo that runs this program, or the one on the path.
+/// The cargo that runs this program, or else the one on the path.
 pub fn cargo() -> std::process::Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = std::process::Command::new(cargo);

@@ -1,7 +1,8 @@
-//! Which compiler builds for the cores, and where its `core` comes from.
+//! Finds the compiler for the cores, and the `core` library that it uses.
 //!
-//! rustup brings `core` compiled for speed; by Debian's way cargo compiles it for size. The same image
-//! has other sizes by the two ways, so all cores are built the same way, and budgets belong to a way.
+//! rustup installs a `core` that is compiled for speed, whereas cargo compiles Debian's sources of
+//! it for size. An image therefore has different sizes in the two ways. All cores are built the
+//! same way, and each way has its own budgets.
 
 use super::{CORES, Core, REMEDY, cargo};
 use anyhow::{Context as _, Result, bail};
@@ -12,15 +13,15 @@ use std::{
     process::Command,
 };
 
-/// Debian's compiler: `rustc-web`, newer than the release's own.
+/// Debian's compiler from the package `rustc-web`, which is newer than the release's own compiler.
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 const DEBIAN_RUSTDOC: &str = "/usr/bin/rustdoc";
 const DEBIAN_CLIPPY: &str = "/usr/bin/cargo-clippy";
 
-/// The oldest that compiles this package: `rust-version` in its `Cargo.toml`.
+/// The oldest minor version that compiles this package: `rust-version` in its `Cargo.toml`.
 const OLDEST_MINOR: u32 = 95;
 
-/// The variable that forces a way: its value is a way's name.
+/// The environment variable that selects a way by its name.
 const VARIABLE: &str = "ALLANITE_TOOLCHAIN";
 
 /// A way to get a compiler and `core` for every core.
@@ -33,10 +34,10 @@ pub enum Way {
 }
 
 impl Way {
-    /// Both, the preferred one first.
+    /// Both ways, the preferred one first.
     pub const ALL: [Self; 2] = [Self::Rustup, Self::Debian];
 
-    /// Its name, in `ALLANITE_TOOLCHAIN` and in the file of budgets.
+    /// The name of the way in `ALLANITE_TOOLCHAIN` and in the file of budgets.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rustup => "rustup",
@@ -44,10 +45,11 @@ impl Way {
         }
     }
 
-    /// The ways that may be gone: the one that `ALLANITE_TOOLCHAIN` names, or both.
+    /// The ways that may be used: the one that `ALLANITE_TOOLCHAIN` names, or both if it is not
+    /// set.
     ///
     /// # Errors
-    /// If the variable names no way.
+    /// Fails if the variable does not name a way.
     pub fn allowed() -> Result<Vec<Self>> {
         match std::env::var_os(VARIABLE) {
             Some(name) => Ok(vec![Self::named(&name.to_string_lossy())?]),
@@ -63,18 +65,18 @@ impl Way {
         })
     }
 
-    /// The way by which images are built on this machine: the first that may be gone and is ready for
+    /// The way that builds images on this machine: the first of those allowed that is ready for
     /// every core.
     ///
     /// # Errors
-    /// If there is none, or `ALLANITE_TOOLCHAIN` names none.
+    /// Fails if no way is ready, or if `ALLANITE_TOOLCHAIN` does not name a way.
     pub fn in_use() -> Result<Self> {
         let mut ways = Self::allowed()?.into_iter();
         let way = ways.find(|way| way.is_ready());
         way.with_context(|| format!("no compiler for every core is installed: {REMEDY}"))
     }
 
-    /// Whether a compiler, `core` and a linker are there for every core.
+    /// Whether a compiler, `core` and a linker are installed for every core.
     pub fn is_ready(self) -> bool {
         match self {
             Self::Rustup => self.missing_targets().is_empty(),
@@ -82,7 +84,7 @@ impl Way {
         }
     }
 
-    /// The targets that `rustup target add` has yet to install. Debian's way needs none.
+    /// The targets that `rustup target add` still has to install. Debian's way needs none.
     pub fn missing_targets(self) -> Vec<&'static str> {
         let mut targets: Vec<_> = CORES.iter().map(|core| core.target).collect();
         targets.dedup();
@@ -90,7 +92,7 @@ impl Way {
         targets
     }
 
-    /// Whether its lints are there.
+    /// Whether clippy is installed.
     pub fn has_clippy(self) -> bool {
         match self {
             Self::Rustup => answer("cargo", &["clippy", "--version"]).is_some(),
@@ -108,7 +110,7 @@ impl fmt::Display for Way {
     }
 }
 
-/// A way, gone for one core.
+/// A way to build for one core.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     core: Core,
@@ -116,20 +118,20 @@ pub struct Toolchain {
 }
 
 impl Toolchain {
-    /// The one in use.
+    /// The toolchain in use.
     ///
     /// # Errors
-    /// As of [`Way::in_use`].
+    /// The errors are those of [`Way::in_use`].
     pub fn find(core: &Core) -> Result<Self> {
         let way = Way::in_use()?;
         Ok(Self { core: *core, way })
     }
 
-    /// A cargo command such as `build` or `clippy` for the target, with artefacts apart from those
-    /// of the host: the cargo that runs this program may hold the lock of the others.
+    /// A cargo command such as `build` or `clippy` for the target. Its artefacts are separate from
+    /// those of the host, because the cargo that runs this program may hold the lock of the host's.
     ///
     /// # Errors
-    /// If the linker has gone.
+    /// Fails if the linker is missing.
     pub fn cargo(&self, subcommand: &str) -> Result<Command> {
         let mut command = match self.way {
             Way::Rustup => {
@@ -142,7 +144,7 @@ impl Toolchain {
                 None => bail!("no linker: {REMEDY}"),
             },
         };
-        // Any of these would replace what `.cargo/config.toml` says.
+        // Each of these variables would override `.cargo/config.toml`.
         for variable in [
             "RUSTFLAGS",
             "CARGO_ENCODED_RUSTFLAGS",
@@ -165,7 +167,7 @@ impl Toolchain {
 
     fn debian(&self, subcommand: &str, linker: &Path) -> Command {
         let mut command = if subcommand == "clippy" {
-            // The lints must come with the compiler.
+            // Clippy must belong to the same compiler.
             let mut command = Command::new(DEBIAN_CLIPPY);
             command.current_dir(super::workspace());
             command
@@ -183,16 +185,16 @@ impl Toolchain {
     }
 }
 
-/// A folder of its own, below the target folder in use.
+/// A folder for the artefacts of the cores, below the target folder in use.
 pub fn target_directory() -> PathBuf {
     let base = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     super::workspace().join(base).join("image")
 }
 
-/// Keeps other programs from building there, as long as it is held.
+/// Locks that folder against other programs that build there, until the lock is dropped.
 ///
 /// # Errors
-/// If the folder cannot be written.
+/// Fails if the folder cannot be written to.
 pub fn exclusive() -> Result<File> {
     let folder = target_directory();
     let lock = || -> std::io::Result<File> {
@@ -204,13 +206,13 @@ pub fn exclusive() -> Result<File> {
     lock().with_context(|| format!("locking {}", folder.display()))
 }
 
-/// The variable that sets one of cargo's keys of a target.
+/// The environment variable that sets a key of cargo's configuration for a target.
 fn variable(target: &str, key: &str) -> String {
     let target = target.replace(['-', '.'], "_").to_uppercase();
     format!("CARGO_TARGET_{target}_{key}")
 }
 
-/// The first line that a program prints, if it runs and succeeds.
+/// The first line that a program prints, if it runs successfully.
 fn answer(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
@@ -233,7 +235,7 @@ fn has_target(target: &str) -> bool {
     })
 }
 
-/// Whether Debian's compiler is new enough and has the sources of `core`.
+/// Whether Debian's compiler is new enough and the sources of `core` are installed.
 fn debian_has_sources() -> bool {
     let new_enough = answer(DEBIAN_RUSTC, &["--version"])
         .as_deref()
@@ -246,13 +248,13 @@ fn debian_has_sources() -> bool {
     new_enough && sources
 }
 
-/// 96 of `rustc 1.96.0 (…)`.
+/// The minor version, such as 96 for `rustc 1.96.0 (…)`.
 fn minor_version(version: &str) -> Option<u32> {
     let number = version.split(' ').nth(1)?.strip_prefix("1.")?;
     number.split('.').next()?.parse().ok()
 }
 
-/// The linker that rustup's host toolchain brings, or one on the path.
+/// The linker in rustup's host toolchain, or else one on the path.
 fn linker() -> Option<PathBuf> {
     let bundled = answer(&rustc(), &["--print", "target-libdir"])
         .map(|libraries| Path::new(&libraries).with_file_name("bin").join("rust-lld"))
@@ -276,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_are_named_and_others_refused_in_one_line() {
+    fn names_of_ways_are_accepted_and_others_refused_in_one_line() {
         for way in Way::ALL {
             assert_eq!(Way::named(way.name()).unwrap(), way);
         }
@@ -288,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn the_linker_is_named_as_cargo_wants() {
+    fn the_linker_variable_has_the_name_that_cargo_expects() {
         assert_eq!(
             variable("thumbv8m.main-none-eabihf", "LINKER"),
             "CARGO_TARGET_THUMBV8M_MAIN_NONE_EABIHF_LINKER"

@@ -1,4 +1,5 @@
-//! The passes over a log: into counts, and where that cannot be, through the range into counts.
+//! Reads the values of a log into accumulators. A log of counts takes one pass; any other takes one
+//! more for its range and one that rounds its values to counts.
 
 use super::{
     clock::{Clock, Tick},
@@ -13,17 +14,17 @@ use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;
 use std::path::Path;
 
-/// Columns, measured in counts.
+/// The result of reading a log: one accumulator per axis, and the quanta of all columns.
 pub(super) struct Measured {
-    /// Of each axis, with its quantum.
+    /// The sums of each axis, and the quantum that its counts are in.
     pub(super) axes: Vec<(Sums, Quantum)>,
-    /// Of each covariate.
+    /// The quantum of each covariate.
     pub(super) covariates: Vec<Quantum>,
-    /// What the stamps told, if there were some.
+    /// The time stamps that were followed, if the log has a time column.
     pub(super) clock: Option<Clock>,
 }
 
-/// What to go through, and how.
+/// The table to read and the columns to read from it.
 pub(super) struct Passes<'a, T> {
     pub(super) table: &'a T,
     pub(super) path: &'a Path,
@@ -33,7 +34,7 @@ pub(super) struct Passes<'a, T> {
 }
 
 impl<T: Table> Passes<'_, T> {
-    /// Shows every row to the visitor, and to a clock if there is a time.
+    /// Shows every row to the visitor. If there is a time column, a clock follows its stamps.
     fn pass<V: Visitor>(&self, visitor: &mut V) -> Result<(Ended, Option<Clock>), Failure> {
         let Some(time) = self.time else {
             let ended = self.table.pass(self.columns, visitor, self.progress)?;
@@ -52,12 +53,13 @@ impl<T: Table> Passes<'_, T> {
     }
 }
 
-/// A pass whose first columns are the time: it says where gaps are and which rows to leave out.
+/// A visitor whose first columns are the time. It reports gaps to the visitor inside, and leaves
+/// out rows whose stamp repeats.
 struct Timed<'a, V> {
     clock: Clock,
-    /// Columns of the time.
+    /// The number of time columns.
     columns: usize,
-    /// The first of two.
+    /// The seconds of the current row, if seconds and nanoseconds are in two columns.
     seconds: Option<Stamp>,
     repeated: bool,
     visitor: &'a mut V,
@@ -89,8 +91,9 @@ impl<V: Visitor> Visitor for Timed<'_, V> {
     }
 }
 
-/// Accumulates the given columns. Counts take one pass; at the first value that is none, the
-/// reading starts again, once for the range and once for the counts.
+/// Accumulates the given columns. A log of counts takes one pass. At the first value that is not a
+/// count, reading starts again: one pass finds the range of each axis, and another accumulates the
+/// rounded values.
 pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
     let Passes { path, columns, .. } = *passes;
     let mut counts = Counts(Batches::new(plan.clone()));
@@ -108,7 +111,7 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
             Quantum::of(range).ok_or_else(|| {
                 Place::file(path).failure(
                     format!(
-                        "axis {}: its range is beyond what floats can scale",
+                        "axis {}: the range of its values is too wide or too narrow for floats",
                         column.axis
                     ),
                     "scale the values or remove the outliers",
@@ -127,7 +130,7 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
         if steps.lost > steps.all / 10 {
             return Err(Place::file(path).failure(
                 format!(
-                    "axis {}: {} of {} steps between values are lost in 2^-30 of their range",
+                    "axis {}: {} of {} steps between values vanish in counts of 2^-30 of the range",
                     column.axis, steps.lost, steps.all
                 ),
                 "remove the outliers that make the range so wide",
@@ -155,7 +158,7 @@ fn finish(
     })
 }
 
-/// The pass for logs of counts, given up at the first value that is none.
+/// The visitor of the first pass. It stops at the first value that is not a count.
 struct Counts(Batches);
 
 impl Visitor for Counts {
@@ -170,7 +173,7 @@ impl Visitor for Counts {
     }
 }
 
-/// The pass for the range of each axis.
+/// The visitor that finds the range of each axis.
 struct Ranges(Vec<Range>);
 
 impl Visitor for Ranges {
@@ -181,19 +184,19 @@ impl Visitor for Ranges {
     }
 }
 
-/// The pass that turns numbers into counts.
+/// The visitor that rounds numbers to counts.
 struct Rounded {
     batches: Batches,
     quanta: Vec<Quantum>,
     steps: Vec<Steps>,
 }
 
-/// Differences of neighbours in one axis.
+/// The differences between neighbouring values of one axis.
 #[derive(Clone, Copy, Default)]
 struct Steps {
     last: Option<(f64, i32)>,
     all: u64,
-    /// Those that differ as numbers and not as counts.
+    /// The number of differences that are not zero as numbers but are zero as counts.
     lost: u64,
 }
 

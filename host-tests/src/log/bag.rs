@@ -1,8 +1,8 @@
-//! Bags of ROS 2, and of ROS 1 as `mcap convert` writes them, in MCAP files: a table of the messages
-//! of one IMU.
+//! Bags in MCAP files, of ROS 2 or of ROS 1 after `mcap convert`. The messages of one IMU topic
+//! form the table.
 //!
-//! A bag is gone through from its beginning to its end, one chunk in memory at a time. The checksum
-//! of a chunk is verified before any message of it is taken.
+//! A bag is read from its beginning to its end, with one chunk in memory at a time. The checksum of
+//! a chunk is verified before any message in it is used.
 
 use super::{
     Options,
@@ -26,15 +26,16 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// No record or chunk of a sane bag is longer.
+/// The largest record or chunk that is accepted, in bytes. It limits the memory that a damaged
+/// length can claim.
 const LONGEST_RECORD: usize = 1 << 28;
 
 const RECOVER: &str = "copy it again, or recover what there is with `mcap recover`";
 
-/// Messages that tell what the columns look like.
+/// The number of messages that decide what the columns look like.
 const LOOKS: usize = 100;
 
-/// A bag, and the topic of it that is read.
+/// A bag, and the topic in it that is read.
 pub(super) struct Bag {
     path: PathBuf,
     topic: String,
@@ -42,7 +43,7 @@ pub(super) struct Bag {
     columns: Columns,
 }
 
-/// What a channel carries.
+/// The topic, message type and encoding of a channel.
 struct Channel {
     topic: String,
     schema: String,
@@ -50,13 +51,13 @@ struct Channel {
 }
 
 impl Channel {
-    /// How the messages are serialised, if they are an IMU's.
+    /// The encoding of the messages, or `None` if they are not those of an IMU.
     fn imu(&self) -> Option<Encoding> {
         Encoding::of(&self.schema, &self.encoding)
     }
 }
 
-/// Schemas and channels by their identifiers.
+/// The schemas and channels of a bag by their identifiers.
 #[derive(Default)]
 struct Channels {
     schemas: BTreeMap<u16, String>,
@@ -159,7 +160,7 @@ fn visit<V: Visitor>(
     }
 }
 
-/// The topic that is asked for, else the only one of an IMU.
+/// The topic that is asked for, or else the only IMU topic of the bag.
 fn choose(path: &Path, channels: &Channels, wanted: Option<&str>) -> Result<String, Failure> {
     let all = || channels.channels.values();
     let mut imus: Vec<&str> = all()
@@ -191,17 +192,17 @@ fn choose(path: &Path, channels: &Channels, wanted: Option<&str>) -> Result<Stri
             )
         }
         (Some(wanted), imus) => fail(
-            format!("there is no IMU's topic {}", quoted(wanted.as_bytes())),
+            format!("no IMU topic is named {}", quoted(wanted.as_bytes())),
             &format!("choose with --topic from {}", imus.join(", ")),
         ),
         (None, imus) => fail(
-            format!("{} IMUs: {}", imus.len(), imus.join(", ")),
+            format!("there are {} IMU topics: {}", imus.len(), imus.join(", ")),
             "choose one with --topic",
         ),
     }
 }
 
-/// Shows every message with its channel, from the first to the last unless told to stop.
+/// Calls `show` with every message and its channel, in the order of the file, until `show` breaks.
 fn each_message(
     path: &Path,
     progress: &ProgressBar,
@@ -245,11 +246,12 @@ fn each_message(
                 };
                 channels.channels.insert(channel.id, channel_of);
             }
-            // A chunk whose first byte has changed looks like a record to be skipped.
+            // A damaged chunk header looks like an unknown record, which the reader skips. The
+            // count of messages reveals that.
             Record::Statistics(statistics) if statistics.message_count != messages => {
                 return Err(Place::file(path).failure(
                     format!(
-                        "damaged: {messages} messages where {} were written",
+                        "damaged: {messages} messages are left of {}",
                         statistics.message_count
                     ),
                     RECOVER,
@@ -280,8 +282,11 @@ fn failure(path: &Path, error: &McapError) -> Failure {
         McapError::UnexpectedEof => place.failure("the bag ends in the middle", RECOVER),
         McapError::Io(error) => place.io(error),
         McapError::UnsupportedCompression(name) => place.failure(
-            format!("chunks compressed with {}", quoted(name.as_bytes())),
-            "compress them with `mcap compress`, with zstd or lz4",
+            format!(
+                "the chunks are compressed with {}, which is not supported",
+                quoted(name.as_bytes())
+            ),
+            "compress them with zstd or lz4, with `mcap compress`",
         ),
         error => place.failure(format!("damaged: {error}"), RECOVER),
     }

@@ -1,4 +1,4 @@
-//! Time stamps of rows: the rate, and where samples are missing or repeated.
+//! Follows the time stamps of rows: it finds the sampling rate, missing samples and repeated rows.
 
 use super::{
     field::{Flaw, Stamp},
@@ -6,49 +6,52 @@ use super::{
 };
 use std::time::Duration;
 
-/// A step this much longer than the usual one misses a sample.
+/// A step that is longer than this many usual steps is a gap, provided that it also exceeds
+/// [`SCATTER`].
 const GAP: f64 = 1.5;
 
-/// A step that is so many times longer than steps usually scatter is not of their kind.
+/// A gap must exceed the usual step by this many times the usual scatter of steps.
 const SCATTER: f64 = 5.0;
 
-/// More gaps or repeated rows than this share are no accidents.
+/// The largest share of rows that may follow a gap or repeat a stamp. Beyond it, the stamps are
+/// refused.
 const MOST_ODD: f64 = 0.05;
 
-/// So many gaps in a row are another rate.
+/// After this many gaps in a row, the log is taken to have changed its rate.
 const RUN: u32 = 16;
 
-/// Steps whose mean is that of a rate.
+/// The number of steps in a block. The mean step of a block measures the rate.
 const BLOCK: u32 = 512;
 
-/// Means of blocks that differ by more are two rates; stamps that come in bursts of 25 may do so.
+/// The largest ratio between the mean steps of two blocks of one rate. Stamps that are written in
+/// bursts of 25 can come close to it.
 const TWO_RATES: f64 = 1.1;
 
-/// What a stamp says of its row.
+/// How a stamp relates to the stamp of the row before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tick {
-    /// It follows the one before.
+    /// The stamp follows the one before without a gap.
     Next,
-    /// Samples are missing before it.
+    /// Samples are missing between the stamp before and this one.
     Gap,
-    /// It is the one before once more.
+    /// The stamp is equal to the one before.
     Repeated,
 }
 
-/// How stamps usually follow each other, by the first of them.
+/// The usual distance between stamps, estimated from the first ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace {
-    /// Ticks of the stamps in a second.
+    /// The number of ticks in a second. A tick is the unit of the stamps.
     per_second: f64,
     /// The usual step, in ticks.
     step: f64,
-    /// A step longer than this is a gap, in ticks.
+    /// The longest step that is not a gap, in ticks.
     longest: f64,
 }
 
 impl Pace {
-    /// The pace of a column that begins so: its unit is the given one, else that with which the
-    /// rate is plausible. None where the stamps never advance.
+    /// The pace of the stamps `first`. Without a given `unit`, the unit is the one that makes the
+    /// rate plausible. Returns `None` if the stamps never advance.
     pub(super) fn of(first: &[f64], unit: Option<TimeUnit>) -> Option<(Self, TimeUnit)> {
         let steps = first.windows(2).map(|pair| pair[1] - pair[0]);
         let mut steps: Vec<f64> = steps.filter(|&step| step > 0.0).collect();
@@ -69,10 +72,10 @@ impl Pace {
     }
 }
 
-/// The unit of stamps since 1970 by their size; of others that with which the rate is between 10 Hz
-/// and 10 kHz, of which there is but one.
+/// The plausible unit of stamps. If `first` is a time since 1970 in some unit, it is that unit.
+/// Otherwise it is the only unit that makes the rate lie between 10 Hz and 10 kHz.
 fn plausible_unit(first: f64, step: f64) -> TimeUnit {
-    // The years 2001 to 2286.
+    // This range covers the years 2001 to 2286, in seconds since 1970.
     let since_1970 = |unit: &TimeUnit| (1e9..1e10).contains(&(first / unit.per_second()));
     let usual = |unit: &TimeUnit| (10.0..1e4).contains(&(unit.per_second() / step));
     let find = |is: &dyn Fn(&TimeUnit) -> bool| TimeUnit::ALL.into_iter().find(|unit| is(unit));
@@ -86,7 +89,7 @@ fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
     (at < values.len()).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
-/// Follows the stamps of a log.
+/// Follows the stamps of a log, row after row.
 #[derive(Clone, Debug)]
 pub(super) struct Clock {
     pace: Pace,
@@ -94,18 +97,19 @@ pub(super) struct Clock {
     rows: u64,
     repeated: u64,
     gaps: u64,
-    /// In ticks.
+    /// The longest gap, in ticks.
     longest_gap: f64,
     lost: f64,
     gaps_in_a_row: u32,
-    /// Steps that are no gaps: their number, sum, and sum of squared differences from the usual.
+    /// The number of steps that are not gaps, their sum, and the sum of their squared differences
+    /// from the usual step.
     steps: u64,
     sum: f64,
     squares: f64,
-    /// The shortest and the longest step.
+    /// The shortest and the longest step, in ticks.
     range: (f64, f64),
     block: (u32, f64),
-    /// The shortest and the longest mean step of a block.
+    /// The shortest and the longest mean step of a block, in ticks.
     means: Option<(f64, f64)>,
 }
 
@@ -129,7 +133,7 @@ impl Clock {
         }
     }
 
-    /// Takes the stamp of the next row.
+    /// Takes the stamp of the next row, and returns how it relates to the one before.
     pub(super) fn tick(&mut self, stamp: Stamp) -> Result<Tick, Flaw> {
         self.rows += 1;
         let Some(last) = self.last.replace(stamp) else {
@@ -190,10 +194,11 @@ impl Clock {
         ))
     }
 
-    /// Samples per second, to nine digits.
+    /// The sampling rate, in Hz, rounded to nine digits.
     ///
     /// # Errors
-    /// Where so many rows are odd that their stamps say nothing.
+    /// Fails if so many rows follow a gap or repeat a stamp that the rate is not known, or if the
+    /// rate is not positive and finite.
     pub(super) fn rate_hz(&self) -> Result<f64, Flaw> {
         let odd = |what: &str, count: u64| {
             Flaw::stamps(format!(
@@ -206,18 +211,18 @@ impl Clock {
             return Err(odd("repeat", self.repeated));
         }
         if self.gaps as f64 > most {
-            return Err(odd("leap", self.gaps));
+            return Err(odd("jump", self.gaps));
         }
         let rate_hz = self.pace.per_second * self.steps as f64 / self.sum;
         let rounded = format!("{rate_hz:.8e}").parse().unwrap_or(rate_hz);
         if f64::is_finite(rounded) && rounded > 0.0 {
             Ok(rounded)
         } else {
-            Err(Flaw::stamps("time stamps tell no rate".into()))
+            Err(Flaw::stamps("the time stamps give no rate".into()))
         }
     }
 
-    /// How regular the stamps are, and what was done where they are not.
+    /// Describes how regular the stamps are, with the gaps and the rows that were left out.
     pub(super) fn report(&self) -> String {
         let steps = self.steps.max(1) as f64;
         let mean = self.sum / steps;
@@ -237,7 +242,7 @@ impl Clock {
         }
         if self.repeated > 0 {
             text += &format!(
-                "; {} with the stamp before it left out",
+                "; {} with a repeated stamp left out",
                 count(self.repeated, "row")
             );
         }
@@ -250,14 +255,14 @@ fn count(count: u64, noun: &str) -> String {
     format!("{count} {noun}{plural}")
 }
 
-/// A length of time to three digits: `5ms`, `1s 250ms`.
+/// Formats a length of time with three digits, such as `5ms` or `1s 250ms`.
 fn span(seconds: f64) -> String {
     if seconds < 0.5e-9 {
         return "0s".into();
     }
     let digit = 10f64.powf(2.0 - seconds.log10().floor());
     let rounded = (seconds * digit).round() / digit;
-    // To whole nanoseconds, which a float of days does not hit.
+    // The value is rounded to whole nanoseconds, because a float of days is not exact in them.
     let rounded = (rounded * 1e9).round().min(1e18) as u64;
     humantime::format_duration(Duration::from_nanos(rounded)).to_string()
 }
@@ -279,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn regular_stamps_tell_the_rate_to_nine_digits() {
+    fn regular_stamps_give_the_rate_to_nine_digits() {
         let stamps: Vec<i64> = (0..1000).map(|i| 7_000_000 + 5000 * i).collect();
         let (clock, ticks) = run(&stamps);
         assert!(ticks.iter().all(|&tick| tick == Tick::Next));
@@ -302,7 +307,7 @@ mod tests {
         assert!(
             clock.report().ends_with(
                 "; 1 gap, the longest 105ms, about 20 samples lost; \
-                 1 row with the stamp before it left out"
+                 1 row with a repeated stamp left out"
             ),
             "{}",
             clock.report()
@@ -311,7 +316,8 @@ mod tests {
 
     #[test]
     fn jitter_of_half_a_step_is_no_gap() {
-        // A fixed sequence that jumps about within half a step of the regular one.
+        // The stamps follow a fixed sequence that deviates by up to half a step from the regular
+        // one.
         let stamps: Vec<i64> = (0..2000)
             .map(|i| 5000 * i + (i * i * 7919) % 2500)
             .collect();
@@ -340,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn bursts_and_coarse_stamps_tell_no_rate() {
+    fn bursts_and_coarse_stamps_give_no_rate() {
         let coarse: Vec<i64> = (0..1000).map(|i| i / 4 * 10_000).collect();
         assert!(
             run(&coarse)
@@ -353,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_that_is_not_told_is_the_plausible_one() {
+    fn unit_that_is_not_given_is_the_plausible_one() {
         for (first, step, unit) in [
             (0.0, 0.005, TimeUnit::S),
             (1.7e9, 0.01, TimeUnit::S),

@@ -1,4 +1,4 @@
-//! Which columns of a log are the sensor's axes.
+//! Finds the columns of a log that are the sensor's axes.
 
 use super::{ColumnChoice, CovariateChoice, names};
 use crate::{
@@ -14,24 +14,24 @@ pub(super) struct AxisColumn {
     pub(super) column: usize,
 }
 
-/// What the first rows of a log say about its columns.
+/// What the header and the first rows of a log show about its columns.
 #[derive(Debug)]
 pub(super) struct Columns {
-    /// Names of the header, if there is one.
+    /// The names in the header, if there is one.
     pub(super) names: Option<Vec<String>>,
-    /// Of each column: what its first values are.
+    /// What the first values of each column look like.
     pub(super) looks: Vec<Look>,
-    /// Of each column: those of its first values that are numbers.
+    /// The first values of each column that are numbers.
     pub(super) heads: Vec<Vec<f64>>,
 }
 
-/// Columns that were taken as axes.
+/// The columns that were taken as axes.
 #[derive(Debug)]
 pub(super) struct Taken {
     pub(super) axes: Vec<AxisColumn>,
-    /// The sensor that their names tell.
+    /// The sensor that the names of the columns indicate.
     pub(super) sensor: Option<Sensor>,
-    /// What was taken and left out, where that is not obvious.
+    /// A note that lists the columns that were taken and left out, if the choice is not obvious.
     pub(super) note: Option<String>,
 }
 
@@ -40,16 +40,16 @@ pub(super) struct Taken {
 pub(super) enum Look {
     /// Numbers.
     Number,
-    /// Numbers that rise from row to row throughout: a time or an index.
+    /// Numbers that rise from every row to the next: a time or an index.
     Rising,
     /// Something else.
     Text,
 }
 
 impl Look {
-    /// The look of a column that begins with these numbers.
+    /// The look of a column whose first values are these numbers.
     pub(super) fn of_numbers(numbers: &[f64]) -> Self {
-        // Noise rises eight times in a row once in 9! times.
+        // Nine values of white noise rise throughout with a probability of 1 in 9!.
         if numbers.len() > 8 && numbers.is_sorted_by(|a, b| a < b) {
             Self::Rising
         } else {
@@ -59,7 +59,7 @@ impl Look {
 }
 
 impl Columns {
-    /// The columns asked for, in that order.
+    /// The columns that the user asks for, in the order of the request.
     pub(super) fn chosen(
         &self,
         path: &Path,
@@ -96,7 +96,7 @@ impl Columns {
         Ok(axes)
     }
 
-    /// The columns of the covariates, none of which is an axis.
+    /// The columns of the covariates. None of them may be an axis.
     pub(super) fn covariates(
         &self,
         path: &Path,
@@ -115,7 +115,7 @@ impl Columns {
             if axes.iter().any(|axis| axis.column == column) {
                 return fail(
                     "is an axis",
-                    "name a column that is none, or give --columns",
+                    "name a column that is not an axis, or give --columns",
                 );
             }
             if choices[..i].contains(choice) {
@@ -129,7 +129,7 @@ impl Columns {
         choices.iter().enumerate().map(one).collect()
     }
 
-    /// The sensor that these columns' names agree on.
+    /// The sensor that the names of these columns agree on.
     pub(super) fn sensor_of(&self, axes: &[AxisColumn]) -> Option<Sensor> {
         let all_are = |sensor: &Sensor| {
             let is = |axis: &AxisColumn| {
@@ -143,8 +143,9 @@ impl Columns {
             .find(all_are)
     }
 
-    /// The unit that these columns' names tell and how many of it their values are; `None` where
-    /// they do not, or it is not one of this sensor.
+    /// The unit that the names of these columns indicate, and the factor from their values to that
+    /// unit. Returns `None` if the names do not agree on a unit, or if it is not a unit of this
+    /// sensor.
     pub(super) fn unit_of(
         &self,
         path: &Path,
@@ -163,19 +164,23 @@ impl Columns {
             None => Ok(unit),
             Some(other) => Err(Place::file(path).failure(
                 format!(
-                    "columns {} and {} are of different units",
+                    "columns {} and {} have different units",
                     self.called(first.column),
                     self.called(other.column)
                 ),
-                "choose those of one unit with --columns, or say --unit and --scale",
+                "choose columns of one unit with --columns, or give --unit and --scale",
             )),
         }
     }
 
-    /// The columns that look like axes of the sensor, of a gyro if there are some unless another
-    /// sensor is asked for, and a note on the choice where it is not obvious: with a header, those
-    /// named like axes; where there are none, all numbers that neither by name nor by their values
-    /// are times, indices or temperatures. A column known to be the time is left out silently.
+    /// The columns that look like axes of the sensor, and a note on the choice if it is not
+    /// obvious.
+    ///
+    /// With a header, these are the columns that are named like axes of the wanted sensor. If no
+    /// sensor is wanted, axes of a gyro win over axes of an accelerometer. If no column is named
+    /// like an axis, all columns of numbers are taken except those that are times, indices or
+    /// temperatures by their names or values. A column that is known to be the time is left out
+    /// without a note.
     pub(super) fn guessed(
         &self,
         path: &Path,
@@ -268,7 +273,7 @@ impl Columns {
         Ok(Taken { axes, sensor, note })
     }
 
-    /// What a column is called in messages.
+    /// The name of a column in messages.
     pub(super) fn called(&self, column: usize) -> String {
         match self.name(column) {
             Some(name) => name.to_owned(),
@@ -288,7 +293,8 @@ impl Columns {
         columns.iter().map(one).collect::<Vec<_>>().join(", ")
     }
 
-    /// The column of that name, with its unit or without, else of that number from 1.
+    /// The column with this name, with or without its unit, or else with this number, counted from
+    /// 1.
     pub(super) fn find(&self, path: &Path, wanted: &str) -> Result<usize, Failure> {
         let count = self.looks.len();
         let named_by = |name: fn(&str) -> &str| -> Vec<usize> {
@@ -350,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn time_and_temperature_beside_gyro_axes_are_left_out_aloud() {
+    fn time_and_temperature_beside_gyro_axes_are_left_out_with_a_note() {
         let names = ["t_s", "gx_raw131", "gy_raw131", "temp_C"];
         let (_, columns, note) = guess(Some(&names), &[Look::Number; 4]);
         assert_eq!(columns, [1, 2]);
@@ -372,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_no_gyro_leave_all_numbers_but_times_and_temperatures() {
+    fn without_axis_names_all_numbers_but_times_and_temperatures_are_taken() {
         let names = ["timestamp", "x", "y", "label", "temperature"];
         let looks = [
             Look::Number,

@@ -1,13 +1,13 @@
-//! Columns that a gyro may follow.
+//! Covariates: columns of a log that the gyro's rate may depend on, such as a temperature.
 
 use std::str::FromStr;
 
-/// A column sampled alongside, or its rate of change: `temp_C`, `rate(temp_C)`.
+/// A column of the log, or its rate of change, written `temp_C` or `rate(temp_C)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CovariateChoice {
     /// The column's name in the header, or its number from 1.
     pub column: String,
-    /// Whether its rate of change is meant.
+    /// Whether the covariate is the rate of change of the column.
     pub rate: bool,
 }
 
@@ -41,7 +41,7 @@ impl std::fmt::Display for CovariateChoice {
     }
 }
 
-/// The counts of a covariate, from those of its column.
+/// Turns the counts of a column into those of its covariate.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Derived {
     rate: bool,
@@ -56,7 +56,7 @@ impl Derived {
         }
     }
 
-    /// The next count does not follow the one before.
+    /// Tells that the next count does not follow the one before.
     pub(super) fn gap(&mut self) {
         self.previous = None;
     }
@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_and_their_rates_are_told_apart() {
+    fn columns_and_their_rates_are_distinguished() {
         let choice: CovariateChoice = " rate( temp_C )".parse().unwrap();
         assert_eq!(
             (choice.column.as_str(), choice.rate, choice.to_string()),

@@ -1,4 +1,4 @@
-//! Logs as text: values between commas, a row a sample.
+//! Logs as text: values are separated by commas, semicolons or tabs, and each row is a sample.
 
 use super::{
     columns::{AxisColumn, Columns, Look},
@@ -17,30 +17,31 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A line longer than this is not one of a log.
+/// A line of this many bytes or more above the first row is refused, because the file is then not a
+/// log.
 const LONGEST_LINE: u64 = 1 << 16;
 
-/// Rows that tell what the columns look like.
+/// The number of rows that decide what the columns look like.
 const LOOKS: usize = 100;
 
-/// A table of text, known by its first rows.
+/// A log of text whose first rows are known.
 pub(super) struct Csv {
     path: PathBuf,
     gzip: bool,
     delimiter: u8,
     metadata: Metadata,
     columns: Columns,
-    /// The byte behind the header, or 0.
+    /// The offset of the first byte after the header, or 0 without a header.
     data_start: u64,
-    /// Whether the last row ends.
+    /// Whether the last row has a line end.
     is_whole: bool,
 }
 
-/// What stands above the first record, and how that record is cut.
+/// The comments above the first record, and the format of that record.
 struct Preamble {
     delimiter: u8,
     metadata: Metadata,
-    /// The comment line right above the first record.
+    /// The comment line directly above the first record.
     last_comment: Option<String>,
 }
 
@@ -74,7 +75,7 @@ impl Csv {
                         "the first row mixes numbers and text such as {}",
                         quoted(&first[text])
                     ),
-                    "make it a header of names alone, or correct it",
+                    "make it a header of names only, or correct it",
                 ));
             }
             table.data_start = *end;
@@ -91,7 +92,7 @@ impl Csv {
         Ok(table)
     }
 
-    /// The first records, and where in the text each of them ends.
+    /// The first records, each with the offset in the text at which it ends.
     fn first_records(&self) -> Result<Vec<(ByteRecord, u64)>, Failure> {
         let text = source::open_text(&self.path, self.gzip, &ProgressBar::hidden())?;
         let mut reader = Records::new(text, 0, self.delimiter);
@@ -105,7 +106,8 @@ impl Csv {
         Ok(records)
     }
 
-    /// The names of `# time,gx,gy,gz`, right above the first record and as wide as it.
+    /// The names in a comment such as `# time,gx,gy,gz`, if it stands directly above the first
+    /// record and has as many fields as that record.
     fn names_in_comment(&self, comment: &str, width: usize) -> Option<Vec<String>> {
         let mut reader = Records::new(comment.as_bytes(), 0, self.delimiter);
         let names = reader.read().ok()?.then(|| reader.row())?;
@@ -121,22 +123,19 @@ impl Csv {
         }
     }
 
-    /// A failure to read what begins at the given byte.
+    /// The failure to read the row that begins at the given byte.
     fn failure(&self, (byte, error): (u64, io::Error)) -> Failure {
         let here = self.row_at(byte);
         if error.kind() == ErrorKind::FileTooLarge {
             return here.failure(
-                format!(
-                    "a row of more than {} KiB is not one of a log",
-                    LONGEST_ROW / 1024
-                ),
+                format!("a row is longer than {} KiB", LONGEST_ROW / 1024),
                 "look for a quote that is never closed",
             );
         }
         source::text_failure(here, self.gzip, &error)
     }
 
-    /// Shows the fields of one row to a visitor; true if it wants no more.
+    /// Shows the fields of one row to a visitor. Returns true if the visitor wants no more.
     #[inline]
     fn visit_row<'a, V: Visitor>(
         &self,
@@ -166,7 +165,7 @@ impl Table for Csv {
     }
 
     fn notes(&self) -> Vec<String> {
-        let note = "the last row does not end: it may be cut off";
+        let note = "the last row has no line end: it may be cut off";
         (!self.is_whole).then(|| note.into()).into_iter().collect()
     }
 
@@ -211,7 +210,7 @@ impl Table for Csv {
     }
 }
 
-/// Reads down to the first record.
+/// Reads the comments down to the first record.
 fn read_preamble(path: &Path, gzip: bool) -> Result<Preamble, Failure> {
     let mut text = source::open_text(path, gzip, &ProgressBar::hidden())?;
     let mut metadata = Metadata::default();
@@ -235,10 +234,7 @@ fn read_preamble(path: &Path, gzip: bool) -> Result<Preamble, Failure> {
         }
         if length as u64 == LONGEST_LINE {
             return Err(Place::row(path, row).failure(
-                format!(
-                    "a line of {} KiB or more is not one of a log",
-                    LONGEST_LINE / 1024
-                ),
+                format!("a line has {} KiB or more", LONGEST_LINE / 1024),
                 "check that the file is text",
             ));
         }
@@ -261,7 +257,7 @@ fn read_preamble(path: &Path, gzip: bool) -> Result<Preamble, Failure> {
     })
 }
 
-/// What a field of the first row is.
+/// The kind of a field of the first row.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Number,

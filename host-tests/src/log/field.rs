@@ -1,32 +1,33 @@
-//! One value of a log, before it is a count.
+//! A single value of a log, before it becomes a count.
 
 use crate::failure::{Failure, Place, quoted};
 
-/// A value that is a count or a number, or wants to be one.
+/// A value that can be read as a count, as a number or as a time stamp.
 pub(super) trait Field {
-    /// The value as a count: a whole number within `i32`.
+    /// The value as a count, or `None` if it is not a whole number within `i32`.
     fn count(&self) -> Option<i32>;
 
-    /// The value as a finite number, or what is wrong with it.
+    /// The value as a finite number, or the reason why it is none.
     fn number(&self) -> Result<f64, Flaw>;
 
-    /// The value as a time stamp, exact where it is a whole number.
+    /// The value as a time stamp, which is exact if it is a whole number.
     fn stamp(&self) -> Result<Stamp, Flaw> {
         self.number().map(Stamp::Real)
     }
 }
 
-/// A time stamp in its log's unit. Nanoseconds since 1970 do not fit into a float.
+/// A time stamp in the unit of its log. Whole numbers are kept apart because nanoseconds since 1970
+/// do not fit into a float.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Stamp {
     /// A whole number.
     Whole(i64),
-    /// Any other.
+    /// Any other number.
     Real(f64),
 }
 
 impl Stamp {
-    /// The time since another stamp.
+    /// The time from another stamp to this one, negative if this one is earlier.
     pub(super) fn since(self, other: Self) -> f64 {
         match (self, other) {
             (Self::Whole(now), Self::Whole(then)) => (i128::from(now) - i128::from(then)) as f64,
@@ -34,7 +35,7 @@ impl Stamp {
         }
     }
 
-    /// The stamp so many seconds later, in nanoseconds.
+    /// This stamp, in nanoseconds, plus the given number of seconds.
     pub(super) fn behind_seconds(self, seconds: Self) -> Self {
         match (seconds, self) {
             (Self::Whole(seconds), Self::Whole(nanoseconds)) => {
@@ -62,7 +63,7 @@ impl std::fmt::Display for Stamp {
     }
 }
 
-/// What is wrong with a value, and what to do about it.
+/// What is wrong with a value, and how to remedy it.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Flaw {
     pub(super) what: String,
@@ -77,16 +78,16 @@ impl Flaw {
         }
     }
 
-    /// The failure that the flaw is in a place.
+    /// The failure that reports this flaw at a place.
     pub(super) fn at(&self, place: Place) -> Failure {
         place.failure(&self.what, self.remedy)
     }
 
-    /// What is wrong with time stamps.
+    /// A flaw of time stamps.
     pub(super) fn stamps(what: String) -> Self {
         Self {
             what,
-            remedy: "cut the record there, or give --rate to leave the stamps out",
+            remedy: "cut the record there, or give --rate to ignore the stamps",
         }
     }
 }
@@ -97,7 +98,8 @@ pub(super) struct Text<'a>(pub(super) &'a [u8]);
 impl Field for Text<'_> {
     #[inline]
     fn count(&self) -> Option<i32> {
-        // Blanks around it, a leading plus, a point: the slower path of `number` takes those.
+        // Blanks around the number, a leading plus and a decimal point are left to `number`, which
+        // is slower.
         atoi_simd::parse::<i32, false, false>(self.0).ok()
     }
 
@@ -152,7 +154,8 @@ integer_fields!(i64 u64);
 impl Field for f64 {
     #[inline]
     fn count(&self) -> Option<i32> {
-        // The conversion saturates, and no count survives the way there and back but itself.
+        // The conversion saturates, so only a count is equal to itself after the conversion there
+        // and back.
         let count = *self as i32;
         (f64::from(count) == *self).then_some(count)
     }

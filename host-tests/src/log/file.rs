@@ -1,4 +1,4 @@
-//! A log, read by the reader that its extension names.
+//! Reads a log with the reader that its extension selects.
 
 #[cfg(feature = "bags")]
 use super::bag;
@@ -9,18 +9,20 @@ use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;
 use std::path::Path;
 
-/// Reads a log; `progress` follows the bytes of its file.
+/// Reads a log. `progress` follows the bytes that are read from the file.
 ///
 /// # Errors
-/// Of every kind of bad input, the file, the row and the remedy.
+/// Any bad input is reported with the file, the row and the remedy.
 pub fn read(path: &Path, options: &Options, progress: &ProgressBar) -> Result<Log, Failure> {
     read_parts(path, options, None, None, progress).map(|(log, _)| log)
 }
 
-/// Reads a log, and beside the curves kurtosis, integrity and what the axes share with covariates.
+/// Reads a log together with the evidence beside each curve: the kurtosis, the integrity, and the
+/// covariance with covariates.
 ///
 /// # Errors
-/// As of [`read`], and where a covariate is no column or an axis.
+/// The errors are those of [`read`]. A covariate that is not a column, or that is an axis, is an
+/// error too.
 pub fn read_with_evidence(
     path: &Path,
     options: &Options,
@@ -31,11 +33,11 @@ pub fn read_with_evidence(
     Ok(log)
 }
 
-/// Reads a log whose last `share` is kept apart: as two logs. It is read twice, first for its
-/// length.
+/// Reads a log as two: the last `share` of its rows is kept apart as the second. The file is read
+/// twice, the first time for its length.
 ///
 /// # Errors
-/// As of [`read`], for both parts.
+/// The errors are those of [`read`], for both parts.
 pub fn read_in_two(
     path: &Path,
     options: &Options,
@@ -53,7 +55,8 @@ pub fn read_in_two(
     Ok((log, rest))
 }
 
-/// The first rows of a log, and the axes of the rest; all rows, and no axes.
+/// Reads the first rows of a log, and the axes of the remaining rows. Without a number of first
+/// rows, all rows are read and there are no remaining axes.
 fn read_parts(
     path: &Path,
     options: &Options,
@@ -64,7 +67,7 @@ fn read_parts(
     let parts = (first, watch);
     let format = Format::of(path)?;
     if !format.has_topics() && options.topic.is_some() {
-        return Err(Place::file(path).failure("has no topics", "leave --topic"));
+        return Err(Place::file(path).failure("this kind of log has no topics", "omit --topic"));
     }
     match format {
         Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, parts, progress),

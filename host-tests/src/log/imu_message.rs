@@ -1,5 +1,5 @@
-//! `sensor_msgs/msg/Imu` as ROS 2 serialises it, CDR behind four bytes of encapsulation, and as ROS 1
-//! does, everything packed.
+//! Decodes `sensor_msgs/msg/Imu`. ROS 2 serialises it as CDR after four bytes of encapsulation; ROS
+//! 1 packs it without padding.
 
 use byteorder::{BigEndian, LittleEndian};
 use serde::Deserialize;
@@ -12,8 +12,8 @@ pub(super) enum Encoding {
 }
 
 impl Encoding {
-    /// The encoding of a channel of IMUs, by the name of its type and that of its encoding; `None`
-    /// of any other channel.
+    /// The encoding of a channel with this message type and this name of an encoding, or `None` if
+    /// its messages are not those of an IMU.
     pub(super) fn of(schema: &str, encoding: &str) -> Option<Self> {
         match (schema, encoding) {
             ("sensor_msgs/msg/Imu" | "sensor_msgs::msg::dds_::Imu_", "cdr") => Some(Self::Cdr),
@@ -23,7 +23,7 @@ impl Encoding {
     }
 }
 
-/// Columns of the table that a topic of these is: the sensor's time and six values.
+/// The columns of the table: the time stamp of the header and six values.
 pub(super) const COLUMNS: [&str; 7] = [
     "header.stamp [ns]",
     "angular_velocity.x [rad/s]",
@@ -34,16 +34,16 @@ pub(super) const COLUMNS: [&str; 7] = [
     "linear_acceleration.z [m/s^2]",
 ];
 
-/// What a log takes of a message.
+/// The part of a message that a log uses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ImuMessage {
-    /// Nanoseconds since 1970.
+    /// The time stamp, in nanoseconds since 1970.
     pub(super) stamp_ns: i64,
-    /// Rates of turn, in rad/s, and accelerations, in m/s².
+    /// The angular rates, in rad/s, and then the accelerations, in m/s².
     pub(super) values: [f64; 6],
 }
 
-const SHORT: &str = "a message that is shorter than an Imu";
+const SHORT: &str = "a message is shorter than sensor_msgs/msg/Imu";
 
 #[derive(Deserialize)]
 struct Imu {
@@ -63,7 +63,7 @@ struct Header {
 }
 
 impl ImuMessage {
-    /// Reads a message, or says what it is not.
+    /// Decodes a message, or returns the reason why it cannot be decoded.
     pub(super) fn read(bytes: &[u8], encoding: Encoding) -> Result<Self, &'static str> {
         match encoding {
             Encoding::Cdr => Self::read_cdr(bytes),
@@ -72,7 +72,8 @@ impl ImuMessage {
     }
 
     fn read_ros1(bytes: &[u8]) -> Option<Self> {
-        /// Orientation, rates and accelerations lie before, between and behind their covariances.
+        /// The number of floats: orientation, angular rates and accelerations, each followed by its
+        /// covariance.
         const FLOATS: usize = 37;
         let mut bytes = bytes;
         let mut word = || {
@@ -97,12 +98,12 @@ impl ImuMessage {
 
     fn read_cdr(bytes: &[u8]) -> Result<Self, &'static str> {
         let Some((encapsulation, payload)) = bytes.split_first_chunk::<4>() else {
-            return Err("a message without a beginning");
+            return Err("a message has no encapsulation header");
         };
         let imu = match encapsulation {
             [0, 0, ..] => cdr_encoding::from_bytes::<Imu, BigEndian>(payload),
             [0, 1, ..] => cdr_encoding::from_bytes::<Imu, LittleEndian>(payload),
-            _ => return Err("a message that is not plain CDR"),
+            _ => return Err("a message is not plain CDR"),
         };
         let (imu, _) = imu.map_err(|_| SHORT)?;
         let [a, b, c] = imu.angular_velocity;
@@ -141,7 +142,7 @@ mod tests {
         bytes.extend(word(frame.len() as u32 + 1));
         bytes.extend(frame);
         bytes.push(0);
-        // Floats begin at multiples of eight behind the encapsulation.
+        // CDR aligns floats to multiples of eight bytes after the encapsulation.
         bytes.resize(4 + (bytes.len() - 4).next_multiple_of(8), 0);
         let [rates, forces] = [&values[..3], &values[3..]];
         let floats = [&[0.0; 13][..], rates, &[0.0; 9], forces, &[0.0; 9]].concat();

@@ -1,42 +1,43 @@
-//! Rows without quotes, which are nearly all: cut at delimiters and line ends, and nothing else.
+//! Cuts rows without quotes, which are nearly all rows of a log, at delimiters and line ends.
 
 use std::{
     io::{self, Cursor, Read},
     ops::Range,
 };
 
-/// Bytes in the buffer; a longer line is left to the general rules.
+/// The size of the buffer, in bytes. A longer line is left to [`Records`](super::records::Records).
 const BUFFER: usize = 1 << 17;
 
-/// Bytes that are looked at together.
+/// The number of bytes that are examined at once.
 const WORD: usize = size_of::<u64>();
 
-/// A one in each byte of a word.
+/// A word in which every byte is one.
 const ONES: u64 = u64::MAX / 255;
 
-/// Cuts text into rows of a known number of fields for as long as that needs no rules for quotes,
-/// then hands over what is left. Empty lines and comments are passed over.
+/// Cuts text into rows with a known number of fields. It stops at the first row that needs the
+/// rules for quotes, and hands over what is left. Empty lines and comments are skipped.
 pub(super) struct Lines<R> {
     text: R,
     delimiter: u8,
-    /// Bytes that end a field, or that only the general rules know what to do with; each eight
-    /// times over.
+    /// The bytes that end a field or that only the general rules can handle, each repeated in all
+    /// eight bytes of a word.
     special: [u64; 4],
-    /// With one word more than is ever read into it, so that a word begins at every byte read.
+    /// The buffer has one word more than is ever read into it, so that a word can be loaded at
+    /// every byte.
     buffer: Box<[u8]>,
-    /// Where in the text the buffer begins.
+    /// The offset in the text at which the buffer begins.
     offset: u64,
-    /// Where in the buffer the bytes begin that have not been cut, and where they end.
+    /// The part of the buffer that has been read and not been cut.
     uncut: Range<usize>,
-    /// Where in the buffer the last whole line ends.
+    /// The end of the last whole line in the buffer.
     whole: usize,
-    /// Where in the buffer the row begins.
+    /// The beginning of the current row in the buffer.
     row: usize,
     fields: Box<[Range<usize>]>,
 }
 
 impl<R: Read> Lines<R> {
-    /// Text whose first byte has the given offset.
+    /// Cuts a text whose first byte has the given offset.
     pub(super) fn new(text: R, offset: u64, delimiter: u8, width: usize) -> Self {
         Self {
             text,
@@ -51,7 +52,7 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// Cuts the next row; false when the general rules have to go on, as they do at the end.
+    /// Cuts the next row. Returns false if the general rules have to go on, as they do at the end.
     pub(super) fn cut(&mut self) -> io::Result<bool> {
         loop {
             if self.uncut.start == self.whole && !self.refill()? {
@@ -59,7 +60,7 @@ impl<R: Read> Lines<R> {
             }
             let row = self.uncut.start;
             if self.buffer[row] == b'#' {
-                // A whole line follows, so there is an end.
+                // A whole line follows, so its end is in the buffer.
                 let rest = &self.buffer[row..self.whole];
                 let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(0);
                 self.uncut.start += length + 1;
@@ -77,8 +78,8 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// The number of fields of the line, none if it is empty, and where the next line begins.
-    /// `None` for a line with quotes, or more fields than expected.
+    /// The number of fields in the line, 0 if it is empty, and the position of the next line.
+    /// Returns `None` for a line with quotes or with more fields than expected.
     #[inline]
     fn cut_fields(&mut self, row: usize) -> Option<(usize, usize)> {
         let mut start = row;
@@ -107,15 +108,15 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// The first special byte at or behind `i`, found eight bytes at a time.
+    /// The first special byte at or after `i`. Eight bytes are examined at a time.
     #[inline(always)]
     fn special_from(&self, mut i: usize) -> Option<usize> {
         loop {
             let word = u64::from_le_bytes(*self.buffer.get(i..)?.first_chunk::<WORD>()?);
             let mut found = 0;
             for special in self.special {
-                // The lowest bit that is set marks the first byte that is equal; what a borrow
-                // marks besides lies above it.
+                // The lowest bit that is set marks the first byte that is equal. A borrow can set
+                // other bits, but only above that one.
                 let differs = word ^ special;
                 found |= differs.wrapping_sub(ONES) & !differs & (ONES << 7);
             }
@@ -126,7 +127,8 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// Moves what is left to the front and reads until there is a whole line; false if none comes.
+    /// Moves the bytes that are left to the front and reads until there is a whole line. Returns
+    /// false if there is no further whole line.
     fn refill(&mut self) -> io::Result<bool> {
         self.buffer.copy_within(self.uncut.clone(), 0);
         self.offset += self.uncut.start as u64;
@@ -153,23 +155,23 @@ impl<R: Read> Lines<R> {
         Ok(false)
     }
 
-    /// A field of the row.
+    /// The field of the current row with this index.
     #[inline]
     pub(super) fn field(&self, column: usize) -> &[u8] {
         &self.buffer[self.fields[column].clone()]
     }
 
-    /// Where in the text the row begins.
+    /// The offset in the text at which the current row begins.
     pub(super) fn row_offset(&self) -> u64 {
         self.offset + self.row as u64
     }
 
-    /// Where in the text begins what has not been cut.
+    /// The offset in the text of the first byte that has not been cut.
     pub(super) fn rest_offset(&self) -> u64 {
         self.offset + self.uncut.start as u64
     }
 
-    /// What has not been cut.
+    /// The text that has not been cut.
     pub(super) fn into_rest(self) -> impl Read {
         Cursor::new(self.buffer[self.uncut.clone()].to_vec()).chain(self.text)
     }
@@ -179,7 +181,7 @@ impl<R: Read> Lines<R> {
 mod tests {
     use super::*;
 
-    /// The rows that are cut, and the rest.
+    /// The rows that are cut, and the text that is left.
     fn cut(text: &str) -> (Vec<Vec<String>>, String) {
         let mut lines = Lines::new(text.as_bytes(), 0, b',', 2);
         let mut rows = Vec::new();
@@ -203,7 +205,7 @@ mod tests {
         assert_eq!(rows, [["1", "2"], ["5", "6"]]);
         assert_eq!(
             rest, "7,8",
-            "a line without end is the general rules' business"
+            "a line without an end is left to the general rules"
         );
     }
 

@@ -1,4 +1,4 @@
-//! What the comment lines at the top of a log say about it.
+//! Reads what the comment lines at the top of a log say about it.
 
 use super::Options;
 use crate::{
@@ -7,8 +7,8 @@ use crate::{
 };
 use std::path::Path;
 
-/// `key=value` pairs of comment lines, such as `# rate_hz=100 unit=deg/s`, with their rows. Keys
-/// that mean nothing here are left alone: the comments may be anybody's.
+/// The `key=value` pairs of comment lines, such as `# rate_hz=100 unit=deg/s`, with their rows.
+/// Unknown keys are ignored, because other programs may have written them.
 #[derive(Debug, Default)]
 pub(super) struct Metadata {
     rate_hz: Option<(u64, String)>,
@@ -17,7 +17,7 @@ pub(super) struct Metadata {
 }
 
 impl Metadata {
-    /// Takes what a comment line says, `#` excluded; the first word on a subject counts.
+    /// Reads a comment line without its `#`. The first value of a key counts.
     pub(super) fn read_comment(&mut self, row: u64, comment: &str) {
         for word in comment.split([' ', ',', ';', '\t']) {
             let Some((key, value)) = word.split_once('=') else {
@@ -33,7 +33,7 @@ impl Metadata {
         }
     }
 
-    /// The rate: from the options, else from here.
+    /// The sampling rate in Hz, from the options or else from the comments.
     pub(super) fn rate_hz(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
         Ok(match (options.rate_hz, &self.rate_hz) {
             (Some(rate_hz), _) => Some(positive(rate_hz, "--rate", "samples per second")?),
@@ -44,7 +44,7 @@ impl Metadata {
         })
     }
 
-    /// The scale: from the options, else from here.
+    /// The scale in rate units per count, from the options or else from the comments.
     pub(super) fn scale(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
         Ok(match (options.scale, &self.scale) {
             (Some(scale), _) => Some(positive(scale, "--scale", "rate units per count")?),
@@ -56,7 +56,7 @@ impl Metadata {
         })
     }
 
-    /// The unit that is told here.
+    /// The unit in the comments.
     pub(super) fn unit(&self, path: &Path) -> Result<Option<Unit>, Failure> {
         let Some((row, text)) = &self.unit else {
             return Ok(None);
@@ -64,7 +64,7 @@ impl Metadata {
         Unit::from_name(text).map(Some).ok_or_else(|| {
             Place::row(path, *row).failure(
                 format!(
-                    "unit={} is none of deg/s, rad/s, m/s^2 and g",
+                    "unit={} is not one of deg/s, rad/s, m/s^2 and g",
                     quoted(text.as_bytes())
                 ),
                 "correct it or give --unit",
@@ -73,7 +73,7 @@ impl Metadata {
     }
 }
 
-/// A positive, finite option.
+/// Returns the value of an option if it is positive and finite.
 fn positive(value: f64, option: &str, meaning: &str) -> Result<f64, Failure> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
@@ -85,7 +85,7 @@ fn positive(value: f64, option: &str, meaning: &str) -> Result<f64, Failure> {
     }
 }
 
-/// A positive, finite number of a comment line.
+/// Returns a number in a comment line if it is positive and finite.
 fn positive_text(
     path: &Path,
     row: u64,

@@ -1,51 +1,57 @@
-//! Recorded logs, read as a stream: any length in the same few megabytes.
+//! Reads recorded logs as a stream. A log of any length needs the same few megabytes of memory.
 //!
-//! A log is a table of numbers, one row a sample, by its extension:
+//! A log is a table of numbers in which each row is a sample. Its extension selects the format:
 //!
-//! * `.csv`, `.csv.gz`: commas, semicolons or tabs; a header of names or none; comment lines begin
-//!   with `#`, and those at the top may say `rate_hz=…`, `scale=…` (rate units per count) and
-//!   `unit=deg/s`, `rad/s`, `m/s^2` or `g`. Options win over comments.
-//! * `.npy`: one- or two-dimensional, rows are samples; integers of 1 to 8 bytes, floats of 4 or 8,
-//!   either byte order, either memory order.
-//!
-//! * `.mcap`: bags of ROS 2, or of ROS 1 converted, with a topic of `sensor_msgs/msg/Imu`;
-//!   stamps are those of the messages' headers. One chunk is in memory at a time.
-//! * `.ulg`: logs of PX4 with `sensor_gyro`, `sensor_accel`, `sensor_combined` or `vehicle_imu`.
+//! * `.csv`, `.csv.gz`: values are separated by commas, semicolons or tabs. A header of names is
+//!   optional. Comment lines begin with `#`; those at the top may contain `rate_hz=…`, `scale=…`
+//!   (rate units per count) and `unit=…` (`deg/s`, `rad/s`, `m/s^2` or `g`). Options win over
+//!   comments.
+//! * `.npy`: an array of one or two dimensions whose rows are samples. Its elements are integers of
+//!   1 to 8 bytes or floats of 4 or 8 bytes, in either byte order and either memory order.
+//! * `.mcap`: a bag of ROS 2, or a converted bag of ROS 1, with a topic of `sensor_msgs/msg/Imu`.
+//!   The stamps are those of the messages' headers. One chunk is in memory at a time.
+//! * `.ulg`: a log of PX4 with `sensor_gyro`, `sensor_accel`, `sensor_combined` or `vehicle_imu`.
 //!
 //! # Which columns are axes
 //!
-//! Those that [`Options::columns`] names. Otherwise, with a header, those named like the axes of a
-//! gyro (`gx`, `gyro_y`, `angular_velocity.z`, `w_RS_S_x [rad s^-1]`) or, where there are none or
-//! [`Options::sensor`] asks for them, of an accelerometer (`ax`, `accel_y`,
-//! `linear_acceleration.z`). Where no name says so, all columns of numbers, but for those that by
-//! their name or by rising from row to row are times, indices or temperatures. Unless every column
-//! was an axis by name, a note tells what was taken and what was left out.
+//! If [`Options::columns`] is given, it names the axes. Otherwise, in a log with a header, the axes
+//! are the columns that are named like the axes of a gyro (`gx`, `gyro_y`, `angular_velocity.z`,
+//! `w_RS_S_x [rad s^-1]`). If there are none, or if [`Options::sensor`] asks for an accelerometer,
+//! they are the columns that are named like its axes (`ax`, `accel_y`, `linear_acceleration.z`). If
+//! no column is named like an axis, the axes are all columns of numbers except times, indices and
+//! temperatures. Those are recognised by their names, or because they rise from row to row. A note
+//! lists the columns that were taken and left out, unless every column was an axis by its name.
 //!
 //! # Rate and gaps
 //!
-//! A rate that options or comments tell is the rate, and time stamps are not looked at unless
-//! [`Options::time`] names their column. Otherwise the rate is the mean of the stamps of the first
-//! column that is named like a time (of two for the seconds and nanoseconds of ROS), or of the only
-//! one without a name that rises by other steps than one. Their unit is that of the name, else that of the time since 1970, else the one that
-//! gives a rate between 10 Hz and 10 kHz.
+//! If options or comments give a rate, it is used, and time stamps are read only if
+//! [`Options::time`] names their column. Otherwise the rate is the mean rate of the time stamps.
+//! They are in the first column that is named like a time, or in two such columns for the seconds
+//! and nanoseconds of ROS. Without such a name, they are in the only column without a name that
+//! rises by steps other than one.
 //!
-//! A step between stamps of more than 1.5 usual ones, and far beyond how they scatter, is a gap,
-//! which no difference will span. A row with the stamp of the row before is left out. Both are
-//! counted in a note. Stamps that go back, two rates in one log, and stamps that leap or repeat in
-//! more than 5 % of the rows are refused.
+//! The unit of the stamps is the one in the column's name. Without one, it is the unit in which the
+//! stamps are times since 1970, or else the unit that gives a rate between 10 Hz and 10 kHz.
+//!
+//! A step between stamps is a gap if it exceeds 1.5 usual steps and lies far beyond their scatter.
+//! No difference of the Allan variance spans a gap. A row that repeats the stamp of the row before
+//! is left out. A note counts both. Stamps that go back are refused, and so are two rates in one
+//! log and stamps that jump or repeat in more than 5 % of the rows.
 //!
 //! # Units
 //!
-//! The unit is that of [`Options::unit`], else of the comments, else of the columns' names, else
-//! deg/s or m/s². Neighbouring samples that scatter by more than 100 deg/s or 20 m/s² get a note
-//! that scale and unit are unlikely; by more than 100 000 deg/s or m/s² they are refused.
+//! The unit comes from [`Options::unit`], from the comments, or from the columns' names, in this
+//! order. Without any, it is deg/s or m/s². If neighbouring samples scatter by more than 100 deg/s
+//! or 20 m/s², a note calls the scale and unit unlikely. If they scatter by more than 100 000 deg/s
+//! or m/s², the log is refused.
 //!
 //! # Counts
 //!
-//! Whole numbers within `i32` are counts as they are, whether written `17` or `17.0`. An axis with
-//! any other number becomes counts of a power of two, between 2^-30 and 2^-29 of its range, less a
-//! constant offset; this takes one more pass for the range. Nothing is skipped: a value that is not
-//! a finite number ends the reading with its row.
+//! Whole numbers within `i32` are taken as counts without a change, whether they are written `17`
+//! or `17.0`. An axis with any other number is rounded to counts. The size of a count is a power of
+//! two between 2^-30 and 2^-29 of the axis' range, and a constant offset is subtracted. This takes
+//! one more pass for the range. No value is skipped: a value that is not a finite number ends the
+//! reading with an error that names its row.
 
 mod accumulate;
 #[cfg(feature = "bags")]
@@ -82,36 +88,38 @@ pub use covariate::CovariateChoice;
 pub use file::{read, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 
-/// Octaves that the host accumulates: all that cannot overflow, for records of years.
+/// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
+/// records of years.
 pub const OCTAVES: usize = 30;
 
-/// What a user may say about a log.
+/// What a user may specify about a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Samples per second; time stamps are not needed then.
+    /// The sampling rate, in Hz. Time stamps are not needed then.
     pub rate_hz: Option<f64>,
-    /// Rate units per count.
+    /// The scale, in rate units per count.
     pub scale: Option<f64>,
-    /// The unit that the scaled counts have.
+    /// The unit of the scaled counts.
     pub unit: Option<Unit>,
-    /// The axes, in this order; without, see [which columns are axes](self#which-columns-are-axes).
+    /// The axes, in this order. `None` selects them as in [which columns are
+    /// axes](self#which-columns-are-axes).
     pub columns: Option<Vec<ColumnChoice>>,
-    /// Of which sensor axes are to be found.
+    /// The sensor whose axes are read.
     pub sensor: Option<Sensor>,
-    /// The column of time stamps; without, see [rate and gaps](self#rate-and-gaps).
+    /// The column of time stamps. `None` selects it as in [rate and gaps](self#rate-and-gaps).
     pub time: Option<String>,
     /// The unit of the time stamps.
     pub time_unit: Option<TimeUnit>,
-    /// Of a log of several topics the one to read.
+    /// The topic to read, in a log with several topics.
     pub topic: Option<String>,
 }
 
-/// A column to take: `column` or `axis=column`.
+/// A column to read, written `column` or `axis=column`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColumnChoice {
-    /// What the axis is to be called, if not what the column is.
+    /// The name of the axis, if it differs from the name of the column.
     pub axis: Option<String>,
-    /// The column's name in the header, or its number from 1.
+    /// The column's name in the header, or its number, counted from 1.
     pub column: String,
 }
 
@@ -133,39 +141,39 @@ impl std::str::FromStr for ColumnChoice {
     }
 }
 
-/// A log, read to its end.
+/// A log that has been read to its end.
 #[derive(Clone, Debug)]
 pub struct Log {
-    /// Samples per second.
+    /// The sampling rate, in Hz.
     pub rate_hz: f64,
     /// The unit of the rates.
     pub unit: Unit,
-    /// The axes, in the order asked for, else in that of the columns.
+    /// The axes, in the order of the request or else in that of the columns.
     pub axes: Vec<Axis>,
-    /// What was decided without being asked, one line each.
+    /// What the reader decided without being asked, one line for each decision.
     pub notes: Vec<String>,
 }
 
-/// One axis of a log.
+/// An axis of a log.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// Its name.
+    /// The name of the axis.
     pub name: String,
-    /// Rate units per count of the accumulator.
+    /// The scale, in rate units per count of the accumulator.
     pub rate_per_count: f64,
-    /// All its samples.
+    /// The accumulator with all samples of the axis.
     pub accumulator: Accumulator<OCTAVES>,
-    /// What was watched beside them, if it was asked for.
+    /// The evidence beside the curve, if it was asked for.
     pub evidence: Option<Evidence>,
 }
 
-/// What a log tells of an axis beside its curve.
+/// What a log shows of an axis beside its Allan variance.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
-    /// Whether differences are Gaussian.
+    /// The kurtosis of the differences, which shows whether they are Gaussian.
     pub kurtosis: Kurtosis<OCTAVES>,
-    /// Names of the covariates, and what the axis shares with each.
+    /// The names of the covariates, and the covariance of the axis with each.
     pub covariates: Vec<(String, CrossCurve<OCTAVES>)>,
-    /// Why the curve cannot mean what it says.
+    /// The reason why the curve is not valid, if there is one.
     pub invalid: Option<Reason>,
 }

@@ -1,9 +1,9 @@
-//! What the names of columns say: which sensor, which unit, or that they are a time.
+//! Recognises sensors, units and times by the names of columns.
 
 use crate::unit::{Sensor, Unit};
 
-/// Names of this sensor's axes: `gx`, `gyro_y`, `imu.angular_velocity.z`, `w_RS_S_x [rad s^-1]`, or
-/// `ax`, `accel_y`, `linear_acceleration.z`, and the like.
+/// Whether a column is named like an axis of this sensor: `gx`, `gyro_y`, `imu.angular_velocity.z`,
+/// `w_RS_S_x [rad s^-1]`, or `ax`, `accel_y`, `linear_acceleration.z`, and the like.
 pub(super) fn is_axis(name: &str, sensor: Sensor) -> bool {
     let name = bare(name).to_lowercase();
     let others = ["temp", "time", "cov", "bias", "clip", "accura", "_dt"];
@@ -34,7 +34,7 @@ pub(super) fn is_axis(name: &str, sensor: Sensor) -> bool {
     short.iter().any(is_short) || long.iter().any(|part| name.contains(part))
 }
 
-/// Time stamps: `t`, `time_us`, `timestamp [ns]`, `header.stamp`.
+/// Whether a column is named like a time: `t`, `time_us`, `timestamp [ns]`, `header.stamp`.
 pub(super) fn is_time(name: &str) -> bool {
     let name = name.trim().to_lowercase();
     if ["relative", "delta", "zone", "offset"]
@@ -49,7 +49,8 @@ pub(super) fn is_time(name: &str) -> bool {
         || TimeUnit::of_token(first).is_some()
 }
 
-/// Neither a time nor an axis: an index, a date, a temperature.
+/// Whether a column is named like something that is neither a time nor an axis: an index, a date or
+/// a temperature.
 pub(super) fn is_other(name: &str) -> bool {
     let name = name.trim().to_lowercase();
     let words = ["date", "index", "temp", "sample", "seq"];
@@ -62,8 +63,8 @@ fn tokens(name: &str) -> impl Iterator<Item = &str> {
         .filter(|token| !token.is_empty())
 }
 
-/// The name without the unit in brackets behind it: `gx` of `gx [deg/s]`. An index such as that of
-/// `gyro_rad[0]` belongs to the name.
+/// The name without the unit in brackets at its end: `gx` for `gx [deg/s]`. An index such as the
+/// one in `gyro_rad[0]` belongs to the name.
 pub(super) fn bare(name: &str) -> &str {
     match in_brackets(name) {
         Some((bare, _)) if !bare.is_empty() => bare,
@@ -71,7 +72,7 @@ pub(super) fn bare(name: &str) -> &str {
     }
 }
 
-/// The name and the text in brackets behind it, unless that is an index.
+/// The name and the text in brackets at its end, unless that text is an index.
 fn in_brackets(name: &str) -> Option<(&str, &str)> {
     let name = name.trim();
     let open = name.rfind(['[', '('])?;
@@ -80,7 +81,7 @@ fn in_brackets(name: &str) -> Option<(&str, &str)> {
     (!is_index && !inner.is_empty()).then(|| (name[..open].trim(), inner))
 }
 
-/// A unit of time stamps.
+/// The unit of time stamps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum TimeUnit {
     /// Seconds.
@@ -96,7 +97,7 @@ pub enum TimeUnit {
 impl TimeUnit {
     pub(super) const ALL: [Self; 4] = [Self::S, Self::Ms, Self::Us, Self::Ns];
 
-    /// How many make a second.
+    /// The number of these units in a second.
     pub(super) const fn per_second(self) -> f64 {
         match self {
             Self::S => 1.0,
@@ -115,7 +116,7 @@ impl TimeUnit {
         }
     }
 
-    /// The unit that a column's name ends with: `timestamp [ns]`, `time_us`, `TimeUS`, `t (s)`.
+    /// The unit at the end of a column's name: `timestamp [ns]`, `time_us`, `TimeUS`, `t (s)`.
     pub(super) fn of_name(name: &str) -> Option<Self> {
         if let Some((_, unit)) = in_brackets(name) {
             return Self::of_token(&unit.to_lowercase());
@@ -143,8 +144,8 @@ impl TimeUnit {
     }
 }
 
-/// The unit that an axis' name tells, and how many of it a value is: `w_RS_S_x [rad s^-1]`,
-/// `gx (deg/s)`, `gyro_x_mdps`, `accelerometer_m_s2[0]`.
+/// The unit in an axis' name, and the factor from a value to that unit: `w_RS_S_x [rad s^-1]`, `gx
+/// (deg/s)`, `gyro_x_mdps`, `accelerometer_m_s2[0]`.
 pub(super) fn unit(name: &str) -> Option<(Unit, f64)> {
     if let Some((_, text)) = in_brackets(name) {
         return unit_of_text(text);
@@ -152,7 +153,7 @@ pub(super) fn unit(name: &str) -> Option<(Unit, f64)> {
     let name = name.to_lowercase();
     let name = name.split('[').next().unwrap_or_default();
     let tokens: Vec<&str> = tokens(name).collect();
-    // The axis may stand behind the unit: `gyro_rad_s_x`.
+    // The letter of the axis may follow the unit, as in `gyro_rad_s_x`.
     let tokens = match tokens.as_slice() {
         [rest @ .., "x" | "y" | "z"] if rest.len() > 1 => rest,
         all => all,
@@ -164,7 +165,8 @@ pub(super) fn unit(name: &str) -> Option<(Unit, f64)> {
     at_end(2).or_else(|| at_end(1))
 }
 
-/// The unit of `rad s^-1`, `deg/sec`, `dps`, `m/s²`, and how many of it one is.
+/// The unit that is written `rad s^-1`, `deg/sec`, `dps` or `m/s²`, and the factor from a value to
+/// it.
 fn unit_of_text(text: &str) -> Option<(Unit, f64)> {
     let mut text = text.to_lowercase();
     for (long, short) in [

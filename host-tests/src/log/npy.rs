@@ -1,4 +1,4 @@
-//! Logs as NumPy arrays: rows are samples, columns are axes.
+//! Reads logs that are NumPy arrays, whose rows are samples and whose columns are axes.
 
 use super::{
     columns::{AxisColumn, Columns, Look},
@@ -16,13 +16,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// An array with more columns than this was meant the other way round.
+/// An array with more columns than this is refused, because its axes are probably its rows.
 const MOST_COLUMNS: u64 = 64;
 
-/// Rows that tell what the columns look like.
+/// The number of rows that decide what the columns look like.
 const LOOKS: u64 = 100;
 
-/// An array file, known by its header and its first rows.
+/// An array file whose header and first rows are known.
 pub(super) struct Npy {
     path: PathBuf,
     header: Header,
@@ -48,7 +48,7 @@ impl Npy {
             _ => {
                 return Err(place().failure(
                     format!("an array of {} dimensions", header.shape.len()),
-                    "save one or two: rows are samples, columns are axes",
+                    "save an array of one or two: rows are samples, columns are axes",
                 ));
             }
         };
@@ -60,7 +60,7 @@ impl Npy {
             .and_then(|n| n.checked_mul(header.size as u64));
         if bytes.is_none_or(|bytes| bytes > i64::MAX as u64) {
             return Err(place().failure(
-                format!("an array of {rows} rows cannot be"),
+                format!("an array of {rows} rows is impossible"),
                 "save it again",
             ));
         }
@@ -85,7 +85,7 @@ impl Npy {
         Ok(array)
     }
 
-    /// The first numbers of the columns, wherever they are stored.
+    /// The first numbers of each column, in either memory order.
     fn heads(&self, width: u64) -> Result<Vec<Vec<f64>>, Failure> {
         let fail = |error| self.failure(None, &error);
         let mut file = File::open(&self.path).map_err(fail)?;
@@ -102,7 +102,7 @@ impl Npy {
                 };
                 let mut element = [0; 8];
                 let element = &mut element[..self.header.size];
-                // The pass meets a file that is too short again, and says where.
+                // If the file is too short, the pass over it fails as well and reports the row.
                 let offset = start.saturating_add(index * self.header.size as u64);
                 if file.seek(SeekFrom::Start(offset)).is_err() || file.read_exact(element).is_err()
                 {
@@ -130,7 +130,10 @@ impl Npy {
             None => Place::file(&self.path),
         };
         if error.kind() == ErrorKind::UnexpectedEof {
-            let what = format!("the file ends before the {} rows of its header", self.rows);
+            let what = format!(
+                "the file ends before the {} rows that the header declares",
+                self.rows
+            );
             return place.failure(what, "copy or save it again");
         }
         place.io(error)
@@ -159,7 +162,7 @@ impl Table for Npy {
         let mut reader = source::open(&self.path, progress)?;
         read_header(&self.path, &mut reader)?;
         let width = self.columns.looks.len();
-        // A row at a time, or in the other memory order one element of a column.
+        // One read takes a row, or one element of a column in the other memory order.
         let size = self.header.size;
         let (columns, runs) = if self.header.fortran_order {
             (1, self.rows * width as u64)
@@ -192,7 +195,10 @@ impl Table for Npy {
         match reader.read(&mut [0]) {
             Ok(0) => Ok(Ended::AtTheLastRow),
             Ok(_) => Err(Place::file(&self.path).failure(
-                format!("more data behind the {} rows of its header", self.rows),
+                format!(
+                    "more data follow the {} rows that the header declares",
+                    self.rows
+                ),
                 "save it again, one array a file",
             )),
             Err(error) => Err(self.failure(Some(self.rows), &error)),
@@ -215,7 +221,7 @@ fn read_header(path: &Path, reader: &mut impl Read) -> Result<Header, Failure> {
     }
 }
 
-/// Shows one element, of one to eight bytes, to a visitor.
+/// Shows one element of one to eight bytes to a visitor.
 #[inline]
 fn visit_element<V: Visitor>(
     header: &Header,
@@ -223,7 +229,8 @@ fn visit_element<V: Visitor>(
     axis: usize,
     visitor: &mut V,
 ) -> Result<(), Stop> {
-    // The element at the least significant end of eight bytes, most significant first.
+    // The element is stored at the least significant end of eight bytes, most significant byte
+    // first.
     let mut bytes = [0; 8];
     let end = &mut bytes[8 - element.len()..];
     end.copy_from_slice(element);
@@ -240,7 +247,7 @@ fn visit_element<V: Visitor>(
     }
 }
 
-/// Keeps the number that it is shown.
+/// A visitor that keeps the number that it is shown.
 struct Keep<'a>(&'a mut Option<f64>);
 
 impl Visitor for Keep<'_> {

@@ -1,16 +1,17 @@
-//! The header of NumPy's array files, versions 1.0 to 3.0 of the format (NEP 1).
+//! Reads and writes the header of NumPy's array files, versions 1.0 to 3.0 of the format (NEP 1).
 //!
-//! Read here rather than by a library, because sizes and shapes of a hostile header must neither
-//! overflow nor allocate.
+//! No library is used, because the sizes and shapes in a hostile header must neither overflow nor
+//! cause large allocations.
 
 use std::io::{self, Read, Write};
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 
-/// Headers of plain arrays take a hundred bytes; beyond this it is something else.
+/// The longest header that is accepted, in bytes. The header of a plain array takes about a
+/// hundred.
 const LONGEST: usize = 1 << 14;
 
-/// What kind of number an array holds.
+/// The kind of number that an array holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Signed integers.
@@ -21,29 +22,29 @@ pub enum Kind {
     Float,
 }
 
-/// Element type, memory order and shape of an array.
+/// The element type, the memory order and the shape of an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
-    /// The kind of its elements.
+    /// The kind of the elements.
     pub kind: Kind,
-    /// Bytes of an element.
+    /// The size of an element, in bytes.
     pub size: usize,
     /// Whether the most significant byte comes first.
     pub big_endian: bool,
     /// Whether columns rather than rows are contiguous.
     pub fortran_order: bool,
-    /// Elements along each dimension.
+    /// The number of elements along each dimension.
     pub shape: Vec<u64>,
 }
 
 impl Header {
-    /// Reads the header and leaves the reader at the first element. The inner error says what is
-    /// wrong with a header that could be read.
+    /// Reads the header and leaves the reader at the first element. The inner error describes a
+    /// header that was read and is not valid.
     pub fn read(reader: &mut impl Read) -> io::Result<Result<Self, String>> {
         let mut start = [0; 8];
         reader.read_exact(&mut start)?;
         if start[..6] != MAGIC[..] {
-            return Ok(Err("the file does not begin as a NumPy array".into()));
+            return Ok(Err("this is not a NumPy array file".into()));
         }
         let length = match start[6] {
             1 => {
@@ -56,11 +57,15 @@ impl Header {
                 reader.read_exact(&mut bytes)?;
                 u32::from_le_bytes(bytes) as usize
             }
-            version => return Ok(Err(format!("version {version} of the format is not known"))),
+            version => {
+                return Ok(Err(format!(
+                    "version {version} of the format is not supported"
+                )));
+            }
         };
         if length > LONGEST {
             return Ok(Err(format!(
-                "a header of {length} bytes is not one of a plain array"
+                "the header has {length} bytes, too many for a plain array"
             )));
         }
         let mut text = vec![0; length];
@@ -98,10 +103,10 @@ impl Header {
         let fortran_order = match value_of(text, "fortran_order")? {
             value if value.starts_with("True") => true,
             value if value.starts_with("False") => false,
-            _ => return Err("its header does not tell the memory order".into()),
+            _ => return Err("the header does not give the memory order".into()),
         };
 
-        let shapeless = || "its header has no shape".to_owned();
+        let shapeless = || "the header gives no shape".to_owned();
         let shape = value_of(text, "shape")?
             .strip_prefix('(')
             .ok_or_else(shapeless)?;
@@ -121,7 +126,8 @@ impl Header {
         })
     }
 
-    /// Writes the header, padded as NumPy does so that the elements begin at a multiple of 64.
+    /// Writes the header, padded as NumPy does, so that the elements begin at a multiple of 64
+    /// bytes.
     pub fn write(&self, writer: &mut impl Write) -> io::Result<()> {
         let kind = match self.kind {
             Kind::Signed => 'i',
@@ -134,7 +140,7 @@ impl Header {
             (_, true) => '>',
         };
         let fortran_order = if self.fortran_order { "True" } else { "False" };
-        // A trailing comma each: `(5,)` and `(5, 3,)` are tuples to Python.
+        // Each number is followed by a comma, because Python reads `(5,)` and `(5, 3,)` as tuples.
         let shape: String = self
             .shape
             .iter()
@@ -156,7 +162,7 @@ impl Header {
     }
 }
 
-/// What follows the key in a Python dictionary.
+/// The text that follows the key in a Python dictionary.
 fn value_of<'a>(text: &'a str, key: &str) -> Result<&'a str, String> {
     let quotes = [format!("'{key}'"), format!("\"{key}\"")];
     quotes
@@ -164,7 +170,7 @@ fn value_of<'a>(text: &'a str, key: &str) -> Result<&'a str, String> {
         .find_map(|quoted| text.split_once(quoted.as_str()))
         .and_then(|(_, rest)| rest.trim_start().strip_prefix(':'))
         .map(str::trim_start)
-        .ok_or_else(|| format!("its header has no {key}"))
+        .ok_or_else(|| format!("the header has no {key}"))
 }
 
 #[cfg(test)]

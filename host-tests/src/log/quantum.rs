@@ -1,6 +1,7 @@
-//! From floats to counts: exact where the floats are whole numbers, else far below their noise.
+//! Turns floats into counts. Whole numbers stay exact, and any other number is rounded far below
+//! its noise.
 
-/// The range of one axis' values.
+/// The range of the values of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     lowest: f64,
@@ -10,14 +11,14 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// Of no values.
+    /// The range of no values.
     pub(super) const EMPTY: Self = Self {
         lowest: f64::INFINITY,
         highest: f64::NEG_INFINITY,
         whole: true,
     };
 
-    /// Widens the range to a value.
+    /// Widens the range to include a value.
     #[inline]
     pub(super) fn include(&mut self, value: f64) {
         self.lowest = self.lowest.min(value);
@@ -26,11 +27,11 @@ impl Range {
     }
 }
 
-/// How one axis' floats become counts: `count = round(value / step) − origin`.
+/// How the floats of one axis become counts: `count = round(value / step) − origin`.
 ///
-/// The step is a power of two between 2^-30 and 2^-29 of the range: division by it is exact, and
-/// so are the counts of values that are themselves multiples of it. The origin takes a constant
-/// offset away, which no Allan variance sees.
+/// The step is a power of two between 2^-30 and 2^-29 of the range. Division by it is therefore
+/// exact, and values that are multiples of it become exact counts. The origin subtracts a constant
+/// offset, which does not change any Allan variance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Quantum {
     step: f64,
@@ -38,14 +39,14 @@ pub(super) struct Quantum {
 }
 
 impl Quantum {
-    /// Whole numbers: counts as they are.
+    /// The quantum of whole numbers, which are counts already.
     pub(super) const WHOLE: Self = Self {
         step: 1.0,
         origin: 0.0,
     };
 
-    /// The quantum of values within a range, or `None` where floats run out of it: a range beyond
-    /// 1e300, or one below 1e-290.
+    /// The quantum of values within a range. Returns `None` for a range beyond 1e300 or below
+    /// 1e-290, where floats overflow or underflow.
     pub(super) fn of(range: Range) -> Option<Self> {
         let width = range.highest - range.lowest;
         if range.whole || width == 0.0 {
@@ -64,12 +65,12 @@ impl Quantum {
         origin.is_finite().then_some(Self { step, origin })
     }
 
-    /// The value of one count.
+    /// The size of one count.
     pub(super) const fn step(&self) -> f64 {
         self.step
     }
 
-    /// The count of a value within the range: at most 2^29 either way.
+    /// The count of a value within the range. Its magnitude is at most 2^29.
     #[inline]
     pub(super) fn count(&self, value: f64) -> i32 {
         (value / self.step - self.origin).round_ties_even() as i32

@@ -1,4 +1,4 @@
-//! From a table to its curves.
+//! Reads a table into the curves of its axes.
 
 use super::{
     Axis, CovariateChoice, Evidence, Log, Options,
@@ -17,8 +17,8 @@ use allanite::Scale;
 use indicatif::ProgressBar;
 use std::path::Path;
 
-/// Reads the first rows of a table, and the axes of the rest where the first are counted; watches
-/// them beside these covariates where there are some to watch.
+/// Reads the first rows of a table, and the axes of the remaining rows if a number of first rows is
+/// given. If covariates are given, the axes are watched together with them.
 pub(super) fn read_table(
     table: &impl Table,
     path: &Path,
@@ -28,7 +28,7 @@ pub(super) fn read_table(
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let metadata = table.metadata();
     let rate_hz = metadata.rate_hz(path, options)?;
-    // A rate that is given makes stamps unnecessary, unless they are asked for.
+    // If the rate is given, time stamps are read only if the options ask for them.
     let time = match table.by_rows() && (rate_hz.is_none() || options.time.is_some()) {
         true => table.columns().time(path, options)?,
         false => None,
@@ -45,8 +45,8 @@ pub(super) fn read_table(
     let covariates = watch.unwrap_or_default();
     if covariates.len() > watched::MOST {
         return Err(Failure::option(
-            format!("--covariates: {} of them", covariates.len()),
-            format!("name {} at most", watched::MOST),
+            format!("--covariates names {} columns", covariates.len()),
+            format!("name at most {}", watched::MOST),
         ));
     }
     let mut columns = axis_columns.clone();
@@ -71,7 +71,7 @@ pub(super) fn read_table(
     let is_told = rate_hz.is_some();
     let rate_hz = match (rate_hz, &measured.clock) {
         (None, Some(clock)) => clock.rate_hz().map_err(|flaw| {
-            Place::file(path).failure(flaw.what, "give --rate to leave them out")
+            Place::file(path).failure(flaw.what, "give --rate to ignore the stamps")
         })?,
         (rate_hz, _) => rate_hz.unwrap_or(f64::NAN),
     };
@@ -103,7 +103,7 @@ pub(super) fn read_table(
         }
         if quantum == quantum::Quantum::WHOLE && !scaling.scale_is_told {
             notes.push(format!(
-                "axis {}: whole numbers and no scale given: 1 per count assumed (say so with --scale)",
+                "axis {}: whole numbers and no scale given: 1 per count assumed (change it with --scale)",
                 axis.name
             ));
         }
@@ -112,7 +112,7 @@ pub(super) fn read_table(
     }
     if scaling.origin == Origin::Assumed {
         notes.push(format!(
-            "no unit given: {} assumed (say so with --unit)",
+            "no unit given: {} assumed (change it with --unit)",
             scaling.unit
         ));
     }
@@ -125,7 +125,7 @@ pub(super) fn read_table(
     Ok((log, rest))
 }
 
-/// The axes asked for, or those found.
+/// The axes that the options ask for, or else those that are found.
 fn taken(
     table: &impl Table,
     path: &Path,
@@ -150,7 +150,7 @@ fn taken(
     }
 }
 
-/// What was found out rather than told, on one line.
+/// A note on what was found rather than given, on one line.
 fn said(
     columns: Option<String>,
     scaling: &Scaling,
@@ -160,7 +160,7 @@ fn said(
 ) -> String {
     let mut parts: Vec<String> = columns.into_iter().collect();
     if scaling.origin == Origin::Names {
-        parts.push(format!("unit {} by their names", scaling.unit));
+        parts.push(format!("unit {} from the column names", scaling.unit));
     }
     if let Some(time) = time {
         let rate = match is_told {
@@ -168,12 +168,12 @@ fn said(
             true => "gaps".into(),
         };
         let (name, unit) = (time.name(), time.unit.name());
-        parts.push(format!("{rate} by the time stamps of {name}, in {unit}"));
+        parts.push(format!("{rate} from the time stamps of {name}, in {unit}"));
     }
     parts.join("; ")
 }
 
-/// What was watched, in units.
+/// The evidence of an axis, in units.
 fn evidence<'a>(
     path: &Path,
     axis: &Axis,
@@ -185,7 +185,7 @@ fn evidence<'a>(
         Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
     };
     let scale = Scale::new(axis.rate_per_count, rate_hz).map_err(fail)?;
-    // A rate of change is counted in quanta a sample.
+    // A rate of change is counted in quanta per sample.
     let (names, units): (Vec<String>, Vec<f64>) = covariates
         .map(|(choice, quantum)| {
             let unit = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
@@ -200,7 +200,7 @@ fn evidence<'a>(
     })
 }
 
-/// Whether an axis is long enough and alive.
+/// Checks that an axis is long enough and that its values change.
 fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
     let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
     let Axis {
@@ -209,12 +209,12 @@ fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
         accumulator,
         ..
     } = axis;
-    // Two octaves with six differences each, the shorter one's neighbours less three.
+    // Nine samples give two octaves of at least six differences each.
     const LEAST: u64 = 9;
     if accumulator.samples() < LEAST {
         return fail(
             format!(
-                "{} samples, and two octaves need {LEAST}",
+                "{} samples are too few: two octaves need {LEAST}",
                 accumulator.samples()
             ),
             "record longer",
@@ -231,7 +231,9 @@ fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
     }
     if !(rate_per_count.is_finite() && *rate_per_count > 0.0) {
         return fail(
-            format!("axis {name}: a scale of {rate_per_count} per count is beyond floats"),
+            format!(
+                "axis {name}: a scale of {rate_per_count} per count is outside the range of floats"
+            ),
             "give another --scale",
         );
     }

@@ -1,4 +1,4 @@
-//! Rows by all rules of quoting: what [`Lines`](super::lines::Lines) leaves.
+//! Reads rows with all rules for quotes. It takes over where [`Lines`](super::lines::Lines) stops.
 
 use csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
 use std::{
@@ -7,22 +7,22 @@ use std::{
     rc::Rc,
 };
 
-/// Bytes that may be read for one row, the reader's own buffer included. A quote that is never
-/// closed would make one row of all the rest.
+/// The most bytes that may be read for one row, those in the reader's own buffer included. Without
+/// this limit, a quote that is never closed would make one row of the rest of the file.
 pub(super) const LONGEST_ROW: usize = 1 << 20;
 
-/// Reads one row after the other. Empty lines and comments are passed over.
+/// Reads one row after the other. Empty lines and comments are skipped.
 pub(super) struct Records<R> {
     reader: Reader<Limited<R>>,
-    /// What may still be read until the row ends.
+    /// The number of bytes that may still be read before the row ends.
     budget: Rc<Cell<usize>>,
-    /// Where in the whole text this one begins.
+    /// The offset in the whole text at which this text begins.
     offset: u64,
     record: ByteRecord,
 }
 
 impl<R: Read> Records<R> {
-    /// Text whose first byte has the given offset.
+    /// Reads a text whose first byte has the given offset.
     pub(super) fn new(text: R, offset: u64, delimiter: u8) -> Self {
         let budget = Rc::new(Cell::new(LONGEST_ROW));
         let text = Limited {
@@ -44,9 +44,9 @@ impl<R: Read> Records<R> {
         }
     }
 
-    /// Reads the next row; false at the end. A row that is too long is
-    /// [`FileTooLarge`](io::ErrorKind::FileTooLarge). Failures come with the offset of what has not
-    /// been read.
+    /// Reads the next row. Returns false at the end. A row that is too long is the error
+    /// [`FileTooLarge`](io::ErrorKind::FileTooLarge). An error comes with the offset of the first
+    /// byte that has not been read.
     pub(super) fn read(&mut self) -> Result<bool, (u64, io::Error)> {
         let rest = self.rest_offset();
         self.budget.set(LONGEST_ROW);
@@ -61,23 +61,23 @@ impl<R: Read> Records<R> {
             })
     }
 
-    /// The row.
+    /// The current row.
     pub(super) const fn row(&self) -> &ByteRecord {
         &self.record
     }
 
-    /// Where in the text begins what the row was looked for in.
+    /// The offset in the text at which the search for the current row began.
     pub(super) fn row_offset(&self) -> u64 {
         self.offset + self.record.position().map_or(0, |position| position.byte())
     }
 
-    /// Where in the text begins what has not been read.
+    /// The offset in the text of the first byte that has not been read.
     pub(super) fn rest_offset(&self) -> u64 {
         self.offset + self.reader.position().byte()
     }
 }
 
-/// Text that fails when its budget is used up.
+/// A text that fails when its budget is used up.
 struct Limited<R> {
     text: R,
     budget: Rc<Cell<usize>>,

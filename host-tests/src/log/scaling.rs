@@ -1,4 +1,5 @@
-//! What one count of a log is: from options, comments and the names of columns, in this order.
+//! Finds the size of one count of a log from the options, the comments and the names of columns, in
+//! this order.
 
 use super::{Axis, Options, columns::AxisColumn, table::Table};
 use crate::{
@@ -7,33 +8,33 @@ use crate::{
 };
 use std::path::Path;
 
-/// The scale and unit of a log's axes.
+/// The scale and the unit of a log's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scaling {
-    /// Units per count.
+    /// The scale, in units per count.
     pub(super) scale: f64,
     pub(super) unit: Unit,
-    /// Whether somebody said the scale; else it is one for want of a better.
+    /// Whether the scale is given. Otherwise it is assumed to be 1.
     pub(super) scale_is_told: bool,
     pub(super) origin: Origin,
 }
 
-/// Who said the unit.
+/// Where the unit comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
-    /// An option or a comment.
+    /// The unit is given by an option or a comment.
     Told,
-    /// The names of the columns.
+    /// The unit is in the names of the columns.
     Names,
-    /// Nobody.
+    /// The unit is assumed.
     Assumed,
 }
 
-/// The sensor that options ask for.
+/// The sensor that the options ask for, by itself or by its unit.
 pub(super) fn wanted_sensor(options: &Options) -> Result<Option<Sensor>, Failure> {
     match (options.sensor, options.unit) {
         (Some(sensor), Some(unit)) if sensor != unit.sensor() => Err(Failure::option(
-            format!("--unit {} is not one of a {sensor}", unit.name()),
+            format!("--unit {} is not a unit of a {sensor}", unit.name()),
             "give another --unit or --sensor",
         )),
         (sensor, unit) => Ok(sensor.or(unit.map(Unit::sensor))),
@@ -41,7 +42,7 @@ pub(super) fn wanted_sensor(options: &Options) -> Result<Option<Sensor>, Failure
 }
 
 impl Scaling {
-    /// Settles the scale of these axes, whose names may tell the sensor.
+    /// Finds the scale and unit of these axes, whose names may indicate the sensor.
     pub(super) fn settle(
         table: &impl Table,
         path: &Path,
@@ -76,10 +77,11 @@ impl Scaling {
         })
     }
 
-    /// Whether neighbouring samples of an axis scatter as those of a sensor at rest can: a warning
-    /// where they hardly do, a failure where they cannot.
+    /// Checks that the scatter between neighbouring samples of an axis is possible for a sensor at
+    /// rest. An unlikely scatter is a warning, an impossible one an error.
     pub(super) fn check(&self, path: &Path, axis: &Axis) -> Result<Option<String>, Failure> {
-        // In deg/s or m/s²: beyond the noisiest parts at their highest rates, and beyond any range.
+        // The limits are in deg/s or m/s². The first lies beyond the noisiest sensors at their
+        // highest rates, and the second beyond every sensor's range.
         let (doubtful, impossible) = match self.unit.sensor() {
             Sensor::Gyro => (100.0, 1e5),
             Sensor::Accelerometer => (20.0, 1e5),
@@ -90,7 +92,7 @@ impl Scaling {
         let variance = 0.5 * octave.sum.to_real() / octave.differences as f64;
         let deviation = variance.sqrt() * axis.rate_per_count;
         let what = format!(
-            "axis {}: samples that scatter by {deviation:.3e} {} are {{}} of a {} at rest",
+            "axis {}: a scatter of {deviation:.3e} {} between neighbours is {{}} for a {} at rest",
             axis.name,
             self.unit,
             self.unit.sensor(),

@@ -1,4 +1,4 @@
-//! Opening a log by its extension.
+//! Opens a log by its extension.
 
 use crate::failure::{Failure, Place};
 use flate2::bufread::MultiGzDecoder;
@@ -9,27 +9,27 @@ use std::{
     path::Path,
 };
 
-/// Bytes that a file is read by.
+/// The size of the buffer that files are read with, in bytes.
 const BUFFER: usize = 1 << 18;
 
-/// The kind of a log.
+/// The format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     /// A table of text.
     Csv {
-        /// Whether it is compressed.
+        /// Whether the text is compressed with gzip.
         gzip: bool,
     },
-    /// An array of numbers.
+    /// A NumPy array.
     Npy,
-    /// A bag of ROS 2.
+    /// A bag of ROS 2, or of ROS 1 after conversion.
     Mcap,
     /// A log of PX4.
     Ulog,
 }
 
 impl Format {
-    /// The kind that a file's extension names.
+    /// The format that a file's extension selects.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         let name = path
             .file_name()
@@ -56,13 +56,13 @@ impl Format {
 }
 
 impl Format {
-    /// Whether a file holds several sensors, told apart by topics.
+    /// Whether a file of this format can hold several sensors, each with its own topic.
     pub(super) const fn has_topics(self) -> bool {
         matches!(self, Self::Mcap | Self::Ulog)
     }
 }
 
-/// A file from its beginning; `progress` follows the bytes that are read.
+/// Opens a file at its beginning. `progress` follows the bytes that are read.
 pub(super) fn open(path: &Path, progress: &ProgressBar) -> Result<impl BufRead + use<>, Failure> {
     let fail = |error| Place::file(path).io(&error);
     let file = File::open(path).map_err(fail)?;
@@ -75,7 +75,7 @@ pub(super) fn open(path: &Path, progress: &ProgressBar) -> Result<impl BufRead +
     Ok(BufReader::with_capacity(BUFFER, progress.wrap_read(file)))
 }
 
-/// The text of a file from its beginning, unpacked, without a byte order mark.
+/// Opens the text of a file at its beginning, unpacked and without a byte order mark.
 pub(super) fn open_text(
     path: &Path,
     gzip: bool,
@@ -97,7 +97,7 @@ pub(super) fn open_text(
     Ok(text)
 }
 
-/// Whether the last line of a text ends.
+/// Whether the last line of a file has a line end.
 pub(super) fn ends_with_line(path: &Path) -> Result<bool, Failure> {
     let last = || {
         let mut file = File::open(path)?;
@@ -109,7 +109,7 @@ pub(super) fn ends_with_line(path: &Path) -> Result<bool, Failure> {
     last().map_err(|error| Place::file(path).io(&error))
 }
 
-/// A failure while reading text.
+/// The failure to read text.
 pub(super) fn text_failure(place: Place, gzip: bool, error: &std::io::Error) -> Failure {
     use std::io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
     match error.kind() {
@@ -125,8 +125,9 @@ pub(super) fn text_failure(place: Place, gzip: bool, error: &std::io::Error) -> 
     }
 }
 
-/// The row, counted from 1, of the first record at or behind a byte of the text: rows that are
-/// empty or comments are passed over. Where the text ends or breaks off, the row of that.
+/// The row, counted from 1, of the first record at or after a byte of the text. Rows that are empty
+/// or comments are skipped. If the text ends or breaks off before a record, this is the row where
+/// it does so.
 pub(super) fn row_at(path: &Path, gzip: bool, byte: u64) -> Result<u64, Failure> {
     let mut text = open_text(path, gzip, &ProgressBar::hidden())?;
     let mut row = 1;

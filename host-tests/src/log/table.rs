@@ -1,4 +1,4 @@
-//! What every kind of log is to its readers: a table that passes its values to a visitor.
+//! The interface of all kinds of logs: a table that passes its values to a visitor.
 
 use super::{
     columns::{AxisColumn, Columns},
@@ -8,22 +8,24 @@ use super::{
 use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;
 
-/// A log's file, known by its first rows and ready to be gone through.
+/// A log's file whose first rows are known and whose values can be read in passes.
 pub(super) trait Table {
     fn metadata(&self) -> &Metadata;
     fn columns(&self) -> &Columns;
 
-    /// Whether a pass shows rows one after the other, the columns of each in the order asked for.
+    /// Whether a pass shows rows one after the other, with the columns of each row in the order of
+    /// the request.
     fn by_rows(&self) -> bool {
         true
     }
 
-    /// What was found that is not as it should be, known after a pass.
+    /// Notes on defects of the file. They are complete after a pass.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Shows every value of the given columns to a visitor; of each column in the order of rows.
+    /// Shows every value of the given columns to a visitor. The values of each column come in the
+    /// order of the rows.
     fn pass<V: Visitor>(
         &self,
         axes: &[AxisColumn],
@@ -32,33 +34,34 @@ pub(super) trait Table {
     ) -> Result<Ended, Failure>;
 }
 
-/// What a pass over a table is made for.
+/// Receives the values of a pass over a table.
 pub(super) trait Visitor {
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop>;
 
-    /// Samples are missing before the next row.
+    /// Tells that samples are missing before the next row.
     fn gap(&mut self) {}
 }
 
-/// Why a visitor wants no more.
+/// The reason why a visitor wants no more values.
 pub(super) enum Stop {
-    /// A value is not a count: come again and ask for numbers.
+    /// A value is not a count, so that another pass has to ask for numbers.
     NotCounts,
-    /// A value is no finite number either.
+    /// A value is not a finite number.
     Flaw(Flaw),
-    /// The row does not follow the one before.
+    /// A time stamp is not valid.
     Clock(Flaw),
 }
 
 impl Stop {
-    /// The failure that a value of a column was met with.
+    /// The failure that reports a value of a column at a place.
     pub(super) fn failure(&self, column: &AxisColumn, place: Place) -> Failure {
         match self {
             Self::Flaw(flaw) => {
                 place.failure(format!("axis {}: {}", column.axis, flaw.what), flaw.remedy)
             }
             Self::Clock(flaw) => flaw.at(place),
-            // Met by a visitor that takes numbers as well, so never seen.
+            // Every visitor that reaches this takes numbers as well, so users do not see this
+            // message.
             Self::NotCounts => place.failure(
                 format!("axis {}: not a count", column.axis),
                 "correct the value",
@@ -67,7 +70,7 @@ impl Stop {
     }
 }
 
-/// How a pass ended that found nothing wrong.
+/// How a pass ended that met no error.
 pub(super) enum Ended {
     AtTheLastRow,
     NotCounts,

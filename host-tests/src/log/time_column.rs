@@ -1,4 +1,4 @@
-//! Which column of a log is its time, and in which unit.
+//! Finds the column of a log that holds its time stamps, and their unit.
 
 use super::{
     Options,
@@ -9,8 +9,7 @@ use super::{
 use crate::failure::{Failure, Place, quoted};
 use std::path::Path;
 
-/// A column of time stamps, or two: seconds, and nanoseconds behind them, as messages of ROS have
-/// them.
+/// A column of time stamps, or two columns: the seconds and nanoseconds of messages of ROS.
 #[derive(Clone, Debug)]
 pub(super) struct TimeColumn {
     pub(super) columns: Vec<AxisColumn>,
@@ -19,8 +18,10 @@ pub(super) struct TimeColumn {
 }
 
 impl Columns {
-    /// The column that the options name; without, those of seconds and nanoseconds, else the first that by its name is a time and
-    /// advances in the first rows, or the only one without a name that rises by more than one.
+    /// The time column. It is the column that the options name, or else the two columns of seconds
+    /// and nanoseconds. Without these, it is the first column that is named like a time and
+    /// advances in the first rows, or the only column without a name that rises by steps other than
+    /// one.
     pub(super) fn time(
         &self,
         path: &Path,
@@ -44,7 +45,7 @@ impl Columns {
         }
         let named = |column: &usize| self.name(*column).is_some_and(names::is_time);
         let mut by_name: Vec<usize> = (0..count).filter(named).collect();
-        // Of a message's many times, that at which the sensor was sampled.
+        // A message has several times. The one at which the sensor was sampled comes first.
         let is_sensors = |column: &usize| {
             let name = self.name(*column).unwrap_or_default();
             name.contains("header.stamp") || name.contains("timestamp_sample")
@@ -88,7 +89,7 @@ impl Columns {
         }
     }
 
-    /// Two columns such as `header.stamp.sec` and `header.stamp.nanosec`.
+    /// The two columns of a name such as `header.stamp.sec` and `header.stamp.nanosec`.
     fn seconds_and_nanoseconds(&self) -> Option<TimeColumn> {
         let all = || 0..self.looks.len();
         let lower = |column: usize| self.name(column).map(str::to_lowercase);
@@ -114,7 +115,7 @@ impl Columns {
 }
 
 impl TimeColumn {
-    /// What it is called in messages.
+    /// The name of the column in messages.
     pub(super) fn name(&self) -> String {
         let names: Vec<&str> = self.columns.iter().map(|one| one.axis.as_str()).collect();
         names.join(" and ")

@@ -1,4 +1,4 @@
-//! Logs of PX4: a table of the messages of one topic's instance.
+//! Reads logs of PX4. The messages of one instance of a topic form the table.
 
 use super::{
     Options,
@@ -19,10 +19,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Messages that tell what the columns look like.
+/// The number of messages that decide what the columns look like.
 const LOOKS: usize = 100;
 
-/// Topics of raw samples, which are taken without being asked for.
+/// The topics of raw samples, which are taken without being asked for.
 const RAW: [&str; 4] = [
     "sensor_gyro",
     "sensor_accel",
@@ -30,7 +30,7 @@ const RAW: [&str; 4] = [
     "vehicle_imu",
 ];
 
-/// A log, and the topic of it that is read.
+/// A log, and the topic in it that is read.
 pub(super) struct Ulog {
     path: PathBuf,
     identity: u16,
@@ -40,15 +40,15 @@ pub(super) struct Ulog {
     notes: Vec<String>,
 }
 
-/// Where a column's values come from.
+/// Where the values of a column come from.
 #[derive(Clone, Debug)]
 struct Source {
     field: Field,
-    /// The time that the field was integrated over, in microseconds, to divide it by.
+    /// The field with the integration time in microseconds, by which the values are divided.
     over: Option<Field>,
 }
 
-/// A topic's instance in a log.
+/// An instance of a topic in a log.
 struct Found {
     subscription: Subscription,
     messages: u64,
@@ -90,7 +90,9 @@ impl Ulog {
             }
         }
         if counts.is_empty() && !notes.is_empty() {
-            return Err(Place::file(path).failure("the file ends before its first data", COPY));
+            return Err(
+                Place::file(path).failure("the file ends before its first data message", COPY)
+            );
         }
         let mut found = BTreeMap::new();
         for (&identity, subscription) in &log.subscriptions {
@@ -152,7 +154,8 @@ impl Ulog {
         Ok(heads)
     }
 
-    /// Shows the topic's messages with their numbers from 1 for as long as more are wanted.
+    /// Shows the topic's messages, with their numbers counted from 1, for as long as more are
+    /// wanted.
     fn each_row(
         &self,
         progress: &ProgressBar,
@@ -194,7 +197,7 @@ impl Table for Ulog {
             let place = || Place::row(&self.path, row);
             for (i, axis) in axes.iter().enumerate() {
                 let Some(value) = self.sources[axis.column].value(bytes) else {
-                    return Err(place().failure("a message shorter than its format", COPY));
+                    return Err(place().failure("a message is shorter than its format", COPY));
                 };
                 let visited = match value {
                     Value::Signed(value) => visitor.visit(i, value),
@@ -237,7 +240,8 @@ fn is_raw(found: &Found) -> bool {
     RAW.contains(&found.subscription.topic.as_str())
 }
 
-/// The columns of a topic, by names that tell sensor and unit where PX4's fields do not.
+/// The columns of a topic. They get names that indicate sensor and unit where those of PX4's fields
+/// do not.
 fn columns(topic: &str, fields: &[Field]) -> Vec<(String, Source)> {
     const GYRO: [&str; 3] = ["gyro_x [rad/s]", "gyro_y [rad/s]", "gyro_z [rad/s]"];
     const ACCEL: [&str; 3] = ["accel_x [m/s^2]", "accel_y [m/s^2]", "accel_z [m/s^2]"];
@@ -281,8 +285,9 @@ fn columns(topic: &str, fields: &[Field]) -> Vec<(String, Source)> {
     fields.iter().map(column).collect()
 }
 
-/// The topic asked for, by its name or as `TOPIC:INSTANCE`; else of those that hold raw samples of
-/// the sensor the one with the most messages, if one instance of it has them all.
+/// The topic that is asked for by its name or as `TOPIC:INSTANCE`. Without a request, it is the
+/// topic of raw samples of the sensor with the most messages, provided that only one instance has
+/// that many.
 fn choose(path: &Path, found: &BTreeMap<u16, Found>, options: &Options) -> Result<u16, Failure> {
     let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
     let list = |found: &[(&u16, &Found)]| {
@@ -295,16 +300,13 @@ fn choose(path: &Path, found: &BTreeMap<u16, Found>, options: &Options) -> Resul
             |(_, one): &(&u16, &Found)| one.subscription.topic == *wanted || one.name() == *wanted;
         let candidates: Vec<_> = all.iter().copied().filter(is).collect();
         if candidates.is_empty() {
-            let what = format!(
-                "there is no topic {} with messages",
-                quoted(wanted.as_bytes())
-            );
+            let what = format!("no topic {} has messages", quoted(wanted.as_bytes()));
             return fail(what, &format!("choose with --topic from {}", list(&all)));
         }
         if wanted.contains("_fifo") {
             return fail(
                 format!("{wanted} packs several samples into a message"),
-                "log and choose a topic of single ones, such as sensor_gyro",
+                "log and choose a topic with one sample a message, such as sensor_gyro",
             );
         }
         candidates
@@ -337,7 +339,11 @@ fn choose(path: &Path, found: &BTreeMap<u16, Found>, options: &Options) -> Resul
     match candidates.as_slice() {
         [(identity, _)] => Ok(**identity),
         several => fail(
-            format!("{} that fit equally: {}", several.len(), list(several)),
+            format!(
+                "{} topics fit equally well: {}",
+                several.len(),
+                list(several)
+            ),
             "choose one with --topic",
         ),
     }

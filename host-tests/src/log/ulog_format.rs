@@ -1,11 +1,13 @@
-//! Formats of ULog messages: names, types and places of their fields.
+//! The formats of ULog messages: the names, types and offsets of their fields.
 
 use std::collections::HashMap;
 
-/// Formats nest by their types; deeper than this is a circle.
+/// The deepest nesting of formats that is accepted. A deeper one is taken for a circular
+/// definition.
 const DEEPEST: usize = 8;
 
-/// Fields of a format, those of nested formats included; PX4's largest have some hundreds.
+/// The most fields of a format, those of nested formats included. PX4's largest formats have some
+/// hundreds.
 const MOST_FIELDS: usize = 4096;
 
 /// The type of a field.
@@ -18,7 +20,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The basic type of that name.
+    /// The basic type of this name.
     fn of(name: &str) -> Option<Self> {
         Some(match name {
             "int8_t" => Self::Signed(1),
@@ -62,18 +64,18 @@ impl Value {
     }
 }
 
-/// A basic field of a message.
+/// A field of a basic type in a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Field {
-    /// Its name, with those of the fields that it lies in: `gyro_rad[0]`.
+    /// The name of the field, preceded by the names of the fields that contain it: `gyro_rad[0]`.
     pub(super) name: String,
     kind: Kind,
-    /// Bytes before it.
+    /// The offset of the field in the message, in bytes.
     offset: usize,
 }
 
 impl Field {
-    /// The field's value, unless the message ends before.
+    /// The field's value, or `None` if the message is too short for it.
     pub(super) fn value(&self, message: &[u8]) -> Option<Value> {
         let bytes = message.get(self.offset..)?.get(..self.kind.size())?;
         let mut eight = [0; 8];
@@ -95,7 +97,7 @@ impl Field {
 #[derive(Debug, Default)]
 pub(super) struct Formats(HashMap<String, Vec<Declaration>>);
 
-/// `float[3] gyro_rad`.
+/// The declaration of a field, such as `float[3] gyro_rad`.
 #[derive(Debug)]
 struct Declaration {
     kind: String,
@@ -104,13 +106,13 @@ struct Declaration {
 }
 
 impl Formats {
-    /// Takes a definition: `sensor_gyro:uint64_t timestamp;float x;…`.
+    /// Takes a definition such as `sensor_gyro:uint64_t timestamp;float x;…`.
     pub(super) fn define(&mut self, text: &[u8]) -> Result<(), String> {
         let text = String::from_utf8_lossy(text);
-        let (name, fields) = text.split_once(':').ok_or("a format without a name")?;
+        let (name, fields) = text.split_once(':').ok_or("a format has no name")?;
         let fields = fields.split(';').filter(|field| !field.trim().is_empty());
         let declarations = fields.map(|field| {
-            let wrong = || format!("format {name}: a field that is none");
+            let wrong = || format!("format {name}: a field is malformed");
             let (kind, name) = field.trim().split_once(' ').ok_or_else(wrong)?;
             let (kind, count) = match kind.split_once('[') {
                 None => (kind, None),
@@ -130,7 +132,7 @@ impl Formats {
         Ok(())
     }
 
-    /// The basic fields of a format, in their order, paddings left out.
+    /// The basic fields of a format in their order, without padding.
     pub(super) fn fields(&self, format: &str) -> Result<Vec<Field>, String> {
         let mut fields = Vec::new();
         self.flatten(format, "", &mut 0, DEEPEST, &mut fields)?;

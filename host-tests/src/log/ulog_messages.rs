@@ -1,6 +1,6 @@
-//! The messages of a ULog file, one after the other: PX4's format, version 1.
+//! Reads the messages of a ULog file one after the other: PX4's format, version 1.
 //!
-//! Read here rather than by a library: the official one, px4-ulog 0.6, panics on short messages.
+//! No library is used, because the official one, px4-ulog 0.6, panics on short messages.
 
 use std::{
     collections::BTreeMap,
@@ -11,17 +11,17 @@ use super::ulog_format::Formats;
 
 const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
 
-/// What a topic's instance is called in data messages.
+/// The topic and instance that a subscription number stands for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Subscription {
     pub(super) topic: String,
     pub(super) instance: u8,
 }
 
-/// A message that is more than a comment.
+/// A data message, or the end of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Message<'a> {
-    /// Of the subscription with this number.
+    /// The data of the subscription with this number.
     Data(u16, &'a [u8]),
     /// The file ends within a message.
     Cut,
@@ -29,19 +29,20 @@ pub(super) enum Message<'a> {
     End,
 }
 
-/// Why messages cannot be read.
+/// The reason why messages cannot be read.
 #[derive(Debug)]
 pub(super) enum Error {
     Io(io::Error),
-    /// What is wrong, and how many bytes lie before it.
+    /// What is wrong, and the offset at which it was found, in bytes.
     Wrong(String, u64),
 }
 
-/// Reads a file, and keeps what it defines.
+/// Reads a file and keeps the definitions in it.
 pub(super) struct Messages<R> {
     reader: R,
     position: u64,
-    /// Where data was appended after a crash: what lies before is cut off there.
+    /// The offsets of data that PX4 appended after a crash. A message that would reach beyond such
+    /// an offset is cut off there.
     appended: Vec<u64>,
     bytes: Vec<u8>,
     pub(super) formats: Formats,
@@ -60,7 +61,7 @@ impl<R: BufRead> Messages<R> {
                 _ => Error::Io(error),
             })?;
         if !header.starts_with(&MAGIC) {
-            return Err(Error::Wrong("the file does not begin as a ULog".into(), 0));
+            return Err(Error::Wrong("this is not a ULog file".into(), 0));
         }
         Ok(Self {
             reader,
@@ -72,7 +73,7 @@ impl<R: BufRead> Messages<R> {
         })
     }
 
-    /// The next message of data.
+    /// Reads on to the next data message.
     pub(super) fn next(&mut self) -> Result<Message<'_>, Error> {
         loop {
             let mut head = [0; 3];
@@ -87,7 +88,9 @@ impl<R: BufRead> Messages<R> {
             if let Some(next) = self.appended.first().copied().filter(|&next| end > next) {
                 self.appended.remove(0);
                 let skip = next.checked_sub(start + 3);
-                let skip = skip.ok_or_else(|| self.wrong("appended data in a message".into()))?;
+                let skip = skip.ok_or_else(|| {
+                    self.wrong("appended data begin within the head of a message".into())
+                })?;
                 let mut rest = self.reader.by_ref().take(skip);
                 let skipped = io::copy(&mut rest, &mut io::sink()).map_err(Error::Io)?;
                 self.position = next;
@@ -105,7 +108,7 @@ impl<R: BufRead> Messages<R> {
             }
             if head[2] == b'D' {
                 let Some((identity, _)) = self.bytes.split_first_chunk() else {
-                    return Err(self.wrong("a message of data without its number".into()));
+                    return Err(self.wrong("a data message has no subscription number".into()));
                 };
                 let identity = u16::from_le_bytes(*identity);
                 self.position = end;
@@ -121,7 +124,7 @@ impl<R: BufRead> Messages<R> {
             b'F' => self.formats.define(&self.bytes),
             b'A' => {
                 let [instance, low, high, topic @ ..] = self.bytes.as_slice() else {
-                    return Err("a subscription without a topic".into());
+                    return Err("a subscription names no topic".into());
                 };
                 let subscription = Subscription {
                     topic: String::from_utf8_lossy(topic).into_owned(),
@@ -138,11 +141,11 @@ impl<R: BufRead> Messages<R> {
 
     fn flags(&mut self) -> Result<(), String> {
         let Some((flags, offsets)) = self.bytes.split_at_checked(16) else {
-            return Err("flags that are too short".into());
+            return Err("the message of flags is too short".into());
         };
         let incompatible = &flags[8..];
         if incompatible[0] > 1 || incompatible[1..].iter().any(|&flag| flag != 0) {
-            return Err("a newer kind of ULog".into());
+            return Err("the log needs a newer version of ULog".into());
         }
         let offsets = offsets.chunks_exact(8).take(3);
         let offsets = offsets.map(|bytes| u64::from_le_bytes(bytes.try_into().unwrap_or_default()));
@@ -151,7 +154,7 @@ impl<R: BufRead> Messages<R> {
         Ok(())
     }
 
-    /// Reads as many bytes as there are up to the buffer's length.
+    /// Fills the buffer as far as the file allows, and returns the number of bytes.
     fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, Error> {
         let mut filled = 0;
         while filled < buffer.len() {
@@ -184,7 +187,7 @@ mod tests {
         [&MAGIC[..], &[1; 9], &messages.concat()].concat()
     }
 
-    /// The data, and how it ends.
+    /// The data messages of a file, and whether the file is cut off after them.
     fn read(bytes: &[u8]) -> Result<(Vec<Vec<u8>>, bool), Error> {
         let mut messages = Messages::open(bytes)?;
         let mut data = Vec::new();

@@ -1,35 +1,35 @@
-//! An axis of a log with all that is kept beside its curve, and any number of covariates.
+//! An axis of a log with everything that is kept beside its curve, for any number of covariates.
 
 use super::OCTAVES;
 use allanite::{
     Accumulator, Axis, Error, Scale, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis,
 };
 
-/// The most covariates that a log is read with.
+/// The largest number of covariates that a log can be read with.
 pub(super) const MOST: usize = 8;
 
-/// What an axis tells beside its curve.
+/// What an axis shows beside its curve.
 pub(super) struct Told {
     pub(super) kurtosis: Kurtosis<OCTAVES>,
     pub(super) covariates: Vec<CrossCurve<OCTAVES>>,
     pub(super) invalid: Option<Reason>,
 }
 
-/// An axis of the library beside a number of covariates that its type knows.
+/// An axis of the library, whatever number of covariates its type has.
 pub(super) trait WatchedAxis: Send {
-    /// Adds the counts of some rows, and those of every covariate.
+    /// Adds the counts of some rows, and those of every covariate in the same rows.
     fn push(&mut self, counts: &[i32], covariates: &[Vec<i32>]);
 
-    /// Samples are missing here.
+    /// Tells that samples are missing here.
     fn gap(&mut self);
 
     fn accumulator(&self) -> &Accumulator<OCTAVES>;
 
-    /// What it tells, with the unit of every covariate per count.
+    /// The evidence of the axis. `units` holds the unit per count of every covariate.
     fn evidence(&self, scale: Scale, units: &[f64]) -> Result<Told, Error>;
 }
 
-/// An axis without a gate: a log is judged as it is.
+/// An axis without a gate, because a log is judged as it is.
 type Watched<const COVARIATES: usize> = Axis<OCTAVES, COVARIATES, ()>;
 
 impl<const COVARIATES: usize> WatchedAxis for Watched<COVARIATES> {
@@ -59,7 +59,7 @@ impl<const COVARIATES: usize> WatchedAxis for Watched<COVARIATES> {
     }
 }
 
-/// An empty axis beside so many covariates, [`MOST`] at most.
+/// An empty axis with the given number of covariates, at most [`MOST`].
 pub(super) fn axis(covariates: usize) -> Box<dyn WatchedAxis> {
     match covariates {
         0 => Box::new(Watched::<0>::new()),

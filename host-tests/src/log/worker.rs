@@ -1,4 +1,4 @@
-//! The thread that accumulates, while another cuts and parses text.
+//! Accumulates counts on a thread of its own, while the caller cuts and parses text.
 
 use super::{
     CovariateChoice, OCTAVES,
@@ -14,22 +14,22 @@ use std::{
     thread::{self, JoinHandle},
 };
 
-/// Counts of a column that are collected before they are accumulated as a slice.
+/// The number of counts of a column that are collected before they are accumulated as a slice.
 const BATCH: usize = 1 << 13;
 
-/// What becomes of one axis.
+/// What is kept of one axis.
 pub(super) enum Sums {
-    /// The curve of the part that was asked for, and that of what lies behind it.
+    /// The sums of the first rows, and those of the remaining rows.
     InTwo {
         accumulator: Box<Accumulator<OCTAVES>>,
         rest: Box<Accumulator<OCTAVES>>,
     },
-    /// All that is kept beside the curve.
+    /// The axis with everything that is kept beside its curve.
     Watched(Box<dyn WatchedAxis>),
 }
 
 impl Sums {
-    /// That of the part that was asked for.
+    /// The accumulator of the rows that were asked for.
     pub(super) fn accumulator(&self) -> &Accumulator<OCTAVES> {
         match self {
             Self::InTwo { accumulator, .. } => accumulator,
@@ -38,13 +38,14 @@ impl Sums {
     }
 }
 
-/// What to make of the columns: axes, and behind them covariates.
+/// How to use the columns: the first ones are axes, and the covariates follow them.
 #[derive(Clone)]
 pub(super) struct Plan {
     pub(super) axes: usize,
-    /// The axes' samples behind these are accumulated apart, where no more than the curve is kept.
+    /// The number of first rows. Later samples are accumulated separately if only the curve is
+    /// kept.
     pub(super) first: u64,
-    /// Whether to keep more than the curve, and which covariates.
+    /// The covariates, if the evidence beside the curve is kept.
     pub(super) watch: Option<Vec<CovariateChoice>>,
 }
 
@@ -68,21 +69,22 @@ impl Plan {
     }
 }
 
-/// What the thread is sent.
+/// A message to the thread.
 enum Work {
-    /// Counts of a column.
+    /// The counts of a column.
     Batch(usize, Vec<i32>),
-    /// Samples are missing behind the batches so far, which end at the same row.
+    /// Samples are missing after the batches that were sent so far. All of them end at the same
+    /// row.
     Gap,
 }
 
-/// Counts of every column on their way into the accumulators: accumulating takes about as long as
-/// cutting and parsing text.
+/// Sends the counts of every column to the thread with the accumulators. Accumulating takes about
+/// as long as cutting and parsing text, so each has its own thread.
 pub(super) struct Batches {
     /// The batch of each column that is being filled.
     open: Vec<Vec<i32>>,
     full: SyncSender<Work>,
-    /// Batches that have been accumulated, to be filled again.
+    /// Batches that have been accumulated and can be filled again.
     empty: Receiver<Vec<i32>>,
     thread: JoinHandle<Vec<Sums>>,
 }
@@ -98,7 +100,7 @@ impl Batches {
                 match work {
                     Work::Batch(column, batch) => worker.take(column, batch, |mut batch| {
                         batch.clear();
-                        // Nobody fills batches any more once the last ones are on their way.
+                        // The receiver is gone once the last batches are on their way.
                         let _ = outgoing.send(batch);
                     }),
                     Work::Gap => worker.gap(),
@@ -130,11 +132,11 @@ impl Batches {
             .try_recv()
             .unwrap_or_else(|_| Vec::with_capacity(BATCH));
         let batch = replace(&mut self.open[column], next);
-        // Fails if the thread has panicked only, which `finish` passes on.
+        // This fails only if the thread has panicked. `finish` passes the panic on.
         let _ = self.full.send(Work::Batch(column, batch));
     }
 
-    /// Samples are missing here, between two rows.
+    /// Tells that samples are missing here, between two rows.
     #[cold]
     pub(super) fn gap(&mut self) {
         self.send_all();
@@ -160,7 +162,8 @@ struct Worker {
     plan: Plan,
     sums: Vec<Sums>,
     derived: Vec<Derived>,
-    /// With covariates, batches wait for those of the same rows of the other columns.
+    /// With covariates, a batch waits until the batches of the other columns with the same rows
+    /// arrive.
     waiting: Vec<VecDeque<Vec<i32>>>,
 }
 

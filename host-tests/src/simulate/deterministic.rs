@@ -1,4 +1,4 @@
-//! Rates that are the same in every record but for their phase.
+//! Deterministic rates. Records differ only in the phase of a sinusoid.
 
 use super::{Random, Source};
 use allanite::effect::Response;
@@ -7,29 +7,29 @@ use std::f64::consts::{PI, SQRT_2};
 
 /// A ramp, or a sinusoid of random phase.
 pub(super) enum Deterministic {
-    /// The rate changes by the same amount from sample to sample.
+    /// The rate changes by the same amount from every sample to the next.
     Ramp {
-        /// The amount.
+        /// The change per sample, in rate units.
         step: f64,
-        /// Samples so far.
+        /// The number of samples so far.
         samples: u64,
     },
-    /// The rate swings.
+    /// The rate is a sinusoid.
     Sinusoid {
-        /// Its amplitude.
+        /// The amplitude, in rate units.
         amplitude: f64,
-        /// Periods a sample.
+        /// The number of periods per sample.
         cycles: f64,
-        /// The phase of the first sample but one, in turns.
+        /// The phase one sample before the first, in turns.
         phase: f64,
-        /// Samples so far.
+        /// The number of samples so far.
         samples: u64,
     },
 }
 
 impl Deterministic {
-    /// The signal whose differences of adjacent samples are a response: those of a sinusoid of
-    /// amplitude `A` have the root-mean-square `√2 A |sin(phase/2)|`.
+    /// The signal whose differences of adjacent samples have the given response. The differences of
+    /// a sinusoid of amplitude `A` have the root-mean-square `√2 A |sin(phase/2)|`.
     pub(super) fn new(
         response: Response,
         coefficient: f64,

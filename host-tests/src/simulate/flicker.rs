@@ -3,34 +3,39 @@
 use super::{Random, Source, random::normal};
 use std::f64::consts::PI;
 
-/// Ratio of neighbouring relaxation rates. The sum's spectrum ripples around 1/f by
-/// `2 sech(π²/ln ratio)`: 5e-4.
+/// The ratio of neighbouring relaxation rates. With it, the spectrum of the sum deviates from 1/f
+/// by a ripple of `2 sech(π²/ln ratio)`, which is 5e-4.
 const RATIO: f64 = 3.0;
-/// Fastest and slowest relaxation, times the sample interval. What is faster is white over a
-/// sample and summed as such; what is slower stands still over a billion samples.
+/// The rates of the fastest and the slowest relaxation, times the sample interval. Faster
+/// relaxations are white over a sample, and their sum is added as white noise. Slower relaxations
+/// do not change over a billion samples.
 const FASTEST: f64 = 30.0;
 const SLOWEST: f64 = 1e-9;
-/// Below this rate a sample's mean is the mean of its two ends.
+/// Below this rate, the mean over a sample is taken as the mean of its two ends.
 const SLOW: f64 = 1e-3;
 
-/// Flicker noise of coefficient B, averaged over each sample interval: the superposition of
-/// exponentially correlated noises with rates spaced evenly in their logarithm (van der Ziel 1950;
-/// Kasdin 1995, section III), each of them integrated exactly over the interval (Gillespie 1996).
+/// Flicker noise of coefficient B, averaged over each sample interval. It is the superposition of
+/// exponentially correlated noises whose rates are spaced evenly in their logarithm (van der Ziel
+/// 1950; Kasdin 1995, section III). Each of them is integrated exactly over the interval (Gillespie
+/// 1996).
 ///
-/// With rates a factor ρ apart and each of variance `B² ln ρ/π`, the sum of autocovariances is
-/// `−(B²/π) ln t` plus a constant: the two-sided density `B²/(2πf)` of IEEE Std 952.
+/// If the rates are a factor ρ apart and each noise has the variance `B² ln ρ/π`, the sum of
+/// autocovariances is `−(B²/π) ln t` plus a constant. This corresponds to the two-sided density
+/// `B²/(2πf)` of IEEE Std 952.
 pub(super) struct Flicker {
     relaxations: Vec<Relaxation>,
-    /// Of all relaxations faster than the fastest kept.
+    /// The standard deviation of the sum of all relaxations that are faster than the fastest one
+    /// kept.
     white: f64,
 }
 
 struct Relaxation {
     state: f64,
     decay: f64,
-    /// Standard deviation of what is new in the state.
+    /// The standard deviation of the state's random increment.
     step: f64,
-    /// The sample's mean: shares of the old state, of the same random number, and of another.
+    /// The weights of the sample's mean: of the old state, of the random number of the increment,
+    /// and of an independent random number.
     mean_of_state: f64,
     mean_of_step: f64,
     mean_alone: f64,
@@ -79,7 +84,7 @@ impl Flicker {
             .take_while(|&rate| rate > SLOWEST)
             .map(|rate| Relaxation::new(rate, deviation, random))
             .collect();
-        // Σ 2/rate over rates FASTEST · ρ, FASTEST · ρ², …
+        // This is Σ 2/rate over the rates FASTEST · ρ, FASTEST · ρ², …
         let faster = 2.0 / FASTEST / (RATIO - 1.0);
         Self {
             relaxations,

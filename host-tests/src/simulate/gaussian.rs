@@ -1,4 +1,4 @@
-//! Gaussian noise of any autocovariance.
+//! Gaussian noise with any autocovariance.
 
 use super::{
     Source,
@@ -13,38 +13,40 @@ use std::sync::Arc;
 const SHORTEST: usize = 1 << 10;
 const LONGEST: usize = 1 << 21;
 
-/// Beyond a fifth of the moving average, the autocovariance changes by less than this share of the
-/// variance.
+/// The moving average is long enough if the autocovariance changes by less than this share of the
+/// variance beyond a fifth of its length.
 const FORGOTTEN: f64 = 1e-9;
 
-/// Gaussian noise of a given autocovariance: a moving average over white noise.
+/// Gaussian noise with a given autocovariance: a moving average over white noise.
 ///
-/// The weights are the inverse Fourier transform of the root of the spectrum, which is the transform
-/// of the autocovariance on a circle (circulant embedding: Davies & Harte 1987; Dietrich & Newsam
-/// 1997). Weights that are even, and die away before they meet on the far side of the circle, make the
-/// same noise on a line: it never ends and does not repeat.
+/// The weights are the inverse Fourier transform of the square root of the spectrum, and the
+/// spectrum is the transform of the autocovariance on a circle (circulant embedding: Davies & Harte
+/// 1987; Dietrich & Newsam 1997). The weights are even and die away before they meet on the far
+/// side of the circle. They therefore give the same noise on a line, where it never ends and does
+/// not repeat.
 ///
-/// The autocovariance of an effect that does not forget, such as a random walk, is known up to a
-/// constant only. The constant is chosen so that it vanishes at a fifth of the circle, from where on it
-/// is taken for zero: the differences of the noise are right over lags up to 400 000 samples. What is
-/// convex and falls to zero, as that of a random walk or of flicker noise, remains an autocovariance.
+/// An effect with infinite memory, such as a random walk, has an autocovariance that is known only
+/// up to a constant. The constant is chosen so that the autocovariance vanishes at a fifth of the
+/// circle, and from there on it is taken as zero. The differences of the noise are therefore right
+/// over lags of up to 400 000 samples. A convex function that falls to zero, as for a random walk
+/// or flicker noise, remains an autocovariance.
 pub(super) struct Gaussian {
-    /// Transform of the weights, padded with as many zeros.
+    /// The transform of the weights, which are padded with as many zeros.
     transfer: Vec<Complex<f64>>,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
-    /// Two blocks of noise, one in the real and one in the imaginary part, and what they leave to the
-    /// next block.
+    /// Two blocks of noise, one in the real and one in the imaginary part, followed by what they
+    /// contribute to the next block.
     work: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
     carried: Vec<f64>,
-    /// Samples that are ready, and the place of the next.
+    /// The samples that are ready, and the index of the next one.
     ready: Vec<f64>,
     at: usize,
 }
 
 impl Gaussian {
-    /// The noise of an effect for a coefficient of `coefficient`.
+    /// The noise of an effect with the given coefficient.
     pub(super) fn new(
         effect: &dyn Effect,
         shape: &SampledShape,
@@ -78,6 +80,7 @@ impl Gaussian {
             ready: Vec::with_capacity(length),
             at: 0,
         };
+        // The first block is dropped, because it lacks the contribution of earlier noise.
         gaussian.fill(random);
         // The first of the two blocks lacks the noise before it.
         gaussian.at = gaussian.carried.len();
@@ -127,7 +130,8 @@ impl Source for Gaussian {
     }
 }
 
-/// The weights of the moving average, for a coefficient of one; the largest is in the middle.
+/// The weights of the moving average, for a coefficient of one. The largest weight is in the
+/// middle.
 fn weights(effect: &dyn Effect, shape: &SampledShape) -> Vec<f64> {
     let length = length(effect, shape);
     let end = end(length);
@@ -141,28 +145,31 @@ fn weights(effect: &dyn Effect, shape: &SampledShape) -> Vec<f64> {
     let mut planner = FftPlanner::new();
     planner.plan_fft_forward(length).process(&mut circle);
     for value in &mut circle {
-        // Rounding leaves a spectrum slightly negative where it is zero.
+        // Rounding makes a spectrum slightly negative where it should be zero.
         *value = Complex::new(value.re.max(0.0).sqrt() / length as f64, 0.0);
     }
     planner.plan_fft_inverse(length).process(&mut circle);
     circle.rotate_right(length / 2);
-    // The weights of a random walk do not vanish on the far side: a constant takes away the jump.
+    // The weights of a random walk do not vanish on the far side of the circle. Subtracting a
+    // constant removes the jump there.
     let jump = if length == LONGEST { circle[0].re } else { 0.0 };
     circle.iter().map(|weight| weight.re - jump).collect()
 }
 
-/// The lag at which the autocovariance ends for a number of weights. Weights have kinks at multiples of
-/// it, so that it is no whole part of half the circle, where they should be smooth.
+/// The lag at which the autocovariance ends, for a given number of weights. The weights have kinks
+/// at its multiples. Half the circle is not a multiple of it, because the weights should be smooth
+/// there.
 fn end(length: usize) -> usize {
     length / 5
 }
 
-/// The number of weights: a power of two, beyond a fifth of which the autocovariance no longer changes.
+/// The number of weights: a power of two, beyond a fifth of which the autocovariance no longer
+/// changes.
 fn length(effect: &dyn Effect, shape: &SampledShape) -> usize {
     let variance = autocovariance(effect, shape, 0) - autocovariance(effect, shape, LONGEST / 2);
     let forgets = |&length: &usize| {
         let last = autocovariance(effect, shape, length / 2);
-        // An odd step meets an oscillation in many phases.
+        // The step is odd, so that the lags sample an oscillation at many phases.
         let mut lags = (end(length)..length / 2).step_by((length / 512) | 1);
         lags.all(|lag| {
             (autocovariance(effect, shape, lag) - last).abs() <= FORGOTTEN * variance.abs()
@@ -180,7 +187,7 @@ mod tests {
     use allanite::effect::{Distribution, EXPLAINED, GaussMarkov, IEEE_952};
     use rand::SeedableRng;
 
-    /// Autocovariance of the moving average.
+    /// The autocovariance of the moving average.
     fn of(weights: &[f64], lag: usize) -> f64 {
         let pairs = weights.iter().zip(&weights[lag..]);
         pairs.map(|(one, other)| one * other).sum()
@@ -248,13 +255,13 @@ mod tests {
                 for m in [1_usize, 2, 8, 100] {
                     let simulated = allan_variance(&autocovariance, m);
                     let expected = effect.variance(m as f64, &shape);
-                    // The terms with infinite variance have simulators of their own in use; here
-                    // their memory is cut off.
+                    // The simulator uses other sources for the terms with infinite variance,
+                    // because their memory is cut off here.
                     let is_term = IEEE_952.iter().any(|term| term.name() == effect.name());
                     let tolerance = if is_term { 1e-3 } else { 1e-6 };
                     assert!(
                         (simulated / expected - 1.0).abs() < tolerance,
-                        "{} {parameters:?}, m = {m}: {simulated:e}, not {expected:e}",
+                        "{} {parameters:?}, m = {m}: {simulated:e}, expected {expected:e}",
                         effect.name()
                     );
                     tried += 1;

@@ -1,4 +1,4 @@
-//! Effects beyond the five terms, hidden in a simulated record.
+//! Effects beyond the five terms that are hidden in a simulated record.
 
 use super::{
     Random, Source, deterministic::Deterministic, gaussian::Gaussian, two_levels::TwoLevels,
@@ -9,8 +9,8 @@ use allanite::effect::{
 
 /// An effect with its shape and its coefficient, in the rate unit of the record.
 ///
-/// Any effect can be hidden, also one outside of the catalogue: its kernel and its
-/// [`Distribution`] tell how to draw it.
+/// Any effect can be hidden, even one that is not in the catalogue. Its kernel and its
+/// [`Distribution`] determine how to draw it.
 #[derive(Clone, Copy)]
 pub struct Hidden {
     /// The effect.
@@ -22,7 +22,7 @@ pub struct Hidden {
 }
 
 impl Hidden {
-    /// The effect of the catalogue that has a name; `None` if there is none.
+    /// The effect of the catalogue with this name, or `None` if there is none.
     pub fn new(name: &str, parameters: [f64; MAX_PARAMETERS], coefficient: f64) -> Option<Self> {
         let effect = CATALOGUE.into_iter().find(|effect| effect.name() == name)?;
         Some(Self {
@@ -32,7 +32,7 @@ impl Hidden {
         })
     }
 
-    /// What draws a realisation of it.
+    /// The source that draws a realisation of the effect.
     pub(super) fn source(&self, interval_s: f64, random: &mut Random) -> Box<dyn Source> {
         let (effect, coefficient) = (self.effect, self.coefficient);
         let shape = SampledShape {
@@ -57,7 +57,7 @@ impl Hidden {
         }
     }
 
-    /// Whether it takes the place of the white noise of the record.
+    /// Whether the effect replaces the white noise of the record.
     pub fn replaces_white_noise(&self) -> bool {
         let white = AngleRandomWalk.description().name;
         let replaced = self.effect.replaces();

@@ -2,7 +2,7 @@
 
 use super::{Coefficients, Random, Source, flicker::Flicker, random::normal};
 
-/// The terms whose coefficients are not zero.
+/// The sources of the terms whose coefficients are not zero.
 pub(super) fn sources(
     coefficients: Coefficients,
     interval_s: f64,
@@ -37,7 +37,8 @@ pub(super) fn sources(
     sources
 }
 
-/// An error of the angle, independent from sample to sample, differenced.
+/// Quantization noise: an independent error of the angle at every sample, whose differences are the
+/// error of the rate.
 struct Quantization {
     deviation: f64,
     before: f64,

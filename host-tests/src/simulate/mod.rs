@@ -1,4 +1,4 @@
-//! Simulated gyros: rates with noise of known coefficients.
+//! Simulates gyros whose noise has known coefficients.
 
 mod deterministic;
 mod flicker;
@@ -18,7 +18,7 @@ pub use random::Random;
 pub use simulator::Simulator;
 pub use thermal::{Course, Thermal};
 
-/// Coefficients of the five IEEE-952 terms, in a rate unit of choice and seconds.
+/// The coefficients of the five IEEE-952 terms, in any rate unit and in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coefficients {
     /// Quantization Q, rate · s.
@@ -33,8 +33,8 @@ pub struct Coefficients {
     pub rate_ramp: f64,
 }
 
-/// Something that adds to the rate, sample by sample.
+/// A source that adds to the rate, sample by sample.
 pub trait Source: Send {
-    /// The rate that it adds to the next sample.
+    /// The contribution to the rate of the next sample.
     fn next(&mut self, random: &mut Random) -> f64;
 }

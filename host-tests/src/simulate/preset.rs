@@ -1,6 +1,6 @@
 use super::Coefficients;
 
-/// Typical gyros, in deg/s and seconds.
+/// Typical gyros, with coefficients in deg/s and seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Preset {
     /// A tactical-grade MEMS gyro: 0.12 °/√h, 0.96 °/h at the flicker floor.
@@ -12,10 +12,10 @@ pub enum Preset {
 }
 
 impl Preset {
-    /// All of them.
+    /// All presets.
     pub const ALL: [Self; 3] = [Self::Tactical, Self::Fog, Self::Mems];
 
-    /// Its coefficients.
+    /// The coefficients of the preset.
     pub fn coefficients(self) -> Coefficients {
         let [
             quantization,

@@ -1,16 +1,17 @@
-//! A gyro at rest, made of sources of noise.
+//! A gyro at rest, composed of sources of noise.
 
 use super::{Coefficients, Hidden, Random, Source, ieee_952};
 use rand::SeedableRng;
 
-/// An endless record of a gyro at rest: rates, averaged over each sample interval.
+/// An endless record of a gyro at rest. Each rate is averaged over its sample interval.
 pub struct Simulator {
     random: Random,
     sources: Vec<Box<dyn Source>>,
 }
 
 impl Simulator {
-    /// A gyro with these coefficients, sampled at `rate_hz`. Terms of coefficient zero cost nothing.
+    /// A gyro with these coefficients, sampled at `rate_hz`. Terms whose coefficient is zero take
+    /// no time.
     pub fn new(coefficients: Coefficients, rate_hz: f64, seed: u64) -> Self {
         let mut random = Random::seed_from_u64(seed);
         let interval_s = 1.0 / rate_hz;
@@ -18,7 +19,8 @@ impl Simulator {
         Self { random, sources }
     }
 
-    /// The same with hidden effects; one that replaces white noise takes the term's place.
+    /// A gyro with hidden effects. An effect that replaces white noise takes the place of that
+    /// term.
     pub fn with_hidden(
         mut coefficients: Coefficients,
         hidden: &[Hidden],

@@ -1,38 +1,38 @@
-//! A temperature that the rate follows.
+//! A temperature that the rate depends on.
 
 use std::f64::consts::PI;
 
-/// A temperature that changes in the course of a record, and a rate that follows it.
+/// A temperature that changes during a record, and a rate that is proportional to its change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thermal {
-    /// Rate units per kelvin.
+    /// The slope, in rate units per kelvin.
     pub slope: f64,
-    /// How far the temperature rises, or the amplitude of its cycle.
+    /// The rise of the temperature, or the amplitude of its cycle, in kelvin.
     pub kelvin: f64,
-    /// How the temperature changes.
+    /// How the temperature changes with time.
     pub course: Course,
 }
 
-/// The course of a temperature.
+/// The course of a temperature over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Course {
-    /// `1 − e^(−t/time)`: a sensor that has been switched on.
+    /// The sensor has been switched on: `1 − e^(−t/time)`.
     WarmUp {
         /// The time constant, in seconds.
         time_s: f64,
     },
-    /// `sin(2πt/period)`: a room with a thermostat.
+    /// The room has a thermostat: `sin(2πt/period)`.
     Cycle {
         /// The period, in seconds.
         period_s: f64,
     },
 }
 
-/// Where every temperature begins, in °C.
+/// The temperature at the beginning of every record, in °C.
 const ROOM_CELSIUS: f64 = 25.0;
 
 impl Thermal {
-    /// Kelvin above the beginning, so many seconds into the record.
+    /// The temperature above that at the beginning, in kelvin, `time_s` into the record.
     fn kelvin_at(&self, time_s: f64) -> f64 {
         self.kelvin
             * match self.course {
@@ -41,7 +41,7 @@ impl Thermal {
             }
     }
 
-    /// What it adds to the rate.
+    /// The contribution to the rate.
     pub fn rate_at(&self, time_s: f64) -> f64 {
         self.slope * self.kelvin_at(time_s)
     }

@@ -4,16 +4,17 @@ use super::{Random, Source, kernel::autocovariance};
 use allanite::effect::{Effect, SampledShape};
 use rand::RngExt;
 
-/// A rate that jumps between two levels of opposite sign at independent times (Machlup 1954), sampled.
+/// The samples of a rate that jumps between two levels of opposite sign at independent times
+/// (Machlup 1954).
 pub(super) struct TwoLevels {
     rate: f64,
-    /// Probability of an odd number of jumps between two samples.
+    /// The probability of an odd number of jumps between two samples.
     flip: f64,
 }
 
 impl TwoLevels {
-    /// The levels are the root of the effect's variance; the probability of a flip, `(1 − r₁/r₀)/2`,
-    /// follows from its autocovariance at a lag of one sample.
+    /// The magnitude of the levels is the root of the effect's variance. The probability of a flip,
+    /// `(1 − r₁/r₀)/2`, follows from its autocovariance at lags of zero and one sample.
     pub(super) fn new(
         effect: &dyn Effect,
         shape: &SampledShape,

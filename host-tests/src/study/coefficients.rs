@@ -1,4 +1,4 @@
-//! Errors of the coefficients, and coverage of their intervals.
+//! Studies the errors of the coefficients and the coverage of their intervals.
 
 use super::{curve, theory::squares};
 use crate::simulate::Coefficients;
@@ -8,23 +8,23 @@ use allanite::{
 };
 use rayon::prelude::*;
 
-/// How well one coefficient was found over many records.
+/// The accuracy of one coefficient over many records.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Accuracy {
-    /// Root-mean-square error relative to the true value (NaN where that is zero).
+    /// The root-mean-square error, relative to the true value. It is NaN if that is zero.
     pub rms_error: f64,
-    /// Mean error relative to the true value.
+    /// The mean error, relative to the true value.
     pub bias: f64,
-    /// Share of records whose 95 % interval contains the true value.
+    /// The share of records whose 95 % interval contains the true value.
     pub coverage: f64,
-    /// Share of records in which it was measured.
+    /// The share of records in which the coefficient was measured.
     pub measured: f64,
-    /// Share of records with a negative square.
+    /// The share of records in which its square is negative.
     pub negative: f64,
 }
 
-/// Fits `records` simulated records by a method: accuracies in the order of the model, and the
-/// share of records with any negative square.
+/// Fits `records` simulated records by a method. Returns the accuracies in the order of the model,
+/// and the share of records with any negative square.
 pub fn accuracy(
     coefficients: Coefficients,
     samples: usize,
@@ -67,7 +67,7 @@ pub fn accuracy(
     (accuracies, any)
 }
 
-/// All four methods, by name.
+/// All four methods with their names.
 pub const METHODS: [(&str, Method); 4] = [
     ("covariance", Method::Covariance),
     ("relative accuracy", Method::RelativeAccuracy),

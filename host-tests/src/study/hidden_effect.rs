@@ -1,4 +1,4 @@
-//! Is a hidden effect found, and named?
+//! Studies whether a hidden effect is found and named.
 
 use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
 use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
@@ -10,21 +10,21 @@ use allanite::{
 };
 use rayon::prelude::*;
 
-/// Samples of a studied record: 11 minutes.
+/// The number of samples of a record, which is 11 minutes long.
 pub const SAMPLES: usize = 1 << 16;
 
-/// How strong a hidden effect is: the χ² that the five terms alone have on its expected curve,
-/// less their degrees of freedom.
+/// The strength of a hidden effect: the expected χ² of the five-term fit less its degrees of
+/// freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Strength {
-    /// A median p-value of 1e-6 or less.
+    /// The five-term fit has a median p-value of 1e-6 or less.
     Moderate,
-    /// A five-term χ² of 300 and more.
+    /// The five-term fit has a χ² of 300 or more.
     Strong,
 }
 
 impl Strength {
-    /// Both.
+    /// Both strengths.
     pub const ALL: [Self; 2] = [Self::Moderate, Self::Strong];
 
     fn noncentrality(self) -> f64 {
@@ -35,8 +35,8 @@ impl Strength {
     }
 }
 
-/// The effects and shapes that are hidden: the typical shapes of every effect of the catalogue beyond
-/// the five terms.
+/// The names and shapes of the effects that are hidden: the typical shapes of every effect in the
+/// catalogue beyond the five terms.
 pub fn cases() -> impl Iterator<Item = (&'static str, [f64; MAX_PARAMETERS])> {
     let is_term = |name: &str| IEEE_952.iter().any(|term| term.name() == name);
     let effects = EXPLAINED
@@ -47,9 +47,10 @@ pub fn cases() -> impl Iterator<Item = (&'static str, [f64; MAX_PARAMETERS])> {
         .flat_map(|(name, shapes)| shapes.iter().map(move |shape| (name, *shape)))
 }
 
-/// The effect of a case, as strong as asked for: its amplitude, or for an effect that replaces white
-/// noise its first shape parameter, is what makes the five-term χ² so large. `None` where no size
-/// does, such as a filter on a gyro without white noise.
+/// The effect of a case at the given strength. The search varies the amplitude, or the first shape
+/// parameter for an effect that replaces white noise, until the five-term χ² is as large as
+/// required. Returns `None` if no value is large enough, as for a filter on a gyro without white
+/// noise.
 pub fn hide(
     name: &str,
     parameters: [f64; MAX_PARAMETERS],
@@ -87,7 +88,7 @@ pub fn hide(
     Some(at(high))
 }
 
-/// χ² of the five terms on the curve that a hidden effect has on average.
+/// The χ² of the five-term fit on the expected curve with a hidden effect.
 fn expected_chi_squared(hidden: &Hidden, base: Coefficients) -> f64 {
     let model = Model::ieee_952();
     let mut squares = squares(base);
@@ -110,22 +111,24 @@ fn expected_chi_squared(hidden: &Hidden, base: Coefficients) -> f64 {
     fit(&curve, &model, Options::default()).map_or(0.0, |fit| fit.chi_squared)
 }
 
-/// What a diagnosis made of one record.
+/// The result of a diagnosis of one record.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// χ² and p of the five terms.
+    /// The χ² and the p-value of the five-term fit.
     pub first: (f64, f64),
-    /// The effects that were added, with their shapes and coefficients.
+    /// The effects that were added, each with the names of the effects that explain the curve as
+    /// well.
     pub added: Vec<(Term, Vec<&'static str>)>,
-    /// The last model's fit.
+    /// The fit of the last model.
     pub fit: Fit,
     /// The last model.
     pub model: Model,
-    /// Root-mean-square misfit before and after, in percent: in the record, and on a second one.
+    /// The root-mean-square misfit before and after the diagnosis, in percent, on the record and on
+    /// a second one.
     pub rms: [(f64, f64); 2],
-    /// χ² before and after on the second record.
+    /// The χ² before and after the diagnosis, on the second record.
     pub held_out: (f64, f64),
-    /// How it ended.
+    /// The verdict, or `None` if the diagnosis failed.
     pub verdict: Option<Verdict>,
 }
 
@@ -169,12 +172,12 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
     }
 }
 
-/// What the steps added and kept.
+/// The effects that the steps added and kept.
 fn added(steps: &[Step<OCTAVES>]) -> Vec<(Term, Vec<&'static str>)> {
     let mut added = Vec::new();
     for step in steps {
         if let Some(swap) = step.swap() {
-            // The last addition gives way.
+            // A swap replaces the last effect that was added.
             added.pop();
             added.push((Term::new(swap.taken), Vec::new()));
         }
@@ -185,32 +188,35 @@ fn added(steps: &[Step<OCTAVES>]) -> Vec<(Term, Vec<&'static str>)> {
     added
 }
 
-/// Counts over the records of one case.
+/// The counts and errors over the records of one case.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
-    /// Records.
+    /// The number of records.
     pub records: usize,
-    /// The five-term fit's median χ² and p.
+    /// The median χ² and p-value of the five-term fit.
     pub median: (f64, f64),
-    /// Named right, alone.
+    /// The number of records in which the effect was named alone.
     pub right: usize,
-    /// Named right, among others about as good.
+    /// The number of records in which the effect was named together with others that explain the
+    /// curve as well.
     pub ambiguous: usize,
-    /// Only others named.
+    /// The number of records in which only other effects were named.
     pub wrong: usize,
-    /// Nothing named.
+    /// The number of records in which no effect was named.
     pub missed: usize,
-    /// Median relative error of each shape parameter.
+    /// The median relative error of each shape parameter.
     pub parameter_error: Vec<f64>,
-    /// Share of their intervals that hold the truth.
+    /// The share of the shape parameters' intervals that contain the true value.
     pub parameter_coverage: Vec<f64>,
-    /// Median relative error of the coefficient.
+    /// The median relative error of the coefficient.
     pub coefficient_error: f64,
-    /// Share of its intervals that hold the truth.
+    /// The share of the coefficient's intervals that contain the true value.
     pub coefficient_coverage: f64,
-    /// Median rms misfit before and after: in the record, and on a second one.
+    /// The median root-mean-square misfit before and after the diagnosis, in percent, on the record
+    /// and on a second one.
     pub rms: [(f64, f64); 2],
-    /// Share of records whose misfit on a second one falls, of those in which it was named right.
+    /// The share of records whose χ² on a second record falls, among those in which the effect was
+    /// found.
     pub held_out_falls: f64,
 }
 
@@ -310,7 +316,8 @@ fn share(values: impl Iterator<Item = bool>) -> f64 {
     values.iter().filter(|&&value| value).count() as f64 / values.len().max(1) as f64
 }
 
-/// The share of records without any hidden effect in which one is claimed.
+/// The share of records in which an effect is named although none is hidden, and how often each
+/// effect is the first to be named.
 pub fn false_alarms(preset: Preset, records: u64) -> (f64, Vec<(&'static str, usize)>) {
     let claims: Vec<&'static str> = (0..records)
         .into_par_iter()
@@ -329,7 +336,7 @@ pub fn false_alarms(preset: Preset, records: u64) -> (f64, Vec<(&'static str, us
     (claims.len() as f64 / records as f64, counts)
 }
 
-/// Share of records in which both of two strong hidden effects are found.
+/// The share of records in which both of two strong hidden effects are found.
 pub fn both_found(preset: Preset, records: u64) -> Option<f64> {
     let base = preset.coefficients();
     let one = hide("sinusoid", [7.7, 0.0], preset, Strength::Strong)?;

@@ -1,5 +1,5 @@
-//! Statistics over thousands of simulated records: too long for tests, and what the figures in
-//! the README rest on.
+//! Statistics over thousands of simulated records. They take too long for tests, and the figures in
+//! the README rest on them.
 
 pub mod coefficients;
 pub mod hidden_effect;
@@ -11,19 +11,19 @@ pub mod thermal;
 use crate::simulate::{Coefficients, Simulator};
 use allanite::{Accumulator, Curve, Scale};
 
-/// Octaves of every studied curve.
+/// The number of octaves of every curve in the studies.
 pub const OCTAVES: usize = 24;
 
-/// The sample rate of every study, in Hz.
+/// The sampling rate of the studies that name no other, in Hz.
 pub const RATE_HZ: f64 = 100.0;
 
-/// The curve of a simulated record, its rates rounded to counts far below its noise.
+/// The curve of a simulated record. The rates are rounded to counts far below their noise.
 pub fn curve(coefficients: Coefficients, samples: usize, seed: u64) -> Curve<OCTAVES> {
     let mut simulator = Simulator::new(coefficients, RATE_HZ, seed);
     record(&mut simulator, coefficients, samples, |_| ())
 }
 
-/// The curve of the next `samples` of a simulator; `watch` sees the counts as well.
+/// The curve of the next `samples` of a simulator. `watch` receives the counts as well.
 pub fn record(
     simulator: &mut Simulator,
     coefficients: Coefficients,
@@ -37,7 +37,7 @@ pub fn record(
     while left > 0 {
         let chunk = &mut counts[..left.min(1024)];
         for (count, rate) in chunk.iter_mut().zip(&mut *simulator) {
-            // Saturates; a record of so wide a range would show it at once.
+            // The conversion saturates. A record with so wide a range would show it at once.
             *count = (rate / quantum).round() as i32;
         }
         accumulator.push_slice(chunk);
@@ -48,7 +48,8 @@ pub fn record(
     accumulator.curve(scale)
 }
 
-/// A 4096th of the standard deviation of neighbouring samples' differences.
+/// The size of a count: 1/4096 of the standard deviation of the differences between neighbouring
+/// samples.
 fn quantum(c: Coefficients, rate_hz: f64) -> f64 {
     let interval_s = 1.0 / rate_hz;
     let white = c.angle_random_walk.powi(2) / interval_s;
@@ -60,7 +61,7 @@ fn quantum(c: Coefficients, rate_hz: f64) -> f64 {
     variance.sqrt() / 4096.0
 }
 
-/// The value below which a share of the sorted numbers lies.
+/// The value below which the given share of the sorted numbers lies.
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
     let (low, rest) = (at.floor() as usize, at.fract());

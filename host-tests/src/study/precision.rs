@@ -1,4 +1,4 @@
-//! What single precision makes of the same records, beside double.
+//! Compares fits and diagnoses of the same records in single and double precision.
 
 use crate::{
     demonstration::diagnose::HIDDEN,
@@ -6,19 +6,21 @@ use crate::{
 };
 use anyhow::{Context as _, Result};
 
-/// Differences between single and double precision over many records.
+/// The differences between single and double precision over many records.
 #[derive(Clone, Debug, Default)]
 pub struct Differences {
-    /// Of values and ends of intervals of all coefficients, in standard errors, sorted.
+    /// The differences of the values and interval ends of all coefficients, in standard errors,
+    /// sorted.
     pub standard_errors: Vec<f64>,
-    /// Of χ², sorted.
+    /// The differences of χ², sorted.
     pub chi_squared: Vec<f64>,
 }
 
 /// Compares fits of simulated gyros.
 ///
 /// # Errors
-/// If the program cannot be built, fails, or does not tell the same lines in both precisions.
+/// Fails if the program cannot be built, if it fails, or if it prints different lines in the two
+/// precisions.
 pub fn fits(records: u64) -> Result<Differences> {
     let mut all = Differences::default();
     for [single, double] in both("characterise", &[], records)? {
@@ -36,7 +38,8 @@ pub fn fits(records: u64) -> Result<Differences> {
             let Some(expected) = numbers(double) else {
                 continue;
             };
-            let found = numbers(single).with_context(|| format!("{single:?} beside {double:?}"))?;
+            let found =
+                numbers(single).with_context(|| format!("comparing {single:?} with {double:?}"))?;
             let [_, lower, upper] = expected;
             let error = (upper - lower) / (2.0 * 1.959_964);
             let largest = found
@@ -52,21 +55,23 @@ pub fn fits(records: u64) -> Result<Differences> {
     Ok(all)
 }
 
-/// How often a diagnosis ended alike.
+/// How often the diagnoses in both precisions agree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Alike {
-    /// Records.
+    /// The number of records.
     pub records: usize,
-    /// With the same verdict, and the same effects added.
+    /// The number of records with the same verdict and the same added effects.
     pub same: usize,
-    /// With another effect, which one of the two calls ambiguous.
+    /// The number of records whose diagnoses differ, and of which at least one calls an effect
+    /// ambiguous.
     pub ambiguous: usize,
 }
 
-/// Compares diagnoses of simulated gyros with each of the demonstration's hidden effects, and none.
+/// Compares diagnoses of simulated gyros, with each of the demonstration's hidden effects and
+/// without one.
 ///
 /// # Errors
-/// As of [`fits`].
+/// The errors are those of [`fits`].
 pub fn diagnoses(records: u64) -> Result<Vec<(&'static str, Alike)>> {
     let names = HIDDEN.iter().map(|(name, _)| *name).chain(["nothing"]);
     names
@@ -88,7 +93,7 @@ pub fn diagnoses(records: u64) -> Result<Vec<(&'static str, Alike)>> {
         .collect()
 }
 
-/// What a program tells of each record in single and double precision.
+/// The lines that a program prints for each record, in single and in double precision.
 fn both(program: &str, arguments: &[&str], records: u64) -> Result<Vec<[Vec<String>; 2]>> {
     let last = match program {
         "characterise" => "fit ",
@@ -107,13 +112,13 @@ fn both(program: &str, arguments: &[&str], records: u64) -> Result<Vec<[Vec<Stri
     Ok(pairs.map(|(one, other)| [one, other]).collect())
 }
 
-/// The number behind a word.
+/// The number that follows a word.
 fn after(line: &str, name: &str) -> Option<f64> {
     let mut words = line.split(' ').skip_while(|word| *word != name);
     words.nth(1)?.parse().ok()
 }
 
-/// The words behind these at the start of a line, in order.
+/// The words that follow the given starts of lines, in order.
 fn named<'a>(lines: &'a [String], starts: &[&str]) -> Vec<&'a str> {
     let word = |line: &'a String| {
         let mut words = line.split(' ');

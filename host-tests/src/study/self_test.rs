@@ -1,4 +1,4 @@
-//! How often a self-test errs, and how much sooner than a test of fixed length it ends.
+//! Studies how often a self-test errs, and how much sooner it ends than a test of fixed length.
 
 use super::{OCTAVES, RATE_HZ, quantile, quantum};
 use crate::simulate::{Coefficients, Preset, Simulator};
@@ -8,23 +8,25 @@ use allanite::{
 };
 use rayon::prelude::*;
 
-/// Probabilities of false pass and false fail that are asked for.
+/// The probabilities of false pass and false fail that the tests are planned for.
 pub const PROBABILITY: f64 = 0.01;
 
 /// A limit that devices are tested for.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// What is limited.
+    /// The effect whose coefficient is limited.
     pub effect: &'static str,
-    /// First and last look, in seconds.
+    /// The lengths of the record at the first and the last look, in seconds.
     pub lengths_s: (f64, f64),
-    /// Flicker noise, as a multiple of the usual gyro's.
+    /// The flicker noise of the gyro, as a multiple of the preset's.
     pub flicker: f64,
-    /// Whether a test of one look is short enough to look for its length.
+    /// Whether the study compares the test with one of fixed length. That takes too long for long
+    /// tests.
     pub compared: bool,
 }
 
-/// A limit that is told in seconds, one that takes minutes, and one that other noise hides at first.
+/// The first limit is decided in seconds and the second in minutes. The third is hidden by other
+/// noise at first.
 pub const CASES: [Case; 3] = [
     Case {
         effect: "angle_random_walk",
@@ -46,20 +48,21 @@ pub const CASES: [Case; 3] = [
     },
 ];
 
-/// What came of the devices whose coefficient is at `factor` times the limit.
+/// The results for devices whose coefficient is `factor` times the limit.
 #[derive(Clone, Copy, Debug)]
 pub struct Tally {
-    /// Shares of all devices.
+    /// The share of devices that passed.
     pub passed: f64,
-    /// Shares of all devices.
+    /// The share of devices that failed.
     pub failed: f64,
-    /// Shares of all devices.
+    /// The share of devices without a verdict.
     pub undecided: f64,
-    /// Median length of the record at the verdict, in seconds.
+    /// The median length of the record at the verdict, in seconds.
     pub median_s: f64,
 }
 
-/// Tests `devices` of "mems", their limited coefficient at `factor` times the limit.
+/// Tests `devices` devices of the preset "mems" whose limited coefficient is `factor` times the
+/// limit.
 pub fn study(case: Case, factor: f64, devices: u64, looks: Looks) -> Tally {
     let one = |seed| test(case, factor, seed, looks);
     let verdicts: Vec<(Status, f64)> = (0..devices).into_par_iter().map(one).collect();
@@ -77,12 +80,12 @@ pub fn study(case: Case, factor: f64, devices: u64, looks: Looks) -> Tally {
     }
 }
 
-/// When a test looks.
+/// When a test looks at its record.
 #[derive(Clone, Copy, Debug)]
 pub enum Looks {
-    /// As early as the record may bear a verdict.
+    /// At the first time when the record may suffice for a verdict, and again later.
     Early,
-    /// Once, after so many seconds.
+    /// Only once, after this many seconds.
     Once(f64),
 }
 
@@ -133,8 +136,9 @@ fn limited<'a>(base: &'a mut Coefficients, effect: &str) -> &'a mut f64 {
     }
 }
 
-/// Length in seconds, to 6 %, of the shortest test of one look that errs or leaves undecided no larger
-/// share of the devices a factor of 1.3 off the limit than `missed`.
+/// The length in seconds, to 6 %, of the shortest test with one look that is good enough. At most the
+/// share `missed` of the devices whose coefficient is a factor of 1.3 from the limit may get a wrong
+/// verdict or none.
 pub fn fixed_length_s(case: Case, devices: u64, missed: f64) -> f64 {
     let mut seconds = case.lengths_s.0;
     loop {

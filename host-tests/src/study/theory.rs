@@ -1,4 +1,4 @@
-//! The covariance of the curve and the χ² of the fit, against simulated records.
+//! Compares the theoretical covariance of the curve and the χ² of the fit with simulated records.
 
 use super::{OCTAVES, curve, quantile};
 use crate::simulate::Coefficients;
@@ -8,17 +8,17 @@ use allanite::{
 };
 use rayon::prelude::*;
 
-/// What theory and simulation say of one octave.
+/// Theory and simulation of one octave.
 #[derive(Clone, Copy, Debug)]
 pub struct Octave {
-    /// Averaging factor.
+    /// The averaging factor.
     pub m: u32,
-    /// Mean of the estimates, over the theoretical Allan variance.
+    /// The mean of the estimates, relative to the theoretical Allan variance.
     pub mean: f64,
-    /// Variance of the estimates, over the theoretical one.
+    /// The variance of the estimates, relative to the theoretical one.
     pub variance: f64,
-    /// Correlation with the octaves 1, 2, 3, 4 above: simulated and theoretical. NaN beyond the
-    /// curve.
+    /// The correlations with the octaves 1, 2, 3 and 4 above, simulated and theoretical. They are
+    /// NaN beyond the curve.
     pub correlations: [(f64, f64); 4],
 }
 
@@ -64,7 +64,7 @@ pub fn scatter(coefficients: Coefficients, samples: usize, records: u64) -> Vec<
         .collect()
 }
 
-/// χ² of the covariance fit over simulated records, sorted.
+/// The χ² of the covariance fit of simulated records, sorted.
 pub fn chi_squared(
     coefficients: Coefficients,
     samples: usize,
@@ -82,7 +82,7 @@ pub fn chi_squared(
     values
 }
 
-/// Mean, and the quantiles that the design table lists.
+/// The mean, and the median and the 90 %, 95 % and 99 % quantiles.
 pub fn summary(sorted: &[f64]) -> [f64; 5] {
     let mean = sorted.iter().sum::<f64>() / sorted.len() as f64;
     [
@@ -94,7 +94,7 @@ pub fn summary(sorted: &[f64]) -> [f64; 5] {
     ]
 }
 
-/// Squared coefficients in the order of the IEEE-952 model.
+/// The squared coefficients in the order of the IEEE-952 model.
 pub fn squares(c: Coefficients) -> [f64; 5] {
     [
         c.quantization,

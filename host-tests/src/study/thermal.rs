@@ -1,4 +1,5 @@
-//! Is a temperature found that the rate follows, and none blamed that it does not?
+//! Studies whether a diagnosis finds a temperature that the rate depends on, and how often it
+//! blames one that has no effect.
 
 use super::{OCTAVES, quantum};
 use crate::simulate::{Coefficients, Course, Hidden, Preset, Simulator, Thermal};
@@ -9,17 +10,18 @@ use allanite::{
 };
 use rayon::prelude::*;
 
-/// The sample rate of these records, in Hz: 55 minutes of 2^16 samples.
+/// The sampling rate of these records, in Hz. A record of 2^16 samples takes 55 minutes.
 pub const RATE_HZ: f64 = 20.0;
-/// Samples of a record.
+/// The number of samples of a record.
 pub const SAMPLES: usize = 1 << 16;
-/// Rate units per kelvin.
+/// The slope, in rate units per kelvin.
 pub const SLOPE: f64 = 0.01;
-/// Kelvin of a count of temperature.
+/// The size of a count of the temperature, in kelvin.
 const KELVIN: f64 = 1e-3;
 
-/// A temperature's course, its name, its size in kelvin, and the standard error that generalised
-/// least squares on the full record of "mems" could reach, in deg/s per kelvin.
+/// The name and the course of each temperature, its size in kelvin, and the standard error that
+/// generalised least squares could reach on the full record of the preset "mems", in deg/s per
+/// kelvin.
 pub const CASES: [(&str, Course, f64, f64); 2] = [
     (
         "10 K warm-up, 600 s",
@@ -35,15 +37,16 @@ pub const CASES: [(&str, Course, f64, f64); 2] = [
     ),
 ];
 
-/// What a diagnosis said of one record.
+/// The result of a diagnosis of one record.
 pub struct Outcome {
-    /// The slope and its error, where the temperature was found.
+    /// The slope and its standard error, if the temperature was found.
     pub slope: Option<(f64, f64)>,
-    /// Effects that were named beside it.
+    /// The effects that were named beside the temperature.
     pub named: Vec<&'static str>,
 }
 
-/// Diagnoses a record of a gyro that follows a temperature with `slope`, zero for not at all.
+/// Diagnoses a record of a gyro whose rate depends on a temperature with `slope`. A slope of zero
+/// means no dependence.
 pub fn diagnose(
     base: Coefficients,
     hidden: &[Hidden],
@@ -94,24 +97,25 @@ pub fn diagnose(
     outcome
 }
 
-/// Counts over the records of one course.
+/// The counts and errors over the records of one course.
 #[derive(Clone, Copy, Debug)]
 pub struct Tally {
-    /// Standard deviation of the slopes.
+    /// The standard deviation of the slopes.
     pub deviation: f64,
-    /// Share of records in which the temperature is found.
+    /// The share of records in which the temperature is found.
     pub found: f64,
-    /// Mean of the slopes, over the true one.
+    /// The mean of the slopes, relative to the true one.
     pub mean: f64,
-    /// Share of 95 % intervals that hold the true slope.
+    /// The share of 95 % intervals that contain the true slope.
     pub coverage: f64,
-    /// Mean standard error that is claimed.
+    /// The mean standard error that the diagnosis claims.
     pub error: f64,
-    /// Share of records in which a temperature that the gyro does not follow is blamed.
+    /// The share of records in which the diagnosis blames a temperature that has no effect on the
+    /// gyro.
     pub blamed: f64,
 }
 
-/// Studies one course on "mems".
+/// Studies one course with the preset "mems".
 pub fn study(course: Course, kelvin: f64, records: u64) -> Tally {
     let base = Preset::Mems.coefficients();
     let slopes = |slope: f64| -> Vec<(f64, f64)> {
@@ -133,7 +137,8 @@ pub fn study(course: Course, kelvin: f64, records: u64) -> Tally {
     }
 }
 
-/// Share of records of "mems" in which both a temperature and strong Gauss–Markov noise are found.
+/// The share of records of the preset "mems" in which both a temperature and strong Gauss–Markov
+/// noise are found.
 pub fn with_gauss_markov(course: Course, kelvin: f64, records: u64) -> f64 {
     let base = Preset::Mems.coefficients();
     let hidden = Hidden::new("gauss_markov", [1.0, 0.0], 0.05).expect("in the catalogue");

@@ -1,4 +1,4 @@
-//! What the library costs, on the target and on the host.
+//! Measures the cost of the library on the target and on this host.
 
 use super::{setup, step::shown};
 use crate::firmware::{
@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result, bail};
 use comfy_table::{Table, presets};
 use serde_json::{Map, Value};
 
-/// A figure of the Cortex-M4F or of this host, its unit and what it counts.
+/// The name of a figure of the Cortex-M4F or of this host, its unit and its meaning.
 const FIGURES: [(&str, &str, &str); 20] = [
     (
         "instructions_per_sample",
@@ -18,12 +18,12 @@ const FIGURES: [(&str, &str, &str); 20] = [
     (
         "instructions_per_sample_slice",
         "instructions",
-        "the same through push_slice",
+        "mean through push_slice, 24 octaves, a gyro at rest",
     ),
     (
         "instructions_worst_sample",
         "instructions",
-        "full-scale counts, the worst of the next three",
+        "full-scale counts, the largest of the next three",
     ),
     (
         "instructions_worst_sample_12",
@@ -53,7 +53,7 @@ const FIGURES: [(&str, &str, &str); 20] = [
     (
         "ram_bytes_per_axis_20_with_all_parts",
         "bytes",
-        "a third of three axes with all of these",
+        "a third of three axes with all these parts",
     ),
     (
         "flash_bytes",
@@ -72,13 +72,17 @@ const FIGURES: [(&str, &str, &str); 20] = [
         "instructions",
         "covariance fit of 20 octaves, five effects",
     ),
-    ("stack_bytes_fit_20", "bytes", "the same"),
+    ("stack_bytes_fit_20", "bytes", "stack of that fit"),
     (
         "instructions_diagnosis_20",
         "instructions",
         "diagnosis of 20 octaves with a hidden sinusoid",
     ),
-    ("stack_bytes_diagnosis_20", "bytes", "the same"),
+    (
+        "stack_bytes_diagnosis_20",
+        "bytes",
+        "stack of that diagnosis",
+    ),
     (
         "ram_bytes_three_axes_20_with_diagnosis",
         "bytes",
@@ -89,7 +93,11 @@ const FIGURES: [(&str, &str, &str); 20] = [
         "ns",
         "push_slice on this host, one core, median of 15 runs",
     ),
-    ("ns_per_sample", "ns", "push on this host, the same"),
+    (
+        "ns_per_sample",
+        "ns",
+        "push on this host, one core, median of 15 runs",
+    ),
 ];
 
 const NOTE: &str = "QEMU counts instructions, not cycles";
@@ -128,13 +136,13 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
     let mut table = Table::new();
     table
         .load_style(presets::NOTHING)
-        .set_header(["figure", "single", "double", "unit", "of what"]);
+        .set_header(["figure", "single", "double", "unit", "meaning"]);
     for (name, unit, of) in FIGURES {
         let [single, double] = Precision::ALL.map(|precision| {
             let target = &measured[budgets::target(precision)];
             target.get(name).map(shown_number)
         });
-        // On the host, what is timed has no precision.
+        // Times on the host are measured in one precision only.
         let single = single.or_else(|| host.get(name).map(shown_number));
         let single = single.with_context(|| format!("{name} was not measured"))?;
         table.add_row([name, &single, &double.unwrap_or_default(), unit, of]);
@@ -144,7 +152,7 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
     Ok(())
 }
 
-/// Measures again, and compares with what the library may cost as the toolchain in use builds it.
+/// Measures the costs again, and compares them with the budgets for the toolchain in use.
 pub(super) fn check_budgets() -> Result<()> {
     let way = Way::in_use()?;
     println!("\n== budgets of every core, by the toolchain {way}");
@@ -155,7 +163,7 @@ fn entries(measured: &mut Value) -> impl Iterator<Item = &mut Value> {
     measured["cores"].as_array_mut().into_iter().flatten()
 }
 
-/// A row a core, a column a figure.
+/// A table with a row for each core and a column for each figure.
 fn core_table(measured: &mut Value) -> Table {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
@@ -176,7 +184,7 @@ fn shown_number(value: &Value) -> String {
     }
 }
 
-/// What `host-tests/benches/accumulator.rs` tells.
+/// The figures that `host-tests/benches/accumulator.rs` prints.
 fn host() -> Result<Map<String, Value>> {
     let mut command = cargo();
     command.args(["bench", "--package", "host-tests", "--bench", "accumulator"]);

@@ -1,4 +1,4 @@
-//! What `cargo xtask` does: set up, test, measure.
+//! The tasks of `cargo xtask`: set up, test and measure.
 
 mod bench;
 mod setup;
@@ -11,7 +11,7 @@ use crate::firmware::cargo;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-/// Chores of the project.
+/// Tasks of the project.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 pub struct CommandLine {
@@ -25,7 +25,8 @@ enum Task {
     Setup,
     /// Set up, then check and test everything.
     Test,
-    /// Run a study behind the README's figures: theory, coefficients, hidden-effect, thermal.
+    /// Run a study behind the README's figures: theory, coefficients, hidden-effect, thermal,
+    /// self-test or precision.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]
@@ -36,17 +37,18 @@ enum Task {
         /// Print JSON instead of a table.
         #[arg(long)]
         json: bool,
-        /// Write what the target takes to host-tests/budgets.json, which the tests hold it to.
+        /// Write the figures of the target to host-tests/budgets.json, which the tests compare
+        /// with.
         #[arg(long, conflicts_with = "json")]
         update_budgets: bool,
     },
 }
 
 impl CommandLine {
-    /// Does the task.
+    /// Runs the task.
     ///
     /// # Errors
-    /// The first step that failed.
+    /// Fails with the first step that fails.
     pub fn run(self) -> Result<()> {
         match self.task {
             Task::Setup => setup::run(),

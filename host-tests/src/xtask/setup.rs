@@ -1,25 +1,25 @@
-//! What this machine lacks to build and run the images, and to look at pages. Says what it does,
-//! asks nothing.
+//! Installs what this machine lacks to build and run the images and to test pages in a browser. It
+//! prints what it does and asks no questions.
 
 use super::step::run as run_command;
 use crate::firmware::Way;
 use anyhow::{Context as _, Result, bail};
 use std::process::{Command, Stdio};
 
-/// What to do where nothing can be installed.
+/// The remedy if nothing can be installed.
 const BY_HAND: &str =
     "install it by hand: `rustup target add`, or Debian's packages rustc-web rust-web-src lld";
-/// Debian's newer compiler, its library sources and its lints.
+/// Debian's newer compiler, its library sources and its clippy.
 const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clippy"];
-/// Its linker, where rustup brings none.
+/// Debian's linker, for machines where rustup brings none.
 const DEBIAN_LINKER: &str = "lld";
-/// Programs that the tests run, and Debian's packages that have them.
+/// Programs that the tests run, and the Debian packages that contain them.
 const PROGRAMS: [(&str, &str); 3] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("qemu-system-riscv32", "qemu-system-misc"),
     (CHROMIUM, "chromium"),
 ];
-/// The browser that the tests look at pages with.
+/// The browser that the tests open pages with.
 pub const CHROMIUM: &str = "chromium";
 
 pub(super) fn run() -> Result<()> {
@@ -30,7 +30,7 @@ pub(super) fn run() -> Result<()> {
     Ok(())
 }
 
-/// A compiler for every core, by the first way that can be gone.
+/// Installs a compiler for every core, in the first way that works.
 fn compiler() -> Result<()> {
     let mut troubles = Vec::new();
     for way in Way::allowed()? {
@@ -40,13 +40,13 @@ fn compiler() -> Result<()> {
                 return Ok(());
             }
             Err(error) => {
-                println!("not {way}: {error:#}");
+                println!("cannot use {way}: {error:#}");
                 troubles.push(way.name());
             }
         }
     }
     bail!(
-        "no compiler for every core by way of {}; {BY_HAND}",
+        "no compiler for every core from {}; {BY_HAND}",
         troubles.join(" or ")
     )
 }
@@ -88,10 +88,10 @@ fn prepare(way: Way) -> Result<()> {
     }
 }
 
-/// A program that a package of Debian's has.
+/// Installs a program from a package of Debian, unless it is there.
 fn program(program: &str, package: &str) -> Result<()> {
     if starts(program) {
-        println!("{program}: there");
+        println!("{program}: is installed");
         return Ok(());
     }
     println!("{program}: installing Debian's package {package}");

@@ -1,4 +1,4 @@
-//! One command of a task.
+//! Runs one command of a task.
 
 use crate::firmware::PERIOD;
 use anyhow::{Context as _, Result, bail};
@@ -11,20 +11,20 @@ use std::{
 };
 use wait_timeout::ChildExt as _;
 
-/// Cargo's variable for colours: it takes a pipe for a file otherwise.
+/// Cargo's variable for colours. Cargo prints none into a pipe unless this is set.
 const COLOURS: &str = "CARGO_TERM_COLOR";
 
-/// How often silence is looked for.
+/// The interval between checks for silence.
 const MOMENT: Duration = Duration::from_millis(500);
 
-/// Runs a command under a heading.
+/// Prints a heading and runs a command.
 pub(super) fn step(heading: &str, command: &mut Command) -> Result<()> {
     println!("\n== {heading}");
     run(command)
 }
 
-/// Runs a command and passes on what it writes. Where it is silent for long, a line says that it goes on;
-/// one that fails is named in full.
+/// Runs a command and passes on what it prints. If it is silent for long, a line says that it still
+/// runs. If it fails, the error names the whole command.
 pub(super) fn run(command: &mut Command) -> Result<()> {
     let shown = shown(command);
     if io::stderr().is_terminal() && std::env::var_os(COLOURS).is_none() {
@@ -48,7 +48,7 @@ pub(super) fn run(command: &mut Command) -> Result<()> {
             let mut sign = sign.lock().unwrap_or_else(PoisonError::into_inner);
             if sign.elapsed() >= PERIOD {
                 eprintln!(
-                    "      Still at it, {} s: {shown}",
+                    "      Still running after {} s: {shown}",
                     begun.elapsed().as_secs()
                 );
                 *sign = Instant::now();
@@ -61,18 +61,18 @@ pub(super) fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Copies until the command has closed its end; notes when it gave a sign.
+/// Copies the output until the command closes it, and notes the time of each sign of life.
 fn pass_on(from: Option<impl Read>, mut to: impl Write, sign: &Mutex<Instant>) {
     let Some(mut from) = from else { return };
     let mut chunk = [0; 4096];
     while let Ok(length @ 1..) = from.read(&mut chunk) {
-        // Whoever has closed this program's output is not told.
+        // If this program's output is closed, the rest is discarded.
         let _ = to.write_all(&chunk[..length]).and_then(|()| to.flush());
         *sign.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
     }
 }
 
-/// The command as one could type it, with the variables that were set for it.
+/// The command as a user could type it, with the environment variables that are set for it.
 pub(super) fn shown(command: &Command) -> String {
     let mut words = Vec::new();
     for (name, value) in command.get_envs() {

@@ -1,11 +1,11 @@
-//! Everything that must hold before a change lands.
+//! Runs all checks that must pass before a change is merged.
 
 use super::{setup, step::step};
 use crate::firmware::{CORTEX_M4F, RISCV, Toolchain, cargo, workspace};
 use anyhow::{Context as _, Result};
 use std::path::PathBuf;
 
-/// Every feature but double precision.
+/// Every feature except double precision.
 const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash,firmware"];
 
 pub(super) fn run() -> Result<()> {
@@ -70,7 +70,8 @@ pub(super) fn run() -> Result<()> {
     Ok(())
 }
 
-/// The files of the effects. A macro declares these modules, so that the formatter does not find them.
+/// The source files of the effects. A macro declares these modules, so the formatter does not find
+/// them.
 fn effects() -> Result<Vec<PathBuf>> {
     let folder = workspace().join("src/effect");
     let files =

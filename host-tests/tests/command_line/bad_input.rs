@@ -1,4 +1,4 @@
-//! One line, and nothing lost.
+//! Bad input ends with one line, and no existing output is lost.
 
 use super::folder;
 use host_tests::program::refusal;
@@ -55,7 +55,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
         (
             "short.csv",
             &[],
-            "short.csv: 3 samples, and two octaves need 9; record longer",
+            "short.csv: 3 samples are too few: two octaves need 9; record longer",
         ),
         (
             "stuck.csv",
@@ -115,7 +115,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
 }
 
 #[test]
-fn failure_leaves_an_earlier_output_as_it_was() {
+fn failure_leaves_an_earlier_output_unchanged() {
     let folder = folder();
     let path = folder.path();
     let before = fs::read(path.join("curve.json")).unwrap();
@@ -125,7 +125,7 @@ fn failure_leaves_an_earlier_output_as_it_was() {
     assert_eq!(
         fs::read_dir(path).unwrap().count(),
         3,
-        "no temporary file stays behind"
+        "no temporary file remains"
     );
     let line = refusal(path, &["measure", "log.csv", "--output", "log.csv"]);
     assert_eq!(

@@ -1,4 +1,4 @@
-//! From logs and curves to coefficients.
+//! Fits logs and curves to coefficients on the command line.
 
 use super::{Document, fit, folder};
 use host_tests::program::{output, refusal};
@@ -113,7 +113,7 @@ fn all_formats_of_a_simulated_log_give_the_same_fit() {
 }
 
 #[test]
-fn every_method_has_its_name_and_says_what_it_can() {
+fn every_method_is_named_and_reports_its_statistics() {
     let folder = folder();
     for (method, judges) in [
         ("ordinary", false),
@@ -136,7 +136,7 @@ fn every_method_has_its_name_and_says_what_it_can() {
 }
 
 #[test]
-fn radians_in_are_the_same_degrees_out() {
+fn logs_in_radians_and_in_degrees_give_the_same_coefficients() {
     let folder = folder();
     let preset = ["simulate", "fog", "--duration", "100"];
     output(
@@ -172,7 +172,7 @@ fn radians_in_are_the_same_degrees_out() {
 }
 
 #[test]
-fn source_and_licence_are_kept_and_axes_renamed() {
+fn source_and_licence_are_kept_and_axes_can_be_renamed() {
     let folder = folder();
     let path = folder.path();
     let measure = [
@@ -200,10 +200,10 @@ fn source_and_licence_are_kept_and_axes_renamed() {
 }
 
 #[test]
-fn accelerometers_are_spoken_of_in_their_own_words_and_units() {
+fn accelerometers_have_their_own_words_and_units() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
-    // 100 µg/√Hz, and a drift that the record shows.
+    // The simulated accelerometer has 100 µg/√Hz and a drift that shows in the record.
     let simulate = [
         "simulate",
         "--unit",
@@ -238,7 +238,7 @@ fn accelerometers_are_spoken_of_in_their_own_words_and_units() {
     assert_eq!(
         text,
         output(path, &["fit", "a.json"]),
-        "curves keep the unit"
+        "the curve file keeps the unit"
     );
     let line = refusal(path, &["simulate", "mems", "--unit", "g"]);
     assert!(
@@ -248,7 +248,7 @@ fn accelerometers_are_spoken_of_in_their_own_words_and_units() {
 }
 
 #[test]
-fn logs_of_other_programs_fit_without_an_option() {
+fn logs_of_other_programs_are_fitted_without_an_option() {
     let folder = TempDir::new().unwrap();
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
     for name in ["euroc.csv", "imu-zstd.mcap", "ros1.mcap", "gyro.ulg"] {

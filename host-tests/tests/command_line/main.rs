@@ -1,4 +1,5 @@
-//! What people and scripts see of the program: results, statuses, and one line for what is wrong.
+//! Checks what users and scripts see of the program: results, exit statuses, and one line for each
+//! error.
 
 mod bad_input;
 mod fitting;
@@ -9,7 +10,7 @@ use serde::Deserialize;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// A folder with a simulated log of 20 000 samples, three axes and their curves.
+/// A folder with a simulated log of 20 000 samples and three axes, and with the curves of the log.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
     let simulate = [

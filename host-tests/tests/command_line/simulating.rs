@@ -1,4 +1,4 @@
-//! Logs that are made.
+//! Simulates logs on the command line.
 
 use host_tests::program::{command, output, refusal};
 use std::{fs, path::Path, process::Stdio};
@@ -27,7 +27,7 @@ fn simulation_depends_on_the_seed_and_nothing_else() {
     assert_eq!(
         first(&one),
         first(&axes),
-        "the first axis is that of a single one"
+        "the first of several axes equals a single axis"
     );
     let named = output(
         folder.path(),
@@ -99,7 +99,7 @@ fn impossible_simulations_are_refused() {
 }
 
 #[test]
-fn reader_that_leaves_early_is_no_failure() {
+fn reader_that_closes_the_pipe_early_is_no_failure() {
     let mut child = command(Path::new("."), &["simulate", "mems", "--duration", "1d"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -1,4 +1,5 @@
-//! A page as its reader has it: Chromium without a window, told what to do by its DevTools protocol.
+//! Shows a page as a reader sees it: in a Chromium without a window, controlled by its DevTools
+//! protocol.
 
 use host_tests::xtask::CHROMIUM;
 use serde_json::{Value, json};
@@ -15,16 +16,16 @@ use tungstenite::{Message, WebSocket};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Chromium with one tab.
+/// A Chromium with one tab.
 pub(crate) struct Browser {
     process: Child,
     socket: WebSocket<TcpStream>,
     session: Option<String>,
     calls: u64,
     loaded: bool,
-    /// What the console shows of errors and warnings.
+    /// The errors and warnings that the console shows.
     pub(crate) complaints: Vec<String>,
-    // Outlives the process.
+    // The profile must live longer than the process.
     _profile: TempDir,
 }
 
@@ -71,7 +72,7 @@ impl Browser {
         browser
     }
 
-    /// Opens a file, and waits until it is there.
+    /// Opens a file and waits until it is loaded.
     pub(crate) fn open(&mut self, file: &Path) {
         self.loaded = false;
         let url = format!("file://{}", file.display());
@@ -82,7 +83,7 @@ impl Browser {
         }
     }
 
-    /// The value of an expression of JavaScript.
+    /// The value of an expression in JavaScript.
     pub(crate) fn value(&mut self, expression: &str) -> Value {
         let arguments = json!({ "expression": expression, "returnByValue": true });
         let answer = self.call("Runtime.evaluate", arguments);
@@ -93,13 +94,13 @@ impl Browser {
         answer["result"]["value"].clone()
     }
 
-    /// The text of the first element that a selector finds.
+    /// The text of the first element that matches a selector.
     pub(crate) fn text(&mut self, selector: &str) -> String {
         let text = self.value(&format!("document.querySelector({selector:?}).innerText"));
         text.as_str().unwrap().to_owned()
     }
 
-    /// Clicks into the middle of an element, with the mouse.
+    /// Clicks the middle of an element with the mouse.
     pub(crate) fn click(&mut self, selector: &str) {
         let middle = self.value(&format!(
             "(() => {{ const element = document.querySelector({selector:?}); \
@@ -113,7 +114,7 @@ impl Browser {
         }
     }
 
-    /// Presses a key, such as `ArrowDown`, wherever the focus is.
+    /// Presses a key, such as `ArrowDown`, on the element with the focus.
     pub(crate) fn press(&mut self, key: &str) {
         let code = match key {
             "ArrowLeft" => 37,
@@ -130,13 +131,13 @@ impl Browser {
         }
     }
 
-    /// A window of so many CSS pixels.
+    /// Resizes the window to the given number of CSS pixels.
     pub(crate) fn resize(&mut self, width: u32, height: u32) {
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600 });
         self.call("Emulation.setDeviceMetricsOverride", metrics);
     }
 
-    /// A medium, `screen` or `print`, and a colour scheme, `light` or `dark`.
+    /// Emulates a medium, `screen` or `print`, and a colour scheme, `light` or `dark`.
     pub(crate) fn emulate(&mut self, medium: &str, scheme: &str) {
         let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
         let media = json!({ "media": medium, "features": [feature] });
@@ -183,13 +184,13 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // It may be gone already.
+        // The process may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
 }
 
-/// Where Chromium listens: it writes so into its profile.
+/// The address at which Chromium listens. Chromium writes it into its profile.
 fn address(profile: &Path) -> String {
     let begin = Instant::now();
     while begin.elapsed() < PATIENCE {

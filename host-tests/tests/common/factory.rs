@@ -1,4 +1,4 @@
-//! Records of simulated gyros, as a factory would write them.
+//! Records of simulated gyros, like those that a factory would write.
 
 use allanite::{
     Accumulator, Model, Scale,
@@ -26,7 +26,7 @@ pub(crate) fn counts(disturbance: Option<Disturbance>, seed: u64) -> Counts {
     accumulator
 }
 
-/// An axis and its diagnosis.
+/// An axis with its fit and its diagnosis.
 pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisCertificate {
     let curve = counts(disturbance, seed).curve(Scale::new(1.0 / 131.0, 100.0).unwrap());
     let (mut last, model) = (None, Model::ieee_952());

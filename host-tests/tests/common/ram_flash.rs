@@ -1,4 +1,4 @@
-//! A flash in memory that loses power in the middle.
+//! A flash in RAM whose power can fail during an operation.
 
 use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
@@ -7,20 +7,21 @@ use embedded_storage_async::nor_flash::{
 pub(crate) const PAGE: usize = 1024;
 pub(crate) const WORD: usize = 4;
 
-/// What is left of the power.
+/// When the power fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PowerCut {
-    /// Writes and erasures until it goes.
+    /// The number of writes and erasures before the power fails.
     pub(crate) after: usize,
-    /// Bytes that the last of them still changes.
+    /// The number of bytes that the interrupted operation still changes.
     pub(crate) torn: usize,
 }
 
-/// Erased flash reads 0xFF; a write clears bits, an erasure sets those of a page.
+/// A flash that reads 0xFF where it is erased. A write clears bits, and an erasure sets all bits of
+/// a page.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RamFlash {
     pub(crate) bytes: Vec<u8>,
-    /// How many bytes each write and erasure was asked to change.
+    /// The number of bytes that each write and erasure was asked to change.
     pub(crate) operations: Vec<usize>,
     pub(crate) erasures: usize,
     pub(crate) power_cut: Option<PowerCut>,
@@ -30,7 +31,7 @@ pub(crate) struct RamFlash {
 pub(crate) enum RamError {
     NoPower,
     Misaligned,
-    /// A word that was written already, and not with zeros now.
+    /// A word was written before and is now overwritten with something other than zeros.
     NotErased,
 }
 
@@ -50,7 +51,7 @@ impl RamFlash {
         }
     }
 
-    /// How many bytes of the next operation the power lasts for.
+    /// The number of bytes of the next operation that are changed before the power fails.
     fn begin(&mut self, length: usize) -> Result<usize, RamError> {
         let lasts = match self.power_cut {
             Some(cut) if self.operations.len() > cut.after => return Err(RamError::NoPower),
@@ -109,7 +110,7 @@ impl NorFlash for RamFlash {
             return Err(RamError::Misaligned);
         }
         let place = offset..offset + bytes.len();
-        // Zeros may be written over anything, in flash with error correction too.
+        // Zeros may overwrite anything, even in a flash with error correction.
         let writable = |(&cell, &byte): (&u8, &u8)| cell == 0xFF || byte == 0;
         if !self.bytes[place.clone()].iter().zip(bytes).all(writable) {
             return Err(RamError::NotErased);

@@ -1,6 +1,6 @@
-//! Envelopes with a right checksum, whatever they hold.
+//! Envelopes with a correct checksum for any contents.
 
-/// An envelope, its checksum computed bit by bit.
+/// An envelope around the payload. Its checksum is computed bit by bit.
 pub(crate) fn sealed(kind: u8, version: u8, payload: &[u8]) -> Vec<u8> {
     let mut bytes = b"ALNT".to_vec();
     bytes.extend([kind, version]);

@@ -1,8 +1,8 @@
-//! Random cases that are the same in every run.
+//! Random test cases that are the same in every run.
 
 use proptest::{prelude::ProptestConfig, test_runner::RngSeed};
 
-/// So many of them.
+/// The configuration for this number of cases.
 pub(crate) fn seeded(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,

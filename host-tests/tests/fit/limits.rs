@@ -1,4 +1,4 @@
-//! Curves and models that tell nothing.
+//! Curves and models that do not determine their coefficients.
 
 use super::{ALL, METHODS, OCTAVES, RATE_HZ, assert_relative, changed, exact, settings};
 use allanite::{
@@ -58,7 +58,7 @@ fn a_curve_without_noise_is_refused_by_its_octave() {
 }
 
 #[test]
-fn effects_that_cannot_be_told_apart_are_refused_or_not_observable() {
+fn effects_that_cannot_be_distinguished_are_refused_or_not_observable() {
     let curve = exact(ALL, 1 << 14, RATE_HZ);
     let twice: [&'static dyn Effect; 3] = [&AngleRandomWalk, &RateRamp, &AngleRandomWalk];
     let model = Model::new(&twice).expect("three effects");
@@ -73,7 +73,7 @@ fn effects_that_cannot_be_told_apart_are_refused_or_not_observable() {
     let states: Vec<State> = [0, 2].map(|i| found.coefficients[i].state).to_vec();
     let not_observable = |state: &State| matches!(state, State::NotObservable { .. });
     assert!(states.iter().any(not_observable), "{states:?}");
-    // Nothing to fit is nothing to tell.
+    // An empty model has no coefficients to fit.
     assert_eq!(
         fit(&curve, &Model::default(), Options::default()),
         Err(Error::Singular)
@@ -81,7 +81,7 @@ fn effects_that_cannot_be_told_apart_are_refused_or_not_observable() {
 }
 
 #[test]
-fn variances_of_any_size_fit_or_are_refused() {
+fn variances_of_any_size_are_fitted_or_refused() {
     let curve = exact(ALL, 1 << 14, RATE_HZ);
     for exponent in (-150..=150).step_by(10) {
         let scaled = changed(&curve, |_| 10_f64.powi(exponent));

@@ -1,4 +1,4 @@
-//! The fit on exact curves, under changes of unit, at its optimum, and where it must refuse.
+//! Tests the fit on exact curves, under changes of unit, at its optimum, and where it must refuse.
 
 mod limits;
 mod oracle;
@@ -21,7 +21,7 @@ const METHODS: [Method; 4] = [
     Method::Covariance,
 ];
 
-/// Coefficients Q, N, B, K, R, all of which show in some octave of a three-hour record.
+/// The coefficients Q, N, B, K and R. Each of them shows in some octave of a three-hour record.
 const ALL: [f64; 5] = [2e-4, 5e-3, 4e-3, 3e-4, 3e-6];
 
 fn settings(method: Method) -> Options {
@@ -31,7 +31,7 @@ fn settings(method: Method) -> Options {
     }
 }
 
-/// The curve that a gyro would have on average, for a record of so many samples.
+/// The expected curve of a gyro for a record of the given length.
 fn exact(coefficients: [f64; 5], samples: u64, rate_hz: f64) -> Curve<OCTAVES> {
     let model = Model::ieee_952();
     let squares = coefficients.map(|x| x * x);
@@ -44,7 +44,7 @@ fn exact(coefficients: [f64; 5], samples: u64, rate_hz: f64) -> Curve<OCTAVES> {
     Curve::new(rate_hz, (0..OCTAVES as u32).map_while(octave)).expect("possible")
 }
 
-/// The same curve with every variance changed by its octave's factor.
+/// The same curve, with every variance multiplied by the factor of its octave.
 fn changed(curve: &Curve<OCTAVES>, factor: impl Fn(usize) -> f64) -> Curve<OCTAVES> {
     let points = curve.points().iter().enumerate();
     let octaves = points.map(|(k, p)| (p.m, p.differences, p.variance * factor(k)));

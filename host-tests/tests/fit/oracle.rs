@@ -1,4 +1,4 @@
-//! Every method beside an independent computation.
+//! Compares every method with an independent computation.
 
 use super::{OCTAVES, assert_relative, fitted, noisy, settings};
 use allanite::{
@@ -7,7 +7,7 @@ use allanite::{
     fit::{Method, Options, chi_squared_tail, curve_covariance},
 };
 
-/// `A_k`, the variances of unit coefficients.
+/// The columns `A_k`: the variances of the effects with unit coefficients.
 fn columns(curve: &Curve<OCTAVES>) -> Vec<[f64; 5]> {
     let shape = SampledShape::new(curve.interval_s());
     let points = curve.points().iter();
@@ -42,7 +42,8 @@ fn eliminate(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     right
 }
 
-/// Relative accuracy of an octave with clusters `N/m` as of a contiguous record: Lv et al. 2015.
+/// The relative accuracy of an octave by its number of clusters, `N/m` (Lv et al. 2015). `N` is the
+/// length of a contiguous record with this number of differences.
 fn relative_accuracy(differences: u64, m: u32) -> f64 {
     let samples = (differences - 1) * u64::from((m / 4).max(1)) + 2 * u64::from(m);
     (0.5 / (samples as f64 / f64::from(m) - 1.0)).sqrt()
@@ -67,7 +68,7 @@ fn unconstrained_methods_are_weighted_least_squares() {
                 }
             });
             let weights: Vec<f64> = weights.collect();
-            // In columns of length one, as the sum would lose digits otherwise.
+            // The columns are scaled to length one, because the sum would lose digits otherwise.
             let octaves = 0..columns.len();
             let product = |i: usize, j: usize| -> f64 {
                 octaves
@@ -124,11 +125,12 @@ fn unconstrained_methods_are_weighted_least_squares() {
 
 /// The generalised least-squares problem at a solution.
 struct Optimum {
-    /// Standard errors that each coefficient would move by if it were alone.
+    /// The gradient with respect to each coefficient, as the number of standard errors that the
+    /// coefficient would move if it were the only one.
     pulls: [f64; 5],
-    /// `r'C⁻¹r`.
+    /// The value of `r'C⁻¹r`.
     chi_squared: f64,
-    /// `ln det C`.
+    /// The value of `ln det C`.
     log_determinant: f64,
 }
 
@@ -137,7 +139,7 @@ impl Optimum {
         let columns = columns(curve);
         let count = columns.len();
         let covariance = curve_covariance(curve, &Model::ieee_952(), squares);
-        // Relative to the model, for the digits' sake.
+        // The matrix is divided by the model to keep its digits.
         let model = |k: usize| -> f64 { columns[k].iter().zip(squares).map(|(a, b)| a * b).sum() };
         let row = |k: usize| {
             let entry = |j: usize| covariance[(j, k)] / (model(j) * model(k));
@@ -163,10 +165,11 @@ impl Optimum {
     }
 }
 
-/// The optimality conditions of Karush, Kuhn and Tucker for `min r'C⁻¹r` with `β ≥ 0`, `C` being the
-/// covariance at the solution: the gradient is zero along coefficients above zero and does not
-/// fall along those at zero. The rounds of covariance and solution end when the model changes by a
-/// thousandth, or after some: a few records are then still a part of a standard error away.
+/// The conditions of Karush, Kuhn and Tucker hold at the minimum of `r'C⁻¹r` with `β ≥ 0`, where
+/// `C` is the covariance at the solution: the gradient is zero along coefficients above zero, and
+/// it does not fall along those at zero. The rounds of covariance and solution end when the model
+/// changes by a thousandth, or after a fixed number. In a few records the solution is then still a
+/// fraction of a standard error away.
 #[test]
 fn the_covariance_fit_is_the_non_negative_optimum() {
     let (mut at_zero, mut above, mut slow) = (0, 0, 0);

@@ -1,4 +1,4 @@
-//! Coefficients come back, with intervals.
+//! A fit recovers the coefficients of a curve and their intervals.
 
 use super::{ALL, METHODS, RATE_HZ, assert_relative, changed, exact, fitted, noisy, settings};
 use allanite::{
@@ -9,7 +9,7 @@ use allanite::{
 use rayon::prelude::*;
 
 #[test]
-fn coefficients_of_an_exact_curve_come_back_by_every_method() {
+fn every_method_recovers_the_coefficients_of_an_exact_curve() {
     for method in METHODS {
         let fit = fitted(&exact(ALL, 1 << 20, RATE_HZ), settings(method));
         assert_eq!(fit.method, method);
@@ -71,7 +71,7 @@ fn every_term_of_a_long_record_is_measured_within_its_interval() {
     );
 }
 
-/// A fit of all five terms to the exact curve of 2^exponent samples without one of them.
+/// A fit of all five terms to the exact curve of 2^exponent samples that lacks one of them.
 fn fitted_without(absent: usize, exponent: u32) -> Fit {
     let mut coefficients = ALL;
     coefficients[absent] = 0.0;
@@ -85,7 +85,7 @@ fn a_term_that_is_absent_is_never_measured() {
         for exponent in [10, 14, 18, 22] {
             let found = fitted_without(absent, exponent).coefficients[absent];
             let what = format!("2^{exponent} samples: {found:?}");
-            // Rounding, far below what the record tells.
+            // The remainder is rounding, far below the noise of the record.
             assert!(found.square <= 1e-6 * found.square_error, "{what}");
             assert_eq!(found.lower, 0.0, "{what}");
             match found.state {
@@ -102,9 +102,10 @@ fn a_term_that_is_absent_is_never_measured() {
     }
 }
 
-/// A term that is not observable would be after the length that is told, if it were at its bound.
+/// A term is called not observable together with the length of record that would show it. If the
+/// term is at its bound, it must be observable in a record of that length.
 #[test]
-fn a_record_of_the_length_that_is_told_measures_the_term() {
+fn a_record_of_the_stated_length_measures_the_term() {
     let mut told = 0;
     for absent in 0..5 {
         for exponent in [10, 12, 14, 16] {
@@ -117,7 +118,7 @@ fn a_record_of_the_length_that_is_told_measures_the_term() {
                 continue;
             };
             told += 1;
-            // The other terms as they were found, this one at its bound.
+            // The other terms keep their values, and this one is at its bound.
             let mut assumed = [0.0; 5];
             for (assumed, coefficient) in assumed.iter_mut().zip(&fit.coefficients) {
                 *assumed = coefficient.value;
@@ -134,7 +135,7 @@ fn a_record_of_the_length_that_is_told_measures_the_term() {
 
 #[test]
 fn coefficients_scale_with_the_unit_of_the_rate() {
-    // From degrees to radians, and to something absurd.
+    // The factors go from degrees to radians, and to an absurd unit.
     for factor in [std::f64::consts::PI / 180.0, 1e9] {
         for method in METHODS {
             let curve = noisy(1 << 14, 3);
@@ -212,7 +213,7 @@ fn chi_squared_matches_its_degrees_of_freedom_over_many_records() {
         })
         .collect();
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
-    // The mean of 40 has a standard error of 0.07.
+    // The mean of 40 values has a standard error of 0.07.
     assert!(
         (0.7..1.3).contains(&mean),
         "χ² is {mean} of its degrees of freedom"
@@ -236,7 +237,7 @@ fn longer_records_narrow_every_interval() {
         let now = widths(exponent);
         for (i, (now, before)) in now.iter().zip(&before).enumerate() {
             let name = IEEE_952[i].name();
-            // Bounds hold to a per cent, as do the rounds that find them.
+            // Bounds are accurate to one per cent, like the rounds that find them.
             assert!(
                 *now < 1.01 * before,
                 "{name} at 2^{exponent} samples: {now:e} after {before:e}"
@@ -244,7 +245,7 @@ fn longer_records_narrow_every_interval() {
         }
         before = now;
     }
-    // Where a term is measured well, four times the record is half the interval.
+    // If a term is measured well, a record of four times the length halves its interval.
     let (short, long) = (widths(20), widths(22));
     for i in 0..4 {
         assert_relative(long[i] / short[i], 0.5, 0.1, IEEE_952[i].name());
@@ -252,7 +253,7 @@ fn longer_records_narrow_every_interval() {
 }
 
 #[test]
-fn the_tolerance_is_granted_only_where_scatter_does_not_explain_the_curve() {
+fn the_tolerance_is_used_only_if_scatter_does_not_explain_the_curve() {
     let curve = exact(ALL, 1 << 26, RATE_HZ);
     let dented = changed(&curve, |k| if k == 4 { 1.01 } else { 1.0 });
     let tolerance = |tolerance| Options {

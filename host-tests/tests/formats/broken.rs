@@ -1,4 +1,4 @@
-//! Logs that were cut off, or changed at a byte.
+//! Reads logs that were cut off, or in which a byte was changed.
 
 use super::{GYRO, ROWS, assert_sums, counts, fixture, try_read};
 use host_tests::log::Options;
@@ -6,7 +6,7 @@ use std::fs;
 use tempfile::TempDir;
 
 #[test]
-fn truncation_at_any_byte_is_refused_or_gives_the_rows_before_it_aloud() {
+fn truncation_at_any_byte_is_refused_or_gives_the_rows_before_it_with_a_note() {
     let rows = counts();
     let folder = TempDir::new().unwrap();
     for name in [
@@ -33,7 +33,7 @@ fn truncation_at_any_byte_is_refused_or_gives_the_rows_before_it_aloud() {
             let samples = log.axes[0].accumulator.samples() as usize;
             let what = format!("{name} cut at {cut}");
             if name.ends_with("csv") {
-                // The last row may be the half of one.
+                // The last row may be incomplete.
                 let is_whole = bytes[..cut].ends_with(b"\n");
                 assert_eq!(said, !is_whole, "{what}");
                 whole += usize::from(is_whole);
@@ -43,18 +43,18 @@ fn truncation_at_any_byte_is_refused_or_gives_the_rows_before_it_aloud() {
             } else {
                 whole += usize::from(!said);
             }
-            // Of a ULog cut so short, another topic may be the longer one.
+            // In a ULog that is cut early, another topic may have more messages.
             let every = if log.rate_hz == 200.0 { 1 } else { 2 };
             let before = rows.iter().step_by(every).take(samples);
             assert_sums(&log, before, 0, GYRO, &what);
         }
-        // Cuts between rows leave a whole file, and no others do.
+        // Only a cut between rows leaves a complete file.
         assert!(whole <= 2 * ROWS, "{name}: {whole}");
     }
 }
 
 #[test]
-fn any_changed_byte_of_a_ulog_is_met_without_a_panic() {
+fn any_changed_byte_of_a_ulog_causes_no_panic() {
     let bytes = fs::read(fixture("gyro.ulg")).unwrap();
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("a.ulg");
@@ -62,7 +62,7 @@ fn any_changed_byte_of_a_ulog_is_met_without_a_panic() {
         let mut changed = bytes.clone();
         changed[at] ^= 0x41;
         fs::write(&path, &changed).unwrap();
-        // A ULog has no checksum: a changed value is a value, but rows do not come from nowhere.
+        // A ULog has no checksum. A changed value may therefore be read, but no rows may be added.
         if let Ok(log) = try_read(&path, &Options::default()) {
             assert!(log.axes[0].accumulator.samples() <= ROWS as u64);
         }
@@ -70,7 +70,7 @@ fn any_changed_byte_of_a_ulog_is_met_without_a_panic() {
 }
 
 #[test]
-fn any_changed_byte_of_a_bag_is_met_without_a_panic() {
+fn any_changed_byte_of_a_bag_causes_no_panic() {
     let rows = counts();
     let bytes = fs::read(fixture("imu-plain.mcap")).unwrap();
     let folder = TempDir::new().unwrap();

@@ -1,4 +1,4 @@
-//! Logs that the formats' own libraries wrote: read to the value, and refused where they are broken.
+//! Logs that the formats' own libraries wrote are read exactly, and refused if they are broken.
 
 mod broken;
 mod stamps;
@@ -18,7 +18,7 @@ use tempfile::TempDir;
 
 const ROWS: usize = 48;
 
-/// What a count of the fixtures is: powers of two, so that every value is exact.
+/// The size of a count in the fixtures. It is a power of two, so that every value is exact.
 const GYRO: f64 = 1.0 / 1024.0;
 const ACCELEROMETER: f64 = 1.0 / 256.0;
 
@@ -28,7 +28,7 @@ fn fixture(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// The counts that `make.py` made: three of a gyro, three of an accelerometer.
+/// The counts that `make.py` generates: three of a gyro and three of an accelerometer.
 fn counts() -> Vec<[i32; 6]> {
     let mut state = 1u32;
     let mut count = move || {
@@ -74,7 +74,7 @@ fn topic(topic: &str) -> Options {
     }
 }
 
-/// Every sum of the log's axes is that of these rows of the generator, exactly.
+/// Asserts that every sum of the log's axes equals that of these rows of the generator exactly.
 fn assert_sums<'a>(
     log: &Log,
     rows: impl Iterator<Item = &'a [i32; 6]> + Clone,

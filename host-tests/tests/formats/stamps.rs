@@ -1,4 +1,4 @@
-//! The rate, and gaps, follow from time stamps.
+//! The sampling rate and the gaps follow from the time stamps.
 
 use super::{counts, read_text};
 use allanite::Accumulator;
@@ -68,7 +68,7 @@ fn seconds_and_nanoseconds_are_one_stamp() {
         let mut text = format!("Time,{sec},{nanosec},angular_velocity.x\n");
         for (i, count) in (0i64..).zip(counts().iter().flatten().cycle().take(600)) {
             let stamp = 1_700_000_000_900_000_000 + 5_000_000 * i;
-            // When it was recorded, in bursts.
+            // This is the time of recording, which comes in bursts.
             let recorded = 1_700_000_001 + i / 50;
             let (sec, nanosec) = (stamp / 1_000_000_000, stamp % 1_000_000_000);
             let _ = writeln!(text, "{recorded},{sec},{nanosec},{count}");
@@ -76,13 +76,13 @@ fn seconds_and_nanoseconds_are_one_stamp() {
         let log = read_text(&text, &Options::default()).unwrap();
         assert_eq!((log.rate_hz, log.axes.len()), (200.0, 1), "{sec}");
         assert!(log.axes[0].accumulator.gaps() == 0 && log.axes[0].accumulator.samples() == 600);
-        let name = format!("200 Hz by the time stamps of {sec} and {nanosec}, in ns");
+        let name = format!("200 Hz from the time stamps of {sec} and {nanosec}, in ns");
         assert!(log.notes[0].ends_with(&name), "{}", log.notes[0]);
     }
 }
 
 #[test]
-fn gaps_end_stretches_and_repeated_rows_are_left_out() {
+fn gaps_split_the_record_and_repeated_rows_are_left_out() {
     let noise = counts();
     let mut expected = Accumulator::<OCTAVES>::new();
     let mut text = String::from("timestamp [us],gx [deg/s]\n");
@@ -111,14 +111,14 @@ fn gaps_end_stretches_and_repeated_rows_are_left_out() {
         let notes = log.notes.join("\n");
         assert!(
             notes.contains("1 gap, the longest 105ms, about 20 samples lost")
-                && notes.contains("1 row with the stamp before it left out"),
+                && notes.contains("1 row with a repeated stamp left out"),
             "{notes}"
         );
     }
 }
 
 #[test]
-fn stamps_that_say_nothing_are_refused_with_their_row() {
+fn unusable_stamps_are_refused_with_their_row() {
     let regular = || (0..3000).map(|i| 5000 * i);
     let slower = regular().chain((1..500).map(|i| 5000 * 2999 + 10_000 * i));
     let back = regular().chain([7]);
@@ -127,17 +127,17 @@ fn stamps_that_say_nothing_are_refused_with_their_row() {
         (
             slower.collect::<Vec<_>>(),
             "a.csv:3017: two rates in one log: time stamps are 10ms apart up to here, and were 5ms \
-             apart before; cut the record there, or give --rate to leave the stamps out",
+             apart before; cut the record there, or give --rate to ignore the stamps",
         ),
         (
             back.collect(),
             "a.csv:3002: time stamps go back from 14995000 to 7; \
-             cut the record there, or give --rate to leave the stamps out",
+             cut the record there, or give --rate to ignore the stamps",
         ),
         (
             coarse.collect(),
             "a.csv: time stamps repeat in 2250 of 3000 rows: too coarse, or written in bursts; \
-             give --rate to leave them out",
+             give --rate to ignore the stamps",
         ),
     ] {
         let text = stamped("time_us,gx [deg/s]", stamps.into_iter());

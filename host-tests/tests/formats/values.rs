@@ -1,4 +1,4 @@
-//! What was written is read, and what cannot be meant is refused.
+//! Values that were written are read back, and contradictory requests are refused.
 
 use super::{
     ACCELEROMETER, GYRO, assert_sums, counts, fixture, of, read, read_text, topic, try_read,
@@ -62,15 +62,15 @@ fn every_format_gives_the_values_that_were_written() {
 }
 
 #[test]
-fn what_was_found_is_said_on_one_line() {
+fn detected_columns_units_and_rate_are_noted_on_one_line() {
     let notes = read("euroc.csv", &Options::default()).notes;
     assert_eq!(
         notes,
         [
             "taken as axes: w_RS_S_x [rad s^-1], w_RS_S_y [rad s^-1], w_RS_S_z [rad s^-1]; \
              left out a_RS_S_x [m s^-2], a_RS_S_y [m s^-2], a_RS_S_z [m s^-2] \
-             (choose with --columns or --sensor accel); unit rad/s by their names; \
-             200 Hz by the time stamps of timestamp, in ns",
+             (choose with --columns or --sensor accel); unit rad/s from the column names; \
+             200 Hz from the time stamps of timestamp, in ns",
             "time stamps 5ms apart, jitter 0s rms, 0s at most",
         ]
     );
@@ -84,17 +84,17 @@ fn what_was_found_is_said_on_one_line() {
 }
 
 #[test]
-fn bags_and_logs_of_no_or_several_sensors_are_refused_by_what_they_hold() {
+fn bags_and_logs_of_no_or_several_sensors_are_refused_with_a_list_of_their_topics() {
     for (name, options, expected) in [
         (
             "two-imus.mcap",
             Options::default(),
-            "two-imus.mcap: 2 IMUs: /imu/left, /imu/right; choose one with --topic",
+            "two-imus.mcap: there are 2 IMU topics: /imu/left, /imu/right; choose one with --topic",
         ),
         (
             "two-imus.mcap",
             topic("/words"),
-            "two-imus.mcap: there is no IMU's topic \"/words\"; \
+            "two-imus.mcap: no IMU topic is named \"/words\"; \
              choose with --topic from /imu/left, /imu/right",
         ),
         (
@@ -113,19 +113,19 @@ fn bags_and_logs_of_no_or_several_sensors_are_refused_by_what_they_hold() {
         (
             "two-gyros.ulg",
             Options::default(),
-            "two-gyros.ulg: 2 that fit equally: sensor_gyro:0, sensor_gyro:1; \
+            "two-gyros.ulg: 2 topics fit equally well: sensor_gyro:0, sensor_gyro:1; \
              choose one with --topic",
         ),
         (
             "gyro.ulg",
             topic("sensor_gyro:1"),
-            "gyro.ulg: there is no topic \"sensor_gyro:1\" with messages; \
+            "gyro.ulg: no topic \"sensor_gyro:1\" has messages; \
              choose with --topic from sensor_gyro:0, sensor_combined:0, cpuload:0",
         ),
         (
             "euroc.csv",
             topic("/imu"),
-            "euroc.csv: has no topics; leave --topic",
+            "euroc.csv: this kind of log has no topics; omit --topic",
         ),
         (
             "stamped.npy",
@@ -134,7 +134,7 @@ fn bags_and_logs_of_no_or_several_sensors_are_refused_by_what_they_hold() {
                 unit: Some(Unit::StandardGravity),
                 ..Options::default()
             },
-            "--unit g is not one of a gyro; give another --unit or --sensor",
+            "--unit g is not a unit of a gyro; give another --unit or --sensor",
         ),
     ] {
         assert_eq!(try_read(&fixture(name), &options).unwrap_err(), expected);
@@ -142,7 +142,7 @@ fn bags_and_logs_of_no_or_several_sensors_are_refused_by_what_they_hold() {
 }
 
 #[test]
-fn units_that_contradict_or_cannot_be_are_refused_and_doubtful_ones_doubted() {
+fn contradictory_and_impossible_units_are_refused_and_doubtful_ones_noted() {
     let rows = |scale: f64| {
         counts().iter().fold(String::new(), |mut text, row| {
             let _ = writeln!(text, "{},{}", f64::from(row[0]) * scale, row[1]);
@@ -156,19 +156,19 @@ fn units_that_contradict_or_cannot_be_are_refused_and_doubtful_ones_doubted() {
     let mixed = format!("gx [rad/s],gy [deg/s]\n{}", rows(0.1));
     assert_eq!(
         read_text(&mixed, &options).unwrap_err(),
-        "a.csv: columns gx [rad/s] and gy [deg/s] are of different units; \
-         choose those of one unit with --columns, or say --unit and --scale"
+        "a.csv: columns gx [rad/s] and gy [deg/s] have different units; \
+         choose columns of one unit with --columns, or give --unit and --scale"
     );
     let doubtful = format!("gx [rad/s],temp\n{}", rows(0.2));
     let notes = read_text(&doubtful, &options).unwrap().notes.join("\n");
     assert!(
-        notes.contains("are unlikely of a gyro at rest: check --scale and --unit"),
+        notes.contains("is unlikely for a gyro at rest: check --scale and --unit"),
         "{notes}"
     );
     let impossible = format!("gx [rad/s],temp\n{}", rows(1e3));
     let line = read_text(&impossible, &options).unwrap_err();
     assert!(
-        line.contains("are impossible of a gyro at rest; check --scale and --unit"),
+        line.contains("is impossible for a gyro at rest; check --scale and --unit"),
         "{line}"
     );
     let milli = format!("gx [mdps],temp\n{}", rows(1.0));

@@ -1,4 +1,4 @@
-//! What no curve can mean is refused.
+//! Disturbed records are refused.
 
 use super::{
     FINE, SAMPLES, assert_unremarkable, assert_valid, disturb, integrity, mems, quantised, rest,
@@ -27,7 +27,7 @@ fn a_moved_gyro_is_refused() {
                     &|x| rate * (2.0 * PI * 7.0 * x).sin() * (PI * x).sin(),
                 ];
                 for (shape, rate_at) in shapes.iter().enumerate() {
-                    // A scale must be known before a shake can be told from it.
+                    // A shake can be recognised only after the noise level is known.
                     let first = if shape == 3 { 3000 } else { 200 };
                     for start in [first, 8000, 32_000, SAMPLES - 3500] {
                         let mut counts = rest.clone();
@@ -92,7 +92,7 @@ fn stuck_values_are_refused() {
 }
 
 #[test]
-fn a_gyro_that_hangs_again_and_again_is_refused() {
+fn a_gyro_that_hangs_repeatedly_is_refused() {
     let mut counts = mems(1);
     for start in (10_000..60_000).step_by(10_000) {
         let value = counts[start];
@@ -127,7 +127,7 @@ fn a_single_huge_spike_is_refused() {
                     assert!(
                         match integrity.verdict() {
                             Some(Reason::Spiked { spikes, .. }) => spikes == 1,
-                            // No level is known yet that it could come back to.
+                            // There is no known level yet that the rate could return to.
                             Some(Reason::Moved { .. }) => (61..=64).contains(&position),
                             _ => false,
                         },
@@ -142,7 +142,7 @@ fn a_single_huge_spike_is_refused() {
 }
 
 #[test]
-fn a_spike_matters_by_its_share_of_the_squares() {
+fn a_spike_is_refused_by_its_share_of_the_squares() {
     let mut counts = mems(7);
     let mut accumulator = Accumulator::<2>::new();
     accumulator.push_slice(&counts);
@@ -152,7 +152,8 @@ fn a_spike_matters_by_its_share_of_the_squares() {
         .expect("an octave")
         .sum
         .to_real();
-    // Two differences: 2 S² / (2 S² + quiet) of 4 % and of 6 %.
+    // A spike S adds two squared differences, so its share is 2 S² / (2 S² + quiet). The shares are
+    // 4 % and 6 %.
     for (share, refused) in [(0.04, false), (0.06, true)] {
         let size = (0.5 * quiet * share / (1.0 - share)).sqrt();
         counts[50_000] = counts[49_999] + size as i32;
@@ -165,7 +166,8 @@ fn a_spike_matters_by_its_share_of_the_squares() {
 #[test]
 fn rails_are_refused() {
     for seed in 0..10 {
-        // Half of the samples clipped; all of them; seldom, by a sensor that marks bad data so.
+        // Half of the samples are clipped, or all of them. In the case after the loop, a sensor marks
+        // a few bad samples with the most negative count.
         for offset in [i32::from(i16::MAX), 40_000, -32_768, -40_000] {
             let counts: Vec<_> = mems(seed)
                 .iter()
@@ -205,7 +207,7 @@ fn the_rails_of_other_sensors_are_configured() {
 }
 
 #[test]
-fn a_wide_sensor_may_pass_the_rails_of_a_narrow_one() {
+fn a_sensor_of_wide_range_may_exceed_the_rails_of_a_narrow_one() {
     assert_valid("around 32767", 20, |seed| {
         mems(seed).iter().map(|count| count + 32_767).collect()
     });
@@ -229,7 +231,7 @@ fn missing_samples_are_refused_from_a_tenth_on() {
 }
 
 #[test]
-fn a_gap_hides_no_level_that_changed_across_it() {
+fn a_change_of_level_across_a_gap_is_not_counted() {
     let mut integrity = Integrity::default();
     for (part, counts) in mems(5).chunks(8192).enumerate() {
         integrity.gap();

@@ -1,4 +1,4 @@
-//! Records that must be refused for what happened in them, and records that must not be.
+//! Disturbed records must be refused, and records at rest must not.
 
 mod disturbed;
 mod rest;
@@ -14,7 +14,7 @@ const RATE_HZ: f64 = 100.0;
 
 const SAMPLES: usize = 1 << 16;
 
-/// Counts per deg/s of a consumer gyro on its finest range.
+/// The counts per deg/s of a consumer gyro on its finest range.
 const FINE: f64 = 131.0;
 
 fn integrity(counts: &[i32]) -> Integrity {
@@ -43,7 +43,7 @@ fn mems(seed: u64) -> Vec<i32> {
     rest(Preset::Mems, FINE, seed)
 }
 
-/// Counts per deg/s that make the noise of a sample about `rms` counts.
+/// The scale, in counts per deg/s, at which the noise of a sample is about `rms` counts.
 fn counts_per_rate(preset: Preset, rms: f64) -> f64 {
     let c = preset.coefficients();
     let white = c.angle_random_walk * RATE_HZ.sqrt();
@@ -51,7 +51,7 @@ fn counts_per_rate(preset: Preset, rms: f64) -> f64 {
     rms / white.hypot(quantization)
 }
 
-/// Every record of these seeds is valid.
+/// Asserts that every record of these seeds is valid.
 fn assert_valid(what: &str, seeds: u64, record: impl Fn(u64) -> Vec<i32> + Sync) {
     let refused: Vec<_> = (0..seeds)
         .into_par_iter()
@@ -69,7 +69,7 @@ fn assert_valid(what: &str, seeds: u64, record: impl Fn(u64) -> Vec<i32> + Sync)
     );
 }
 
-/// Adds a rate, in deg/s, from sample `start` on for `length`.
+/// Adds a rate in deg/s to `length` samples, beginning with sample `start`.
 fn disturb(counts: &mut [i32], start: usize, length: usize, rate_at: impl Fn(f64) -> f64) {
     for (n, count) in counts[start..start + length].iter_mut().enumerate() {
         *count += (rate_at(n as f64 / length as f64) * FINE).round() as i32;

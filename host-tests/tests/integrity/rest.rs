@@ -6,7 +6,7 @@ use super::{
 use host_tests::simulate::{Coefficients, Hidden, Preset, Simulator};
 
 #[test]
-fn a_gyro_at_rest_is_valid_and_nothing_is_counted() {
+fn a_gyro_at_rest_is_valid_and_no_event_is_counted() {
     for preset in Preset::ALL {
         assert_valid("at 131 counts", 100, |seed| {
             let counts = rest(preset, FINE, seed);
@@ -18,7 +18,8 @@ fn a_gyro_at_rest_is_valid_and_nothing_is_counted() {
 
 #[test]
 fn a_gyro_whose_samples_mostly_repeat_is_valid() {
-    // 0.05 deg/s, as coarse as gyros come: one count rms, and 0.4.
+    // A scale of 0.05 deg/s per count is as coarse as gyros come. The noise is then one count rms
+    // for the first preset, and 0.4 for the second.
     for preset in [Preset::Mems, Preset::Tactical] {
         assert_valid("0.05 deg/s", 100, |seed| rest(preset, 20.0, seed));
     }
@@ -26,7 +27,7 @@ fn a_gyro_whose_samples_mostly_repeat_is_valid() {
         for rms in [0.2, 0.25, 0.3] {
             assert_valid(&format!("{rms} counts"), 40, |seed| {
                 let scale = counts_per_rate(preset, rms);
-                // Anywhere between the middle and the edge of a quantum.
+                // The mean rate lies anywhere between the middle and the edge of a count.
                 let offset = seed as f64 / 40.0 / scale;
                 let rates = Simulator::new(preset.coefficients(), RATE_HZ, seed);
                 quantised(rates.map(|rate| rate + offset), scale)
@@ -36,7 +37,7 @@ fn a_gyro_whose_samples_mostly_repeat_is_valid() {
 }
 
 #[test]
-fn other_rates_are_valid() {
+fn other_sampling_rates_are_valid() {
     for (rate_hz, scale) in [(10.0, 131.0), (1000.0, 131.0), (8000.0, 16.4)] {
         assert_valid(&format!("{rate_hz} Hz"), 40, |seed| {
             let simulator = Simulator::new(Preset::Mems.coefficients(), rate_hz, seed);

@@ -1,17 +1,17 @@
-//! What is told, counted, merged and forgotten.
+//! The state of the integrity check: what it reports, counts, merges and forgets.
 
 use super::seeded::seeded;
 use super::{disturb, integrity, mems};
 use allanite::integrity::{Integrity, Limits, Observation};
 use proptest::{collection::vec, prelude::*};
 
-/// Limits that last as long as the program, as those in a product's flash.
+/// Limits with a static lifetime, like those in the flash of a product.
 fn leaked(limits: Limits) -> &'static Limits {
     Box::leak(Box::new(limits))
 }
 
 #[test]
-fn an_observation_tells_the_odd_sample() {
+fn an_observation_identifies_the_odd_sample() {
     let mut counts = mems(6);
     counts[20_000] = 9000;
     disturb(&mut counts, 30_000, 1000, |_| 20.0);
@@ -81,7 +81,7 @@ fn a_reason_is_one_sentence_with_numbers_and_a_remedy() {
 }
 
 #[test]
-fn reset_forgets_all_but_the_limits() {
+fn reset_forgets_everything_except_the_limits() {
     let limits = Limits {
         run_factor: 200,
         ..Limits::default()
@@ -185,7 +185,7 @@ proptest! {
     #![proptest_config(seeded(20))]
 
     #[test]
-    fn merging_counts_what_a_gap_between_would(first in 0_u64..50, second in 50_u64..100) {
+    fn merging_counts_the_same_as_one_record_with_a_gap(first in 0_u64..50, second in 50_u64..100) {
         let (one, other) = (mems(first), mems(second));
         let mut merged = integrity(&one[..20_000]);
         merged.merge(&integrity(&other[..20_000]));

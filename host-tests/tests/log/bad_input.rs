@@ -1,18 +1,18 @@
-//! What is refused, in a line.
+//! Bad logs are refused in one line.
 
 use super::{at_100_hz, columns, counts, gzip, header, npy, refusal, rows_of_text, try_read};
 use host_tests::log::{Options, npy_header::Kind};
 use std::fmt::Write as _;
 
 #[test]
-fn outlier_that_leaves_the_noise_no_counts_is_refused() {
+fn outlier_that_makes_the_noise_smaller_than_a_count_is_refused() {
     let mut text = String::from("gx\n1e9\n");
     for [x, ..] in counts(500) {
         let _ = writeln!(text, "{}", f64::from(x) * 1e-4);
     }
     assert_eq!(
         refusal("a.csv", text.as_bytes(), &at_100_hz()),
-        "a.csv: axis gx: 499 of 500 steps between values are lost in 2^-30 of their range; \
+        "a.csv: axis gx: 499 of 500 steps between values vanish in counts of 2^-30 of the range; \
          remove the outliers that make the range so wide"
     );
 }
@@ -75,11 +75,11 @@ fn bad_text_is_refused_with_its_row() {
         (
             format!("gx,7,gz\n{good}"),
             "bad.csv:1: the first row mixes numbers and text such as \"gx\"; \
-             make it a header of names alone, or correct it",
+             make it a header of names only, or correct it",
         ),
         (
             "1,2,3\n4,5,7\n".into(),
-            "bad.csv: 2 samples, and two octaves need 9; record longer",
+            "bad.csv: 2 samples are too few: two octaves need 9; record longer",
         ),
         (
             "gx\n5\n5\n5\n5\n5\n5\n5\n5\n5\n5\n".into(),
@@ -93,7 +93,7 @@ fn bad_text_is_refused_with_its_row() {
         ),
         (
             "gx\n-1e308\n1e308\n1e308\n-1e308\n".into(),
-            "bad.csv: axis gx: its range is beyond what floats can scale; \
+            "bad.csv: axis gx: the range of its values is too wide or too narrow for floats; \
              scale the values or remove the outliers",
         ),
         (
@@ -103,12 +103,12 @@ fn bad_text_is_refused_with_its_row() {
         ),
         (
             format!("{good}1,\"2,3\n{}", good.repeat(5000)),
-            "bad.csv:51: a row of more than 1024 KiB is not one of a log; \
+            "bad.csv:51: a row is longer than 1024 KiB; \
              look for a quote that is never closed",
         ),
         (
             "x".repeat(1 << 17),
-            "bad.csv:1: a line of 64 KiB or more is not one of a log; check that the file is text",
+            "bad.csv:1: a line has 64 KiB or more; check that the file is text",
         ),
     ] {
         assert_eq!(refusal("bad.csv", text.as_bytes(), &at_100_hz()), expected);
@@ -164,11 +164,11 @@ fn bad_arrays_are_refused() {
         ),
         (
             shaped(&[51, 3]),
-            "a.npy:51: the file ends before the 51 rows of its header",
+            "a.npy:51: the file ends before the 51 rows that the header declares",
         ),
         (
             shaped(&[49, 3]),
-            "a.npy: more data behind the 49 rows of its header",
+            "a.npy: more data follow the 49 rows that the header declares",
         ),
         (shaped(&[0, 3]), "a.npy: no rows"),
         (
@@ -179,7 +179,7 @@ fn bad_arrays_are_refused() {
         (shaped(&[]), "a.npy: an array of 0 dimensions"),
         (
             shaped(&[u64::MAX, 3]),
-            "a.npy: an array of 18446744073709551615 rows cannot be",
+            "a.npy: an array of 18446744073709551615 rows is impossible",
         ),
         (shaped(&[50, 0]), "a.npy: an array of 50 rows and 0 columns"),
         (Vec::new(), "a.npy: the file ends within its header"),
@@ -187,10 +187,7 @@ fn bad_arrays_are_refused() {
             shaped(&[50, 3])[..20].to_vec(),
             "a.npy: the file ends within its header",
         ),
-        (
-            vec![b'x'; 200],
-            "a.npy: the file does not begin as a NumPy array",
-        ),
+        (vec![b'x'; 200], "a.npy: this is not a NumPy array file"),
     ] {
         let line = refusal("a.npy", &bytes, &at_100_hz());
         assert!(line.starts_with(expected) && line.contains("; "), "{line}");
@@ -203,7 +200,7 @@ fn bad_arrays_are_refused() {
 }
 
 #[test]
-fn missing_columns_are_named_with_those_there_are() {
+fn missing_columns_are_reported_with_the_existing_ones() {
     let good = rows_of_text(&counts(50));
     let named = format!("gx,gy,gz\n{good}");
     for (text, list, expected) in [

@@ -1,4 +1,4 @@
-//! What is read, and how.
+//! Logs of all formats are read into counts, with columns, units and rates as chosen.
 
 use super::{
     accumulators, assert_axes, at_100_hz, columns, counts, gzip, header, npy, read, rows_of_text,
@@ -140,7 +140,7 @@ fn floats_give_the_curve_of_their_counts_whatever_their_offset() {
 }
 
 #[test]
-fn first_number_that_is_no_count_restarts_the_reading() {
+fn first_number_that_is_not_a_count_restarts_the_reading() {
     let mut rows = counts(5000);
     rows[4000][1] = 12;
     let text = rows_of_text(&rows);
@@ -150,7 +150,7 @@ fn first_number_that_is_no_count_restarts_the_reading() {
     let text = format!("{}{x},12.5,{z}{}", &text[..at], &text[end..]);
     let log = read("late.csv", text.as_bytes(), &at_100_hz());
     let expected = accumulators(&rows);
-    // The other axes' numbers are still the counts.
+    // The numbers of the other axes remain counts.
     assert!(log.axes[0].accumulator == expected[0] && log.axes[2].accumulator == expected[2]);
     let axis = &log.axes[1];
     assert!(axis.rate_per_count < 0.05);
@@ -158,7 +158,7 @@ fn first_number_that_is_no_count_restarts_the_reading() {
 }
 
 #[test]
-fn whole_numbers_beyond_32_bits_are_numbers_all_the_same() {
+fn whole_numbers_beyond_32_bits_are_read_as_numbers() {
     let rows = counts(5000);
     let text = rows.iter().fold(String::new(), |mut text, row| {
         let _ = writeln!(text, "{}", i64::from(row[0]) + (1 << 40));
@@ -249,7 +249,7 @@ fn array_of_one_dimension_is_one_axis() {
 }
 
 #[test]
-fn comments_say_what_options_do_not() {
+fn comments_apply_where_options_are_missing() {
     let text = format!(
         "# rate_hz=200 unit=rad/s scale=0.25\ngx,gy,gz\n{}",
         rows_of_text(&counts(50))
@@ -263,7 +263,7 @@ fn comments_say_what_options_do_not() {
 }
 
 #[test]
-fn what_is_assumed_is_said() {
+fn assumptions_are_noted() {
     let options = Options {
         rate_hz: Some(100.0),
         ..Options::default()

@@ -1,4 +1,4 @@
-//! Logs of every format become the same counts, and bad ones are refused with their row.
+//! Logs of every format give the same counts, and bad ones are refused with their row.
 
 mod bad_input;
 mod counts;
@@ -16,7 +16,7 @@ use indicatif::ProgressBar;
 use std::{fmt::Write as _, fs, io::Write as _};
 use tempfile::TempDir;
 
-/// Counts of a noisy gyro with three axes, the same every time.
+/// The counts of a noisy gyro with three axes, which are the same in every run.
 fn counts(rows: usize) -> Vec<[i32; 3]> {
     let mut state = 1u32;
     let mut count = move || {
@@ -28,7 +28,7 @@ fn counts(rows: usize) -> Vec<[i32; 3]> {
         .collect()
 }
 
-/// The accumulators of counts, an axis each.
+/// The accumulators of the counts, one for each axis.
 fn accumulators(rows: &[[i32; 3]]) -> Vec<Accumulator<OCTAVES>> {
     (0..3)
         .map(|axis| {

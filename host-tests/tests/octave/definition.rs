@@ -1,9 +1,9 @@
-//! Sums as they are defined, in big integers.
+//! Computes the sums by their definition, in big integers.
 
 use allanite::Accumulator;
 use num_bigint::BigUint;
 
-/// What a record holds by definition: every count, and where the stretches end.
+/// A record by definition: every count, and where the stretches end.
 #[derive(Clone, Default)]
 pub(crate) struct Record {
     pub(crate) ended: Vec<Vec<i32>>,
@@ -11,7 +11,7 @@ pub(crate) struct Record {
     pub(crate) gaps: u64,
 }
 
-/// `m`, number of differences, Σ D².
+/// The averaging factor `m`, the number of differences, and Σ D².
 pub(crate) type Octave = (u32, u64, BigUint);
 
 impl Record {
@@ -56,7 +56,7 @@ impl Record {
     }
 }
 
-/// `θ_0 … θ_N`.
+/// The angles `θ_0 … θ_N`.
 pub(crate) fn angles(counts: &[i32]) -> Vec<i128> {
     let sums = counts.iter().scan(0, |theta, &count| {
         *theta += i128::from(count);

@@ -1,4 +1,4 @@
-//! What can happen to a record.
+//! Events that can happen to a record.
 
 use super::definition::{Record, octaves};
 use allanite::Accumulator;
@@ -6,14 +6,14 @@ use proptest::{collection::vec, prelude::*};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// A stretch of counts.
+/// A kind of stretch of counts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Counts {
-    /// Any 32 bits, a full-scale one now and then.
+    /// Any 32-bit counts, with full-scale ones among them.
     Wide { seed: u64 },
-    /// A gyro at rest.
+    /// The counts of a gyro at rest.
     Small { seed: u64 },
-    /// Full scale up and down.
+    /// Full scale with alternating sign.
     Square { half_period: usize },
 }
 
@@ -57,7 +57,7 @@ pub(crate) fn counts(longest: usize) -> impl Strategy<Value = Vec<i32>> {
     (shape, 0..=longest).prop_map(|(shape, len)| shape.take(len))
 }
 
-/// Something that happens to an accumulator.
+/// An event that happens to an accumulator.
 #[derive(Clone, Debug)]
 pub(crate) enum Event {
     Push(Vec<i32>),
@@ -65,7 +65,7 @@ pub(crate) enum Event {
     Gap,
     Read,
     Merge(Vec<Event>),
-    /// The accumulator so far is merged into another that has seen these.
+    /// The accumulator so far is merged into another one that has seen these events.
     MergeInto(Vec<Event>),
     Reset,
 }

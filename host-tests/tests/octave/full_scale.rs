@@ -1,4 +1,4 @@
-//! Nothing overflows: square waves of full scale, and sums beyond 128 bits.
+//! Nothing overflows with square waves of full scale or with sums beyond 128 bits.
 
 use super::{
     definition::{Octave, Record, big, octaves, square},
@@ -7,7 +7,7 @@ use super::{
 use allanite::Accumulator;
 use num_bigint::BigUint;
 
-/// A full-scale square wave whose sums follow from where its edges are.
+/// A full-scale square wave whose sums follow from the positions of its edges.
 #[derive(Clone, Copy)]
 struct SquareWave {
     half_period: u64,
@@ -38,7 +38,7 @@ impl SquareWave {
         }
     }
 
-    /// The angle at `n`, in closed form.
+    /// The angle at `n` in closed form.
     fn angle(self, n: u64) -> i128 {
         let (p, n) = (i128::from(self.half_period), i128::from(n));
         let (periods, rest) = (n / (2 * p), n % (2 * p));
@@ -57,7 +57,8 @@ impl SquareWave {
             let s = i * h;
             square(self.angle(s + 2 * m) - 2 * self.angle(s + m) + self.angle(s))
         };
-        // Differences repeat with the period; within it, only those that span an edge are not 0.
+        // The differences repeat with the period. Within a period, only those that span an edge are
+        // not zero.
         let period = (2 * self.half_period / h).max(1);
         let (whole, rest) = ((last + 1) / period, (last + 1) % period);
         let spans_edge = |i: &u64| {
@@ -70,7 +71,8 @@ impl SquareWave {
         let mut in_period = BigUint::ZERO;
         let mut sum = BigUint::ZERO;
         let starts = |end: u64| {
-            // Starts of differences over the edges at every half-period, each once.
+            // These are the starts of differences that span the edges at every half-period, each
+            // listed once.
             let edges = 1..=(end * h + 2 * m) / self.half_period;
             let mut next = 0;
             edges.flat_map(move |edge| {
@@ -98,7 +100,7 @@ impl SquareWave {
     }
 }
 
-/// The closed form itself, on records short enough for the definition.
+/// Checks the closed form itself, on records that are short enough for the definition.
 #[test]
 fn the_closed_form_of_square_waves_follows_the_definition() {
     for half_period in [1_u64, 2, 16, 256, 2048, 1 << 15] {
@@ -137,7 +139,7 @@ fn full_scale_square_waves_overflow_no_octave() {
 }
 
 #[test]
-fn the_largest_difference_there_is_fits_the_longest_octave() {
+fn the_largest_possible_difference_fits_the_longest_octave() {
     let wave = SquareWave {
         half_period: 1 << 29,
         samples: 1 << 30,
@@ -147,8 +149,8 @@ fn the_largest_difference_there_is_fits_the_longest_octave() {
     assert_eq!(found[29].2, square((1 << 29) * ((1 << 32) - 1)));
 }
 
-/// A wave of the period that an octave sums most of, as often as there are samples to count: 192
-/// bits hold it, and both ways of adding carry into the third limb.
+/// A wave with the period that gives an octave its largest sum, repeated for as many samples as can
+/// be counted. The sum fits into 192 bits, and both ways of adding carry into the third limb.
 #[test]
 fn sums_beyond_128_bits_stay_exact() {
     const OCTAVE: usize = 20;
@@ -165,7 +167,7 @@ fn sums_beyond_128_bits_stay_exact() {
     }
     let limit = BigUint::from(1_u8) << 128_u32;
 
-    // As close below 2^128 as whole records come, and over it by single differences.
+    // Whole records bring the sum as close below 2^128 as possible. Single samples then carry it over.
     let mut times = &limit / &once[OCTAVE].2;
     let mut accumulator = Accumulator::<30>::new();
     for (i, record) in records.iter().enumerate() {
@@ -196,7 +198,7 @@ fn sums_beyond_128_bits_stay_exact() {
             .is_some_and(|octave| octave.sum.to_u128().is_none())
     );
 
-    // 2^62 samples.
+    // The record has 2^62 samples.
     let longest = &records[39];
     assert_eq!(longest.samples(), 1 << 62);
     assert_eq!(sums(longest), multiple(&(BigUint::from(1_u8) << 39_u32)));

@@ -1,4 +1,5 @@
-//! The accumulator against its definition in big integers, and what must not change its state.
+//! Compares the accumulator with its definition in big integers, and checks what must not change
+//! its state.
 
 mod definition;
 mod events;

@@ -1,4 +1,4 @@
-//! Any sequence of counts, slices, gaps and merges sums what the definition sums.
+//! Any sequence of counts, slices, gaps and merges gives the sums of the definition.
 
 use super::{
     definition::{octaves, square},
@@ -12,10 +12,11 @@ proptest! {
     #![proptest_config(seeded(256))]
 
     #[test]
-    fn any_sequence_of_events_sums_what_the_definition_sums(events in events()) {
+    fn any_sequence_of_events_gives_the_sums_of_the_definition(events in events()) {
         let (accumulator, record) = play::<13>(&events);
         check(&accumulator, &record);
-        // Fewer octaves are the first of more, down to the least, and the most.
+        // Fewer octaves give the first ones of more octaves. The least and the largest number are
+        // tested too.
         check(&play::<2>(&events).0, &record);
         check(&play::<3>(&events).0, &record);
         check(&play::<4>(&events).0, &record);
@@ -23,7 +24,7 @@ proptest! {
     }
 
     #[test]
-    fn slices_of_any_cut_leave_the_state_of_single_counts(
+    fn slices_of_any_length_give_the_same_state_as_single_counts(
         stretches in vec((counts(2000), vec(any::<prop::sample::Index>(), 0..8)), 1..3),
     ) {
         let (mut singly, mut sliced) = (Accumulator::<13>::new(), Accumulator::<13>::new());
@@ -40,7 +41,7 @@ proptest! {
     }
 
     #[test]
-    fn a_copy_goes_on_where_the_original_stopped(before in counts(1500), after in counts(1500)) {
+    fn a_copy_continues_where_the_original_stopped(before in counts(1500), after in counts(1500)) {
         let mut one = Accumulator::<13>::new();
         one.push_slice(&before);
         let mut restarted = one.clone();
@@ -52,7 +53,7 @@ proptest! {
     }
 
     #[test]
-    fn merging_is_one_record_with_a_gap_between(first in counts(1500), second in counts(1500)) {
+    fn merging_equals_one_record_with_a_gap_between(first in counts(1500), second in counts(1500)) {
         let accumulate = |counts: &[i32]| {
             let mut accumulator = Accumulator::<13>::new();
             accumulator.push_slice(counts);
@@ -63,7 +64,7 @@ proptest! {
         let mut batch = accumulate(&first);
         batch.gap();
         batch.push_slice(&second);
-        // An empty second record leaves the first one open.
+        // If the second record is empty, the first one stays open.
         prop_assert_eq!(octaves(&merged), octaves(&batch));
         if !second.is_empty() {
             batch.gap();
@@ -72,7 +73,7 @@ proptest! {
     }
 
     #[test]
-    fn the_order_of_merging_does_not_show(first in events(), second in events()) {
+    fn the_order_of_merging_does_not_matter(first in events(), second in events()) {
         let ((mut one, _), (mut other, _)) = (play::<13>(&first), play::<13>(&second));
         let before = one.clone();
         one.merge(&other);

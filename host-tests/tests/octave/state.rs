@@ -1,4 +1,4 @@
-//! What the state is after every sample, and what leaves it alone.
+//! Checks the state after every sample, and that reading does not change it.
 
 use super::{
     definition::{angles, big, octaves, square},
@@ -8,7 +8,7 @@ use allanite::Accumulator;
 use num_bigint::BigUint;
 
 #[test]
-fn every_octave_is_complete_after_every_sample() {
+fn every_octave_is_up_to_date_after_every_sample() {
     const OCTAVES: usize = 9;
     let counts = Counts::Wide { seed: 1 }.take(1300);
     let mut accumulator = Accumulator::<OCTAVES>::new();
@@ -18,7 +18,7 @@ fn every_octave_is_complete_after_every_sample() {
         accumulator.push(counts[n - 1]);
         for k in 0..OCTAVES {
             let m = 1 << k;
-            // A difference ends here if it starts at 0 or later, at a multiple of h.
+            // A difference ends here if its start is at least 0 and a multiple of h.
             if n >= 2 * m && (n - 2 * m).is_multiple_of((m / 4).max(1)) {
                 differences[k] += 1;
                 sums[k] += square(theta[n] - 2 * theta[n - m] + theta[n - 2 * m]);
@@ -32,7 +32,7 @@ fn every_octave_is_complete_after_every_sample() {
 }
 
 #[test]
-fn reading_leaves_the_state_alone() {
+fn reading_does_not_change_the_state() {
     let counts = Counts::Wide { seed: 2 }.take(5000);
     let (mut read, mut unread) = (Accumulator::<13>::new(), Accumulator::<13>::new());
     for chunk in counts.chunks(37) {
@@ -46,7 +46,7 @@ fn reading_leaves_the_state_alone() {
 }
 
 #[test]
-fn nothing_comes_of_nothing() {
+fn an_empty_record_has_no_differences() {
     let mut accumulator = Accumulator::<30>::new();
     accumulator.gap();
     accumulator.push_slice(&[]);

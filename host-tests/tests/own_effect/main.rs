@@ -1,4 +1,5 @@
-//! An effect of one's own takes one file and one line in a list; everything else works for it.
+//! A user's own effect takes one file and one line in a list. Simulation, diagnosis and storage
+//! then work for it.
 
 mod second_order;
 
@@ -11,7 +12,7 @@ use allanite::{
 use host_tests::simulate::{Coefficients, Hidden, Simulator};
 use second_order::SecondOrderGaussMarkov;
 
-/// The list of own effects: a line for each.
+/// The list of own effects, one per line.
 const OWN: [&dyn Explain; 1] = [&SecondOrderGaussMarkov];
 
 const RATE_HZ: f64 = 100.0;
@@ -23,7 +24,7 @@ fn effects() -> Vec<&'static dyn Effect> {
     CATALOGUE.into_iter().chain(own).collect()
 }
 
-/// Every own effect, in each of its typical shapes.
+/// Every own effect in each of its typical shapes.
 fn hidden() -> impl Iterator<Item = Hidden> {
     OWN.into_iter().flat_map(|effect| {
         let shapes = effect.typical_shapes().iter();
@@ -46,7 +47,7 @@ fn curve(coefficients: Coefficients, hidden: Hidden, samples: usize, seed: u64) 
     accumulator.curve(Scale::new(QUANTUM, RATE_HZ).expect("possible"))
 }
 
-/// A gyro with white noise and flicker noise that hides an effect, diagnosed.
+/// The diagnosis of a gyro with white noise, flicker noise and a hidden effect.
 fn diagnosed(hidden: Hidden) -> (Curve<OCTAVES>, Vec<Step<OCTAVES>>) {
     let gyro = Coefficients {
         angle_random_walk: 2e-4,
@@ -65,7 +66,7 @@ fn diagnosed(hidden: Hidden) -> (Curve<OCTAVES>, Vec<Step<OCTAVES>>) {
 }
 
 #[test]
-fn it_is_simulated_with_its_own_allan_variance() {
+fn own_effect_is_simulated_with_its_own_allan_variance() {
     for hidden in hidden() {
         let curve = curve(Coefficients::default(), hidden, 1 << 19, 7);
         let shape = SampledShape {
@@ -76,14 +77,14 @@ fn it_is_simulated_with_its_own_allan_variance() {
             let expected =
                 hidden.coefficient.powi(2) * hidden.effect.variance(f64::from(point.m), &shape);
             let ratio = point.variance / expected;
-            // 2^19 samples hold 13 000 time constants.
+            // A record of 2^19 samples contains 13 000 time constants.
             assert!((ratio - 1.0).abs() < 0.06, "m = {}: {ratio}", point.m);
         }
     }
 }
 
 #[test]
-fn it_is_found_and_explained() {
+fn own_effect_is_found_and_explained() {
     for hidden in hidden() {
         let (_, steps) = diagnosed(hidden);
         let found: Vec<_> = steps
@@ -105,7 +106,7 @@ fn it_is_found_and_explained() {
 }
 
 #[test]
-fn it_is_stored_and_read_back() {
+fn own_effect_is_stored_and_read_back() {
     for hidden in hidden() {
         let (curve, steps) = diagnosed(hidden);
         let last = steps.last().expect("a step");
@@ -123,13 +124,13 @@ fn it_is_stored_and_read_back() {
         let mut buffer = [0; Certificate::MAX_BYTES];
         let stored = record.encode(&mut buffer).expect("it fits");
         let read = Certificate::decode(stored).expect("intact");
-        // NaN is what is not known, so that records are compared as bytes.
+        // The records are compared as bytes, because NaN marks unknown values.
         let mut again = [0; Certificate::MAX_BYTES];
         assert_eq!(read.encode(&mut again).expect("it fits"), stored);
 
         let term = read.axes[0].terms.last().expect("terms");
         assert_eq!(term.effect.number(), FIRST_OWN_CODE);
-        // Whoever has the list knows the effect, and nobody else.
+        // The effect is known only with a list that contains it.
         let known = term.effect.effect_of(&effects()).expect("in the list");
         assert_eq!(known.name(), hidden.effect.name());
         assert_eq!(term.effect.name(), "other");
@@ -162,6 +163,6 @@ impl Effect for Impostor {
 }
 
 #[test]
-fn none_is_stored_under_a_code_of_the_catalogue() {
+fn own_effect_is_not_stored_under_a_code_of_the_catalogue() {
     assert_eq!(EffectCode::of(&Impostor), EffectCode::OTHER);
 }

@@ -1,4 +1,4 @@
-//! An effect that the catalogue does not have, all of it in this file.
+//! An effect that is not in the catalogue. This file contains all of it.
 
 use allanite::{
     Real,
@@ -9,11 +9,11 @@ use allanite::{
 };
 
 /// A critically damped Gauss–Markov process of second order. The coefficient is its rms `s` in rate
-/// units, the shape parameter its time constant `T` in seconds.
+/// units, and the shape parameter is its time constant `T` in seconds.
 ///
 /// The autocovariance is `r(n) = s² (1 + an) zⁿ` with `a = τ₀/T` and `z = e^(−a)` (Gelb, Applied
-/// Optimal Estimation, 1974, table 2.2-1). With the kernel `P(z)` of one real pole, whose
-/// autocovariance is `zⁿ`, it is `G = P + a z ∂P/∂z`.
+/// Optimal Estimation, 1974, table 2.2-1). If `P(z)` is the kernel of one real pole, whose
+/// autocovariance is `zⁿ`, the kernel of this process is `G = P + a z ∂P/∂z`.
 pub(crate) struct SecondOrderGaussMarkov;
 
 impl Effect for SecondOrderGaussMarkov {

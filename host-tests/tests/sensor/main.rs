@@ -1,5 +1,5 @@
-//! Sensors on mocked buses: what is said to them, what is made of their answers, what becomes of
-//! errors, and samples that come at the wrong time.
+//! Tests sensors on mocked buses: the transfers, the decoded samples, the handling of errors, and
+//! samples that come at the wrong time.
 
 mod pace;
 mod record;

@@ -1,14 +1,14 @@
-//! Timestamps: skipped samples, and a rate that is not the configured one.
+//! Timestamps reveal skipped samples, and a rate that differs from the configured one.
 
 use crate::sheet::{Sheet, start};
 use allanite::Axes;
 use allanite::Error;
 use allanite::sensor::{ICM_42688_P, Pace};
 
-/// The number of samples behind which there is a verdict: one more than intervals.
+/// The number of samples before there is a verdict. It is one more than the number of intervals.
 const WINDOW: u32 = 257;
 
-/// Timestamps of samples at `rate_hz`, the counter about to wrap, with a jitter of reading.
+/// The timestamps of samples at `rate_hz`, with jitter. The counter is about to wrap.
 fn stamps(rate_hz: f64, number: u32) -> impl Iterator<Item = u32> {
     (0..number).map(move |n| {
         let jitter_us = n.wrapping_mul(2_654_435_761) >> 21;
@@ -18,7 +18,7 @@ fn stamps(rate_hz: f64, number: u32) -> impl Iterator<Item = u32> {
 }
 
 #[test]
-fn a_rate_within_the_tolerance_is_not_contradicted() {
+fn a_rate_within_the_tolerance_is_accepted() {
     for rate_hz in [95.5, 97.0, 100.0, 104.0, 104.5] {
         let mut pace = Pace::new(100.0).unwrap();
         for stamp in stamps(rate_hz, WINDOW) {
@@ -34,7 +34,7 @@ fn a_rate_within_the_tolerance_is_not_contradicted() {
 }
 
 #[test]
-fn a_rate_beyond_the_tolerance_is_an_error_that_tells_both() {
+fn a_rate_beyond_the_tolerance_is_an_error_with_both_rates() {
     for rate_hz in [10.0, 50.0, 94.5, 105.5, 200.0, 1000.0] {
         let mut pace = Pace::new(100.0).unwrap();
         for stamp in stamps(rate_hz, WINDOW) {
@@ -73,7 +73,7 @@ fn the_tolerance_can_be_chosen() {
 }
 
 #[test]
-fn a_rate_that_changes_is_seen_a_window_later() {
+fn a_change_of_rate_is_detected_one_window_later() {
     let mut pace = Pace::new(100.0).unwrap();
     let good: Vec<u32> = stamps(100.0, WINDOW).collect();
     for &stamp in &good {
@@ -88,7 +88,7 @@ fn a_rate_that_changes_is_seen_a_window_later() {
 }
 
 #[test]
-fn a_pause_counts_neither_as_loss_nor_as_time() {
+fn a_pause_is_neither_a_loss_nor_part_of_the_rate() {
     let mut pace = Pace::new(100.0).unwrap();
     for n in 0..100 {
         pace.stamp(n * 10_000);
@@ -101,7 +101,7 @@ fn a_pause_counts_neither_as_loss_nor_as_time() {
 }
 
 #[test]
-fn a_clock_that_stands_still_is_contradicted() {
+fn a_clock_that_stands_still_is_reported() {
     let mut pace = Pace::new(100.0).unwrap();
     assert_eq!(pace.stamp(5), 1);
     for _ in 1..WINDOW {
@@ -118,7 +118,7 @@ fn impossible_rates_are_refused() {
     }
 }
 
-/// Most sensors do not tell that a sample was overwritten; the time does.
+/// Most sensors do not report that a sample was overwritten. The timestamps reveal it.
 #[test]
 fn samples_that_were_read_too_late_become_a_gap() {
     let sheet = Sheet::of(&ICM_42688_P);
@@ -137,7 +137,7 @@ fn samples_that_were_read_too_late_become_a_gap() {
     mock.done();
     let [x, _, _] = axes.accumulators();
     assert_eq!((axes.losses(), x.gaps(), x.samples()), (1, 1, 40));
-    // A ramp of one count a sample, on both sides of the gap.
+    // The counts are a ramp of one count per sample on both sides of the gap.
     assert_eq!(x.octave(0).unwrap().differences, 38);
     assert_eq!(x.octave(0).unwrap().sum, {
         let mut ramp = allanite::Accumulator::<8>::new();

@@ -1,4 +1,4 @@
-//! From samples to accumulators: flags, overruns, failing buses, other drivers.
+//! Samples on their way to accumulators: flags, overruns, failing buses, and other drivers.
 
 use crate::sheet::{Sheet, start};
 use allanite::sensor::{BMI160, Error, L3GD20, MPU_6050};
@@ -6,13 +6,13 @@ use allanite::{Accumulator, Axes};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use embedded_hal_mock::eh1::i2c::Mock as I2cMock;
 
-/// Three axes as they are read.
+/// Three axes without other parts.
 type Three = Axes<8, 0, (), ()>;
 
 #[test]
 fn no_sample_is_read_before_the_flag_is_up() {
     let sheet = Sheet::of(&BMI160);
-    // All other flags are up.
+    // All other flags are set.
     let turn = sheet.i2c_read(sheet.status, vec![!sheet.ready]);
     let (mut imu, mut mock) = start(sheet, [turn]);
     let outcome = imu.read();
@@ -39,13 +39,13 @@ fn an_overrun_is_a_gap_before_the_sample() {
     }
     mock.done();
     assert_eq!(axes.losses(), 1);
-    // Not a difference spans the gap: (7 − 5)² + (101 − 100)².
+    // No difference spans the gap, so the sums are (7 − 5)² + (101 − 100)².
     assert_eq!(expected.octave(0).unwrap().differences, 2);
     assert_eq!(axes.accumulators(), [(); 3].map(|()| &expected));
 }
 
 #[test]
-fn a_bus_error_amid_a_record_costs_a_gap_and_nothing_else() {
+fn a_bus_error_within_a_record_only_causes_a_gap() {
     let sheet = Sheet::of(&MPU_6050);
     let count = |n: i16| [n * n, -3 * n, 7];
     let nack = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
@@ -53,7 +53,7 @@ fn a_bus_error_amid_a_record_costs_a_gap_and_nothing_else() {
     for n in 0..60 {
         let [status, block] = sheet.i2c_sample(sheet.ready, count(n));
         match n {
-            // Without an answer there is no flag to read on from.
+            // Without an answer there is no flag, so that no sample is read.
             20 => turns.push(status.with_error(nack)),
             40 | 41 => turns.extend([status, block.with_error(ErrorKind::Bus)]),
             _ => turns.extend([status, block]),

@@ -1,4 +1,4 @@
-//! What data sheets say, written down a second time, as conversations on mocked buses.
+//! The contents of data sheets, stated independently as transfers on mocked buses.
 
 use allanite::sensor::{
     BMI160, Description, I2cBus, ICM_42688_P, Imu, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Reading,
@@ -7,17 +7,18 @@ use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock as I2cMock, Transaction as I2cTurn};
 use embedded_hal_mock::eh1::spi::Transaction as SpiTurn;
 
-/// What a data sheet says, written down a second time.
+/// The contents of a data sheet, stated independently of the library.
 pub(crate) struct Sheet {
     pub(crate) description: &'static Description,
-    /// I²C address; bits of a read over SPI and over I²C.
+    /// The I²C address, and the bits that mark a read over SPI and over I²C.
     pub(crate) bus: (u8, u8, u8),
-    /// Register and value.
+    /// The identity register and its value.
     pub(crate) identity: (u8, u8),
-    /// Register, value, and whether over I²C as well.
+    /// The register, the value, and whether the write also happens over I²C.
     pub(crate) writes: &'static [(u8, u8, bool)],
     pub(crate) status: u8,
-    /// First register and number of what is read at once; offsets of gyro and temperature.
+    /// The first register and the number of bytes that are read at once, and the offsets of gyro
+    /// and temperature in them.
     pub(crate) block: (u8, usize, usize, Option<usize>),
     pub(crate) big_endian: bool,
     pub(crate) ready: u8,
@@ -108,7 +109,7 @@ pub(crate) const SHEETS: [Sheet; 6] = [
     },
 ];
 
-/// Temperature that every sample here has, in counts.
+/// The temperature of every sample here, in counts.
 const TEMPERATURE: i16 = -258;
 
 impl Sheet {
@@ -121,7 +122,7 @@ impl Sheet {
 
     pub(crate) fn block(&self, gyro: [i16; 3]) -> Vec<u8> {
         let (_, length, gyro_at, temperature_at) = self.block;
-        // What lies between is not to be taken for a count.
+        // The bytes between are nonsense, so that taking them for counts would be noticed.
         let mut block = vec![0xA5; length];
         let mut put = |at: usize, count: i16| {
             let bytes = match self.big_endian {
@@ -201,7 +202,7 @@ impl Sheet {
     }
 }
 
-/// Starts over I²C; `turns` follow.
+/// Starts a sensor over I²C and then expects `turns`.
 pub(crate) fn start(
     sheet: &Sheet,
     turns: impl IntoIterator<Item = I2cTurn>,

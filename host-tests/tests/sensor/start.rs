@@ -1,4 +1,5 @@
-//! From the identity to the first sample, over either bus, and why a start may fail.
+//! Starts sensors over either bus, from the identity to the first sample, and checks why a start
+//! may fail.
 
 use crate::sheet::{SHEETS, Sheet, start};
 use allanite::sensor::{
@@ -10,11 +11,12 @@ use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::Mock as I2cMock;
 use embedded_hal_mock::eh1::spi::{Mock as SpiMock, Transaction as SpiTurn};
 
-/// Negative, positive and the most negative, so that bytes and axes cannot be swapped unnoticed.
+/// A negative count, a positive one and the most negative one, so that swapped bytes or axes are
+/// noticed.
 const GYRO: [i16; 3] = [-2, 0x1234, i16::MIN];
 
 #[test]
-fn every_description_has_a_sheet() {
+fn every_sensor_description_has_a_data_sheet() {
     let names: Vec<_> = SHEETS.iter().map(|sheet| sheet.description.name).collect();
     assert_eq!(names, CATALOGUE.map(|description| description.name));
 }
@@ -41,7 +43,7 @@ fn every_sensor_starts_and_reads_over_spi() {
         let mut turns = sheet.spi_start();
         turns.extend(sheet.spi_sample(sheet.ready, GYRO));
         let mut mock = SpiMock::new(&turns);
-        // Lent: the device is still there after the source is gone.
+        // The device is lent to the source and can be used afterwards.
         let bus = SpiBus::new(&mut mock);
         let mut imu = Imu::start(bus, sheet.description, &mut NoopDelay).unwrap();
         assert_eq!(
@@ -86,7 +88,7 @@ fn another_address_is_used_throughout() {
 }
 
 #[test]
-fn a_strange_identity_ends_the_start() {
+fn an_unknown_identity_ends_the_start() {
     let sheet = Sheet::of(&ICM_42688_P);
     let mut mock = I2cMock::new(&[sheet.i2c_read(0x75, vec![0x68])]);
     let error = Imu::start(I2cBus::new(mock.clone()), &ICM_42688_P, &mut NoopDelay).unwrap_err();

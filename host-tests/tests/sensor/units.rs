@@ -1,4 +1,4 @@
-//! What counts stand for.
+//! Tests the scales of gyro and temperature counts.
 
 use allanite::sensor::{
     BMI160, CATALOGUE, Description, ICM_42688_P, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Temperature,
@@ -31,7 +31,7 @@ fn temperatures_are_those_of_the_data_sheets() {
 fn scales_span_the_range_that_was_set() {
     for description in CATALOGUE {
         let full = description.scale_dps * 32768.0;
-        // ±250 °/s; sensitivities leave up to a seventh beyond.
+        // The range is ±250 °/s. The sensitivities allow up to a seventh more.
         assert!(
             (249.0..290.0).contains(&full),
             "{}: {full}",

@@ -1,9 +1,10 @@
-//! Cycles of a graph.
+//! Finds cycles in a graph.
 
 use crate::import::Graph;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-/// A shortest cycle through each group of files that reach each other: from a file back to itself.
+/// A shortest cycle through each group of files that reach each other. It leads from a file back to
+/// itself.
 pub(crate) fn shortest(graph: &Graph) -> Vec<Vec<&str>> {
     let mut told = BTreeSet::new();
     let mut cycles = Vec::new();
@@ -19,7 +20,7 @@ pub(crate) fn shortest(graph: &Graph) -> Vec<Vec<&str>> {
     cycles
 }
 
-/// A shortest way from a file back to itself.
+/// A shortest path from a file back to itself.
 fn from<'a>(graph: &'a Graph, start: &'a str) -> Option<Vec<&'a str>> {
     let mut before: BTreeMap<&str, &str> = BTreeMap::new();
     let mut waiting = VecDeque::from([start]);

@@ -1,4 +1,4 @@
-//! Which file names the items of which others.
+//! Finds which file names the items of which others.
 
 use crate::source::{Crate, File, Module, ModulePath};
 use proc_macro2::{TokenStream, TokenTree};
@@ -8,10 +8,10 @@ use syn::{
     visit::{self, Visit},
 };
 
-/// Files, and those that each names.
+/// The files, and for each of them the files whose items it names.
 pub(crate) type Graph = BTreeMap<String, BTreeSet<String>>;
 
-/// A path through more re-exports than this leads nowhere.
+/// The largest number of re-exports that a path is followed through.
 const LONGEST_WAY: usize = 16;
 
 /// The graph of a crate.
@@ -37,7 +37,7 @@ fn imported(of: &Crate, name: &str, file: &File) -> BTreeSet<String> {
             Some(Place::Item(file)) => {
                 imported.insert(file);
             }
-            // The items that are named in it count, where they are named.
+            // The items in a module count where they are named.
             Some(Place::Module) => assert!(!glob, "{name}: {path:?}::* hides what is imported"),
             None => assert!(!is_own(&path[0]), "{name}: {path:?} leads nowhere"),
         }
@@ -46,15 +46,15 @@ fn imported(of: &Crate, name: &str, file: &File) -> BTreeSet<String> {
     imported
 }
 
-/// A path, and the module in which it stands.
+/// A path and the module that contains it.
 struct Found {
     module: ModulePath,
     path: ModulePath,
-    /// Whether `::*` follows.
+    /// Whether `::*` follows the path.
     glob: bool,
 }
 
-/// Every path in a file.
+/// Collects every path in a file.
 struct Paths {
     module: ModulePath,
     found: Vec<Found>,
@@ -71,7 +71,7 @@ impl Paths {
         }
     }
 
-    /// A macro's arguments are words: paths among them are names between double colons.
+    /// The arguments of a macro are tokens. Paths among them are names between double colons.
     fn add_tokens(&mut self, tokens: TokenStream) {
         let mut path = ModulePath::new();
         let mut colons = 0;
@@ -106,7 +106,8 @@ impl<'ast> Visit<'ast> for Paths {
     }
 
     fn visit_item_use(&mut self, import: &'ast ItemUse) {
-        // A name that is passed on is no import; where this file uses it as well, it is met again.
+        // A re-export is not an import. If this file also uses the name, that use is found
+        // separately.
         if !matches!(import.vis, Visibility::Inherited) {
             return;
         }
@@ -139,12 +140,12 @@ impl<'ast> Visit<'ast> for Paths {
     }
 }
 
-/// Whether a path that begins so stays in the crate.
+/// Whether a path that begins with this name stays in the crate.
 fn is_own(first: &str) -> bool {
     ["crate", "self", "super"].contains(&first)
 }
 
-/// What a path names.
+/// The target of a path.
 enum Place {
     /// An item that this file defines.
     Item(String),
@@ -152,7 +153,7 @@ enum Place {
     Module,
 }
 
-/// What a path names, seen from a module; nothing if that is another crate's.
+/// The target of a path, seen from a module. Returns `None` if it belongs to another crate.
 fn leads_to(of: &Crate, module: &[String], path: &[String], ways: usize) -> Option<Place> {
     let (first, rest) = path.split_first()?;
     match first.as_str() {
@@ -176,7 +177,7 @@ fn leads_to(of: &Crate, module: &[String], path: &[String], ways: usize) -> Opti
     }
 }
 
-/// The same of a path that begins in this module.
+/// The target of a path that begins in this module.
 fn below(of: &Crate, module: &[String], path: &[String], ways: usize) -> Option<Place> {
     let here = of.modules.get(module)?;
     let Some((first, rest)) = path.split_first() else {
@@ -192,7 +193,7 @@ fn below(of: &Crate, module: &[String], path: &[String], ways: usize) -> Option<
     }
     let ways = ways.checked_sub(1)?;
     if let Some(way) = here.imports.get(first) {
-        // Another crate's name that is passed on belongs to the file that does so.
+        // If the name of another crate is re-exported, it belongs to the file that does so.
         return leads_to(of, module, &[way, rest].concat(), ways).or_else(|| Some(item()));
     }
     let by_glob = here.globs.iter().find_map(|glob| {

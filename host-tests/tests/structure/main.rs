@@ -1,10 +1,11 @@
-//! No two files of a crate import each other, not even by way of others.
+//! No two files of a crate import each other, not even through other files.
 //!
-//! A node of the graph is a file. An edge leads from a file to every file whose items it names, in a `use`
-//! declaration or anywhere else: to the file that defines the item, whatever re-exports lie between. A
-//! re-export (`pub use`) alone is no edge, nor is the declaration of a module. So the file of a folder,
-//! `mod.rs`, may define what its children use and pass on what they define, but not use it itself. Test
-//! modules are left out.
+//! A node of the graph is a file. An edge leads from a file to every file whose items it names, in
+//! a `use` declaration or anywhere else. It ends at the file that defines the item, even if the
+//! name is re-exported on the way. A re-export (`pub use`) alone is not an edge, and neither is the
+//! declaration of a module. The file `mod.rs` of a folder may therefore define what its children
+//! use and re-export what they define, but it may not use their items itself. Test modules are left
+//! out.
 
 mod cycle;
 mod import;
@@ -15,7 +16,7 @@ use std::path::Path;
 
 const HOST: &str = env!("CARGO_MANIFEST_DIR");
 
-/// One line for each group of files that import each other.
+/// Describes each group of files that import each other on a line.
 fn cycles(of: &Crate) -> Vec<String> {
     let graph = import::graph(of);
     let cycles = cycle::shortest(&graph).into_iter();
@@ -72,7 +73,7 @@ fn files_that_import_each_other_are_found() {
 }
 
 #[test]
-fn a_cycle_by_way_of_a_third_file_or_a_macro_is_found() {
+fn a_cycle_through_a_third_file_or_a_macro_is_found() {
     let found = cycles_of(&[
         ("lib.rs", "mod a; mod b; mod c;"),
         ("a.rs", "use crate::b; fn f() { b::f() }"),
@@ -86,7 +87,7 @@ fn a_cycle_by_way_of_a_third_file_or_a_macro_is_found() {
 }
 
 #[test]
-fn a_reexport_leads_to_the_file_that_defines() {
+fn a_reexport_leads_to_the_file_that_defines_the_item() {
     let mut files = [
         ("lib.rs", "pub mod log; pub use log::{Log, Record};"),
         (
@@ -100,7 +101,7 @@ fn a_reexport_leads_to_the_file_that_defines() {
         ),
     ];
     assert_eq!(cycles_of(&files), [""; 0]);
-    // The same folder, whose parent uses what it passes on.
+    // In this version of the folder, the parent uses an item that it re-exports.
     let parent = "mod record; mod reader; pub use record::*; pub use reader::Reader; pub struct Log(Reader);";
     files[1].1 = parent;
     let expected = ["log/mod.rs → log/reader.rs → log/mod.rs"];
@@ -108,7 +109,7 @@ fn a_reexport_leads_to_the_file_that_defines() {
 }
 
 #[test]
-fn tests_may_import_what_they_like() {
+fn tests_may_import_anything() {
     let found = cycles_of(&[
         ("lib.rs", "mod a; mod b;"),
         (

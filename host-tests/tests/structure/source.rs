@@ -1,4 +1,4 @@
-//! The files of a crate as its modules: what each defines, and what it imports under which name.
+//! Reads the files of a crate as modules: what each defines, and what it imports under which name.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -7,10 +7,10 @@ use std::{
 };
 use syn::{Attribute, Item, UseTree};
 
-/// The names on the way from the root of the crate.
+/// The names on the path from the root of the crate to a module.
 pub(crate) type ModulePath = Vec<String>;
 
-/// A crate's files by their names, and its modules by their paths.
+/// The files of a crate by their names, and its modules by their paths.
 #[derive(Default)]
 pub(crate) struct Crate {
     pub files: BTreeMap<String, File>,
@@ -27,18 +27,18 @@ pub(crate) struct File {
 #[derive(Default)]
 pub(crate) struct Module {
     pub file: String,
-    /// Names of the items that it defines.
+    /// The names of the items that the module defines.
     pub defined: BTreeSet<String>,
-    /// Whether it calls macros, which may define more.
+    /// Whether the module calls macros, which may define more items.
     pub calls_macros: bool,
-    /// What `use` declarations bring in: the name here, and the path there.
+    /// The imports of `use` declarations: the name in this module, and the path of the item.
     pub imports: BTreeMap<String, ModulePath>,
-    /// Modules of which everything is brought in.
+    /// The modules of which everything is imported.
     pub globs: Vec<ModulePath>,
 }
 
 impl Crate {
-    /// The crate whose root is in this folder. Programs are crates of their own and left out.
+    /// Reads the crate whose root is in this folder. Programs are separate crates and are left out.
     pub(crate) fn read(root: &Path) -> Self {
         let mut files = Vec::new();
         collect(root, root, &mut files);
@@ -97,7 +97,7 @@ impl Crate {
 }
 
 impl Module {
-    /// Takes in the names that a `use` declaration brings.
+    /// Records the names that a `use` declaration imports.
     pub(crate) fn import(&mut self, tree: &UseTree, before: &mut ModulePath) {
         match tree {
             UseTree::Path(path) => {
@@ -125,7 +125,7 @@ impl Module {
             path.push(name.to_owned());
         }
         let alias = match alias {
-            // Several `as _` do not hide each other.
+            // Several imports as `_` do not replace each other.
             Some(alias) if alias == "_" => path.join("::"),
             Some(alias) => alias,
             None => path.last().cloned().unwrap_or_default(),
@@ -149,7 +149,8 @@ fn collect(root: &Path, folder: &Path, files: &mut Vec<(String, String)>) {
     }
 }
 
-/// `["log", "record"]` of `log/record.rs`, `["log"]` of `log/mod.rs`.
+/// The path of the module in a file: `["log", "record"]` for `log/record.rs`, `["log"]` for
+/// `log/mod.rs`.
 fn module_path(file: &str) -> ModulePath {
     let stem = file.strip_suffix(".rs").unwrap_or(file);
     let mut path: ModulePath = stem.split('/').map(str::to_owned).collect();
@@ -159,7 +160,7 @@ fn module_path(file: &str) -> ModulePath {
     path
 }
 
-/// The modules of a file that exist in tests only and lie in files of their own.
+/// The modules of a file that are compiled only for tests and have files of their own.
 fn test_files(path: &ModulePath, items: &[Item]) -> Vec<ModulePath> {
     let modules = items.iter().filter(|item| is_test(item));
     modules

@@ -6,7 +6,7 @@ mod kept;
 mod part;
 mod sample;
 #[cfg(feature = "storage")]
-mod snapshot;
+pub mod snapshot;
 
 pub use evidence::AxisEvidence;
 pub use part::{GatePart, Gated, MomentPart, Moments};

@@ -7,7 +7,7 @@ mod kept;
 mod moments;
 mod sample;
 #[cfg(feature = "storage")]
-mod snapshot;
+pub mod snapshot;
 
 pub use evidence::AxisEvidence;
 pub use gate::{GatePart, Gated};

@@ -1,4 +1,206 @@
-#![doc = include_str!("../README.md")]
+//! Noise coefficients of a gyro, computed on its own microcontroller: from raw counts to an Allan curve, to a
+//! fit with honest intervals, and to the effect that is missing where the usual terms do not explain the record.
+//!
+//! # Example
+//!
+//! ```
+//! use allanite::{Axis, Model, Scale, fit::{Options, State, fit}};
+//!
+//! // One axis of 20 octaves: averaging times from one sample to 2^19 samples.
+//! let mut gyro = Axis::<20>::new();
+//! # let mut random = 1_u32;
+//! # let mut read_gyro = || {
+//! #     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+//! #     (random >> 24) as i32
+//! # };
+//! for _ in 0..100_000 {
+//!     gyro.push(read_gyro()); // counts of the driver, in integers only
+//! }
+//! gyro.release(); // the record ends here
+//!
+//! // 131 counts per °/s, 100 samples per second.
+//! let record = gyro.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [])?;
+//! assert_eq!(record.invalid, None); // the gyro was at rest, and its counts are not stuck
+//! let fit = fit(&record.curve, &Model::ieee_952(), Options::default())?;
+//! let white = &fit.coefficients[1];
+//! assert_eq!((white.name, white.state), ("angle_random_walk", State::Measured));
+//! assert!(white.lower < white.value && white.value < white.upper); // 95 %, in °/s/√Hz
+//! assert_eq!(fit.is_adequate(), Some(true)); // the five terms explain this record
+//! # Ok::<(), allanite::Error>(())
+//! ```
+//!
+//! # Main types
+//!
+//! * [`Axes`] keeps everything of a record of three axes behind one `push`, and [`Axis`] does so for one axis.
+//!   [`Accumulator`] is the least that makes a curve.
+//! * [`Curve`] is the Allan curve: at most 30 points, an octave apart. Nothing behind it needs a sample again.
+//! * [`Model`] is a list of effects, such as the five terms of IEEE Std 952.
+//! * [`fit::fit`] fits a model to a curve in one call. [`fit::Fitting`] does the same in pieces, for a main loop
+//!   that has to feed a watchdog.
+//! * [`Comparison`] says where the model fails, octave by octave and in words.
+//! * [`diagnosis::Diagnosis`] finds the effect that is missing, in one call or in pieces.
+//! * [`self_test::SelfTest`] holds coefficients to limits, and decides as soon as the record allows it.
+//! * [`effect::Effect`] is a physical effect. [`effect::CATALOGUE`] lists the known ones, and
+//!   [one of your own](#an-effect-of-your-own) joins them.
+//!
+//! # The way of the data
+//!
+//! ```text
+//! counts (i32) ─► octave accumulator ─► Allan curve ─► fit(model) ─► comparison ─► diagnosis
+//!  gap(), merge()    integers only       ≤ 30 points    covariance     z, χ², p      what is missing
+//! ```
+//!
+//! | module | what it does |
+//! |---|---|
+//! | [`sensor`] | reads an IMU on SPI or I²C through embedded-hal 1.0: a sensor is a description, and six are there |
+//! | [`queue`] | hands samples from an interrupt to the main loop, and loses none silently |
+//! | [`axis`] | leaves out samples that are stuck, at a rail, spikes or motion, and keeps everything else |
+//! | [`octave`] | is the accumulator: quarter-overlapping differences of adjacent clusters, exact in 192 bits |
+//! | [`integrity`] | judges whether the record is one of a gyro at rest |
+//! | [`kurtosis`], [`covariate`] | keep evidence beside the curve: jumps of the rate, and what follows a temperature |
+//! | [`curve`] | holds τ, averaging factor, variance and number of differences of each octave |
+//! | [`effect`], [`model`] | say what a curve is made of: one file an effect, and lists of effects |
+//! | [`fit`] | estimates the coefficients, with intervals and a goodness of fit |
+//! | [`comparison`] | compares model and measurement |
+//! | [`diagnosis`] | looks for the missing effect |
+//! | [`self_test`] | gives a verdict against limits |
+//! | [`storage`] | keeps what outlives the power, as checked bytes |
+//!
+//! Every effect is one function, the generalised covariance of the angle. Its Allan variance follows from this
+//! function, and so does the way in which the octaves scatter together, finite record and overlap included
+//! ([`fit::curve_covariance`]). The weights of the fit, the intervals and χ² follow in turn. A coefficient is
+//! *measured*, with a 95 % interval; or it has an *upper bound*; or it is *not observable*, and then the result
+//! gives the length of the record that would measure it ([`fit::State`]).
+//!
+//! The method started from Lv, Liu, Lai & Huang, *Allan variance method for gyro noise analysis using weighted
+//! least square algorithm*, Optik 2015, whose weighting is [`fit::Method::RelativeAccuracy`]. The default is
+//! [`fit::Method::Covariance`].
+//!
+//! The folder `src/bin` holds programs to start from. `product.rs` does all that a product does: three axes and
+//! a temperature, self-test, snapshot, diagnosis. `interrupt` hands samples from an interrupt to the main loop.
+//! `hidden_effect.rs` names what is hidden in its gyro, and a test compares it with the host, to the bit.
+//!
+//! # Cost
+//!
+//! These are rounded figures of a Cortex-M4F in single precision, built for size. `cargo xtask bench` in the
+//! repository measures them. It counts instructions in QEMU, not cycles. Its `host-tests/README.md` has the
+//! exact figures of seven cores in both precisions.
+//!
+//! | what | about |
+//! |---|---|
+//! | a sample into an accumulator, any number of octaves | 140 instructions |
+//! | RAM of an accumulator of 24 octaves | 2400 bytes |
+//! | flash of accumulator, curve and fit | 24 000 bytes |
+//! | flash with the diagnosis and the whole catalogue | 45 000 bytes |
+//! | a fit of 20 octaves | 6.4 million instructions |
+//!
+//! A sample always takes a bounded number of instructions, whatever the input and however long the record. The
+//! library does not allocate and has no `unsafe` code, and no input makes it panic. [`Axes`] names its own cost,
+//! which is higher, because it keeps more.
+//!
+//! # Features
+//!
+//! No feature is on by default.
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `storage` | snapshots of a record and factory certificates, as checked bytes |
+//! | `flash` | snapshots in any flash that implements `embedded-storage-async`; includes `storage` |
+//! | `defmt` | `defmt::Format` on public values; the library itself never logs |
+//! | `double` | double precision instead of single, for final programs on a workstation only |
+//! | `firmware` | what the images in `src/bin` need; not for dependants |
+//!
+//! The library computes in single precision unless the program asks for `double`. Single precision needs two
+//! thirds of the flash. On a core that computes it in hardware, a fit takes a third of the time and a diagnosis a
+//! fifth. The results agree to a thousandth of their standard errors. Of 4000 simulated gyros, 1000 with each of
+//! three hidden effects and 1000 with none, 3999 get the same diagnosis as in double precision. The other one
+//! gets the second of two effects that are called ambiguous (`cargo xtask study precision`).
+//!
+//! A library must not ask for `double`: it changes the type of public numbers for every other crate in the build.
+//! Code that compiles in both precisions writes [`Real`].
+//!
+//! A core without atomic instructions, such as RV32IMC, needs [`portable-atomic`] for the [`queue`]. The program
+//! turns on its feature `unsafe-assume-single-core` or `critical-section`.
+//!
+//! [`portable-atomic`]: https://docs.rs/portable-atomic
+//!
+//! # Samples were lost
+//!
+//! [`Axes::gap`] marks the place, and [`Axes::missing`] also counts the samples. No difference spans the gap, and
+//! everything before it stays. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the
+//! two. [`Accumulator`] has `gap` and `merge` too.
+//!
+//! # The power may fail
+//!
+//! With the feature `storage`, [`Axes::snapshot`] writes everything that is kept to a buffer, running self-tests
+//! included, and [`Axes::restore`] reads it back. It refuses bytes that have changed. A snapshot of an
+//! [`Accumulator`] alone takes some 250 bytes. With the feature `flash`, a [`storage::SnapshotStore`] keeps
+//! snapshots in flash: a power cut in the middle of a write leaves the one before.
+//! [`storage::SnapshotInterval`] says when the next one is due.
+//!
+//! A [`storage::Certificate`] is a factory calibration in some 600 bytes: device, conditions, coefficients and
+//! verdict. `cargo allanite decode FILE…` prints certificates and snapshots on a workstation.
+//!
+//! The formats are documented byte by byte: [`storage::envelope`] surrounds everything that is stored,
+//! [`storage::snapshot`] and [`axis::snapshot`] are the two versions of a snapshot, and
+//! [`storage::certificate`] is the factory calibration.
+//!
+//! # An effect of your own
+//!
+//! An effect is a description and a kernel, the generalised covariance of the angle. It takes one file, and one
+//! line in the list of effects that a diagnosis tries.
+//!
+//! ```
+//! use allanite::{Accumulator, Model, Real, Scale};
+//! use allanite::diagnosis::{Addition, Diagnosis, Evidence, Options, Verdict};
+//! use allanite::effect::{
+//!     CATALOGUE, Description, Distribution, Effect, FIRST_OWN_CODE, SampledShape,
+//! };
+//!
+//! struct MainsHum;
+//!
+//! impl Effect for MainsHum {
+//!     fn description(&self) -> &'static Description {
+//!         &Description {
+//!             name: "mains_hum",
+//!             symbol: "H",
+//!             coefficient: "amplitude",
+//!             half_seconds: 0, // the unit of the coefficient is that of the rate
+//!             parameters: &[],
+//!             code: FIRST_OWN_CODE, // the number in stored records
+//!             replaces: None,
+//!             mirror: None,
+//!             distribution: Distribution::Gaussian,
+//!         }
+//!     }
+//!
+//!     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+//!         // −G″ is the autocovariance of a sinusoid of random phase, cos(ωt)/2.
+//!         let omega = 2.0 * std::f64::consts::PI as Real * 50.0;
+//!         // Without std, take the cosine from `libm`.
+//!         (omega * lag * shape.interval_s).cos() / (2.0 * omega * omega)
+//!     }
+//! }
+//!
+//! // White noise, and hum of 50 Hz, sampled at 1 kHz.
+//! let (mut gyro, mut random) = (Accumulator::<16>::new(), 1_u32);
+//! for n in 0..1 << 16 {
+//!     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+//!     let hum = 40.0 * (2.0 * std::f64::consts::PI * 0.05 * f64::from(n)).sin();
+//!     gyro.push((random >> 24) as i32 + hum as i32);
+//! }
+//! let curve = gyro.curve(Scale::new(0.01, 1000.0)?);
+//! let effects: [&dyn Effect; 2] = [&MainsHum, CATALOGUE[0]]; // or all of the catalogue
+//! let (model, options) = (Model::ieee_952(), Options::default());
+//! let diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &effects, options)?;
+//! let verdict = diagnosis.run(|step| match step.added {
+//!     Some(Addition::Effect(term)) => assert_eq!(term.effect.name(), "mains_hum"),
+//!     _ => assert_eq!(step.fit.is_adequate(), Some(true)),
+//! })?;
+//! assert_eq!(verdict, Verdict::Improved);
+//! # Ok::<(), allanite::Error>(())
+//! ```
+
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -45,3 +247,8 @@ pub use heapless;
 pub use model::{Model, Term};
 pub use octave::Accumulator;
 pub use real::Real;
+
+/// The example in the README, so that it is compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

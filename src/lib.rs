@@ -192,7 +192,7 @@
 //! let curve = gyro.curve(Scale::new(0.01, 1000.0)?);
 //! let effects: [&dyn Effect; 2] = [&MainsHum, CATALOGUE[0]]; // or all of the catalogue
 //! let (model, options) = (Model::ieee_952(), Options::default());
-//! let diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &effects, options)?;
+//! let mut diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &effects, options);
 //! let verdict = diagnosis.run(|step| match step.added {
 //!     Some(Addition::Effect(term)) => assert_eq!(term.effect.name(), "mains_hum"),
 //!     _ => assert_eq!(step.fit.is_adequate(), Some(true)),

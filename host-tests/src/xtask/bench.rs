@@ -116,7 +116,10 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
             way.name()
         );
         if way == Way::Rustup {
-            println!("for host-tests/README.md:\n\n{}", figures::readme(&measured)?);
+            println!(
+                "for host-tests/README.md:\n\n{}",
+                figures::readme(&measured)?
+            );
         }
         return Ok(());
     }

@@ -7,7 +7,7 @@
 
 use crate::real::Real;
 use core::ops::{Deref, Index};
-use nalgebra::{RealField, SMatrix, SVector};
+use nalgebra::{ArrayStorage, RealField, SMatrix, SVector};
 
 /// An element of a vector or a triangle: single or double precision.
 pub(crate) trait Number: RealField + Copy {
@@ -28,9 +28,13 @@ impl Number for f32 {
 pub(crate) struct Vector<const N: usize, E = Real>(SVector<E, N>);
 
 impl<const N: usize, E: Number> Vector<N, E> {
-    #[inline(always)]
+    /// Zeros: a constant, so that they are set where they stay and not moved there.
+    pub(crate) const ZEROS: Self = Self(SVector::from_array_storage(ArrayStorage(
+        [[*E::ZERO; N]; 1],
+    )));
+
     pub(crate) fn zeros() -> Self {
-        Self(SVector::zeros())
+        Self::ZEROS
     }
 
     pub(crate) fn from_fn(mut element: impl FnMut(usize) -> E) -> Self {
@@ -82,9 +86,14 @@ impl<const N: usize, E> From<SVector<E, N>> for Vector<N, E> {
 pub(crate) struct Triangle<const A: usize, const B: usize, E = Real>(SMatrix<E, A, B>);
 
 impl<const A: usize, const B: usize, E: Number> Triangle<A, B, E> {
-    #[inline(always)]
+    /// Zeros: a constant, so that they are set where they stay and not moved there.
+    pub(crate) const ZEROS: Self = Self(SMatrix::from_array_storage(ArrayStorage(
+        [[*E::ZERO; A]; B],
+    )));
+
+    #[cfg(test)]
     pub(crate) fn zeros() -> Self {
-        Self(SMatrix::zeros())
+        Self::ZEROS
     }
 
     const fn place((i, j): (usize, usize)) -> usize {
@@ -131,6 +140,9 @@ pub(crate) const fn row_start(row: usize) -> usize {
 pub(crate) struct Choice(u16);
 
 impl Choice {
+    /// No unknown.
+    pub(crate) const NONE: Self = Self(0);
+
     /// The choice of all unknowns for which `chosen` is true.
     pub(crate) fn of(chosen: impl Fn(usize) -> bool) -> Self {
         let mut choice = Self::default();

@@ -118,24 +118,22 @@ impl<const K: usize> Comparison<K> {
         let columns = Columns::new(curve, model);
         let problem = Problem::new(curve, model, &columns);
         let squares = problem.squares_of(fit);
-        let mut weights = Weights::empty();
+        let mut weights = Weights::EMPTY;
         weights.set(&problem, &squares, tolerance)?;
-        let mut comparison = Self::empty();
+        let mut comparison = Self::EMPTY;
         comparison.set(&problem, &weights, &squares, unknowns);
         Ok(comparison)
     }
 
     /// Of nothing yet.
-    #[inline(always)]
-    pub(crate) const fn empty() -> Self {
-        Self {
-            octaves: Vec::new(),
-            chi_squared: Real::NAN,
-            degrees_of_freedom: 0,
-            p_value: Real::NAN,
-            rms_percent: Real::NAN,
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const EMPTY: Self = Self {
+        octaves: Vec::new(),
+        chi_squared: 0.0,
+        degrees_of_freedom: 0,
+        p_value: 0.0,
+        rms_percent: 0.0,
+    };
 
     /// Compares the problem's curve with the model, in place.
     #[inline(never)]

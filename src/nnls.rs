@@ -37,15 +37,13 @@ pub(crate) struct NormalEquations {
 
 impl NormalEquations {
     /// Of no unknowns.
-    #[inline(always)]
-    pub(crate) fn empty() -> Self {
-        Self {
-            scaled: Matrix::zeros(),
-            right: Vector::zeros(),
-            scale: Vector::zeros(),
-            count: 0,
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const EMPTY: Self = Self {
+        scaled: Matrix::ZEROS,
+        right: Vector::ZEROS,
+        scale: Vector::ZEROS,
+        count: 0,
+    };
 
     /// Sets `H` and `b` for the first `count` unknowns. `row(i, own)` fills `own` with `H_ij` for
     /// `j ≤ i`, and returns `b_i`.
@@ -126,7 +124,7 @@ impl NormalEquations {
     /// if they cannot be told apart.
     #[inline(never)]
     fn solve_for(&self, free: &Free, x: &mut Vector) -> bool {
-        let mut factor = Matrix::zeros();
+        let mut factor = Matrix::ZEROS;
         let regular = self.factor(free, &mut factor);
         if regular {
             cholesky::forward(&factor, self.count, x);

@@ -32,10 +32,10 @@ pub(crate) fn record_length_s(
     assumed.put(i, square);
     let with = free.with(i);
     let count = model.terms().len();
-    let mut equations = NormalEquations::empty();
+    let mut equations = NormalEquations::EMPTY;
     // The equations are `samples · Σ q/2m − Σ q/2`, where q is an octave's share. Each doubling adds an
     // octave.
-    let (mut growing, mut fixed): (Matrix, Matrix) = (Matrix::zeros(), Matrix::zeros());
+    let (mut growing, mut fixed): (Matrix, Matrix) = (Matrix::ZEROS, Matrix::ZEROS);
     let (mut m, mut samples) = (1.0, 2.0 * samples);
     while samples <= LONGEST {
         while samples / m >= 4.0 {

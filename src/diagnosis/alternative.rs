@@ -55,7 +55,7 @@ fn polished<const K: usize>(
     tolerance: Real,
     candidate: &Candidate,
 ) -> Result<Fitted, Error> {
-    let mut work = Work::new();
+    let mut work = Work::NEW;
     work.begin_at(
         curve,
         &model,
@@ -84,7 +84,7 @@ fn judged<const K: usize>(
     tolerance: Real,
     step: &mut Step<K>,
 ) -> Result<Judged, Error> {
-    let mut work = Work::new();
+    let mut work = Work::NEW;
     let start = Start::Once(fitted.squares);
     work.begin_at(curve, &step.model, start, Tolerance::Fixed(tolerance))?;
     let mut judging = Judging::new();

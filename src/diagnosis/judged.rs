@@ -81,7 +81,7 @@ impl<const K: usize> Judging<K> {
         match self {
             Self::Solving => {
                 if solver.advance(&problem)? {
-                    *self = Self::Estimating(Estimator::new(&problem, solver, &mut step.fit));
+                    self.begin_estimating(&problem, solver, &mut step.fit);
                 }
                 Ok(None)
             }
@@ -97,13 +97,7 @@ impl<const K: usize> Judging<K> {
                         &mut step.comparison,
                     )));
                 }
-                let mut profile = Profile::empty();
-                profile.begin(&problem, &solver.weights, false);
-                *self = Self::Bounding {
-                    shape: 0,
-                    interval: None,
-                    profile,
-                };
+                self.begin_bounding(&problem, solver);
                 Ok(None)
             }
             Self::Bounding {
@@ -127,7 +121,7 @@ impl<const K: usize> Judging<K> {
                     profile.choose(&problem, estimate.term, &solver.squares)?;
                     profile.release();
                     let mut evaluation = Evaluation::new(profile, &problem, &solver.weights);
-                    *interval = Some(JointInterval::new(&mut evaluation, term, j, span));
+                    begin_interval(interval, &mut evaluation, term, j, span);
                     return Ok(None);
                 }
                 let mut evaluation = Evaluation::new(profile, &problem, &solver.weights);
@@ -142,6 +136,38 @@ impl<const K: usize> Judging<K> {
             }
         }
     }
+}
+
+// What begins a stage is apart from what goes on with it, so that its temporaries do not lie on the stack below
+// the deepest calls.
+impl<const K: usize> Judging<K> {
+    #[inline(never)]
+    fn begin_estimating(&mut self, problem: &Problem<'_, K>, solver: &Solver<K>, fit: &mut Fit) {
+        *self = Self::Estimating(Estimator::new(problem, solver, fit));
+    }
+
+    #[inline(never)]
+    fn begin_bounding(&mut self, problem: &Problem<'_, K>, solver: &Solver<K>) {
+        *self = Self::Bounding {
+            shape: 0,
+            interval: None,
+            profile: Profile::EMPTY,
+        };
+        if let Self::Bounding { profile, .. } = self {
+            profile.begin(problem, &solver.weights, false);
+        }
+    }
+}
+
+#[inline(never)]
+fn begin_interval<const K: usize>(
+    interval: &mut Option<JointInterval>,
+    evaluation: &mut Evaluation<'_, K>,
+    term: Term,
+    j: usize,
+    span: &Span,
+) {
+    *interval = Some(JointInterval::new(evaluation, term, j, span));
 }
 
 /// The term at this place in the model and its fitted parameter, if that is its only fitted parameter.

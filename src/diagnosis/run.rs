@@ -139,7 +139,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
             best: Fitted::empty(),
             additions: 0,
             preferred: None,
-            work: Work::new(),
+            work: Work::NEW,
             stage: Stage::Beginning,
         }
     }

@@ -27,7 +27,7 @@ impl<const K: usize> Scanning<K> {
     #[inline(never)]
     pub(super) fn new(problem: &Problem<'_, K>, weights: &Weights<K>) -> Self {
         let mut scanning = Self {
-            profile: Profile::empty(),
+            profile: Profile::EMPTY,
             next: 0,
             search: None,
             shapes: Shapes::new(),

@@ -131,8 +131,8 @@ impl<const K: usize> Step<K> {
         Self {
             model: model.clone(),
             covariate: None,
-            fit: Fit::empty(),
-            comparison: Comparison::empty(),
+            fit: Fit::EMPTY,
+            comparison: Comparison::EMPTY,
             candidates: Vec::new(),
             added: None,
             ambiguous: Vec::new(),

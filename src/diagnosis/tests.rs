@@ -61,7 +61,7 @@ fn judge(curve: &Curve<OCTAVES>, work: &mut Work<OCTAVES>, step: &mut Step<OCTAV
 
 #[test]
 fn a_judgement_tells_an_adequate_model_from_one_that_is_not() {
-    let mut work = Work::new();
+    let mut work = Work::NEW;
     let mut step = Step::of(&Model::ieee_952());
     let judged = judge(&without(), &mut work, &mut step);
     assert_eq!(judged.adequate, Some(true));
@@ -78,7 +78,7 @@ fn a_judgement_tells_an_adequate_model_from_one_that_is_not() {
 #[test]
 fn a_solution_is_found_again_at_the_squares_that_its_covariance_was_taken_at() {
     let curve = with_sinusoid();
-    let mut work = Work::new();
+    let mut work = Work::NEW;
     let mut step = Step::of(&Model::ieee_952());
     let judged = judge(&curve, &mut work, &mut step);
     let tolerance = Tolerance::Fixed(judged.tolerance);
@@ -94,7 +94,7 @@ fn a_solution_is_found_again_at_the_squares_that_its_covariance_was_taken_at() {
 fn a_scan_finds_the_hidden_shape_and_a_trial_its_size() {
     let curve = with_sinusoid();
     let span = curve.span();
-    let mut work = Work::new();
+    let mut work = Work::NEW;
     let mut step = Step::of(&Model::ieee_952());
     let judged = judge(&curve, &mut work, &mut step);
     let problem = Problem::new(&curve, &step.model, &work.columns);

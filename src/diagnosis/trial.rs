@@ -265,7 +265,7 @@ fn polish<const K: usize>(
     steps: &mut Steps,
 ) -> Option<usize> {
     let solver = &work.solver;
-    let mut shape = ShapeEquations::empty();
+    let mut shape = ShapeEquations::EMPTY;
     if !shape.set(problem, &solver.weights, &solver.squares) {
         return None;
     }

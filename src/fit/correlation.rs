@@ -95,13 +95,13 @@ impl Fit {
         let problem = Problem::new(curve, model, &columns);
         let squares = problem.squares_of(self);
         let free = Free::of(|i| i < MAX_EFFECTS && squares[i] > 0.0);
-        let mut weights = Weights::empty();
+        let mut weights = Weights::EMPTY;
         weights.set(&problem, &squares, self.tolerance)?;
-        let mut shape = ShapeEquations::empty();
+        let mut shape = ShapeEquations::EMPTY;
         if shape.set(&problem, &weights, &squares) {
             correlations.take(count, &free, |i| shape.column(i, &free));
         } else {
-            let mut equations = NormalEquations::empty();
+            let mut equations = NormalEquations::EMPTY;
             weights.equations(&problem, &|_| 1.0, &[], &|_| 0.0, &mut equations)?;
             correlations.take(count, &free, |i| equations.column(i, &free));
         }

@@ -33,7 +33,7 @@ impl Estimator {
     ) -> Self {
         let mut shape = None;
         if problem.model.terms().iter().any(|term| term.fitted) {
-            let mut equations = ShapeEquations::empty();
+            let mut equations = ShapeEquations::EMPTY;
             if equations.set(problem, &solver.weights, &solver.squares) {
                 shape = Some(equations);
             }
@@ -130,7 +130,7 @@ fn bound<const K: usize>(
 ) -> Real {
     let curve = |k: usize| problem.measured(k);
     let weights = &solver.weights;
-    let mut equations = NormalEquations::empty();
+    let mut equations = NormalEquations::EMPTY;
     let mut bound = first;
     for _ in 0..BOUND_ROUNDS {
         let scatter = |k: usize| 1.0 + bound * problem.unit(i, k) / weights.model[k];

@@ -34,8 +34,8 @@ pub fn fit<const K: usize>(
     model: &Model,
     options: Options,
 ) -> Result<Fit, Error> {
-    let mut fit = Fit::empty();
-    let mut work = Work::new();
+    let mut fit = Fit::EMPTY;
+    let mut work = Work::NEW;
     let mut stage = Stage::Beginning;
     while !stage.advance(curve, model, options, &mut work, &mut fit)? {}
     Ok(fit)
@@ -79,8 +79,8 @@ impl<const K: usize> Fitting<K> {
         Self {
             curve,
             model,
-            work: Work::new(),
-            fit: Fit::empty(),
+            work: Work::NEW,
+            fit: Fit::EMPTY,
             options,
             stage: Stage::Beginning,
         }
@@ -133,13 +133,11 @@ pub(crate) struct Work<const K: usize> {
 
 impl<const K: usize> Work<K> {
     /// No fit yet.
-    #[inline(always)]
-    pub(crate) fn new() -> Self {
-        Self {
-            columns: Columns::empty(),
-            solver: Solver::new(),
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const NEW: Self = Self {
+        columns: Columns::EMPTY,
+        solver: Solver::NEW,
+    };
 
     /// Begins to solve a model.
     ///
@@ -202,6 +200,17 @@ impl Stage {
         Ok(())
     }
 
+    // Apart from what goes on with it: its temporaries do not lie on the stack below the deepest calls.
+    #[inline(never)]
+    fn begin_estimating<const K: usize>(
+        &mut self,
+        problem: &Problem<'_, K>,
+        solver: &Solver<K>,
+        fit: &mut Fit,
+    ) {
+        *self = Self::Estimating(Estimator::new(problem, solver, fit));
+    }
+
     /// Does one piece of work, and returns whether the fit is complete.
     fn advance<const K: usize>(
         &mut self,
@@ -216,7 +225,7 @@ impl Stage {
             Self::Solving => {
                 let problem = Problem::new(curve, model, &work.columns);
                 if work.solver.advance(&problem)? {
-                    *self = Self::Estimating(Estimator::new(&problem, &work.solver, fit));
+                    self.begin_estimating(&problem, &work.solver, fit);
                 }
             }
             Self::Estimating(estimator) => {

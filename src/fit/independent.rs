@@ -49,7 +49,7 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         Method::ClusterCount => by_relative_accuracy(point, 1.0),
         _ => by_relative_accuracy(point, measured),
     };
-    let mut equations = NormalEquations::empty();
+    let mut equations = NormalEquations::EMPTY;
     self::equations(problem, weight, &mut equations)?;
     let squares = equations.solve()?;
     let free = Free::of(|i| i < problem.count());

@@ -20,14 +20,12 @@ pub(crate) struct Columns<const K: usize>(Vec<algebra::Vector<K, f32>, MAX_EFFEC
 
 impl<const K: usize> Columns<K> {
     /// Columns of no model yet.
-    #[inline(always)]
-    pub(crate) const fn empty() -> Self {
-        Self(Vec::new())
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const EMPTY: Self = Self(Vec::new());
 
     /// The columns of a model.
     pub(crate) fn new(curve: &Curve<K>, model: &Model) -> Self {
-        let mut columns = Self::empty();
+        let mut columns = Self::EMPTY;
         columns.set(curve, model);
         columns
     }

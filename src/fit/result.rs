@@ -55,20 +55,18 @@ pub struct Fit {
 
 impl Fit {
     /// A fit of nothing yet.
-    #[inline(always)]
-    pub(crate) const fn empty() -> Self {
-        Self {
-            method: Method::Covariance,
-            coefficients: Vec::new(),
-            shape: Vec::new(),
-            chi_squared: Real::NAN,
-            degrees_of_freedom: 0,
-            p_value: Real::NAN,
-            minus_two_log_likelihood: Real::NAN,
-            tolerance: 0.0,
-            shrinkage: 0.0,
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const EMPTY: Self = Self {
+        method: Method::Ordinary,
+        coefficients: Vec::new(),
+        shape: Vec::new(),
+        chi_squared: 0.0,
+        degrees_of_freedom: 0,
+        p_value: 0.0,
+        minus_two_log_likelihood: 0.0,
+        tolerance: 0.0,
+        shrinkage: 0.0,
+    };
 
     /// Whether the model explains the curve: `Some(true)` if the p-value is [`ADEQUATE_P`] or more.
     /// `None` if there is no p-value, because the curve is too short or the method has no error model.

@@ -24,13 +24,11 @@ pub(crate) struct ShapeEquations {
 
 impl ShapeEquations {
     /// Of no model yet.
-    #[inline(always)]
-    pub(crate) fn empty() -> Self {
-        Self {
-            equations: NormalEquations::empty(),
-            parameters: Vec::new(),
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const EMPTY: Self = Self {
+        equations: NormalEquations::EMPTY,
+        parameters: Vec::new(),
+    };
 
     /// Sets the equations at a solution. Returns `false` if the model has no fitted shapes, or if they
     /// cannot be told from the rest.

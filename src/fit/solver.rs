@@ -83,23 +83,21 @@ pub(crate) struct Solver<const K: usize> {
 
 impl<const K: usize> Solver<K> {
     /// A solver without a problem.
-    #[inline(always)]
-    pub(crate) fn new() -> Self {
-        Self {
-            weights: Weights::empty(),
-            equations: NormalEquations::empty(),
-            squares: Vector::zeros(),
-            free: Free::default(),
-            chi_squared: Real::NAN,
-            assumed: Vector::zeros(),
-            degrees_of_freedom: 0,
-            last: None,
-            stride: 1.0,
-            round: 1,
-            rounds: Rounds::All,
-            if_needed: None,
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const NEW: Self = Self {
+        weights: Weights::EMPTY,
+        equations: NormalEquations::EMPTY,
+        squares: Vector::ZEROS,
+        free: Free::NONE,
+        chi_squared: 0.0,
+        assumed: Vector::ZEROS,
+        degrees_of_freedom: 0,
+        last: None,
+        stride: 0.0,
+        round: 0,
+        rounds: Rounds::One,
+        if_needed: None,
+    };
 
     /// Begins with a problem.
     ///

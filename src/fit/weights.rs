@@ -36,18 +36,16 @@ pub(crate) struct Weights<const K: usize> {
 
 impl<const K: usize> Weights<K> {
     /// The weights of no model yet.
-    #[inline(always)]
-    pub(crate) fn empty() -> Self {
-        Self {
-            model: algebra::Vector::zeros(),
-            factor: Triangle::zeros(),
-            log_determinant: 0.0,
-            tolerance: 0.0,
-            shrinkage: 0.0,
-            row: 0,
-            attempt: 0,
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const EMPTY: Self = Self {
+        model: algebra::Vector::ZEROS,
+        factor: Triangle::ZEROS,
+        log_determinant: 0.0,
+        tolerance: 0.0,
+        shrinkage: 0.0,
+        row: 0,
+        attempt: 0,
+    };
 
     /// Computes the weights of a model with these squared coefficients, in one go.
     pub(crate) fn set(
@@ -249,11 +247,9 @@ pub(crate) struct Whitened<const K: usize> {
 }
 
 impl<const K: usize> Whitened<K> {
-    #[inline(always)]
-    pub(crate) fn empty() -> Self {
-        Self {
-            columns: Vec::new(),
-            curve: algebra::Vector::zeros(),
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const EMPTY: Self = Self {
+        columns: Vec::new(),
+        curve: algebra::Vector::ZEROS,
+    };
 }

@@ -269,13 +269,13 @@ fn columns_that_are_zero_or_not_finite_are_refused() {
     for bad in [0.0, -1.0, Real::NAN, Real::INFINITY] {
         for place in 0..3 {
             let diagonal = |i: usize| if i == place { bad } else { 1.0 };
-            let mut equations = NormalEquations::empty();
+            let mut equations = NormalEquations::EMPTY;
             let set = equations.set(3, &|i, row| {
                 row.put(i, diagonal(i));
                 1.0
             });
             assert_eq!(set, Err(Error::Singular));
-            let mut equations = NormalEquations::empty();
+            let mut equations = NormalEquations::EMPTY;
             let set = equations.set(3, &|i, row| {
                 row.put(i, 1.0);
                 1.0

@@ -25,17 +25,15 @@ pub(crate) struct Profile<const K: usize> {
 
 impl<const K: usize> Profile<K> {
     /// A profile of no effect yet.
-    #[inline(always)]
-    pub(crate) fn empty() -> Self {
-        Self {
-            to_measured: false,
-            whitened: Whitened::empty(),
-            equations: NormalEquations::empty(),
-            place: 0,
-            free: Free::default(),
-            held: Free::default(),
-        }
-    }
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const EMPTY: Self = Self {
+        to_measured: false,
+        whitened: Whitened::EMPTY,
+        equations: NormalEquations::EMPTY,
+        place: 0,
+        free: Free::NONE,
+        held: Free::NONE,
+    };
 
     /// Begins with a solved problem. If `to_measured` is true, the covariance is scaled to the measured
     /// curve. This is necessary before an effect is found: the model is then too far off to tell how

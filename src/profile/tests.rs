@@ -35,7 +35,7 @@ fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real, white: Real) 
 fn solved(curve: &Curve<OCTAVES>) -> (Model, Columns<OCTAVES>, Solver<OCTAVES>) {
     let model = Model::ieee_952();
     let columns = Columns::new(curve, &model);
-    let mut solver = Solver::new();
+    let mut solver = Solver::NEW;
     let problem = Problem::new(curve, &model, &columns);
     let tolerance = Tolerance::Fixed(0.01);
     solver
@@ -50,7 +50,7 @@ fn a_search_finds_the_least_of_a_fine_grid() {
     let curve = curve(&Sinusoid, [3.1, 0.0], 0.03 * 0.03, 2.5e-5);
     let (model, columns, solver) = solved(&curve);
     let problem = Problem::new(&curve, &model, &columns);
-    let mut profile = Profile::empty();
+    let mut profile = Profile::EMPTY;
     profile.begin(&problem, &solver.weights, true);
     profile
         .choose(&problem, problem.count(), &solver.squares)
@@ -80,7 +80,7 @@ fn an_interval_ends_where_chi_squared_has_risen_by_that_of_95_percent() {
     let curve = curve(&Sinusoid, [3.1, 0.0], 0.01 * 0.01, 2.5e-5);
     let (model, columns, solver) = solved(&curve);
     let problem = Problem::new(&curve, &model, &columns);
-    let mut profile = Profile::empty();
+    let mut profile = Profile::EMPTY;
     profile.begin(&problem, &solver.weights, false);
     profile
         .choose(&problem, problem.count(), &solver.squares)
@@ -126,14 +126,14 @@ fn an_interval_joins_the_whole_numbers_that_explain_a_curve_as_well() {
     model.add(replaced).unwrap();
     let columns = Columns::new(&curve, &model);
     let problem = Problem::new(&curve, &model, &columns);
-    let mut solver = Solver::new();
+    let mut solver = Solver::NEW;
     let tolerance = Tolerance::Fixed(0.01);
     solver
         .begin(&problem, Start::Independent, tolerance)
         .unwrap();
     while !solver.advance(&problem).unwrap() {}
     let place = problem.count() - 1;
-    let mut profile = Profile::empty();
+    let mut profile = Profile::EMPTY;
     profile.begin(&problem, &solver.weights, false);
     profile.choose(&problem, place, &solver.squares).unwrap();
     profile.release();

@@ -59,7 +59,7 @@ impl Problem {
     }
 
     pub(super) fn equations(&self) -> NormalEquations {
-        let mut equations = NormalEquations::empty();
+        let mut equations = NormalEquations::EMPTY;
         let set = equations.set(self.count, &|i, row| {
             for j in 0..=i {
                 row.put(j, real(self.h[i][j]));

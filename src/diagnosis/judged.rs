@@ -43,7 +43,7 @@ impl Judged {
 
 /// The judgement of a model, in progress.
 // The large variants share their memory with those of other stages.
-#[expect(clippy::large_enum_variant)]
+#[allow(clippy::large_enum_variant)]
 pub(super) enum Judging<const K: usize> {
     /// The model is being solved.
     Solving,

@@ -84,7 +84,7 @@ pub struct Diagnosis<'a, const K: usize> {
 
 /// The stage that is in progress.
 // The large variants share their memory. A diagnosis is stored once and never copied.
-#[expect(clippy::large_enum_variant)]
+#[allow(clippy::large_enum_variant)]
 enum Stage<const K: usize> {
     /// Nothing has been done yet.
     Beginning,

@@ -59,7 +59,7 @@ pub(super) struct Swapping<const K: usize> {
 }
 
 // The large variants share their memory with those of other stages.
-#[expect(clippy::large_enum_variant)]
+#[allow(clippy::large_enum_variant)]
 enum Stage<const K: usize> {
     /// The next effect to which the last addition was preferred takes its place.
     Exchanging,

@@ -159,7 +159,7 @@ impl<const K: usize> Work<K> {
 
 /// The stage of a fit by the covariance.
 // The smaller variant wastes a few hundred bytes of a fit, which takes some thousands.
-#[expect(clippy::large_enum_variant)]
+#[allow(clippy::large_enum_variant)]
 enum Stage {
     Beginning,
     Solving,

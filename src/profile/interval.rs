@@ -113,6 +113,8 @@ pub(crate) struct JointInterval {
     stage: Stage,
 }
 
+// Large variants share their memory with those of other stages.
+#[allow(clippy::large_enum_variant)]
 enum Stage {
     /// One end of the interval is being searched for.
     Bounding { upper: bool },

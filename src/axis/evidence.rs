@@ -88,7 +88,7 @@ where
     /// The verdict is that of [`Integrity`] on the record that is kept. Motion in one axis makes all axes
     /// invalid, because a gyro that turns about one axis is not at rest about the others. A record is also
     /// invalid if the gate left out a larger share of its samples than
-    /// [`left_out_per_mille`](crate::Limits::left_out_per_mille) allows, which is one in four by default.
+    /// [`left_out_per_mille`](crate::integrity::Limits::left_out_per_mille) allows, which is one in four by default.
     pub fn verdict(&self, axis: usize) -> Option<Reason> {
         let verdict = |integrity: &Integrity| integrity.verdict();
         let own = self.kept.axes.get(axis).map(|axis| &axis.integrity);

@@ -1,6 +1,6 @@
 //! Snapshots of everything that is kept of a record, including the self-tests: version 2 of the format.
 //!
-//! This table describes the payload of the [envelope](crate::storage::envelope). The payload is in
+//! This table describes the payload of the [`envelope`]. The payload is in
 //! postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits first,
 //! and signed numbers are zigzag-encoded.
 //!

@@ -9,7 +9,7 @@
 //! A new effect takes one file beside the others and one line in the catalogue below. The file
 //! defines the type, its [`Effect`], its [`Explain`] and a constant `DESCRIPTION`. A firmware can define
 //! an effect of its own in the same way, in any file, and add it to the list that it gives to
-//! [`Diagnosis`](crate::Diagnosis).
+//! [`Diagnosis`](crate::diagnosis::Diagnosis).
 
 mod definition;
 mod explanation;

@@ -84,7 +84,7 @@ pub enum Failure {
 ///
 /// The test holds no samples. [`is_due`](Self::is_due) says after each sample whether a look is due, at the
 /// cost of one comparison. The caller then takes the [`look`](Self::look) at a curve when it has time for a
-/// [`fit`](crate::fit()). A late look loses nothing.
+/// [`fit`](crate::fit::fit()). A late look loses nothing.
 ///
 /// # Example
 ///

@@ -1,6 +1,6 @@
 //! Snapshots of an accumulator alone: its sums, as bytes that survive a restart.
 //!
-//! This table describes version 1 of the payload of the [envelope](crate::storage::envelope). The payload is
+//! This table describes version 1 of the payload of the [`envelope`]. The payload is
 //! in postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits
 //! first. [`Axes`](crate::Axes) writes version 2.
 //!

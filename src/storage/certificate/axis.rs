@@ -82,7 +82,7 @@ pub struct CertifiedShape {
 
 impl AxisCertificate {
     /// The certificate of a fit of this model to this curve, which is either a single fit or the last
-    /// [`Step`](crate::Step) of a diagnosis. Its verdict is `None` until it is set.
+    /// [`Step`](crate::diagnosis::Step) of a diagnosis. Its verdict is `None` until it is set.
     ///
     /// This weighs the octaves once more for the correlations, at a few per cent of the cost of a fit.
     ///

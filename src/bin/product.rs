@@ -14,7 +14,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut gyro = Box::new(Gyro::new());
     let mut flash = vec![0; Gyro::snapshot_bytes(1)];
-    run(&mut gyro, &mut flash, |line| println!("{line}"))?;
+    run(&mut gyro, &mut flash, |line| println!("{line}"))
+        .map_err(|failure| format!("{failure:?}"))?;
     Ok(())
 }
 

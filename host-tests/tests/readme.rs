@@ -201,7 +201,7 @@ fn promised(way: Way) {
         most(precision, "ram_bytes_three_axes_20_with_diagnosis", 32);
         most(precision, "flash_bytes_accumulator", 4);
         most(precision, "stack_bytes_fit_20", 12);
-        most(precision, "stack_bytes_diagnosis_20", 24);
+        most(precision, "stack_bytes_diagnosis_20", 25);
     }
     most(Precision::Single, "flash_bytes_with_fit", 26);
     most(Precision::Single, "flash_bytes_with_diagnosis", 52);

@@ -143,7 +143,10 @@ impl<const K: usize> Judging<K> {
 impl<const K: usize> Judging<K> {
     #[inline(never)]
     fn begin_estimating(&mut self, problem: &Problem<'_, K>, solver: &Solver<K>, fit: &mut Fit) {
-        *self = Self::Estimating(Estimator::new(problem, solver, fit));
+        *self = Self::Estimating(Estimator::NEW);
+        if let Self::Estimating(estimator) = self {
+            estimator.begin(problem, solver, fit);
+        }
     }
 
     #[inline(never)]

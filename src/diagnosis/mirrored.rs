@@ -15,12 +15,13 @@ use crate::{
 
 /// Names the mirror of every ambiguous effect beside it. For the best candidate, the kurtosis may
 /// decide between the effect and its mirror. The right one is then added, and the other one is not
-/// named.
+/// named. The memory of `columns` is used.
 #[inline(never)]
 pub(super) fn tell_from_mirror<const K: usize>(
     curve: &Curve<K>,
     kurtosis: Option<&Kurtosis<K>>,
     effects: &[&'static dyn Effect],
+    columns: &mut Columns<K>,
     best: &mut Fitted,
     step: &mut Step<K>,
 ) {
@@ -47,8 +48,8 @@ pub(super) fn tell_from_mirror<const K: usize>(
         return;
     };
     let place = best.model.terms().len().saturating_sub(1);
-    let columns = Columns::new(curve, &best.model);
-    let problem = Problem::new(curve, &best.model, &columns);
+    columns.set(curve, &best.model);
+    let problem = Problem::new(curve, &best.model, columns);
     let share = |k: usize| problem.share(k, place, &best.squares);
     let correlation_time_s = term.parameters[0];
     let jumps = kurtosis.and_then(|kurtosis| kurtosis.jumps(curve, correlation_time_s, share));

@@ -12,7 +12,7 @@ use super::{
     step::{Addition, Step},
     swapped::{Preferred, Swapping},
     trial::Fitted,
-    tried::{Contest, Trying},
+    tried::{Base, Contest, Trying},
     verdict::Verdict,
 };
 use crate::{
@@ -224,7 +224,11 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                 Ok(scanning.advance(&problem, &work.solver, effects, span))
             }
             Stage::Trying(trying) => {
-                Ok(trying.advance(curve, &contest, work, &mut step.candidates, best))
+                let base = Base {
+                    model: &step.model,
+                    swap: None,
+                };
+                Ok(trying.advance(curve, &contest, base, work, &mut step.candidates, best))
             }
             Stage::Swapping(swapping) => {
                 Ok(swapping.advance(curve, effects, &contest, work, step, best))
@@ -248,11 +252,10 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                     && self.step.covariate.is_none()
                     && !self.evidence.covariates.is_empty()
                 {
-                    let following = Following::new(&self.curve, self.judged.squares);
-                    self.stage = Stage::Following(following);
-                    return Ok(());
+                    self.follow();
+                } else {
+                    self.scan_or_report();
                 }
-                self.scan_or_report();
             }
             Stage::Following(_) => {
                 if self.step.added.is_some() || self.judged.adequate != Some(false) {
@@ -266,16 +269,9 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                 self.stage = Stage::Resolving;
             }
             Stage::Resolving => self.scan_or_report(),
-            Stage::Scanning(scanning) => {
-                let shapes = scanning.shapes().clone();
-                let trying = Trying::new(shapes, self.step.model.clone(), None);
-                self.stage = Stage::Trying(trying);
-            }
-            Stage::Trying(_) => match self.preferred.take() {
-                Some(preferred) => self.stage = Stage::Swapping(Swapping::new(preferred)),
-                None => self.choose(),
-            },
-            Stage::Swapping(_) => self.choose(),
+            Stage::Scanning(_) => self.try_shapes(),
+            Stage::Trying(_) if self.preferred.is_some() => self.swap(),
+            Stage::Trying(_) | Stage::Swapping(_) => self.choose(),
             Stage::Reported => self.add()?,
             Stage::Finished(_) => {}
         }
@@ -297,12 +293,39 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
 
     /// Begins to scan the list of effects if the model is not adequate; otherwise reports the step.
     fn scan_or_report(&mut self) {
-        self.stage = if self.has_room() && self.judged.adequate == Some(false) {
+        if !self.has_room() || self.judged.adequate != Some(false) {
+            self.stage = Stage::Reported;
+            return;
+        }
+        self.stage = Stage::Scanning(Scanning::new());
+        if let Stage::Scanning(scanning) = &mut self.stage {
             let problem = Problem::new(&self.curve, &self.step.model, &self.work.columns);
-            Stage::Scanning(Scanning::new(&problem, &self.work.solver.weights))
-        } else {
-            Stage::Reported
-        };
+            scanning.begin(&problem, &self.work.solver.weights);
+        }
+    }
+
+    // Each stage begins in a function of its own. What is moved into place there does not lie on the
+    // stack below the others.
+
+    #[inline(never)]
+    fn follow(&mut self) {
+        let following = Following::new(&self.curve, self.judged.squares);
+        self.stage = Stage::Following(following);
+    }
+
+    #[inline(never)]
+    fn try_shapes(&mut self) {
+        if let Stage::Scanning(scanning) = &self.stage {
+            let shapes = scanning.shapes().clone();
+            self.stage = Stage::Trying(Trying::new(shapes));
+        }
+    }
+
+    #[inline(never)]
+    fn swap(&mut self) {
+        if let Some(preferred) = self.preferred.take() {
+            self.stage = Stage::Swapping(Swapping::new(preferred));
+        }
     }
 
     /// What the candidates are compared with.
@@ -332,6 +355,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                 &self.curve,
                 self.evidence.kurtosis,
                 self.effects,
+                &mut self.work.columns,
                 best,
                 step,
             );

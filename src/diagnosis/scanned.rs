@@ -23,17 +23,21 @@ pub(super) struct Scanning<const K: usize> {
 }
 
 impl<const K: usize> Scanning<K> {
-    /// Begins to scan beside a solved model.
-    #[inline(never)]
-    pub(super) fn new(problem: &Problem<'_, K>, weights: &Weights<K>) -> Self {
-        let mut scanning = Self {
+    /// A scan that has not begun.
+    // Inlined, so that it is set where it stays and not moved there.
+    #[inline(always)]
+    pub(super) const fn new() -> Self {
+        Self {
             profile: Profile::EMPTY,
             next: 0,
             search: None,
             shapes: Shapes::new(),
-        };
-        scanning.profile.begin(problem, weights, true);
-        scanning
+        }
+    }
+
+    /// Begins to scan beside a solved model.
+    pub(super) fn begin(&mut self, problem: &Problem<'_, K>, weights: &Weights<K>) {
+        self.profile.begin(problem, weights, true);
     }
 
     /// The best shapes so far, best first.

@@ -6,7 +6,7 @@ use super::{
     scanned::{Scanning, Shapes},
     step::{Candidate, MAX_CANDIDATES, Step, Swap, cost},
     trial::Fitted,
-    tried::{Contest, Trying},
+    tried::{Base, Contest, Trying},
 };
 use crate::{
     curve::Curve,
@@ -55,6 +55,9 @@ fn is_as_simple(effect: &'static dyn Effect, as_what: &'static dyn Effect) -> bo
 pub(super) struct Swapping<const K: usize> {
     preferred: Preferred,
     next: usize,
+    /// The present swap, and the model that it leads to.
+    swap: Option<Swap>,
+    base: Model,
     stage: Stage<K>,
 }
 
@@ -64,18 +67,21 @@ enum Stage<const K: usize> {
     /// The next effect to which the last addition was preferred takes its place.
     Exchanging,
     /// The model with that effect is fitted.
-    Solving(Model, Swap),
+    Solving,
     /// The list of effects is scanned beside that effect.
-    Scanning(Model, Swap, Scanning<K>),
+    Scanning(Scanning<K>),
     /// The best effects of the scan are tried.
     Trying(Trying),
 }
 
 impl<const K: usize> Swapping<K> {
-    pub(super) const fn new(preferred: Preferred) -> Self {
+    #[inline(always)]
+    pub(super) fn new(preferred: Preferred) -> Self {
         Self {
             preferred,
             next: 0,
+            swap: None,
+            base: Model::default(),
             stage: Stage::Exchanging,
         }
     }
@@ -92,57 +98,56 @@ impl<const K: usize> Swapping<K> {
         step: &mut Step<K>,
         best: &mut Fitted,
     ) -> bool {
-        let solved = match &mut self.stage {
+        let problem = Problem::new(curve, &self.base, &work.columns);
+        match &mut self.stage {
             Stage::Exchanging => return self.exchange(curve, &step.model, contest, work),
-            Stage::Solving(base, _) => {
-                let problem = Problem::new(curve, base, &work.columns);
-                match work.solver.advance(&problem) {
-                    Ok(false) => return false,
-                    Ok(true) => true,
-                    Err(_) => false,
+            Stage::Solving => match work.solver.advance(&problem) {
+                Ok(false) => {}
+                Ok(true) => self.scan(curve, work),
+                Err(_) => self.stage = Stage::Exchanging,
+            },
+            Stage::Scanning(scanning) => {
+                if scanning.advance(&problem, &work.solver, effects, &contest.span) {
+                    self.try_shapes();
                 }
-            }
-            Stage::Scanning(base, _, scanning) => {
-                let problem = Problem::new(curve, base, &work.columns);
-                if !scanning.advance(&problem, &work.solver, effects, &contest.span) {
-                    return false;
-                }
-                true
             }
             Stage::Trying(trying) => {
-                if !trying.advance(curve, contest, work, &mut step.candidates, best) {
-                    return false;
+                let base = Base {
+                    model: &self.base,
+                    swap: self.swap,
+                };
+                if trying.advance(curve, contest, base, work, &mut step.candidates, best) {
+                    self.stage = Stage::Exchanging;
                 }
-                false
             }
-        };
-        if solved {
-            self.go_on(curve, work);
-        } else {
-            self.stage = Stage::Exchanging;
         }
         false
     }
 
-    /// Scans beside a model that has been solved, or tries what has been scanned.
+    /// Begins to scan beside the solved model.
+    // This is a function of its own, because its temporaries would lie on the stack below all stages.
     #[inline(never)]
-    fn go_on(&mut self, curve: &Curve<K>, work: &Work<K>) {
-        match &self.stage {
-            Stage::Solving(base, swap) => {
-                let problem = Problem::new(curve, base, &work.columns);
-                let scanning = Scanning::new(&problem, &work.solver.weights);
-                self.stage = Stage::Scanning(base.clone(), *swap, scanning);
-            }
-            Stage::Scanning(base, swap, scanning) => {
-                let simple = scanning.shapes().iter().copied().filter(|found| {
-                    let effect = found.term.effect;
-                    effect.name() != swap.dropped.name() && is_as_simple(effect, swap.dropped)
-                });
-                let shapes: Shapes = list::fill(simple.take(TRIED));
-                self.stage = Stage::Trying(Trying::new(shapes, base.clone(), Some(*swap)));
-            }
-            Stage::Exchanging | Stage::Trying(_) => {}
+    fn scan(&mut self, curve: &Curve<K>, work: &Work<K>) {
+        self.stage = Stage::Scanning(Scanning::new());
+        if let Stage::Scanning(scanning) = &mut self.stage {
+            let problem = Problem::new(curve, &self.base, &work.columns);
+            scanning.begin(&problem, &work.solver.weights);
         }
+    }
+
+    /// Begins to try the best shapes of the scan whose effects are as simple as the effect that was
+    /// added last, or simpler.
+    #[inline(never)]
+    fn try_shapes(&mut self) {
+        let (Stage::Scanning(scanning), Some(swap)) = (&self.stage, self.swap) else {
+            return;
+        };
+        let simple = scanning.shapes().iter().copied().filter(|found| {
+            let effect = found.term.effect;
+            effect.name() != swap.dropped.name() && is_as_simple(effect, swap.dropped)
+        });
+        let shapes: Shapes = list::fill(simple.take(TRIED));
+        self.stage = Stage::Trying(Trying::new(shapes));
     }
 
     /// Begins with the next swap. Returns `true` if there is none.
@@ -166,12 +171,13 @@ impl<const K: usize> Swapping<K> {
             parameters: parameters.map(Real::from),
             ..Term::fitted(taken)
         };
-        let mut base = model.clone();
-        if base.exchange(swap.dropped, term).is_ok() {
+        self.swap = Some(swap);
+        self.base.clone_from(model);
+        if self.base.exchange(swap.dropped, term).is_ok() {
             let tolerance = Tolerance::Fixed(contest.tolerance);
-            let begun = work.begin_at(curve, &base, Start::Independent, tolerance);
+            let begun = work.begin_at(curve, &self.base, Start::Independent, tolerance);
             if begun.is_ok() {
-                self.stage = Stage::Solving(base, swap);
+                self.stage = Stage::Solving;
             }
         }
         false

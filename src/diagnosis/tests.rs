@@ -6,7 +6,7 @@ use super::{
     scanned::Scanning,
     step::{Addition, Step},
     trial::Fitted,
-    tried::{Contest, Trying},
+    tried::{Base, Contest, Trying},
     *,
 };
 use crate::{
@@ -98,7 +98,8 @@ fn a_scan_finds_the_hidden_shape_and_a_trial_its_size() {
     let mut step = Step::of(&Model::ieee_952());
     let judged = judge(&curve, &mut work, &mut step);
     let problem = Problem::new(&curve, &step.model, &work.columns);
-    let mut scanning = Scanning::new(&problem, &work.solver.weights);
+    let mut scanning = Scanning::new();
+    scanning.begin(&problem, &work.solver.weights);
     let effects: [&'static dyn Effect; 2] = [&Sinusoid, &GaussMarkov];
     while !scanning.advance(&problem, &work.solver, &effects, &span) {}
     let shapes = scanning.shapes().clone();
@@ -107,14 +108,25 @@ fn a_scan_finds_the_hidden_shape_and_a_trial_its_size() {
     assert!((shapes[0].term.parameters[0] / 7.7 - 1.0).abs() < 0.05);
     assert!(shapes[0].chi_squared <= shapes[1].chi_squared);
 
-    let mut trying = Trying::new(shapes, step.model.clone(), None);
+    let mut trying = Trying::new(shapes);
+    let base = Base {
+        model: &step.model,
+        swap: None,
+    };
     let contest = Contest {
         score: judged.score,
         tolerance: judged.tolerance,
         span,
     };
     let mut best = Fitted::empty();
-    while !trying.advance(&curve, &contest, &mut work, &mut step.candidates, &mut best) {}
+    while !trying.advance(
+        &curve,
+        &contest,
+        base,
+        &mut work,
+        &mut step.candidates,
+        &mut best,
+    ) {}
     let first = &step.candidates[0];
     assert_eq!(first.term.effect.name(), "sinusoid");
     assert!((first.term.parameters[0] / 7.7 - 1.0).abs() < 0.01);

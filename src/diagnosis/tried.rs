@@ -17,25 +17,26 @@ pub(super) struct Contest {
     pub(super) span: Span,
 }
 
+/// The model beside which a scan was made, and the swap that leads from the step's model to it.
+#[derive(Clone, Copy)]
+pub(super) struct Base<'m> {
+    pub(super) model: &'m Model,
+    pub(super) swap: Option<Swap>,
+}
+
 /// The trials of several shapes, one after the other, in progress.
 pub(super) struct Trying {
     shapes: Shapes,
     next: usize,
-    /// The model beside which the scan was made, and the swap that leads to this model.
-    base: Model,
-    swap: Option<Swap>,
     trial: Option<(Trial, Candidate)>,
 }
 
 impl Trying {
-    /// Begins to try shapes that were found beside a model. This is the step's own model, or one with a
-    /// swap.
-    pub(super) fn new(shapes: Shapes, base: Model, swap: Option<Swap>) -> Self {
+    /// Begins to try shapes that a scan found.
+    pub(super) const fn new(shapes: Shapes) -> Self {
         Self {
             shapes,
             next: 0,
-            base,
-            swap,
             trial: None,
         }
     }
@@ -47,12 +48,13 @@ impl Trying {
         &mut self,
         curve: &Curve<K>,
         contest: &Contest,
+        base: Base<'_>,
         work: &mut Work<K>,
         candidates: &mut Candidates,
         best: &mut Fitted,
     ) -> bool {
         let Some((trial, candidate)) = &mut self.trial else {
-            return self.begin_next(candidates);
+            return self.begin_next(base, candidates);
         };
         let gained = candidates.first();
         let least = contest.score - gained.map_or(0.0, |first| first.improvement);
@@ -84,14 +86,14 @@ impl Trying {
     }
 
     /// Begins with the next shape. Returns `true` if there is none.
-    fn begin_next(&mut self, candidates: &Candidates) -> bool {
+    fn begin_next(&mut self, base: Base<'_>, candidates: &Candidates) -> bool {
         let Some(found) = self.shapes.get(self.next) else {
             return true;
         };
         self.next = self.next.saturating_add(1);
         let candidate = Candidate {
             term: found.term,
-            swap: self.swap,
+            swap: base.swap,
             coefficient: 0.0,
             chi_squared: Real::NAN,
             improvement: 0.0,
@@ -100,7 +102,7 @@ impl Trying {
         if others.any(|other| other.brings_the_same(&candidate)) {
             return false;
         }
-        if let Ok(fitted) = Fitted::with(&self.base, found) {
+        if let Ok(fitted) = Fitted::with(base.model, found) {
             self.trial = Some((Trial::new(fitted), candidate));
         }
         false

@@ -17,40 +17,45 @@ const BOUND_ROUNDS: usize = 2;
 
 /// The coefficients of a solution, estimated one per call.
 pub(crate) struct Estimator {
-    /// The equations of coefficients and fitted shapes; `None` if the model has no shapes or they
-    /// cannot be told apart.
-    shape: Option<ShapeEquations>,
+    /// The equations of coefficients and fitted shapes. They are not valid if the model has no shapes or
+    /// if the shapes cannot be told apart.
+    shape: ShapeEquations,
+    is_valid: bool,
     next: usize,
 }
 
 impl Estimator {
+    /// No estimates yet.
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const NEW: Self = Self {
+        shape: ShapeEquations::EMPTY,
+        is_valid: false,
+        next: 0,
+    };
+
     /// Begins with a solution. What belongs to the whole model is written to the fit immediately.
     #[inline(never)]
-    pub(crate) fn new<const K: usize>(
+    pub(crate) fn begin<const K: usize>(
+        &mut self,
         problem: &Problem<'_, K>,
         solver: &Solver<K>,
         fit: &mut Fit,
-    ) -> Self {
-        let mut shape = None;
-        if problem.model.terms().iter().any(|term| term.fitted) {
-            let mut equations = ShapeEquations::EMPTY;
-            if equations.set(problem, &solver.weights, &solver.squares) {
-                shape = Some(equations);
-            }
-        }
+    ) {
+        // A model without shapes does not pay for their equations.
+        self.is_valid = problem.model.terms().iter().any(|term| term.fitted)
+            && self.shape.set(problem, &solver.weights, &solver.squares);
         fit.method = Method::Covariance;
         fit.coefficients.clear();
-        fit.shape = match &shape {
-            Some(shape) => shape.estimates(&solver.free),
-            None => heapless::Vec::new(),
-        };
+        fit.shape.clear();
+        if self.is_valid {
+            fit.shape = self.shape.estimates(&solver.free);
+        }
         fit.chi_squared = solver.chi_squared;
         fit.degrees_of_freedom = solver.degrees_of_freedom();
         fit.p_value = solver.p_value();
         fit.minus_two_log_likelihood = solver.minus_two_log_likelihood();
         fit.tolerance = solver.weights.tolerance;
         fit.shrinkage = solver.weights.shrinkage;
-        Self { shape, next: 0 }
     }
 
     /// Estimates one more coefficient and returns whether it was the last.
@@ -64,7 +69,8 @@ impl Estimator {
         let Some(term) = problem.model.terms().get(self.next) else {
             return true;
         };
-        let coefficient = coefficient(problem, solver, self.next, term, self.shape.as_ref());
+        let shape = self.is_valid.then_some(&self.shape);
+        let coefficient = coefficient(problem, solver, self.next, term, shape);
         // There are as many places as a model has effects.
         let _ = fit
             .coefficients

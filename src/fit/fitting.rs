@@ -208,7 +208,10 @@ impl Stage {
         solver: &Solver<K>,
         fit: &mut Fit,
     ) {
-        *self = Self::Estimating(Estimator::new(problem, solver, fit));
+        *self = Self::Estimating(Estimator::NEW);
+        if let Self::Estimating(estimator) = self {
+            estimator.begin(problem, solver, fit);
+        }
     }
 
     /// Does one piece of work, and returns whether the fit is complete.

@@ -14,7 +14,8 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The number of standard errors from which on the disagreement of an octave is noticeable.
+/// The number of standard errors from which on the disagreement of an octave is noticeable. By
+/// convention: an octave of a true model exceeds it with a probability of 5 %.
 const NOTICEABLE: Real = 2.0;
 
 /// One octave of a measurement beside a model.

@@ -19,7 +19,8 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct DecimationFilter;
 
-/// The largest width in samples, which bounds the sums over the autocovariance.
+/// The largest width in samples, which bounds the sums over the autocovariance. Chosen by hand: a
+/// search goes to half of it.
 const WIDEST: Real = 64.0;
 
 /// The autocovariance at a lag of `x` lengths of a stage, up to a constant factor.

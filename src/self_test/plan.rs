@@ -108,6 +108,7 @@ impl Plan {
     }
 }
 
+/// The largest number of samples of a test: two of the longest clusters, of 2^29 samples each.
 const MAX_SAMPLES: u64 = 1 << 30;
 
 impl core::fmt::Display for InvalidPlan {

@@ -127,6 +127,7 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
     };
     let (_, clock) = passes.pass(&mut rounded)?;
     for (column, steps) in columns.iter().zip(&rounded.steps) {
+        // The tenth is chosen by hand.
         if steps.lost > steps.all / 10 {
             return Err(Place::file(path).failure(
                 format!(

@@ -26,13 +26,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The largest record or chunk that is accepted, in bytes. It limits the memory that a damaged
-/// length can claim.
+/// The largest record or chunk that is accepted, in bytes. It limits the memory that a damaged length
+/// can claim. Chosen by hand.
 const LONGEST_RECORD: usize = 1 << 28;
 
 const RECOVER: &str = "copy it again, or recover what there is with `mcap recover`";
 
-/// The number of messages that decide what the columns look like.
+/// The number of messages that decide what the columns look like. Chosen by hand.
 const LOOKS: usize = 100;
 
 /// A bag, and the topic in it that is read.

@@ -16,10 +16,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// An array with more columns than this is refused, because its axes are probably its rows.
+/// An array with more columns than this is refused, because its axes are probably its rows. Chosen by
+/// hand.
 const MOST_COLUMNS: u64 = 64;
 
-/// The number of rows that decide what the columns look like.
+/// The number of rows that decide what the columns look like. Chosen by hand.
 const LOOKS: u64 = 100;
 
 /// An array file whose header and first rows are known.

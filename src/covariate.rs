@@ -26,6 +26,7 @@ use crate::{
     curve::{Curve, Point, Scale, clusters},
     effect::Explanation,
     error::Error,
+    limits::TWO_SIDED_95,
     list::numbered,
     math,
     octave::Accumulator,
@@ -186,7 +187,7 @@ impl Slope {
 
     /// The lower and the upper end of the slope's 95 % interval.
     pub fn interval(&self) -> (Real, Real) {
-        let half = 1.959_964 * self.error;
+        let half = real(TWO_SIDED_95) * self.error;
         (self.value - half, self.value + half)
     }
 }

@@ -197,13 +197,13 @@ impl<const K: usize> Comparison<K> {
 impl<const K: usize> core::fmt::Display for Comparison<K> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Some(worst) = self.worst() else {
-            return write!(f, "no octaves to compare");
+            return write!(f, "the curve has no octaves to compare");
         };
         if self.stretches().next().is_none() {
             let (percent, z) = (worst.percent().abs(), worst.z.abs());
             return write!(
                 f,
-                "no octave disagrees noticeably: the worst, at τ = {}, by {percent:.1} % ({z:.1} σ)",
+                "no octave disagrees noticeably: the largest difference is {percent:.1} % at τ = {} ({z:.1} σ)",
                 Time(worst.tau_s)
             );
         }

@@ -41,9 +41,9 @@ pub const NAME: &str = "covariate";
 pub const EXPLANATION: Explanation = Explanation {
     what: "the rate follows something that was recorded alongside, such as the temperature",
     origin: "thermal expansion and the temperature of the drive's electronics; acceleration \
-             through the suspension; a supply that feeds the reference",
-    check: "hold the covariate steady and see the curve fall to what is left of it; or subtract \
-            slope times covariate from the rate",
+             through the suspension; a supply voltage that shifts the reference",
+    check: "hold the covariate steady: the curve should fall by what follows the covariate; or \
+            subtract slope times covariate from the rate",
 };
 
 /// One octave of a gyro and a covariate.

@@ -13,7 +13,7 @@ use crate::{
 pub(crate) type Matrix = Triangle<{ UNKNOWNS + 1 }, { UNKNOWNS / 2 }>;
 const _: () = assert!(
     UNKNOWNS.is_multiple_of(2),
-    "an odd number of rows fills another rectangle"
+    "the rectangle that holds the triangle is that of an even number of unknowns"
 );
 /// One number for each unknown.
 pub(crate) type Vector = algebra::Vector<UNKNOWNS>;

@@ -191,8 +191,8 @@ impl Explain for DecimationFilter {
     fn explanation(&self) -> Explanation {
         Explanation {
             what: "a decimation filter: white noise is averaged over longer than a sample interval",
-            origin: "the sensor's own digital filter, a moving average or a Bartlett window, set to fewer hertz than the output rate carries",
-            check: "read the sensor's filter register and its group delay; open the filter and see the deficit at short averaging times go",
+            origin: "the sensor's own digital filter, a moving average or a Bartlett window, set to a bandwidth below half the output rate",
+            check: "read the sensor's filter register and its group delay; widen the filter: does the deficit at short averaging times vanish?",
         }
     }
 

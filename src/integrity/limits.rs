@@ -125,7 +125,10 @@ impl core::fmt::Display for InvalidLimit {
             least,
             most,
         } = self;
-        write!(f, "{name} = {value}: choose {least} to {most}")
+        write!(
+            f,
+            "the limit {name} = {value} is impossible: choose {least} to {most}"
+        )
     }
 }
 

@@ -251,7 +251,7 @@ fn each_message(
             Record::Statistics(statistics) if statistics.message_count != messages => {
                 return Err(Place::file(path).failure(
                     format!(
-                        "damaged: {messages} messages are left of {}",
+                        "the bag is damaged: only {messages} of {} messages can be read",
                         statistics.message_count
                     ),
                     RECOVER,
@@ -288,6 +288,6 @@ fn failure(path: &Path, error: &McapError) -> Failure {
             ),
             "compress them with zstd or lz4, with `mcap compress`",
         ),
-        error => place.failure(format!("damaged: {error}"), RECOVER),
+        error => place.failure(format!("the bag is damaged: {error}"), RECOVER),
     }
 }

@@ -42,14 +42,14 @@ impl Npy {
             [rows, width @ 1..=MOST_COLUMNS] => (rows, width),
             [rows, width] => {
                 return Err(place().failure(
-                    format!("an array of {rows} rows and {width} columns"),
-                    "rows are samples: save its transpose",
+                    format!("the array has {rows} rows and {width} columns"),
+                    "save its transpose, because rows are samples",
                 ));
             }
             _ => {
                 return Err(place().failure(
-                    format!("an array of {} dimensions", header.shape.len()),
-                    "save an array of one or two: rows are samples, columns are axes",
+                    format!("the array has {} dimensions", header.shape.len()),
+                    "save an array of one or two dimensions, with samples as rows and axes as columns",
                 ));
             }
         };

@@ -211,7 +211,7 @@ impl Diagnosed {
         }
         for (added, others) in self.ambiguous() {
             notes.push(format!(
-                "{} is ambiguous: {} would explain this curve as well",
+                "the {} is ambiguous: {} would explain this curve as well",
                 words::plain(added),
                 words::alternatives(others.iter().copied())
             ));

@@ -11,7 +11,7 @@ use crate::{
 use allanite::{
     Coefficient, Term,
     diagnosis::Step,
-    effect::{Effect, MAX_PARAMETERS, Parameter},
+    effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
     fit::{Fit, State},
 };
 
@@ -44,10 +44,18 @@ pub(crate) fn list_of(names: Vec<String>) -> String {
     }
 }
 
-/// Names of effects as alternatives in a sentence: `low pass or resonance`.
+/// Names of effects as alternatives in a sentence: `a low pass or a resonance`.
 pub(crate) fn alternatives<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<String> = names.into_iter().map(plain).collect();
+    let names: Vec<String> = names.into_iter().map(with_article).collect();
     names.join(" or ")
+}
+
+/// The name of an effect in a sentence: `a sinusoid`, but `random telegraph noise`. A name takes the article
+/// if its explanation begins with one.
+fn with_article(name: &str) -> String {
+    let takes_article = explanation(name).is_some_and(|words| words.what.starts_with("a "));
+    let article = if takes_article { "a " } else { "" };
+    format!("{article}{}", plain(name))
 }
 
 /// What the misfit and χ² of a comparison weigh, to be printed below both.

@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_are_exact_and_carry() {
+    fn sums_of_fourth_powers_are_exact_beyond_64_bits() {
         let differences = [3, -65_535, 65_536, -(1 << 31), 1 << 31, -1, 65_535];
         let mut moments = FourthMoments::<2>::NEW;
         for _ in 0..3 {
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sum_that_would_overflow_stops_for_good() {
+    fn a_sum_that_would_overflow_stops_and_stays_stopped() {
         let mut moments = FourthMoments::<2>::NEW;
         moments.add(0, 1 << 48);
         assert_eq!(moments.sums[0], STOPPED);
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn excess_is_that_of_the_differences() {
+    fn the_excess_equals_that_computed_from_all_differences() {
         let mut accumulator = Accumulator::<4>::new();
         let mut moments = FourthMoments::<4>::NEW;
         let mut all = [const { std::vec::Vec::new() }; 4];

@@ -211,8 +211,8 @@ impl Diagnosed {
         }
         for (added, others) in self.ambiguous() {
             notes.push(format!(
-                "the {} is ambiguous: {} would explain this curve as well",
-                words::plain(added),
+                "{} is ambiguous: {} would explain this curve as well",
+                words::in_sentence(added),
                 words::alternatives(others.iter().copied())
             ));
         }

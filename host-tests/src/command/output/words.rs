@@ -46,16 +46,22 @@ pub(crate) fn list_of(names: Vec<String>) -> String {
 
 /// Names of effects as alternatives in a sentence: `a low pass or a resonance`.
 pub(crate) fn alternatives<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<String> = names.into_iter().map(with_article).collect();
+    let names: Vec<String> = names.into_iter().map(in_sentence).collect();
     names.join(" or ")
 }
 
-/// The name of an effect in a sentence: `a sinusoid`, but `random telegraph noise`. A name takes the article
-/// if its explanation begins with one.
-fn with_article(name: &str) -> String {
-    let takes_article = explanation(name).is_some_and(|words| words.what.starts_with("a "));
-    let article = if takes_article { "a " } else { "" };
-    format!("{article}{}", plain(name))
+/// The name of an effect in a sentence: `a sinusoid`, `random telegraph noise`. The explanation of the effect
+/// begins with a noun, which tells whether there is an article and whether the effect is a noise.
+pub(crate) fn in_sentence(name: &str) -> String {
+    let what = explanation(name).map_or("", |explanation| explanation.what);
+    let noun = what.split(':').next().unwrap_or_default();
+    let article = if noun.starts_with("a ") { "a " } else { "" };
+    let noise = if noun.ends_with(" noise") {
+        " noise"
+    } else {
+        ""
+    };
+    format!("{article}{}{noise}", plain(name))
 }
 
 /// What the misfit and χ² of a comparison weigh, to be printed below both.
@@ -219,4 +225,23 @@ fn changed(name: &str, was: &Coefficient, is: &Coefficient, unit: Unit) -> Optio
 pub(crate) fn record(samples: u64, rate_hz: f64, octaves: usize) -> String {
     let length = duration(samples as f64 / rate_hz);
     format!("{samples} samples at {rate_hz} Hz ({length}), {octaves} octaves")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_in_a_sentence_have_their_article_or_are_called_a_noise() {
+        let names = [
+            "low_pass",
+            "sinusoid",
+            "random_telegraph",
+            "rate_random_walk",
+        ];
+        assert_eq!(
+            alternatives(names),
+            "a low pass or a sinusoid or random telegraph noise or rate random walk"
+        );
+    }
 }

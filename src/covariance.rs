@@ -44,7 +44,7 @@ const NEAR: u32 = 8;
 const FAR: u32 = 256;
 
 /// The outward tail of the sum ends after two lags in a row that each add less than this share of the
-/// sum. Chosen by hand, and held to 1 % of the full sum by the same test.
+/// sum. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/covariance.rs`.
 const NEGLIGIBLE: f32 = 1e-4;
 
 /// The covariance of a curve's Allan variances, in rate units to the fourth, for a model whose effects

@@ -195,7 +195,7 @@ mod tests {
     use crate::test_random::Random;
 
     #[test]
-    fn a_triangle_has_a_place_for_every_pair() {
+    fn a_triangle_has_an_element_of_its_own_for_every_pair() {
         let mut triangle = Triangle::<8, 3>::zeros();
         let number = |i: usize, j: usize| (10 * i.max(j) + i.min(j) + 1) as Real;
         for i in 0..6 {
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn elements_of_a_vector_are_those_that_were_put() {
+    fn a_vector_returns_the_elements_that_were_put() {
         let mut vector = Vector::<5>::from_fn(|i| i as Real);
         vector.put(3, -7.0);
         assert_eq!(
@@ -227,14 +227,14 @@ mod tests {
 
     #[test]
     #[cfg_attr(debug_assertions, should_panic)]
-    fn what_is_put_beyond_the_end_is_reported_in_a_debug_build_and_dropped_in_others() {
+    fn putting_beyond_the_end_panics_in_debug_builds_and_is_ignored_in_others() {
         let mut vector = Vector::<2>::zeros();
         vector.put(2, 1.0);
         assert_eq!([vector[0], vector[1], vector[2]], [0.0; 3]);
     }
 
     #[test]
-    fn a_choice_has_what_was_added_and_not_dropped() {
+    fn a_choice_contains_what_was_added_until_it_is_dropped() {
         let mut random = Random::new(41);
         for _ in 0..100 {
             let (mut choice, mut expected) = (Choice::default(), [false; 16]);

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_are_defined_in_either_precision() {
+    fn the_tail_is_defined_at_zero_infinity_nan_and_zero_degrees() {
         for degrees in [1, 2, 30] {
             assert_eq!(chi_squared_tail(0.0, degrees), 1.0);
             assert_eq!(chi_squared_tail(-1.0, degrees), 1.0);

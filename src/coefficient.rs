@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn units_of_the_variance_scale_squares_and_their_roots() {
+    fn a_unit_of_the_variance_scales_squares_and_coefficients() {
         let unit = by_precision(1e-20, 1e-10);
         let plain = Coefficient::new(&AngleRandomWalk, 9.0, Some(4.0));
         let scaled = plain.in_unit(unit);

@@ -14,7 +14,8 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The number of standard errors from which on the disagreement of an octave is noticeable.
+/// The number of standard errors from which on the disagreement of an octave is noticeable. By
+/// convention: an octave of a true model exceeds it with a probability of 5 %.
 const NOTICEABLE: Real = 2.0;
 
 /// One octave of a measurement beside a model.
@@ -196,13 +197,13 @@ impl<const K: usize> Comparison<K> {
 impl<const K: usize> core::fmt::Display for Comparison<K> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Some(worst) = self.worst() else {
-            return write!(f, "no octaves to compare");
+            return write!(f, "the curve has no octaves to compare");
         };
         if self.stretches().next().is_none() {
             let (percent, z) = (worst.percent().abs(), worst.z.abs());
             return write!(
                 f,
-                "no octave disagrees noticeably: the worst, at τ = {}, by {percent:.1} % ({z:.1} σ)",
+                "no octave disagrees noticeably: the largest difference is {percent:.1} % at τ = {} ({z:.1} σ)",
                 Time(worst.tau_s)
             );
         }

@@ -84,7 +84,8 @@ pub struct Curve<const K: usize> {
 
 impl<const K: usize> Curve<K> {
     /// The number of differences that an octave needs to enter a curve, unless another number is asked
-    /// for. With fewer, the distribution of the estimate is too far from any that a fit can weight.
+    /// for. With fewer, the distribution of the estimate is too far from any that a fit can weight. The
+    /// number is chosen by hand; no study varies it.
     pub const MIN_DIFFERENCES: u64 = 6;
 
     /// A curve from stored octaves, each given by its averaging factor, its number of differences and

@@ -63,42 +63,55 @@ impl core::fmt::Display for Error {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::InvalidRate(rate) => {
-                write!(f, "sampling rate {rate} Hz: pass a positive, finite number")
+                write!(
+                    f,
+                    "a sampling rate of {rate} Hz is impossible: pass a positive, finite number"
+                )
             }
             Self::InvalidScale(scale) => {
-                write!(f, "rate per count {scale}: pass a positive, finite number")
+                write!(
+                    f,
+                    "a rate per count of {scale} is impossible: pass a positive, finite number"
+                )
             }
             Self::InvalidPoint { m } => write!(
                 f,
-                "octave m = {m}: averaging factors must be ascending powers of two up to 2^29, \
-                 each with differences and a finite variance that is not negative"
+                "the octave at m = {m} is impossible: give ascending powers of two up to 2^29, each \
+                 with differences and a finite variance that is not negative"
             ),
             Self::TooManyOctaves { capacity } => {
                 write!(
                     f,
-                    "more than {capacity} octaves: use a curve of larger capacity"
+                    "there are more than {capacity} octaves: use a curve of larger capacity"
                 )
             }
             Self::TooFewOctaves { found, needed } => write!(
                 f,
-                "{found} octaves with enough differences, {needed} needed: record longer"
+                "only {found} of the {needed} octaves that a fit needs have enough differences: \
+                 record longer"
             ),
             Self::NoNoise { m } => write!(
                 f,
-                "no noise at all at m = {m}: the counts never change, check the sensor"
+                "there is no noise at m = {m}, because the counts never change: check the sensor"
             ),
             Self::TooManyEffects { capacity } => {
-                write!(f, "more than {capacity} effects in one model: remove one")
+                write!(
+                    f,
+                    "the model would have more than {capacity} effects: remove one"
+                )
             }
             Self::UnknownAxis { axis, axes } => {
-                write!(f, "axis {axis} of {axes}: axes count from 0")
+                write!(
+                    f,
+                    "there is no axis {axis} among {axes} axes: count them from 0"
+                )
             }
             Self::RateContradicted {
                 configured_hz,
                 measured_hz,
             } => write!(
                 f,
-                "samples come at {measured_hz:.2} Hz, {configured_hz:.2} Hz were configured: pass \
+                "samples come at {measured_hz:.2} Hz, but {configured_hz:.2} Hz are configured: pass \
                  the measured rate, or check the output rate and that every sample is read"
             ),
             Self::Singular => {

@@ -29,7 +29,7 @@ use state::{CLUSTERS, State};
 /// *Repeats.* A quiet gyro behind a coarse converter repeats values, so no fixed length of a run is
 /// suspicious. The record itself gives its mean run, which is the number of samples over the number of
 /// changes. Runs of independent noise have a geometric distribution: a run longer than `r` times the
-/// mean has a probability below `e^−r`. At 41, not one is expected in 10⁹ records of 10⁹ samples. The
+/// mean has a probability below `e^−r`. At 41, about one is expected in 10⁹ records of 10⁹ samples. The
 /// default of 128 leaves room for a level that drifts between the middle of a quantum, where runs are
 /// long, and its edge, where they are short. It holds for a noise of 0.2 counts rms or more. Below
 /// that, quantization is no longer a noise that adds, and the curve is rightly called `Stuck`. It is

@@ -31,7 +31,8 @@ pub(crate) const ONE_SIDED_95: f64 = 1.644_854;
 pub(crate) const CHI_SQUARED_95: f64 = 3.841_459;
 
 /// A model with a lower p-value is not adequate: if it were true, a χ² as large would come out in one
-/// of a hundred records. Fit, comparison and diagnosis share this threshold.
+/// of a hundred records. Fit, comparison and diagnosis share this threshold. By convention; with it,
+/// `cargo xtask study hidden-effect` claims an effect in less than 1 % of the records that hide none.
 pub(crate) const ADEQUATE_P: f64 = 0.01;
 
 #[cfg(test)]

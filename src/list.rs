@@ -59,12 +59,12 @@ mod tests {
     use crate::test_random::Random;
 
     #[test]
-    fn a_list_takes_what_fits() {
+    fn filling_a_list_stops_at_its_capacity() {
         assert_eq!(fill::<_, 3>(0..9), [0, 1, 2]);
     }
 
     #[test]
-    fn items_come_before_what_is_worse() {
+    fn an_item_is_ranked_before_the_first_worse_one() {
         let mut list = Vec::<u8, 3>::new();
         for (item, place) in [
             (5, Some(0)),
@@ -87,7 +87,7 @@ mod tests {
     /// The list is compared with one of unlimited length, which is sorted with earlier items first and
     /// then cut.
     #[test]
-    fn ranked_items_are_the_best_of_all_in_their_order() {
+    fn ranking_keeps_the_best_items_in_order() {
         let mut random = Random::new(31);
         for _ in 0..200 {
             let mut list = Vec::<(usize, usize), 4>::new();
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn inserted_items_push_the_later_ones_on() {
+    fn inserting_an_item_moves_the_later_ones_by_one_place() {
         for place in 0..6 {
             let mut list = Vec::<u8, 4>::from([0, 1, 2]);
             insert(&mut list, place, 9);
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn items_have_the_numbers_of_their_places() {
+    fn numbered_items_count_from_zero() {
         assert!(numbered("abc".chars()).eq("abc".chars().enumerate()));
     }
 }

@@ -70,7 +70,7 @@ pub(crate) const fn log_of_integer(i: u32) -> f64 {
     let mantissa = i as f64 / (1_u64 << exponent) as f64;
     let t = (mantissa - 1.0) / (mantissa + 1.0);
     let t2 = t * t;
-    // Because t² ≤ 1/9, eighteen terms leave less than 1e-18.
+    // Because t² ≤ 1/9, nineteen terms leave less than 1e-19.
     let mut k = 37;
     let mut sum = 0.0;
     while k > 0 {

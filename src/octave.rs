@@ -140,7 +140,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         assert!(OCTAVES >= 2, "an Allan curve needs two octaves or more");
         assert!(
             OCTAVES <= 30,
-            "30 octaves are the most that cannot overflow"
+            "an accumulator has at most 30 octaves, so that nothing overflows"
         );
         // |D| ≤ m (2^32 − 1) < 2^(OCTAVES − 1 + 32), two bits below i64's sign.
         assert!(OCTAVES - 1 + 32 < 62 + 1);

@@ -7,6 +7,10 @@ use allanite::{
 };
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+/// Half-width of the two-sided 95 % interval of a normal variable, in standard errors (Abramowitz & Stegun
+/// 1964, table 26.5). The library's own constant is not public.
+pub const TWO_SIDED_95: f64 = 1.959_964;
+
 /// Probability below the lower limit and above the upper limit, which leaves 95 % between them.
 const TAIL: f64 = 0.025;
 

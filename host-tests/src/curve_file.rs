@@ -18,10 +18,11 @@ pub const FORMAT: &str = "allanite-curve";
 /// The version of the format that is written and read.
 pub const VERSION: u32 = 1;
 
-/// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis.
+/// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
 const LARGEST: u64 = 1 << 24;
 
-/// Largest relative error of a number that follows from other numbers of the file.
+/// Largest relative error of a number that follows from other numbers of the file. Chosen by hand:
+/// numbers are written with all their digits, so that only rounding remains, some 1e-15.
 const TOLERANCE: f64 = 1e-9;
 
 /// The curves of a log's axes.

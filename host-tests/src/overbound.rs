@@ -33,10 +33,11 @@ use nalgebra::{Matrix3, Vector3};
 /// Largest number of effects in an overbound.
 const MOST: usize = 3;
 
-/// Number of correlation times tried for each factor of two.
+/// Number of correlation times tried for each factor of two. Chosen by hand; no study varies it.
 const STEPS_PER_OCTAVE: u32 = 4;
 
 /// Relative margin of the model above the limit, so that rounding its coefficients leaves it above.
+/// Chosen by hand: it is some thousand times the rounding of a sum of three terms.
 const MARGIN: f64 = 1e-12;
 
 /// White noise, a random walk and perhaps a Gauss–Markov process, in rate units and seconds.
@@ -190,6 +191,7 @@ fn least(
 /// touches as many octaves as it has coefficients above zero. There are so few vertices that all of them
 /// are tried.
 fn vertex(rows: &[[f64; MOST]], effects: usize) -> Option<([f64; MOST], f64)> {
+    // The relative error that is allowed to an octave on which the model lies; chosen by hand.
     const ROUNDING: f64 = 1e-9;
     let cost: [f64; MOST] = std::array::from_fn(|i| rows.iter().map(|row| row[i]).sum());
     let mut best: Option<([f64; MOST], f64)> = None;

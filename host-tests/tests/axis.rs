@@ -192,8 +192,8 @@ fn spikes_a_motion_and_a_power_loss_give_the_same_result_as_the_cleaned_record()
     }
     assert!(looks.len() >= 5, "{looks:?}");
     assert_eq!(looks, clean_looks);
-    // The envelope and the parts take 9 bytes before the kept record. The losses and the checksum
-    // follow it.
+    // The envelope's head and the parts take 8 + 5 bytes before the kept record. The losses, one byte,
+    // and the checksum of four bytes follow it.
     let (mut buffer, mut clean_buffer) = ([0; 16_384], [0; 16_384]);
     let stored = gyro.snapshot(&[], &mut buffer).unwrap();
     let of_clean = clean.snapshot(&[], &mut clean_buffer).unwrap();

@@ -1,4 +1,4 @@
-//! Factory records keep what a fit and a diagnosis reported, and are refused if anything has
+//! Factory certificates keep what a fit and a diagnosis reported, and are refused if anything has
 //! changed.
 
 #[path = "common/factory.rs"]

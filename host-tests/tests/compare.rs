@@ -21,7 +21,7 @@ fn folder() -> TempDir {
 }
 
 #[test]
-fn missing_effect_shows_in_the_octaves_and_goes_when_it_is_added() {
+fn adding_the_missing_effect_removes_its_misfit_from_the_octaves() {
     let folder = folder();
     let without = json(folder.path(), &["compare", "log.csv"]);
     let with = "sinusoid:frequency_hz=7.7";

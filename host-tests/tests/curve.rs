@@ -285,7 +285,7 @@ fn errors_name_the_fault_and_the_remedy() {
                 found: 1,
                 needed: 2,
             },
-            ["1 octaves", "longer"],
+            ["1 of the 2 octaves", "longer"],
         ),
         (Error::NoNoise { m: 8 }, ["m = 8", "sensor"]),
         (

@@ -1,4 +1,4 @@
-//! Tests `decode` on whole and broken records and snapshots, one file and many.
+//! Tests `decode` on whole and broken certificates and snapshots, one file and many.
 
 #[path = "common/factory.rs"]
 mod factory;
@@ -128,11 +128,11 @@ fn broken_files_are_named_and_the_others_printed() {
     assert_eq!(String::from_utf8(run.stdout).unwrap(), whole);
     let errors = String::from_utf8(run.stderr).unwrap();
     let expected = [
-        "allanite: broken.bin: the bytes have changed since they were stored, by their checksum; \
-         read them again or take an older copy",
+        "allanite: broken.bin: the checksum is wrong, because the bytes have changed since they were \
+         stored; read them again or take an older copy",
         "allanite: absent.bin: no such file; check the path",
-        "allanite: text.bin: neither a snapshot nor a record of allanite; give the bytes that it \
-         wrote",
+        "allanite: text.bin: the bytes are neither a snapshot nor a certificate of allanite; read \
+         the place where it stored one",
     ];
     assert_eq!(errors.lines().collect::<Vec<_>>(), expected);
 }
@@ -141,9 +141,6 @@ fn broken_files_are_named_and_the_others_printed() {
 fn broken_file_alone_is_refused() {
     let folder = folder();
     let line = refusal(folder.path(), &["decode", "short.bin"]);
-    assert!(
-        line.contains("were stored; read all of them and no more"),
-        "{line}"
-    );
+    assert!(line.contains("were stored; read exactly these"), "{line}");
     refusal(folder.path(), &["decode", "broken.bin", "--json"]);
 }

@@ -150,7 +150,7 @@ fn filter_of_a_real_gyro_is_found_and_an_oscillation_on_one_axis() {
 }
 
 #[test]
-fn second_real_gyro_is_adequate_on_two_axes_and_has_a_line_on_the_third() {
+fn second_real_gyro_is_adequate_on_two_axes_and_has_a_sinusoid_on_the_third() {
     let document = json(Path::new("."), &["diagnose", MPU6050]);
     let axes = document["axes"].as_array().unwrap();
     assert_eq!(axes[0]["verdict"], "adequate");

@@ -184,7 +184,7 @@ fn autocovariance(effect: &dyn Effect, lag: usize, shape: &SampledShape) -> f64 
 /// The Allan variance is half the mean square of the difference of two means, each over `m`
 /// samples. This is a double sum over the autocovariance.
 #[test]
-fn variances_are_double_sums_over_the_autocovariance() {
+fn variances_equal_double_sums_over_the_autocovariance() {
     for_every_shape(|effect, shape, name| {
         for m in [1_usize, 2, 3, 5, 8, 17] {
             let pairs = (0..m).flat_map(|i| (0..m).map(move |j| (i, j)));

@@ -95,7 +95,7 @@ fn the_page_contains_the_printed_diagnosis_and_loads_nothing_external() {
 }
 
 #[test]
-fn each_axis_begins_with_its_misfit_the_missing_effect_and_the_fall_of_the_error() {
+fn each_axis_begins_with_its_misfit_the_missing_effect_and_the_decrease_of_the_error() {
     let folder = TempDir::new().unwrap();
     let diagnosis = reported(folder.path(), &[ADIS16405]);
     let mut browser = opened(folder.path());

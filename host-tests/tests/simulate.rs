@@ -152,7 +152,7 @@ fn rate_ramp_has_its_allan_variance() {
 }
 
 #[test]
-fn the_variances_of_the_terms_add() {
+fn the_variance_of_all_terms_is_the_sum_of_their_variances() {
     let all = Coefficients {
         rate_ramp: 2e-4,
         ..Preset::Mems.coefficients()

@@ -100,7 +100,8 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES> for (
     }
 }
 
-/// The number of samples in the shortest cluster by which integrity detects motion.
+/// The number of samples in the shortest cluster by which integrity detects motion. It is that of
+/// `integrity::state::CLUSTERS`.
 const CLUSTER: u8 = 64;
 
 /// The number of samples held back: one cluster, and the cluster before it, in which motion may have begun.

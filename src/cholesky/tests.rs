@@ -88,7 +88,7 @@ fn the_factor_times_its_transpose_is_the_matrix() {
 }
 
 #[test]
-fn the_factor_is_the_one_of_nalgebra() {
+fn the_factor_equals_that_of_nalgebra() {
     matrices(|n, matrix, _| {
         let mut found = triangle(matrix, n, |x| x as Real);
         assert!(factor(&mut found, n));
@@ -99,7 +99,7 @@ fn the_factor_is_the_one_of_nalgebra() {
 }
 
 #[test]
-fn rows_beyond_those_asked_for_stay_as_they_are() {
+fn rows_beyond_the_given_number_do_not_change() {
     matrices(|n, matrix, random| {
         let mut found = triangle(matrix, n, |x| x as Real);
         for j in 0..MOST {
@@ -153,7 +153,7 @@ fn solutions_in_every_precision_fulfil_their_equations() {
 }
 
 #[test]
-fn a_square_storage_holds_the_same_factor() {
+fn packed_and_square_storage_give_the_same_factor() {
     matrices(|n, matrix, _| {
         let mut packed = triangle(matrix, n, single_of);
         let mut square = Triangle::<MOST, MOST, f32>::zeros();
@@ -194,7 +194,7 @@ fn matrices_that_are_not_positive_definite_are_refused() {
 }
 
 #[test]
-fn more_rows_than_there_is_room_for_do_no_harm() {
+fn too_large_a_number_of_rows_is_refused_or_limited_to_the_capacity() {
     let mut triangle = Full::<Real>::zeros();
     for i in 0..MOST {
         triangle.put((i, i), 4.0);

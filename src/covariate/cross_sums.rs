@@ -142,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sums_of_either_sign_are_exact_however_large() {
+    fn sums_of_products_of_either_sign_are_exact() {
         let factors = [
             (3, -5),
             (i64::from(i32::MAX), i64::from(i32::MAX)),

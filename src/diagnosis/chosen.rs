@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn a_swap_is_ambiguous_by_what_it_brings_beside_the_best() {
+    fn candidates_that_keep_the_dropped_effect_make_a_swap_ambiguous() {
         let swap = Swap {
             dropped: &Resonance,
             taken: &LowPass,

@@ -17,12 +17,13 @@ pub struct Options {
     /// `cargo xtask study hidden-effect`.
     pub threshold: Real,
     /// Candidates whose scores lie within this distance of the best one are ambiguous. Default 6: the
-    /// data then favour the best one by less than e³ = 20 to 1.
+    /// data then favour the best one by less than e³ = 20 to 1. The ratio of 20 is chosen by hand.
     pub ambiguity: Real,
     /// The smallest slope of a covariate that is believed, in standard errors. Default 3.5, set by
     /// `cargo xtask study thermal`: noise exceeds it in one of 2000 records.
     pub covariate_z: Real,
-    /// The largest number of effects to add, including a covariate. Default 3.
+    /// The largest number of effects to add, including a covariate. Default 3. It is chosen by hand; no
+    /// study varies it.
     pub max_effects: usize,
 }
 

@@ -10,7 +10,8 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The number of candidates that a step fits in full and reports.
+/// The number of candidates that a step fits in full and reports. Chosen by hand.
+/// `cargo xtask study hidden-effect` runs with this value and does not vary it.
 pub const MAX_CANDIDATES: usize = 4;
 
 /// The number of names that a step can call ambiguous: two for every other candidate, and the mirrors

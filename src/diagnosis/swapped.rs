@@ -20,6 +20,7 @@ use crate::{
 use heapless::Vec;
 
 /// The number of shapes of a scan that are fitted in full beside each effect that was not preferred.
+/// Chosen by hand. `cargo xtask study hidden-effect` runs with this value and does not vary it.
 const TRIED: usize = 2;
 
 /// An effect that was added, and the effects to which it was preferred.

@@ -60,7 +60,7 @@ fn judge(curve: &Curve<OCTAVES>, work: &mut Work<OCTAVES>, step: &mut Step<OCTAV
 }
 
 #[test]
-fn a_judgement_tells_an_adequate_model_from_one_that_is_not() {
+fn judging_finds_whether_a_model_is_adequate() {
     let mut work = Work::NEW;
     let mut step = Step::of(&Model::ieee_952());
     let judged = judge(&without(), &mut work, &mut step);
@@ -76,7 +76,7 @@ fn a_judgement_tells_an_adequate_model_from_one_that_is_not() {
 }
 
 #[test]
-fn a_solution_is_found_again_at_the_squares_that_its_covariance_was_taken_at() {
+fn solving_again_from_the_assumed_squares_gives_the_same_solution() {
     let curve = with_sinusoid();
     let mut work = Work::NEW;
     let mut step = Step::of(&Model::ieee_952());
@@ -91,7 +91,7 @@ fn a_solution_is_found_again_at_the_squares_that_its_covariance_was_taken_at() {
 }
 
 #[test]
-fn a_scan_finds_the_hidden_shape_and_a_trial_its_size() {
+fn a_scan_finds_the_hidden_shape_and_a_trial_fits_its_size() {
     let curve = with_sinusoid();
     let span = curve.span();
     let mut work = Work::NEW;
@@ -144,7 +144,7 @@ fn a_scan_finds_the_hidden_shape_and_a_trial_its_size() {
 }
 
 #[test]
-fn a_diagnosis_in_pieces_reports_what_one_in_one_go_reports() {
+fn a_diagnosis_in_pieces_reports_the_same_as_a_diagnosis_in_one_go() {
     let (model, options) = (Model::ieee_952(), Options::default());
     let new = || Diagnosis::new(with_sinusoid(), Evidence::NONE, &model, &CATALOGUE, options);
     let mut whole = heapless::Vec::<Step<OCTAVES>, 4>::new();
@@ -172,7 +172,7 @@ fn a_diagnosis_in_pieces_reports_what_one_in_one_go_reports() {
 }
 
 #[test]
-fn the_list_of_candidates_shows_what_the_next_step_has() {
+fn the_first_candidate_is_the_effect_that_the_next_step_has() {
     let (model, options) = (Model::ieee_952(), Options::default());
     let mut steps = heapless::Vec::<Step<OCTAVES>, 4>::new();
     Diagnosis::new(with_sinusoid(), Evidence::NONE, &model, &CATALOGUE, options)

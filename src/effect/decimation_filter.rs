@@ -19,7 +19,8 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct DecimationFilter;
 
-/// The largest width in samples, which bounds the sums over the autocovariance.
+/// The largest width in samples, which bounds the sums over the autocovariance. Chosen by hand: a
+/// search goes to half of it.
 const WIDEST: Real = 64.0;
 
 /// The autocovariance at a lag of `x` lengths of a stage, up to a constant factor.
@@ -190,8 +191,8 @@ impl Explain for DecimationFilter {
     fn explanation(&self) -> Explanation {
         Explanation {
             what: "a decimation filter: white noise is averaged over longer than a sample interval",
-            origin: "the sensor's own digital filter, a moving average or a Bartlett window, set to fewer hertz than the output rate carries",
-            check: "read the sensor's filter register and its group delay; open the filter and see the deficit at short averaging times go",
+            origin: "the sensor's own digital filter, a moving average or a Bartlett window, set to a bandwidth below half the output rate",
+            check: "read the sensor's filter register and its group delay; widen the filter: does the deficit at short averaging times vanish?",
         }
     }
 

@@ -5,7 +5,7 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Explanation {
-    /// The physical nature of the effect.
+    /// The physical nature of the effect. A noun comes first, with its article if it takes one, then a colon.
     pub what: &'static str,
     /// The usual origin of the effect in a gyro.
     pub origin: &'static str,

@@ -81,7 +81,7 @@ impl Effect for GaussMarkov {
 impl Explain for GaussMarkov {
     fn explanation(&self) -> Explanation {
         Explanation {
-            what: "exponentially correlated noise: a disturbance that forgets itself after its correlation time",
+            what: "exponentially correlated noise: a random rate that keeps its value for about its correlation time",
             origin: "temperature control loops, charge trapping in the sense electronics, slow mechanical relaxation of the package",
             check: "log temperature and supply beside the rate; does the correlation time change with either?",
         }

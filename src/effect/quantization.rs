@@ -48,7 +48,7 @@ impl Explain for Quantization {
         Explanation {
             what: "quantization noise: the angle is rounded, or its sampling instant jitters",
             origin: "the resolution of an angle-integrating output, jitter of the sample clock, readout of a laser gyro's fringe count",
-            check: "does it change with the output's resolution or the clock? a rate-output gyro has little of it",
+            check: "does it change with the output's resolution or the clock? a gyro that outputs rates has little of it",
         }
     }
 }

@@ -67,7 +67,7 @@ impl Explain for RandomTelegraph {
         Explanation {
             what: "random telegraph noise: the rate jumps between two levels",
             origin: "a single defect in the sense electronics that captures and releases charge (popcorn noise), a stick-slip contact in the package",
-            check: "plot the rate averaged over a fifth of the correlation time: are there two levels? exchange the amplifier or cool it",
+            check: "plot the rate averaged over a fifth of the correlation time: are there two levels? does it change when the amplifier is cooled or replaced?",
         }
     }
 

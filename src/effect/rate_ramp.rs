@@ -50,7 +50,7 @@ impl Effect for RateRamp {
 impl Explain for RateRamp {
     fn explanation(&self) -> Explanation {
         Explanation {
-            what: "rate ramp: the rate drifts steadily",
+            what: "a rate ramp: the rate drifts steadily",
             origin: "warming up after power-on, a steady temperature gradient, a slow turn of the mount",
             check: "let the sensor warm up before recording; log temperature beside the rate",
         }

@@ -61,7 +61,7 @@ impl Effect for RateRandomWalk {
 impl Explain for RateRandomWalk {
     fn explanation(&self) -> Explanation {
         Explanation {
-            what: "rate random walk: the rate itself wanders",
+            what: "rate random walk: the rate wanders by independent random steps",
             origin: "ageing, slow temperature drift, creep of the package's stress",
             check: "log temperature beside the rate and record for longer",
         }

@@ -97,7 +97,7 @@ impl Explain for Resonance {
     fn explanation(&self) -> Explanation {
         Explanation {
             what: "a resonance: an oscillation with a phase that wanders",
-            origin: "a mode of the board, the mount or the proof mass excited by vibration; an alias of the drive or of its beat with another gyro's",
+            origin: "a mode of the board, the mount or the proof mass excited by vibration; an alias of the drive frequency, or of its beat with the drive of another gyro",
             check: "tap the board; change the mount's stiffness; change the sample rate a little: an alias moves, a mechanical mode stays",
         }
     }

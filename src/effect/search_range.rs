@@ -10,7 +10,8 @@ pub struct Span {
     pub longest_tau_s: Real,
 }
 
-/// The values of a shape parameter that a search tries.
+/// The values of a shape parameter that a search tries. The ranges and steps of the catalogue are
+/// chosen by hand; `cargo xtask study hidden-effect` runs with them and does not vary them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SearchRange {

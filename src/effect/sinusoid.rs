@@ -98,7 +98,7 @@ impl Explain for Sinusoid {
         Explanation {
             what: "a sinusoid: a steady oscillation of one frequency",
             origin: "mains hum, a fan or a turntable's drive, the dither of a laser gyro, an alias of the drive frequency",
-            check: "switch off motors and supplies one by one; change the sample rate a little: an alias moves, a true line stays",
+            check: "switch off motors and supplies one by one; change the sample rate a little: an alias moves, a true oscillation stays",
         }
     }
 

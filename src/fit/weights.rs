@@ -14,7 +14,7 @@ use crate::{
 use heapless::Vec;
 
 /// The shares that the correlations lose. They are tried in turn until the covariance is positive
-/// definite.
+/// definite. Chosen by hand; no study varies them.
 const SHRINKAGES: [Real; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
 
 /// The covariance of a curve relative to a model, factored.

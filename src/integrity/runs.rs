@@ -1,6 +1,7 @@
 //! Runs of equal values.
 
-/// The number of ended runs from which the mean run is known well enough to judge a run by it.
+/// The number of ended runs from which the mean run is known well enough to judge a run by it. The mean
+/// of 16 runs of independent noise has a standard error of a quarter. The number is chosen by hand.
 const KNOWN: u32 = 16;
 
 /// The largest number of samples that the mean run covers: half the range of 32 bits.

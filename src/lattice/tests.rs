@@ -13,7 +13,7 @@ const ROUNDING: Real = by_precision(1e-13, 1e-5);
 const FACTORS: [u32; 5] = [1, 2, 4, 8, 1024];
 
 #[test]
-fn positions_are_one_by_one_up_to_sixteen_and_then_four_an_octave() {
+fn positions_are_consecutive_up_to_sixteen_and_then_four_per_octave() {
     let mut expected = 0_u32;
     for slot in 0..LEN {
         assert_eq!(position(slot), expected, "slot {slot}");
@@ -28,7 +28,7 @@ fn positions_are_one_by_one_up_to_sixteen_and_then_four_an_octave() {
 }
 
 #[test]
-fn powers_are_those_of_repeated_multiplication() {
+fn powers_equal_repeated_multiplication() {
     let mut random = Random::new(21);
     for _ in 0..20 {
         // The numbers lie on the unit circle or inside it: the first stand for a line, the others for a
@@ -78,7 +78,7 @@ fn whole(m: u32) -> impl Iterator<Item = (usize, Real)> {
 }
 
 #[test]
-fn every_lag_of_whole_samples_is_evaluated_once() {
+fn lags_of_whole_samples_are_evaluated_and_no_others() {
     for m in FACTORS {
         let mut sum = SecondDifferences::zero(m, END);
         sum.add(real(m), bump);
@@ -98,7 +98,7 @@ fn every_lag_of_whole_samples_is_evaluated_once() {
 }
 
 #[test]
-fn sums_end_and_begin_where_they_are_told_to() {
+fn sums_cover_exactly_the_lags_below_an_end_or_from_a_start() {
     for m in FACTORS {
         for end in [0.5, 1.0, 3.0, 8.0, 1000.0] {
             let end = end * real(m);
@@ -117,7 +117,7 @@ fn sums_end_and_begin_where_they_are_told_to() {
 }
 
 #[test]
-fn lags_beyond_the_longest_are_left_out() {
+fn positions_beyond_the_longest_lag_stay_zero() {
     for (end, last) in [(0, 0), (1, 1), (16, 16), (17, 20), (33, 40), (END, END)] {
         let mut sum = SecondDifferences::zero(4, end);
         sum.add_slots(|_| 1.0);
@@ -128,7 +128,7 @@ fn lags_beyond_the_longest_are_left_out() {
 }
 
 #[test]
-fn contributions_add_up() {
+fn contributions_of_several_calls_are_added() {
     let mut random = Random::new(22);
     let table: [Real; LEN] = core::array::from_fn(|_| random.real());
     let mut sum = SecondDifferences::zero(8, END);
@@ -151,7 +151,7 @@ fn contributions_add_up() {
 }
 
 #[test]
-fn rounded_differences_are_in_units_of_the_variance() {
+fn rounded_second_differences_are_in_units_of_the_variance() {
     for (unit, expected) in [(3.0, 3.0), (1e-7, 1e-7), (0.0, 1.0), (-2.0, 1.0)] {
         // The effect has a second difference of `unit` at one cluster, and of 0 elsewhere.
         let mut sum = SecondDifferences::zero(4, END);
@@ -165,7 +165,7 @@ fn rounded_differences_are_in_units_of_the_variance() {
 }
 
 #[test]
-fn between_positions_values_lie_on_straight_lines() {
+fn values_between_positions_are_interpolated_linearly() {
     let mut random = Random::new(23);
     let mut sum = SecondDifferences::zero(4, END);
     sum.add_at(4, 1.0); // the unit
@@ -192,7 +192,7 @@ fn between_positions_values_lie_on_straight_lines() {
 }
 
 #[test]
-fn starts_advance_by_whole_samples() {
+fn the_stride_is_the_smallest_number_of_quarters_that_is_whole_samples() {
     for m in FACTORS {
         // The stride is the smallest number of quarters that is a whole number of samples.
         let first = (1..=4).find(|quarters| (quarters * m).is_multiple_of(4));

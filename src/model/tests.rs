@@ -36,7 +36,7 @@ fn a_model_keeps_the_order_of_its_effects() {
 }
 
 #[test]
-fn one_effect_more_than_there_is_room_for_is_refused() {
+fn a_full_model_refuses_another_effect() {
     let mut effects: [&'static dyn Effect; MAX_EFFECTS + 1] = [&RateRamp; MAX_EFFECTS + 1];
     let refused = Error::TooManyEffects {
         capacity: MAX_EFFECTS,
@@ -51,7 +51,7 @@ fn one_effect_more_than_there_is_room_for_is_refused() {
 }
 
 #[test]
-fn effects_that_are_taken_out_leave_the_order_of_the_others() {
+fn removing_an_effect_keeps_the_order_of_the_others() {
     for (place, name) in FIVE.into_iter().enumerate() {
         let without = Model::ieee_952().without(name);
         let mut removed = Model::ieee_952();
@@ -73,7 +73,7 @@ fn effects_that_are_taken_out_leave_the_order_of_the_others() {
 }
 
 #[test]
-fn of_two_of_one_name_the_later_is_taken_out() {
+fn removing_a_name_that_occurs_twice_removes_the_later_effect() {
     let mut model = Model::ieee_952();
     for quality in [1.0, 2.0] {
         let mut term = Term::new(&Sinusoid);
@@ -85,7 +85,7 @@ fn of_two_of_one_name_the_later_is_taken_out() {
 }
 
 #[test]
-fn an_exchange_restores_what_was_replaced_and_replaces_in_turn() {
+fn exchanging_an_effect_restores_and_removes_what_the_effects_replace() {
     let mut model = Model::ieee_952();
     model.remove("angle_random_walk");
     assert_eq!(model.add(Term::fitted(&LowPass)), Ok(()));
@@ -101,7 +101,7 @@ fn an_exchange_restores_what_was_replaced_and_replaces_in_turn() {
 }
 
 #[test]
-fn only_shapes_that_are_fitted_and_no_whole_numbers_are_parameters_of_the_fit() {
+fn given_shapes_and_whole_numbers_are_not_fitted() {
     assert_eq!(Term::new(&Resonance).fitted_parameters().count(), 0);
     assert!(Term::fitted(&Resonance).fitted_parameters().eq([0, 1]));
     assert!(Term::fitted(&GaussMarkov).fitted_parameters().eq([0]));
@@ -112,7 +112,7 @@ fn only_shapes_that_are_fitted_and_no_whole_numbers_are_parameters_of_the_fit() 
 }
 
 #[test]
-fn parameters_beyond_the_last_are_zero_and_stay_so() {
+fn parameters_beyond_the_last_are_zero_and_cannot_be_set() {
     let mut term = Term::new(&Resonance);
     term.set_parameter(1, 3.0);
     term.scale_parameter(1, 4.0);
@@ -126,7 +126,7 @@ fn parameters_beyond_the_last_are_zero_and_stay_so() {
 }
 
 #[test]
-fn variances_add_up() {
+fn the_variance_of_a_model_is_the_sum_over_its_effects() {
     // The formulas of IEEE Std 952 at τ = 0.64 s are 3 Q²/τ², N²/τ, (2 ln 2/π) B², K²τ/3 and R²τ²/2.
     let (interval_s, m) = (0.01, 64);
     let tau: f64 = 0.64;

@@ -43,7 +43,7 @@ fn separated(mut check: impl FnMut(&Problem, &mut Random)) {
 }
 
 #[test]
-fn the_non_negative_solution_is_the_best_of_all_choices() {
+fn the_non_negative_solution_is_the_best_over_all_sets_of_free_unknowns() {
     let mut at_zero = 0;
     separated(|problem, _| {
         let (solution, free) = problem.equations().solve_non_negative(&Free::default());
@@ -60,7 +60,7 @@ fn the_non_negative_solution_is_the_best_of_all_choices() {
 }
 
 #[test]
-fn slopes_vanish_above_zero_and_point_below_zero_elsewhere() {
+fn solutions_fulfil_the_optimality_conditions_of_karush_kuhn_and_tucker() {
     separated(|problem, _| {
         let (solution, free) = problem.equations().solve_non_negative(&Free::default());
         let found = problem.scaled(&solution);
@@ -91,7 +91,7 @@ fn unknowns_that_are_held_stay_at_zero() {
 }
 
 #[test]
-fn a_guess_right_or_wrong_leads_to_the_same_solution() {
+fn any_initial_guess_leads_to_the_same_solution() {
     separated(|problem, random| {
         let guess = random.bits();
         let guess = Free::of(|i| i < problem.count && guess >> i & 1 == 1);
@@ -107,7 +107,7 @@ fn a_guess_right_or_wrong_leads_to_the_same_solution() {
 }
 
 #[test]
-fn solutions_and_covariances_of_free_unknowns_are_those_of_elimination() {
+fn solutions_and_covariances_of_free_unknowns_equal_those_of_elimination() {
     separated(|problem, random| {
         let chosen = 1 + random.below((1 << problem.count) - 1) as u32;
         let free = Free::of(|i| chosen >> i & 1 == 1);
@@ -138,7 +138,7 @@ fn solutions_and_covariances_of_free_unknowns_are_those_of_elimination() {
 }
 
 #[test]
-fn an_exchanged_unknown_leaves_the_equations_that_it_would_have_made() {
+fn exchanging_an_unknown_equals_setting_the_equations_with_it() {
     separated(|problem, random| {
         let place = random.below(problem.count);
         let mut before = problem.equations();
@@ -159,7 +159,7 @@ fn an_exchanged_unknown_leaves_the_equations_that_it_would_have_made() {
 }
 
 #[test]
-fn what_a_solution_explains_is_what_it_takes_off_the_squares() {
+fn the_explained_part_is_the_decrease_of_the_sum_of_squares() {
     separated(|problem, random| {
         // The unknowns are random, so that they are usually not the best ones.
         let solution = Vector::from_fn(|i| {
@@ -177,7 +177,7 @@ fn what_a_solution_explains_is_what_it_takes_off_the_squares() {
 }
 
 #[test]
-fn columns_of_any_scale_make_no_difference() {
+fn the_scale_of_columns_does_not_change_the_solution() {
     // The squares of the columns' lengths fill the range of single precision.
     let decades = if cfg!(feature = "double") { 60.0 } else { 8.0 };
     let mut random = Random::new(3);
@@ -206,7 +206,7 @@ fn columns_of_any_scale_make_no_difference() {
 }
 
 #[test]
-fn data_of_any_size_make_no_difference() {
+fn the_size_of_the_data_does_not_change_the_solution() {
     let mut random = Random::new(5);
     for _ in 0..300 {
         let count = 2 + random.below(MOST - 1);
@@ -227,7 +227,7 @@ fn data_of_any_size_make_no_difference() {
 }
 
 #[test]
-fn columns_that_resemble_one_another_cost_little_of_what_can_be_explained() {
+fn nearly_equal_columns_lose_little_of_the_explained_squares() {
     // A pivot below the smallest allowed one is refused. It would explain a difference of its own size
     // at most.
     let most = 10.0 * libm::sqrt(double(LEAST_PIVOT));

@@ -44,7 +44,7 @@ fn variance(i: usize, squares: &[f64; 5], free: u32, model: &Model, samples: u64
 }
 
 #[test]
-fn the_length_is_the_first_that_measures_the_effect() {
+fn the_record_length_is_the_shortest_doubling_that_measures_the_effect() {
     let model = Model::ieee_952();
     let mut random = Random::new(61);
     let (mut told, mut never) = (0, 0);

@@ -14,12 +14,15 @@ use crate::{
     real::Real,
 };
 
-/// The rise of χ² from the best value to the ends of a 95 % interval.
+/// The rise of χ² from the best value to the ends of a 95 % interval. It is the quantile of χ² with one
+/// degree of freedom.
 const RISE: Real = CHI_SQUARED_95 as Real;
 /// The first step of the logarithm away from the best value. Steps double until they lead outside the
-/// interval.
+/// interval. Chosen by hand: it is about the smallest error of a shape in
+/// `cargo xtask study hidden-effect`, 0.4 %.
 const FIRST_STEP: Real = 0.005;
-/// How often the last step is halved after that.
+/// How often the last step is halved after that. Six halvings find an end to a 64th of that step, which
+/// is at most 2 % of the interval's half-width if steps have doubled.
 const HALVINGS: u8 = 6;
 
 /// The search for one end of an interval, where χ² has risen by [`RISE`].

@@ -46,7 +46,7 @@ fn solved(curve: &Curve<OCTAVES>) -> (Model, Columns<OCTAVES>, Solver<OCTAVES>) 
 }
 
 #[test]
-fn a_search_finds_the_least_of_a_fine_grid() {
+fn a_search_finds_a_minimum_as_low_as_that_of_a_fine_grid() {
     let curve = curve(&Sinusoid, [3.1, 0.0], 0.03 * 0.03, 2.5e-5);
     let (model, columns, solver) = solved(&curve);
     let problem = Problem::new(&curve, &model, &columns);
@@ -113,7 +113,7 @@ fn an_interval_ends_where_chi_squared_has_risen_by_that_of_95_percent() {
 }
 
 #[test]
-fn an_interval_joins_the_whole_numbers_that_explain_a_curve_as_well() {
+fn an_interval_includes_those_of_other_whole_numbers_that_explain_the_curve_as_well() {
     // At 1.5 samples, one stage and two stages differ by less than the scatter.
     let filter = [0.015, 2.0];
     let curve = curve(&DecimationFilter, filter, 2.5e-5, 0.0);

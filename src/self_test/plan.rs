@@ -108,25 +108,34 @@ impl Plan {
     }
 }
 
+/// The largest number of samples of a test: two of the longest clusters, of 2^29 samples each.
 const MAX_SAMPLES: u64 = 1 << 30;
 
 impl core::fmt::Display for InvalidPlan {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::NothingAsked => write!(f, "a self-test without limits: give one, or least_p"),
+            Self::NothingAsked => write!(
+                f,
+                "the self-test requires nothing: give it a limit or least_p"
+            ),
             Self::UnknownEffect(name) => write!(
                 f,
-                "limit of {name}: name one of the five IEEE-952 terms, such as angle_random_walk"
+                "a limit of {name} cannot be tested: name one of the five IEEE-952 terms, such as \
+                 angle_random_walk"
             ),
-            Self::TwoLimits(name) => write!(f, "two limits of {name}: keep the lower one"),
+            Self::TwoLimits(name) => write!(f, "{name} has two limits: keep the lower one"),
             Self::InvalidLimit(Limit { effect, most }) => {
                 write!(
                     f,
-                    "{effect} of at most {most}: give a positive, finite number"
+                    "the limit {most} of {effect} is impossible: give a positive, finite number"
                 )
             }
             Self::InvalidProbability(p) => {
-                write!(f, "probability {p}: choose above 0 and below 0.5")
+                write!(
+                    f,
+                    "a probability of {p} is impossible: choose false_pass and false_fail above 0 and \
+                     below 0.5, and least_p from 0 to below 1"
+                )
             }
             Self::InvalidLength {
                 shortest_s,
@@ -134,8 +143,8 @@ impl core::fmt::Display for InvalidPlan {
                 most_s,
             } => write!(
                 f,
-                "a self-test of {shortest_s} s to {longest_s} s: at least ten samples, the longest last, \
-                 and no longer than {most_s} s, or with more octaves"
+                "a self-test of {shortest_s} s to {longest_s} s is impossible: begin with at least ten \
+                 samples, and end between then and {most_s} s, or use more octaves"
             ),
         }
     }

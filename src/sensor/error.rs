@@ -38,7 +38,7 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
         match self {
             Self::Bus { register, error } => write!(
                 f,
-                "bus failed at register {register:#04x} ({error:?}): check wiring, clock and \
+                "the bus failed at register {register:#04x} ({error:?}): check wiring, clock and \
                  address, then read again"
             ),
             Self::WrongIdentity {
@@ -49,7 +49,7 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
             } => {
                 write!(
                     f,
-                    "identity register {register:#04x} says {found:#04x} instead of"
+                    "the identity register {register:#04x} says {found:#04x} instead of"
                 )?;
                 for (k, value) in expected.iter().enumerate() {
                     let or = if k == 0 { "" } else { " or" };
@@ -57,14 +57,14 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 }
                 write!(
                     f,
-                    ": not a {sensor}; 0x00 and 0xff mean that nobody answered: check chip \
+                    ", so this is no {sensor}; 0x00 and 0xff mean that nobody answered: check chip \
                      select, SPI mode and supply"
                 )
             }
             Self::TooWide { sensor, registers } => write!(
                 f,
-                "description of {sensor}: gyro and temperature span {registers} registers, \
-                 {MAX_BLOCK} can be read at once: leave the temperature out"
+                "gyro and temperature of {sensor} span {registers} registers, but only {MAX_BLOCK} can be \
+                 read at once: leave the temperature out of the description"
             ),
         }
     }

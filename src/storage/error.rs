@@ -66,43 +66,48 @@ impl core::fmt::Display for Error {
             }
             Self::UnknownMagic => write!(
                 f,
-                "neither a snapshot nor a record of allanite: give the bytes that it wrote"
+                "the bytes are neither a snapshot nor a certificate of allanite: read the place \
+                 where it stored one"
             ),
             Self::WrongLength { found, stored } => write!(
                 f,
-                "{found} bytes where {stored} were stored: read all of them and no more"
+                "{found} bytes were given, but {stored} were stored: read exactly these"
             ),
             Self::Corrupt => write!(
                 f,
-                "the bytes have changed since they were stored, by their checksum: read them again \
-                 or take an older copy"
+                "the checksum is wrong, because the bytes have changed since they were stored: read \
+                 them again or take an older copy"
             ),
             Self::WrongKind { found, wanted } => {
                 let name = |kind: &u8| match kind {
-                    1 => "snapshot",
-                    2 => "record",
-                    _ => "unknown kind",
+                    1 => "a snapshot",
+                    2 => "a certificate",
+                    _ => "something unknown",
                 };
                 let (found, wanted) = (name(found), name(wanted));
-                write!(f, "a {found} and not a {wanted}: read it as what it is")
+                write!(
+                    f,
+                    "the bytes hold {found} where {wanted} is expected: give the bytes of {wanted}"
+                )
             }
             Self::UnknownVersion { found, known } => write!(
                 f,
-                "version {found} of the format, and version {known} is known: use the allanite that \
-                 wrote it"
+                "the bytes have version {found} of the format, but this allanite reads version \
+                 {known}: use the allanite that stored them"
             ),
             Self::WrongOctaves { found, wanted } => write!(
                 f,
-                "a snapshot of {found} octaves, not {wanted}: restore it into one of {found} octaves"
+                "the snapshot has {found} octaves, but the accumulator has {wanted}: restore it into \
+                 an accumulator of {found} octaves"
             ),
             Self::OtherParts => write!(
                 f,
-                "a snapshot of other axes, covariates, parts or self-tests: restore it into the type \
-                 that stored it"
+                "the snapshot has other axes, covariates, parts or self-tests: restore it into the \
+                 type that stored it"
             ),
             Self::OtherPlan => write!(
                 f,
-                "a snapshot of a self-test by another plan: start the test again"
+                "the snapshot holds a self-test with another plan: start the test again"
             ),
             Self::DeviceTooLong { length, capacity } => write!(
                 f,
@@ -110,7 +115,8 @@ impl core::fmt::Display for Error {
             ),
             Self::Impossible => write!(
                 f,
-                "contents that no record of a gyro has: store it again from the gyro"
+                "the checksum is right, but no gyro can have stored these contents: store them again \
+                 from the gyro"
             ),
         }
     }

@@ -65,7 +65,10 @@ impl<E: core::fmt::Debug> core::fmt::Display for StoreError<E> {
                 f,
                 "the range does not suit the flash: give two whole pages of it or more"
             ),
-            Self::Flash(error) => write!(f, "flash: {error:?}: check the driver and the range"),
+            Self::Flash(error) => write!(
+                f,
+                "the flash reports {error:?}: check the driver and the range"
+            ),
             Self::Snapshot(error) => error.fmt(f),
         }
     }

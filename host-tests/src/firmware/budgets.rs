@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
-/// The relative amount by which a figure may exceed its budget.
+/// The relative amount by which a figure may exceed its budget. Chosen by hand.
 const TOLERANCE: f64 = 0.05;
 
 /// The remedy: how to bring the file in line with the measurement.

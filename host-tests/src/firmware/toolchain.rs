@@ -61,7 +61,9 @@ impl Way {
         let mut ways = Self::ALL.into_iter();
         let way = ways.find(|way| way.name() == name);
         way.with_context(|| {
-            format!("{VARIABLE}={name:?} names no toolchain: set rustup or debian, or unset it")
+            format!(
+                "{VARIABLE}={name:?} is not a known toolchain: set rustup or debian, or unset it"
+            )
         })
     }
 

@@ -127,10 +127,11 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
     };
     let (_, clock) = passes.pass(&mut rounded)?;
     for (column, steps) in columns.iter().zip(&rounded.steps) {
+        // The tenth is chosen by hand.
         if steps.lost > steps.all / 10 {
             return Err(Place::file(path).failure(
                 format!(
-                    "axis {}: {} of {} steps between values vanish in counts of 2^-30 of the range",
+                    "axis {}: {} of {} steps between values are smaller than a count, 2^-30 of the range",
                     column.axis, steps.lost, steps.all
                 ),
                 "remove the outliers that make the range so wide",

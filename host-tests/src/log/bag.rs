@@ -26,13 +26,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The largest record or chunk that is accepted, in bytes. It limits the memory that a damaged
-/// length can claim.
+/// The largest record or chunk that is accepted, in bytes. It limits the memory that a damaged length
+/// can claim. Chosen by hand.
 const LONGEST_RECORD: usize = 1 << 28;
 
 const RECOVER: &str = "copy it again, or recover what there is with `mcap recover`";
 
-/// The number of messages that decide what the columns look like.
+/// The number of messages that decide what the columns look like. Chosen by hand.
 const LOOKS: usize = 100;
 
 /// A bag, and the topic in it that is read.
@@ -251,7 +251,7 @@ fn each_message(
             Record::Statistics(statistics) if statistics.message_count != messages => {
                 return Err(Place::file(path).failure(
                     format!(
-                        "damaged: {messages} messages are left of {}",
+                        "the bag is damaged: only {messages} of {} messages can be read",
                         statistics.message_count
                     ),
                     RECOVER,
@@ -288,6 +288,6 @@ fn failure(path: &Path, error: &McapError) -> Failure {
             ),
             "compress them with zstd or lz4, with `mcap compress`",
         ),
-        error => place.failure(format!("damaged: {error}"), RECOVER),
+        error => place.failure(format!("the bag is damaged: {error}"), RECOVER),
     }
 }

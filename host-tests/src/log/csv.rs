@@ -18,10 +18,10 @@ use std::{
 };
 
 /// A line of this many bytes or more above the first row is refused, because the file is then not a
-/// log.
+/// log. Chosen by hand.
 const LONGEST_LINE: u64 = 1 << 16;
 
-/// The number of rows that decide what the columns look like.
+/// The number of rows that decide what the columns look like. Chosen by hand.
 const LOOKS: usize = 100;
 
 /// A log of text whose first rows are known.

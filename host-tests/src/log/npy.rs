@@ -16,10 +16,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// An array with more columns than this is refused, because its axes are probably its rows.
+/// An array with more columns than this is refused, because its axes are probably its rows. Chosen by
+/// hand.
 const MOST_COLUMNS: u64 = 64;
 
-/// The number of rows that decide what the columns look like.
+/// The number of rows that decide what the columns look like. Chosen by hand.
 const LOOKS: u64 = 100;
 
 /// An array file whose header and first rows are known.
@@ -41,14 +42,14 @@ impl Npy {
             [rows, width @ 1..=MOST_COLUMNS] => (rows, width),
             [rows, width] => {
                 return Err(place().failure(
-                    format!("an array of {rows} rows and {width} columns"),
-                    "rows are samples: save its transpose",
+                    format!("the array has {rows} rows and {width} columns"),
+                    "save its transpose, because rows are samples",
                 ));
             }
             _ => {
                 return Err(place().failure(
-                    format!("an array of {} dimensions", header.shape.len()),
-                    "save an array of one or two: rows are samples, columns are axes",
+                    format!("the array has {} dimensions", header.shape.len()),
+                    "save an array of one or two dimensions, with samples as rows and axes as columns",
                 ));
             }
         };

@@ -7,8 +7,8 @@ use std::io::{self, Read, Write};
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 
-/// The longest header that is accepted, in bytes. The header of a plain array takes about a
-/// hundred.
+/// The longest header that is accepted, in bytes. The header of a plain array takes about a hundred.
+/// Chosen by hand.
 const LONGEST: usize = 1 << 14;
 
 /// The kind of number that an array holds.

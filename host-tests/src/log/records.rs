@@ -7,8 +7,8 @@ use std::{
     rc::Rc,
 };
 
-/// The most bytes that may be read for one row, those in the reader's own buffer included. Without
-/// this limit, a quote that is never closed would make one row of the rest of the file.
+/// The most bytes that may be read for one row, those in the reader's own buffer included. Without this
+/// limit, a quote that is never closed would make one row of the rest of the file. Chosen by hand.
 pub(super) const LONGEST_ROW: usize = 1 << 20;
 
 /// Reads one row after the other. Empty lines and comments are skipped.

@@ -81,7 +81,8 @@ impl Scaling {
     /// rest. An unlikely scatter is a warning, an impossible one an error.
     pub(super) fn check(&self, path: &Path, axis: &Axis) -> Result<Option<String>, Failure> {
         // The limits are in deg/s or m/s². The first lies beyond the noisiest sensors at their
-        // highest rates, and the second beyond every sensor's range.
+        // highest rates, and the second beyond every sensor's range. Both are chosen by hand; no
+        // collection of data sheets was evaluated for them.
         let (doubtful, impossible) = match self.unit.sensor() {
             Sensor::Gyro => (100.0, 1e5),
             Sensor::Accelerometer => (20.0, 1e5),

@@ -48,7 +48,7 @@ impl Format {
             Ok(Self::Ulog)
         } else {
             Err(Place::file(path).failure(
-                "the extension names no kind of log",
+                "the file's extension is not that of a log",
                 "give a .csv, .csv.gz, .npy, .mcap or .ulg file",
             ))
         }

@@ -19,7 +19,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The number of messages that decide what the columns look like.
+/// The number of messages that decide what the columns look like. Chosen by hand.
 const LOOKS: usize = 100;
 
 /// The topics of raw samples, which are taken without being asked for.

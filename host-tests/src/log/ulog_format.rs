@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-/// The deepest nesting of formats that is accepted. A deeper one is taken for a circular
-/// definition.
+/// The deepest nesting of formats that is accepted. A deeper one is taken for a circular definition.
+/// Chosen by hand.
 const DEEPEST: usize = 8;
 
 /// The most fields of a format, those of nested formats included. PX4's largest formats have some
-/// hundreds.
+/// hundreds. Chosen by hand.
 const MOST_FIELDS: usize = 4096;
 
 /// The type of a field.

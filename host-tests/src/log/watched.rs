@@ -5,7 +5,7 @@ use allanite::{
     Accumulator, Axis, Error, Scale, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis,
 };
 
-/// The largest number of covariates that a log can be read with.
+/// The largest number of covariates that a log can be read with. Chosen by hand.
 pub(super) const MOST: usize = 8;
 
 /// What an axis shows beside its curve.

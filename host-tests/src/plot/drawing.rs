@@ -31,7 +31,8 @@ const LEGEND: (f64, f64) = (CURVE.left + CURVE.width + 22.0, CURVE.top + 12.0);
 const LEGEND_ROW: f64 = 24.0;
 /// Largest numbers of characters in a title and in the smaller subtitle.
 const LONGEST: [usize; 2] = [72, 120];
-/// A residual is noticeable beyond this many standard errors.
+/// A residual is noticeable beyond this many standard errors. It is the limit that the library's
+/// `Comparison::stretches` has.
 const NOTICEABLE: f64 = 2.0;
 
 const MODEL: Stroke = Stroke {

@@ -8,7 +8,8 @@ use allanite::{
 };
 use serde::Serialize;
 
-/// An effect is shown if its share of the model's variance is at least this large in some octave.
+/// An effect is shown if its share of the model's variance is at least this large in some octave. A
+/// smaller one rounds to 0 %.
 const LEAST_SHARE: f32 = 0.005;
 
 /// A record and a model octave by octave, with deviations in rate units. Single precision is enough for

@@ -14,7 +14,7 @@ const SHORTEST: usize = 1 << 10;
 const LONGEST: usize = 1 << 21;
 
 /// The moving average is long enough if the autocovariance changes by less than this share of the
-/// variance beyond a fifth of its length.
+/// variance beyond a fifth of its length. Chosen by hand; no study varies it.
 const FORGOTTEN: f64 = 1e-9;
 
 /// Gaussian noise with a given autocovariance: a moving average over white noise.

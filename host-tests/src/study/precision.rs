@@ -1,6 +1,7 @@
 //! Compares fits and diagnoses of the same records in single and double precision.
 
 use crate::{
+    confidence::TWO_SIDED_95,
     demonstration::diagnose::HIDDEN,
     firmware::{Precision, agreement::told_here},
 };
@@ -41,7 +42,7 @@ pub fn fits(records: u64) -> Result<Differences> {
             let found =
                 numbers(single).with_context(|| format!("comparing {single:?} with {double:?}"))?;
             let [_, lower, upper] = expected;
-            let error = (upper - lower) / (2.0 * 1.959_964);
+            let error = (upper - lower) / (2.0 * TWO_SIDED_95);
             let largest = found
                 .iter()
                 .zip(expected)

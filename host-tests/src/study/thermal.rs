@@ -2,7 +2,10 @@
 //! blames one that has no effect.
 
 use super::{OCTAVES, quantum};
-use crate::simulate::{Coefficients, Course, Hidden, Preset, Simulator, Thermal};
+use crate::{
+    confidence::TWO_SIDED_95,
+    simulate::{Coefficients, Course, Hidden, Preset, Simulator, Thermal},
+};
 use allanite::{
     Axis, Model, Scale,
     diagnosis::{Addition, Diagnosis, Evidence, Options},
@@ -124,7 +127,7 @@ pub fn study(course: Course, kelvin: f64, records: u64) -> Tally {
     };
     let (found, blamed) = (slopes(SLOPE), slopes(0.0));
     let n = found.len().max(1) as f64;
-    let inside = |&&(value, error): &&(f64, f64)| (value - SLOPE).abs() <= 1.959_964 * error;
+    let inside = |&&(value, error): &&(f64, f64)| (value - SLOPE).abs() <= TWO_SIDED_95 * error;
     let mean = found.iter().map(|one| one.0).sum::<f64>() / n;
     let squares = found.iter().map(|one| (one.0 - mean).powi(2));
     Tally {

@@ -76,10 +76,10 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
         (
             "log.txt",
             &[],
-            "log.txt: the extension names no kind of log; ",
+            "log.txt: the file's extension is not that of a log; ",
         ),
         ("none.csv", &[], "none.csv: no such file; check the path"),
-        (".", &[], "the extension names no kind of log; "),
+        (".", &[], "the file's extension is not that of a log; "),
         ("log.csv", &["--rate", "0"], "--rate 0 is impossible; "),
         ("log.csv", &["--rate", "-5"], "--rate -5 is impossible; "),
         ("log.csv", &["--rate", "nan"], "--rate NaN is impossible; "),

@@ -85,7 +85,7 @@ fn impossible_simulations_are_refused() {
         ),
         (
             &["mems", "--output", "a.txt"],
-            "a.txt: the extension names no kind of log; ",
+            "a.txt: the file's extension is not that of a log; ",
         ),
         (
             &["mems", "--output", "a.csv", "--scale", "1e-300"],

@@ -37,7 +37,7 @@ fn a_gyro_whose_samples_mostly_repeat_is_valid() {
 }
 
 #[test]
-fn other_sampling_rates_are_valid() {
+fn records_at_other_sampling_rates_are_valid() {
     for (rate_hz, scale) in [(10.0, 131.0), (1000.0, 131.0), (8000.0, 16.4)] {
         assert_valid(&format!("{rate_hz} Hz"), 40, |seed| {
             let simulator = Simulator::new(Preset::Mems.coefficients(), rate_hz, seed);
@@ -47,7 +47,7 @@ fn other_sampling_rates_are_valid() {
 }
 
 #[test]
-fn every_hidden_effect_is_valid() {
+fn a_record_with_any_hidden_effect_is_valid() {
     let effects = [
         ("sinusoid", [0.3, 0.0], 0.005),
         ("sinusoid", [0.3, 0.0], 0.5),

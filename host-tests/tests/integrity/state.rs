@@ -53,14 +53,14 @@ fn contradictory_limits_are_refused_by_name() {
             spike_factor: 2,
             ..limits
         }),
-        "spike_factor = 2: choose 8 to 256"
+        "the limit spike_factor = 2 is impossible: choose 8 to 256"
     );
     assert_eq!(
         refuse(Limits {
             missing_per_mille: 1001,
             ..limits
         }),
-        "missing_per_mille = 1001: choose 0 to 1000"
+        "the limit missing_per_mille = 1001 is impossible: choose 0 to 1000"
     );
     assert_eq!(
         Integrity::with_limits(leaked(limits)),

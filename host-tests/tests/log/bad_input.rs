@@ -12,7 +12,7 @@ fn outlier_that_makes_the_noise_smaller_than_a_count_is_refused() {
     }
     assert_eq!(
         refusal("a.csv", text.as_bytes(), &at_100_hz()),
-        "a.csv: axis gx: 499 of 500 steps between values vanish in counts of 2^-30 of the range; \
+        "a.csv: axis gx: 499 of 500 steps between values are smaller than a count, 2^-30 of the range; \
          remove the outliers that make the range so wide"
     );
 }
@@ -173,15 +173,18 @@ fn bad_arrays_are_refused() {
         (shaped(&[0, 3]), "a.npy: no rows"),
         (
             shaped(&[3, 100]),
-            "a.npy: an array of 3 rows and 100 columns",
+            "a.npy: the array has 3 rows and 100 columns",
         ),
-        (shaped(&[5, 10, 3]), "a.npy: an array of 3 dimensions"),
-        (shaped(&[]), "a.npy: an array of 0 dimensions"),
+        (shaped(&[5, 10, 3]), "a.npy: the array has 3 dimensions"),
+        (shaped(&[]), "a.npy: the array has 0 dimensions"),
         (
             shaped(&[u64::MAX, 3]),
             "a.npy: an array of 18446744073709551615 rows is impossible",
         ),
-        (shaped(&[50, 0]), "a.npy: an array of 50 rows and 0 columns"),
+        (
+            shaped(&[50, 0]),
+            "a.npy: the array has 50 rows and 0 columns",
+        ),
         (Vec::new(), "a.npy: the file ends within its header"),
         (
             shaped(&[50, 3])[..20].to_vec(),

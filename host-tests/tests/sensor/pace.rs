@@ -55,7 +55,7 @@ fn a_rate_beyond_the_tolerance_is_an_error_with_both_rates() {
             "{measured_hz} for {rate_hz} Hz"
         );
         assert!(
-            error.to_string().contains("100.00 Hz were configured"),
+            error.to_string().contains("100.00 Hz are configured"),
             "{error}"
         );
     }

@@ -40,7 +40,9 @@ mod image {
     #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
     fn main() -> ! {
         let Some(clock) = Clock::start() else {
-            defmt::error!("no clock that counts");
+            defmt::error!(
+                "the core's clock does not count: run the image in QEMU with -icount shift=0"
+            );
             semihosting::process::exit(1);
         };
         let done = with_extent(|extent| match extent {

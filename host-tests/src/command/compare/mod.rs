@@ -95,7 +95,8 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(Vec<AxisCurve>, Vec<AxisC
     record::measure_in_two(path, &arguments.about_log, share)
 }
 
-/// A variance below this share of the squared coefficient is taken for a rounding error.
+/// A variance below this share of the squared coefficient is taken for a rounding error. Chosen by
+/// hand: it is some five times the rounding of double precision.
 const LEAST_VARIANCE: f64 = 1e-15;
 
 /// Refuses an effect that contributes to no octave, because it cannot be fitted. An example is an

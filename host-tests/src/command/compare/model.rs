@@ -32,7 +32,10 @@ impl ModelArguments {
             if model.position(name).is_none() {
                 let names = model.terms().iter().map(|term| term.effect.name());
                 return Err(Failure::option(
-                    format!("--without {}: not in the model", quoted(name.as_bytes())),
+                    format!(
+                        "--without {}: the effect is not in the model",
+                        quoted(name.as_bytes())
+                    ),
                     format!("choose from {}", names.collect::<Vec<_>>().join(", ")),
                 ));
             }

@@ -9,7 +9,7 @@ pub(super) struct Decoded {
     pub(super) stored: Stored,
 }
 
-/// A factory record or a snapshot.
+/// A factory certificate or a snapshot.
 pub(super) enum Stored {
     Certificate(Box<Certificate>),
     Snapshot(StoredSnapshot),

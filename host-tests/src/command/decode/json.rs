@@ -1,4 +1,4 @@
-//! Factory records and snapshots as a JSON document.
+//! Factory certificates and snapshots as a JSON document.
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
 use crate::{command::output::units, unit::Unit};
@@ -80,7 +80,7 @@ struct Octave {
     sum: Option<u128>,
 }
 
-/// Prints all records and snapshots as one JSON document.
+/// Prints all certificates and snapshots as one JSON document.
 pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<()> {
     let mut document = Document {
         records: Vec::new(),

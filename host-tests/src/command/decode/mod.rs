@@ -1,4 +1,4 @@
-//! `decode`: prints the factory records and snapshots that a gyro stored.
+//! `decode`: prints the factory certificates and snapshots that a gyro stored.
 
 mod decoded;
 mod json;
@@ -20,11 +20,11 @@ use std::{
 /// Largest number of bytes read from a file. Every stored envelope is shorter.
 const LARGEST: u64 = 1 << 17;
 
-/// Decode factory records and snapshots that a gyro stored
+/// Decode factory certificates and snapshots that a gyro stored
 #[derive(Debug, Args)]
 #[command(after_help = examples::DECODE)]
 pub(super) struct Arguments {
-    /// Files with one record or snapshot each; several records are printed as one table
+    /// Files with one certificate or snapshot each; several certificates are printed as one table
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Print the result as JSON

@@ -1,4 +1,4 @@
-//! Factory records and snapshots as text.
+//! Factory certificates and snapshots as text.
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
 use crate::{
@@ -16,7 +16,7 @@ use allanite::{
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
-/// Prints one factory record in full, or a table of several, and then the snapshots.
+/// Prints one factory certificate in full, or a table of several, and then the snapshots.
 pub(super) fn print(decoded: &[Decoded], output: &mut impl Write) -> io::Result<()> {
     let mut records = Vec::new();
     for one in decoded {

@@ -212,7 +212,7 @@ impl Diagnosed {
         for (added, others) in self.ambiguous() {
             notes.push(format!(
                 "{} is ambiguous: {} would explain this curve as well",
-                words::plain(added),
+                words::in_sentence(added),
                 words::alternatives(others.iter().copied())
             ));
         }

@@ -15,7 +15,7 @@ use std::{
     thread,
 };
 
-/// Number of results that may wait to be put in order.
+/// Number of results that may wait to be put in order. Chosen by hand.
 const ON_THE_WAY: usize = 64;
 
 /// The input files, and the form of the output.

@@ -12,10 +12,10 @@ static QUIET: AtomicBool = AtomicBool::new(false);
 /// Whether several files are read at once, in which case no file has a bar of its own.
 static SHARED: AtomicBool = AtomicBool::new(false);
 
-/// A smaller file is read so quickly that it needs no bar.
+/// A smaller file is read so quickly that it needs no bar. Chosen by hand.
 const BYTES_OF_A_MOMENT: u64 = 1 << 24;
 
-/// Fewer samples are simulated so quickly that they need no bar.
+/// Fewer samples are simulated so quickly that they need no bar. Chosen by hand.
 const SAMPLES_OF_A_MOMENT: u64 = 1 << 22;
 
 /// Suppresses progress and notes from now on.

@@ -11,7 +11,7 @@ use crate::{
 use allanite::{
     Coefficient, Term,
     diagnosis::Step,
-    effect::{Effect, MAX_PARAMETERS, Parameter},
+    effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
     fit::{Fit, State},
 };
 
@@ -44,10 +44,24 @@ pub(crate) fn list_of(names: Vec<String>) -> String {
     }
 }
 
-/// Names of effects as alternatives in a sentence: `low pass or resonance`.
+/// Names of effects as alternatives in a sentence: `a low pass or a resonance`.
 pub(crate) fn alternatives<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<String> = names.into_iter().map(plain).collect();
+    let names: Vec<String> = names.into_iter().map(in_sentence).collect();
     names.join(" or ")
+}
+
+/// The name of an effect in a sentence: `a sinusoid`, `random telegraph noise`. The explanation of the effect
+/// begins with a noun, which tells whether there is an article and whether the effect is a noise.
+pub(crate) fn in_sentence(name: &str) -> String {
+    let what = explanation(name).map_or("", |explanation| explanation.what);
+    let noun = what.split(':').next().unwrap_or_default();
+    let article = if noun.starts_with("a ") { "a " } else { "" };
+    let noise = if noun.ends_with(" noise") {
+        " noise"
+    } else {
+        ""
+    };
+    format!("{article}{}{noise}", plain(name))
 }
 
 /// What the misfit and χ² of a comparison weigh, to be printed below both.
@@ -211,4 +225,23 @@ fn changed(name: &str, was: &Coefficient, is: &Coefficient, unit: Unit) -> Optio
 pub(crate) fn record(samples: u64, rate_hz: f64, octaves: usize) -> String {
     let length = duration(samples as f64 / rate_hz);
     format!("{samples} samples at {rate_hz} Hz ({length}), {octaves} octaves")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_in_a_sentence_have_their_article_or_are_called_a_noise() {
+        let names = [
+            "low_pass",
+            "sinusoid",
+            "random_telegraph",
+            "rate_random_walk",
+        ];
+        assert_eq!(
+            alternatives(names),
+            "a low pass or a sinusoid or random telegraph noise or rate random walk"
+        );
+    }
 }

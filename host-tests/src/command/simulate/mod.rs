@@ -123,7 +123,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         .any(|extension| name.ends_with(extension))
     {
         return Err(Place::file(path).failure(
-            "the extension names no kind of log",
+            "the file's extension is not that of a log",
             "name the output .csv, .csv.gz or .npy",
         ));
     }

@@ -8,7 +8,7 @@ use crate::{
 };
 use allanite::Axis as Record;
 
-/// A longer line, in bytes, is invalid.
+/// A longer line, in bytes, is invalid. Chosen by hand.
 const LONGEST_LINE: usize = 4096;
 
 /// An axis without a gate, so that every sample that is sent is shown.

@@ -166,6 +166,7 @@ fn curves(frame: &mut Frame<'_>, area: Rect, status: &Status) {
 /// The ranges of both coordinates, in powers of ten. The vertical one has a margin. `None` without
 /// points.
 fn bounds<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> Option<([f64; 2], [f64; 2])> {
+    // The margin, in powers of ten; chosen by hand.
     const ROOM: f64 = 0.1;
     let mut bounds: Option<([f64; 2], [f64; 2])> = None;
     for &(x, y) in points {

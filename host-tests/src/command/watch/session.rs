@@ -33,15 +33,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Longest wait for input before signals and the clock are checked.
+/// Longest wait for input before signals and the clock are checked. Chosen by hand.
 const MOMENT: Duration = Duration::from_millis(50);
 
 /// After an interruption, input that arrives without a longer pause counts as received before it.
+/// Chosen by hand.
 const PAUSE: Duration = Duration::from_millis(20);
-/// After an interruption, a source that never pauses is read for this long at most.
+/// After an interruption, a source that never pauses is read for this long at most. Chosen by hand.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Time from one drawing of the screen to the next.
+/// Time from one drawing of the screen to the next. Chosen by hand.
 const FRAME: Duration = Duration::from_millis(1000);
 
 /// Runs the command.

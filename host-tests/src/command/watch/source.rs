@@ -11,13 +11,13 @@ use std::{
     time::Duration,
 };
 
-/// Largest number of bytes read at a time.
+/// Largest number of bytes read at a time. Chosen by hand.
 const CHUNK: usize = 1 << 16;
 
-/// Number of chunks that may wait to be accumulated.
+/// Number of chunks that may wait to be accumulated. Chosen by hand.
 const WAITING: usize = 64;
 
-/// Longest wait for a serial port before it is read again.
+/// Longest wait for a serial port before it is read again. Chosen by hand.
 const PORT_TIMEOUT: Duration = Duration::from_millis(100);
 
 /// A source of lines of counts.

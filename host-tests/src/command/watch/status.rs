@@ -1,12 +1,15 @@
 //! The status of a recording: its length, losses, fits and verdicts at a moment.
 
 use super::recording::Recording;
-use crate::command::{
-    fit::{
-        self,
-        fitted::{Fitted, MethodName},
+use crate::{
+    command::{
+        fit::{
+            self,
+            fitted::{Fitted, MethodName},
+        },
+        output::number::{duration, probability},
     },
-    output::number::{duration, probability},
+    confidence::TWO_SIDED_95,
 };
 use allanite::fit::ADEQUATE_P;
 use allanite::{
@@ -14,9 +17,6 @@ use allanite::{
     fit::{Fit, State},
 };
 use std::path::Path;
-
-/// Half-width of the two-sided 95 % interval of a normal distribution, in standard errors.
-const TWO_SIDED: f64 = 1.96;
 
 /// The status of a recording at a moment.
 pub(super) struct Status {
@@ -112,7 +112,7 @@ pub(super) fn verdict(fit: &Fit) -> String {
 /// A coefficient that is not observable is assumed to be at its bound, as in the fit. For a coefficient
 /// whose interval includes zero, the squared coefficient is assumed to be its best value or one standard
 /// error, whichever is larger. The standard error is assumed to fall with the square root of the
-/// record's length. The record is long enough when 1.96 standard errors are less than the squared
+/// record's length. The record is long enough when [`TWO_SIDED_95`] standard errors are less than the squared
 /// coefficient.
 pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
     let needed_s = match coefficient.state {
@@ -123,7 +123,7 @@ pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
         } => after_s,
         State::UpperBound => {
             let error = coefficient.square_error;
-            length_s * (TWO_SIDED * error / coefficient.square.max(error)).powi(2)
+            length_s * (TWO_SIDED_95 * error / coefficient.square.max(error)).powi(2)
         }
     };
     if needed_s > length_s {

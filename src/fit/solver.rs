@@ -24,6 +24,9 @@ const HOPELESS_P: Real = 1e-6;
 /// The rounds end when the relative change of the model is smaller than this. Chosen by hand, to save
 /// rounds; no study varies it.
 const CONVERGED: Real = 3e-3;
+/// The share of a square that is left at least where a step goes too far. It takes ten rounds to lose
+/// three decades, which is more than there are, so a square that is needed stays within reach.
+const LEAST_LEFT: Real = 0.5;
 /// A shape parameter is not determined if the standard error of its logarithm is larger than this.
 /// Chosen by hand: the 95 % interval then spans a factor of 1.8 to either side.
 /// `cargo xtask study hidden-effect` runs with this value and does not vary it.
@@ -213,8 +216,13 @@ impl<const K: usize> Solver<K> {
             self.stride = (self.stride / (1.0 - ratio.min(0.5))).clamp(0.3, 2.0);
         }
         self.last = Some(change);
-        let next = *self.assumed + (*self.squares - *self.assumed) * self.stride;
-        self.assumed = next.map(|square| square.max(0.0)).into();
+        // However far a step goes, it loses no effect that both ends of it have. A model that had lost
+        // them all would have no variance, and so no weights.
+        let (from, to, stride) = (self.assumed, self.squares, self.stride);
+        self.assumed = Vector::from_fn(|i| {
+            let least = LEAST_LEFT * from[i].min(to[i]);
+            (from[i] + (to[i] - from[i]) * stride).max(least)
+        });
         self.round = self.round.saturating_add(1);
         let tolerance = self.weights.tolerance;
         self.weights.begin(problem, &self.assumed, tolerance)?;

@@ -120,11 +120,13 @@ pub(crate) fn covariance_row(
             // There is a place for every effect of a model.
             let _ = waves.push(Wave {
                 term,
+                square,
                 size: per_unit * square * short.amplitude,
                 product: 0.0,
                 phase,
                 turn: Turn::of(phase, &mut turns),
                 now: START,
+                scatter: coherent(term, square, shorter, interval_s),
             });
         }
     }
@@ -141,7 +143,13 @@ pub(crate) fn covariance_row(
             wave.product = long.map_or(0.0, |long| single(wave.size * long.amplitude));
             wave.now = START;
         }
-        each(k, pair.covariance(&random, &turns, &mut waves));
+        // The phase of every oscillation is the same for all octaves.
+        let of_phases = waves.iter().map(|wave| {
+            let long = coherent(wave.term, wave.square, longer, interval_s);
+            0.5 * wave.scatter * long
+        });
+        let of_phases: Real = of_phases.sum();
+        each(k, of_phases + pair.covariance(&random, &turns, &mut waves));
     }
 }
 
@@ -149,6 +157,9 @@ pub(crate) fn covariance_row(
 /// `product · cos(phase · ℓ)` at a lag of `ℓ` quarters of the shorter cluster.
 struct Wave<'a> {
     term: &'a Term,
+    square: Real,
+    /// Its [`coherent`] share of the shorter octave.
+    scatter: Real,
     /// The product without the factor of the longer octave.
     size: Real,
     product: f32,
@@ -211,6 +222,34 @@ impl Turn {
         known.push(Self { phase, steps }).ok()?;
         known.len().checked_sub(1)
     }
+}
+
+/// The part of an oscillation's variance in an octave that depends on its phase, which nobody knows: the
+/// amplitude of `σ̂² = σ²(τ) + coherent · cos 2φ`.
+///
+/// A difference of phase `φ + ωs` contributes `2σ² cos²(φ + ωs)` to the average, and `cos 2(φ + ωs)` sums
+/// over `n` starts that are `a` samples apart to `sin(nωa)/sin(ωa)`. Only a record of many periods averages
+/// it away. The starts of all octaves lie around the middle of the record, so that they share the phase
+/// `2φ` there.
+fn coherent(term: &Term, square: Real, point: &Point, interval_s: Real) -> Real {
+    let shape = term.sampled_shape(interval_s);
+    let Some(sample) = term
+        .effect
+        .response(1.0, &shape)
+        .filter(|sample| sample.phase != 0.0)
+    else {
+        return 0.0;
+    };
+    let apart = sample.phase / (2.0 * PI) * real(advance(point.m));
+    let count = point.differences as Real;
+    let sine = math::sincos_of_turns(apart).0;
+    // Starts that are whole half periods apart all have the same phase.
+    let mean = if sine.abs() * count < 1e-3 {
+        1.0
+    } else {
+        math::sincos_of_turns(apart * count).0 / (count * sine)
+    };
+    square * term.effect.variance(real(point.m), &shape) * mean
 }
 
 /// Two octaves of a curve.

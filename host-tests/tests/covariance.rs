@@ -1,8 +1,8 @@
 //! Compares the covariance of a curve with the sum over every pair of its differences.
 
 use allanite::{
-    Curve, Model,
-    effect::{IEEE_952, SampledShape},
+    Curve, Model, Term,
+    effect::{IEEE_952, SampledShape, Sinusoid},
     fit::curve_covariance,
 };
 
@@ -212,6 +212,65 @@ fn long_records_have_the_correlations_of_theory() {
                 (found - expected).abs() < 0.01,
                 "{found}, expected {expected}"
             );
+        }
+    }
+}
+
+/// The phase of an oscillation is not known. A record of few periods tells different phases by different
+/// variances, and that is all the scatter that an oscillation alone has.
+#[test]
+fn an_oscillation_scatters_with_its_phase() {
+    const PHASES: usize = 16;
+    for (samples, frequency_hz) in [
+        (4096, 0.03),
+        (4096, 0.1),
+        (3000, 7.7),
+        (1000, 0.05),
+        (555, 49.0),
+    ] {
+        let octaves = octaves(samples);
+        let variances: Vec<Vec<f64>> = (0..PHASES)
+            .map(|i| {
+                let phase = i as f64 / PHASES as f64;
+                let turns = |n: usize| frequency_hz * INTERVAL_S * n as f64 + phase;
+                let rate = |n: usize| (std::f64::consts::TAU * turns(n)).sin();
+                let mut sums = vec![0.0];
+                sums.extend((0..samples).scan(0.0, |sum, n| {
+                    *sum += rate(n);
+                    Some(*sum)
+                }));
+                let square = |m: usize, s: usize| {
+                    let difference = sums[s + 2 * m] - 2.0 * sums[s + m] + sums[s];
+                    (difference / m as f64).powi(2)
+                };
+                let mean = |o: &Octave| {
+                    let squares = o.starts.iter().map(|s| square(o.m, *s));
+                    0.5 * squares.sum::<f64>() / o.starts.len() as f64
+                };
+                octaves.iter().map(mean).collect()
+            })
+            .collect();
+        let mean = |j: usize| variances.iter().map(|v| v[j]).sum::<f64>() / PHASES as f64;
+        let mut model = Model::new(&[]).expect("empty");
+        let parameters = [frequency_hz, 0.0];
+        let term = Term {
+            parameters,
+            ..Term::new(&Sinusoid)
+        };
+        model.add(term).expect("there is room");
+        let found = curve_covariance(&curve(&octaves), &model, &[1.0]);
+        for j in 0..octaves.len() {
+            for k in 0..octaves.len() {
+                let off = |v: &Vec<f64>, j: usize| v[j] - mean(j);
+                let products = variances.iter().map(|v| off(v, j) * off(v, k));
+                let expected = products.sum::<f64>() / PHASES as f64;
+                let error = (found[(j, k)] - expected).abs();
+                assert!(
+                    error < 1e-6 * mean(j) * mean(k),
+                    "{frequency_hz} Hz, {samples} samples, octaves {j} and {k}: {:e}, expected {expected:e}",
+                    found[(j, k)]
+                );
+            }
         }
     }
 }

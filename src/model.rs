@@ -126,8 +126,8 @@ impl Model {
     }
 
     /// Puts an effect without a shape back. One of the five terms returns to its usual place, another
-    /// one to the end.
-    pub(crate) fn restore(&mut self, effect: &'static dyn Effect) -> Result<(), Error> {
+    /// one to the end. Returns its place.
+    pub(crate) fn restore(&mut self, effect: &'static dyn Effect) -> Result<usize, Error> {
         let usual = IEEE_952.iter().position(|e| e.name() == effect.name());
         let place = usual.unwrap_or(MAX_EFFECTS).min(self.terms.len());
         if self.terms.is_full() {
@@ -136,7 +136,7 @@ impl Model {
             });
         }
         list::insert(&mut self.terms, place, Term::new(effect));
-        Ok(())
+        Ok(place)
     }
 
     /// The model without the effect of that name, if it has one.
@@ -154,6 +154,13 @@ impl Model {
         let place = terms.rposition(|term| term.effect.name() == name)?;
         self.terms.remove(place);
         Some(place)
+    }
+
+    /// Removes the effect at a place, if there is one.
+    pub(crate) fn take(&mut self, place: usize) {
+        if place < self.terms.len() {
+            self.terms.remove(place);
+        }
     }
 
     /// Exchanges an effect of the model for another one. What the old effect replaced comes back, and

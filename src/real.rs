@@ -38,6 +38,7 @@ pub(crate) fn single(x: Real) -> f32 {
 }
 
 /// The same number in double precision, for values that are stored or logged.
+#[cfg(any(test, feature = "storage"))]
 pub(crate) fn double(x: Real) -> f64 {
     x.as_()
 }

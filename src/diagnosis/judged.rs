@@ -157,7 +157,7 @@ impl<const K: usize> Judging<K> {
             profile: Profile::EMPTY,
         };
         if let Self::Bounding { profile, .. } = self {
-            profile.begin(problem, &solver.weights, false);
+            profile.begin(problem, &solver.weights);
         }
     }
 }

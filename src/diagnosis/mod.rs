@@ -8,6 +8,7 @@
 
 mod alternative;
 mod chosen;
+mod dropped;
 mod evidence;
 mod followed;
 mod judged;

@@ -3,6 +3,7 @@
 
 use super::{
     chosen::choose,
+    dropped::Dropping,
     evidence::Evidence,
     followed::Following,
     judged::{Judged, Judging},
@@ -76,6 +77,8 @@ pub struct Diagnosis<'a, const K: usize> {
     best: Fitted,
     /// Effects and covariates added so far.
     additions: usize,
+    /// The number of fitted effects in the model that the diagnosis began with.
+    given: usize,
     /// The effect that was added last, and the effects to which it was preferred.
     preferred: Option<Preferred>,
     work: Work<K>,
@@ -90,10 +93,13 @@ enum Stage<const K: usize> {
     Beginning,
     /// The step's model is fitted and compared.
     Judging(Judging<K>),
+    /// The model is tried without each of its earlier additions.
+    Dropping(Dropping),
     /// The covariates are tested for whether the rate follows them.
     Following(Following<K>),
-    /// The step's model is solved again, because the solver has worked on covariates.
-    Resolving,
+    /// The step's model is solved again, because the solver has worked on other models or on
+    /// covariates. The covariates come next, unless they have been tested.
+    Resolving { followed: bool },
     /// The effects are scanned for their best shapes.
     Scanning(Scanning<K>),
     /// The best shapes are fitted in full.
@@ -138,6 +144,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
             judged: Judged::none(),
             best: Fitted::empty(),
             additions: 0,
+            given: model.terms().iter().filter(|term| term.fitted).count(),
             preferred: None,
             work: Work::NEW,
             stage: Stage::Beginning,
@@ -205,6 +212,9 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                 }
                 Ok(complete.is_some())
             }
+            Stage::Dropping(dropping) => {
+                Ok(dropping.advance(curve, &contest, &step.model, &judged.squares, work))
+            }
             Stage::Following(following) => {
                 let covariates = evidence.covariates;
                 let (model, least_z) = (&step.model, options.covariate_z);
@@ -215,7 +225,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                 }
                 Ok(complete.is_some())
             }
-            Stage::Resolving => {
+            Stage::Resolving { .. } => {
                 let problem = Problem::new(curve, &step.model, &work.columns);
                 work.solver.advance(&problem)
             }
@@ -246,29 +256,23 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                 let tolerance = Tolerance::IfNeeded(self.options.tolerance);
                 self.judge(Start::Independent, tolerance)?;
             }
-            Stage::Judging(_) => {
-                self.step.begin_report();
-                if self.has_room()
-                    && self.step.covariate.is_none()
-                    && !self.evidence.covariates.is_empty()
-                {
-                    self.follow();
-                } else {
-                    self.scan_or_report();
+            Stage::Judging(_) => match Dropping::new(&self.step.model, self.given) {
+                Some(dropping) => self.stage = Stage::Dropping(dropping),
+                None => {
+                    self.step.begin_report();
+                    self.follow_or_scan();
                 }
-            }
+            },
+            Stage::Dropping(_) => self.drop()?,
             Stage::Following(_) => {
                 if self.step.added.is_some() || self.judged.adequate != Some(false) {
                     self.stage = Stage::Reported;
-                    return Ok(());
+                } else {
+                    self.resolve(true)?;
                 }
-                let start = Start::Once(self.judged.assumed);
-                let tolerance = Tolerance::Fixed(self.judged.tolerance);
-                let model = &self.step.model;
-                self.work.begin_at(&self.curve, model, start, tolerance)?;
-                self.stage = Stage::Resolving;
             }
-            Stage::Resolving => self.scan_or_report(),
+            Stage::Resolving { followed: true } => self.scan_or_report(),
+            Stage::Resolving { followed: false } => self.follow_or_scan(),
             Stage::Scanning(_) => self.try_shapes(),
             Stage::Trying(_) if self.preferred.is_some() => self.swap(),
             Stage::Trying(_) | Stage::Swapping(_) => self.choose(),
@@ -300,7 +304,49 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         self.stage = Stage::Scanning(Scanning::new());
         if let Stage::Scanning(scanning) = &mut self.stage {
             let problem = Problem::new(&self.curve, &self.step.model, &self.work.columns);
-            scanning.begin(&problem, &self.work.solver.weights);
+            scanning.begin(&problem, &mut self.work.solver.weights);
+        }
+    }
+
+    /// Goes on with the covariates if there are any, and else with the list of effects.
+    fn follow_or_scan(&mut self) {
+        if self.has_room() && self.step.covariate.is_none() && !self.evidence.covariates.is_empty()
+        {
+            self.follow();
+        } else {
+            self.scan_or_report();
+        }
+    }
+
+    /// Begins to solve the step's model again.
+    fn resolve(&mut self, followed: bool) -> Result<(), Error> {
+        let start = Start::Once(self.judged.assumed);
+        let tolerance = Tolerance::Fixed(self.judged.tolerance);
+        let model = &self.step.model;
+        self.work.begin_at(&self.curve, model, start, tolerance)?;
+        self.stage = Stage::Resolving { followed };
+        Ok(())
+    }
+
+    /// Drops the addition that the model needs least, if it does not need it, and begins to judge the
+    /// model without it.
+    #[inline(never)]
+    fn drop(&mut self) -> Result<(), Error> {
+        let Stage::Dropping(dropping) = &self.stage else {
+            return Ok(());
+        };
+        match dropping.dropped(self.options.threshold) {
+            Some((term, fitted)) => {
+                // There is a place for every effect that a model can have.
+                let _ = self.step.dropped.push(term.effect.name());
+                self.step.model.clone_from(&fitted.model);
+                let start = Start::Once(fitted.squares);
+                self.judge(start, Tolerance::Fixed(self.judged.tolerance))
+            }
+            None => {
+                self.step.begin_report();
+                self.resolve(false)
+            }
         }
     }
 
@@ -384,6 +430,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
             Some(Addition::Effect(_)) => {
                 let (candidates, threshold) = (&self.step.candidates, self.options.threshold);
                 self.preferred = Preferred::of(candidates, threshold);
+                self.step.dropped.clear();
                 self.step.model.clone_from(&self.best.model);
                 self.additions = self.additions.saturating_add(1);
                 let tolerance = Tolerance::Fixed(self.judged.tolerance);

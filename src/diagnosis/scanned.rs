@@ -12,7 +12,7 @@ use heapless::Vec;
 /// The best shapes that a scan found, best first.
 pub(super) type Shapes = Vec<Found, MAX_CANDIDATES>;
 
-/// A scan of the effects of a list, in progress. It uses the covariance of the model so far.
+/// A scan of the effects of a list, in progress. It takes octaves for independent.
 pub(super) struct Scanning<const K: usize> {
     profile: Profile<K>,
     /// The effect that comes next, and the search for the shape of the present effect, with the
@@ -35,9 +35,10 @@ impl<const K: usize> Scanning<K> {
         }
     }
 
-    /// Begins to scan beside a solved model.
-    pub(super) fn begin(&mut self, problem: &Problem<'_, K>, weights: &Weights<K>) {
-        self.profile.begin(problem, weights, true);
+    /// Begins to scan beside a solved model. The weights of its solution are replaced.
+    pub(super) fn begin(&mut self, problem: &Problem<'_, K>, weights: &mut Weights<K>) {
+        weights.set_independent(problem);
+        self.profile.begin(problem, weights);
     }
 
     /// The best shapes so far, best first.

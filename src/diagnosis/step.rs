@@ -5,6 +5,7 @@ use crate::{
     covariate::Slope,
     effect::Effect,
     fit::Fit,
+    limits::MAX_EFFECTS,
     model::{Model, Term},
     real::Real,
 };
@@ -37,6 +38,17 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// A candidate that has not been fitted yet.
+    pub(super) const fn of(term: Term, swap: Option<Swap>) -> Self {
+        Self {
+            term,
+            swap,
+            coefficient: 0.0,
+            chi_squared: Real::NAN,
+            improvement: 0.0,
+        }
+    }
+
     /// The number of parameters that the candidate brings: coefficients and fitted shapes.
     pub(super) fn cost(&self) -> Real {
         let swap = self
@@ -111,6 +123,8 @@ pub enum Addition {
 pub struct Step<const K: usize> {
     /// The model so far.
     pub model: Model,
+    /// The effects of the step before that this model does not need any more.
+    pub dropped: Vec<&'static str, MAX_EFFECTS>,
     /// The covariate whose share has been subtracted from the curve; `None` if there is none.
     pub covariate: Option<FollowedCovariate>,
     /// The model's fit.
@@ -131,6 +145,7 @@ impl<const K: usize> Step<K> {
     pub(super) fn of(model: &Model) -> Self {
         Self {
             model: model.clone(),
+            dropped: Vec::new(),
             covariate: None,
             fit: Fit::EMPTY,
             comparison: Comparison::EMPTY,

@@ -128,11 +128,11 @@ impl<const K: usize> Swapping<K> {
     /// Begins to scan beside the solved model.
     // This is a function of its own, because its temporaries would lie on the stack below all stages.
     #[inline(never)]
-    fn scan(&mut self, curve: &Curve<K>, work: &Work<K>) {
+    fn scan(&mut self, curve: &Curve<K>, work: &mut Work<K>) {
         self.stage = Stage::Scanning(Scanning::new());
         if let Stage::Scanning(scanning) = &mut self.stage {
             let problem = Problem::new(curve, &self.base, &work.columns);
-            scanning.begin(&problem, &work.solver.weights);
+            scanning.begin(&problem, &mut work.solver.weights);
         }
     }
 

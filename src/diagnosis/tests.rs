@@ -1,6 +1,9 @@
 //! The stages of a diagnosis, alone and together, on computed curves.
 
+extern crate std;
+
 use super::{
+    dropped::Dropping,
     judged::{Judged, Judging},
     run::{Diagnosis, Progress},
     scanned::Scanning,
@@ -10,10 +13,10 @@ use super::{
     *,
 };
 use crate::{
-    Curve, Model,
+    Curve, Model, Term,
     effect::{CATALOGUE, Effect, GaussMarkov, SampledShape, Sinusoid},
     fit::{Problem, Start, Tolerance, Work},
-    real::{Real, real},
+    real::{Real, double, real},
 };
 
 const OCTAVES: usize = 16;
@@ -99,7 +102,7 @@ fn a_scan_finds_the_hidden_shape_and_a_trial_fits_its_size() {
     let judged = judge(&curve, &mut work, &mut step);
     let problem = Problem::new(&curve, &step.model, &work.columns);
     let mut scanning = Scanning::new();
-    scanning.begin(&problem, &work.solver.weights);
+    scanning.begin(&problem, &mut work.solver.weights);
     let effects: [&'static dyn Effect; 2] = [&Sinusoid, &GaussMarkov];
     while !scanning.advance(&problem, &work.solver, &effects, &span) {}
     let shapes = scanning.shapes().clone();
@@ -205,4 +208,66 @@ fn a_curve_of_two_octaves_is_too_short() {
         steps += 1;
     });
     assert_eq!((verdict, steps), (Ok(Verdict::TooShort), 1));
+}
+
+/// The diagnosis of a curve by the whole catalogue.
+fn steps(curve: Curve<OCTAVES>) -> (Verdict, std::vec::Vec<Step<OCTAVES>>) {
+    let mut steps = std::vec::Vec::new();
+    let (evidence, options) = (Evidence::NONE, Options::default());
+    let model = Model::ieee_952();
+    let mut diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options);
+    let verdict = diagnosis.run(|step| steps.push(step.clone())).unwrap();
+    (verdict, steps)
+}
+
+#[test]
+fn a_strong_line_is_found_alone_at_any_frequency() {
+    for i in 0..12 {
+        let frequency = 0.11 * 1.63_f64.powi(i);
+        let curve = curve(&Sinusoid, [real(frequency), 0.0], 1.0);
+        let (verdict, steps) = steps(curve);
+        let last = steps.last().unwrap();
+        let added: std::vec::Vec<_> = last
+            .model
+            .terms()
+            .iter()
+            .filter(|term| term.fitted)
+            .collect();
+        let [line] = added.as_slice() else {
+            panic!("{frequency} Hz: {verdict:?} {added:?}");
+        };
+        let off = double(line.parameters[0]) / frequency - 1.0;
+        assert!(off.abs() < 1e-3, "{frequency} Hz: {off:e}");
+    }
+}
+
+#[test]
+fn an_addition_that_the_model_does_not_need_is_dropped() {
+    let curve = with_sinusoid();
+    let mut model = Model::ieee_952();
+    for (effect, first) in [(&GaussMarkov as &dyn Effect, 1.0), (&Sinusoid, 7.7)] {
+        let parameters = [first, 0.0];
+        let term = Term::fitted(effect);
+        model.add(Term { parameters, ..term }).unwrap();
+    }
+    let mut work = Work::NEW;
+    let mut step = Step::of(&model);
+    let judged = judge(&curve, &mut work, &mut step);
+    assert_eq!(judged.adequate, Some(true));
+    let contest = Contest {
+        score: judged.score,
+        tolerance: judged.tolerance,
+        span: curve.span(),
+    };
+    // An effect that was given, or that was added last, stays.
+    assert!(Dropping::new(&model, 1).is_none());
+    let mut dropping = Dropping::new(&model, 0).unwrap();
+    while !dropping.advance(&curve, &contest, &model, &judged.squares, &mut work) {}
+    let (term, fitted) = dropping.dropped(8.0).unwrap();
+    assert_eq!(term.effect.name(), "gauss_markov");
+    let names = fitted.model.terms().iter().map(|term| term.effect.name());
+    assert_eq!(names.last(), Some("sinusoid"));
+    assert_eq!(fitted.model.terms().len(), 6);
+    // One that lowers the score by more than is asked for stays as well.
+    assert!(dropping.dropped(-100.0).is_none());
 }

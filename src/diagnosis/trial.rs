@@ -6,12 +6,12 @@ use crate::{
     curve::Curve,
     effect::Span,
     error::Error,
-    fit::{Problem, ShapeEquations, Start, Tolerance, Work},
+    fit::{ADEQUATE_P, Problem, ShapeEquations, Start, Tolerance, Work},
     limits::MAX_SHAPE,
     math,
     model::Model,
     nnls::Vector,
-    profile::Found,
+    profile::{Found, Neighbourhood},
     real::{Real, real, single},
 };
 use heapless::Vec;
@@ -36,6 +36,10 @@ const STRIDE: Real = 0.2;
 /// How often a step may be halved because it led too far. Chosen by hand: the last step is then a
 /// sixteenth of the first. `cargo xtask study hidden-effect` runs with this value and does not vary it.
 const HALVINGS: u8 = 4;
+
+/// If the rounds do not explain the curve, they are repeated from a shape of the neighbourhood that lowers
+/// χ² by this factor at least. Chosen by hand: a minimum that is no better is not worth the rounds.
+const MUCH_BETTER: Real = 0.5;
 
 /// Changes of the logarithms of fitted shapes, with the place of the effect and of the parameter.
 type Steps = Vec<(u8, u8, f32), MAX_SHAPE>;
@@ -78,6 +82,41 @@ impl Fitted {
         Ok(Self { model, squares })
     }
 
+    /// A model without the effect at a place. What the effect replaced comes back with its square.
+    ///
+    /// # Errors
+    /// [`Error::TooManyEffects`] never occurs, because one effect less leaves room for another.
+    pub(super) fn without(model: &Model, squares: &Vector, place: usize) -> Result<Self, Error> {
+        let mut rest = *squares;
+        let mut shorter = model.clone();
+        shorter.take(place);
+        let count = shorter.terms().len();
+        for i in place..count {
+            rest.put(i, squares[i.saturating_add(1)]);
+        }
+        rest.put(count, 0.0);
+        // What was held at zero because of the effect is free again.
+        for term in shorter.terms_mut() {
+            term.held = false;
+        }
+        let replaced = model
+            .terms()
+            .get(place)
+            .and_then(|term| term.effect.replaces());
+        if let Some(replaced) = replaced {
+            let back = shorter.restore(replaced)?;
+            for i in (back..count).rev() {
+                let moved = rest[i];
+                rest.put(i.saturating_add(1), moved);
+            }
+            rest.put(back, squares[place]);
+        }
+        Ok(Self {
+            model: shorter,
+            squares: rest,
+        })
+    }
+
     /// Changes the logarithms of shapes within their ranges.
     fn change(&mut self, steps: &Steps, sign: Real, span: &Span) {
         for &(i, j, step) in steps {
@@ -107,12 +146,15 @@ pub(super) struct Trial {
     halvings: u8,
     round: u8,
     stage: Stage,
+    /// The search around the shape, once the rounds are over; `None` before it is needed.
+    neighbourhood: Option<Neighbourhood>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Begin,
     Round,
+    Looking,
     Last,
 }
 
@@ -133,6 +175,7 @@ impl Trial {
             halvings: 0,
             round: 0,
             stage: Stage::Begin,
+            neighbourhood: None,
         }
     }
 
@@ -157,6 +200,19 @@ impl Trial {
             return Ok(None);
         }
         let problem = Problem::new(curve, &self.present.model, &work.columns);
+        if self.stage == Stage::Looking {
+            let looking = self.neighbourhood.as_mut();
+            let seen = looking.and_then(|looking| looking.advance(&problem, &work.solver, span));
+            match seen {
+                None => {}
+                Some(seen) if seen.chi_squared < MUCH_BETTER * work.solver.chi_squared => {
+                    self.begin_again(&seen);
+                    self.begin(curve, tolerance, work)?;
+                }
+                Some(_) => self.begin_last(curve, tolerance, work)?,
+            }
+            return Ok(None);
+        }
         if !work.solver.advance(&problem)? {
             return Ok(None);
         }
@@ -183,15 +239,44 @@ impl Trial {
         if goes_on && self.round < ROUNDS {
             self.begin(curve, tolerance, work)?;
         } else {
-            // The rounds are over. The best one is fitted again, with fixed shapes.
-            let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
-            self.present = fitted;
-            self.stage = Stage::Last;
-            let start = Start::From(self.present.squares);
-            let tolerance = Tolerance::Fixed(tolerance);
-            work.begin_at(curve, &self.present.model, start, tolerance)?;
+            let last = self.present.model.terms().last().copied();
+            if self.neighbourhood.is_none()
+                && work.solver.p_value() < ADEQUATE_P
+                && let Some(term) = last
+            {
+                self.neighbourhood = Some(Neighbourhood::new(term));
+                self.stage = Stage::Looking;
+                return Ok(None);
+            }
+            self.begin_last(curve, tolerance, work)?;
         }
         Ok(None)
+    }
+
+    /// Begins the last fit. The rounds are over. The best one is fitted again, with fixed shapes.
+    fn begin_last<const K: usize>(
+        &mut self,
+        curve: &Curve<K>,
+        tolerance: Real,
+        work: &mut Work<K>,
+    ) -> Result<(), Error> {
+        let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
+        self.present = fitted;
+        self.stage = Stage::Last;
+        let start = Start::From(self.present.squares);
+        let tolerance = Tolerance::Fixed(tolerance);
+        work.begin_at(curve, &self.present.model, start, tolerance)
+    }
+
+    /// Begins the rounds again, from a shape of the neighbourhood.
+    fn begin_again(&mut self, seen: &Found) {
+        if let Some(last) = self.present.model.terms_mut().last_mut() {
+            last.parameters = seen.term.parameters;
+        }
+        self.present.squares = seen.squares;
+        self.before = Real::INFINITY;
+        self.halvings = 0;
+        self.round = 0;
     }
 
     /// Begins a round.

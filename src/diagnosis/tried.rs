@@ -91,13 +91,7 @@ impl Trying {
             return true;
         };
         self.next = self.next.saturating_add(1);
-        let candidate = Candidate {
-            term: found.term,
-            swap: base.swap,
-            coefficient: 0.0,
-            chi_squared: Real::NAN,
-            improvement: 0.0,
-        };
+        let candidate = Candidate::of(found.term, base.swap);
         let mut others = candidates.iter();
         if others.any(|other| other.brings_the_same(&candidate)) {
             return false;

@@ -1,12 +1,13 @@
 //! The covariance of a curve, factored. It gives the units in which octaves are independent.
 
-use super::problem::Problem;
+use super::problem::{Problem, relative_accuracy};
 use crate::{
     algebra::{self, Triangle},
     cholesky,
     covariance::covariance_row,
     error::Error,
     limits::MAX_EFFECTS,
+    list::numbered,
     math,
     nnls::{NormalEquations, Vector},
     real::{Real, real, single},
@@ -14,8 +15,9 @@ use crate::{
 use heapless::Vec;
 
 /// The shares that the correlations lose. They are tried in turn until the covariance is positive
-/// definite. Chosen by hand; no study varies them.
-const SHRINKAGES: [Real; 5] = [0.0, 0.01, 0.03, 0.1, 0.3];
+/// definite. Chosen by hand; no study varies them. The last one takes octaves for independent, which
+/// always works.
+const SHRINKAGES: [Real; 6] = [0.0, 0.01, 0.03, 0.1, 0.3, 1.0];
 
 /// The covariance of a curve relative to a model, factored.
 pub(crate) struct Weights<const K: usize> {
@@ -80,6 +82,18 @@ impl<const K: usize> Weights<K> {
         self.row = 0;
         self.attempt = 0;
         Ok(())
+    }
+
+    /// Sets the weights of octaves that are taken for independent, each with the scatter that Lv, Liu, Lai
+    /// & Huang 2015 give it at its measured variance. A model that lacks an effect knows neither the
+    /// scatter nor the correlations of the octaves where it fails, so they say nothing about the effect.
+    pub(crate) fn set_independent(&mut self, problem: &Problem<'_, K>) {
+        self.factor = Triangle::ZEROS;
+        for (k, point) in numbered(problem.points.iter()).take(K) {
+            self.model.put(k, problem.measured(k));
+            self.factor
+                .put((k, k), single(1.0 / relative_accuracy(point)));
+        }
     }
 
     /// Computes one more row of the covariance, or factors the covariance when all rows are there.
@@ -183,22 +197,17 @@ impl<const K: usize> Weights<K> {
     }
 
     /// Expresses the curve and the columns in units in which octaves are independent and have a
-    /// variance of one. The standard error of octave `k` is enlarged by the factor `scatter(k)`.
+    /// variance of one.
     #[inline(never)]
-    pub(crate) fn whiten_into(
-        &self,
-        problem: &Problem<'_, K>,
-        scatter: &dyn Fn(usize) -> Real,
-        whitened: &mut Whitened<K>,
-    ) {
+    pub(crate) fn whiten_into(&self, problem: &Problem<'_, K>, whitened: &mut Whitened<K>) {
         whitened.columns.clear();
         for column in problem.columns() {
             // There is a place for the column of every effect.
             let _ = whitened
                 .columns
-                .push(self.whiten(problem, scatter, &|k| real(column[k])));
+                .push(self.whiten(problem, &|_| 1.0, &|k| real(column[k])));
         }
-        whitened.curve = self.whiten(problem, scatter, &|k| problem.measured(k));
+        whitened.curve = self.whiten(problem, &|_| 1.0, &|k| problem.measured(k));
     }
 
     /// One more column of variances in the same units.
@@ -224,11 +233,10 @@ impl<const K: usize> Weights<K> {
     pub(crate) fn whiten_trial(
         &self,
         problem: &Problem<'_, K>,
-        scatter: &dyn Fn(usize) -> Real,
         variance: &dyn Fn(usize) -> Real,
     ) -> (algebra::Vector<K, f32>, Real) {
         let n = problem.points.len().min(K);
-        let relative = |k: usize| variance(k) / (self.model[k] * scatter(k));
+        let relative = |k: usize| variance(k) / self.model[k];
         let unit = (0..n).map(relative).fold(0.0, Real::max);
         let mut column = algebra::Vector::<K, f32>::zeros();
         for k in 0..n {

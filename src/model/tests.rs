@@ -66,7 +66,7 @@ fn removing_an_effect_keeps_the_order_of_the_others() {
         assert_names(&removed, &rest);
         // The effect comes back to its old place.
         let effect = IEEE_952[place];
-        assert_eq!(removed.restore(effect), Ok(()));
+        assert_eq!(removed.restore(effect), Ok(place));
         assert_names(&removed, &FIVE);
     }
     assert_names(&Model::ieee_952().without("sinusoid"), &FIVE);

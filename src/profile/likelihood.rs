@@ -12,8 +12,6 @@ use crate::{
 /// The fit of a curve with one effect of any shape, beside other effects of known shapes. It is
 /// computed in units in which octaves are independent.
 pub(crate) struct Profile<const K: usize> {
-    /// Whether the standard errors of the octaves are those of the measured curve instead of the model.
-    to_measured: bool,
     whitened: Whitened<K>,
     /// The equations of the other effects, and of the effect with the shape that was tried last.
     equations: NormalEquations,
@@ -27,7 +25,6 @@ impl<const K: usize> Profile<K> {
     /// A profile of no effect yet.
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const EMPTY: Self = Self {
-        to_measured: false,
         whitened: Whitened::EMPTY,
         equations: NormalEquations::EMPTY,
         place: 0,
@@ -35,19 +32,10 @@ impl<const K: usize> Profile<K> {
         held: Free::NONE,
     };
 
-    /// Begins with a solved problem. If `to_measured` is true, the covariance is scaled to the measured
-    /// curve. This is necessary before an effect is found: the model is then too far off to tell how
-    /// much the octaves scatter that the effect dominates.
+    /// Begins with a problem and its weights.
     #[inline(never)]
-    pub(crate) fn begin(
-        &mut self,
-        problem: &Problem<'_, K>,
-        weights: &Weights<K>,
-        to_measured: bool,
-    ) {
-        self.to_measured = to_measured;
-        let scatter = |k| scatter(problem, weights, to_measured, k);
-        weights.whiten_into(problem, &scatter, &mut self.whitened);
+    pub(crate) fn begin(&mut self, problem: &Problem<'_, K>, weights: &Weights<K>) {
+        weights.whiten_into(problem, &mut self.whitened);
     }
 
     /// Chooses an effect by its `place`, which is that of the effect that it replaces, or the first one
@@ -126,8 +114,7 @@ impl<'a, const K: usize> Evaluation<'a, K> {
             weights,
         } = self;
         let unit = problem.column(&term);
-        let scatter = |k| scatter(problem, weights, profile.to_measured, k);
-        let (column, size) = weights.whiten_trial(problem, &scatter, &|k| unit[k]);
+        let (column, size) = weights.whiten_trial(problem, &|k| unit[k]);
         let column = column.map(|x| real(x) * size);
         let (others, curve) = (&profile.whitened.columns, &profile.whitened.curve);
         let exchanged = profile.equations.exchange(
@@ -151,19 +138,6 @@ impl<'a, const K: usize> Evaluation<'a, K> {
     }
 }
 
-/// The factor by which the standard error of octave `k` exceeds that of the model.
-fn scatter<const K: usize>(
-    problem: &Problem<'_, K>,
-    weights: &Weights<K>,
-    to_measured: bool,
-    k: usize,
-) -> Real {
-    match problem.points.get(k) {
-        Some(_) if to_measured => problem.measured(k) / weights.model[k],
-        _ => 1.0,
-    }
-}
-
 /// A shape of an effect, and the best fit with it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
@@ -175,11 +149,11 @@ pub(crate) struct Found {
 
 impl Found {
     /// The shape without a fit.
-    pub(crate) fn none(term: Term) -> Self {
+    pub(crate) const fn none(term: Term) -> Self {
         Self {
             term,
             chi_squared: Real::INFINITY,
-            squares: Vector::zeros(),
+            squares: Vector::ZEROS,
         }
     }
 

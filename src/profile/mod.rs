@@ -2,17 +2,20 @@
 //!
 //! The profile of a shape parameter is χ² as a function of the parameter, with all coefficients fitted
 //! anew at every value. A [`GridSearch`] finds its minimum, a [`Refinement`](refinement::Refinement)
-//! polishes a minimum, and a [`JointInterval`] finds the interval around it. Each of them does a few
+//! polishes a minimum, a [`Neighbourhood`] looks for a lower one beside it, and a [`JointInterval`] finds
+//! the interval around it. Each of them does a few
 //! evaluations per call, so that a caller can do something else in between.
 
 mod grid;
 mod interval;
 mod likelihood;
+mod neighbourhood;
 mod refinement;
 mod search;
 
 pub(crate) use interval::JointInterval;
 pub(crate) use likelihood::{Evaluation, Found, Profile};
+pub(crate) use neighbourhood::Neighbourhood;
 pub(crate) use search::GridSearch;
 
 /// The number of evaluations of a profile in one call. Each takes some 40 000 instructions on a

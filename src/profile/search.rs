@@ -9,16 +9,27 @@ use super::{
 use crate::{
     effect::{Effect, Span},
     limits::MAX_PARAMETERS,
+    list,
     model::Term,
     real::Real,
 };
+use heapless::Vec;
 
-/// A search over the grid of an effect's shapes. The best shape of the grid is then refined.
+/// The number of the grid's shapes that are refined. A curve has several minima where an effect
+/// oscillates, and the lowest one of the grid need not be the lowest one between its steps.
+const MINIMA: usize = 3;
+/// The fewest steps of the first parameter between two shapes that are refined.
+const APART: u32 = 2;
+
+/// A search over the grid of an effect's shapes. The best shapes of the grid are then refined.
 pub(crate) struct GridSearch {
     term: Term,
     grids: [Grid; MAX_PARAMETERS],
     /// The steps of the two parameters that come next.
     at: [u32; MAX_PARAMETERS],
+    /// The best shapes of the grid that lie apart, best first, and their step of the first parameter.
+    minima: Vec<(Found, u32), MINIMA>,
+    /// The best shape after the refinement of some of the minima.
     best: Found,
     refinement: Option<Refinement>,
 }
@@ -31,6 +42,7 @@ impl GridSearch {
             term,
             grids: core::array::from_fn(|i| Grid::of(effect, i, span)),
             at: [0; MAX_PARAMETERS],
+            minima: Vec::new(),
             best: Found::none(term),
             refinement: None,
         }
@@ -52,21 +64,43 @@ impl GridSearch {
         evaluation: &mut Evaluation<'_, K>,
     ) -> Option<Found> {
         if let Some(refinement) = &mut self.refinement {
-            return refinement.advance(evaluation);
+            let refined = refinement.advance(evaluation)?;
+            self.best.improve(refined);
+            self.refinement = None;
+            if self.minima.is_empty() {
+                return Some(self.best);
+            }
         }
-        let [first, second] = &self.grids;
+        let [first, second] = self.grids;
         for _ in 0..EVALUATIONS_A_CALL {
             if self.at[0] >= first.steps {
-                self.refinement = Some(Refinement::new(self.best, self.grids));
+                let Some((best, _)) = self.minima.pop() else {
+                    return Some(self.best);
+                };
+                self.refinement = Some(Refinement::new(best, self.grids));
                 break;
             }
             self.term.parameters = [first.at(self.at[0]), second.at(self.at[1])];
-            self.best.improve(evaluation.found(self.term));
+            let found = evaluation.found(self.term);
+            self.keep(found);
             self.at[1] = self.at[1].saturating_add(1);
             if self.at[1] >= second.steps {
                 self.at = [self.at[0].saturating_add(1), 0];
             }
         }
         None
+    }
+
+    /// Keeps a shape of the grid if it is one of the best, and the best one near it.
+    fn keep(&mut self, found: Found) {
+        let at = self.at[0];
+        let better = |other: &Found| other.chi_squared < found.chi_squared;
+        let is_near = |step: u32| step.abs_diff(at) < APART;
+        let mut minima = self.minima.iter();
+        if minima.any(|(other, step)| is_near(*step) && !(found.chi_squared < other.chi_squared)) {
+            return;
+        }
+        self.minima.retain(|(_, step)| !is_near(*step));
+        list::rank(&mut self.minima, (found, at), |(other, _)| !better(other));
     }
 }

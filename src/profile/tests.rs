@@ -51,7 +51,7 @@ fn a_search_finds_a_minimum_as_low_as_that_of_a_fine_grid() {
     let (model, columns, solver) = solved(&curve);
     let problem = Problem::new(&curve, &model, &columns);
     let mut profile = Profile::EMPTY;
-    profile.begin(&problem, &solver.weights, true);
+    profile.begin(&problem, &solver.weights);
     profile
         .choose(&problem, problem.count(), &solver.squares)
         .unwrap();
@@ -81,7 +81,7 @@ fn an_interval_ends_where_chi_squared_has_risen_by_that_of_95_percent() {
     let (model, columns, solver) = solved(&curve);
     let problem = Problem::new(&curve, &model, &columns);
     let mut profile = Profile::EMPTY;
-    profile.begin(&problem, &solver.weights, false);
+    profile.begin(&problem, &solver.weights);
     profile
         .choose(&problem, problem.count(), &solver.squares)
         .unwrap();
@@ -134,7 +134,7 @@ fn an_interval_includes_those_of_other_whole_numbers_that_explain_the_curve_as_w
     while !solver.advance(&problem).unwrap() {}
     let place = problem.count() - 1;
     let mut profile = Profile::EMPTY;
-    profile.begin(&problem, &solver.weights, false);
+    profile.begin(&problem, &solver.weights);
     profile.choose(&problem, place, &solver.squares).unwrap();
     profile.release();
     let span = curve.span();

@@ -179,13 +179,15 @@ impl Diagnosed {
     /// The addition of each step that has ambiguous alternatives, with the names of these alternatives:
     /// they explain the curve about as well. Steps whose addition was dropped later are not among them.
     pub(crate) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
-        let swaps = self.steps.iter().skip(1).map(|next| next.swap().is_some());
-        let kept = self
-            .steps
-            .iter()
-            .zip(swaps)
-            .filter(|&(_, dropped)| !dropped);
-        kept.filter_map(|(step, _)| {
+        let steps = &self.steps;
+        let kept = steps.iter().enumerate().filter(|&(i, step)| {
+            let swapped = steps.get(i + 1).is_some_and(|next| next.swap().is_some());
+            let added = step.added.as_ref().map(added_name);
+            let dropped =
+                |later: &Step<OCTAVES>| added.is_some_and(|name| later.dropped.contains(&name));
+            !(swapped || steps[i + 1..].iter().any(dropped))
+        });
+        kept.filter_map(|(_, step)| {
             let others = step.ambiguous.as_slice();
             let added = step.added.as_ref().filter(|_| !others.is_empty())?;
             Some((added_name(added), others))

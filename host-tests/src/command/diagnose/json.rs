@@ -32,6 +32,9 @@ struct Axis<'a> {
 #[derive(Serialize)]
 struct Step {
     effects: Vec<Effect>,
+    /// The effects of the step before that this model does not need any more.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    dropped: Vec<&'static str>,
     coefficients: Vec<fit::json::Term>,
     chi2: f64,
     dof: usize,
@@ -97,6 +100,7 @@ fn step(step: &Taken<OCTAVES>, diagnosed: &Diagnosed, unit: Unit) -> Step {
             .into_iter()
             .chain(model_json::effects(&step.model, &step.fit))
             .collect(),
+        dropped: step.dropped.to_vec(),
         coefficients: model_json::coefficients(&step.fit, unit),
         chi2: step.fit.chi_squared,
         dof: step.fit.degrees_of_freedom,

@@ -52,7 +52,10 @@ impl Finding {
         added: &Term,
     ) -> Self {
         let effect = added.effect;
-        let name = words::plain(effect.name()) + &instead(before.swap());
+        let mut name = words::plain(effect.name()) + &instead(before.swap());
+        for dropped in &after.dropped {
+            name += &format!(", {} no longer needed", words::plain(dropped));
+        }
         let place = |replaced: &str| format!("replaces {}", words::plain(replaced));
         let change = effect.replaces().map(|replaced| place(replaced.name()));
         Self {

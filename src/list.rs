@@ -1,5 +1,5 @@
-//! Lists of limited length, filled by functions that cannot panic. heapless's own `insert` and
-//! `collect` can.
+//! Lists of limited length, filled by functions that cannot panic. heapless's own `insert`,
+//! `remove` and `collect` can.
 
 use core::{iter::Zip, mem, ops::Range};
 use heapless::Vec;
@@ -32,6 +32,17 @@ pub(crate) fn insert<T, const N: usize>(list: &mut Vec<T, N>, place: usize, item
         for other in later {
             mem::swap(item, other);
         }
+    }
+}
+
+/// Removes the item at a place. Does nothing if there is none.
+pub(crate) fn remove<T, const N: usize>(list: &mut Vec<T, N>, place: usize) {
+    let later = list.get_mut(place..).and_then(<[T]>::split_first_mut);
+    if let Some((item, later)) = later {
+        for other in later.iter_mut().rev() {
+            mem::swap(item, other);
+        }
+        list.pop();
     }
 }
 

@@ -152,15 +152,13 @@ impl Model {
     pub(crate) fn remove(&mut self, name: &str) -> Option<usize> {
         let mut terms = self.terms.iter();
         let place = terms.rposition(|term| term.effect.name() == name)?;
-        self.terms.remove(place);
+        list::remove(&mut self.terms, place);
         Some(place)
     }
 
     /// Removes the effect at a place, if there is one.
     pub(crate) fn take(&mut self, place: usize) {
-        if place < self.terms.len() {
-            self.terms.remove(place);
-        }
+        list::remove(&mut self.terms, place);
     }
 
     /// Exchanges an effect of the model for another one. What the old effect replaced comes back, and

@@ -127,6 +127,7 @@ pub(crate) fn covariance_row(
                 turn: Turn::of(phase, &mut turns),
                 now: START,
                 scatter: coherent(term, square, shorter, interval_s),
+                sample_phase: short.phase,
             });
         }
     }
@@ -143,10 +144,10 @@ pub(crate) fn covariance_row(
             wave.product = long.map_or(0.0, |long| single(wave.size * long.amplitude));
             wave.now = START;
         }
-        // The phase of every oscillation is the same for all octaves.
         let of_phases = waves.iter().map(|wave| {
             let long = coherent(wave.term, wave.square, longer, interval_s);
-            0.5 * wave.scatter * long
+            let apart = wave.sample_phase / PI * (middle(longer) - middle(shorter));
+            0.5 * wave.scatter * long * math::sincos_of_turns(apart).1
         });
         let of_phases: Real = of_phases.sum();
         each(k, of_phases + pair.covariance(&random, &turns, &mut waves));
@@ -160,6 +161,8 @@ struct Wave<'a> {
     square: Real,
     /// Its [`coherent`] share of the shorter octave.
     scatter: Real,
+    /// The phase from one sample to the next, in radians.
+    sample_phase: Real,
     /// The product without the factor of the longer octave.
     size: Real,
     product: f32,
@@ -229,8 +232,7 @@ impl Turn {
 ///
 /// A difference of phase `φ + ωs` contributes `2σ² cos²(φ + ωs)` to the average, and `cos 2(φ + ωs)` sums
 /// over `n` starts that are `a` samples apart to `sin(nωa)/sin(ωa)`. Only a record of many periods averages
-/// it away. The starts of all octaves lie around the middle of the record, so that they share the phase
-/// `2φ` there.
+/// it away. The phase `2φ` is that in the [`middle`] of the octave.
 fn coherent(term: &Term, square: Real, point: &Point, interval_s: Real) -> Real {
     let shape = term.sampled_shape(interval_s);
     let Some(sample) = term
@@ -250,6 +252,12 @@ fn coherent(term: &Term, square: Real, point: &Point, interval_s: Real) -> Real 
         math::sincos_of_turns(apart * count).0 / (count * sine)
     };
     square * term.effect.variance(real(point.m), &shape) * mean
+}
+
+/// The time, in samples, around which an octave's differences lie.
+fn middle(point: &Point) -> Real {
+    let starts = (point.differences as Real - 1.0) * real(advance(point.m));
+    0.5 * starts + real(point.m)
 }
 
 /// Two octaves of a curve.

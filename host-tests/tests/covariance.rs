@@ -251,6 +251,11 @@ fn an_oscillation_scatters_with_its_phase() {
             })
             .collect();
         let mean = |j: usize| variances.iter().map(|v| v[j]).sum::<f64>() / PHASES as f64;
+        let product = |j: usize, k: usize| {
+            let off = |v: &Vec<f64>, j: usize| v[j] - mean(j);
+            let products = variances.iter().map(|v| off(v, j) * off(v, k));
+            products.sum::<f64>() / PHASES as f64
+        };
         let mut model = Model::new(&[]).expect("empty");
         let parameters = [frequency_hz, 0.0];
         let term = Term {
@@ -261,9 +266,7 @@ fn an_oscillation_scatters_with_its_phase() {
         let found = curve_covariance(&curve(&octaves), &model, &[1.0]);
         for j in 0..octaves.len() {
             for k in 0..octaves.len() {
-                let off = |v: &Vec<f64>, j: usize| v[j] - mean(j);
-                let products = variances.iter().map(|v| off(v, j) * off(v, k));
-                let expected = products.sum::<f64>() / PHASES as f64;
+                let expected = product(j, k);
                 let error = (found[(j, k)] - expected).abs();
                 assert!(
                     error < 1e-6 * mean(j) * mean(k),

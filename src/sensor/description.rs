@@ -22,6 +22,18 @@ pub enum ByteOrder {
     BigEndian,
 }
 
+/// The buses over which a write is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Bus {
+    /// Both buses.
+    Any,
+    /// SPI only.
+    Spi,
+    /// I²C only.
+    I2c,
+}
+
 /// One write of a start-up sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -32,8 +44,8 @@ pub struct Write {
     pub value: u8,
     /// The pause after the write, in µs, before the next access.
     pub wait_us: u32,
-    /// Whether the write is left out over I²C.
-    pub spi_only: bool,
+    /// The buses over which the write is sent. Over another bus it is left out.
+    pub bus: Bus,
 }
 
 impl Write {
@@ -43,7 +55,7 @@ impl Write {
             register,
             value,
             wait_us: 0,
-            spi_only: false,
+            bus: Bus::Any,
         }
     }
 
@@ -55,8 +67,25 @@ impl Write {
     /// Restricts the write to SPI.
     pub const fn spi_only(self) -> Self {
         Self {
-            spi_only: true,
+            bus: Bus::Spi,
             ..self
+        }
+    }
+
+    /// Restricts the write to I²C.
+    pub const fn i2c_only(self) -> Self {
+        Self {
+            bus: Bus::I2c,
+            ..self
+        }
+    }
+
+    /// Whether the write is sent over SPI, or over I²C.
+    pub(super) const fn is_sent(&self, over_spi: bool) -> bool {
+        match self.bus {
+            Bus::Any => true,
+            Bus::Spi => over_spi,
+            Bus::I2c => !over_spi,
         }
     }
 }

@@ -50,7 +50,7 @@ mod record;
 
 pub use bmi160::BMI160;
 pub use bus::{I2cBus, Registers, SpiBus};
-pub use description::{ByteOrder, Description, Interface, Status, Temperature, Write};
+pub use description::{Bus, ByteOrder, Description, Interface, Status, Temperature, Write};
 pub use error::Error;
 pub use icm_42688_p::ICM_42688_P;
 pub use imu::{Imu, Reading};

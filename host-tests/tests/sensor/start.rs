@@ -122,7 +122,7 @@ fn a_sibling_is_accepted_by_any_of_its_identities() {
 fn a_failed_write_names_its_register_and_keeps_the_bus_error() {
     let sheet = Sheet::of(&LSM6DSO);
     let mut turns = sheet.i2c_start();
-    turns.truncate(4);
+    turns.truncate(5);
     let last = turns.pop().unwrap();
     turns.push(last.with_error(ErrorKind::ArbitrationLoss));
     let mut mock = I2cMock::new(&turns);

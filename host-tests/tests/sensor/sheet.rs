@@ -80,9 +80,10 @@ pub(crate) const SHEETS: [Sheet; 6] = [
         identity: (0x0F, 0xD4),
         writes: &[
             (0x21, 0x00, Any),
-            (0x24, 0x00, Any),
+            (0x24, 0x02, Any),
+            (0x2E, 0x00, Any),
             (0x23, 0x80, Any),
-            (0x20, 0x0F, Any),
+            (0x20, 0x1F, Any),
         ],
         status: 0x27,
         block: (0x28, 6, 0, None),

@@ -43,7 +43,7 @@ pub(crate) const SHEETS: [Sheet; 6] = [
         description: &BMI160,
         bus: (0x68, 0x80, 0),
         identity: (0x00, 0xD1),
-        writes: &[(0x7E, 0x15, Any), (0x43, 0x03, Any), (0x42, 0x28, Any)],
+        writes: &[(0x7E, 0x15, Any), (0x43, 0x03, Any), (0x42, 0x09, Any)],
         status: 0x1B,
         block: (0x0C, 22, 0, Some(20)),
         big_endian: false,

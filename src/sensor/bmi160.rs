@@ -1,4 +1,4 @@
-use super::{ByteOrder, Description, Interface, Status, Temperature, Write};
+use super::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write};
 
 /// Bosch BMI160, ±250 °/s at 200 Hz with fourfold oversampling, behind a low pass of 20 Hz.
 ///
@@ -62,4 +62,9 @@ pub static BMI160: Description = Description {
     // Register (0x43) GYR_RANGE: 131.2 LSB/°/s.
     scale_dps: 1.0 / 131.2,
     rate_hz: 200.0,
+    // Chapter 2.4.2: 20.2 Hz, with one pole π/2 · 20.2 Hz.
+    filter: Filter {
+        noise_bandwidth_hz: 31.8,
+        poles: 1,
+    },
 };

@@ -1,4 +1,4 @@
-use super::{ByteOrder, Description, Interface, Status, Write};
+use super::{ByteOrder, Description, Filter, Interface, Status, Write};
 
 /// ST L3GD20, a gyro without accelerometer, ±250 °/s at 95 Hz, behind the low passes LPF1 at 32 Hz and LPF2
 /// at 25 Hz. It reports overwritten samples.
@@ -62,4 +62,9 @@ pub static L3GD20: Description = Description {
     // Table "Mechanical characteristics": 8.75 mdps/digit at FS = 250 dps.
     scale_dps: 8.75e-3,
     rate_hz: 95.0,
+    // One pole at 32 Hz (LPF1) and one at 25 Hz (LPF2), the smallest number: π/2 · 32·25/(32 + 25).
+    filter: Filter {
+        noise_bandwidth_hz: 22.1,
+        poles: 2,
+    },
 };

@@ -1,4 +1,4 @@
-use super::{ByteOrder, Description, Interface, Status, Temperature, Write};
+use super::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write};
 
 /// ST LSM6DSO, ±250 °/s at 104 Hz in high-performance mode, behind the low pass LPF2 at 33 Hz.
 ///
@@ -62,4 +62,12 @@ pub static LSM6DSO: Description = Description {
     // Table "Mechanical characteristics": 8.75 mdps/LSB at FS = ±250 dps.
     scale_dps: 8.75e-3,
     rate_hz: 104.0,
+    // Table "Gyroscope LPF2 bandwidth selection" (6.4.2): 33.0 Hz at −3 dB. The order is inferred: 0.319 of the
+    // rate is the cut-off of a sinc², a running mean applied twice, whose noise bandwidth is a third of the
+    // rate and which is zero at its multiples. Table "Gyroscope LPF1 bandwidth selection" (9.17) agrees: a
+    // sinc² behind one pole at 12.5 or 25.1 Hz gives its cut-offs for FTYPE 0b111 and 0b110 within 2 %.
+    filter: Filter {
+        noise_bandwidth_hz: 34.7,
+        poles: 2,
+    },
 };

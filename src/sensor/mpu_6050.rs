@@ -1,4 +1,4 @@
-use super::{ByteOrder, Description, Interface, Status, Temperature, Write};
+use super::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write};
 
 /// InvenSense MPU-6050, and MPU-6000, which is the same with SPI: ±250 °/s at 200 Hz behind a low
 /// pass of 20 Hz.
@@ -72,4 +72,9 @@ pub static MPU_6050: Description = Description {
     // Section 4.19, page 31: 131 LSB/°/s for FS_SEL 0.
     scale_dps: 1.0 / 131.0,
     rate_hz: 200.0,
+    // Register 26: 20 Hz, with one pole π/2 · 20 Hz.
+    filter: Filter {
+        noise_bandwidth_hz: 31.4,
+        poles: 1,
+    },
 };

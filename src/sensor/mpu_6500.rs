@@ -1,4 +1,4 @@
-use super::{ByteOrder, Description, Interface, Status, Temperature, Write};
+use super::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write};
 
 /// InvenSense MPU-6500, and MPU-9250, whose gyro has the same registers: ±250 °/s at 200 Hz behind
 /// a low pass of 20 Hz.
@@ -76,4 +76,9 @@ pub static MPU_6500: Description = Description {
     // Product specification, table "Gyroscope specifications": 131 LSB/(°/s) for FS_SEL 0.
     scale_dps: 1.0 / 131.0,
     rate_hz: 200.0,
+    // Register 26: 20 Hz, with one pole π/2 · 20 Hz.
+    filter: Filter {
+        noise_bandwidth_hz: 31.4,
+        poles: 1,
+    },
 };

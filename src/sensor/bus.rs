@@ -12,7 +12,7 @@ pub trait Registers {
     /// The error of the bus.
     type Error;
 
-    /// Whether the bus is SPI. Writes marked [`spi_only`](super::Write::spi_only) are sent only if it is.
+    /// Whether the bus is SPI. It selects the writes that are sent: see [`Write::bus`](super::Write::bus).
     const IS_SPI: bool;
 
     /// Makes the sensor listen to this bus.

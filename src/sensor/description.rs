@@ -22,6 +22,18 @@ pub enum ByteOrder {
     BigEndian,
 }
 
+/// The buses over which a write is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Bus {
+    /// Both buses.
+    Any,
+    /// SPI only.
+    Spi,
+    /// I²C only.
+    I2c,
+}
+
 /// One write of a start-up sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -32,8 +44,8 @@ pub struct Write {
     pub value: u8,
     /// The pause after the write, in µs, before the next access.
     pub wait_us: u32,
-    /// Whether the write is left out over I²C.
-    pub spi_only: bool,
+    /// The buses over which the write is sent. Over another bus it is left out.
+    pub bus: Bus,
 }
 
 impl Write {
@@ -43,7 +55,7 @@ impl Write {
             register,
             value,
             wait_us: 0,
-            spi_only: false,
+            bus: Bus::Any,
         }
     }
 
@@ -55,8 +67,25 @@ impl Write {
     /// Restricts the write to SPI.
     pub const fn spi_only(self) -> Self {
         Self {
-            spi_only: true,
+            bus: Bus::Spi,
             ..self
+        }
+    }
+
+    /// Restricts the write to I²C.
+    pub const fn i2c_only(self) -> Self {
+        Self {
+            bus: Bus::I2c,
+            ..self
+        }
+    }
+
+    /// Whether the write is sent over SPI, or over I²C.
+    pub(super) const fn is_sent(&self, over_spi: bool) -> bool {
+        match self.bus {
+            Bus::Any => true,
+            Bus::Spi => over_spi,
+            Bus::I2c => !over_spi,
         }
     }
 }
@@ -112,6 +141,24 @@ impl Temperature {
     }
 }
 
+/// The low pass before the samples of a gyro, as set up by the start-up writes.
+///
+/// White noise of the one-sided spectral density `2N²` leaves a low pass of the power response `|H(f)|²` with
+/// the variance `2N² B`. The noise bandwidth `B = ∫₀^∞ |H(f)|² df`, for `|H(0)| = 1`, is what a rectangular
+/// low pass of that variance would have. If `B` is at half the output rate or beyond, noise folds back on
+/// sampling, and N comes out too high.
+///
+/// Where no source gives the order, the smallest number of poles and the largest noise bandwidth are stated:
+/// for one pole, π/2 times the cut-off at −3 dB.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Filter {
+    /// The noise bandwidth, in Hz.
+    pub noise_bandwidth_hz: Real,
+    /// The order of the low pass, which is the number of its poles.
+    pub poles: u8,
+}
+
 /// Everything that [`Imu`](super::Imu) needs to know about a sensor. A new sensor needs only a new value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -139,6 +186,8 @@ pub struct Description {
     /// The nominal rate after the start-up writes, in samples per second. The true rate is set by the
     /// sensor's own oscillator and differs by a few per cent: see [`Pace`](super::Pace).
     pub rate_hz: Real,
+    /// The low pass at that rate.
+    pub filter: Filter,
 }
 
 impl Description {

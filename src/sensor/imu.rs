@@ -43,7 +43,7 @@ impl<B: Registers> Imu<B> {
         let mut imu = Self { bus, description };
         imu.identify()?;
         for write in description.start_up {
-            if write.spi_only && !B::IS_SPI {
+            if !write.is_sent(B::IS_SPI) {
                 continue;
             }
             imu.bus

@@ -1,7 +1,9 @@
 //! The contents of data sheets, stated independently as transfers on mocked buses.
 
 use allanite::sensor::{
-    BMI160, Description, I2cBus, ICM_42688_P, Imu, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Reading,
+    BMI160,
+    Bus::{self, Any, I2c, Spi},
+    Description, I2cBus, ICM_42688_P, Imu, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Reading,
 };
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock as I2cMock, Transaction as I2cTurn};
@@ -14,8 +16,8 @@ pub(crate) struct Sheet {
     pub(crate) bus: (u8, u8, u8),
     /// The identity register and its value.
     pub(crate) identity: (u8, u8),
-    /// The register, the value, and whether the write also happens over I²C.
-    pub(crate) writes: &'static [(u8, u8, bool)],
+    /// The register, the value, and the buses over which it is written.
+    pub(crate) writes: &'static [(u8, u8, Bus)],
     pub(crate) status: u8,
     /// The first register and the number of bytes that are read at once, and the offsets of gyro
     /// and temperature in them.
@@ -24,16 +26,16 @@ pub(crate) struct Sheet {
     pub(crate) ready: u8,
 }
 
-const MPU_WRITES: &[(u8, u8, bool)] = &[
-    (0x6B, 0x80, true),
-    (0x68, 0x07, false),
-    (0x6A, 0x10, false),
-    (0x6B, 0x01, true),
-    (0x1A, 0x03, true),
-    (0x19, 0x09, true),
-    (0x1B, 0x00, true),
-    (0x37, 0x10, true),
-    (0x38, 0x01, true),
+const MPU_WRITES: &[(u8, u8, Bus)] = &[
+    (0x6B, 0x80, Any),
+    (0x68, 0x07, Spi),
+    (0x6A, 0x10, Spi),
+    (0x6B, 0x01, Any),
+    (0x1A, 0x04, Any),
+    (0x19, 0x04, Any),
+    (0x1B, 0x00, Any),
+    (0x37, 0x10, Any),
+    (0x38, 0x01, Any),
 ];
 
 pub(crate) const SHEETS: [Sheet; 6] = [
@@ -41,7 +43,7 @@ pub(crate) const SHEETS: [Sheet; 6] = [
         description: &BMI160,
         bus: (0x68, 0x80, 0),
         identity: (0x00, 0xD1),
-        writes: &[(0x7E, 0x15, true), (0x43, 0x03, true), (0x42, 0x28, true)],
+        writes: &[(0x7E, 0x15, Any), (0x43, 0x03, Any), (0x42, 0x09, Any)],
         status: 0x1B,
         block: (0x0C, 22, 0, Some(20)),
         big_endian: false,
@@ -52,10 +54,20 @@ pub(crate) const SHEETS: [Sheet; 6] = [
         bus: (0x68, 0x80, 0),
         identity: (0x75, 0x47),
         writes: &[
-            (0x11, 0x01, true),
-            (0x4F, 0x68, true),
-            (0x65, 0x08, true),
-            (0x4E, 0x0C, true),
+            (0x11, 0x01, Any),
+            (0x4C, 0x33, Spi),
+            (0x13, 0x09, I2c),
+            (0x76, 0x01, I2c),
+            (0x7C, 0x5C, I2c),
+            (0x76, 0x00, I2c),
+            (0x4D, 0x51, Any),
+            (0x4F, 0x68, Any),
+            (0x51, 0x1A, Any),
+            (0x52, 0x13, Any),
+            (0x62, 0x00, Any),
+            (0x64, 0x00, Any),
+            (0x65, 0x08, Any),
+            (0x4E, 0x0C, Any),
         ],
         status: 0x2D,
         block: (0x1D, 14, 8, Some(0)),
@@ -67,10 +79,11 @@ pub(crate) const SHEETS: [Sheet; 6] = [
         bus: (0x6A, 0xC0, 0x80),
         identity: (0x0F, 0xD4),
         writes: &[
-            (0x21, 0x00, true),
-            (0x24, 0x00, true),
-            (0x23, 0x80, true),
-            (0x20, 0x0F, true),
+            (0x21, 0x00, Any),
+            (0x24, 0x02, Any),
+            (0x2E, 0x00, Any),
+            (0x23, 0x80, Any),
+            (0x20, 0x1F, Any),
         ],
         status: 0x27,
         block: (0x28, 6, 0, None),
@@ -81,7 +94,13 @@ pub(crate) const SHEETS: [Sheet; 6] = [
         description: &LSM6DSO,
         bus: (0x6A, 0x80, 0),
         identity: (0x0F, 0x6C),
-        writes: &[(0x12, 0x01, true), (0x12, 0x44, true), (0x11, 0x40, true)],
+        writes: &[
+            (0x12, 0x01, Any),
+            (0x18, 0xE2, Any),
+            (0x13, 0x04, Spi),
+            (0x12, 0x44, Any),
+            (0x11, 0x40, Any),
+        ],
         status: 0x1E,
         block: (0x20, 8, 2, Some(0)),
         big_endian: false,
@@ -154,7 +173,7 @@ impl Sheet {
 
     pub(crate) fn i2c_start(&self) -> Vec<I2cTurn> {
         let mut turns = vec![self.i2c_read(self.identity.0, vec![self.identity.1])];
-        for &(register, value, _) in self.writes.iter().filter(|write| write.2) {
+        for &(register, value, _) in self.writes.iter().filter(|write| write.2 != Spi) {
             turns.push(I2cTurn::write(self.bus.0, vec![register, value]));
         }
         turns.extend(self.i2c_sample(0, [1, 1, 1]));
@@ -182,7 +201,7 @@ impl Sheet {
             turns.extend(self.spi_read(0x7F, vec![0]));
         }
         turns.extend(self.spi_read(self.identity.0, vec![self.identity.1]));
-        for &(register, value, _) in self.writes {
+        for &(register, value, _) in self.writes.iter().filter(|write| write.2 != I2c) {
             turns.extend([
                 SpiTurn::transaction_start(),
                 SpiTurn::write_vec(vec![register, value]),

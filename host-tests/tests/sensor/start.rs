@@ -3,8 +3,8 @@
 
 use crate::sheet::{SHEETS, Sheet, start};
 use allanite::sensor::{
-    BMI160, ByteOrder, CATALOGUE, Description, Error, I2cBus, ICM_42688_P, Imu, Interface, LSM6DSO,
-    SpiBus, Status, Temperature,
+    BMI160, ByteOrder, CATALOGUE, Description, Error, Filter, I2cBus, ICM_42688_P, Imu, Interface,
+    LSM6DSO, SpiBus, Status, Temperature,
 };
 use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::delay::NoopDelay;
@@ -122,7 +122,7 @@ fn a_sibling_is_accepted_by_any_of_its_identities() {
 fn a_failed_write_names_its_register_and_keeps_the_bus_error() {
     let sheet = Sheet::of(&LSM6DSO);
     let mut turns = sheet.i2c_start();
-    turns.truncate(4);
+    turns.truncate(5);
     let last = turns.pop().unwrap();
     turns.push(last.with_error(ErrorKind::ArbitrationLoss));
     let mut mock = I2cMock::new(&turns);
@@ -171,6 +171,10 @@ fn a_description_too_wide_for_one_read_is_refused() {
         byte_order: ByteOrder::LittleEndian,
         scale_dps: 1.0,
         rate_hz: 1.0,
+        filter: Filter {
+            noise_bandwidth_hz: 0.4,
+            poles: 1,
+        },
     };
     // A dummy byte follows the address.
     let read = |register: u8, answer| {

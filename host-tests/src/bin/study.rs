@@ -8,7 +8,7 @@ use host_tests::{
     study::{
         coefficients,
         hidden_effect::{Strength, both_found, cases, false_alarms, hide, study},
-        precision, quantile,
+        lines, precision, quantile,
         self_test::{self, Looks},
         theory, thermal,
     },
@@ -43,6 +43,12 @@ enum Study {
         /// Study only this effect
         #[arg(long)]
         effect: Option<String>,
+    },
+    /// Count what is said about records with one line of random frequency and amplitude
+    Lines {
+        /// Number of records per preset
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
     },
     /// Count how often a temperature that the rate depends on is found, and another one is blamed
     Thermal {
@@ -82,6 +88,7 @@ fn main() -> Result<()> {
             preset,
             effect,
         } => hidden(records, clean, preset, effect.as_deref()),
+        Study::Lines { records } => random_lines(records),
         Study::Thermal { records } => temperatures(records),
         Study::SelfTest { devices } => self_tests(devices),
         Study::Precision { records } => precisions(records)?,
@@ -305,6 +312,48 @@ fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) 
             format!("{preset:?}").to_lowercase(),
             100.0 * share
         );
+    }
+}
+
+fn random_lines(records: u64) {
+    println!(
+        "{:<8} {:>7} {:>7} {:>7} | {:>7} {:>7} {:>9} | {:>8} {:>7} {:>11}",
+        "gyro",
+        "records",
+        "aborted",
+        "nothing",
+        "line",
+        "within",
+        "ambiguous",
+        "and more",
+        "others",
+        "unexplained"
+    );
+    println!(
+        "{:<8} {:>7} {:>7} {:>7} | {:>7} {:>7}",
+        "", "", "", "", "alone", "1 %"
+    );
+    for preset in Preset::ALL {
+        let t = lines::study(preset, records);
+        println!(
+            "{:<8} {:>7} {:>7} {:>7} | {:>7} {:>7} {:>9} | {:>8} {:>7} {:>11}",
+            format!("{preset:?}").to_lowercase(),
+            t.records,
+            t.aborted,
+            t.nothing,
+            t.line,
+            t.exact,
+            t.ambiguous,
+            t.more,
+            t.others,
+            t.unexplained
+        );
+        for line in t.wrong {
+            println!(
+                "         {:.4} Hz, amplitude {:.4}",
+                line.frequency_hz, line.amplitude
+            );
+        }
     }
 }
 

@@ -176,6 +176,12 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
 fn added(steps: &[Step<OCTAVES>]) -> Vec<(Term, Vec<&'static str>)> {
     let mut added = Vec::new();
     for step in steps {
+        for dropped in &step.dropped {
+            let at = added
+                .iter()
+                .position(|(term, _): &(Term, _)| term.effect.name() == *dropped);
+            at.map(|at| added.remove(at));
+        }
         if let Some(swap) = step.swap() {
             // A swap replaces the last effect that was added.
             added.pop();

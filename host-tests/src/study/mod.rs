@@ -3,6 +3,7 @@
 
 pub mod coefficients;
 pub mod hidden_effect;
+pub mod lines;
 pub mod precision;
 pub mod self_test;
 pub mod theory;

@@ -25,7 +25,7 @@ enum Task {
     Setup,
     /// Set up, then check and test everything.
     Test,
-    /// Run a study behind the README's figures: theory, coefficients, hidden-effect, thermal,
+    /// Run a study behind the README's figures: theory, coefficients, hidden-effect, lines, thermal,
     /// self-test or precision.
     Study {
         /// The study and its options; `--help` lists them.

@@ -94,13 +94,13 @@ impl GridSearch {
     /// Keeps a shape of the grid if it is one of the best, and the best one near it.
     fn keep(&mut self, found: Found) {
         let at = self.at[0];
-        let better = |other: &Found| other.chi_squared < found.chi_squared;
         let is_near = |step: u32| step.abs_diff(at) < APART;
-        let mut minima = self.minima.iter();
-        if minima.any(|(other, step)| is_near(*step) && !(found.chi_squared < other.chi_squared)) {
+        let is_worse = |other: &Found| other.chi_squared > found.chi_squared;
+        let mut near = self.minima.iter().filter(|(_, step)| is_near(*step));
+        if near.any(|(other, _)| !is_worse(other)) {
             return;
         }
         self.minima.retain(|(_, step)| !is_near(*step));
-        list::rank(&mut self.minima, (found, at), |(other, _)| !better(other));
+        list::rank(&mut self.minima, (found, at), |(other, _)| is_worse(other));
     }
 }

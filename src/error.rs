@@ -29,8 +29,8 @@ pub enum Error {
         /// The number of octaves that the fit needs.
         needed: usize,
     },
-    /// An octave has a variance of zero: the counts never changed, so there is no noise to
-    /// characterise.
+    /// An octave has a variance of zero: the counts never changed, or repeated in a cycle of `m`
+    /// samples, so there is no noise to characterise.
     NoNoise {
         /// The averaging factor of the first such octave.
         m: u32,
@@ -83,9 +83,13 @@ impl core::fmt::Display for Error {
                 f,
                 "{found} octaves with enough differences, {needed} needed: record longer"
             ),
+            Self::NoNoise { m: 1 } => write!(
+                f,
+                "no noise at all at m = 1: the counts never change, check the sensor"
+            ),
             Self::NoNoise { m } => write!(
                 f,
-                "no noise at all at m = {m}: the counts never change, check the sensor"
+                "no noise at all at m = {m}: the counts repeat in a cycle, check the sensor"
             ),
             Self::TooManyEffects { capacity } => {
                 write!(f, "more than {capacity} effects in one model: remove one")

@@ -56,6 +56,10 @@ pub(crate) fn cases() -> Vec<Case> {
         ),
         ("mems -o a.txt", "the extension names no kind of log"),
         ("mems -o none/a.csv", "its folder does not exist"),
+        (
+            "mems --effect decimation_filter:width_s=1e9,stages=2",
+            "is too wide",
+        ),
         ("mems --effect none", "no such effect"),
         ("mems --effect sinusoid", "is missing"),
         ("mems --effect sinusoid:frequency_hz=nan,amplitude=1", "; "),

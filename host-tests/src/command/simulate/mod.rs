@@ -188,6 +188,7 @@ impl Record {
         }
         let coefficients = coefficients(arguments)?;
         let effects = arguments.hidden.effects(coefficients)?;
+        effects.check_widths(arguments.rate)?;
         let texts = arguments.hidden.texts();
         Ok(Self {
             coefficients,

@@ -29,8 +29,8 @@ pub enum Error {
         /// The number of octaves that the fit needs.
         needed: usize,
     },
-    /// An octave has a variance of zero: the counts never changed, so there is no noise to
-    /// characterise.
+    /// An octave has a variance of zero: the counts never changed, or repeated in a cycle of `m`
+    /// samples, so there is no noise to characterise.
     NoNoise {
         /// The averaging factor of the first such octave.
         m: u32,
@@ -90,9 +90,13 @@ impl core::fmt::Display for Error {
                 "only {found} of the {needed} octaves that a fit needs have enough differences: \
                  record longer"
             ),
+            Self::NoNoise { m: 1 } => write!(
+                f,
+                "there is no noise at m = 1, because the counts never change: check the sensor"
+            ),
             Self::NoNoise { m } => write!(
                 f,
-                "there is no noise at m = {m}, because the counts never change: check the sensor"
+                "there is no noise at m = {m}, because the counts repeat in a cycle: check the sensor"
             ),
             Self::TooManyEffects { capacity } => {
                 write!(

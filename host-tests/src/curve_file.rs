@@ -4,13 +4,14 @@
 //! follow. The whole file is checked before any number of it is used.
 
 use crate::{
-    failure::{Failure, Place, quoted},
+    failure::{Failure, Place, brief, quoted},
     log::{self, OCTAVES},
+    regular_file,
     unit::Unit,
 };
 use allanite::{Curve, Scale};
 use serde::{Deserialize, Serialize};
-use std::{fs::File, io::Read, path::Path};
+use std::{io::Read, path::Path};
 
 /// The name of the format, as it is written in the file.
 pub const FORMAT: &str = "allanite-curve";
@@ -20,6 +21,15 @@ pub const VERSION: u32 = 1;
 
 /// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
 const LARGEST: u64 = 1 << 24;
+
+/// Largest number of axes.
+const MOST_AXES: usize = log::MOST_AXES;
+
+/// Longest name of an axis, in bytes.
+const LONGEST_NAME: usize = 1 << 12;
+
+/// Largest number of samples: a thousand years at 33 kHz.
+const MOST_SAMPLES: u64 = 1 << 50;
 
 /// Largest relative error of a number that follows from other numbers of the file. Chosen by hand:
 /// numbers are written with all their digits, so that only rounding remains, some 1e-15.
@@ -103,11 +113,11 @@ impl CurveFile {
     /// When the file cannot be read or a number is impossible. The failure names the file, the axis, the
     /// octave and the remedy.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let fail = |error| Place::file(path).io(&error);
+        let (file, _) = regular_file::open(path)?;
         let mut text = Vec::new();
-        File::open(path)
-            .and_then(|file| file.take(LARGEST + 1).read_to_end(&mut text))
-            .map_err(fail)?;
+        file.take(LARGEST + 1)
+            .read_to_end(&mut text)
+            .map_err(|error| Place::file(path).io(&error))?;
         if text.len() as u64 > LARGEST {
             return Err(Place::file(path).failure(
                 format!("a curve file is smaller than {} MiB", LARGEST >> 20),
@@ -154,10 +164,19 @@ impl CurveFile {
         if self.axes.is_empty() {
             return Err("the file has no axes".into());
         }
+        if self.axes.len() > MOST_AXES {
+            return Err(format!(
+                "the file has {} axes, more than {MOST_AXES}",
+                self.axes.len()
+            ));
+        }
         for (i, axis) in self.axes.iter().enumerate() {
             let name = quoted(axis.axis.as_bytes());
             if axis.axis.is_empty() {
                 return Err(format!("axis {} has no name", i + 1));
+            }
+            if axis.axis.contains(char::is_control) || axis.axis.len() > LONGEST_NAME {
+                return Err(format!("axis {}: the name {name} is not valid", i + 1));
             }
             if self.axes[..i].iter().any(|other| other.axis == axis.axis) {
                 return Err(format!("two axes are named {name}"));
@@ -233,10 +252,20 @@ impl AxisCurve {
             let valid = value.is_finite() && value > 0.0;
             valid
                 .then_some(())
-                .ok_or_else(|| format!("{name} {value} is impossible"))
+                .ok_or_else(|| format!("{name} {} is impossible", brief(value)))
         };
         positive("rate_hz", self.rate_hz)?;
+        if !(1e-6..=1e9).contains(&self.rate_hz) {
+            return Err(format!("rate_hz {} is impossible", brief(self.rate_hz)));
+        }
         positive("rate_per_count", self.rate_per_count)?;
+        if self.samples > MOST_SAMPLES {
+            return Err(format!("{} samples are impossible", self.samples));
+        }
+        if self.gaps > self.samples {
+            let (gaps, samples) = (self.gaps, self.samples);
+            return Err(format!("{gaps} gaps in {samples} samples are impossible"));
+        }
         if self.octaves.len() < 2 {
             return Err(format!(
                 "a fit needs two octaves, and the file has {}",
@@ -261,7 +290,7 @@ impl AxisCurve {
             return Err("the averaging factor is not a power of two up to 2^29".into());
         }
         if !close(octave.tau_s, m / self.rate_hz) {
-            return Err(format!("tau_s {} is not m / rate_hz", octave.tau_s));
+            return Err(format!("tau_s {} is not m / rate_hz", brief(octave.tau_s)));
         }
         let possible = differences(self.samples, octave.m);
         let least = Curve::<OCTAVES>::MIN_DIFFERENCES;
@@ -288,7 +317,7 @@ impl AxisCurve {
         if !close(octave.variance, variance) {
             return Err(format!(
                 "variance {} does not follow from the sum",
-                octave.variance
+                brief(octave.variance)
             ));
         }
         Ok(())
@@ -306,7 +335,7 @@ fn differences(samples: u64, m: u32) -> u64 {
 }
 
 fn close(value: f64, expected: f64) -> bool {
-    (value - expected).abs() <= TOLERANCE * expected
+    expected.is_finite() && (value - expected).abs() <= TOLERANCE * expected
 }
 
 /// The failure of a file that the JSON parser refuses, with the line.

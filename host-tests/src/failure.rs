@@ -2,7 +2,7 @@
 
 use std::{
     fmt,
-    io::{self, ErrorKind},
+    io::{self, ErrorKind, Write as _},
     path::{Path, PathBuf},
 };
 
@@ -116,6 +116,11 @@ impl Failure {
     }
 }
 
+/// Writes a line to standard error. If that is closed or full, nobody reads it, and the program goes on.
+pub fn report(text: impl fmt::Display) {
+    let _ = writeln!(io::stderr().lock(), "allanite: {text}");
+}
+
 /// Text of an input for a message: quoted, with control characters escaped, and of 40 characters at
 /// most.
 pub fn quoted(text: &[u8]) -> String {
@@ -126,6 +131,25 @@ pub fn quoted(text: &[u8]) -> String {
         shown.push('…');
     }
     format!("{shown:?}")
+}
+
+/// A number for a message: as it is written, or with four digits and an exponent if it would otherwise
+/// be long.
+pub fn brief(value: f64) -> String {
+    let text = value.to_string();
+    if text.len() <= 12 {
+        text
+    } else if (1e-3..1e9).contains(&value.abs()) {
+        // Six significant digits, without zeros at the end.
+        let digits = (5 - value.abs().log10().floor() as i32).max(0) as usize;
+        let text = format!("{value:.digits$}");
+        match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+            false => text,
+        }
+    } else {
+        format!("{value:.3e}")
+    }
 }
 
 /// The text without line breaks and other control characters.

@@ -13,6 +13,7 @@ pub mod log;
 pub mod overbound;
 pub mod plot;
 pub mod program;
+pub mod regular_file;
 pub mod simulate;
 #[cfg(feature = "chores")]
 pub mod study;

@@ -9,7 +9,7 @@ mod sealed;
 use allanite::{
     Curve, Model,
     diagnosis::Verdict,
-    effect::{AngleRandomWalk, BiasInstability, CATALOGUE, RateRandomWalk},
+    effect::{AngleRandomWalk, BiasInstability, CATALOGUE, DecimationFilter, RateRandomWalk},
     fit::{Options, State, curve_covariance, fit},
     integrity::Reason,
     storage::{Certificate, CertifiedState, EffectCode, Error, RateUnit},
@@ -175,6 +175,144 @@ fn arbitrary_contents_are_refused_or_give_a_valid_record() {
     }
 }
 
+/// A change that makes a certificate impossible, with its name.
+type Spoil = (&'static str, fn(&mut Certificate));
+
+#[test]
+fn impossible_contents_are_refused_behind_a_right_checksum() {
+    let measured = |record: &mut Certificate| {
+        for term in record.axes.iter_mut().flat_map(|axis| &mut axis.terms) {
+            term.state = CertifiedState::Measured;
+            (term.lower, term.upper) = (0.5 * term.value, 2.0 * term.value + 1.0);
+            term.square_error = 1.0;
+        }
+    };
+    let conditions: &[Spoil] = &[
+        ("no samples", |record| record.conditions.samples = 0),
+        ("more gaps than samples", |record| {
+            record.conditions.gaps = u64::MAX
+        }),
+        ("more samples than time", |record| {
+            record.conditions.samples <<= 1
+        }),
+        ("no time", |record| record.conditions.duration_s = 0.0),
+        ("endless time", |record| {
+            record.conditions.duration_s = 1e300
+        }),
+        ("a rate beyond all", |record| {
+            record.conditions.rate_hz = 1e300
+        }),
+        ("below absolute zero", |record| {
+            record.conditions.temperature_c = Some((-300.0, 20.0));
+        }),
+    ];
+    for (what, spoil) in conditions {
+        let mut record = three_axes();
+        spoil(&mut record);
+        let mut buffer = vec![0; Certificate::MAX_BYTES];
+        assert_eq!(record.encode(&mut buffer), Err(Error::Impossible), "{what}");
+    }
+    let contents: &[Spoil] = &[
+        ("negative bound", |record| {
+            record.axes[0].terms[0].upper = -5.0
+        }),
+        ("unknown bound", |record| {
+            record.axes[0].terms[0].upper = f32::NAN
+        }),
+        ("negative lower end", |record| {
+            record.axes[0].terms[0].lower = -1.0
+        }),
+        ("endless measured interval", |record| {
+            record.axes[0].terms[1].upper = f32::INFINITY;
+        }),
+        ("unknown error", |record| {
+            record.axes[0].terms[1].square_error = f32::NAN
+        }),
+        ("no time to wait", |record| {
+            let term = &mut record.axes[0].terms[1];
+            term.lower = 0.0;
+            term.state = CertifiedState::NotObservable {
+                after_s: Some(-1.0),
+            };
+        }),
+        ("a lower end that was not measured", |record| {
+            record.axes[0].terms[1].state = CertifiedState::UpperBound;
+        }),
+        ("one term eight times", |record| {
+            let terms = &mut record.axes[0].terms;
+            while terms.push(terms[1].clone()).is_ok() {}
+        }),
+        ("a shape that the effect does not have", |record| {
+            let shape = record.axes[1].terms.last().unwrap().shape[0];
+            record.axes[0].terms[1].shape.push(shape).unwrap();
+        }),
+        ("no shape", |record| {
+            record.axes[1].terms.last_mut().unwrap().shape.clear()
+        }),
+        ("shape outside its interval", |record| {
+            let shape = &mut record.axes[1].terms.last_mut().unwrap().shape[0];
+            shape.value = shape.upper + 1.0;
+        }),
+        ("negative shape", |record| {
+            let shape = &mut record.axes[1].terms.last_mut().unwrap().shape[0];
+            (shape.value, shape.lower) = (-1.0, -2.0);
+        }),
+        ("99.5 stages", |record| stages(record, 99.5)),
+        ("99 stages", |record| stages(record, 99.0)),
+        ("χ² unknown and p known", |record| {
+            record.axes[0].chi_squared = f64::NAN
+        }),
+        ("negative χ²", |record| record.axes[0].chi_squared = -1.0),
+        ("p above one", |record| record.axes[0].p_value = 1.5),
+        ("unknown tolerance", |record| {
+            record.axes[0].tolerance = f32::NAN
+        }),
+        ("120 per cent", |record| {
+            let (spikes, percent) = (3, 120);
+            let reason = Reason::Spiked { spikes, percent };
+            record.axes[0].verdict = Some(Verdict::Invalid(reason));
+        }),
+        ("more hits than samples", |record| {
+            let (hits, samples) = (30, 20);
+            let reason = Reason::Railed { hits, samples };
+            record.axes[0].verdict = Some(Verdict::Invalid(reason));
+        }),
+    ];
+    let mut good = three_axes();
+    measured(&mut good);
+    assert!(Certificate::decode(&encoded(&good)).is_ok());
+    stages(&mut good, 2.0);
+    assert!(Certificate::decode(&encoded(&good)).is_ok());
+    for (what, spoil) in contents {
+        let mut record = three_axes();
+        measured(&mut record);
+        spoil(&mut record);
+        let decoded = Certificate::decode(&encoded(&record));
+        assert_eq!(decoded, Err(Error::Impossible), "{what}");
+    }
+    // The last numbers of the payload are correlations of measured coefficients.
+    let mut record = three_axes();
+    measured(&mut record);
+    let bytes = encoded(&record);
+    let mut payload = bytes[8..bytes.len() - 4].to_vec();
+    let last = payload.len() - 4;
+    for wrong in [f32::NAN, 1.5, f32::INFINITY] {
+        payload[last..].copy_from_slice(&wrong.to_le_bytes());
+        let decoded = Certificate::decode(&sealed(2, 1, &payload));
+        assert_eq!(decoded, Err(Error::Impossible), "a correlation of {wrong}");
+    }
+}
+
+/// Turns the sinusoid into a decimation filter of this many stages.
+fn stages(record: &mut Certificate, stages: f32) {
+    let term = record.axes[1].terms.last_mut().unwrap();
+    term.effect = EffectCode::of(&DecimationFilter);
+    let mut shape = term.shape[0];
+    (shape.value, shape.lower, shape.upper) = (stages, f32::NAN, f32::NAN);
+    term.shape.truncate(1);
+    term.shape.push(shape).unwrap();
+}
+
 #[test]
 fn every_effect_of_the_catalogue_has_a_permanent_code() {
     let codes = CATALOGUE.map(|effect| EffectCode::of(effect).number());
@@ -194,13 +332,18 @@ fn largest_record_fits_and_a_larger_one_is_refused() {
     let axes = largest.axes;
     largest = Certificate::new(&[0xFF; 16], [0; 3], largest.conditions, largest.unit).unwrap();
     largest.axes = axes;
-    largest.conditions.samples = u64::MAX;
-    largest.conditions.gaps = u64::MAX;
+    largest.conditions.samples = 1 << 63;
+    largest.conditions.gaps = 1 << 63;
+    largest.conditions.duration_s = 1e12;
+    largest.conditions.rate_hz = 1e9;
     largest.firmware = [u16::MAX; 3];
     for axis in &mut largest.axes {
         while axis.terms.push(axis.terms[0].clone()).is_ok() {}
         for term in &mut axis.terms {
+            // Only effects without a code can be there more than once.
+            term.effect = EffectCode::OTHER;
             term.state = CertifiedState::NotObservable { after_s: Some(1.0) };
+            term.lower = 0.0;
             let one = allanite::storage::CertifiedShape {
                 value: 1.0,
                 lower: 0.5,

@@ -88,7 +88,7 @@ fn sums_beyond_64_bits_keep_every_digit() {
 #[test]
 fn impossible_figures_are_refused_with_axis_and_octave() {
     type Change = fn(&mut CurveFile);
-    let cases: [(Change, &str); 19] = [
+    let cases: [(Change, &str); 24] = [
         (|f| f.axes.clear(), "no axes"),
         (
             |f| f.axes[1].axis = "gx".into(),
@@ -106,6 +106,26 @@ fn impossible_figures_are_refused_with_axis_and_octave() {
         (
             |f| f.axes[1].rate_per_count = -2.0,
             "axis \"gy\": rate_per_count -2 is impossible",
+        ),
+        (
+            |f| f.axes[1].rate_per_count = 1e300,
+            "does not follow from the sum",
+        ),
+        (
+            |f| f.axes[1].rate_hz = 1e300,
+            "axis \"gy\": rate_hz 1.000e300 is impossible",
+        ),
+        (
+            |f| f.axes[1].axis = "g\u{1b}[31m".into(),
+            "axis 2: the name",
+        ),
+        (
+            |f| f.axes[1].samples = u64::MAX,
+            "18446744073709551615 samples are impossible",
+        ),
+        (
+            |f| f.axes[1].gaps = u64::MAX,
+            "18446744073709551615 gaps in 100 samples are impossible",
         ),
         (
             |f| f.axes[0].octaves.truncate(1),

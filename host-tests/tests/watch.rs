@@ -224,7 +224,7 @@ fn interrupted_record_is_a_prefix_with_all_samples_flushed_before() {
 }
 
 #[test]
-fn input_that_ends_is_saved_to_its_last_complete_line() {
+fn input_that_ends_is_saved_to_its_last_line_even_without_a_line_end() {
     let folder = TempDir::new().unwrap();
     let sent = lines(5000, 7);
     let mut child = watch(folder.path(), &[]);
@@ -232,8 +232,10 @@ fn input_that_ends_is_saved_to_its_last_complete_line() {
     for line in &sent {
         pipe.write_all(line.line().as_bytes()).unwrap();
     }
-    pipe.write_all(b"1,2").unwrap();
+    pipe.write_all(Sent::Sample([1, 2]).line().trim_end().as_bytes())
+        .unwrap();
     drop(pipe);
+    let sent = [sent, vec![Sent::Sample([1, 2])]].concat();
     let ended = child.wait_with_output().unwrap();
     assert_eq!(ended.status.code(), Some(0));
     let samples = sent
@@ -244,6 +246,55 @@ fn input_that_ends_is_saved_to_its_last_complete_line() {
     let garbled = sent.len() - samples;
     let errors = String::from_utf8(ended.stderr).unwrap();
     assert!(garbled > 0 && errors.starts_with(&format!("allanite: invalid lines: {garbled}, ")));
+    assert!(errors.contains("the last line has no line end"), "{errors}");
+}
+
+#[test]
+fn fit_is_printed_and_failed_saves_are_announced_if_the_curve_cannot_be_saved() {
+    let folder = TempDir::new().unwrap();
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    let more = ["--save-every", "0.05", "--output", "../inner/curve.json"];
+    let arguments = ["watch", "--rate", "100", "--scale", "0.01"];
+    let mut child = command(&inner, &[&arguments[..], &more].concat())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    for line in lines(3000, 11) {
+        pipe.write_all(line.line().as_bytes()).unwrap();
+    }
+    wait_for_curve(&inner, &mut child);
+    std::fs::remove_dir_all(&inner).unwrap();
+    thread::sleep(Duration::from_millis(500));
+    drop(pipe);
+    let ended = child.wait_with_output().unwrap();
+    let [printed, errors] =
+        [ended.stdout, ended.stderr].map(|text| String::from_utf8(text).unwrap());
+    assert_eq!(ended.status.code(), Some(2), "{errors}");
+    assert!(
+        errors.contains("not saved: ") && errors.contains("its folder does not exist"),
+        "{errors}"
+    );
+    assert!(printed.contains("samples at 100 Hz"), "{printed}");
+}
+
+#[test]
+fn constant_input_ends_with_a_word() {
+    let folder = TempDir::new().unwrap();
+    let mut child = watch(folder.path(), &[]);
+    let mut pipe = child.stdin.take().unwrap();
+    pipe.write_all("5,5\n".repeat(500).as_bytes()).unwrap();
+    drop(pipe);
+    let ended = child.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(2));
+    let errors = String::from_utf8(ended.stderr).unwrap();
+    assert!(
+        errors.contains("axis left: its values never change"),
+        "{errors}"
+    );
 }
 
 #[test]

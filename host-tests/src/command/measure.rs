@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         let place = places.get(log).unwrap_or(&arguments.output);
         // The file comes first, so that an output that cannot be written is refused before the
         // measurement.
-        let mut file = OutputFile::create(place)?;
+        let mut file = OutputFile::create(place, arguments.logs.iter().map(PathBuf::as_path))?;
         let mut curves = record::measure(log, &arguments.about_log)?;
         for curve in &mut curves {
             curve.source.clone_from(&arguments.source);

@@ -18,7 +18,7 @@ mod watch;
 
 use crate::failure::Failure;
 use clap::{CommandFactory, Parser, Subcommand};
-use output::progress;
+use output::{progress, temporary};
 use std::io::{self, BufWriter, Write};
 
 /// Noise coefficients of gyros and accelerometers, from recorded logs or from curves.
@@ -61,6 +61,10 @@ impl CommandLine {
     pub fn run(&self) -> Result<(), Failure> {
         if self.quiet {
             progress::be_quiet();
+        }
+        // A recording that is interrupted is saved instead.
+        if !matches!(self.command, Command::Watch(_)) {
+            temporary::remove_when_interrupted();
         }
         let mut output = BufWriter::new(io::stdout().lock());
         match &self.command {

@@ -36,6 +36,9 @@ pub(super) struct Arguments {
 /// The part of the program that a build without the feature `pictures` leaves out.
 const PNG: &str = "drawing .png pictures";
 
+/// The most figures of a picture of pixels. Each takes eleven megabytes.
+const MOST_FIGURES: usize = 6;
+
 #[derive(Clone, Copy)]
 enum Format {
     Svg,
@@ -59,9 +62,18 @@ impl Format {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let format = Format::of(&arguments.output)?;
     // The file comes first, so that an output that cannot be written is refused before the diagnosis.
-    let mut file = OutputFile::create(&arguments.output)?;
+    let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
     let diagnosed = arguments.diagnosis.diagnosed()?;
     let drawings = chosen(&diagnosed, arguments)?;
+    if matches!(format, Format::Png) && drawings.len() > MOST_FIGURES {
+        return Err(Place::file(&arguments.output).failure(
+            format!(
+                "the picture would have {} figures, more than {MOST_FIGURES}",
+                drawings.len()
+            ),
+            "draw one axis with --axis, or an .svg",
+        ));
+    }
     let drawings: Vec<Drawing> = drawings
         .into_iter()
         .map(|diagnosed| drawing(diagnosed, arguments.step))

@@ -128,17 +128,41 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
     let (_, clock) = passes.pass(&mut rounded)?;
     for (column, steps) in columns.iter().zip(&rounded.steps) {
         // The tenth is chosen by hand.
-        if steps.lost > steps.all / 10 {
+        if steps.lost > steps.changes / 10 {
             return Err(Place::file(path).failure(
                 format!(
-                    "axis {}: {} of {} steps between values are smaller than a count, 2^-30 of the range",
-                    column.axis, steps.lost, steps.all
+                    "axis {}: {} of {} steps between values vanish in counts of 2^-30 of the range",
+                    column.axis, steps.lost, steps.changes
                 ),
-                "remove the outliers that make the range so wide",
+                NARROW,
             ));
         }
     }
-    finish(path, rounded.batches, &rounded.quanta, clock)
+    let measured = finish(path, rounded.batches, &rounded.quanta, clock)?;
+    for (column, (sums, quantum)) in columns.iter().zip(&measured.axes) {
+        if !quantum.is_whole() && is_coarse(sums) {
+            return Err(Place::file(path).failure(
+                format!(
+                    "axis {}: the noise vanishes in counts of 2^-30 of the range",
+                    column.axis
+                ),
+                NARROW,
+            ));
+        }
+    }
+    Ok(measured)
+}
+
+const NARROW: &str = "remove the outliers that make the range so wide";
+
+/// Whether rounding to counts adds more than one per cent to the Allan variance at `m = 1`. It adds
+/// a twelfth of a squared count.
+fn is_coarse(sums: &Sums) -> bool {
+    const LEAST: f64 = 100.0 / 12.0;
+    sums.accumulator().octave(0).is_some_and(|octave| {
+        let variance = 0.5 * octave.sum.to_real() / octave.differences as f64;
+        variance > 0.0 && variance < LEAST
+    })
 }
 
 fn finish(
@@ -180,7 +204,7 @@ struct Ranges(Vec<Range>);
 impl Visitor for Ranges {
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
-        self.0[axis].include(value.number().map_err(Stop::Flaw)?);
+        self.0[axis].include(value.exact().map_err(Stop::Flaw)?);
         Ok(())
     }
 }
@@ -196,8 +220,9 @@ struct Rounded {
 #[derive(Clone, Copy, Default)]
 struct Steps {
     last: Option<(f64, i32)>,
-    all: u64,
-    /// The number of differences that are not zero as numbers but are zero as counts.
+    /// The number of differences that are not zero as numbers.
+    changes: u64,
+    /// The number of these that are zero as counts.
     lost: u64,
 }
 
@@ -205,8 +230,9 @@ impl Steps {
     #[inline]
     fn step_to(&mut self, number: f64, count: i32) {
         if let Some((last, last_count)) = self.last {
-            self.all += 1;
-            self.lost += u64::from(number != last && count == last_count);
+            let changes = number != last;
+            self.changes += u64::from(changes);
+            self.lost += u64::from(changes && count == last_count);
         }
         self.last = Some((number, count));
     }
@@ -215,7 +241,7 @@ impl Steps {
 impl Visitor for Rounded {
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
-        let number = value.number().map_err(Stop::Flaw)?;
+        let number = self.quanta[axis].relative(value.exact().map_err(Stop::Flaw)?);
         let count = self.quanta[axis].count(number);
         self.steps[axis].step_to(number, count);
         self.batches.push(axis, count);

@@ -12,11 +12,14 @@ use super::{
     source,
     table::{Ended, Stop, Table, Visitor},
 };
-use crate::failure::{Failure, Place, quoted};
+use crate::{
+    failure::{Failure, Place, quoted},
+    regular_file,
+};
 use indicatif::ProgressBar;
 use mcap::{
     McapError,
-    records::{Record, op},
+    records::op,
     sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
 };
 use std::{
@@ -27,8 +30,15 @@ use std::{
 };
 
 /// The largest record or chunk that is accepted, in bytes. It limits the memory that a damaged length
-/// can claim. Chosen by hand.
-const LONGEST_RECORD: usize = 1 << 28;
+/// can claim. Chosen by hand, as are the two limits below.
+const LONGEST_RECORD: u64 = 1 << 28;
+
+/// How many times the size of the file a record or an unpacked chunk may be long.
+const MOST_TIMES_AT_ONCE: u64 = 8;
+
+/// How many times the size of the file all its records may take. Messages of an IMU are packed to a
+/// tenth of their size.
+const MOST_TIMES_IN_ALL: u64 = 64;
 
 const RECOVER: &str = "copy it again, or recover what there is with `mcap recover`";
 
@@ -210,15 +220,21 @@ fn each_message(
 ) -> Result<Channels, Failure> {
     let fail = |error: McapError| failure(path, &error);
     let mut file = source::open(path, progress)?;
+    let (_, length) = regular_file::open(path)?;
+    let longest = budget(length, MOST_TIMES_AT_ONCE).min(LONGEST_RECORD);
     let mut reader = LinearReader::new_with_options(
         LinearReaderOptions::default()
             .with_prevalidate_chunk_crcs(true)
             .with_validate_data_section_crc(true)
             .with_validate_summary_section_crc(true)
-            .with_record_length_limit(LONGEST_RECORD),
+            .with_record_length_limit(longest as usize),
     );
     let mut channels = Channels::default();
     let mut messages = 0;
+    let damaged = |what: &str| Place::file(path).failure(format!("damaged: {what}"), RECOVER);
+    let short = || damaged("a record is too short");
+    let most = budget(length, MOST_TIMES_IN_ALL);
+    let mut unpacked = 0;
     while let Some(event) = reader.next_event() {
         let (opcode, data) = match event.map_err(fail)? {
             LinearReadEvent::ReadRequest(need) => {
@@ -230,42 +246,49 @@ fn each_message(
             }
             LinearReadEvent::Record { opcode, data } => (opcode, data),
         };
-        if ![op::SCHEMA, op::CHANNEL, op::MESSAGE, op::STATISTICS].contains(&opcode) {
-            continue;
+        unpacked += 9 + data.len() as u64;
+        if unpacked > most {
+            return Err(damaged("the chunks unpack to too many times their size"));
         }
-        match mcap::parse_record(opcode, data).map_err(fail)? {
-            Record::Schema { header, .. } => {
-                channels.schemas.insert(header.id, header.name);
+        let mut fields = Fields(data);
+        match opcode {
+            op::SCHEMA => {
+                let id = fields.number().ok_or_else(short)?;
+                let name = fields.text().ok_or_else(short)?;
+                channels.schemas.insert(id, name);
             }
-            Record::Channel(channel) => {
-                let schema = channels.schemas.get(&channel.schema_id);
+            op::CHANNEL => {
+                let id = fields.number().ok_or_else(short)?;
+                let schema: u16 = fields.number().ok_or_else(short)?;
                 let channel_of = Channel {
-                    topic: channel.topic,
-                    schema: schema.cloned().unwrap_or_default(),
-                    encoding: channel.message_encoding,
+                    topic: fields.text().ok_or_else(short)?,
+                    schema: channels.schemas.get(&schema).cloned().unwrap_or_default(),
+                    encoding: fields.text().ok_or_else(short)?,
                 };
-                channels.channels.insert(channel.id, channel_of);
+                channels.channels.insert(id, channel_of);
             }
-            // A damaged chunk header looks like an unknown record, which the reader skips. The
-            // count of messages reveals that.
-            Record::Statistics(statistics) if statistics.message_count != messages => {
-                return Err(Place::file(path).failure(
-                    format!(
-                        "the bag is damaged: only {messages} of {} messages can be read",
-                        statistics.message_count
-                    ),
-                    RECOVER,
-                ));
-            }
-            Record::Message { header, data } => {
-                messages += 1;
-                let Some(channel) = channels.channels.get(&header.channel_id) else {
-                    return Err(fail(McapError::UnknownChannel(
-                        header.sequence,
-                        header.channel_id,
+            op::STATISTICS => {
+                // A damaged chunk header looks like an unknown record, which the reader skips. The
+                // count of messages reveals that.
+                let [low, high] = [fields.word(), fields.word()];
+                let (low, high) = low.zip(high).ok_or_else(short)?;
+                let count = u64::from(high) << 32 | u64::from(low);
+                if count != messages {
+                    return Err(damaged(&format!(
+                        "only {messages} of {count} messages can be read"
                     )));
+                }
+            }
+            op::MESSAGE => {
+                messages += 1;
+                let id: u16 = fields.number().ok_or_else(short)?;
+                let sequence = fields.word().ok_or_else(short)?;
+                // The times of logging and of publishing follow.
+                let content = fields.0.get(16..).ok_or_else(short)?;
+                let Some(channel) = channels.channels.get(&id) else {
+                    return Err(fail(McapError::UnknownChannel(sequence, id)));
                 };
-                if show(channel, &data)?.is_break() {
+                if show(channel, content)?.is_break() {
                     break;
                 }
             }
@@ -273,6 +296,37 @@ fn each_message(
         }
     }
     Ok(channels)
+}
+
+/// The fields of a record, one behind the other. The lengths in a damaged record are checked against the
+/// bytes that it has before anything is allocated.
+struct Fields<'a>(&'a [u8]);
+
+impl Fields<'_> {
+    fn number(&mut self) -> Option<u16> {
+        let (number, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(u16::from_le_bytes(*number))
+    }
+
+    fn word(&mut self) -> Option<u32> {
+        let (word, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(u32::from_le_bytes(*word))
+    }
+
+    /// A text without control characters.
+    fn text(&mut self) -> Option<String> {
+        let length = usize::try_from(self.word()?).ok()?;
+        let (text, rest) = self.0.split_at_checked(length)?;
+        self.0 = rest;
+        Some(String::from_utf8_lossy(text).replace(char::is_control, " "))
+    }
+}
+
+/// The bytes that a file of this length may claim or unpack to.
+fn budget(length: u64, times: u64) -> u64 {
+    (1 << 23) + times.saturating_mul(length)
 }
 
 fn failure(path: &Path, error: &McapError) -> Failure {

@@ -10,6 +10,16 @@ use std::time::Duration;
 /// [`SCATTER`]. It lies half way between one step and the two steps that a lost sample leaves.
 const GAP: f64 = 1.5;
 
+/// The largest ratio between a told step and the regular step of stamps. The clocks of cheap gyros are
+/// off by some per cent.
+const TOLD: f64 = 1.1;
+
+/// The same for stamps that are not regular.
+const IRREGULAR: f64 = 2.0;
+
+/// Stamps are regular if their mean step differs by less than this share from the usual step.
+const REGULAR: f64 = 0.02;
+
 /// A gap must exceed the usual step by this many times the usual scatter of steps. Chosen by hand; the
 /// tests of this file hold it to a jitter of half a step.
 const SCATTER: f64 = 5.0;
@@ -53,21 +63,44 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// The pace of the stamps `first`. Without a given `unit`, the unit is the one that makes the
-    /// rate plausible. Returns `None` if the stamps never advance.
-    pub(super) fn of(first: &[f64], unit: Option<TimeUnit>) -> Option<(Self, TimeUnit)> {
-        let steps = first.windows(2).map(|pair| pair[1] - pair[0]);
-        let mut steps: Vec<f64> = steps.filter(|&step| step > 0.0).collect();
+    /// The pace of the stamps `first`, in a unit. Returns `None` if the stamps never advance.
+    pub(super) fn of(first: &[f64], unit: TimeUnit) -> Option<Self> {
+        let mut steps = steps(first);
+        if let Some(step) = lattice(&mut steps) {
+            return Some(Self {
+                per_second: unit.per_second(),
+                step,
+                longest: GAP * step,
+            });
+        }
         let step = quantile(&mut steps, 0.5)?;
         let mut scatter: Vec<f64> = steps.iter().map(|other| (other - step).abs()).collect();
         let scatter = quantile(&mut scatter, 0.9)?;
-        let unit = unit.unwrap_or_else(|| plausible_unit(first[0], step));
-        let pace = Self {
+        Some(Self {
             per_second: unit.per_second(),
             step,
             longest: (GAP * step).max(step + SCATTER * scatter),
-        };
-        Some((pace, unit))
+        })
+    }
+
+    /// Whether the stamps `first`, which have this pace, can be those of a record of a given rate. The
+    /// usual step and the mean step are tried, because stamps may be written in bursts.
+    pub(super) fn agrees(&self, first: &[f64], rate_hz: f64) -> bool {
+        let told = self.per_second / rate_hz;
+        let whole = first
+            .last()
+            .zip(first.first())
+            .map_or(0.0, |(last, first)| last - first);
+        let mean = whole / first.len().saturating_sub(1).max(1) as f64;
+        let irregular = (mean / self.step - 1.0).abs() > REGULAR;
+        let factor = if irregular { IRREGULAR } else { TOLD };
+        let (shortest, longest) = (mean.min(self.step), mean.max(self.step));
+        (shortest / factor..=longest * factor).contains(&told)
+    }
+
+    /// The rate at the usual step, in Hz.
+    pub(super) fn usual_hz(&self) -> f64 {
+        self.per_second / self.step
     }
 
     fn seconds(&self, ticks: f64) -> f64 {
@@ -75,17 +108,54 @@ impl Pace {
     }
 }
 
-/// The plausible unit of stamps. If `first` is a time since 1970 in some unit, it is that unit.
-/// Otherwise it is the only unit that makes the rate lie between 10 Hz and 10 kHz. Units are a factor of a
-/// thousand apart, and so are the ends of this range, which is chosen by hand.
-fn plausible_unit(first: f64, step: f64) -> TimeUnit {
+/// The units that stamps without a told unit can have. If the first stamp is a time since 1970 in some
+/// unit that fits, it is that unit alone. A unit fits if it makes the rate plausible: at least 0.1 Hz in
+/// seconds and 1 Hz in the other units, which nobody needs for slower records, and at most 33 kHz, beyond
+/// the fastest gyros. Returns `None` if the stamps never advance.
+pub(super) fn possible_units(first: &[f64]) -> Option<Vec<TimeUnit>> {
+    const FASTEST_HZ: f64 = 33e3;
+    let step = lattice(&mut steps(first)).or_else(|| quantile(&mut steps(first), 0.5))?;
+    let fits = |unit: &TimeUnit| {
+        let slowest_hz = if *unit == TimeUnit::S { 0.1 } else { 1.0 };
+        // A step of exactly 10 s may be rounded upwards.
+        (0.99 * slowest_hz..FASTEST_HZ).contains(&(unit.per_second() / step))
+    };
     // This range covers the years 2001 to 2286, in seconds since 1970.
-    let since_1970 = |unit: &TimeUnit| (1e9..1e10).contains(&(first / unit.per_second()));
-    let usual = |unit: &TimeUnit| (10.0..1e4).contains(&(unit.per_second() / step));
-    let find = |is: &dyn Fn(&TimeUnit) -> bool| TimeUnit::ALL.into_iter().find(|unit| is(unit));
-    find(&since_1970)
-        .or_else(|| find(&usual))
-        .unwrap_or(TimeUnit::S)
+    let since_1970 = |unit: &TimeUnit| (1e9..1e10).contains(&(first[0] / unit.per_second()));
+    let fitting = TimeUnit::ALL.into_iter().filter(fits);
+    let fitting: Vec<TimeUnit> = fitting.collect();
+    match fitting.iter().find(|unit| since_1970(unit)) {
+        Some(&unit) => Some(vec![unit]),
+        None => Some(fitting),
+    }
+}
+
+/// The steps forwards between stamps.
+fn steps(stamps: &[f64]) -> Vec<f64> {
+    let steps = stamps.windows(2).map(|pair| pair[1] - pair[0]);
+    steps.filter(|&step| step > 0.0).collect()
+}
+
+/// The step of which nearly all steps are whole multiples, if there is one. Longer steps are then rows
+/// that are missing, however many they are.
+///
+/// Stamps with a jitter of half a step have no such step: three quarters of their steps lie within a
+/// quarter of a multiple, and four fifths are needed.
+fn lattice(steps: &mut [f64]) -> Option<f64> {
+    const NEAR: f64 = 0.25;
+    const NEARLY_ALL: f64 = 0.8;
+    let multiple = |long: f64, step: f64| (long / step).round().max(1.0);
+    let mut step = quantile(steps, 0.2)?;
+    for _ in 0..2 {
+        let mut single: Vec<f64> = steps
+            .iter()
+            .map(|&long| long / multiple(long, step))
+            .collect();
+        step = quantile(&mut single, 0.5)?;
+    }
+    let is_near = |long: &&f64| (**long / step - multiple(**long, step)).abs() <= NEAR;
+    let near = steps.iter().filter(is_near).count();
+    (near as f64 >= NEARLY_ALL * steps.len() as f64).then_some(step)
 }
 
 fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
@@ -215,11 +285,14 @@ impl Clock {
             return Err(odd("repeat", self.repeated));
         }
         if self.gaps as f64 > most {
-            return Err(odd("jump", self.gaps));
+            let (gaps, rows) = (self.gaps, self.rows);
+            return Err(Flaw::stamps(format!(
+                "time stamps jump in {gaps} of {rows} rows: rows are missing, or stamps are too coarse"
+            )));
         }
         let rate_hz = self.pace.per_second * self.steps as f64 / self.sum;
         let rounded = format!("{rate_hz:.8e}").parse().unwrap_or(rate_hz);
-        if f64::is_finite(rounded) && rounded > 0.0 {
+        if (1e-6..=1e9).contains(&rounded) {
             Ok(rounded)
         } else {
             Err(Flaw::stamps("the time stamps give no rate".into()))
@@ -277,7 +350,7 @@ mod tests {
 
     fn clock(stamps: &[i64], unit: TimeUnit) -> Clock {
         let first: Vec<f64> = stamps.iter().take(100).map(|&stamp| stamp as f64).collect();
-        Clock::new(Pace::of(&first, Some(unit)).unwrap().0)
+        Clock::new(Pace::of(&first, unit).unwrap())
     }
 
     fn run(stamps: &[i64]) -> (Clock, Vec<Tick>) {
@@ -363,17 +436,67 @@ mod tests {
     }
 
     #[test]
-    fn unit_that_is_not_given_is_the_plausible_one() {
-        for (first, step, unit) in [
-            (0.0, 0.005, TimeUnit::S),
-            (1.7e9, 0.01, TimeUnit::S),
-            (1.7e9, 5000.0, TimeUnit::S),
-            (0.0, 5.0, TimeUnit::Ms),
-            (1.2e8, 4000.0, TimeUnit::Us),
-            (1.403e18, 5e6, TimeUnit::Ns),
-            (0.0, 5e6, TimeUnit::Ns),
+    fn every_unit_that_is_possible_is_found() {
+        use TimeUnit::{Ms, Ns, S, Us};
+        for (first, step, units) in [
+            (0.0, 0.005, &[S][..]),
+            (0.0, 0.02, &[S]),
+            (1.7e9, 0.01, &[S]),
+            (1.7e9, 1.0, &[S]),
+            (1.7e9, 5000.0, &[Us]),
+            (0.0, 0.05, &[S, Ms]),
+            (0.0, 1.0, &[S, Ms]),
+            (0.0, 5.0, &[S, Ms]),
+            (0.0, 10.0, &[S, Ms]),
+            (0.0, 20.0, &[Ms]),
+            (0.0, 40.0, &[Ms, Us]),
+            (1.2e8, 4000.0, &[Us]),
+            (0.0, 40_000.0, &[Us, Ns]),
+            (1.403e18, 5e6, &[Ns]),
+            (0.0, 5e6, &[Ns]),
+            (0.0, 1e-9, &[]),
         ] {
-            assert_eq!(plausible_unit(first, step), unit, "{first} {step}");
+            let stamps: Vec<f64> = (0..20).map(|i| first + f64::from(i) * step).collect();
+            assert_eq!(possible_units(&stamps).unwrap(), units, "{first} {step}");
+        }
+    }
+
+    /// Records of 100 Hz from which rows are missing at random are read with few losses, and refused
+    /// with more, however many.
+    #[test]
+    fn missing_rows_are_refused_by_one_monotonic_rule() {
+        let mut state = 7_u64;
+        let mut share = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / 2f64.powi(31)
+        };
+        for percent in (0..=60).map(f64::from) {
+            for _ in 0..10 {
+                let jittered = |i: i64| 10_000 * i + (i * i * 7919) % 1000;
+                let rows = (0..5000).filter(|_| share() >= 0.01 * percent);
+                let stamps: Vec<i64> = rows.map(jittered).collect();
+                let mut clock = clock(&stamps, TimeUnit::Us);
+                let ticks = stamps.iter().map(|&stamp| clock.tick(Stamp::Whole(stamp)));
+                let ticked = ticks.collect::<Result<Vec<_>, _>>();
+                match ticked.and_then(|_| clock.rate_hz()) {
+                    Ok(rate_hz) => {
+                        assert!(percent <= 6.0, "{percent} % missing gave {rate_hz} Hz");
+                        assert!((rate_hz / 100.0 - 1.0).abs() < 1e-2, "{rate_hz} Hz");
+                    }
+                    Err(flaw) => assert!(percent >= 4.0, "{percent} % missing: {flaw:?}"),
+                }
+            }
+        }
+        for pattern in [3, 4, 5] {
+            let rows = (0..5000).filter(|i| i % pattern != 0);
+            let stamps: Vec<i64> = rows.map(|i| 10_000 * i).collect();
+            let mut clock = clock(&stamps, TimeUnit::Us);
+            for &stamp in &stamps {
+                let _ = clock.tick(Stamp::Whole(stamp));
+            }
+            assert!(clock.rate_hz().is_err(), "every row {pattern} missing");
         }
     }
 }

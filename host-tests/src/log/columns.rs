@@ -144,8 +144,10 @@ impl Columns {
     }
 
     /// The unit that the names of these columns indicate, and the factor from their values to that
-    /// unit. Returns `None` if the names do not agree on a unit, or if it is not a unit of this
-    /// sensor.
+    /// unit. Returns `None` if the names indicate none, or if it is not a unit of this sensor.
+    ///
+    /// # Errors
+    /// When the names do not agree on a unit, or when a unit is not known.
     pub(super) fn unit_of(
         &self,
         path: &Path,
@@ -153,14 +155,27 @@ impl Columns {
         sensor: Sensor,
     ) -> Result<Option<(Unit, f64)>, Failure> {
         let of_axis = |axis: &AxisColumn| {
-            let unit = self.name(axis.column).and_then(names::unit);
-            unit.filter(|(unit, _)| unit.sensor() == sensor)
+            let unit = names::unit(self.name(axis.column).unwrap_or_default());
+            let unit = unit.map_err(|text| {
+                Place::file(path).failure(
+                    format!(
+                        "column {}: the unit {} is not known",
+                        self.called(axis.column),
+                        quoted(text.as_bytes())
+                    ),
+                    "give --unit, and --scale with the size of one such unit",
+                )
+            })?;
+            Ok(unit.filter(|(unit, _)| unit.sensor() == sensor))
         };
-        let Some((first, others)) = axes.split_first() else {
+        let units = axes.iter().map(of_axis);
+        let units: Vec<_> = units.collect::<Result<_, Failure>>()?;
+        let Some((&unit, others)) = units.split_first() else {
             return Ok(None);
         };
-        let unit = of_axis(first);
-        match others.iter().find(|axis| of_axis(axis) != unit) {
+        let first = &axes[0];
+        let other = others.iter().position(|other| *other != unit);
+        match other.and_then(|other| axes.get(other + 1)) {
             None => Ok(unit),
             Some(other) => Err(Place::file(path).failure(
                 format!(

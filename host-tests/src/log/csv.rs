@@ -21,6 +21,9 @@ use std::{
 /// log. Chosen by hand.
 const LONGEST_LINE: u64 = 1 << 16;
 
+/// A log with more columns is refused. It would take minutes to look at all of them.
+const MOST_COLUMNS: usize = 256;
+
 /// The number of rows that decide what the columns look like. Chosen by hand.
 const LOOKS: usize = 100;
 
@@ -101,7 +104,21 @@ impl Csv {
             if !reader.read().map_err(|error| self.failure(error))? {
                 break;
             }
-            records.push((reader.row().clone(), reader.rest_offset()));
+            let row = reader.row();
+            let width = records
+                .first()
+                .map_or(row.len(), |(first, _): &(ByteRecord, u64)| first.len());
+            if row.len() > MOST_COLUMNS {
+                return Err(self.row_at(reader.row_offset()).failure(
+                    format!("{} columns, more than {MOST_COLUMNS}", row.len()),
+                    "check the separators, or keep only the columns of the sensor",
+                ));
+            }
+            // A row of another width is refused when all rows are read.
+            if row.len() != width {
+                break;
+            }
+            records.push((row.clone(), reader.rest_offset()));
         }
         Ok(records)
     }
@@ -281,7 +298,10 @@ impl Kind {
 fn names_of(record: &ByteRecord) -> Vec<String> {
     record
         .iter()
-        .map(|name| String::from_utf8_lossy(name).trim().to_owned())
+        .map(|name| {
+            let name = String::from_utf8_lossy(name);
+            name.trim().replace(char::is_control, " ")
+        })
         .collect()
 }
 

@@ -10,11 +10,29 @@ pub(super) trait Field {
     /// The value as a finite number, or the reason why it is none.
     fn number(&self) -> Result<f64, Flaw>;
 
+    /// The value as a finite number that keeps every digit of a whole number.
+    fn exact(&self) -> Result<Exact, Flaw> {
+        self.number().map(Exact::Float)
+    }
+
     /// The value as a time stamp, which is exact if it is a whole number.
     fn stamp(&self) -> Result<Stamp, Flaw> {
         self.number().map(Stamp::Real)
     }
 }
+
+/// A finite number. Whole numbers beyond [`EXACT_BELOW`] are kept apart because they do not fit into
+/// a float.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Exact {
+    /// A number that a float holds.
+    Float(f64),
+    /// A whole number beyond what a float holds.
+    Whole(i128),
+}
+
+/// A float holds every whole number below this one, 2^53.
+const EXACT_BELOW: f64 = (1u64 << 53) as f64;
 
 /// A time stamp in the unit of its log. Whole numbers are kept apart because nanoseconds since 1970
 /// do not fit into a float.
@@ -122,11 +140,36 @@ impl Field for Text<'_> {
         }
     }
 
+    #[inline]
+    fn exact(&self) -> Result<Exact, Flaw> {
+        let number = self.number()?;
+        Ok(match number.abs() < EXACT_BELOW {
+            true => Exact::Float(number),
+            false => self.whole().map_or(Exact::Float(number), Exact::Whole),
+        })
+    }
+
     fn stamp(&self) -> Result<Stamp, Flaw> {
         match atoi_simd::parse::<i64, false, false>(self.0.trim_ascii()) {
             Ok(ticks) => Ok(Stamp::Whole(ticks)),
             Err(_) => self.number().map(Stamp::Real),
         }
+    }
+}
+
+impl Text<'_> {
+    /// The whole number that is written here, if it is one: `17`, `+17` or `17.0`.
+    #[cold]
+    fn whole(&self) -> Option<i128> {
+        let text = std::str::from_utf8(self.0.trim_ascii()).ok()?;
+        let digits = match text.split_once('.') {
+            Some((digits, fraction)) => fraction
+                .bytes()
+                .all(|digit| digit == b'0')
+                .then_some(digits)?,
+            None => text,
+        };
+        digits.parse().ok()
     }
 }
 
@@ -140,6 +183,15 @@ macro_rules! integer_fields {
 
             fn number(&self) -> Result<f64, Flaw> {
                 Ok(*self as f64)
+            }
+
+            #[inline]
+            fn exact(&self) -> Result<Exact, Flaw> {
+                let number = *self as f64;
+                Ok(match number.abs() < EXACT_BELOW {
+                    true => Exact::Float(number),
+                    false => Exact::Whole((*self).into()),
+                })
             }
 
             fn stamp(&self) -> Result<Stamp, Flaw> {

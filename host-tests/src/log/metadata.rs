@@ -2,10 +2,14 @@
 
 use super::Options;
 use crate::{
-    failure::{Failure, Place, quoted},
+    failure::{Failure, Place, brief, quoted},
     unit::Unit,
 };
-use std::path::Path;
+use std::{ops::RangeInclusive, path::Path};
+
+/// The rates in Hz that a log can have, and the sizes of a count. Beyond them, something else was meant.
+const RATES_HZ: RangeInclusive<f64> = 1e-6..=1e9;
+const SCALES: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// The `key=value` pairs of comment lines, such as `# rate_hz=100 unit=deg/s`, with their rows.
 /// Unknown keys are ignored, because other programs may have written them.
@@ -36,10 +40,17 @@ impl Metadata {
     /// The sampling rate in Hz, from the options or else from the comments.
     pub(super) fn rate_hz(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
         Ok(match (options.rate_hz, &self.rate_hz) {
-            (Some(rate_hz), _) => Some(positive(rate_hz, "--rate", "samples per second")?),
-            (None, Some((row, text))) => {
-                Some(positive_text(path, *row, "rate_hz", text, "--rate HZ")?)
+            (Some(rate_hz), _) => {
+                let told = positive(rate_hz, "--rate", "samples per second", RATES_HZ)?;
+                Some(told)
             }
+            (None, Some((row, text))) => Some(positive_text(
+                path,
+                *row,
+                ("rate_hz", text),
+                "--rate HZ",
+                RATES_HZ,
+            )?),
             (None, None) => None,
         })
     }
@@ -47,10 +58,13 @@ impl Metadata {
     /// The scale in rate units per count, from the options or else from the comments.
     pub(super) fn scale(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
         Ok(match (options.scale, &self.scale) {
-            (Some(scale), _) => Some(positive(scale, "--scale", "rate units per count")?),
+            (Some(scale), _) => {
+                let told = positive(scale, "--scale", "rate units per count", SCALES)?;
+                Some(told)
+            }
             (None, Some((row, text))) => {
                 let option = "--scale RATE_PER_COUNT";
-                Some(positive_text(path, *row, "scale", text, option)?)
+                Some(positive_text(path, *row, ("scale", text), option, SCALES)?)
             }
             (None, None) => None,
         })
@@ -74,13 +88,22 @@ impl Metadata {
 }
 
 /// Returns the value of an option if it is positive and finite.
-fn positive(value: f64, option: &str, meaning: &str) -> Result<f64, Failure> {
-    if value.is_finite() && value > 0.0 {
+fn positive(
+    value: f64,
+    option: &str,
+    meaning: &str,
+    range: RangeInclusive<f64>,
+) -> Result<f64, Failure> {
+    if range.contains(&value) {
         Ok(value)
     } else {
         Err(Failure::option(
-            format!("{option} {value} is impossible"),
-            format!("give a positive, finite number of {meaning}"),
+            format!("{option} {} is impossible", brief(value)),
+            format!(
+                "give {meaning}, from {:e} to {:e}",
+                range.start(),
+                range.end()
+            ),
         ))
     }
 }
@@ -89,12 +112,16 @@ fn positive(value: f64, option: &str, meaning: &str) -> Result<f64, Failure> {
 fn positive_text(
     path: &Path,
     row: u64,
-    key: &str,
-    text: &str,
+    (key, text): (&str, &str),
     option: &str,
+    range: RangeInclusive<f64>,
 ) -> Result<f64, Failure> {
     match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        Ok(value) if range.contains(&value) => Ok(value),
+        Ok(value) if value.is_finite() && value > 0.0 => Err(Place::row(path, row).failure(
+            format!("{key}={} is impossible", brief(value)),
+            format!("correct it or give {option}"),
+        )),
         _ => Err(Place::row(path, row).failure(
             format!(
                 "{key}={} is not a positive, finite number",

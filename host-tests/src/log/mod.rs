@@ -25,15 +25,18 @@
 //! # Rate and gaps
 //!
 //! If options or comments give a rate, it is used, and time stamps are read only if
-//! [`Options::time`] names their column. Otherwise the rate is the mean rate of the time stamps.
+//! [`Options::time`] names their column. A rate that the first stamps contradict is refused if the unit
+//! of the stamps is told. Otherwise the rate is the mean rate of the time stamps.
 //! They are in the first column that is named like a time, or in two such columns for the seconds
 //! and nanoseconds of ROS. Without such a name, they are in the only column without a name that
 //! rises by steps other than one.
 //!
 //! The unit of the stamps is the one in the column's name. Without one, it is the unit in which the
-//! stamps are times since 1970, or else the unit that gives a rate between 10 Hz and 10 kHz.
+//! stamps are times since 1970, or else the only unit that gives a rate between 1 Hz (in seconds, 0.1
+//! Hz) and 33 kHz. If several do, the log is refused.
 //!
-//! A step between stamps is a gap if it exceeds 1.5 usual steps and lies far beyond their scatter.
+//! If nearly all steps between stamps are multiples of one step, a longer step is a gap. Otherwise it
+//! is a gap if it exceeds 1.5 usual steps and lies far beyond their scatter.
 //! No difference of the Allan variance spans a gap. A row that repeats the stamp of the row before
 //! is left out. A note counts both. Stamps that go back are refused, and so are two rates in one
 //! log and stamps that jump or repeat in more than 5 % of the rows.
@@ -41,14 +44,16 @@
 //! # Units
 //!
 //! The unit comes from [`Options::unit`], from the comments, or from the columns' names, in this
-//! order. Without any, it is deg/s or m/s². If neighbouring samples scatter by more than 100 deg/s
+//! order. Without any, it is deg/s or m/s². A unit that the names tell and that is not known is
+//! refused, and so is one that contradicts the option or the comment, unless a scale is given too. If neighbouring samples scatter by more than 100 deg/s
 //! or 20 m/s², a note calls the scale and unit unlikely. If they scatter by more than 100 000 deg/s
 //! or m/s², the log is refused.
 //!
 //! # Counts
 //!
 //! Whole numbers within `i32` are taken as counts without a change, whether they are written `17`
-//! or `17.0`. An axis with any other number is rounded to counts. The size of a count is a power of
+//! or `17.0`. Larger whole numbers become counts after an origin is subtracted from them as integers. An
+//! axis with any other number is rounded to counts. The size of a count is a power of
 //! two between 2^-30 and 2^-29 of the axis' range, and a constant offset is subtracted. This takes
 //! one more pass for the range. No value is skipped: a value that is not a finite number ends the
 //! reading with an error that names its row.
@@ -91,6 +96,9 @@ pub use names::TimeUnit;
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
 /// records of years.
 pub const OCTAVES: usize = 30;
+
+/// The most axes that are read from a log.
+pub const MOST_AXES: usize = 64;
 
 /// What a user may specify about a log.
 #[derive(Clone, Debug, Default, PartialEq)]

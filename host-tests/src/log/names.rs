@@ -81,6 +81,15 @@ fn in_brackets(name: &str) -> Option<(&str, &str)> {
     (!is_index && !inner.is_empty()).then(|| (name[..open].trim(), inner))
 }
 
+/// Words in brackets behind the name of a time that are no units.
+const ZONES: [&str; 6] = ["utc", "gmt", "gps", "local", "unix", "epoch"];
+
+/// Units at the end of a time's name that are not those of time stamps in this program.
+const FOREIGN_TIMES: [&str; 14] = [
+    "min", "mins", "minute", "minutes", "h", "hr", "hrs", "hour", "hours", "day", "days", "ticks",
+    "cycles", "jiffies",
+];
+
 /// The unit of time stamps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum TimeUnit {
@@ -116,17 +125,33 @@ impl TimeUnit {
         }
     }
 
-    /// The unit at the end of a column's name: `timestamp [ns]`, `time_us`, `TimeUS`, `t (s)`.
-    pub(super) fn of_name(name: &str) -> Option<Self> {
+    /// The unit at the end of a column's name: `timestamp [ns]`, `time_us`, `TimeUS`, `t (s)`. A name
+    /// without a unit gives `None`.
+    ///
+    /// # Errors
+    /// The text of a unit that is told but not known, such as `min` or `10us`.
+    pub(super) fn of_name(name: &str) -> Result<Option<Self>, UnknownUnit> {
         if let Some((_, unit)) = in_brackets(name) {
-            return Self::of_token(&unit.to_lowercase());
+            let text = unit.to_lowercase();
+            return match Self::of_token(&text) {
+                None if !ZONES.contains(&text.as_str()) => Err(unit.to_owned()),
+                unit => Ok(unit),
+            };
         }
         let name = name.to_lowercase();
-        let last = tokens(&name).last()?;
+        let Some(last) = tokens(&name).last() else {
+            return Ok(None);
+        };
         let glued = ["timestamp", "time", "stamp"]
             .iter()
             .find_map(|word| last.strip_prefix(word));
-        Self::of_token(glued.unwrap_or(last))
+        let text = glued.unwrap_or(last);
+        let digits = text.trim_start_matches(|c: char| c.is_ascii_digit());
+        let is_multiple = digits.len() < text.len() && Self::of_token(digits).is_some();
+        match Self::of_token(text) {
+            None if is_multiple || FOREIGN_TIMES.contains(&text) => Err(text.to_owned()),
+            unit => Ok(unit),
+        }
     }
 
     fn of_token(token: &str) -> Option<Self> {
@@ -144,11 +169,21 @@ impl TimeUnit {
     }
 }
 
+/// A unit of another quantity, or an unusual one, in the name of a column: its text.
+pub(super) type UnknownUnit = String;
+
 /// The unit in an axis' name, and the factor from a value to that unit: `w_RS_S_x [rad s^-1]`, `gx
-/// (deg/s)`, `gyro_x_mdps`, `accelerometer_m_s2[0]`.
-pub(super) fn unit(name: &str) -> Option<(Unit, f64)> {
+/// (deg/s)`, `gyro_x_mdps`, `accelerometer_m_s2[0]`. A name without a unit gives `None`.
+///
+/// # Errors
+/// The text of a unit that is told but not known, such as `rpm`.
+pub(super) fn unit(name: &str) -> Result<Option<(Unit, f64)>, UnknownUnit> {
     if let Some((_, text)) = in_brackets(name) {
-        return unit_of_text(text);
+        let is_axis = ["x", "y", "z", "roll", "pitch", "yaw"].contains(&&*text.to_lowercase());
+        return match unit_of_text(text) {
+            None if !is_axis => Err(text.to_owned()),
+            unit => Ok(unit),
+        };
     }
     let name = name.to_lowercase();
     let name = name.split('[').next().unwrap_or_default();
@@ -160,10 +195,23 @@ pub(super) fn unit(name: &str) -> Option<(Unit, f64)> {
     };
     let at_end = |count: usize| {
         let start = tokens.len().checked_sub(count).filter(|&start| start > 0)?;
-        unit_of_text(&tokens[start..].join("/"))
+        Some(tokens[start..].join("/"))
     };
-    at_end(2).or_else(|| at_end(1))
+    let ends = [at_end(2), at_end(1)];
+    let known = ends.iter().flatten().find_map(|text| unit_of_text(text));
+    let foreign = |text: &&String| FOREIGN.contains(&text.as_str());
+    match ends.iter().flatten().find(foreign) {
+        Some(text) if known.is_none() => Err(text.clone()),
+        _ => Ok(known),
+    }
 }
+
+/// Units at the end of an axis' name that are neither those of a gyro nor those of an accelerometer
+/// in this program.
+const FOREIGN: [&str; 15] = [
+    "rpm", "rps", "hz", "counts", "count", "lsb", "adc", "digits", "mas", "as", "rad/h", "rad/hr",
+    "rad/min", "deg/min", "rev/s",
+];
 
 /// The unit that is written `rad s^-1`, `deg/sec`, `dps` or `m/s²`, and the factor from a value to
 /// it.
@@ -268,7 +316,16 @@ mod tests {
             ("timestamp", None),
         ] {
             assert!(is_time(name), "{name}");
-            assert_eq!(TimeUnit::of_name(name), unit, "{name}");
+            assert_eq!(TimeUnit::of_name(name), Ok(unit), "{name}");
+        }
+        for (name, unit) in [
+            ("t [min]", "min"),
+            ("time_10us", "10us"),
+            ("time100ns", "100ns"),
+            ("time (h)", "h"),
+            ("time_minutes", "minutes"),
+        ] {
+            assert_eq!(TimeUnit::of_name(name), Err(unit.into()), "{name}");
         }
         for name in [
             "temp_C",
@@ -298,11 +355,22 @@ mod tests {
             ("accel_x [mg]", Some((g, 1e-3))),
             ("ax_g", Some((g, 1.0))),
             ("gx", None),
+            ("gyro (x)", None),
             ("gx_raw131", None),
             ("g", None),
             ("angular_velocity.x", None),
         ] {
-            assert_eq!(unit(name), expected, "{name}");
+            assert_eq!(unit(name), Ok(expected), "{name}");
+        }
+        for (name, text) in [
+            ("gx [rpm]", "rpm"),
+            ("gx [rad/h]", "rad/h"),
+            ("gx [counts]", "counts"),
+            ("gyro_rpm_x", "rpm"),
+            ("gyro_x_rad_h", "rad/h"),
+            ("gyro_x_lsb", "lsb"),
+        ] {
+            assert_eq!(unit(name), Err(text.into()), "{name}");
         }
     }
 

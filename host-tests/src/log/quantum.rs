@@ -1,6 +1,8 @@
 //! Turns floats into counts. Whole numbers stay exact, and any other number is rounded far below
 //! its noise.
 
+use super::field::Exact;
+
 /// The range of the values of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
@@ -8,6 +10,8 @@ pub(super) struct Range {
     highest: f64,
     /// Whether every value is a whole number within `i32`.
     whole: bool,
+    /// The lowest and the highest of the whole numbers that a float does not hold.
+    large: Option<(i128, i128)>,
 }
 
 impl Range {
@@ -16,26 +20,59 @@ impl Range {
         lowest: f64::INFINITY,
         highest: f64::NEG_INFINITY,
         whole: true,
+        large: None,
     };
 
     /// Widens the range to include a value.
     #[inline]
-    pub(super) fn include(&mut self, value: f64) {
-        self.lowest = self.lowest.min(value);
-        self.highest = self.highest.max(value);
-        self.whole &= f64::from(value as i32) == value;
+    pub(super) fn include(&mut self, value: Exact) {
+        match value {
+            Exact::Float(value) => {
+                self.lowest = self.lowest.min(value);
+                self.highest = self.highest.max(value);
+                self.whole &= f64::from(value as i32) == value;
+            }
+            Exact::Whole(value) => {
+                let (lowest, highest) = self.large.unwrap_or((value, value));
+                self.large = Some((lowest.min(value), highest.max(value)));
+            }
+        }
+    }
+
+    /// The same range relative to a whole number in its middle, and that number. It is 0 unless the
+    /// range has whole numbers that a float does not hold.
+    fn centred(self) -> (Self, i128) {
+        let Some((mut lowest, mut highest)) = self.large else {
+            return (self, 0);
+        };
+        if self.lowest <= self.highest {
+            // A float beyond all integers saturates; the range is then too wide in any case.
+            lowest = lowest.min(self.lowest.floor() as i128);
+            highest = highest.max(self.highest.ceil() as i128);
+        }
+        let origin = lowest / 2 + highest / 2;
+        let [low, high] = [lowest, highest].map(|end| end.saturating_sub(origin) as f64);
+        let centred = Self {
+            lowest: low,
+            highest: high,
+            whole: self.whole && low >= i32::MIN.into() && high <= i32::MAX.into(),
+            large: None,
+        };
+        (centred, origin)
     }
 }
 
-/// How the floats of one axis become counts: `count = round(value / step) − origin`.
+/// How the numbers of one axis become counts: `count = round((value − base) / step) − origin`.
 ///
 /// The step is a power of two between 2^-30 and 2^-29 of the range. Division by it is therefore
 /// exact, and values that are multiples of it become exact counts. The origin subtracts a constant
-/// offset, which does not change any Allan variance.
+/// offset, which does not change any Allan variance. The base does the same for whole numbers that a
+/// float does not hold, and is subtracted while they are still integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Quantum {
     step: f64,
     origin: f64,
+    base: i128,
 }
 
 impl Quantum {
@@ -43,15 +80,18 @@ impl Quantum {
     pub(super) const WHOLE: Self = Self {
         step: 1.0,
         origin: 0.0,
+        base: 0,
     };
 
     /// The quantum of values within a range. Returns `None` for a range beyond 1e300 or below
     /// 1e-290, where floats overflow or underflow.
     pub(super) fn of(range: Range) -> Option<Self> {
+        let (range, base) = range.centred();
         let width = range.highest - range.lowest;
         if range.whole || width == 0.0 {
             return Some(Self {
                 origin: if range.whole { 0.0 } else { range.lowest },
+                base,
                 ..Self::WHOLE
             });
         }
@@ -62,7 +102,7 @@ impl Quantum {
         let step = 2f64.powi(exponent);
         let middle = 0.5 * range.lowest + 0.5 * range.highest;
         let origin = (middle / step).round_ties_even();
-        origin.is_finite().then_some(Self { step, origin })
+        origin.is_finite().then_some(Self { step, origin, base })
     }
 
     /// The size of one count.
@@ -70,10 +110,30 @@ impl Quantum {
         self.step
     }
 
-    /// The count of a value within the range. Its magnitude is at most 2^29.
+    /// Whether the counts are the values themselves but for a constant.
+    pub(super) fn is_whole(&self) -> bool {
+        self.step == 1.0 && self.origin == 0.0
+    }
+
+    /// The value less the base.
     #[inline]
-    pub(super) fn count(&self, value: f64) -> i32 {
-        (value / self.step - self.origin).round_ties_even() as i32
+    pub(super) fn relative(&self, value: Exact) -> f64 {
+        match value {
+            Exact::Float(value) if self.base == 0 => value,
+            Exact::Float(value) if value.fract() == 0.0 => {
+                (value as i128).saturating_sub(self.base) as f64
+            }
+            // The range is then so wide that the rounding here is far below a count.
+            Exact::Float(value) => value - self.base as f64,
+            Exact::Whole(value) => value.saturating_sub(self.base) as f64,
+        }
+    }
+
+    /// The count of a relative value within the range. Its magnitude is at most 2^29, or that of a
+    /// whole number.
+    #[inline]
+    pub(super) fn count(&self, relative: f64) -> i32 {
+        (relative / self.step - self.origin).round_ties_even() as i32
     }
 }
 
@@ -83,7 +143,9 @@ mod tests {
 
     fn quantum(values: &[f64]) -> Quantum {
         let mut range = Range::EMPTY;
-        values.iter().for_each(|&value| range.include(value));
+        values
+            .iter()
+            .for_each(|&value| range.include(Exact::Float(value)));
         Quantum::of(range).unwrap()
     }
 
@@ -124,8 +186,22 @@ mod tests {
     #[test]
     fn range_beyond_floats_has_no_quantum() {
         let mut range = Range::EMPTY;
-        range.include(f64::MAX);
-        range.include(f64::MIN);
+        range.include(Exact::Float(f64::MAX));
+        range.include(Exact::Float(f64::MIN));
         assert_eq!(Quantum::of(range), None);
+    }
+
+    #[test]
+    fn whole_numbers_beyond_floats_lose_no_digit() {
+        let base = 1_i128 << 60;
+        let mut range = Range::EMPTY;
+        for value in [base - 7, base, base + 12] {
+            range.include(Exact::Whole(value));
+        }
+        let quantum = Quantum::of(range).unwrap();
+        let count = |value| quantum.count(quantum.relative(Exact::Whole(value)));
+        assert!(quantum.is_whole());
+        assert_eq!(count(base + 12) - count(base), 12);
+        assert_eq!(count(base) - count(base - 7), 7);
     }
 }

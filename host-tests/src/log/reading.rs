@@ -1,7 +1,7 @@
 //! Reads a table into the curves of its axes.
 
 use super::{
-    Axis, CovariateChoice, Evidence, Log, Options,
+    Axis, CovariateChoice, Evidence, Log, MOST_AXES, Options,
     accumulate::{self, Passes},
     clock::Clock,
     columns::Taken,
@@ -28,6 +28,11 @@ pub(super) fn read_table(
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let metadata = table.metadata();
     let rate_hz = metadata.rate_hz(path, options)?;
+    if let Some(rate_hz) = rate_hz
+        && table.by_rows()
+    {
+        table.columns().check_rate(path, options, rate_hz)?;
+    }
     // If the rate is given, time stamps are read only if the options ask for them.
     let time = match table.by_rows() && (rate_hz.is_none() || options.time.is_some()) {
         true => table.columns().time(path, options)?,
@@ -41,6 +46,12 @@ pub(super) fn read_table(
     }
     let taken = taken(table, path, options, time.as_ref())?;
     let axis_columns = taken.axes;
+    if axis_columns.len() > MOST_AXES {
+        return Err(Place::file(path).failure(
+            format!("{} axes, more than {MOST_AXES}", axis_columns.len()),
+            "choose columns with --columns",
+        ));
+    }
     let scaling = Scaling::settle(table, path, options, &axis_columns, taken.sensor)?;
     let covariates = watch.unwrap_or_default();
     if covariates.len() > watched::MOST {
@@ -101,7 +112,7 @@ pub(super) fn read_table(
             let named = covariates.iter().zip(&measured.covariates);
             axis.evidence = Some(evidence(path, &axis, &**watched, named, rate_hz)?);
         }
-        if quantum == quantum::Quantum::WHOLE && !scaling.scale_is_told {
+        if quantum.is_whole() && !scaling.scale_is_told {
             notes.push(format!(
                 "axis {}: whole numbers and no scale given: 1 per count assumed (change it with --scale)",
                 axis.name

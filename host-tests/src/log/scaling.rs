@@ -56,21 +56,31 @@ impl Scaling {
             None => table.metadata().unit(path)?.filter(fits),
             unit => unit,
         };
-        let by_names = match told {
-            None => {
-                let sensor = sensor.unwrap_or(Sensor::Gyro);
+        let scale = table.metadata().scale(path, options)?;
+        // Unit and scale together say all about the values. A unit alone names the unit of the
+        // results, and the names may still say in what part of it the values are.
+        let by_names = match (told, scale) {
+            (Some(_), Some(_)) => None,
+            (told, _) => {
+                let sensor = sensor.or(told.map(Unit::sensor)).unwrap_or(Sensor::Gyro);
                 table.columns().unit_of(path, axes, sensor)?
             }
-            Some(_) => None,
         };
-        let scale = table.metadata().scale(path, options)?;
+        if let (Some(told), Some((named, _))) = (told, by_names)
+            && told != named
+        {
+            return Err(Place::file(path).failure(
+                format!("the unit is said to be {told}, but the columns are named in {named}"),
+                "omit the unit, or give --scale too if the names are wrong",
+            ));
+        }
         let (unit, origin) = match (told, by_names) {
             (Some(unit), _) => (unit, Origin::Told),
             (None, Some((unit, _))) => (unit, Origin::Names),
             (None, None) => (Unit::usual(sensor.unwrap_or(Sensor::Gyro)), Origin::Assumed),
         };
         Ok(Self {
-            scale: scale.or(by_names.map(|(_, scale)| scale)).unwrap_or(1.0),
+            scale: scale.unwrap_or(1.0) * by_names.map_or(1.0, |(_, part)| part),
             unit,
             scale_is_told: scale.is_some() || by_names.is_some(),
             origin,

@@ -1,6 +1,9 @@
 //! Opens a log by its extension.
 
-use crate::failure::{Failure, Place};
+use crate::{
+    failure::{Failure, Place},
+    regular_file,
+};
 use flate2::bufread::MultiGzDecoder;
 use indicatif::ProgressBar;
 use std::{
@@ -11,6 +14,11 @@ use std::{
 
 /// The size of the buffer that files are read with, in bytes.
 const BUFFER: usize = 1 << 18;
+
+/// A gzip stream may unpack to this many bytes, and to this many times its own size more. Text of noise
+/// unpacks to a few times its size.
+const MOST_UNPACKED: u64 = 1 << 24;
+const MOST_TIMES_UNPACKED: u64 = 100;
 
 /// The format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,13 +72,8 @@ impl Format {
 
 /// Opens a file at its beginning. `progress` follows the bytes that are read.
 pub(super) fn open(path: &Path, progress: &ProgressBar) -> Result<impl BufRead + use<>, Failure> {
-    let fail = |error| Place::file(path).io(&error);
-    let file = File::open(path).map_err(fail)?;
-    let metadata = file.metadata().map_err(fail)?;
-    if metadata.is_dir() {
-        return Err(Place::file(path).failure("is a directory", "name a file in it"));
-    }
-    progress.set_length(metadata.len());
+    let (file, length) = regular_file::open(path)?;
+    progress.set_length(length);
     progress.set_position(0);
     Ok(BufReader::with_capacity(BUFFER, progress.wrap_read(file)))
 }
@@ -83,7 +86,13 @@ pub(super) fn open_text(
 ) -> Result<Box<dyn BufRead>, Failure> {
     let file = open(path, progress)?;
     let mut text: Box<dyn BufRead> = if gzip {
-        Box::new(BufReader::with_capacity(BUFFER, MultiGzDecoder::new(file)))
+        let (_, packed) = regular_file::open(path)?;
+        let most = MOST_UNPACKED.saturating_add(packed.saturating_mul(MOST_TIMES_UNPACKED));
+        let unpacked = Bounded {
+            text: MultiGzDecoder::new(file),
+            left: most,
+        };
+        Box::new(BufReader::with_capacity(BUFFER, unpacked))
     } else {
         Box::new(file)
     };
@@ -109,10 +118,31 @@ pub(super) fn ends_with_line(path: &Path) -> Result<bool, Failure> {
     last().map_err(|error| Place::file(path).io(&error))
 }
 
+/// A text that fails when more than a number of bytes are read from it.
+struct Bounded<R> {
+    text: R,
+    left: u64,
+}
+
+impl<R: Read> Read for Bounded<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let read = self.text.read(buffer)?;
+        self.left = self
+            .left
+            .checked_sub(read as u64)
+            .ok_or(std::io::ErrorKind::QuotaExceeded)?;
+        Ok(read)
+    }
+}
+
 /// The failure to read text.
 pub(super) fn text_failure(place: Place, gzip: bool, error: &std::io::Error) -> Failure {
-    use std::io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
+    use std::io::ErrorKind::{InvalidData, InvalidInput, QuotaExceeded, UnexpectedEof};
     match error.kind() {
+        QuotaExceeded => place.failure(
+            format!("the gzip stream unpacks to more than {MOST_TIMES_UNPACKED} times its size"),
+            "check what it holds, and unpack it first",
+        ),
         UnexpectedEof if gzip => place.failure(
             "the gzip stream ends in the middle",
             "copy or record the file again",

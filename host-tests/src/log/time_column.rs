@@ -2,12 +2,15 @@
 
 use super::{
     Options,
-    clock::Pace,
+    clock::{Pace, possible_units},
     columns::{AxisColumn, Columns, Look},
     names::{self, TimeUnit},
 };
-use crate::failure::{Failure, Place, quoted};
+use crate::failure::{Failure, Place, brief, quoted};
 use std::path::Path;
+
+/// Fewer stamps say too little about the rate to contradict a told one.
+const LEAST_STAMPS: usize = 9;
 
 /// A column of time stamps, or two columns: the seconds and nanoseconds of messages of ROS.
 #[derive(Clone, Debug)]
@@ -30,7 +33,8 @@ impl Columns {
         let count = self.looks.len();
         if let Some(wanted) = &options.time {
             let column = self.find(path, wanted)?;
-            return self.time_in(column, options).map(Some).ok_or_else(|| {
+            let found = self.time_in(path, column, options)?;
+            return found.map(Some).ok_or_else(|| {
                 Place::file(path).failure(
                     format!(
                         "column {} holds no time stamps that advance",
@@ -51,35 +55,116 @@ impl Columns {
             name.contains("header.stamp") || name.contains("timestamp_sample")
         };
         by_name.sort_by_key(|column| !is_sensors(column));
-        let found = by_name
-            .into_iter()
-            .find_map(|column| self.time_in(column, options));
-        Ok(found.or_else(|| {
-            let unnamed = |column: &usize| {
-                self.name(*column).is_none()
-                    && self.looks[*column] == Look::Rising
-                    && !is_index(&self.heads[*column])
-            };
-            let mut unnamed = (0..count).filter(unnamed);
-            let column = unnamed.next().filter(|_| unnamed.next().is_none())?;
-            self.time_in(column, options)
-        }))
+        for column in by_name {
+            if let Some(found) = self.time_in(path, column, options)? {
+                return Ok(Some(found));
+            }
+        }
+        let unnamed = |column: &usize| {
+            self.name(*column).is_none()
+                && self.looks[*column] == Look::Rising
+                && !is_index(&self.heads[*column])
+        };
+        let mut unnamed = (0..count).filter(unnamed);
+        match (unnamed.next(), unnamed.next()) {
+            (Some(column), None) => self.time_in(path, column, options),
+            _ => Ok(None),
+        }
     }
 
-    fn time_in(&self, column: usize, options: &Options) -> Option<TimeColumn> {
+    /// The time in a column, or `None` if its values do not advance.
+    ///
+    /// # Errors
+    /// When the unit in its name is not known, or when none is told and not exactly one fits.
+    fn time_in(
+        &self,
+        path: &Path,
+        column: usize,
+        options: &Options,
+    ) -> Result<Option<TimeColumn>, Failure> {
         if self.looks[column] == Look::Text {
-            return None;
+            return Ok(None);
         }
-        let name = self.name(column);
-        let told = options
-            .time_unit
-            .or_else(|| name.and_then(TimeUnit::of_name));
-        let (pace, unit) = Pace::of(&self.heads[column], told)?;
-        Some(TimeColumn {
+        let head = &self.heads[column];
+        let Some(possible) = possible_units(head) else {
+            return Ok(None);
+        };
+        let fail = |what: String| {
+            Place::file(path).failure(
+                format!("time column {}: {what}", self.called(column)),
+                "choose with --time-unit, or give --rate",
+            )
+        };
+        let told = match options.time_unit {
+            None => TimeUnit::of_name(self.name(column).unwrap_or_default()).map_err(|text| {
+                fail(format!("the unit {} is not known", quoted(text.as_bytes())))
+            })?,
+            unit => unit,
+        };
+        let unit = match (told, possible.as_slice()) {
+            (Some(unit), _) | (None, &[unit]) => unit,
+            (None, []) => {
+                return Err(fail("no unit is told, and none gives a usual rate".into()));
+            }
+            (None, several) => {
+                let one = |unit: &TimeUnit| {
+                    let rate_hz = Pace::of(head, *unit).map_or(f64::NAN, |pace| pace.usual_hz());
+                    format!("{} ({} Hz)", unit.name(), brief(rate_hz))
+                };
+                let units: Vec<String> = several.iter().map(one).collect();
+                return Err(fail(format!(
+                    "no unit is told, and it may be {}",
+                    units.join(" or ")
+                )));
+            }
+        };
+        Ok(Pace::of(head, unit).map(|pace| TimeColumn {
             columns: vec![self.time_axis(column)],
             pace,
             unit,
-        })
+        }))
+    }
+
+    /// Checks that a told rate is not contradicted by time stamps whose unit is told too. Stamps that
+    /// count rows say nothing about the rate.
+    ///
+    /// # Errors
+    /// When the first stamps have another rate.
+    pub(super) fn check_rate(
+        &self,
+        path: &Path,
+        options: &Options,
+        rate_hz: f64,
+    ) -> Result<(), Failure> {
+        let is_given = |wanted: &String| self.find(path, wanted).ok();
+        let named = |column: &usize| self.name(*column).is_some_and(names::is_time);
+        let by_name = (0..self.looks.len()).filter(named);
+        for column in options.time.iter().filter_map(is_given).chain(by_name) {
+            let head = &self.heads[column];
+            if self.looks[column] == Look::Text || head.len() < LEAST_STAMPS || is_index(head) {
+                continue;
+            }
+            let told = TimeUnit::of_name(self.name(column).unwrap_or_default());
+            let Some(unit) = options.time_unit.or(told.unwrap_or(None)) else {
+                continue;
+            };
+            let Some(pace) = Pace::of(head, unit) else {
+                continue;
+            };
+            if !pace.agrees(head, rate_hz) {
+                return Err(Place::file(path).failure(
+                    format!(
+                        "the rate is said to be {} Hz, but the time stamps of {} give {} Hz",
+                        brief(rate_hz),
+                        self.called(column),
+                        brief(pace.usual_hz())
+                    ),
+                    "correct --rate or --time-unit, or drop the column of time stamps",
+                ));
+            }
+            return Ok(());
+        }
+        Ok(())
     }
 
     fn time_axis(&self, column: usize) -> AxisColumn {
@@ -104,11 +189,10 @@ impl Columns {
             let behind = all().find(is_behind)?;
             let rows = self.heads[seconds].iter().zip(&self.heads[behind]);
             let first: Vec<f64> = rows.map(|(sec, nanosec)| sec * 1e9 + nanosec).collect();
-            let (pace, unit) = Pace::of(&first, Some(TimeUnit::Ns))?;
             Some(TimeColumn {
                 columns: vec![self.time_axis(seconds), self.time_axis(behind)],
-                pace,
-                unit,
+                pace: Pace::of(&first, TimeUnit::Ns)?,
+                unit: TimeUnit::Ns,
             })
         })
     }

@@ -52,16 +52,9 @@ struct Source {
 struct Found {
     subscription: Subscription,
     messages: u64,
-    columns: Vec<(String, Source)>,
 }
 
 impl Found {
-    fn has(&self, sensor: Sensor) -> bool {
-        self.columns
-            .iter()
-            .any(|(name, _)| names::is_axis(name, sensor))
-    }
-
     fn name(&self) -> String {
         format!("{}:{}", self.subscription.topic, self.subscription.instance)
     }
@@ -95,20 +88,33 @@ impl Ulog {
             );
         }
         let mut found = BTreeMap::new();
-        for (&identity, subscription) in &log.subscriptions {
-            let Some(&messages) = counts.get(&identity) else {
-                continue;
-            };
-            let fields = log.formats.fields(&subscription.topic);
-            let fields = fields.map_err(|what| Place::file(path).failure(what, COPY))?;
-            let one = Found {
-                subscription: subscription.clone(),
-                messages,
-                columns: columns(&subscription.topic, &fields),
-            };
-            found.insert(identity, one);
+        for (identity, subscription) in std::mem::take(&mut log.subscriptions) {
+            if let Some(&messages) = counts.get(&identity) {
+                let one = Found {
+                    subscription,
+                    messages,
+                };
+                found.insert(identity, one);
+            }
         }
-        let identity = choose(path, &found, options)?;
+        // Formats can be long. Only those of raw topics, of which there are few, and that of the chosen
+        // topic are expanded.
+        let expanded = |topic: &str| {
+            let fields = log.formats.fields(topic);
+            let fields = fields.map_err(|what| Place::file(path).failure(what, COPY))?;
+            Ok::<_, Failure>(columns(topic, &fields))
+        };
+        let mut raw = BTreeMap::new();
+        for topic in RAW {
+            if found.values().any(|one| one.subscription.topic == topic) {
+                raw.insert(topic, expanded(topic)?);
+            }
+        }
+        let has = |topic: &str, sensor: Sensor| {
+            let mut columns = raw.get(topic).into_iter().flatten();
+            columns.any(|(name, _)| names::is_axis(name, sensor))
+        };
+        let identity = choose(path, &found, options, has)?;
         let others: Vec<String> = found
             .iter()
             .filter(|(other, one)| **other != identity && is_raw(one))
@@ -119,11 +125,13 @@ impl Ulog {
         };
         let mut note = format!("topic {} of {} messages", chosen.name(), chosen.messages);
         if !others.is_empty() {
-            note += &format!("; others: {} (choose with --topic)", others.join(", "));
+            note += &format!("; others: {} (choose with --topic)", few(&others));
         }
         notes.insert(0, note);
 
-        let (names, sources): (Vec<_>, Vec<_>) = chosen.columns.into_iter().unzip();
+        let (names, sources): (Vec<_>, Vec<_>) =
+            expanded(&chosen.subscription.topic)?.into_iter().unzip();
+        drop(log);
         let mut log = Self {
             path: path.to_owned(),
             identity,
@@ -236,6 +244,15 @@ impl Source {
 
 const COPY: &str = "copy or record the log again";
 
+/// The first names of a list, and how many others there are.
+fn few(names: &[String]) -> String {
+    const FEW: usize = 30;
+    match names.len().checked_sub(FEW) {
+        None | Some(0) => names.join(", "),
+        Some(more) => format!("{} and {more} more", names[..FEW].join(", ")),
+    }
+}
+
 fn is_raw(found: &Found) -> bool {
     RAW.contains(&found.subscription.topic.as_str())
 }
@@ -288,11 +305,16 @@ fn columns(topic: &str, fields: &[Field]) -> Vec<(String, Source)> {
 /// The topic that is asked for by its name or as `TOPIC:INSTANCE`. Without a request, it is the
 /// topic of raw samples of the sensor with the most messages, provided that only one instance has
 /// that many.
-fn choose(path: &Path, found: &BTreeMap<u16, Found>, options: &Options) -> Result<u16, Failure> {
+fn choose(
+    path: &Path,
+    found: &BTreeMap<u16, Found>,
+    options: &Options,
+    has: impl Fn(&str, Sensor) -> bool,
+) -> Result<u16, Failure> {
     let fail = |what: String, remedy: &str| Err(Place::file(path).failure(what, remedy));
     let list = |found: &[(&u16, &Found)]| {
         let names: Vec<String> = found.iter().map(|(_, one)| one.name()).collect();
-        names.join(", ")
+        few(&names)
     };
     let all: Vec<_> = found.iter().collect();
     let candidates: Vec<_> = if let Some(wanted) = &options.topic {
@@ -312,7 +334,8 @@ fn choose(path: &Path, found: &BTreeMap<u16, Found>, options: &Options) -> Resul
         candidates
     } else {
         let of = |sensor: Sensor| -> Vec<_> {
-            let is = |(_, one): &(&u16, &Found)| is_raw(one) && one.has(sensor);
+            let is =
+                |(_, one): &(&u16, &Found)| is_raw(one) && has(&one.subscription.topic, sensor);
             all.iter().copied().filter(is).collect()
         };
         let candidates = match scaling::wanted_sensor(options)? {

@@ -10,6 +10,12 @@ const DEEPEST: usize = 8;
 /// hundreds. Chosen by hand.
 const MOST_FIELDS: usize = 4096;
 
+/// The longest declaration of a field, and the longest name of a nested field, in bytes.
+const LONGEST_NAME: usize = 256;
+
+/// The most declarations in all formats of a file. PX4 writes some thousands.
+const MOST_DECLARED: usize = 1 << 16;
+
 /// The type of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -95,7 +101,11 @@ impl Field {
 
 /// The formats that a log defines, by their names.
 #[derive(Debug, Default)]
-pub(super) struct Formats(HashMap<String, Vec<Declaration>>);
+pub(super) struct Formats {
+    formats: HashMap<String, Vec<Declaration>>,
+    /// The number of declarations that were read.
+    declared: usize,
+}
 
 /// The declaration of a field, such as `float[3] gyro_rad`.
 #[derive(Debug)]
@@ -111,8 +121,16 @@ impl Formats {
         let text = String::from_utf8_lossy(text);
         let (name, fields) = text.split_once(':').ok_or("a format has no name")?;
         let fields = fields.split(';').filter(|field| !field.trim().is_empty());
+        if name.len() > LONGEST_NAME {
+            return Err("a format has a name of more than 256 bytes".into());
+        }
         let declarations = fields.map(|field| {
             let wrong = || format!("format {name}: a field is malformed");
+            if field.len() > LONGEST_NAME {
+                return Err(format!(
+                    "format {name}: a field has more than {LONGEST_NAME} bytes"
+                ));
+            }
             let (kind, name) = field.trim().split_once(' ').ok_or_else(wrong)?;
             let (kind, count) = match kind.split_once('[') {
                 None => (kind, None),
@@ -124,18 +142,24 @@ impl Formats {
             Ok(Declaration {
                 kind: kind.to_owned(),
                 count,
-                name: name.trim().to_owned(),
+                name: name.trim().replace(char::is_control, " "),
             })
         });
-        let declarations = declarations.collect::<Result<_, String>>()?;
-        self.0.insert(name.trim().to_owned(), declarations);
+        let declarations = declarations.take(MOST_DECLARED + 1);
+        let declarations = declarations.collect::<Result<Vec<_>, String>>()?;
+        self.declared += declarations.len() + 1;
+        if self.declared > MOST_DECLARED {
+            return Err(format!("the formats have more than {MOST_DECLARED} fields"));
+        }
+        self.formats.insert(name.trim().to_owned(), declarations);
         Ok(())
     }
 
     /// The basic fields of a format in their order, without padding.
     pub(super) fn fields(&self, format: &str) -> Result<Vec<Field>, String> {
         let mut fields = Vec::new();
-        self.flatten(format, "", &mut 0, DEEPEST, &mut fields)?;
+        let mut visits = MOST_FIELDS;
+        self.flatten(format, "", &mut 0, (DEEPEST, &mut visits), &mut fields)?;
         fields.retain(|field| !field.name.contains("_padding"));
         Ok(fields)
     }
@@ -145,28 +169,31 @@ impl Formats {
         format: &str,
         prefix: &str,
         offset: &mut usize,
-        deeper: usize,
+        (deeper, visits): (usize, &mut usize),
         fields: &mut Vec<Field>,
     ) -> Result<(), String> {
-        let declarations = self.0.get(format);
+        let declarations = self.formats.get(format);
         let declarations = declarations.ok_or_else(|| format!("format {format} is not defined"))?;
         let too_long = || format!("format {format} is too long");
         let next = deeper.checked_sub(1).ok_or_else(too_long)?;
         for declaration in declarations {
             for i in 0..declaration.count.unwrap_or(1) {
+                // Visits are counted, because a format may be empty and then adds no field.
+                *visits = visits.checked_sub(1).ok_or_else(too_long)?;
                 let mut name = format!("{prefix}{}", declaration.name);
+                if name.len() > LONGEST_NAME {
+                    return Err(too_long());
+                }
                 if declaration.count.is_some() {
                     name += &format!("[{i}]");
                 }
                 match Kind::of(&declaration.kind) {
                     None => {
                         let prefix = name + ".";
-                        self.flatten(&declaration.kind, &prefix, offset, next, fields)?;
+                        let budget = (next, &mut *visits);
+                        self.flatten(&declaration.kind, &prefix, offset, budget, fields)?;
                     }
                     Some(kind) => {
-                        if fields.len() >= MOST_FIELDS {
-                            return Err(too_long());
-                        }
                         let at = *offset;
                         *offset += kind.size();
                         fields.push(Field {
@@ -224,14 +251,19 @@ mod tests {
             b"b:a[2] x;",
             b"c:float[4294967296] x;",
             b"d:e x;",
+            b"empty:",
+            b"f:empty[4294967295] x;",
+            b"g:empty[4000] x;empty[4000] y;",
         ] {
             formats.define(text).unwrap();
         }
-        for name in ["a", "c", "d", "none"] {
+        for name in ["a", "c", "d", "f", "g", "none"] {
             assert!(formats.fields(name).is_err(), "{name}");
         }
         assert!(formats.define(b"no colon").is_err());
         assert!(formats.define(b"f:float[x] y;").is_err());
+        let long = format!("h:float {};", "x".repeat(300));
+        assert!(formats.define(long.as_bytes()).is_err());
     }
 
     proptest! {

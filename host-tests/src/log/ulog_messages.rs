@@ -11,6 +11,9 @@ use super::ulog_format::Formats;
 
 const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
 
+/// The longest name of a topic, in bytes.
+const LONGEST_TOPIC: usize = 256;
+
 /// The topic and instance that a subscription number stands for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Subscription {
@@ -126,8 +129,11 @@ impl<R: BufRead> Messages<R> {
                 let [instance, low, high, topic @ ..] = self.bytes.as_slice() else {
                     return Err("a subscription names no topic".into());
                 };
+                if topic.len() > LONGEST_TOPIC {
+                    return Err("a subscription names a topic of more than 256 bytes".into());
+                }
                 let subscription = Subscription {
-                    topic: String::from_utf8_lossy(topic).into_owned(),
+                    topic: String::from_utf8_lossy(topic).replace(char::is_control, " "),
                     instance: *instance,
                 };
                 let identity = u16::from_le_bytes([*low, *high]);

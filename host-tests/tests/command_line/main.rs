@@ -3,6 +3,8 @@
 
 mod bad_input;
 mod fitting;
+#[cfg(unix)]
+mod outputs;
 mod simulating;
 
 use host_tests::program::output;

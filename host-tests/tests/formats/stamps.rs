@@ -25,7 +25,7 @@ fn rate_follows_from_stamps_of_every_unit() {
         ("t (ms),gx [deg/s]", 8, 125.0),
         ("timestamp,gx [deg/s]", 5_000_000, 200.0),
         ("timestamp,gx [deg/s]", 10_000, 100.0),
-        ("timestamp,gx [deg/s]", 10, 100.0),
+        ("timestamp,gx [deg/s]", 20, 50.0),
         ("TimeUS,gx (dps)", 1000, 1000.0),
     ] {
         let text = stamped(header, (0..200).map(|i| 77 + i * step));
@@ -36,8 +36,10 @@ fn rate_follows_from_stamps_of_every_unit() {
             "{header}"
         );
         assert_eq!(log.axes[0].name, "gx");
+        // The clock of a cheap gyro is off by some per cent.
+        let told_hz = 1.03 * rate_hz;
         let told = Options {
-            rate_hz: Some(50.0),
+            rate_hz: Some(told_hz),
             unit: Some(Unit::RadiansPerSecond),
             scale: Some(0.5),
             ..Options::default()
@@ -45,7 +47,7 @@ fn rate_follows_from_stamps_of_every_unit() {
         let log = read_text(&text, &told).unwrap();
         assert_eq!(
             (log.rate_hz, log.unit),
-            (50.0, Unit::RadiansPerSecond),
+            (told_hz, Unit::RadiansPerSecond),
             "{header}"
         );
         assert_eq!(log.axes[0].rate_per_count, 0.5);
@@ -99,7 +101,7 @@ fn gaps_split_the_record_and_repeated_rows_are_left_out() {
             let _ = writeln!(text, "{},{count}", 5000 * i);
         }
     }
-    for given in [None, Some(100.0)] {
+    for given in [None, Some(195.0)] {
         let options = Options {
             rate_hz: given,
             time: Some("timestamp".into()),
@@ -154,4 +156,156 @@ fn unusable_stamps_are_refused_with_their_row() {
         line.starts_with("a.csv: the sampling rate is not known; "),
         "{line}"
     );
+}
+
+#[test]
+fn stamps_without_a_unit_are_refused_if_several_units_fit() {
+    for (header, step, expected) in [
+        (
+            "t,gx [deg/s]",
+            1,
+            "t: no unit is told, and it may be s (1 Hz) or ms (1000 Hz)",
+        ),
+        (
+            "time,gx [deg/s]",
+            5,
+            "time: no unit is told, and it may be s (0.2 Hz) or ms (200 Hz)",
+        ),
+        (
+            "timestamp,gx [deg/s]",
+            10,
+            "may be s (0.1 Hz) or ms (100 Hz)",
+        ),
+        (
+            "timestamp,gx [deg/s]",
+            50,
+            "may be ms (20 Hz) or µs (20000 Hz)",
+        ),
+        (
+            "timestamp,gx [deg/s]",
+            40_000,
+            "may be µs (25 Hz) or ns (25000 Hz)",
+        ),
+        (
+            "timestamp,gx [deg/s]",
+            400_000_000_000,
+            "no unit is told, and none gives a usual rate",
+        ),
+        (
+            "t [min],gx [deg/s]",
+            1,
+            "time column t [min]: the unit \"min\" is not known",
+        ),
+        (
+            "time_10us,gx [deg/s]",
+            500,
+            "the unit \"10us\" is not known",
+        ),
+        (
+            "time_hours,gx [deg/s]",
+            1,
+            "the unit \"hours\" is not known",
+        ),
+    ] {
+        let text = stamped(header, (0..200).map(|i| i * step));
+        let line = read_text(&text, &Options::default()).unwrap_err();
+        assert!(
+            line.contains(expected) && line.ends_with("; choose with --time-unit, or give --rate"),
+            "{line}"
+        );
+        let told = Options {
+            time_unit: Some(TimeUnit::Us),
+            ..Options::default()
+        };
+        assert_eq!(read_text(&text, &told).unwrap().rate_hz, 1e6 / step as f64);
+    }
+    // Stamps in seconds since 1970 have no other unit, however slow they are.
+    let text = stamped("t,gx [deg/s]", (0..200).map(|i| 1_700_000_000 + i));
+    assert_eq!(read_text(&text, &Options::default()).unwrap().rate_hz, 1.0);
+}
+
+#[test]
+fn rate_that_the_stamps_contradict_is_refused() {
+    let text = stamped("time_us,gx [deg/s]", (0..200).map(|i| i * 5000));
+    for (rate_hz, agrees) in [
+        (200.0, true),
+        (190.0, true),
+        (100.0, false),
+        (400.0, false),
+        (0.2, false),
+        (1e6, false),
+    ] {
+        let options = Options {
+            rate_hz: Some(rate_hz),
+            ..Options::default()
+        };
+        match read_text(&text, &options) {
+            Ok(log) => assert!(agrees && log.rate_hz == rate_hz),
+            Err(line) => assert!(
+                !agrees
+                    && line.ends_with(
+                        " Hz, but the time stamps of time_us give 200 Hz; \
+                         correct --rate or --time-unit, or drop the column of time stamps"
+                    ),
+                "{line}"
+            ),
+        }
+    }
+}
+
+#[test]
+fn rows_missing_at_random_are_refused_however_many_they_are() {
+    for percent in [0, 2, 8, 10, 20, 30, 50] {
+        let mut state = 1_u32;
+        let is_kept = |_: &i64| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % 100 >= percent
+        };
+        let kept: Vec<i64> = (0..3000).filter(is_kept).map(|i| 10_000 * i).collect();
+        let text = stamped("time_us,gx [deg/s]", kept.into_iter());
+        match read_text(&text, &Options::default()) {
+            Ok(log) => assert!(percent <= 2 && log.rate_hz == 100.0, "{percent} %"),
+            Err(line) => assert!(
+                percent > 2 && line.contains("rows are missing, or stamps are too coarse"),
+                "{percent} %: {line}"
+            ),
+        }
+    }
+}
+
+#[test]
+fn units_that_are_told_are_obeyed_or_refused() {
+    let read = |header: &str, unit: Option<Unit>, scale: Option<f64>| {
+        let text = stamped(header, (0..200).map(|i| i * 5000));
+        let options = Options {
+            unit,
+            scale,
+            ..Options::default()
+        };
+        let log = read_text(&text, &options)?;
+        Ok::<_, String>((log.unit, log.axes[0].rate_per_count))
+    };
+    let (deg, rad) = (Unit::DegreesPerSecond, Unit::RadiansPerSecond);
+    let [mdps, degrees] = ["time_us,gx [mdps]", "time_us,gx [deg/s]"];
+    assert_eq!(read(mdps, None, None), Ok((deg, 1e-3)));
+    assert_eq!(read(mdps, Some(deg), None), Ok((deg, 1e-3)));
+    assert_eq!(read(mdps, None, Some(70.0)), Ok((deg, 0.07)));
+    assert_eq!(read(mdps, Some(deg), Some(0.07)), Ok((deg, 0.07)));
+    assert_eq!(read(degrees, Some(rad), Some(0.5)), Ok((rad, 0.5)));
+    for header in [mdps, degrees] {
+        let line = read(header, Some(rad), None).unwrap_err();
+        assert!(
+            line.contains("the unit is said to be rad/s, but the columns are named in deg/s"),
+            "{line}"
+        );
+    }
+    for unknown in ["rpm", "rad/h", "counts"] {
+        let header = format!("time_us,gx [{unknown}]");
+        for (unit, scale) in [(None, None), (Some(deg), None), (None, Some(0.5))] {
+            let line = read(&header, unit, scale).unwrap_err();
+            let expected = format!("column gx [{unknown}]: the unit \"{unknown}\" is not known; ");
+            assert!(line.contains(&expected), "{line}");
+        }
+        assert_eq!(read(&header, Some(deg), Some(0.5)), Ok((deg, 0.5)));
+    }
 }

@@ -292,3 +292,31 @@ fn any_bytes_are_read_or_refused_without_a_panic() {
         }
     }
 }
+
+/// The values of one level are held for ten rows each, and the two levels are separated by a gap in
+/// time: few steps change at all, and none spans the jump.
+#[test]
+fn noise_below_a_count_is_refused_beside_held_values_and_level_jumps_over_a_gap() {
+    let values = counts(4000);
+    for (noise, is_refused) in [(1e-3, true), (0.05, true), (1.0, true), (100.0, false)] {
+        for hold in [1, 10] {
+            let mut text = String::from("time_us,gx [deg/s]\n");
+            for i in 0..values.len() {
+                let [held, ..] = values[i / hold * hold];
+                let level = if i < 2000 { 0.0 } else { 2f64.powi(30) };
+                let gap = if i < 2000 { 0 } else { 1_000_000_000 };
+                // The scatter of the generator's numbers is 1182.
+                let rate = level + f64::from(held) * noise / 1182.0 + 0.25;
+                let _ = writeln!(text, "{},{rate}", 5000 * i + gap);
+            }
+            let options = Options::default();
+            match try_read("a.csv", text.as_bytes(), &options) {
+                Ok(_) => assert!(!is_refused, "noise {noise} held {hold}"),
+                Err(line) => assert!(
+                    is_refused && line.contains("in counts of 2^-30 of the range"),
+                    "noise {noise} held {hold}: {line}"
+                ),
+            }
+        }
+    }
+}

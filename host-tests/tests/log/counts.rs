@@ -220,7 +220,7 @@ fn header_in_a_comment_names_the_columns() {
         let _ = writeln!(
             text,
             "{},{x},{y},{z}",
-            1_403_636_579_758_555_392 + 5_000_000 * i as u64
+            1_403_636_579_758_555_392 + 10_000_000 * i as u64
         );
     }
     let log = read("euroc.csv", text.as_bytes(), &at_100_hz());
@@ -274,4 +274,47 @@ fn assumptions_are_noted() {
         notes.contains("no scale given") && notes.contains("deg/s assumed"),
         "{notes}"
     );
+}
+
+/// A float holds whole numbers up to 2^53. Rounded to floats, the noise here would lose up to ten bits.
+#[test]
+fn whole_numbers_beyond_floats_give_the_curve_of_their_differences() {
+    let rows = counts(20_000);
+    let expected = accumulators(&rows);
+    for base in [1_i64 << 53, 1 << 60, i64::MIN + 5000, -(1 << 55)] {
+        let shifted: Vec<[i64; 3]> = rows
+            .iter()
+            .map(|row| row.map(|count| base + i64::from(count)))
+            .collect();
+        let text = shifted
+            .iter()
+            .fold(String::from("gx,gy,gz\n"), |mut text, [x, y, z]| {
+                let _ = writeln!(text, "{x},{y}.0, {z}");
+                text
+            });
+        let elements: Vec<u8> = shifted
+            .iter()
+            .flatten()
+            .flat_map(|count| count.to_le_bytes())
+            .collect();
+        let array = npy(&header(Kind::Signed, 8, &[rows.len() as u64, 3]), &elements);
+        for (name, bytes) in [("a.csv", text.as_bytes()), ("a.npy", &array)] {
+            let log = read(name, bytes, &at_100_hz());
+            for (axis, expected) in log.axes.iter().zip(&expected) {
+                for (octave, expected) in axis.accumulator.octaves().zip(expected.octaves()) {
+                    let found = octave.sum.to_real() * axis.rate_per_count.powi(2);
+                    let expected = expected.sum.to_real() * 0.05_f64.powi(2);
+                    let error = (found - expected).abs();
+                    assert!(error <= 1e-12 * expected, "{name} {base}");
+                }
+            }
+        }
+    }
+    let unsigned: Vec<u8> = rows
+        .iter()
+        .flat_map(|row| (u64::MAX - 5000 + (row[0] + 2048) as u64).to_le_bytes())
+        .collect();
+    let array = npy(&header(Kind::Unsigned, 8, &[rows.len() as u64]), &unsigned);
+    let log = read("a.npy", &array, &at_100_hz());
+    assert!(log.axes[0].accumulator == expected[0]);
 }

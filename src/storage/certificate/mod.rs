@@ -31,6 +31,7 @@
 
 mod axis;
 mod effect_code;
+mod possible;
 mod verdict;
 mod wire;
 
@@ -71,17 +72,6 @@ pub struct Conditions {
     pub samples: u64,
     /// The number of ends of contiguous stretches among the samples.
     pub gaps: u64,
-}
-
-impl Conditions {
-    /// Whether a gyro can have been measured under these conditions.
-    fn are_possible(&self) -> bool {
-        let positive = |x: f64| x.is_finite() && x > 0.0;
-        let temperature = self
-            .temperature_c
-            .is_none_or(|(low, high)| (-273.15..=high).contains(&low) && high.is_finite());
-        temperature && positive(self.duration_s) && positive(self.rate_hz)
-    }
 }
 
 /// The certificate of a gyro's factory calibration.

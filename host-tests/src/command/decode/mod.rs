@@ -7,13 +7,13 @@ mod text;
 use crate::{
     command::{examples, input::many},
     failure::{Failure, Place},
+    regular_file,
 };
 use allanite::storage::{self, Certificate, Snapshot};
 use clap::Args;
 use decoded::{Decoded, Stored, StoredSnapshot};
 use std::{
-    fs::File,
-    io::{self, Read, Write},
+    io::{Read, Write},
     path::{Path, PathBuf},
 };
 
@@ -57,7 +57,11 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
 }
 
 fn decode(path: &Path) -> Result<Stored, Failure> {
-    let bytes = read(path).map_err(|error| Place::file(path).io(&error))?;
+    let (file, _) = regular_file::open(path)?;
+    let mut bytes = Vec::new();
+    file.take(LARGEST)
+        .read_to_end(&mut bytes)
+        .map_err(|error| Place::file(path).io(&error))?;
     let stored = match Certificate::decode(&bytes) {
         Ok(record) => Ok(Stored::Certificate(Box::new(record))),
         Err(storage::Error::WrongKind { .. }) => Snapshot::open(&bytes).map(|snapshot| {
@@ -75,10 +79,4 @@ fn decode(path: &Path) -> Result<Stored, Failure> {
         let (what, remedy) = text.rsplit_once(": ").unwrap_or((&text, "store it again"));
         Place::file(path).failure(what, remedy)
     })
-}
-
-fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    File::open(path)?.take(LARGEST).read_to_end(&mut bytes)?;
-    Ok(bytes)
 }

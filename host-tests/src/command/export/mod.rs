@@ -43,8 +43,8 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         }
     }
     // The file comes first, so that an output that cannot be written is refused before the fit.
-    let file = arguments.output.as_deref().map(OutputFile::create);
-    let file = file.transpose()?;
+    let create = |path| OutputFile::create(path, [&*arguments.input]);
+    let file = arguments.output.as_deref().map(create).transpose()?;
     let known = characterise(arguments)?;
     let text = match arguments.format {
         Format::Kalibr => kalibr::kalibr(&known, arguments),

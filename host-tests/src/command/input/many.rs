@@ -2,7 +2,7 @@
 
 use crate::{
     command::output::progress,
-    failure::{Failure, one_line},
+    failure::{Failure, one_line, report},
 };
 use clap::Args;
 use rayon::iter::{ParallelBridge, ParallelIterator};
@@ -242,7 +242,7 @@ pub(crate) fn failed(mut failures: Vec<Failure>) -> Result<(), Failure> {
         return Ok(());
     };
     for failure in failures {
-        eprintln!("allanite: {failure}");
+        report(failure);
     }
     Err(last)
 }

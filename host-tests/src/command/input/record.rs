@@ -3,7 +3,7 @@
 use crate::{
     command::output::progress,
     curve_file::{AxisCurve, CurveFile},
-    failure::{Failure, Place, one_line},
+    failure::{Failure, Place, one_line, report},
     log::{self, ColumnChoice, CovariateChoice, Evidence, Log, TimeUnit},
     unit::{Sensor, Unit},
 };
@@ -116,7 +116,7 @@ fn note(path: &Path, log: &Log) {
         return;
     }
     for note in &log.notes {
-        eprintln!("allanite: {}{}", Place::file(path), one_line(note));
+        report(format_args!("{}{}", Place::file(path), one_line(note)));
     }
 }
 

@@ -34,7 +34,8 @@ pub(crate) fn duration(seconds: f64) -> String {
         s if s < 120.0 => format!("{s:.3} s"),
         s if s < 7200.0 => format!("{:.1} min", s / 60.0),
         s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
-        s => format!("{:.0} days", s / 86_400.0),
+        s if s < 86_400e6 => format!("{:.0} days", s / 86_400.0),
+        s => format!("{:.3e} days", s / 86_400.0),
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(place().failure("a page must end in .html", "rename the output"));
     }
     // The file comes first, so that an output that cannot be written is refused before the diagnosis.
-    let mut file = OutputFile::create(&arguments.output)?;
+    let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
     let diagnosed = arguments.diagnosis.diagnosed()?;
     let fail = |error: io::Error| place().io(&error);
     let pictured = json::document(&diagnosed);

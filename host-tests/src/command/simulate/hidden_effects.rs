@@ -2,10 +2,10 @@
 
 use crate::{
     command::effect_argument::EffectArgument,
-    failure::Failure,
+    failure::{Failure, brief},
     simulate::{Coefficients, Course, Hidden, Thermal},
 };
-use allanite::effect::{CATALOGUE, Effect, IEEE_952};
+use allanite::effect::{CATALOGUE, DecimationFilter, Effect, IEEE_952};
 use clap::Args;
 
 /// The name of the thermal effect, which a curve without a temperature does not reveal.
@@ -27,6 +27,31 @@ pub(super) struct HiddenArguments {
 pub(super) struct HiddenEffects {
     pub(super) hidden: Vec<Hidden>,
     pub(super) thermal: Option<Thermal>,
+}
+
+impl HiddenEffects {
+    /// Checks that no decimation filter is wider than the effect of the library can be.
+    ///
+    /// # Errors
+    /// When a filter has more samples.
+    pub(super) fn check_widths(&self, rate_hz: f64) -> Result<(), Failure> {
+        const WIDEST: f64 = 64.0;
+        let filter = DecimationFilter.name();
+        for hidden in self.hidden.iter().filter(|one| one.effect.name() == filter) {
+            let [width_s, _] = hidden.parameters;
+            if width_s * rate_hz > WIDEST {
+                return Err(Failure::option(
+                    format!(
+                        "--effect {filter}: a width of {} s at {} Hz is too wide",
+                        brief(width_s),
+                        brief(rate_hz)
+                    ),
+                    format!("give a width of at most {WIDEST} samples"),
+                ));
+            }
+        }
+        Ok(())
+    }
 }
 
 impl HiddenArguments {

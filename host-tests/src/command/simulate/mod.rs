@@ -7,7 +7,7 @@ use crate::{
         examples,
         output::{file::OutputFile, progress},
     },
-    failure::{Failure, Place},
+    failure::{Failure, Place, brief, quoted},
     log::npy_header::{Header, Kind},
     simulate::{Coefficients, Preset, Simulator},
     unit::{Sensor, Unit},
@@ -133,7 +133,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
             "name the output .csv or .csv.gz",
         ));
     }
-    let mut file = BufWriter::with_capacity(1 << 16, OutputFile::create(path)?);
+    let mut file = BufWriter::with_capacity(1 << 16, OutputFile::create(path, [])?);
     let failure = |error: &io::Error| record.failure(error, || Place::file(path).io(error));
     write(&record, &mut file).map_err(|error| failure(&error))?;
     file.into_inner()
@@ -163,7 +163,7 @@ impl Record {
         ] {
             if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
                 return Err(Failure::option(
-                    format!("{option} {value} is impossible"),
+                    format!("{option} {} is impossible", brief(value)),
                     "give a positive, finite number",
                 ));
             }
@@ -180,13 +180,15 @@ impl Record {
             return Err(Failure::option(
                 format!(
                     "--duration {} at {} Hz is impossible",
-                    arguments.duration, arguments.rate
+                    quoted(arguments.duration.as_bytes()),
+                    brief(arguments.rate)
                 ),
                 "give a length of at least one sample, such as 600 or 10min",
             ));
         }
         let coefficients = coefficients(arguments)?;
         let effects = arguments.hidden.effects(coefficients)?;
+        effects.check_widths(arguments.rate)?;
         let texts = arguments.hidden.texts();
         Ok(Self {
             coefficients,
@@ -223,6 +225,12 @@ impl Record {
             let thermal = self.effects.thermal.map_or(0.0, |one| one.rate_at(time_s));
             for (rate, simulator) in rates.iter_mut().zip(&mut simulators) {
                 *rate = simulator.next().unwrap_or_default() + thermal;
+                if !rate.is_finite() {
+                    return Err(io::Error::new(
+                        io::ErrorKind::InvalidInput,
+                        "a simulated rate exceeds the range of numbers",
+                    ));
+                }
             }
             let celsius = self.effects.thermal.map(|one| one.celsius_at(time_s));
             write(&rates, celsius)?;
@@ -310,12 +318,13 @@ impl Record {
         })
     }
 
-    /// The failure of a record whose counts exceed `i32`, or otherwise the failure of the output.
+    /// The failure of a record whose rates exceed floats or whose counts exceed `i32`, or otherwise the
+    /// failure of the output.
     fn failure(&self, error: &io::Error, otherwise: impl FnOnce() -> Failure) -> Failure {
-        if error.kind() == io::ErrorKind::InvalidData {
-            Failure::option(error, "give a larger --scale")
-        } else {
-            otherwise()
+        match error.kind() {
+            io::ErrorKind::InvalidData => Failure::option(error, "give a larger --scale"),
+            io::ErrorKind::InvalidInput => Failure::option(error, "give smaller coefficients"),
+            _ => otherwise(),
         }
     }
 }
@@ -329,7 +338,11 @@ fn count(rate: f64, scale: f64) -> io::Result<i32> {
     if (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&count) {
         Ok(count as i32)
     } else {
-        let what = format!("a rate of {rate} does not fit into a 32-bit count of {scale}");
+        let what = format!(
+            "a rate of {} does not fit into a 32-bit count of {}",
+            brief(rate),
+            brief(scale)
+        );
         Err(io::Error::new(io::ErrorKind::InvalidData, what))
     }
 }
@@ -390,7 +403,7 @@ fn coefficients(arguments: &Arguments) -> Result<Coefficients, Failure> {
         let Some(value) = value else { continue };
         if !(value.is_finite() && value >= 0.0) {
             return Err(Failure::option(
-                format!("{option} {value} is impossible"),
+                format!("{option} {} is impossible", brief(value)),
                 "give a finite number that is not negative",
             ));
         }

@@ -26,7 +26,21 @@ pub(super) struct Recording {
     line: Vec<u8>,
     counts: Vec<i32>,
     garbled: u64,
+    /// The first lines, as long as they do not show how many numbers a line has. `None` stands for an
+    /// invalid line.
+    first: Vec<Option<Vec<i32>>>,
+    /// Whether the last line that was taken had no line end.
+    unfinished: bool,
 }
+
+/// So many lines of one width show the number of axes. A partial line or a banner before them does not.
+const AGREEING: usize = 3;
+
+/// After so many lines the width that most of them have is taken.
+const UNDECIDED: usize = 64;
+
+/// A line with more numbers is invalid.
+const MOST_AXES: usize = 64;
 
 impl Recording {
     /// An empty recording of a gyro with this rate and scale. Without names, the first line gives the
@@ -66,6 +80,8 @@ impl Recording {
             line: Vec::new(),
             counts: Vec::new(),
             garbled: 0,
+            first: Vec::new(),
+            unfinished: false,
         })
     }
 
@@ -106,7 +122,24 @@ impl Recording {
                 Err(_) => false,
             });
         let number = self.names.as_ref().map_or(self.axes.len(), Vec::len);
-        if !read || (number > 0 && self.counts.len() != number) || self.counts.is_empty() {
+        let is_row = read && !self.counts.is_empty() && self.counts.len() <= MOST_AXES;
+        if number > 0 {
+            self.take_row(is_row && self.counts.len() == number);
+            return;
+        }
+        self.first.push(is_row.then(|| self.counts.clone()));
+        let of_width = |width| {
+            let rows = self.first.iter().flatten();
+            rows.filter(|row| row.len() == width).count()
+        };
+        if of_width(self.counts.len()) >= AGREEING || self.first.len() >= UNDECIDED {
+            self.settle();
+        }
+    }
+
+    /// Takes the numbers of a line as a row, or counts an invalid line, after which there is a gap.
+    fn take_row(&mut self, is_valid: bool) {
+        if !is_valid {
             self.garbled += 1;
             self.axes.iter_mut().for_each(Gyro::gap);
             return;
@@ -117,6 +150,34 @@ impl Recording {
         for (axis, &count) in self.axes.iter_mut().zip(&self.counts) {
             axis.push(count);
         }
+    }
+
+    /// Takes the first lines. Those that have as many numbers as most of them are rows.
+    fn settle(&mut self) {
+        let first = std::mem::take(&mut self.first);
+        let width_of = |row: &Option<Vec<i32>>| row.as_ref().map_or(0, Vec::len);
+        let lines_of = |width| first.iter().filter(|row| width_of(row) == width).count();
+        let widths = (1..=MOST_AXES).filter(|&width| lines_of(width) > 0);
+        let width = widths.max_by_key(|&width| lines_of(width)).unwrap_or(0);
+        for row in &first {
+            self.counts.clear();
+            self.counts.extend(row.iter().flatten());
+            self.take_row(width > 0 && width_of(row) == width);
+        }
+    }
+
+    /// Takes what is left at the end of the input: a last line without a line end.
+    pub(super) fn end(&mut self) {
+        if !self.line.is_empty() {
+            self.unfinished = true;
+            self.take(b"\n");
+        }
+        self.settle();
+    }
+
+    /// Whether the last line had no line end.
+    pub(super) const fn is_unfinished(&self) -> bool {
+        self.unfinished
     }
 
     /// Number of samples of each axis so far.
@@ -220,9 +281,33 @@ mod tests {
             recording.take(b"5\n6\n");
             recording.take(line.as_bytes());
             recording.take(b"7\n8");
+            recording.settle();
             let counted = (recording.samples(), recording.garbled(), recording.gaps());
             assert_eq!(counted, (3, 1, 1), "{line:?}");
         }
+    }
+
+    #[test]
+    fn partial_first_line_or_banner_does_not_fix_the_number_of_axes() {
+        for banner in ["34\n", "gyro 2.1\n", "3 2 1\n", "2024\n1 2 3 4\nready\n"] {
+            let mut recording = recording();
+            recording.take(banner.as_bytes());
+            for i in 0..300 {
+                recording.take(format!("{i} {}\n", i * i % 17).as_bytes());
+            }
+            let lines = banner.lines().count() as u64;
+            let counted = (recording.samples(), recording.garbled(), recording.gaps());
+            assert_eq!(counted, (300, lines, 0), "{banner:?}");
+        }
+    }
+
+    #[test]
+    fn last_line_without_a_line_end_is_taken_when_the_input_ends() {
+        let mut recording = recording();
+        recording.take(b"5\n6\n7");
+        assert_eq!(recording.samples(), 0);
+        recording.end();
+        assert_eq!((recording.samples(), recording.is_unfinished()), (3, true));
     }
 
     #[test]
@@ -233,6 +318,7 @@ mod tests {
             random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             recording.take(&random.to_le_bytes());
         }
+        recording.end();
         assert!(recording.garbled() > 0);
     }
 }

@@ -19,7 +19,7 @@ use crate::{
         output::{file::OutputFile, progress},
     },
     curve_file::CurveFile,
-    failure::{Failure, Place, one_line},
+    failure::{Failure, Place, one_line, report},
 };
 use console::Term;
 use std::{
@@ -60,7 +60,7 @@ pub(in crate::command) fn run(
         }
         // The file is dropped at once: an output that cannot be written is refused before hours of
         // recording.
-        drop(OutputFile::create(path)?);
+        drop(OutputFile::create(path, [])?);
     }
     let Arguments {
         rate, scale, unit, ..
@@ -105,10 +105,24 @@ pub(in crate::command) fn run(
     let ended = watch.follow(every, save_every, output);
     // Even after a failure the terminal is restored and the samples received so far are saved.
     watch.screen = None;
+    if ended.as_ref().is_ok_and(|ended| *ended == Ended::Input) {
+        watch.recording.end();
+    }
+    // Whatever failed, the fit is printed, because nothing else may be left of the record. The failure
+    // is told last.
     let saved = watch.save();
+    watch.trouble = saved.as_ref().err().map(Failure::to_string);
+    let finished = watch.finish(output);
     ended?;
     saved?;
-    watch.finish(output)
+    finished
+}
+
+/// What ended a recording.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Ended {
+    Input,
+    Interruption,
 }
 
 /// The length of time that an option gives in seconds.
@@ -144,18 +158,20 @@ impl Watch<'_> {
         show_every: Duration,
         save_every: Duration,
         output: &mut impl Write,
-    ) -> Result<(), Failure> {
+    ) -> Result<Ended, Failure> {
         let (mut shown, mut saved) = (Instant::now(), Instant::now());
         loop {
             let ended = self.receive(MOMENT)?;
             if self.interrupted.load(Relaxed) {
-                return self.drain();
+                self.drain()?;
+                return Ok(Ended::Interruption);
             }
             if ended {
-                return Ok(());
+                return Ok(Ended::Input);
             }
             if saved.elapsed() >= save_every {
-                self.trouble = self.save().err().map(|failure| failure.to_string());
+                let trouble = self.save().err().map(|failure| failure.to_string());
+                self.announce(trouble);
                 saved = Instant::now();
             }
             if shown.elapsed() >= show_every {
@@ -163,6 +179,14 @@ impl Watch<'_> {
                 shown = Instant::now();
             }
         }
+    }
+
+    /// Keeps the trouble with saving for the screen. Without a screen, trouble is told when it begins.
+    fn announce(&mut self, trouble: Option<String>) {
+        if let (Some(trouble), None, None) = (&trouble, &self.trouble, &self.screen) {
+            report(format_args!("not saved: {trouble}"));
+        }
+        self.trouble = trouble;
     }
 
     /// Takes the next bytes, if they arrive within this time. Returns true when the input has ended.
@@ -228,7 +252,7 @@ impl Watch<'_> {
         let fail = |error: io::Error| Place::file(path).io(&error);
         let json = CurveFile::new(curves).to_json();
         let json = json.map_err(|error| fail(error.into()))?;
-        let mut file = OutputFile::create(path)?;
+        let mut file = OutputFile::create(path, [])?;
         file.write_all(json.as_bytes()).map_err(fail)?;
         file.commit()?;
         self.saved = Some(Instant::now());
@@ -249,14 +273,32 @@ impl Watch<'_> {
         }
         let status = self.status();
         if self.recording.garbled() > 0 && !progress::is_quiet() {
-            eprintln!("allanite: {}", status.losses());
+            report(status.losses());
         }
+        if self.recording.is_unfinished() && !progress::is_quiet() {
+            report("the last line has no line end: it may be cut off");
+        }
+        let unfitted: Vec<String> = status
+            .axes
+            .iter()
+            .filter_map(|axis| Some(format!("axis {}: {}", axis.name, axis.why.as_ref()?)))
+            .collect();
         let fitted: Vec<_> = status
             .axes
             .into_iter()
             .filter_map(|axis| axis.fitted)
             .collect();
-        let printed = fit::table::print(&fitted, output);
-        printed.map_err(|error| Failure::standard_output(&error))
+        fit::table::print(&fitted, output)
+            .and_then(|()| output.flush())
+            .map_err(|error| Failure::standard_output(&error))?;
+        // An axis whose values never change has no fit.
+        if unfitted.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::option(
+                format!("no fit: {}", unfitted.join("; ")),
+                "check the sensor and the scale",
+            ))
+        }
     }
 }

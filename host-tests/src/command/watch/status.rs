@@ -34,16 +34,24 @@ pub(super) struct AxisStatus {
     pub(super) name: String,
     /// The fit, or `None` while the record is too short or the values do not change.
     pub(super) fitted: Option<Fitted>,
+    /// Why there is no fit.
+    pub(super) why: Option<String>,
 }
 
 impl Status {
     /// Fits the samples that every axis has so far.
     pub(super) fn of(recording: &Recording, saving: String) -> Self {
         let curves = recording.curves().ok().flatten().unwrap_or_default();
-        let axes = curves.into_iter().map(|curve| AxisStatus {
-            name: curve.axis.clone(),
+        let axes = curves.into_iter().map(|curve| {
+            let name = curve.axis.clone();
+            let is_constant = curve.octaves.iter().all(|octave| octave.sum == 0);
             // An axis that cannot be fitted yet may be fitted later.
-            fitted: Fitted::new(Path::new(""), curve, MethodName::Covariance).ok(),
+            let (fitted, why) = match Fitted::new(Path::new(""), curve, MethodName::Covariance) {
+                Ok(fitted) => (Some(fitted), None),
+                Err(_) if is_constant => (None, Some("its values never change".into())),
+                Err(_) => (None, Some("the fit failed".into())),
+            };
+            AxisStatus { name, fitted, why }
         });
         Self {
             rate_hz: recording.rate_hz(),

@@ -1,0 +1,91 @@
+//! Temporary files that vanish when they are dropped, and also when the program is interrupted.
+
+use std::{
+    collections::BTreeSet,
+    io::{self, Write},
+    path::{Path, PathBuf},
+    process,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
+use tempfile::{Builder, NamedTempFile};
+
+/// The paths of the temporary files that exist.
+static EXISTING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// The exit status of a program that was interrupted, by the convention of shells.
+const INTERRUPTED: i32 = 130;
+
+fn existing() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    EXISTING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From now on, an interruption (SIGINT, SIGTERM or SIGHUP) removes all temporary files and ends the
+/// program. Where interruptions cannot be caught, they end the program as usual.
+pub(crate) fn remove_when_interrupted() {
+    let _ = ctrlc::set_handler(|| {
+        // The lock is held until the program has ended, so that no further file is created.
+        let existing = existing();
+        for path in existing.iter() {
+            let _ = std::fs::remove_file(path);
+        }
+        process::exit(INTERRUPTED);
+    });
+}
+
+/// A temporary file.
+pub(crate) struct Temporary {
+    /// The file, until it is moved away.
+    file: Option<NamedTempFile>,
+    path: PathBuf,
+}
+
+impl Temporary {
+    /// Creates a file in a folder.
+    pub(crate) fn create_in(folder: &Path) -> io::Result<Self> {
+        let mut builder = Builder::new();
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // The permissions of any new file, to which the process' mask applies. Without this line a
+            // temporary file would be private.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let mut existing = existing();
+        let file = builder.tempfile_in(folder)?;
+        let path = file.path().to_owned();
+        existing.insert(path.clone());
+        Ok(Self {
+            file: Some(file),
+            path,
+        })
+    }
+
+    /// Moves the file to its final path and replaces a file that was there.
+    pub(crate) fn move_to(mut self, path: &Path) -> io::Result<()> {
+        match self.file.take() {
+            Some(file) => file.persist(path).map(drop).map_err(|error| error.error),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let mut existing = existing();
+        drop(self.file.take());
+        existing.remove(&self.path);
+    }
+}
+
+impl Write for Temporary {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.file {
+            Some(file) => file.write(bytes),
+            None => Err(io::ErrorKind::NotFound.into()),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.as_mut().map_or(Ok(()), NamedTempFile::flush)
+    }
+}

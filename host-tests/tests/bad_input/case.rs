@@ -1,0 +1,185 @@
+//! A bad input: files, a command, and what must come of it.
+
+use host_tests::program;
+use std::{
+    fs,
+    io::{Read, Write},
+    path::Path,
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+use tempfile::TempDir;
+
+/// The longest time that a command may take.
+const LONGEST: Duration = Duration::from_secs(10);
+
+/// The memory that a bad input may take beyond what the program needs for a good one.
+const SPARE_KIB: u64 = 64 << 10;
+
+/// A bad input.
+pub(crate) struct Case {
+    name: String,
+    files: Vec<(String, Vec<u8>)>,
+    /// Shell commands that prepare the folder.
+    prepare: String,
+    arguments: Vec<String>,
+    input: Vec<u8>,
+    status: i32,
+    expected: String,
+}
+
+/// A command on one bad file, which is refused with a line that contains `expected`.
+pub(crate) fn refused(
+    file: &str,
+    bytes: impl Into<Vec<u8>>,
+    command: &str,
+    expected: &str,
+) -> Case {
+    Case {
+        name: format!("{command} on {file}"),
+        files: vec![(file.to_owned(), bytes.into())],
+        prepare: String::new(),
+        arguments: command.split_whitespace().map(String::from).collect(),
+        input: Vec::new(),
+        status: 2,
+        expected: expected.to_owned(),
+    }
+}
+
+impl Case {
+    /// The case with another exit status.
+    pub(crate) fn status(mut self, status: i32) -> Self {
+        self.status = status;
+        self
+    }
+
+    /// The case with shell commands that prepare the folder.
+    pub(crate) fn prepared(mut self, commands: &str) -> Self {
+        self.prepare = commands.to_owned();
+        self
+    }
+
+    /// The case with bytes on standard input.
+    pub(crate) fn fed(mut self, input: &[u8]) -> Self {
+        self.input = input.to_vec();
+        self
+    }
+
+    /// Runs the command, and returns what is wrong with its end.
+    pub(crate) fn run(&self, folder: &Path, needed_kib: u64) -> Result<(), String> {
+        for (name, bytes) in &self.files {
+            fs::write(folder.join(name), bytes).unwrap();
+        }
+        if !self.prepare.is_empty() {
+            let mut shell = Command::new("sh");
+            let shell = shell.args(["-c", &self.prepare]).current_dir(folder);
+            assert!(shell.status().unwrap().success(), "{}", self.prepare);
+        }
+        let arguments: Vec<&str> = self.arguments.iter().map(String::as_str).collect();
+        let ended = limited(folder, &arguments, &self.input, needed_kib + SPARE_KIB);
+        let wrong = |what: &str| {
+            let name = &self.name;
+            let expected = &self.expected;
+            Err(format!("{name}: {what}, expected {expected:?}: {ended:?}"))
+        };
+        match ended.status {
+            None => wrong("still running"),
+            status if status != Some(self.status) => wrong("another exit status"),
+            _ if !ended.errors.contains(&self.expected) => wrong("another message"),
+            _ if self.status == 2 && !is_one_line(&ended.errors) => wrong("not one clear line"),
+            _ if ended.has_controls() => wrong("control characters"),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The last line tells what is wrong. Notes may stand before it.
+fn is_one_line(errors: &str) -> bool {
+    let last = errors.lines().last().unwrap_or_default();
+    errors.ends_with('\n')
+        && errors.lines().all(|line| line.starts_with("allanite: "))
+        && last.contains("; ")
+        && last.len() < 2000
+}
+
+/// How a command ended.
+#[derive(Debug)]
+struct Ended {
+    status: Option<i32>,
+    output: String,
+    errors: String,
+}
+
+impl Ended {
+    fn has_controls(&self) -> bool {
+        let is_control = |c: char| c.is_control() && c != '\n' && c != '\t';
+        self.output.contains(is_control) || self.errors.contains(is_control)
+    }
+}
+
+/// Runs the program with a limited address space.
+fn limited(folder: &Path, arguments: &[&str], input: &[u8], most_kib: u64) -> Ended {
+    let mut child = Command::new("sh")
+        .args(["-c", &format!("ulimit -v {most_kib}; exec \"$0\" \"$@\"")])
+        .arg(program::path())
+        .args(arguments)
+        .current_dir(folder)
+        // Otherwise every thread reserves 64 MiB.
+        .env("MALLOC_ARENA_MAX", "1")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    let input = input.to_vec();
+    // A command that does not read its input closes it.
+    let sender = thread::spawn(move || drop(pipe.write_all(&input)));
+    let mut output = child.stdout.take().unwrap();
+    let mut errors = child.stderr.take().unwrap();
+    let outputs = thread::spawn(move || {
+        let mut text = Vec::new();
+        output.read_to_end(&mut text).unwrap();
+        String::from_utf8_lossy(&text).into_owned()
+    });
+    let errors = thread::spawn(move || {
+        let mut text = Vec::new();
+        errors.read_to_end(&mut text).unwrap();
+        String::from_utf8_lossy(&text).into_owned()
+    });
+    let begun = Instant::now();
+    let mut status = child.try_wait().unwrap();
+    while status.is_none() && begun.elapsed() < LONGEST {
+        thread::sleep(Duration::from_millis(2));
+        status = child.try_wait().unwrap();
+    }
+    if status.is_none() {
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    sender.join().unwrap();
+    Ended {
+        status: status.map(|status| status.code().unwrap_or(-1)),
+        output: outputs.join().unwrap(),
+        errors: errors.join().unwrap(),
+    }
+}
+
+/// The address space that the program needs for a good log, in KiB.
+pub(crate) fn needed_kib() -> u64 {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("good.csv"), super::text::good(5000)).unwrap();
+    let works =
+        |kib: u64| limited(folder.path(), &["diagnose", "good.csv"], &[], kib).status == Some(0);
+    let (mut low, mut high) = (0, 1 << 20);
+    assert!(works(high), "a good log is read");
+    while high - low > 4 << 10 {
+        let middle = (low + high) / 2;
+        match works(middle) {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    high
+}

@@ -1,0 +1,60 @@
+//! Bad inputs of every kind end with an exit status and a line that says what is wrong, in little time and
+//! memory.
+
+mod arrays;
+mod bags;
+mod case;
+mod curves;
+mod options;
+mod pipes;
+mod stored;
+mod text;
+mod ulogs;
+
+use case::Case;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::thread;
+use tempfile::TempDir;
+
+/// Two programs run at a time.
+const AT_ONCE: usize = 2;
+
+#[test]
+fn every_bad_input_ends_with_its_status_and_message_in_little_time_and_memory() {
+    let cases: Vec<Case> = [
+        text::cases(),
+        arrays::cases(),
+        bags::cases(),
+        ulogs::cases(),
+        curves::cases(),
+        stored::cases(),
+        options::cases(),
+        pipes::cases(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    assert!(cases.len() >= 150, "{} cases", cases.len());
+    let needed_kib = case::needed_kib();
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut wrong = Vec::new();
+        while let Some(case) = cases.get(next.fetch_add(1, Relaxed)) {
+            let folder = TempDir::new().unwrap();
+            wrong.extend(case.run(folder.path(), needed_kib).err());
+        }
+        wrong
+    };
+    let wrong: Vec<String> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..AT_ONCE).map(|_| scope.spawn(work)).collect();
+        let found = workers.into_iter().map(|worker| worker.join().unwrap());
+        found.flatten().collect()
+    });
+    assert!(
+        wrong.is_empty(),
+        "{} of {} cases:\n{}",
+        wrong.len(),
+        cases.len(),
+        wrong.join("\n")
+    );
+}

@@ -1,0 +1,73 @@
+//! Bad options, and simulations that are impossible.
+
+use super::{
+    case::{Case, refused},
+    text::good,
+};
+
+pub(crate) fn cases() -> Vec<Case> {
+    let on_log = [
+        ("--rate 0", "--rate 0 is impossible"),
+        ("--rate -5", "--rate -5 is impossible"),
+        ("--rate nan", "--rate NaN is impossible"),
+        ("--rate inf", "--rate inf is impossible"),
+        ("--rate 1e300", "--rate 1.000e300 is impossible"),
+        ("--rate 1e-300", "--rate 1.000e-300 is impossible"),
+        ("--scale 0", "--scale 0 is impossible"),
+        ("--scale 1e300", "--scale 1.000e300 is impossible"),
+        ("--columns gw", "there is no column \"gw\""),
+        ("--columns 0", "there is no column \"0\""),
+        ("--columns 99999999999999999999", "there is no column"),
+        ("--columns gx,gx", "names \"gx\" twice"),
+        ("--time none", "there is no column \"none\""),
+        ("--time gx", "time"),
+        ("--unit g --sensor gyro", "is not a unit of a gyro"),
+        ("--topic /imu", "this kind of log has no topics"),
+    ];
+    let of_log = |(options, expected): (&str, &str)| {
+        refused("a.csv", good(60), &format!("fit a.csv {options}"), expected)
+    };
+    let simulated = [
+        ("", "no preset and no coefficient is given"),
+        ("mems --rate 0", "--rate 0 is impossible"),
+        ("mems --rate 1e300 --duration 1", "is impossible"),
+        ("mems --duration 0", "is impossible"),
+        ("mems --duration -1", "is impossible"),
+        ("mems --duration 1e300", "is impossible"),
+        ("mems --duration soon", "is not a length of time"),
+        ("mems --axes 4", "--axes 4 is impossible"),
+        ("mems --axes 0", "--axes 0 is impossible"),
+        (
+            "mems --scale 1e-300 --duration 1",
+            "does not fit into a 32-bit count",
+        ),
+        ("mems --angle-random-walk nan --duration 1", "is impossible"),
+        (
+            "--angle-random-walk 1e308 --rate 1e4 --duration 1",
+            "exceeds the range of numbers",
+        ),
+        (
+            "--rate-ramp 1e308 --rate 1 --duration 100",
+            "exceeds the range of numbers",
+        ),
+        (
+            "--quantization 1e308 --duration 1",
+            "exceeds the range of numbers",
+        ),
+        ("mems -o a.txt", "the extension names no kind of log"),
+        ("mems -o none/a.csv", "its folder does not exist"),
+        (
+            "mems --effect decimation_filter:width_s=1e9,stages=2",
+            "is too wide",
+        ),
+        ("mems --effect none", "no such effect"),
+        ("mems --effect sinusoid", "is missing"),
+        ("mems --effect sinusoid:frequency_hz=nan,amplitude=1", "; "),
+    ];
+    let simulation = |(options, expected): (&str, &str)| {
+        refused("unused", "", &format!("simulate {options}"), expected)
+    };
+    let mut cases: Vec<Case> = on_log.into_iter().map(of_log).collect();
+    cases.extend(simulated.map(simulation));
+    cases
+}

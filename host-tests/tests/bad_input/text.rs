@@ -1,0 +1,383 @@
+//! Bad logs of text.
+
+use super::case::{Case, refused};
+use flate2::{Compression, write::GzEncoder};
+use std::{fmt::Write as _, io::Write as _};
+
+/// Numbers that look like white noise and are the same in every run.
+pub(crate) fn noise() -> impl Iterator<Item = i64> {
+    let mut state = 1_u32;
+    std::iter::from_fn(move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        Some(i64::from(state >> 20) - 2048)
+    })
+}
+
+/// Rows of three columns.
+fn rows(count: usize) -> String {
+    let mut noise = noise();
+    (0..count).fold(String::new(), |mut text, _| {
+        let [x, y, z] = [(); 3].map(|()| noise.next().unwrap());
+        let _ = writeln!(text, "{x},{y},{z}");
+        text
+    })
+}
+
+/// A good log.
+pub(crate) fn good(count: usize) -> String {
+    format!(
+        "# rate_hz=100 unit=deg/s scale=0.01\ngx,gy,gz\n{}",
+        rows(count)
+    )
+}
+
+/// A log of one axis with these stamps.
+fn stamped(header: &str, stamps: impl IntoIterator<Item = i64>) -> String {
+    let rows = stamps.into_iter().zip(noise());
+    rows.fold(format!("{header}\n"), |mut text, (stamp, count)| {
+        let _ = writeln!(text, "{stamp},{count}");
+        text
+    })
+}
+
+fn regular(header: &str, step: i64) -> String {
+    stamped(header, (0..300).map(|i| i * step))
+}
+
+pub(crate) fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+pub(crate) fn cases() -> Vec<Case> {
+    let good = good(60);
+    let after = |row: &str| format!("{good}{row}\n");
+    let named = |header: &str| format!("# rate_hz=100\n{header}\n{}", rows(60));
+    let said = |comment: &str| format!("# {comment}\ngx,gy,gz\n{}", rows(60));
+    let third = (0..3000).filter(|i| i % 3 != 0).map(|i| 10_000 * i);
+    let lost = (0..3000)
+        .filter(|i| i * i % 1009 % 10 != 3)
+        .map(|i| 10_000 * i);
+    let two = (0..3000).map(|i| 5000 * i + 5000 * (i - 2000).max(0));
+    let levels = (0..600).zip(noise()).map(|(i, count)| {
+        let gap = if i < 300 { 0 } else { 1_000_000_000 };
+        let level = if i < 300 { 0.0 } else { 2f64.powi(30) };
+        format!("{},{}\n", 5000 * i + gap, level + count as f64 * 1e-5)
+    });
+    let wide = |columns: usize| {
+        let header: Vec<String> = (0..columns).map(|i| format!("g{i}")).collect();
+        let row = vec!["1"; columns].join(",");
+        format!(
+            "# rate_hz=9\n{}\n{}",
+            header.join(","),
+            format!("{row}\n").repeat(12)
+        )
+    };
+    let texts: Vec<(&str, String, &str)> = vec![
+        ("fit", String::new(), "the file is empty"),
+        ("fit", "\n\n".into(), "no rows"),
+        ("fit", "# nothing\n# here\n".into(), "no rows"),
+        ("fit", "\u{feff}".into(), "the file is empty"),
+        ("fit", "# rate_hz=9\ngx,gy\n".into(), "no rows"),
+        (
+            "fit",
+            "# rate_hz=9\ngx\n1\n2\n".into(),
+            "2 samples are too few",
+        ),
+        ("fit", after("1,2"), "2 values where the first row has 3"),
+        (
+            "fit",
+            after("1,2,3,4"),
+            "4 values where the first row has 3",
+        ),
+        ("fit", after("1"), "1 value where the first row has 3"),
+        ("fit", after("1,two,3"), "\"two\" is not a number"),
+        ("fit", after("1,0x10,3"), "\"0x10\" is not a number"),
+        ("fit", after("1,1_000,3"), "\"1_000\" is not a number"),
+        ("fit", after("1,--1,3"), "\"--1\" is not a number"),
+        ("fit", after("1,1e,3"), "\"1e\" is not a number"),
+        ("fit", after("1,\u{1b}[31m,3"), "is not a number"),
+        ("fit", after("1,nan,3"), "\"nan\" is not a finite number"),
+        ("fit", after("inf,2,3"), "\"inf\" is not a finite number"),
+        ("fit", after("1,2,-inf"), "\"-inf\" is not a finite number"),
+        (
+            "fit",
+            after("1e999,2,3"),
+            "\"1e999\" is not a finite number",
+        ),
+        ("fit", after("1,,3"), "a value is missing"),
+        ("fit", after(",,"), "a value is missing"),
+        ("fit", after("1,\"2,3"), "where the first row has 3"),
+        (
+            "fit",
+            after(&format!("1,\"2\n{}", rows(100_000))),
+            "a row is longer than 1024 KiB",
+        ),
+        ("fit", after("\0\0\0"), "where the first row has 3"),
+        (
+            "fit",
+            "# rate_hz=9\ngx\n".to_owned() + &"5\n".repeat(50),
+            "never changes its value",
+        ),
+        (
+            "fit",
+            "# rate_hz=9\ngx\n".to_owned() + &"0.5\n".repeat(50),
+            "never changes its value",
+        ),
+        (
+            "fit",
+            "# rate_hz=9\ngx\n-1e308\n1e308\n".repeat(1) + "1e308\n-1e308\n",
+            "too wide or too narrow",
+        ),
+        (
+            "fit",
+            "# rate_hz=9\ngx\n1e9\n".to_owned() + &"0.1\n0.2\n".repeat(50),
+            "in counts of 2^-30 of the range",
+        ),
+        (
+            "fit",
+            format!("time_us,gx [deg/s]\n{}", levels.collect::<String>()),
+            "in counts of 2^-30 of the range",
+        ),
+        (
+            "fit",
+            format!("# {}\n{good}", "x".repeat(70_000)),
+            "a line has 64 KiB or more",
+        ),
+        ("fit", "x".repeat(1 << 20), "a line has 64 KiB or more"),
+        (
+            "fit",
+            "1;2,5\n2;3,5\n".repeat(30),
+            "mixes numbers and text such as \"2,5\"",
+        ),
+        ("fit", named("gx,7,gz"), "mixes numbers and text"),
+        ("fit", named("a,b,b"), "two columns are named \"b\""),
+        (
+            "fit",
+            named("a,\u{1b}]0;b\u{7},\u{1b}]0;b\u{7}"),
+            "two columns are named",
+        ),
+        (
+            "fit",
+            "# rate_hz=9\na,b\n".to_owned() + &"x,y\n".repeat(30),
+            "none of 2 columns looks like an axis",
+        ),
+        ("fit", wide(257), "257 columns, more than 256"),
+        ("fit", wide(30_000), "KiB or more"),
+        (
+            "fit",
+            "1,".repeat(20_000) + "1\n",
+            "20001 columns, more than 256",
+        ),
+        ("fit", wide(200), "200 axes, more than 64"),
+        (
+            "fit",
+            said("rate_hz=0"),
+            "rate_hz=\"0\" is not a positive, finite number",
+        ),
+        (
+            "fit",
+            said("rate_hz=NaN"),
+            "is not a positive, finite number",
+        ),
+        (
+            "fit",
+            said("rate_hz=fast"),
+            "is not a positive, finite number",
+        ),
+        (
+            "fit",
+            said("rate_hz=1e300"),
+            "rate_hz=1.000e300 is impossible",
+        ),
+        (
+            "fit",
+            said("rate_hz=100 scale=-1"),
+            "scale=\"-1\" is not a positive, finite number",
+        ),
+        (
+            "fit",
+            said("rate_hz=100 scale=1e300"),
+            "scale=1.000e300 is impossible",
+        ),
+        (
+            "fit",
+            said("rate_hz=100 unit=furlong"),
+            "unit=\"furlong\" is not one of",
+        ),
+        ("fit", said("nothing"), "the sampling rate is not known"),
+        (
+            "fit",
+            regular("t,gx", 1),
+            "it may be s (1 Hz) or ms (1000 Hz)",
+        ),
+        (
+            "fit",
+            regular("time,gx", 5),
+            "it may be s (0.2 Hz) or ms (200 Hz)",
+        ),
+        (
+            "fit",
+            regular("timestamp,gx", 50),
+            "it may be ms (20 Hz) or µs (20000 Hz)",
+        ),
+        (
+            "fit",
+            regular("timestamp,gx", 40_000),
+            "it may be µs (25 Hz) or ns (25000 Hz)",
+        ),
+        (
+            "fit",
+            regular("timestamp,gx", 1 << 60),
+            "none gives a usual rate",
+        ),
+        (
+            "fit",
+            regular("t [min],gx", 1),
+            "the unit \"min\" is not known",
+        ),
+        (
+            "fit",
+            regular("time_10us,gx", 1),
+            "the unit \"10us\" is not known",
+        ),
+        (
+            "fit",
+            regular("time_hours,gx", 1),
+            "the unit \"hours\" is not known",
+        ),
+        (
+            "fit",
+            stamped("time_us,gx", (0..300).chain([7]).map(|i| i * 5000)),
+            "time stamps go back",
+        ),
+        (
+            "fit",
+            stamped("time_us,gx", (0..3000).map(|i| i / 4 * 20_000)),
+            "time stamps repeat",
+        ),
+        ("fit", stamped("time_us,gx", lost), "rows are missing"),
+        ("fit", stamped("time_us,gx", third), "rows are missing"),
+        ("fit", stamped("time_us,gx", two), "two rates in one log"),
+        (
+            "fit",
+            stamped("time_us,gx", (0..300).map(|_| 5)),
+            "the sampling rate is not known",
+        ),
+        (
+            "fit --rate 50",
+            regular("time_us,gx", 5000),
+            "the time stamps of time_us give 200 Hz",
+        ),
+        (
+            "fit --rate 1e6",
+            regular("time_ms,gx", 5),
+            "the time stamps of time_ms give 200 Hz",
+        ),
+        (
+            "fit",
+            regular("time_us,gx [rpm]", 5000),
+            "the unit \"rpm\" is not known",
+        ),
+        (
+            "fit",
+            regular("time_us,gx [counts]", 5000),
+            "the unit \"counts\" is not known",
+        ),
+        (
+            "fit",
+            regular("time_us,gx [rad/h]", 5000),
+            "the unit \"rad/h\" is not known",
+        ),
+        (
+            "fit",
+            regular("time_us,gyro_rpm_x", 5000),
+            "the unit \"rpm\" is not known",
+        ),
+        (
+            "fit --unit deg/s",
+            regular("time_us,gx [rpm]", 5000),
+            "the unit \"rpm\" is not known",
+        ),
+        (
+            "fit --unit rad/s",
+            regular("time_us,gx [mdps]", 5000),
+            "but the columns are named in deg/s",
+        ),
+        (
+            "fit",
+            format!("# rate_hz=9 unit=rad/s\ngx [deg/s]\n{}", "1\n2\n".repeat(9)),
+            "but the columns are named in deg/s",
+        ),
+        (
+            "fit",
+            named("gx [deg/s],gy [rad/s],gz [deg/s]"),
+            "have different units",
+        ),
+        (
+            "fit --sensor accel",
+            named("gx,gy,gz"),
+            "no column is named like an axis of a accelerometer",
+        ),
+        (
+            "fit --scale 1e6",
+            good.clone(),
+            "is impossible for a gyro at rest",
+        ),
+        ("diagnose --covariates gx", good.clone(), "is an axis"),
+        (
+            "diagnose --covariates t,t",
+            named("gx,t,gz"),
+            "is named twice",
+        ),
+        (
+            "diagnose --covariates none",
+            good.clone(),
+            "there is no column \"none\"",
+        ),
+    ];
+    let mut cases: Vec<Case> = texts
+        .into_iter()
+        .map(|(command, text, expected)| {
+            refused("a.csv", text, &format!("{command} a.csv"), expected)
+        })
+        .collect();
+    let packed = gzip(good.as_bytes());
+    let mut flipped = packed.clone();
+    flipped[40] ^= 0x55;
+    let packs: Vec<(Vec<u8>, &str)> = vec![
+        (Vec::new(), "the file is empty"),
+        (b"gx,gy\n1,2\n".to_vec(), "not a gzip stream"),
+        (packed[..5].to_vec(), "the gzip stream ends in the middle"),
+        (
+            packed[..packed.len() / 2].to_vec(),
+            "the gzip stream ends in the middle",
+        ),
+        (flipped, "a.csv.gz"),
+        (gzip(b""), "the file is empty"),
+        (
+            gzip(&vec![b'\n'; 1 << 27]),
+            "unpacks to more than 100 times its size",
+        ),
+        (gzip(&"0,0,0\n".repeat(1 << 25).into_bytes()), "a.csv.gz"),
+        (gzip(&vec![b','; 1 << 26]), "KiB or more"),
+        (gzip(&vec![0; 1 << 26]), "KiB or more"),
+    ];
+    cases.extend(
+        packs
+            .into_iter()
+            .map(|(bytes, expected)| refused("a.csv.gz", bytes, "fit a.csv.gz --rate 9", expected)),
+    );
+    // Bytes of other kinds of files.
+    let others: [(&[u8], &str); 4] = [
+        (b"\xff\xfeg\0x\0\n\x001\0\n\0", "a.csv"),
+        (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x01\0", "a.csv"),
+        (b"1\r2\r3\r4\r", "samples are too few"),
+        (&[0xff; 3000], "a.csv"),
+    ];
+    let others =
+        others.map(|(bytes, expected)| refused("a.csv", bytes, "fit a.csv --rate 9", expected));
+    cases.extend(others);
+    cases
+}

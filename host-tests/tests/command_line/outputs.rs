@@ -1,0 +1,123 @@
+//! Outputs that are no regular files, outputs that are inputs, interruptions, and a standard error that
+//! nobody reads.
+
+use super::folder;
+use host_tests::program::{self, command, output, refusal};
+use std::{
+    fs,
+    os::unix::fs::{FileTypeExt, symlink},
+    path::Path,
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+const EXPORT: [&str; 4] = ["export", "--format", "c", "curve.json"];
+
+fn shell(folder: &Path, line: &str) -> std::process::Output {
+    let mut shell = Command::new("sh");
+    let shell = shell.args(["-c", line]).arg(program::path());
+    shell.current_dir(folder).output().unwrap()
+}
+
+#[test]
+fn devices_pipes_and_links_are_written_through() {
+    let folder = folder();
+    let path = folder.path();
+    let expected = output(path, &EXPORT);
+    output(path, &[&EXPORT[..], &["--output", "/dev/null"]].concat());
+    assert!(
+        fs::metadata("/dev/null")
+            .unwrap()
+            .file_type()
+            .is_char_device()
+    );
+
+    fs::write(path.join("old.h"), "old").unwrap();
+    symlink("old.h", path.join("link.h")).unwrap();
+    symlink("new.h", path.join("dangling.h")).unwrap();
+    for (link, file) in [("link.h", "old.h"), ("dangling.h", "new.h")] {
+        output(path, &[&EXPORT[..], &["--output", link]].concat());
+        assert!(path.join(link).is_symlink(), "{link}");
+        assert_eq!(fs::read_to_string(path.join(file)).unwrap(), expected);
+    }
+    let piped = "mkfifo p; \"$0\" export --format c curve.json --output p & cat p";
+    assert_eq!(
+        String::from_utf8(shell(path, piped).stdout).unwrap(),
+        expected
+    );
+    assert!(fs::metadata(path.join("p")).unwrap().file_type().is_fifo());
+}
+
+#[test]
+fn input_is_never_replaced() {
+    let folder = folder();
+    let path = folder.path();
+    let before = fs::read(path.join("log.csv")).unwrap();
+    symlink("log.csv", path.join("link.svg")).unwrap();
+    fs::hard_link(path.join("log.csv"), path.join("same.html")).unwrap();
+    for arguments in [
+        &["export", "--format", "csv", "log.csv", "-o", "log.csv"][..],
+        &["plot", "log.csv", "-o", "link.svg"],
+        &["report", "log.csv", "-o", "same.html"],
+    ] {
+        let line = refusal(path, arguments);
+        assert!(
+            line.ends_with(
+                "the output is also the input, which would be lost; name another output"
+            ),
+            "{line}"
+        );
+        assert_eq!(fs::read(path.join("log.csv")).unwrap(), before);
+    }
+}
+
+#[test]
+fn temporary_files_vanish_on_an_interruption() {
+    for signal in ["INT", "TERM"] {
+        let folder = folder();
+        let path = folder.path();
+        let files = || fs::read_dir(path).unwrap().count();
+        let before = files();
+        let simulate = [
+            "simulate",
+            "mems",
+            "--duration",
+            "1000d",
+            "--output",
+            "long.csv",
+        ];
+        let mut child = command(path, &simulate)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let begun = Instant::now();
+        while files() == before && begun.elapsed() < Duration::from_secs(30) {
+            thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!(files(), before + 1);
+        let kill = format!("kill -{signal} {}", child.id());
+        assert!(
+            Command::new("sh")
+                .args(["-c", &kill])
+                .status()
+                .unwrap()
+                .success()
+        );
+        assert!(!child.wait().unwrap().success());
+        assert_eq!(files(), before, "{signal}");
+    }
+}
+
+#[test]
+fn standard_error_that_is_closed_or_full_changes_nothing() {
+    let folder = folder();
+    let path = folder.path();
+    for errors in ["2>&-", "2>/dev/full"] {
+        // The log has notes, and the second file does not exist.
+        let line = format!("\"$0\" fit log.csv none.csv {errors}");
+        let ended = shell(path, &line);
+        assert_eq!(ended.status.code(), Some(2), "{errors}");
+        assert!(!ended.stdout.is_empty());
+    }
+}

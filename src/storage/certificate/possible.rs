@@ -1,0 +1,134 @@
+//! Whether the contents of a certificate are possible: every number has a range, and numbers agree.
+
+use super::{
+    AxisCertificate, CertifiedShape, CertifiedState, CertifiedTerm, Conditions, EffectCode,
+};
+use crate::{
+    diagnosis::Verdict,
+    effect::{Effect, Span},
+    integrity::Reason,
+    real::real,
+};
+
+impl Conditions {
+    /// Whether a gyro can have been measured under these conditions.
+    pub(super) fn are_possible(&self) -> bool {
+        let temperature = self
+            .temperature_c
+            .is_none_or(|(low, high)| (-273.15..=high).contains(&low) && high.is_finite());
+        // The longest time is thirty thousand years. Samples may be missing, but there are no more than the time allows. The clocks of the gyro
+        // and of whoever measured the time may differ by some per cent.
+        let most = 1.1 * self.duration_s * self.rate_hz + 1.0;
+        temperature
+            && (1e-6..=1e12).contains(&self.duration_s)
+            && (1e-6..=1e9).contains(&self.rate_hz)
+            && self.samples > 0
+            && self.samples as f64 <= most
+            && self.gaps <= self.samples
+    }
+}
+
+impl AxisCertificate {
+    /// Whether a fit can have these results.
+    pub(super) fn is_possible(&self) -> bool {
+        let chi_squared = self.chi_squared.is_nan() || self.chi_squared >= 0.0;
+        let p_value = self.p_value.is_nan() || (0.0..=1.0).contains(&self.p_value);
+        let tolerance = self.tolerance.is_finite() && self.tolerance >= 0.0;
+        let known =
+            |i: usize| self.chi_squared.is_finite() && self.terms.get(i).is_some_and(is_known);
+        let mut pairs = (0..self.terms.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+        chi_squared
+            && p_value
+            && (self.chi_squared.is_nan() <= self.p_value.is_nan())
+            && tolerance
+            && self.terms.iter().all(CertifiedTerm::is_possible)
+            && pairs.all(|(i, j)| {
+                let correlation = self.correlations.get(i, j);
+                let twice = self.terms.get(i).zip(self.terms.get(j));
+                let distinct = twice.is_none_or(|(one, other)| !one.repeats(other));
+                // Rounding can make a correlation slightly larger than one. It may be unknown unless
+                // both coefficients were measured.
+                let ranged = correlation.abs() <= 1.001;
+                distinct && (ranged || (correlation.is_nan() && !(known(i) && known(j))))
+            })
+            && self.verdict.is_none_or(is_possible_verdict)
+    }
+}
+
+fn is_known(term: &CertifiedTerm) -> bool {
+    term.state == CertifiedState::Measured && term.square_error.is_finite()
+}
+
+impl CertifiedTerm {
+    fn is_possible(&self) -> bool {
+        let value = self.value.is_finite() && self.value >= 0.0;
+        // A comparison with NaN is false.
+        let interval = self.lower >= 0.0 && self.lower.is_finite() && self.lower <= self.upper;
+        let state = match self.state {
+            CertifiedState::Measured => {
+                self.lower <= self.value && self.value <= self.upper && self.upper.is_finite()
+            }
+            CertifiedState::UpperBound => self.lower == 0.0,
+            CertifiedState::NotObservable { after_s } => {
+                self.lower == 0.0 && after_s.is_none_or(|after_s| after_s > 0.0)
+            }
+        };
+        value && interval && self.square_error >= 0.0 && state && self.has_possible_shape()
+    }
+
+    fn has_possible_shape(&self) -> bool {
+        let Some(effect) = self.effect.effect() else {
+            return self.shape.iter().all(CertifiedShape::is_possible);
+        };
+        let mut shape = self.shape.iter().enumerate();
+        self.shape.len() == effect.parameters().len()
+            && shape.all(|(i, one)| one.is_possible() && one.is_in_range(effect, i))
+    }
+
+    /// Whether this is the same effect with the same shape as another term, which a model holds once.
+    fn repeats(&self, other: &Self) -> bool {
+        let mut shapes = self.shape.iter().zip(&other.shape);
+        self.effect != EffectCode::OTHER
+            && self.effect == other.effect
+            && self.shape.len() == other.shape.len()
+            && shapes.all(|(one, other)| one.value == other.value)
+    }
+}
+
+impl CertifiedShape {
+    fn is_possible(&self) -> bool {
+        let unknown = self.lower.is_nan() && self.upper.is_nan();
+        let ordered = 0.0 <= self.lower && self.lower <= self.value && self.value <= self.upper;
+        self.value.is_finite() && self.value > 0.0 && (unknown || ordered)
+    }
+
+    /// Whether a parameter that takes whole numbers only has one of them.
+    fn is_in_range(&self, effect: &dyn Effect, parameter: usize) -> bool {
+        // The range of a whole number does not depend on the span.
+        const ANY: Span = Span {
+            interval_s: 1.0,
+            longest_tau_s: 1.0,
+        };
+        let range = effect.search_range(parameter, &ANY);
+        let value = real(self.value);
+        let allowed = range.is_none_or(|range| (range.low..=range.high).contains(&value));
+        !effect.is_whole(parameter) || (value % 1.0 == 0.0 && allowed)
+    }
+}
+
+fn is_possible_verdict(verdict: Verdict) -> bool {
+    let Verdict::Invalid(reason) = verdict else {
+        return true;
+    };
+    match reason {
+        Reason::Stuck {
+            longest_run,
+            changes,
+            samples,
+        } => u64::from(longest_run) <= samples && changes <= samples,
+        Reason::Railed { hits, samples } => hits <= samples,
+        Reason::Spiked { percent, .. } | Reason::Moved { percent, .. } => percent <= 100,
+        Reason::Missing { missing, sent } => missing <= sent,
+        Reason::LeftOut { left_out, samples } => left_out <= samples,
+    }
+}

@@ -36,7 +36,7 @@ impl HiddenEffects {
     /// When a filter has more samples.
     pub(super) fn check_widths(&self, rate_hz: f64) -> Result<(), Failure> {
         const WIDEST: f64 = 64.0;
-        let filter = DecimationFilter.name();
+        let filter = DecimationFilter.description().name;
         for hidden in self.hidden.iter().filter(|one| one.effect.name() == filter) {
             let [width_s, _] = hidden.parameters;
             if width_s * rate_hz > WIDEST {

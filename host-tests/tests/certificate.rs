@@ -190,17 +190,17 @@ fn impossible_contents_are_refused_behind_a_right_checksum() {
     let conditions: &[Spoil] = &[
         ("no samples", |record| record.conditions.samples = 0),
         ("more gaps than samples", |record| {
-            record.conditions.gaps = u64::MAX
+            record.conditions.gaps = u64::MAX;
         }),
         ("more samples than time", |record| {
-            record.conditions.samples <<= 1
+            record.conditions.samples <<= 1;
         }),
         ("no time", |record| record.conditions.duration_s = 0.0),
         ("endless time", |record| {
-            record.conditions.duration_s = 1e300
+            record.conditions.duration_s = 1e300;
         }),
         ("a rate beyond all", |record| {
-            record.conditions.rate_hz = 1e300
+            record.conditions.rate_hz = 1e300;
         }),
         ("below absolute zero", |record| {
             record.conditions.temperature_c = Some((-300.0, 20.0));
@@ -214,19 +214,19 @@ fn impossible_contents_are_refused_behind_a_right_checksum() {
     }
     let contents: &[Spoil] = &[
         ("negative bound", |record| {
-            record.axes[0].terms[0].upper = -5.0
+            record.axes[0].terms[0].upper = -5.0;
         }),
         ("unknown bound", |record| {
-            record.axes[0].terms[0].upper = f32::NAN
+            record.axes[0].terms[0].upper = f32::NAN;
         }),
         ("negative lower end", |record| {
-            record.axes[0].terms[0].lower = -1.0
+            record.axes[0].terms[0].lower = -1.0;
         }),
         ("endless measured interval", |record| {
             record.axes[0].terms[1].upper = f32::INFINITY;
         }),
         ("unknown error", |record| {
-            record.axes[0].terms[1].square_error = f32::NAN
+            record.axes[0].terms[1].square_error = f32::NAN;
         }),
         ("no time to wait", |record| {
             let term = &mut record.axes[0].terms[1];
@@ -247,7 +247,7 @@ fn impossible_contents_are_refused_behind_a_right_checksum() {
             record.axes[0].terms[1].shape.push(shape).unwrap();
         }),
         ("no shape", |record| {
-            record.axes[1].terms.last_mut().unwrap().shape.clear()
+            record.axes[1].terms.last_mut().unwrap().shape.clear();
         }),
         ("shape outside its interval", |record| {
             let shape = &mut record.axes[1].terms.last_mut().unwrap().shape[0];
@@ -260,12 +260,12 @@ fn impossible_contents_are_refused_behind_a_right_checksum() {
         ("99.5 stages", |record| stages(record, 99.5)),
         ("99 stages", |record| stages(record, 99.0)),
         ("χ² unknown and p known", |record| {
-            record.axes[0].chi_squared = f64::NAN
+            record.axes[0].chi_squared = f64::NAN;
         }),
         ("negative χ²", |record| record.axes[0].chi_squared = -1.0),
         ("p above one", |record| record.axes[0].p_value = 1.5),
         ("unknown tolerance", |record| {
-            record.axes[0].tolerance = f32::NAN
+            record.axes[0].tolerance = f32::NAN;
         }),
         ("120 per cent", |record| {
             let (spikes, percent) = (3, 120);

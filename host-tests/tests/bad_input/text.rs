@@ -127,7 +127,7 @@ pub(crate) fn cases() -> Vec<Case> {
         ),
         (
             "fit",
-            "# rate_hz=9\ngx\n-1e308\n1e308\n".repeat(1) + "1e308\n-1e308\n",
+            "# rate_hz=9\ngx\n-1e308\n1e308\n".to_string() + "1e308\n-1e308\n",
             "too wide or too narrow",
         ),
         (

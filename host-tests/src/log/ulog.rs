@@ -107,12 +107,17 @@ impl Ulog {
         let mut raw = BTreeMap::new();
         for topic in RAW {
             if found.values().any(|one| one.subscription.topic == topic) {
-                raw.insert(topic, expanded(topic)?);
+                let columns = expanded(topic)?;
+                let has = |sensor| columns.iter().any(|(name, _)| names::is_axis(name, sensor));
+                raw.insert(topic, (has(Sensor::Gyro), has(Sensor::Accelerometer)));
             }
         }
         let has = |topic: &str, sensor: Sensor| {
-            let mut columns = raw.get(topic).into_iter().flatten();
-            columns.any(|(name, _)| names::is_axis(name, sensor))
+            raw.get(topic)
+                .is_some_and(|(gyro, accelerometer)| match sensor {
+                    Sensor::Gyro => *gyro,
+                    Sensor::Accelerometer => *accelerometer,
+                })
         };
         let identity = choose(path, &found, options, has)?;
         let others: Vec<String> = found

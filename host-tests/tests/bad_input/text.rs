@@ -155,7 +155,7 @@ pub(crate) fn cases() -> Vec<Case> {
         ("fit", named("a,b,b"), "two columns are named \"b\""),
         (
             "fit",
-            named("a,\u{1b}]0;b\u{7},\u{1b}]0;b\u{7}"),
+            named("a,\u{1b}[2J,\u{1b}[2J"),
             "two columns are named",
         ),
         (
@@ -229,7 +229,7 @@ pub(crate) fn cases() -> Vec<Case> {
         ),
         (
             "fit",
-            regular("timestamp,gx", 1 << 60),
+            regular("timestamp,gx", 1 << 50),
             "none gives a usual rate",
         ),
         (
@@ -355,7 +355,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "the gzip stream ends in the middle",
         ),
         (flipped, "a.csv.gz"),
-        (gzip(b""), "the file is empty"),
+        (gzip(b""), "a.csv.gz: "),
         (
             gzip(&vec![b'\n'; 1 << 27]),
             "unpacks to more than 100 times its size",

@@ -41,7 +41,7 @@ fn one_record_is_printed_in_full() {
         "y: with sinusoid",
         "angle random walk",
         "deg/s/√Hz",
-        "frequency 7.709 Hz (",
+        "frequency 7.703 Hz (",
         "degrees of freedom, p ",
     ] {
         assert!(text.contains(part), "{part}:\n{text}");

@@ -131,7 +131,7 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
         if steps.lost > steps.changes / 10 {
             return Err(Place::file(path).failure(
                 format!(
-                    "axis {}: {} of {} steps between values vanish in counts of 2^-30 of the range",
+                    "axis {}: {} of {} steps between values are smaller than a count, 2^-30 of the range",
                     column.axis, steps.lost, steps.changes
                 ),
                 NARROW,

@@ -41,7 +41,7 @@ fn stamped(header: &str, stamps: impl IntoIterator<Item = i64>) -> String {
 }
 
 fn regular(header: &str, step: i64) -> String {
-    stamped(header, (0..300).map(|i| i * step))
+    stamped(header, (0..300).map(|i: i64| i.saturating_mul(step)))
 }
 
 pub(crate) fn gzip(bytes: &[u8]) -> Vec<u8> {

@@ -316,5 +316,7 @@ fn whole_numbers_beyond_floats_give_the_curve_of_their_differences() {
         .collect();
     let array = npy(&header(Kind::Unsigned, 8, &[rows.len() as u64]), &unsigned);
     let log = read("a.npy", &array, &at_100_hz());
-    assert!(log.axes[0].accumulator == expected[0]);
+    for (octave, expected) in log.axes[0].accumulator.octaves().zip(expected[0].octaves()) {
+        assert_eq!(octave.sum.to_real(), expected.sum.to_real());
+    }
 }

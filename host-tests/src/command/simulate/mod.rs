@@ -180,7 +180,7 @@ impl Record {
             return Err(Failure::option(
                 format!(
                     "--duration {} at {} Hz is impossible",
-                    quoted(arguments.duration.as_bytes()),
+                    quoted(arguments.duration.as_bytes()).trim_matches('"'),
                     brief(arguments.rate)
                 ),
                 "give a length of at least one sample, such as 600 or 10min",

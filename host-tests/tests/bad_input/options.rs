@@ -54,7 +54,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "--quantization 1e308 --duration 1",
             "exceeds the range of numbers",
         ),
-        ("mems -o a.txt", "the extension names no kind of log"),
+        ("mems -o a.txt", "extension is not that of a log"),
         ("mems -o none/a.csv", "its folder does not exist"),
         (
             "mems --effect decimation_filter:width_s=1e9,stages=2",

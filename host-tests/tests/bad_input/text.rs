@@ -133,12 +133,12 @@ pub(crate) fn cases() -> Vec<Case> {
         (
             "fit",
             "# rate_hz=9\ngx\n1e9\n".to_owned() + &"0.1\n0.2\n".repeat(50),
-            "in counts of 2^-30 of the range",
+            "2^-30 of the range",
         ),
         (
             "fit",
             format!("time_us,gx [deg/s]\n{}", levels.collect::<String>()),
-            "in counts of 2^-30 of the range",
+            "2^-30 of the range",
         ),
         (
             "fit",

@@ -33,7 +33,11 @@ fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real, white: Real) 
 
 /// The five terms of IEEE Std 952, solved on a curve.
 fn solved(curve: &Curve<OCTAVES>) -> (Model, Columns<OCTAVES>, Solver<OCTAVES>) {
-    let model = Model::ieee_952();
+    solve(curve, Model::ieee_952())
+}
+
+/// A model, solved on a curve.
+fn solve(curve: &Curve<OCTAVES>, model: Model) -> (Model, Columns<OCTAVES>, Solver<OCTAVES>) {
     let columns = Columns::new(curve, &model);
     let mut solver = Solver::NEW;
     let problem = Problem::new(curve, &model, &columns);
@@ -73,6 +77,33 @@ fn a_search_finds_a_minimum_as_low_as_that_of_a_fine_grid() {
     let behind = found.chi_squared - least.chi_squared;
     assert!(behind < 0.05 * least.chi_squared.abs() + 0.5, "{behind}");
     assert!((found.term.parameters[0] / least.term.parameters[0] - 1.0).abs() < 0.02);
+}
+
+/// A strong line has a minimum of χ² every few per cent of its frequency.
+#[test]
+fn a_neighbourhood_leads_from_a_wrong_minimum_to_the_line() {
+    for (frequency_hz, start) in [(5.14, 5.05), (5.14, 5.6), (0.745, 0.817), (14.336, 14.332)] {
+        let curve = curve(&Sinusoid, [frequency_hz, 0.0], 1.0, 2.5e-5);
+        let mut model = Model::ieee_952();
+        let mut term = Term::fitted(&Sinusoid);
+        term.set_parameter(0, start);
+        model.add(term).unwrap();
+        let (model, columns, solver) = solve(&curve, model);
+        let problem = Problem::new(&curve, &model, &columns);
+        let mut neighbourhood = Neighbourhood::new(term);
+        let found = loop {
+            if let Some(found) = neighbourhood.advance(&problem, &solver, &curve.span()) {
+                break found;
+            }
+        };
+        assert!(found.chi_squared < 0.5 * solver.chi_squared);
+        let before = (start / frequency_hz - 1.0).abs();
+        let after = (found.term.parameters[0] / frequency_hz - 1.0).abs();
+        assert!(
+            after < 0.5 * before,
+            "{frequency_hz} Hz: {after} after {before}"
+        );
+    }
 }
 
 #[test]

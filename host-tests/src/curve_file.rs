@@ -4,7 +4,7 @@
 //! follow. The whole file is checked before any number of it is used.
 
 use crate::{
-    failure::{Failure, Place, brief, quoted},
+    failure::{Failure, Place, brief, one_line, quoted},
     log::{self, OCTAVES},
     regular_file,
     unit::Unit,
@@ -153,7 +153,11 @@ impl CurveFile {
                 "measure the log again",
             ));
         }
-        let file: Self = serde_json::from_slice(text).map_err(|error| syntax(path, &error))?;
+        let mut file: Self = serde_json::from_slice(text).map_err(|error| syntax(path, &error))?;
+        for axis in &mut file.axes {
+            // Names are printed, and control characters would reach the terminal.
+            axis.axis = one_line(&axis.axis);
+        }
         file.check().map_err(|what| {
             Place::file(path).failure(what, "restore the file or measure the log again")
         })?;
@@ -175,7 +179,7 @@ impl CurveFile {
             if axis.axis.is_empty() {
                 return Err(format!("axis {} has no name", i + 1));
             }
-            if axis.axis.contains(char::is_control) || axis.axis.len() > LONGEST_NAME {
+            if axis.axis.len() > LONGEST_NAME {
                 return Err(format!("axis {}: the name {name} is not valid", i + 1));
             }
             if self.axes[..i].iter().any(|other| other.axis == axis.axis) {

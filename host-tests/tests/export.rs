@@ -16,7 +16,7 @@ fn close(value: f64, expected: f64) -> bool {
 /// name with characters that are special in every format. The simulated one in `short.json` has a
 /// random walk that is not observable.
 fn folder() -> (TempDir, String) {
-    let hostile = "g\"x*/ // #: ,\\'{%} é".to_owned();
+    let hostile = "g\"x*/ // #: ,\\\n'{%} é".to_owned();
     let folder = TempDir::new().unwrap();
     let mut curve: Value = serde_json::from_str(&fs::read_to_string(ADIS16405).unwrap()).unwrap();
     curve["axes"][0]["axis"] = hostile.clone().into();

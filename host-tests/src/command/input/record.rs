@@ -35,7 +35,7 @@ pub(crate) struct LogArguments {
     /// time, or none if --rate is given]
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
-    /// Unit of the time stamps [default: from the column's name, else the unit that gives a
+    /// Unit of the time stamps [default: from the column's name, else the only unit that gives a
     /// plausible rate]
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<TimeUnit>,

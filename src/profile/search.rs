@@ -100,7 +100,9 @@ impl GridSearch {
         if near.any(|(other, _)| !is_worse(other)) {
             return;
         }
-        self.minima.retain(|(_, step)| !is_near(*step));
+        while let Some(place) = self.minima.iter().position(|(_, step)| is_near(*step)) {
+            list::remove(&mut self.minima, place);
+        }
         list::rank(&mut self.minima, (found, at), |(other, _)| is_worse(other));
     }
 }

@@ -108,7 +108,6 @@
 //! | `flash` | snapshots in any flash that implements `embedded-storage-async`; includes `storage` |
 //! | `defmt` | `defmt::Format` on public values; the library itself never logs |
 //! | `double` | double precision instead of single, for final programs on a workstation only |
-//! | `firmware` | what the images in `src/bin` need; not for dependants |
 //!
 //! The library computes in single precision unless the program asks for `double`. Single precision needs two
 //! thirds of the flash. On a core that computes it in hardware, a fit takes a third of the time and a diagnosis a

@@ -3,8 +3,6 @@
 pub mod command;
 pub mod confidence;
 pub mod curve_file;
-#[path = "../../src/bin/demonstration/mod.rs"]
-pub mod demonstration;
 pub mod equivalent;
 pub mod failure;
 #[cfg(feature = "firmware")]
@@ -20,3 +18,5 @@ pub mod study;
 pub mod unit;
 #[cfg(feature = "chores")]
 pub mod xtask;
+
+pub use demonstration;

@@ -4,15 +4,10 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[path = "demonstration/mod.rs"]
-// Every image uses only a part of this module.
-#[allow(dead_code, unreachable_pub)]
-mod demonstration;
-
 /// The arguments are seeds of gyros, which replace the image's own seed.
 #[cfg(not(target_os = "none"))]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    use crate::demonstration::{characterise, lines};
+    use demonstration::{characterise, lines};
 
     let seeds = std::env::args().skip(1).map(|seed| seed.parse());
     let mut seeds = seeds.collect::<Result<Vec<u64>, _>>()?;
@@ -28,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 #[cfg(target_os = "none")]
 mod image {
-    use crate::demonstration::{characterise, lines};
+    use demonstration::{characterise, lines};
     // This crate provides critical sections for a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;

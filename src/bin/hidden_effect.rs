@@ -5,15 +5,10 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[path = "demonstration/mod.rs"]
-// Every image uses only a part of this module.
-#[allow(dead_code, unreachable_pub)]
-mod demonstration;
-
 /// The seeds of gyros may follow the name, and replace the image's own seed.
 #[cfg(not(target_os = "none"))]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    use crate::demonstration::{diagnose, lines};
+    use demonstration::{diagnose, lines};
 
     let disturbance = diagnose::hidden(&std::env::args().nth(1).unwrap_or_default());
     let seeds = std::env::args().skip(2).map(|seed| seed.parse());
@@ -31,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 #[cfg(target_os = "none")]
 mod image {
-    use crate::demonstration::{diagnose, lines};
+    use demonstration::{diagnose, lines};
     // This crate provides critical sections for a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;

@@ -3,11 +3,6 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[path = "demonstration/mod.rs"]
-// Every image uses only a part of this module.
-#[allow(dead_code, unreachable_pub)]
-mod demonstration;
-
 #[cfg(not(target_os = "none"))]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     use demonstration::product::{Gyro, run};
@@ -21,8 +16,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 #[cfg(target_os = "none")]
 mod image {
-    use crate::demonstration::product::{Gyro, run};
     use core::cell::RefCell;
+    use demonstration::product::{Gyro, run};
     // This crate provides critical sections for a single core.
     #[cfg(target_arch = "arm")]
     use cortex_m as _;

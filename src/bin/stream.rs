@@ -7,15 +7,9 @@
 fn main() {}
 
 #[cfg(target_os = "none")]
-#[path = "demonstration/mod.rs"]
-// Every image uses only a part of this module.
-#[allow(dead_code, unreachable_pub)]
-mod demonstration;
-
-#[cfg(target_os = "none")]
 mod image {
-    use crate::demonstration::{AMPLITUDES, simulated::SimulatedGyro, stream::SEED};
     use core::fmt::Write as _;
+    use demonstration::{AMPLITUDES, simulated::SimulatedGyro, stream::SEED};
     use heapless::String;
     use semihosting::io::{self, Write as _};
 

@@ -55,8 +55,7 @@ pub fn told_here(precision: Precision, image: &str, arguments: &[&str]) -> Resul
     // The program has the same path in both precisions.
     let _lock = exclusive()?;
     let output = cargo()
-        .args(["run", "--package", "allanite", "--bin", image])
-        .args(["--features", "firmware"])
+        .args(["run", "--package", "images", "--bin", image])
         .args(precision.arguments())
         // The cargo that runs this program may hold the lock of the usual target directory.
         .arg("--target-dir")

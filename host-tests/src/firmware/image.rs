@@ -36,7 +36,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Builds the binary `name` of the library's package for a Cortex-M4F.
+    /// Builds the image `name` for a Cortex-M4F.
     ///
     /// # Errors
     /// Fails if no compiler for the target is found, if the build fails, or if the image holds no
@@ -64,8 +64,8 @@ impl Image {
         let _heartbeat = Heartbeat::new(format!("the build of {name} for {core}"));
         let mut command = toolchain.cargo("build")?;
         command
-            .args(["--package", "allanite", "--bin", name])
-            .args(["--features", "firmware", "--profile", profile])
+            .args(["--package", "images", "--bin", name])
+            .args(["--profile", profile])
             .args(core.precision.arguments());
         // The images of both precisions have the same path, and another program may be building.
         let lock = exclusive()?;

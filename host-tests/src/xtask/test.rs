@@ -5,8 +5,11 @@ use crate::firmware::{CORTEX_M4F, RISCV, Toolchain, cargo, workspace};
 use anyhow::{Context as _, Result};
 use std::path::PathBuf;
 
+/// The packages that run on a microcontroller.
+const PACKAGES: [&str; 4] = ["--package", "allanite", "--package", "images"];
+
 /// Every feature except double precision.
-const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash,firmware"];
+const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash"];
 
 pub(super) fn run() -> Result<()> {
     println!("== set-up");
@@ -26,7 +29,8 @@ pub(super) fn run() -> Result<()> {
     step(
         "lints, in single precision",
         cargo()
-            .args(["clippy", "--package", "allanite", "--all-targets"])
+            .args(["clippy", "--all-targets"])
+            .args(PACKAGES)
             .args(SINGLE)
             .args(["--", "-D", "warnings"]),
     )?;
@@ -37,7 +41,8 @@ pub(super) fn run() -> Result<()> {
                 &format!("lints, on {}, {precision} precision", core.name),
                 toolchain
                     .cargo("clippy")?
-                    .args(["--package", "allanite", "--lib", "--bins"])
+                    .args(PACKAGES)
+                    .args(["--lib", "--bins"])
                     .args(features)
                     .args(["--", "-D", "warnings"]),
             )?;

@@ -10,11 +10,6 @@ fn main() {}
 #[cfg(target_os = "none")]
 mod clock;
 #[cfg(target_os = "none")]
-#[path = "../demonstration/mod.rs"]
-// Every image uses only a part of this module.
-#[allow(dead_code, unreachable_pub)]
-mod demonstration;
-#[cfg(target_os = "none")]
 mod stack;
 #[cfg(target_os = "none")]
 mod work;

@@ -1,10 +1,6 @@
 //! The work that is measured.
 
 use crate::clock::Clock;
-use crate::demonstration::{
-    AMPLITUDES,
-    simulated::{Random, SimulatedGyro},
-};
 use allanite::effect::{
     CATALOGUE, DecimationFilter, Effect, GaussMarkov, LowPass, RandomTelegraph, Resonance,
     SampledShape, Sinusoid,
@@ -16,6 +12,10 @@ use allanite::{
     fit::{Fit, Fitting, Options, fit},
 };
 use core::hint::black_box;
+use demonstration::{
+    AMPLITUDES,
+    simulated::{Random, SimulatedGyro},
+};
 
 /// A push in a separate call. Its cost above that of [`nothing`] is the cost of the push.
 #[inline(never)]

@@ -14,14 +14,7 @@ fn main() {}
 mod timer;
 
 #[cfg(target_os = "none")]
-#[path = "../demonstration/mod.rs"]
-// Every image uses only a part of this module.
-#[allow(dead_code, unreachable_pub)]
-mod demonstration;
-
-#[cfg(target_os = "none")]
 mod image {
-    use crate::demonstration::{AMPLITUDES, lines, simulated::SimulatedGyro};
     use allanite::queue::{self, Queued, Receiver, Sender};
     use allanite::{Axis, Scale};
     use core::cell::RefCell;
@@ -29,6 +22,7 @@ mod image {
     use cortex_m::singleton;
     use critical_section::Mutex;
     use defmt_semihosting as _;
+    use demonstration::{AMPLITUDES, lines, simulated::SimulatedGyro};
     use heapless::spsc::Queue;
     #[cfg(target_arch = "riscv32")]
     use riscv::singleton;

@@ -1,11 +1,12 @@
 //! The whole chain from counts to results on a simulated gyro. The images compute it on the target, and the
 //! host computes it again from the same source files to compare the bits.
 
+#![no_std]
+
 pub mod characterise;
 pub mod diagnose;
 pub mod lines;
 pub mod product;
-
 pub mod simulated;
 pub mod stream;
 

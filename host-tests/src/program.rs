@@ -4,7 +4,7 @@ use serde_json::Value;
 use std::{
     ffi::OsString,
     path::Path,
-    process::{Command, Output},
+    process::{Child, Command, Output, Stdio},
 };
 
 /// Curves of a real gyro.
@@ -20,6 +20,28 @@ pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(path());
     command.current_dir(folder).args(arguments);
     command
+}
+
+/// Sends a signal such as `INT` to a program.
+///
+/// # Panics
+/// When the shell cannot send it.
+pub fn signal(child: &Child, name: &str) {
+    let kill = format!("kill -{name} {}", child.id());
+    let status = Command::new("sh").args(["-c", &kill]).status();
+    assert!(status.is_ok_and(|status| status.success()), "{kill}");
+}
+
+/// Starts a command whose input and outputs are pipes.
+///
+/// # Panics
+/// When the program cannot be started.
+pub fn piped(command: &mut Command) -> Child {
+    let command = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command.spawn().expect("the program starts")
 }
 
 /// Runs a command and returns its output and exit status.

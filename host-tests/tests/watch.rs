@@ -1,7 +1,7 @@
 //! Tests `watch`: whatever ends a live record, the curve contains what was received.
 
 use allanite::Accumulator;
-use host_tests::program::{command, refusal};
+use host_tests::program::{command, piped, refusal, signal};
 use host_tests::{
     curve_file::CurveFile,
     log::{Axis, OCTAVES},
@@ -13,7 +13,7 @@ use serialport::{SerialPort, TTYPort};
 use std::{
     io::{Read, Write},
     path::Path,
-    process::{Child, Command, Stdio},
+    process::Child,
     sync::{
         Arc,
         atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst},
@@ -60,25 +60,11 @@ fn watch(folder: &Path, more: &[&str]) -> Child {
         "--axes",
         "left,right",
     ];
-    command(folder, &arguments)
-        .args(["--output", "curve.json"])
-        .args(more)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap()
-}
-
-fn signal(child: &Child, name: &str) {
-    let kill = format!("kill -{name} {}", child.id());
-    assert!(
-        Command::new("sh")
-            .args(["-c", &kill])
-            .status()
-            .unwrap()
-            .success()
-    );
+    piped(
+        command(folder, &arguments)
+            .args(["--output", "curve.json"])
+            .args(more),
+    )
 }
 
 /// Waits until the curve has been saved for the first time.
@@ -256,12 +242,7 @@ fn fit_is_printed_and_failed_saves_are_announced_if_the_curve_cannot_be_saved() 
     std::fs::create_dir(&inner).unwrap();
     let more = ["--save-every", "0.05", "--output", "../inner/curve.json"];
     let arguments = ["watch", "--rate", "100", "--scale", "0.01"];
-    let mut child = command(&inner, &[&arguments[..], &more].concat())
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = piped(&mut command(&inner, &[&arguments[..], &more].concat()));
     let mut pipe = child.stdin.take().unwrap();
     for line in lines(3000, 11) {
         pipe.write_all(line.line().as_bytes()).unwrap();

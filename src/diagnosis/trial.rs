@@ -196,7 +196,7 @@ impl Trial {
         candidate: &mut Candidate,
     ) -> Result<Option<Completed>, Error> {
         if self.stage == Stage::Begin {
-            self.begin(curve, tolerance, work)?;
+            self.begin(Stage::Round, curve, tolerance, work)?;
             return Ok(None);
         }
         let problem = Problem::new(curve, &self.present.model, &work.columns);
@@ -207,7 +207,7 @@ impl Trial {
                 None => {}
                 Some(seen) if seen.chi_squared < MUCH_BETTER * work.solver.chi_squared => {
                     self.begin_again(&seen);
-                    self.begin(curve, tolerance, work)?;
+                    self.begin(Stage::Round, curve, tolerance, work)?;
                 }
                 Some(_) => self.begin_last(curve, tolerance, work)?,
             }
@@ -237,7 +237,7 @@ impl Trial {
         };
         self.round = self.round.saturating_add(1);
         if goes_on && self.round < ROUNDS {
-            self.begin(curve, tolerance, work)?;
+            self.begin(Stage::Round, curve, tolerance, work)?;
         } else {
             let last = self.present.model.terms().last().copied();
             if self.neighbourhood.is_none()
@@ -262,10 +262,7 @@ impl Trial {
     ) -> Result<(), Error> {
         let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
         self.present = fitted;
-        self.stage = Stage::Last;
-        let start = Start::From(self.present.squares);
-        let tolerance = Tolerance::Fixed(tolerance);
-        work.begin_at(curve, &self.present.model, start, tolerance)
+        self.begin(Stage::Last, curve, tolerance, work)
     }
 
     /// Begins the rounds again, from a shape of the neighbourhood.
@@ -279,15 +276,19 @@ impl Trial {
         self.round = 0;
     }
 
-    /// Begins a round.
+    /// Begins the fit of a stage.
     fn begin<const K: usize>(
         &mut self,
+        stage: Stage,
         curve: &Curve<K>,
         tolerance: Real,
         work: &mut Work<K>,
     ) -> Result<(), Error> {
-        self.stage = Stage::Round;
-        let start = Start::Once(self.present.squares);
+        self.stage = stage;
+        let start = match stage {
+            Stage::Last => Start::From(self.present.squares),
+            _ => Start::Once(self.present.squares),
+        };
         let tolerance = Tolerance::Fixed(tolerance);
         work.begin_at(curve, &self.present.model, start, tolerance)
     }

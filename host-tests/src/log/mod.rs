@@ -74,6 +74,7 @@ mod metadata;
 mod names;
 mod npy;
 pub mod npy_header;
+mod pace;
 mod quantum;
 mod reading;
 mod records;

@@ -2,9 +2,9 @@
 
 use super::{
     Options,
-    clock::{Pace, possible_units},
     columns::{AxisColumn, Columns, Look},
     names::{self, TimeUnit},
+    pace::{Pace, possible_units},
 };
 use crate::failure::{Failure, Place, brief, quoted};
 use std::path::Path;

@@ -5,7 +5,7 @@ use std::{
     fs,
     io::{Read, Write},
     path::Path,
-    process::{Command, Stdio},
+    process::Command,
     thread,
     time::{Duration, Instant},
 };
@@ -134,7 +134,8 @@ impl Ended {
 
 /// Runs the program with a limited address space.
 fn limited(folder: &Path, arguments: &[&str], input: &[u8], most_kib: u64) -> Ended {
-    let mut child = Command::new("sh")
+    let mut command = Command::new("sh");
+    command
         .args([
             "-c",
             &format!("ulimit -v {most_kib}; ulimit -t {LONGEST_S}; exec \"$0\" \"$@\""),
@@ -143,12 +144,8 @@ fn limited(folder: &Path, arguments: &[&str], input: &[u8], most_kib: u64) -> En
         .args(arguments)
         .current_dir(folder)
         // Otherwise every thread reserves 64 MiB.
-        .env("MALLOC_ARENA_MAX", "1")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+        .env("MALLOC_ARENA_MAX", "1");
+    let mut child = program::piped(&mut command);
     let mut pipe = child.stdin.take().unwrap();
     let input = input.to_vec();
     // A command that does not read its input closes it.

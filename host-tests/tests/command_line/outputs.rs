@@ -96,14 +96,7 @@ fn temporary_files_vanish_on_an_interruption() {
             thread::sleep(Duration::from_millis(5));
         }
         assert_eq!(files(), before + 1);
-        let kill = format!("kill -{signal} {}", child.id());
-        assert!(
-            Command::new("sh")
-                .args(["-c", &kill])
-                .status()
-                .unwrap()
-                .success()
-        );
+        program::signal(&child, signal);
         assert!(!child.wait().unwrap().success());
         assert_eq!(files(), before, "{signal}");
     }

@@ -1,0 +1,165 @@
+//! The usual step between time stamps, and the units that stamps can have.
+
+use super::names::TimeUnit;
+
+/// A step that is longer than this many usual steps is a gap, provided that it also exceeds
+/// [`SCATTER`]. It lies half way between one step and the two steps that a lost sample leaves.
+const GAP: f64 = 1.5;
+
+/// The largest ratio between a told step and the regular step of stamps. The clocks of cheap gyros are
+/// off by some per cent.
+const TOLD: f64 = 1.1;
+
+/// The same for stamps that are not regular.
+const IRREGULAR: f64 = 2.0;
+
+/// Stamps are regular if their mean step differs by less than this share from the usual step.
+const REGULAR: f64 = 0.02;
+
+/// A gap must exceed the usual step by this many times the usual scatter of steps. Chosen by hand; the
+/// tests of this file hold it to a jitter of half a step.
+const SCATTER: f64 = 5.0;
+
+/// The usual distance between stamps, estimated from the first ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pace {
+    /// The number of ticks in a second. A tick is the unit of the stamps.
+    per_second: f64,
+    /// The usual step, in ticks.
+    pub(super) step: f64,
+    /// The longest step that is not a gap, in ticks.
+    pub(super) longest: f64,
+}
+
+impl Pace {
+    /// The pace of the stamps `first`, in a unit. Returns `None` if the stamps never advance.
+    pub(super) fn of(first: &[f64], unit: TimeUnit) -> Option<Self> {
+        let mut steps = steps(first);
+        if let Some(step) = lattice(&mut steps) {
+            return Some(Self {
+                per_second: unit.per_second(),
+                step,
+                longest: GAP * step,
+            });
+        }
+        let step = quantile(&mut steps, 0.5)?;
+        let mut scatter: Vec<f64> = steps.iter().map(|other| (other - step).abs()).collect();
+        let scatter = quantile(&mut scatter, 0.9)?;
+        Some(Self {
+            per_second: unit.per_second(),
+            step,
+            longest: (GAP * step).max(step + SCATTER * scatter),
+        })
+    }
+
+    /// Whether the stamps `first`, which have this pace, can be those of a record of a given rate. The
+    /// usual step and the mean step are tried, because stamps may be written in bursts.
+    pub(super) fn agrees(&self, first: &[f64], rate_hz: f64) -> bool {
+        let told = self.per_second / rate_hz;
+        let whole = first
+            .last()
+            .zip(first.first())
+            .map_or(0.0, |(last, first)| last - first);
+        let mean = whole / first.len().saturating_sub(1).max(1) as f64;
+        let irregular = (mean / self.step - 1.0).abs() > REGULAR;
+        let factor = if irregular { IRREGULAR } else { TOLD };
+        let (shortest, longest) = (mean.min(self.step), mean.max(self.step));
+        (shortest / factor..=longest * factor).contains(&told)
+    }
+
+    /// The rate at the usual step, in Hz.
+    pub(super) fn usual_hz(&self) -> f64 {
+        self.per_second / self.step
+    }
+
+    /// The seconds in a number of ticks.
+    pub(super) fn seconds(&self, ticks: f64) -> f64 {
+        ticks / self.per_second
+    }
+}
+
+/// The units that stamps without a told unit can have. If the first stamp is a time since 1970 in some
+/// unit that fits, it is that unit alone. A unit fits if it makes the rate plausible: at least 0.1 Hz in
+/// seconds and 1 Hz in the other units, which nobody needs for slower records, and at most 33 kHz, beyond
+/// the fastest gyros. Returns `None` if the stamps never advance.
+pub(super) fn possible_units(first: &[f64]) -> Option<Vec<TimeUnit>> {
+    const FASTEST_HZ: f64 = 33e3;
+    let step = lattice(&mut steps(first)).or_else(|| quantile(&mut steps(first), 0.5))?;
+    let fits = |unit: &TimeUnit| {
+        let slowest_hz = if *unit == TimeUnit::S { 0.1 } else { 1.0 };
+        // A step of exactly 10 s may be rounded upwards.
+        (0.99 * slowest_hz..FASTEST_HZ).contains(&(unit.per_second() / step))
+    };
+    // This range covers the years 2001 to 2286, in seconds since 1970.
+    let since_1970 = |unit: &TimeUnit| (1e9..1e10).contains(&(first[0] / unit.per_second()));
+    let fitting = TimeUnit::ALL.into_iter().filter(fits);
+    let fitting: Vec<TimeUnit> = fitting.collect();
+    match fitting.iter().find(|unit| since_1970(unit)) {
+        Some(&unit) => Some(vec![unit]),
+        None => Some(fitting),
+    }
+}
+
+/// The steps forwards between stamps.
+fn steps(stamps: &[f64]) -> Vec<f64> {
+    let steps = stamps.windows(2).map(|pair| pair[1] - pair[0]);
+    steps.filter(|&step| step > 0.0).collect()
+}
+
+/// The step of which nearly all steps are whole multiples, if there is one. Longer steps are then rows
+/// that are missing, however many they are.
+///
+/// Stamps with a jitter of half a step have no such step: three quarters of their steps lie within a
+/// quarter of a multiple, and four fifths are needed.
+fn lattice(steps: &mut [f64]) -> Option<f64> {
+    const NEAR: f64 = 0.25;
+    const NEARLY_ALL: f64 = 0.8;
+    let multiple = |long: f64, step: f64| (long / step).round().max(1.0);
+    let mut step = quantile(steps, 0.2)?;
+    for _ in 0..2 {
+        let mut single: Vec<f64> = steps
+            .iter()
+            .map(|&long| long / multiple(long, step))
+            .collect();
+        step = quantile(&mut single, 0.5)?;
+    }
+    let is_near = |long: &&f64| (**long / step - multiple(**long, step)).abs() <= NEAR;
+    let near = steps.iter().filter(is_near).count();
+    (near as f64 >= NEARLY_ALL * steps.len() as f64).then_some(step)
+}
+
+fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
+    let at = (values.len() as f64 * share) as usize;
+    (at < values.len()).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unit_that_is_possible_is_found() {
+        use TimeUnit::{Ms, Ns, S, Us};
+        for (first, step, units) in [
+            (0.0, 0.005, &[S][..]),
+            (0.0, 0.02, &[S]),
+            (1.7e9, 0.01, &[S]),
+            (1.7e9, 1.0, &[S]),
+            (1.7e9, 5000.0, &[Us]),
+            (0.0, 0.05, &[S, Ms]),
+            (0.0, 1.0, &[S, Ms]),
+            (0.0, 5.0, &[S, Ms]),
+            (0.0, 10.0, &[S, Ms]),
+            (0.0, 20.0, &[Ms]),
+            (0.0, 40.0, &[Ms, Us]),
+            (1.2e8, 4000.0, &[Us]),
+            (0.0, 40_000.0, &[Us, Ns]),
+            (1.403e18, 5e6, &[Ns]),
+            (0.0, 5e6, &[Ns]),
+            (0.0, 1e-9, &[]),
+        ] {
+            let stamps: Vec<f64> = (0..20).map(|i| first + f64::from(i) * step).collect();
+            assert_eq!(possible_units(&stamps).unwrap(), units, "{first} {step}");
+        }
+    }
+}

@@ -2,8 +2,9 @@
 
 use crate::{
     effect::Effect,
-    limits::{ONE_SIDED_95, TWO_SIDED_95},
+    limits::ONE_SIDED_95,
     math,
+    nnls::Interval,
     real::{Real, real},
 };
 
@@ -50,10 +51,10 @@ pub struct Coefficient {
 }
 
 impl Coefficient {
-    /// A coefficient from its square and the variance of the square. The variance is `None` where the
-    /// fit cannot tell the effect from others.
-    pub(crate) fn new(effect: &dyn Effect, square: Real, variance: Option<Real>) -> Self {
-        let error = variance.map_or(Real::INFINITY, math::sqrt);
+    /// A coefficient from its square and the interval of the square. The interval is `None` where the fit
+    /// cannot tell the effect from others.
+    pub(crate) fn new(effect: &dyn Effect, square: Real, interval: Option<Interval>) -> Self {
+        let error = interval.map_or(Real::INFINITY, |interval| math::sqrt(interval.variance));
         let root = |square: Real| {
             if square > 0.0 {
                 math::sqrt(square)
@@ -61,24 +62,22 @@ impl Coefficient {
                 0.0
             }
         };
-        let half_width = real(TWO_SIDED_95) * error;
-        let below = square - half_width;
-        let (state, upper) = if below > 0.0 {
-            (State::Measured, square + half_width)
-        } else if error.is_finite() {
-            (
-                State::UpperBound,
-                Self::one_sided_bound(square, error * error),
-            )
-        } else {
-            (State::NotObservable { after_s: None }, Real::INFINITY)
+        let (state, lower, upper) = match interval {
+            Some(interval) if interval.lower > 0.0 => {
+                (State::Measured, interval.lower, interval.upper)
+            }
+            Some(interval) => {
+                let bound = Self::one_sided_bound(square, interval.variance);
+                (State::UpperBound, 0.0, bound)
+            }
+            None => (State::NotObservable { after_s: None }, 0.0, Real::INFINITY),
         };
         Self {
             name: effect.name(),
             symbol: effect.symbol(),
             half_seconds: effect.half_seconds(),
             value: root(square),
-            lower: root(below),
+            lower: root(lower),
             upper: root(upper),
             state,
             square,
@@ -121,6 +120,10 @@ mod tests {
         1e-6
     };
 
+    fn normal(square: f64, variance: f64) -> Interval {
+        Interval::normal(real(square), real(variance), 1.0)
+    }
+
     fn assert_close(found: Real, expected: f64) {
         let off = (double(found) - expected).abs();
         assert!(off <= ROUNDING * expected.abs(), "{found}, not {expected}");
@@ -132,7 +135,11 @@ mod tests {
         let mut measured = 0;
         for _ in 0..1000 {
             let (square, error) = (4.0 * random.signed(), 1.0 + random.signed());
-            let found = Coefficient::new(&AngleRandomWalk, real(square), Some(real(error * error)));
+            let found = Coefficient::new(
+                &AngleRandomWalk,
+                real(square),
+                Some(normal(square, error * error)),
+            );
             let half = 1.959_964 * error;
             if (square / half - 1.0).abs() < 1e-4 {
                 continue;
@@ -170,9 +177,11 @@ mod tests {
     #[test]
     fn a_unit_of_the_variance_scales_squares_and_coefficients() {
         let unit = by_precision(1e-20, 1e-10);
-        let plain = Coefficient::new(&AngleRandomWalk, 9.0, Some(4.0));
+        let plain = Coefficient::new(&AngleRandomWalk, 9.0, Some(normal(9.0, 4.0)));
         let scaled = plain.in_unit(unit);
-        let direct = Coefficient::new(&AngleRandomWalk, 9.0 * unit, Some(4.0 * unit * unit));
+        let variance = 4.0 * unit * unit;
+        let interval = Interval::normal(9.0 * unit, variance, 1.0);
+        let direct = Coefficient::new(&AngleRandomWalk, 9.0 * unit, Some(interval));
         for (found, expected) in [
             (scaled.value, direct.value),
             (scaled.lower, direct.lower),

@@ -1,5 +1,9 @@
 //! Least squares with coefficients that cannot be negative, solved by the normal equations.
 
+mod interval;
+
+pub(crate) use interval::Interval;
+
 use crate::{
     algebra::{self, Choice, Triangle},
     cholesky,
@@ -31,6 +35,7 @@ pub(crate) type Free = Choice;
 
 /// The normal equations, with every column scaled to one so that coefficients of any magnitude share
 /// one tolerance.
+#[derive(Clone)]
 pub(crate) struct NormalEquations {
     scaled: Matrix,
     right: Vector,

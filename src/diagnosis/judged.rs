@@ -121,7 +121,8 @@ impl<const K: usize> Judging<K> {
                     profile.choose(&problem, estimate.term, &solver.squares)?;
                     profile.release();
                     let mut evaluation = Evaluation::new(profile, &problem, &solver.weights);
-                    begin_interval(interval, &mut evaluation, term, j, span);
+                    let widened = step.fit.birge_ratio;
+                    begin_interval(interval, &mut evaluation, term, j, span, widened);
                     return Ok(None);
                 }
                 let mut evaluation = Evaluation::new(profile, &problem, &solver.weights);
@@ -169,8 +170,9 @@ fn begin_interval<const K: usize>(
     term: Term,
     j: usize,
     span: &Span,
+    widened: Real,
 ) {
-    *interval = Some(JointInterval::new(evaluation, term, j, span));
+    *interval = Some(JointInterval::new(evaluation, term, j, span, widened));
 }
 
 /// The term at this place in the model and its fitted parameter, if that is its only fitted parameter.

@@ -455,7 +455,8 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
             (_, 0, Some(true)) => Verdict::Adequate,
             (_, 0, Some(false)) => Verdict::Unexplained,
             (_, 0, None) => Verdict::TooShort,
-            _ => Verdict::Improved,
+            (_, _, Some(true)) => Verdict::Improved,
+            _ => Verdict::Incomplete,
         }
     }
 }

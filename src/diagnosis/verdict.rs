@@ -9,8 +9,11 @@ use crate::integrity::Reason;
 pub enum Verdict {
     /// The model that was asked about explains the curve.
     Adequate,
-    /// The model explains the curve, or more of it, with the effects that were added.
+    /// The model explains the curve with the effects that were added.
     Improved,
+    /// The effects that were added improve the model, but it still does not explain the curve, or the curve
+    /// has too few octaves to judge it.
+    Incomplete,
     /// The model does not explain the curve, and no effect in the list helps.
     Unexplained,
     /// The curve has too few octaves to judge the model that was asked about.
@@ -25,6 +28,7 @@ impl Verdict {
         match self {
             Self::Adequate => "adequate",
             Self::Improved => "improved",
+            Self::Incomplete => "incomplete",
             Self::Unexplained => "unexplained",
             Self::TooShort => "too_short",
             Self::Invalid(_) => "invalid",

@@ -5,9 +5,10 @@ use super::{method::Method, problem::Problem, result::Fit, shape::ShapeEquations
 use crate::{
     coefficient::{Coefficient, State},
     curve::clusters,
+    limits::CHI_SQUARED_95,
     math,
     model::Term,
-    nnls::NormalEquations,
+    nnls::{Interval, NormalEquations},
     observability::record_length_s,
     real::{Real, real},
 };
@@ -57,6 +58,10 @@ impl Estimator {
         fit.minus_two_log_likelihood = solver.minus_two_log_likelihood();
         fit.tolerance = solver.weights.tolerance;
         fit.shrinkage = solver.weights.shrinkage;
+        fit.birge_ratio = birge_ratio(fit);
+        for shape in &mut fit.shape {
+            shape.widen(fit.birge_ratio);
+        }
     }
 
     /// Estimates one more coefficient and returns whether it was the last.
@@ -71,7 +76,8 @@ impl Estimator {
             return true;
         };
         let shape = self.is_valid.then_some(&self.shape);
-        let coefficient = coefficient(problem, solver, self.next, term, shape);
+        let widened = fit.birge_ratio;
+        let coefficient = coefficient(problem, solver, self.next, term, shape, widened);
         // There are as many places as a model has effects.
         let _ = fit
             .coefficients
@@ -81,28 +87,35 @@ impl Estimator {
     }
 }
 
-/// The coefficient of one effect, in the problem's variance unit.
+/// The factor by which the errors of a model that is not adequate are widened. They come from the covariance
+/// of the curve at the model, and residuals this large say that the model is off by more than that.
+fn birge_ratio(fit: &Fit) -> Real {
+    match fit.is_adequate() {
+        Some(false) => math::sqrt(fit.chi_squared / real(fit.degrees_of_freedom)),
+        _ => 1.0,
+    }
+}
+
+/// The coefficient of one effect, in the problem's variance unit. Its errors are multiplied by `widened`.
 fn coefficient<const K: usize>(
     problem: &Problem<'_, K>,
     solver: &Solver<K>,
     i: usize,
     term: &Term,
     shape: Option<&ShapeEquations>,
+    widened: Real,
 ) -> Coefficient {
     if term.held {
         return Coefficient::new(term.effect, 0.0, None);
     }
-    let with = solver.free.with(i);
-    let linear = || solver.equations.variance(i, &with);
-    let variance = match shape {
-        Some(shape) => shape.variance(i, &with).or_else(linear),
-        None => linear(),
-    };
-    let coefficient = Coefficient::new(term.effect, solver.squares[i], variance);
+    let square = solver.squares[i];
+    let interval = interval(problem, solver, i, shape, widened);
+    let coefficient = Coefficient::new(term.effect, square, interval);
     if coefficient.state != State::UpperBound {
         return coefficient;
     }
-    let bound = bound(problem, solver, i, coefficient.upper * coefficient.upper);
+    let first = coefficient.upper * coefficient.upper;
+    let bound = bound(problem, solver, i, first, widened);
     let upper = math::sqrt(bound);
     let state = if is_informative(problem, solver, i, bound) {
         State::UpperBound
@@ -126,6 +139,34 @@ fn coefficient<const K: usize>(
     }
 }
 
+/// The 95 % interval of a square by the likelihood ratio: χ² with the other coefficients fitted anew, at zero
+/// or above, exceeds its minimum by no more than the quantile of one degree of freedom. A coefficient that is
+/// zero at the minimum may grow in the place of this one, and its neighbours may fall to zero. If shapes are
+/// fitted, the interval is not shorter than that of the normal distribution with the shapes free.
+#[inline(never)]
+fn interval<const K: usize>(
+    problem: &Problem<'_, K>,
+    solver: &Solver<K>,
+    i: usize,
+    shape: Option<&ShapeEquations>,
+    widened: Real,
+) -> Option<Interval> {
+    let rise = real(CHI_SQUARED_95) * widened * widened;
+    let (squares, free, held) = (&solver.squares, &solver.free, problem.held());
+    let mut interval = solver.equations.interval(i, squares, free, &held, rise)?;
+    interval.variance *= widened * widened;
+    let with_shapes = shape.and_then(|shape| shape.variance(i, &free.with(i)));
+    if let Some(variance) = with_shapes {
+        let normal = Interval::normal(squares[i], variance, widened);
+        interval = Interval {
+            variance: normal.variance,
+            lower: interval.lower.min(normal.lower),
+            upper: interval.upper.max(normal.upper),
+        };
+    }
+    Some(interval)
+}
+
 /// The one-sided 95 % bound of a square. It uses the covariance that the model would have at that
 /// bound, because an effect that adds to an octave may also scatter it.
 #[inline(never)]
@@ -134,6 +175,7 @@ fn bound<const K: usize>(
     solver: &Solver<K>,
     i: usize,
     first: Real,
+    widened: Real,
 ) -> Real {
     let curve = |k: usize| problem.measured(k);
     let weights = &solver.weights;
@@ -150,7 +192,7 @@ fn bound<const K: usize>(
         let Some(variance) = equations.variance(i, &free) else {
             break;
         };
-        bound = Coefficient::one_sided_bound(squares[i], variance);
+        bound = Coefficient::one_sided_bound(squares[i], variance * widened * widened);
     }
     bound
 }

@@ -12,7 +12,7 @@ use crate::{
     curve::Point,
     error::Error,
     list::numbered,
-    nnls::{Free, NormalEquations},
+    nnls::{Free, Interval, NormalEquations},
     real::Real,
 };
 
@@ -70,7 +70,8 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
     for (i, term) in numbered(problem.model.terms().iter()) {
         let variance = equations.variance(i, &free).ok_or(Error::Singular)?;
         // There is a place for every effect of a model.
-        let coefficient = Coefficient::new(term.effect, squares[i], Some(scale * variance));
+        let interval = Interval::normal(squares[i], scale * variance, 1.0);
+        let coefficient = Coefficient::new(term.effect, squares[i], Some(interval));
         let _ = coefficients.push(coefficient.in_unit(problem.variance_unit));
     }
     Ok(Fit {
@@ -83,5 +84,6 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         minus_two_log_likelihood: Real::NAN,
         tolerance: 0.0,
         shrinkage: 0.0,
+        birge_ratio: 1.0,
     })
 }

@@ -4,6 +4,7 @@ use super::method::{ADEQUATE_P, Method};
 use crate::{
     coefficient::Coefficient,
     limits::{MAX_EFFECTS, MAX_SHAPE},
+    math,
     real::Real,
 };
 use heapless::Vec;
@@ -22,6 +23,18 @@ pub struct ShapeEstimate {
     pub lower: Real,
     /// Upper end of the interval.
     pub upper: Real,
+}
+
+impl ShapeEstimate {
+    /// Multiplies the standard error of the logarithm by a factor.
+    pub(super) fn widen(&mut self, factor: Real) {
+        if factor <= 1.0 {
+            return;
+        }
+        let more = math::exp((factor - 1.0) * math::log(self.upper / self.value));
+        self.lower /= more;
+        self.upper *= more;
+    }
 }
 
 /// Coefficients of a model, with what they are worth.
@@ -51,6 +64,9 @@ pub struct Fit {
     /// The share that the correlations had to lose before the covariance was positive definite; usually
     /// 0.
     pub shrinkage: Real,
+    /// The factor by which the intervals, the bounds and the standard errors are widened because the model
+    /// is not adequate: √(χ²/degrees of freedom) (Birge 1932). It is 1 for an adequate model.
+    pub birge_ratio: Real,
 }
 
 impl Fit {
@@ -66,6 +82,7 @@ impl Fit {
         minus_two_log_likelihood: 0.0,
         tolerance: 0.0,
         shrinkage: 0.0,
+        birge_ratio: 0.0,
     };
 
     /// Whether the model explains the curve: `Some(true)` if the p-value is [`ADEQUATE_P`] or more.

@@ -1,5 +1,6 @@
 //! The non-negative solution is compared with the best one of all choices of unknowns above zero.
 
+mod interval;
 mod problem;
 
 use super::*;

@@ -11,12 +11,9 @@ use crate::{
     limits::{CHI_SQUARED_95, MAX_PARAMETERS},
     math,
     model::Term,
-    real::Real,
+    real::{Real, real},
 };
 
-/// The rise of χ² from the best value to the ends of a 95 % interval. It is the quantile of χ² with one
-/// degree of freedom.
-const RISE: Real = CHI_SQUARED_95 as Real;
 /// The first step of the logarithm away from the best value. Steps double until they lead outside the
 /// interval. Chosen by hand: it is about the smallest error of a shape in
 /// `cargo xtask study hidden-effect`, 0.4 %.
@@ -25,7 +22,7 @@ const FIRST_STEP: Real = 0.005;
 /// is at most 2 % of the interval's half-width if steps have doubled.
 const HALVINGS: u8 = 6;
 
-/// The search for one end of an interval, where χ² has risen by [`RISE`].
+/// The search for one end of an interval, where χ² has risen by so much.
 struct End {
     /// The direction of the search: 1 upwards, −1 downwards.
     direction: Real,
@@ -53,6 +50,7 @@ impl End {
         best: &Found,
         j: usize,
         grid: &Grid,
+        most: Real,
         evaluation: &mut Evaluation<'_, K>,
     ) -> Option<Real> {
         let value = best.term.parameter(j);
@@ -80,7 +78,7 @@ impl End {
         );
         let rise = evaluation.found(term).chi_squared - best.chi_squared;
         // A NaN counts as outside.
-        let is_inside = rise <= RISE;
+        let is_inside = rise <= most;
         if is_inside {
             self.inside += self.step;
         }
@@ -97,13 +95,15 @@ impl End {
 }
 
 /// The 95 % interval of a fitted parameter: the values at which χ² exceeds its minimum by no more than
-/// [`RISE`]. All coefficients are free, even where another effect could take the shape's place. The
+/// the quantile of one degree of freedom. All coefficients are free, even where another effect could take the shape's place. The
 /// interval is joined with the intervals at those values of a whole-numbered parameter that explain the
 /// curve as well.
 pub(crate) struct JointInterval {
     /// The parameter.
     j: usize,
     grid: Grid,
+    /// The rise of χ² from the best value to the ends of the interval.
+    rise: Real,
     known: Found,
     /// The best shape at the whole numbers whose interval is being computed.
     best: Found,
@@ -128,18 +128,21 @@ enum Stage {
 }
 
 impl JointInterval {
-    /// Begins with the interval of a parameter around a known shape.
+    /// Begins with the interval of a parameter around a known shape. The errors are multiplied by
+    /// `widened`.
     pub(crate) fn new<const K: usize>(
         evaluation: &mut Evaluation<'_, K>,
         term: Term,
         j: usize,
         span: &Span,
+        widened: Real,
     ) -> Self {
         let known = evaluation.found(term);
         let value = term.parameter(j);
         Self {
             j,
             grid: Grid::of(term.effect, j, span),
+            rise: real(CHI_SQUARED_95) * widened * widened,
             known,
             best: known,
             ends: [End::new(-1.0), End::new(1.0)],
@@ -163,7 +166,8 @@ impl JointInterval {
                 Stage::Bounding { upper } => {
                     let [lower_end, upper_end] = &mut self.ends;
                     let end = if *upper { upper_end } else { lower_end };
-                    let reached = end.advance(&self.best, self.j, &self.grid, evaluation);
+                    let reached =
+                        end.advance(&self.best, self.j, &self.grid, self.rise, evaluation);
                     match (reached, *upper) {
                         (None, _) => {}
                         (Some(reached), false) => {
@@ -187,7 +191,7 @@ impl JointInterval {
                     if let Some(found) = search.advance(evaluation) {
                         self.best = found;
                         self.ends = [End::new(-1.0), End::new(1.0)];
-                        let as_good = found.chi_squared < self.known.chi_squared + RISE;
+                        let as_good = found.chi_squared < self.known.chi_squared + self.rise;
                         self.stage = if as_good {
                             Stage::Bounding { upper: false }
                         } else {

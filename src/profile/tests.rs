@@ -125,7 +125,7 @@ fn an_interval_ends_where_chi_squared_has_risen_by_that_of_95_percent() {
             break found;
         }
     };
-    let mut interval = JointInterval::new(&mut evaluation, best.term, 0, &span);
+    let mut interval = JointInterval::new(&mut evaluation, best.term, 0, &span, 1.0);
     let (lower, upper) = loop {
         if let Some(interval) = interval.advance(&mut evaluation, &span) {
             break interval;
@@ -171,7 +171,7 @@ fn an_interval_includes_those_of_other_whole_numbers_that_explain_the_curve_as_w
     let span = curve.span();
     let mut evaluation = Evaluation::new(&mut profile, &problem, &solver.weights);
     let bounded = |evaluation: &mut Evaluation<'_, OCTAVES>, term: Term| {
-        let mut interval = JointInterval::new(evaluation, term, 0, &span);
+        let mut interval = JointInterval::new(evaluation, term, 0, &span, 1.0);
         loop {
             if let Some(interval) = interval.advance(evaluation, &span) {
                 return interval;

@@ -6,6 +6,7 @@ use clap::{Parser, Subcommand};
 use host_tests::{
     simulate::{Coefficients, Preset},
     study::{
+        clean::{self, Absent},
         coefficients,
         hidden_effect::{Strength, both_found, cases, false_alarms, hide, study},
         lines, precision, quantile,
@@ -13,6 +14,10 @@ use host_tests::{
         theory, thermal,
     },
 };
+use std::collections::BTreeMap;
+
+/// The symbols of the five terms, in the order of the model.
+const SYMBOLS: [&str; 5] = ["Q", "N", "B", "K", "R"];
 
 #[derive(Parser)]
 #[command(about = "Statistics over thousands of simulated records")]
@@ -49,6 +54,18 @@ enum Study {
         /// Number of records per preset
         #[arg(long, default_value_t = 1000)]
         records: u64,
+    },
+    /// Count what is claimed of records in which nothing is hidden, at every length, and which absent terms are measured
+    Clean {
+        /// Number of records per gyro
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+        /// Study only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
+        /// Multiply the rate random walk
+        #[arg(long, default_value_t = 1.0)]
+        walk: f64,
     },
     /// Count how often a temperature that the rate depends on is found, and another one is blamed
     Thermal {
@@ -89,6 +106,11 @@ fn main() -> Result<()> {
             effect,
         } => hidden(records, clean, preset, effect.as_deref()),
         Study::Lines { records } => random_lines(records),
+        Study::Clean {
+            records,
+            preset,
+            walk,
+        } => clean_records(records, preset, walk),
         Study::Thermal { records } => temperatures(records),
         Study::SelfTest { devices } => self_tests(devices),
         Study::Precision { records } => precisions(records)?,
@@ -207,7 +229,7 @@ fn accuracies(records: u64, tolerance: f64) {
             "{:>3} {:>10} {:>8} {:>10} {:>10}",
             "", "rms error", "bias", "coverage", "measured"
         );
-        for (symbol, a) in ["Q", "N", "B", "K", "R"].iter().zip(accuracies) {
+        for (symbol, a) in SYMBOLS.iter().zip(accuracies) {
             println!(
                 "{symbol:>3} {:>9.2}% {:>7.2}% {:>9.1}% {:>9.1}%",
                 100.0 * a.rms_error,
@@ -355,6 +377,67 @@ fn random_lines(records: u64) {
             );
         }
     }
+}
+
+fn clean_records(records: u64, only: Option<Preset>, walk: f64) {
+    let presets = Preset::ALL.into_iter();
+    for preset in presets.filter(|&preset| only.is_none_or(|only| only == preset)) {
+        for absent in [0, 2, 3, 4]
+            .map(Absent::Term)
+            .into_iter()
+            .chain([Absent::None])
+        {
+            let mut coefficients = clean::without(preset, absent);
+            coefficients.rate_random_walk *= walk;
+            let lacks = match absent {
+                Absent::None => "all five terms".to_owned(),
+                Absent::Term(i) => format!("{} absent", SYMBOLS[i]),
+            };
+            println!(
+                "\n{}, {lacks}, {records} records; shares in %",
+                format!("{preset:?}").to_lowercase()
+            );
+            println!(
+                "{:>8} {:>7} {:>10} {:>7} | {:>34} | {:>34}",
+                "samples",
+                "aborted",
+                "inadequate",
+                "claimed",
+                "measured: Q N B K R",
+                "covered: Q N B K R"
+            );
+            for (tally, length) in clean::study(coefficients, records)
+                .into_iter()
+                .zip(clean::LENGTHS)
+            {
+                let percent = |count: usize| 100.0 * count as f64 / tally.records as f64;
+                print!(
+                    "{:>8} {:>7.1} {:>10.1} {:>7.1} |",
+                    format!("2^{length}"),
+                    percent(tally.aborted),
+                    percent(tally.inadequate),
+                    percent(tally.claimed.len())
+                );
+                for count in tally.measured {
+                    print!(" {:>6.1}", percent(count));
+                }
+                print!(" |");
+                for count in tally.covered {
+                    print!(" {:>6.1}", percent(count));
+                }
+                println!("  {:?}", counted(&tally.claimed));
+            }
+        }
+    }
+}
+
+/// The distinct names, with how often each occurs.
+fn counted<'a>(names: &[&'a str]) -> BTreeMap<&'a str, usize> {
+    let mut counts = BTreeMap::new();
+    for name in names {
+        *counts.entry(*name).or_insert(0) += 1;
+    }
+    counts
 }
 
 fn temperatures(records: u64) {

@@ -147,6 +147,23 @@ impl Problem {
             .unwrap_or(([0.0; MOST], 0.0))
     }
 
+    /// The largest sum of squares that the unknowns explain with unknown `i` at a value and none negative.
+    pub(super) fn explained_beside(&self, i: usize, value: f64) -> f64 {
+        let choices = (0..1_u32 << self.count).filter(|chosen| chosen >> i & 1 == 0);
+        let right = |j: usize| {
+            let shared = self.h[j][i] / (self.length(j) * self.length(i));
+            self.b[j] / self.length(j) - shared * value
+        };
+        let solutions = choices.filter_map(|chosen| {
+            let mut x = self.eliminated(chosen, right)?;
+            x = core::array::from_fn(|j| if chosen >> j & 1 == 1 { x[j] } else { 0.0 });
+            x[i] = value;
+            x.iter().all(|&x| x >= 0.0).then_some(x)
+        });
+        let explained = solutions.map(|x| self.explained(&x));
+        explained.fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// A solution in scaled units.
     pub(super) fn scaled(&self, solution: &Vector) -> [f64; MOST] {
         core::array::from_fn(|i| {

@@ -11,6 +11,7 @@ pub(super) enum WireVerdict {
     Unexplained,
     Invalid(WireReason),
     TooShort,
+    Incomplete,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -32,6 +33,7 @@ impl From<Option<Verdict>> for WireVerdict {
             Some(Verdict::Unexplained) => Self::Unexplained,
             Some(Verdict::Invalid(reason)) => Self::Invalid(reason.into()),
             Some(Verdict::TooShort) => Self::TooShort,
+            Some(Verdict::Incomplete) => Self::Incomplete,
         }
     }
 }
@@ -45,6 +47,7 @@ impl From<WireVerdict> for Option<Verdict> {
             WireVerdict::Unexplained => Some(Verdict::Unexplained),
             WireVerdict::Invalid(reason) => Some(Verdict::Invalid(reason.into())),
             WireVerdict::TooShort => Some(Verdict::TooShort),
+            WireVerdict::Incomplete => Some(Verdict::Incomplete),
         }
     }
 }

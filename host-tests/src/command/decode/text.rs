@@ -101,6 +101,8 @@ fn judgement(axis: &AxisCertificate) -> String {
         Some(Verdict::Adequate) => "adequate".into(),
         Some(Verdict::Improved) if found.is_empty() => "improved".into(),
         Some(Verdict::Improved) => format!("with {found}"),
+        Some(Verdict::Incomplete) if found.is_empty() => "incomplete".into(),
+        Some(Verdict::Incomplete) => format!("with {found}, part unexplained"),
         Some(Verdict::Unexplained) => "unexplained".into(),
         Some(Verdict::TooShort) => "too short to judge".into(),
         Some(Verdict::Invalid(reason)) => format!("invalid, {reason}"),

@@ -20,6 +20,9 @@ use allanite::{
 use clap::Args;
 use std::path::{Path, PathBuf};
 
+/// What a p-value is worth after an effect was chosen.
+const SELECTED: &str = "the last p-value takes the added effects for known: they were the best of many, so it is too high";
+
 /// The input of a diagnosis and its settings.
 #[derive(Debug, Args)]
 pub(crate) struct DiagnosisArguments {
@@ -218,6 +221,10 @@ impl Diagnosed {
                 words::alternatives(others.iter().copied())
             ));
         }
+        if self.added().next().is_some() && self.verdict == Verdict::Improved {
+            notes.push(SELECTED.into());
+        }
+        notes.extend(words::widened(&last.fit));
         if self.missing().count() > 0 {
             notes.extend(words::damage(first, last, self.axis.unit));
         }

@@ -39,6 +39,8 @@ struct Step {
     chi2: f64,
     dof: usize,
     p_value: f64,
+    /// The factor by which intervals and bounds are widened.
+    birge_ratio: f64,
     rms_percent: f64,
     worst: Option<Worst>,
     candidates: Vec<Candidate>,
@@ -105,6 +107,7 @@ fn step(step: &Taken<OCTAVES>, diagnosed: &Diagnosed, unit: Unit) -> Step {
         chi2: step.fit.chi_squared,
         dof: step.fit.degrees_of_freedom,
         p_value: step.fit.p_value,
+        birge_ratio: step.fit.birge_ratio,
         rms_percent: step.comparison.rms_percent,
         worst: model_json::worst(&step.comparison),
         candidates: step.candidates.iter().map(candidate).collect(),

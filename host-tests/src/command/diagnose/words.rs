@@ -193,10 +193,10 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
             } else {
                 format!("{effects}: {names}{alike}; {error}")
             };
-            if last.fit.is_adequate() == Some(true) {
+            if diagnosed.verdict == Verdict::Improved {
                 format!("{missing}; the model is adequate now (p {p}).")
             } else {
-                format!("{missing}; a small difference remains that no effect explains (p {p}).")
+                format!("{missing}; a difference remains that no effect explains (p {p}).")
             }
         }
     }

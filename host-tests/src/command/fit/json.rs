@@ -22,6 +22,8 @@ struct Axis<'a> {
     chi2: Option<f64>,
     dof: Option<usize>,
     p_value: Option<f64>,
+    /// The factor by which intervals and bounds are widened.
+    birge_ratio: f64,
 }
 
 #[derive(Serialize)]
@@ -82,6 +84,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         chi2: finite(fit.chi_squared),
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
         p_value: finite(fit.p_value),
+        birge_ratio: fit.birge_ratio,
     }
 }
 

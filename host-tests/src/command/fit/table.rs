@@ -166,5 +166,8 @@ fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
         "The five-term model is not adequate: the record has another effect, which distorts the \
          coefficients."
     };
-    vec![first, judgement.into()]
+    [first, judgement.into()]
+        .into_iter()
+        .chain(words::widened(fit))
+        .collect()
 }

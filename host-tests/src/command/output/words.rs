@@ -173,6 +173,14 @@ pub(crate) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
     ))
 }
 
+/// By how much the intervals of a model that is not adequate are widened.
+pub(crate) fn widened(fit: &Fit) -> Option<String> {
+    (fit.birge_ratio > 1.0).then(|| {
+        let factor = number(fit.birge_ratio);
+        format!("The intervals are {factor} times as wide as those of an adequate model: √(χ²/degrees of freedom).")
+    })
+}
+
 /// How the coefficients of the first step were wrong because effects were missing from its model.
 pub(crate) fn damage(first: &Step<OCTAVES>, last: &Step<OCTAVES>, unit: Unit) -> Vec<String> {
     let before = first.model.terms().iter().zip(&first.fit.coefficients);

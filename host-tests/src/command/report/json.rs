@@ -98,6 +98,8 @@ struct Fitted {
     chi2: f64,
     dof: usize,
     p_value: f64,
+    /// The factor by which intervals and bounds are widened.
+    birge_ratio: f64,
     rms_percent: f64,
     coefficients: Vec<fit::json::Term>,
     view: View,
@@ -191,6 +193,7 @@ fn fitted(diagnosed: &Diagnosed, at: usize, tried: &Tried, frame: &Frame) -> Opt
         chi2: step.fit.chi_squared,
         dof: step.fit.degrees_of_freedom,
         p_value: step.fit.p_value,
+        birge_ratio: step.fit.birge_ratio,
         rms_percent: step.comparison.rms_percent,
         coefficients: model_json::coefficients(&step.fit, diagnosed.axis.unit),
         view: view(model, &step, frame),

@@ -96,6 +96,7 @@ fn badge(diagnosed: &Diagnosed) -> (&'static str, &'static str) {
     match diagnosed.verdict {
         Verdict::Adequate => ("good", "five terms suffice"),
         Verdict::Improved => ("found", "effects found"),
+        Verdict::Incomplete => ("open", "effects found, part unexplained"),
         Verdict::Unexplained => ("open", "unexplained"),
         Verdict::TooShort => ("open", "too short to judge"),
         Verdict::Invalid(_) => ("open", "record invalid"),

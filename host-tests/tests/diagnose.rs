@@ -176,7 +176,7 @@ fn json_has_the_documented_fields_and_no_others() {
     let step = &axis["steps"][0];
     assert_eq!(
         keys(step),
-        "added candidates chi2 coefficients dof effects p_value rms_percent worst"
+        "added birge_ratio candidates chi2 coefficients dof effects p_value rms_percent worst"
     );
     assert_eq!(keys(&step["worst"]), "percent tau_s z");
     assert_eq!(keys(&step["effects"][0]), "name parameters");

@@ -109,13 +109,33 @@ fn coefficient<const K: usize>(
         return Coefficient::new(term.effect, 0.0, None);
     }
     let square = solver.squares[i];
-    let interval = interval(problem, solver, i, shape, widened);
-    let coefficient = Coefficient::new(term.effect, square, interval);
-    if coefficient.state != State::UpperBound {
+    let interval = |widened| interval(problem, solver, i, shape, widened);
+    let coefficient = Coefficient::new(term.effect, square, interval(1.0));
+    // Whether an effect is observable does not depend on how well the others explain the curve.
+    let coefficient = match coefficient.state {
+        State::UpperBound => bounded(problem, solver, i, coefficient),
+        _ => coefficient,
+    };
+    if widened <= 1.0 || matches!(coefficient.state, State::NotObservable { .. }) {
         return coefficient;
     }
-    let first = coefficient.upper * coefficient.upper;
-    let bound = bound(problem, solver, i, first, widened);
+    let wide = Coefficient::new(term.effect, square, interval(widened));
+    Coefficient {
+        upper: wide.upper.max(coefficient.upper),
+        ..wide
+    }
+}
+
+/// A coefficient whose interval includes zero, with its bound, or with the length of a record that would show
+/// it.
+#[inline(never)]
+fn bounded<const K: usize>(
+    problem: &Problem<'_, K>,
+    solver: &Solver<K>,
+    i: usize,
+    coefficient: Coefficient,
+) -> Coefficient {
+    let bound = bound(problem, solver, i, coefficient.upper * coefficient.upper);
     let upper = math::sqrt(bound);
     let state = if is_informative(problem, solver, i, bound) {
         State::UpperBound
@@ -175,7 +195,6 @@ fn bound<const K: usize>(
     solver: &Solver<K>,
     i: usize,
     first: Real,
-    widened: Real,
 ) -> Real {
     let curve = |k: usize| problem.measured(k);
     let weights = &solver.weights;
@@ -192,7 +211,7 @@ fn bound<const K: usize>(
         let Some(variance) = equations.variance(i, &free) else {
             break;
         };
-        bound = Coefficient::one_sided_bound(squares[i], variance * widened * widened);
+        bound = Coefficient::one_sided_bound(squares[i], variance);
     }
     bound
 }

@@ -256,3 +256,123 @@ const RECIPROCALS: [Real; if cfg!(feature = "double") { 18 } else { 11 }] = {
     }
     reciprocals
 };
+
+#[cfg(test)]
+mod tests {
+    //! The arithmetic of either precision against double precision, and against bias instability.
+
+    use super::*;
+    use crate::real::{by_precision, double, real};
+
+    const INTERVAL_S: f64 = 0.01;
+
+    fn shape(exponent: f64) -> SampledShape {
+        SampledShape {
+            interval_s: real(INTERVAL_S),
+            parameters: [real(exponent), 0.0],
+        }
+    }
+
+    /// The second difference over one cluster, in units of τ² times the Allan variance, from its definition.
+    fn expected(exponent: f64, s: f64) -> f64 {
+        let epsilon = exponent - 1.0;
+        let h = |s: f64| {
+            if s == 0.0 {
+                return 0.0;
+            }
+            let log = libm::log(s);
+            let (part, whole) = if epsilon == 0.0 {
+                (log, core::f64::consts::LN_2)
+            } else {
+                let growth = |x: f64| libm::expm1(epsilon * x);
+                (growth(log), growth(core::f64::consts::LN_2))
+            };
+            s * s * part / (4.0 * whole)
+        };
+        h(s + 1.0) - 2.0 * h(s) + h(libm::fabs(s - 1.0))
+    }
+
+    const EXPONENTS: [f64; 10] = [0.3, 0.5, 0.9, 0.9999, 1.0, 1.000_001, 1.01, 1.3, 1.8, 1.95];
+
+    #[test]
+    fn second_differences_have_the_precision_of_their_numbers() {
+        for exponent in EXPONENTS {
+            for m in [1_u32, 8, 4096, 1 << 20] {
+                let mut sum = SecondDifferences::zero(m, lattice::END);
+                PowerLaw.add_second_differences(real(m), 3.0, &shape(exponent), &mut sum);
+                let rounded = sum.rounded();
+                let zero = f64::from(rounded.at(0));
+                for slot in 0..lattice::LEN {
+                    let position = lattice::position(slot);
+                    // Beyond this, double precision has lost too many digits.
+                    let ratio = 0.25 * f64::from(position);
+                    if ratio > 300.0 {
+                        break;
+                    }
+                    let difference = expected(exponent, ratio);
+                    let found = f64::from(rounded.at(position)) - zero;
+                    let off = found - (difference - expected(exponent, 0.0));
+                    let most = 3e-6 * (1.0 + libm::fabs(difference));
+                    assert!(
+                        libm::fabs(off) < most,
+                        "{exponent}, m {m}, {position}: off by {off:e} of {difference}"
+                    );
+                    let single = PowerLaw.second_difference(
+                        real(ratio) * real(m),
+                        real(m),
+                        &shape(exponent),
+                    );
+                    let unit = double(PowerLaw.variance(real(m), &shape(exponent)))
+                        * (f64::from(m) * INTERVAL_S)
+                        * (f64::from(m) * INTERVAL_S);
+                    let off = double(single) / unit - difference;
+                    assert!(
+                        libm::fabs(off) < 3.0 * most,
+                        "{exponent}, m {m}, {position}: alone off by {off:e} of {difference}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn variances_are_powers_of_the_averaging_time() {
+        for exponent in EXPONENTS {
+            let shape = shape(exponent);
+            let mut factors = (0..30).map(|k| real(1_u32 << k));
+            let mut k = 0;
+            PowerLaw.variances(&mut factors, &shape, &mut |variance| {
+                let tau_s = INTERVAL_S * f64::from(1_u32 << k);
+                let expected = libm::pow(tau_s, exponent - 1.0);
+                let off = double(variance) / expected - 1.0;
+                let most = double(by_precision(1e-13, 4e-6));
+                assert!(libm::fabs(off) < most, "{exponent}, octave {k}: {off:e}");
+                k += 1;
+            });
+            assert_eq!(k, 30);
+        }
+    }
+
+    #[test]
+    fn exponent_one_is_bias_instability() {
+        let (law, flicker) = (shape(1.0), SampledShape::new(real(INTERVAL_S)));
+        for m in [1.0, 64.0, 65_536.0] {
+            let scale = BiasInstability.variance(m, &flicker);
+            assert!((PowerLaw.variance(m, &law) - 1.0).abs() < by_precision(1e-14, 1e-6));
+            for x in [0.0, 0.25, 1.0, 3.0, 5.0, 100.0] {
+                let change = |effect: &dyn Effect, shape| {
+                    let from = effect.second_difference(2.0 * m, m, shape);
+                    effect.second_difference(x * m, m, shape) - from
+                };
+                let tau2 = m * m * real(INTERVAL_S * INTERVAL_S);
+                let found = scale * change(&PowerLaw, &law) / tau2;
+                let expected = change(&BiasInstability, &flicker) / tau2;
+                let most = by_precision(1e-10, 1e-4);
+                assert!(
+                    (found - expected).abs() < most,
+                    "m {m}, {x}: {found}, {expected}"
+                );
+            }
+        }
+    }
+}

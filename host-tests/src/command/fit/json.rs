@@ -1,7 +1,10 @@
 //! The JSON document of a fit.
 
 use super::fitted::Fitted;
-use crate::{command::output::units, unit::Unit};
+use crate::{
+    command::output::{rounding, units},
+    unit::Unit,
+};
 use allanite::{Coefficient, fit::State};
 use serde::Serialize;
 
@@ -22,6 +25,7 @@ struct Axis<'a> {
     chi2: Option<f64>,
     dof: Option<usize>,
     p_value: Option<f64>,
+    notes: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -82,6 +86,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         chi2: finite(fit.chi_squared),
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
         p_value: finite(fit.p_value),
+        notes: rounding::note(axis, fit).into_iter().collect(),
     }
 }
 

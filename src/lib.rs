@@ -165,6 +165,7 @@
 //!             symbol: "H",
 //!             coefficient: "amplitude",
 //!             half_seconds: 0, // the unit of the coefficient is that of the rate
+//!             reference_s: None,
 //!             parameters: &[],
 //!             code: FIRST_OWN_CODE, // the number in stored records
 //!             replaces: None,

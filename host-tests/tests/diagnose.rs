@@ -55,6 +55,8 @@ fn hidden_effect_is_named_with_its_shape_and_size() {
         ("low_pass:time_constant_s=0.02", false),
         ("decimation_filter:width_s=0.03,stages=2", true),
         ("random_telegraph:correlation_time_s=1,rms=0.03", false),
+        ("power_law:exponent=0.7,deviation_at_one_second=0.03", true),
+        ("power_law:exponent=1.3,deviation_at_one_second=0.1", true),
     ] {
         hide(folder.path(), "11", &[effect]);
         let document = json(folder.path(), &["diagnose", "log.csv"]);

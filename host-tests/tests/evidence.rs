@@ -44,7 +44,8 @@ fn list(value: &Value) -> Vec<&str> {
 fn a_disturbed_record_is_invalid_and_blames_no_effect() {
     let folder = TempDir::new().unwrap();
     let mut held = 0.0;
-    let cases: [(&str, &str, Change<'_>); 3] = [
+    let mut read = 0.0;
+    let cases: [(&str, &str, Change<'_>); 4] = [
         ("moved", "moved", &mut |i, rate| {
             let turned = (30_000..30_400).contains(&i);
             rate + if turned { 20.0 } else { 0.0 }
@@ -57,6 +58,12 @@ fn a_disturbed_record_is_invalid_and_blames_no_effect() {
         }),
         ("spike", "spike", &mut |i, rate| {
             if i == 12_345 { 500.0 } else { rate }
+        }),
+        ("repeated", "rate is half", &mut |i, rate| {
+            if i % 2 == 0 {
+                read = rate;
+            }
+            read
         }),
     ];
     for (name, word, disturb) in cases {
@@ -80,6 +87,51 @@ fn a_disturbed_record_is_invalid_and_blames_no_effect() {
         assert!(text.contains("because the curve is not valid: "), "{text}");
         assert!(notes.iter().all(|note| text.contains(note)), "{text}");
     }
+}
+
+#[test]
+fn the_share_of_rounding_is_told() {
+    let folder = TempDir::new().unwrap();
+    simulate(folder.path(), &[]);
+    // The noise is about 0.8 counts, to which rounding adds some 8 %.
+    change(folder.path(), |_, rate: f64| (rate / 0.07).round());
+    let document = json(folder.path(), &["fit", "log.csv", "--scale", "0.07"]);
+    let fitted = list(&document["axes"][0]["notes"]);
+    let [note] = fitted[..] else {
+        panic!("{fitted:?}")
+    };
+    let percent = note.strip_prefix("rounding to whole counts raises angle random walk by ");
+    let percent = percent.and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+    assert!(
+        percent.is_some_and(|percent| (6.0..11.0).contains(&percent)),
+        "{note}"
+    );
+    let value = note.split("without it, it is ").nth(1).unwrap();
+    let value: f64 = value.split(' ').next().unwrap().parse().unwrap();
+    // The gyro has 0.005 deg/√s, which is 0.3 °/√h.
+    assert!((value / 0.3 - 1.0).abs() < 0.03, "{note}");
+    let text = output(folder.path(), &["fit", "log.csv", "--scale", "0.07"]);
+    assert!(text.contains(note), "{text}");
+    let diagnosed = json(folder.path(), &["diagnose", "log.csv", "--scale", "0.07"]);
+    assert!(list(&diagnosed["axes"][0]["notes"]).contains(&note));
+}
+
+#[test]
+fn noise_below_half_a_count_is_invalid() {
+    let folder = TempDir::new().unwrap();
+    simulate(folder.path(), &[]);
+    change(folder.path(), |_, rate: f64| (rate / 0.2).round());
+    let document = json(folder.path(), &["fit", "log.csv", "--scale", "0.2"]);
+    let fitted = list(&document["axes"][0]["notes"]);
+    assert!(
+        fitted[0].starts_with("the noise is below half a count"),
+        "{fitted:?}"
+    );
+    let diagnosed = json(folder.path(), &["diagnose", "log.csv", "--scale", "0.2"]);
+    let axis = &diagnosed["axes"][0];
+    assert_eq!(axis["verdict"], "invalid");
+    let notes = list(&axis["notes"]);
+    assert!(notes[0].contains("below half a count"), "{notes:?}");
 }
 
 #[test]

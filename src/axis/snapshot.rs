@@ -1,4 +1,4 @@
-//! Snapshots of everything that is kept of a record, including the self-tests: version 2 of the format.
+//! Snapshots of everything that is kept of a record, including the self-tests: version 3 of the format.
 //!
 //! This table describes the payload of the [`envelope`]. The payload is in
 //! postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits first,
@@ -32,7 +32,7 @@ use crate::{
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 
 /// The largest number of bytes that the integrity of an axis takes.
 const INTEGRITY: usize = 520;

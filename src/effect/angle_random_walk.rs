@@ -15,6 +15,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "N",
     coefficient: "angle_random_walk",
     half_seconds: 1,
+    reference_s: None,
     parameters: &[],
     code: 2,
     replaces: None,

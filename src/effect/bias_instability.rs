@@ -23,6 +23,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "B",
     coefficient: "bias_instability",
     half_seconds: 0,
+    reference_s: None,
     parameters: &[],
     code: 3,
     replaces: None,

@@ -24,6 +24,10 @@ pub struct Description {
     /// The power of √s in the coefficient's unit, which is rate unit · s^(`half_seconds`/2): 1 for the
     /// angle random walk, whose unit is rate · √s.
     pub half_seconds: i8,
+    /// The averaging time in seconds at which the coefficient is the Allan deviation. An effect has one if
+    /// the exponent of its variance depends on a shape parameter, because no unit would then suit all
+    /// shapes. `None` if the unit says what the coefficient is.
+    pub reference_s: Option<Real>,
     /// The shape parameters, at most [`MAX_PARAMETERS`](super::MAX_PARAMETERS).
     pub parameters: &'static [Parameter],
     /// The number that stands for the effect in a certificate. The catalogue uses 1 to 127, and a number

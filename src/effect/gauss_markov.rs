@@ -23,6 +23,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "s",
     coefficient: "rms",
     half_seconds: 0,
+    reference_s: None,
     parameters: &[Parameter {
         name: "correlation_time_s",
         unit: "s",

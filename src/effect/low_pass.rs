@@ -28,6 +28,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "N",
     coefficient: "angle_random_walk",
     half_seconds: 1,
+    reference_s: None,
     parameters: &[Parameter {
         name: "time_constant_s",
         unit: "s",

@@ -59,6 +59,7 @@ catalogue! {
     low_pass::LowPass,
     decimation_filter::DecimationFilter,
     random_telegraph::RandomTelegraph,
+    power_law::PowerLaw,
 }
 
 /// The five terms of IEEE Std 952-1997, annex C, in the order of their slopes.

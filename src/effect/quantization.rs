@@ -14,6 +14,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "Q",
     coefficient: "quantization",
     half_seconds: 2,
+    reference_s: None,
     parameters: &[],
     code: 1,
     replaces: None,

@@ -18,6 +18,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "s",
     coefficient: "rms",
     half_seconds: 0,
+    reference_s: None,
     parameters: gauss_markov::DESCRIPTION.parameters,
     code: 11,
     replaces: None,

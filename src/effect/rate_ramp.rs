@@ -13,6 +13,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "R",
     coefficient: "rate_ramp",
     half_seconds: -2,
+    reference_s: None,
     parameters: &[],
     code: 5,
     replaces: None,

@@ -16,6 +16,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "K",
     coefficient: "rate_random_walk",
     half_seconds: -1,
+    reference_s: None,
     parameters: &[],
     code: 4,
     replaces: None,

@@ -34,6 +34,7 @@ pub(super) const DESCRIPTION: Description = Description {
     symbol: "Ω",
     coefficient: "amplitude",
     half_seconds: 0,
+    reference_s: None,
     parameters: &[Parameter {
         name: "frequency_hz",
         unit: "Hz",

@@ -22,6 +22,14 @@ pub struct Limits {
     /// on. Default 1. The default is chosen by hand: 1000 samples are the fewest of which a thousandth
     /// is one.
     pub change_per_mille: u16,
+    /// The smallest mean square of the differences of neighbouring samples, in thousandths of a squared
+    /// count. It is judged from 1000 differences on. Default 640. White noise of 0.475 to 0.495 counts rms
+    /// has it, which depends on where between two counts the mean lies.
+    /// `host-tests/tests/integrity/coarse.rs` sets the default: above it, angle random walk depends on that
+    /// place by less than 2 %, and a record of 0.5 counts rms is valid wherever its mean lies. The
+    /// noise from sample to sample is taken for white. Noise that changes more slowly counts only as far
+    /// as neighbours differ, because the short averaging times show no more of it.
+    pub difference_per_mille: u16,
     /// A sample is an outlier if it deviates by more than this multiple of the mean absolute difference
     /// of neighbours, `8 … 256`. Default 20. For white noise, the default is 16 standard deviations of
     /// a difference.
@@ -53,6 +61,7 @@ impl Limits {
         run_factor: 128,
         stuck_per_mille: 1,
         change_per_mille: 1,
+        difference_per_mille: 640,
         spike_factor: 20,
         spike_per_mille: 50,
         motion_factor: 64,
@@ -67,6 +76,7 @@ impl Limits {
             ("run_factor", self.run_factor, FACTOR),
             ("stuck_per_mille", self.stuck_per_mille, SHARE),
             ("change_per_mille", self.change_per_mille, SHARE),
+            ("difference_per_mille", self.difference_per_mille, SHARE),
             ("spike_factor", self.spike_factor, FACTOR),
             ("spike_per_mille", self.spike_per_mille, SHARE),
             ("motion_factor", self.motion_factor, FACTOR),

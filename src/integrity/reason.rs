@@ -15,6 +15,21 @@ pub enum Reason {
         /// Samples of the record.
         samples: u64,
     },
+    /// Every sample is there several times: the sensor's rate is a fraction of what was given.
+    Repeated {
+        /// How often each sample is there.
+        times: u8,
+        /// Number of samples that differ from the one before.
+        changes: u64,
+        /// Samples of the record.
+        samples: u64,
+    },
+    /// The noise is below half a count, so that rounding is no noise that adds. The variance of short
+    /// averaging times then follows from where between two counts the constant offset lies.
+    Coarse {
+        /// The mean square of the differences of neighbouring samples, in thousandths of a squared count.
+        per_mille: u16,
+    },
     /// Too many values are extreme values of the converter: the rate left the sensor's range, or the
     /// sensor marks bad data with such a value.
     Railed {
@@ -67,6 +82,31 @@ impl core::fmt::Display for Reason {
                 "the values are stuck: up to {longest_run} equal values in a row, {changes} changes \
                  in {samples} samples; check that the sensor is read at its own rate, or use a finer \
                  range"
+            ),
+            Self::Repeated {
+                times,
+                changes,
+                samples,
+            } => {
+                let (every, rate) = match times {
+                    2 => ("twice", "half"),
+                    3 => ("three times", "a third"),
+                    _ => ("four times", "a quarter"),
+                };
+                write!(
+                    f,
+                    "every sample is there {every}, {changes} changes in {samples} samples: the \
+                     sensor's rate is {rate} of what was given; read the sensor at its own rate, or \
+                     give that rate and leave the repeated samples out"
+                )
+            }
+            Self::Coarse { per_mille } => write!(
+                f,
+                "the noise is below half a count: the mean square of the differences of neighbouring \
+                 samples is {}.{:03} squared counts, and the result would follow from the constant \
+                 offset; use a finer range",
+                per_mille / 1000,
+                per_mille % 1000
             ),
             Self::Railed { hits, samples } => write!(
                 f,

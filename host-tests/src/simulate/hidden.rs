@@ -59,8 +59,12 @@ impl Hidden {
 
     /// Whether the effect replaces the white noise of the record.
     pub fn replaces_white_noise(&self) -> bool {
-        let white = AngleRandomWalk.description().name;
+        self.replaces(&AngleRandomWalk)
+    }
+
+    /// Whether the effect takes the place of this one.
+    pub fn replaces(&self, other: &dyn Effect) -> bool {
         let replaced = self.effect.replaces();
-        replaced.is_some_and(|effect| effect.name() == white)
+        replaced.is_some_and(|effect| effect.name() == other.name())
     }
 }

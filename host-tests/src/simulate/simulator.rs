@@ -1,6 +1,7 @@
 //! A gyro at rest, composed of sources of noise.
 
 use super::{Coefficients, Hidden, Random, Source, ieee_952};
+use allanite::effect::BiasInstability;
 use rand::SeedableRng;
 
 /// An endless record of a gyro at rest. Each rate is averaged over its sample interval.
@@ -19,16 +20,21 @@ impl Simulator {
         Self { random, sources }
     }
 
-    /// A gyro with hidden effects. An effect that replaces white noise takes the place of that
-    /// term.
+    /// A gyro with hidden effects. An effect that replaces one of the five terms takes the place of
+    /// that term.
     pub fn with_hidden(
         mut coefficients: Coefficients,
         hidden: &[Hidden],
         rate_hz: f64,
         seed: u64,
     ) -> Self {
-        if hidden.iter().any(Hidden::replaces_white_noise) {
-            coefficients.angle_random_walk = 0.0;
+        for hidden in hidden {
+            if hidden.replaces_white_noise() {
+                coefficients.angle_random_walk = 0.0;
+            }
+            if hidden.replaces(&BiasInstability) {
+                coefficients.bias_instability = 0.0;
+            }
         }
         let mut simulator = Self::new(coefficients, rate_hz, seed);
         for effect in hidden {

@@ -5,7 +5,7 @@ use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
 use allanite::{
     Axis, Comparison, Curve, Model, Scale, Term,
     diagnosis::{Addition, Diagnosis, Evidence, Step, Verdict},
-    effect::{CATALOGUE, EXPLAINED, Effect, IEEE_952, MAX_PARAMETERS},
+    effect::{BiasInstability, CATALOGUE, EXPLAINED, Effect, IEEE_952, MAX_PARAMETERS},
     fit::{Fit, Options, fit},
 };
 use rayon::prelude::*;
@@ -94,6 +94,9 @@ fn expected_chi_squared(hidden: &Hidden, base: Coefficients) -> f64 {
     let mut squares = squares(base);
     if hidden.replaces_white_noise() {
         squares[1] = 0.0;
+    }
+    if hidden.replaces(&BiasInstability) {
+        squares[2] = 0.0;
     }
     let term = Term {
         parameters: hidden.parameters,

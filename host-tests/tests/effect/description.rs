@@ -1,10 +1,10 @@
 //! What is told about an effect: its names, its units and its explanation.
 
 use super::shapes::{SPAN, assert_relative, for_every_shape};
-use allanite::effect::{EXPLAINED, Effect, FIRST_OWN_CODE, MAX_PARAMETERS};
+use allanite::effect::{EXPLAINED, Effect, FIRST_OWN_CODE, MAX_PARAMETERS, SampledShape};
 
 /// If the unit of time changes, a variance changes by a power of it. The unit of the coefficient
-/// must contain that power.
+/// must contain that power. A reference time changes with the unit.
 #[test]
 fn units_are_those_of_the_variances() {
     const FACTOR: f64 = 4.0;
@@ -19,7 +19,14 @@ fn units_are_those_of_the_variances() {
                 unit => panic!("{name}: {unit} is not a power of time"),
             };
         }
-        let ratio = effect.variance(16.0, shape) / effect.variance(16.0, &slower);
+        let reference_s = effect.description().reference_s;
+        let unit = |shape: &SampledShape, factor: f64| {
+            let m = reference_s.map(|reference_s| factor * reference_s / shape.interval_s);
+            m.map_or(1.0, |m| effect.variance(m, shape))
+        };
+        assert_relative(unit(shape, 1.0), 1.0, 1e-9, name);
+        let fast = effect.variance(16.0, shape) / unit(shape, 1.0);
+        let ratio = fast * unit(&slower, FACTOR) / effect.variance(16.0, &slower);
         let expected = FACTOR.powi(effect.half_seconds().into());
         assert_relative(ratio, expected, 1e-9, name);
     });

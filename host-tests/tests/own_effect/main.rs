@@ -149,6 +149,7 @@ impl Effect for Impostor {
             symbol: "s",
             coefficient: "rms",
             half_seconds: 0,
+            reference_s: None,
             parameters: &[],
             code: 7,
             replaces: None,

@@ -23,6 +23,7 @@ impl Effect for SecondOrderGaussMarkov {
             symbol: "s",
             coefficient: "rms",
             half_seconds: 0,
+            reference_s: None,
             parameters: &[Parameter {
                 name: "time_constant_s",
                 unit: "s",

@@ -130,5 +130,11 @@ fn is_possible_verdict(verdict: Verdict) -> bool {
         Reason::Spiked { percent, .. } | Reason::Moved { percent, .. } => percent <= 100,
         Reason::Missing { missing, sent } => missing <= sent,
         Reason::LeftOut { left_out, samples } => left_out <= samples,
+        Reason::Repeated {
+            times,
+            changes,
+            samples,
+        } => (2..=4).contains(&times) && changes <= samples,
+        Reason::Coarse { per_mille } => per_mille < 1000,
     }
 }

@@ -22,6 +22,8 @@ pub(crate) enum WireReason {
     Moved(u64, u16, u8),
     Missing(u64, u64),
     LeftOut(u64, u64),
+    Repeated(u8, u64, u64),
+    Coarse(u16),
 }
 
 impl From<Option<Verdict>> for WireVerdict {
@@ -69,6 +71,12 @@ impl From<Reason> for WireReason {
             } => Self::Moved(motions, cluster, percent),
             Reason::Missing { missing, sent } => Self::Missing(missing, sent),
             Reason::LeftOut { left_out, samples } => Self::LeftOut(left_out, samples),
+            Reason::Repeated {
+                times,
+                changes,
+                samples,
+            } => Self::Repeated(times, changes, samples),
+            Reason::Coarse { per_mille } => Self::Coarse(per_mille),
         }
     }
 }
@@ -90,6 +98,12 @@ impl From<WireReason> for Reason {
             },
             WireReason::Missing(missing, sent) => Self::Missing { missing, sent },
             WireReason::LeftOut(left_out, samples) => Self::LeftOut { left_out, samples },
+            WireReason::Repeated(times, changes, samples) => Self::Repeated {
+                times,
+                changes,
+                samples,
+            },
+            WireReason::Coarse(per_mille) => Self::Coarse { per_mille },
         }
     }
 }

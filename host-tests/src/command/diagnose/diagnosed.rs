@@ -3,7 +3,7 @@
 use crate::{
     command::{
         input::record::{self, LogArguments},
-        output::words,
+        output::{rounding, words},
     },
     curve_file::AxisCurve,
     failure::Failure,
@@ -213,6 +213,8 @@ impl Diagnosed {
         }
         if let Verdict::Invalid(reason) = self.verdict {
             notes.push(reason.to_string());
+        } else {
+            notes.extend(rounding::note(&self.axis, &last.fit));
         }
         for (added, others) in self.ambiguous() {
             notes.push(format!(

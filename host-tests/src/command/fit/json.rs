@@ -1,7 +1,10 @@
 //! The JSON document of a fit.
 
 use super::fitted::Fitted;
-use crate::{command::output::units, unit::Unit};
+use crate::{
+    command::output::{rounding, units},
+    unit::Unit,
+};
 use allanite::{Coefficient, fit::State};
 use serde::Serialize;
 
@@ -24,6 +27,7 @@ struct Axis<'a> {
     p_value: Option<f64>,
     /// The factor by which intervals and bounds are widened.
     birge_ratio: f64,
+    notes: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -85,6 +89,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
         p_value: finite(fit.p_value),
         birge_ratio: fit.birge_ratio,
+        notes: rounding::note(axis, fit).into_iter().collect(),
     }
 }
 

@@ -4,7 +4,7 @@ use super::fitted::{Fitted, MethodName};
 use crate::{
     command::output::{
         number::{duration, number, probability},
-        units, words,
+        rounding, units, words,
     },
     unit::Unit,
 };
@@ -36,6 +36,9 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
         writeln!(output, "{}", table(&fitted.fit, axis.unit).trim_fmt())?;
         for line in verdict(&fitted.fit, fitted.method) {
             writeln!(output, "{line}")?;
+        }
+        if let Some(note) = rounding::note(axis, &fitted.fit) {
+            writeln!(output, "Note: {note}.")?;
         }
     }
     Ok(())

@@ -5,6 +5,7 @@ pub(super) mod file;
 pub(super) mod model_json;
 pub(super) mod number;
 pub(super) mod progress;
+pub(super) mod rounding;
 pub(super) mod temporary;
 pub(super) mod units;
 pub(super) mod words;

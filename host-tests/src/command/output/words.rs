@@ -137,7 +137,7 @@ pub(crate) fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: 
 }
 
 /// The factor to the customary unit and its name, or 1 and the log's own unit if there is none.
-fn customary(unit: Unit, half_seconds: i8) -> (f64, String) {
+pub(crate) fn customary(unit: Unit, half_seconds: i8) -> (f64, String) {
     match units::customary(unit, half_seconds) {
         Some((factor, name)) => (factor, name.into()),
         None => (1.0, units::unit(unit, half_seconds)),

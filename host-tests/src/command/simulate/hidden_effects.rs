@@ -5,7 +5,7 @@ use crate::{
     failure::{Failure, brief},
     simulate::{Coefficients, Course, Hidden, Thermal},
 };
-use allanite::effect::{CATALOGUE, DecimationFilter, Effect, IEEE_952};
+use allanite::effect::{AngleRandomWalk, CATALOGUE, DecimationFilter, Effect, IEEE_952};
 use clap::Args;
 
 /// The name of the thermal effect, which a curve without a temperature does not reveal.
@@ -82,9 +82,8 @@ impl HiddenArguments {
                 effects.thermal = Some(thermal(&mut argument)?);
             } else {
                 let hidden = hidden(&mut argument, coefficients)?;
-                let twice =
-                    |other: &Hidden| other.replaces_white_noise() && hidden.replaces_white_noise();
-                if effects.hidden.iter().any(twice) {
+                let mut others = effects.hidden.iter();
+                if hidden.replaces_white_noise() && others.any(Hidden::replaces_white_noise) {
                     return Err(argument.failure(
                         "two filters replace the same white noise",
                         "drop one of them",
@@ -119,9 +118,11 @@ fn hidden(
     let effect = argument.effect()?;
     let parameters = argument.shape(effect)?;
     let white = coefficients.angle_random_walk;
+    let replaced = effect.replaces().map(|replaced| replaced.name());
+    let replaces_white_noise = replaced == Some(AngleRandomWalk.description().name);
     let coefficient = match argument.take_positive(effect.coefficient())? {
         Some(coefficient) => coefficient,
-        None if effect.replaces().is_some() && white > 0.0 => white,
+        None if replaces_white_noise && white > 0.0 => white,
         None => argument.require(effect.coefficient())?,
     };
     Ok(Hidden {

@@ -1,17 +1,21 @@
 //! The studies that the README's figures rest on: `cargo xtask study NAME`.
 
 use allanite::fit::Options;
-use anyhow::Result;
+use anyhow::{Context as _, Result, bail};
 use clap::{Parser, Subcommand};
 use host_tests::{
     simulate::{Coefficients, Preset},
     study::{
         coefficients,
         hidden_effect::{Strength, both_found, cases, false_alarms, hide, study},
-        lines, precision, quantile,
+        lines, paper, precision, quantile,
         self_test::{self, Looks},
         theory, thermal,
     },
+};
+use std::{
+    fs,
+    path::{Path, PathBuf},
 };
 
 #[derive(Parser)]
@@ -28,6 +32,19 @@ enum Study {
         /// Number of records per table
         #[arg(long, default_value_t = 3000)]
         records: u64,
+    },
+    /// Repeat the experiment of Lv, Liu, Lai & Huang 2015: ordinary and weighted least squares on gyros of
+    /// three grades
+    Paper {
+        /// Number of records per gyro
+        #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(2..))]
+        records: u64,
+        /// Print JSON instead of a table
+        #[arg(long)]
+        json: bool,
+        /// Draw one record of each gyro and its fits into this file, .svg or .png
+        #[arg(long, value_name = "FILE")]
+        figure: Option<PathBuf>,
     },
     /// Count how often a hidden effect is found, named and measured, and how often one is claimed in vain
     HiddenEffect {
@@ -82,6 +99,11 @@ enum Study {
 fn main() -> Result<()> {
     match Arguments::parse().study {
         Study::Theory { records } => theory(records),
+        Study::Paper {
+            records,
+            json,
+            figure,
+        } => experiment(records, json, figure.as_deref())?,
         Study::HiddenEffect {
             records,
             clean,
@@ -120,6 +142,31 @@ fn precisions(records: u64) -> Result<()> {
         println!("{name:>28} {:>9} {:>22}", alike.same, alike.ambiguous);
     }
     Ok(())
+}
+
+fn experiment(records: u64, json: bool, figure: Option<&Path>) -> Result<()> {
+    if let Some(path) = figure {
+        draw(path).with_context(|| path.display().to_string())?;
+    }
+    let experiment = paper::study(records);
+    if json {
+        println!("{}", serde_json::to_string_pretty(&experiment)?);
+    } else {
+        print!("{experiment}");
+    }
+    Ok(())
+}
+
+/// Draws the first record of each gyro.
+fn draw(path: &Path) -> Result<()> {
+    let drawing = || paper::figure::figure(0);
+    let bytes = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("svg") => drawing().into_bytes(),
+        #[cfg(feature = "pictures")]
+        Some("png") => host_tests::plot::png(&drawing())?,
+        _ => bail!("a figure must end in .svg, or in .png with the feature `pictures`"),
+    };
+    Ok(fs::write(path, bytes)?)
 }
 
 fn theory(records: u64) {
@@ -221,7 +268,7 @@ fn accuracies(records: u64, tolerance: f64) {
 
 fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) {
     let presets = || {
-        Preset::ALL
+        Preset::TYPICAL
             .into_iter()
             .filter(|&preset| only.is_none_or(|only| only == preset))
     };
@@ -333,7 +380,7 @@ fn random_lines(records: u64) {
         "{:<8} {:>7} {:>7} {:>7} | {:>7} {:>7}",
         "", "", "", "", "alone", "1 %"
     );
-    for preset in Preset::ALL {
+    for preset in Preset::TYPICAL {
         let t = lines::study(preset, records);
         println!(
             "{:<8} {:>7} {:>7} {:>7} | {:>7} {:>7} {:>9} | {:>8} {:>7} {:>11}",

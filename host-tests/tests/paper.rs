@@ -42,17 +42,15 @@ fn weighted_least_squares_beats_ordinary() {
     const RECORDS: u64 = 40;
     let gyro = paper::gyro(Preset::Crg20, RECORDS);
     let rms = |symbol, method| estimates(&gyro, symbol, method).rms_error;
-    for symbol in ["Q", "N", "B"] {
-        let ordinary = rms(symbol, "ordinary");
-        assert!(rms(symbol, "covariance") < 0.7 * ordinary, "{symbol}");
-        assert!(
-            rms(symbol, "relative accuracy") < 0.7 * ordinary,
-            "{symbol}"
-        );
-        assert!(
-            rms(symbol, "relative accuracy") < 0.7 * rms(symbol, "cluster count"),
-            "{symbol}"
-        );
+    // In 1000 records, the errors differ by factors of five and more.
+    for symbol in ["Q", "N", "B", "K"] {
+        let least = 0.5 * rms(symbol, "ordinary");
+        assert!(rms(symbol, "covariance") < least, "{symbol}");
+        assert!(rms(symbol, "relative accuracy") < least, "{symbol}");
+    }
+    for symbol in ["B", "K"] {
+        let [clusters, values] = ["cluster count", "relative accuracy"].map(|m| rms(symbol, m));
+        assert!(values < 0.7 * clusters, "{symbol}");
     }
     assert!(estimates(&gyro, "K", "ordinary").negative > 0.05);
     for coefficient in &gyro.coefficients {

@@ -107,9 +107,10 @@ fn study_prints_every_coefficient_of_every_method_and_draws_a_figure() {
     }
     let drawing = fs::read_to_string(&figure).unwrap();
     let drawing = Document::parse(&drawing).unwrap();
-    let words: Vec<&str> = drawing
-        .descendants()
+    let texts = drawing.descendants().filter(|node| node.is_text());
+    let words: Vec<&str> = texts
         .filter_map(|node| node.text())
+        .map(str::trim)
         .collect();
     for (name, _) in GYROS {
         let title = format!("{name}: Allan deviation of one record");

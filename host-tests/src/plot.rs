@@ -3,12 +3,13 @@
 //!
 //! A plot is drawn in a [terminal](Plot), in a file by [`svg()`] and `png`, and on the page of `report`
 //! by `report/figure.js`. In all three, a [`Figure`] has the data, and a [`Frame`] has the spans and
-//! ticks.
+//! ticks. An [`Overlay`] is a drawing of one curve beside those of several models.
 
 mod canvas;
 mod drawing;
 mod figure;
 mod frame;
+mod overlay;
 mod panel;
 #[cfg(feature = "pictures")]
 mod pixels;
@@ -18,6 +19,7 @@ mod ticks;
 pub use drawing::{Drawing, effect_styles, svg};
 pub use figure::{Figure, Share};
 pub use frame::{Frame, Span};
+pub use overlay::{Overlay, overlays};
 #[cfg(feature = "pictures")]
 pub use pixels::png;
 pub use terminal::Plot;

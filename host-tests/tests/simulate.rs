@@ -181,7 +181,7 @@ fn first(preset: Preset, seed: u64) -> [f64; 4] {
 
 #[test]
 fn a_seed_always_gives_the_same_record() {
-    for preset in Preset::ALL {
+    for preset in Preset::TYPICAL.into_iter().chain(Preset::PAPER) {
         let bits = |seed| first(preset, seed).map(f64::to_bits);
         assert_eq!(bits(7), bits(7));
         assert_ne!(bits(7), bits(8));

@@ -14,8 +14,8 @@ use crate::{curve::Curve, error::Error, model::Model, real::Real};
 ///
 /// # Errors
 /// [`Error::NoNoise`] if an octave has a variance of zero. [`Error::TooFewOctaves`] for fewer than two
-/// octaves, or for fewer than there are effects with the unconstrained methods. [`Error::Singular`] if
-/// the normal equations have no solution.
+/// octaves, or for fewer than there are effects with the unconstrained methods, which count only the
+/// octaves that they use. [`Error::Singular`] if the normal equations have no solution.
 ///
 /// # Example
 ///

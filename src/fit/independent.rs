@@ -42,10 +42,28 @@ pub(super) fn by_relative_accuracy(point: &Point, measured: Real) -> Real {
     1.0 / (error * error)
 }
 
+/// The largest relative accuracy of an octave that `Method::AccuratePart` uses.
+const ACCURATE: Real = 0.25;
+
 /// An unconstrained fit.
+///
+/// # Errors
+/// [`Error::TooFewOctaves`] if the method leaves out so many octaves that fewer than there are effects
+/// remain. [`Error::Singular`] if the equations have no solution.
 pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> Result<Fit, Error> {
+    let is_used =
+        |point: &&Point| method != Method::AccuratePart || relative_accuracy(point) <= ACCURATE;
+    let octaves = problem.points.iter().filter(is_used).count();
+    let needed = problem.count();
+    if octaves < needed {
+        return Err(Error::TooFewOctaves {
+            found: octaves,
+            needed,
+        });
+    }
     let weight = |point: &Point, measured: Real| match method {
-        Method::Ordinary => 1.0,
+        _ if !is_used(&point) => 0.0,
+        Method::Ordinary | Method::AccuratePart => 1.0,
         Method::ClusterCount => by_relative_accuracy(point, 1.0),
         _ => by_relative_accuracy(point, measured),
     };
@@ -59,7 +77,7 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
         weight(point, measured) * residual * residual
     });
     let mut chi_squared: Real = residuals.sum();
-    let degrees_of_freedom = problem.points.len().saturating_sub(problem.count());
+    let degrees_of_freedom = octaves.saturating_sub(needed);
     let mut scale = 1.0;
     if method != Method::RelativeAccuracy {
         // These methods have no error model: the residuals themselves give the scale.

@@ -3,7 +3,8 @@
 //!
 //! [`fit()`] works in one go, [`Fitting`] in pieces. Both minimise `r'C⁻¹r`, where `r` are the
 //! residuals and `C` is the covariance of the curve at the fitted model. Squared coefficients cannot be
-//! negative. The three weightings of Lv, Liu, Lai & Huang (2015) are there for comparison ([`Method`]).
+//! negative. The weightings that Lv, Liu, Lai & Huang (2015) compare are there for comparison
+//! ([`Method`]).
 
 mod correlation;
 mod estimate;

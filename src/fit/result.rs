@@ -47,11 +47,11 @@ pub struct Fit {
     pub coefficients: Vec<Coefficient, MAX_EFFECTS>,
     /// The shape parameters that were fitted.
     pub shape: Vec<ShapeEstimate, MAX_SHAPE>,
-    /// χ²: the squared residuals in units of their covariance. NaN for `Ordinary` and `ClusterCount`,
-    /// which have no error model. Too large for `RelativeAccuracy`, which takes the octaves for
+    /// χ²: the squared residuals in units of their covariance. NaN for `Ordinary`, `AccuratePart` and
+    /// `ClusterCount`, which have no error model. Too large for `RelativeAccuracy`, which takes the octaves for
     /// independent.
     pub chi_squared: Real,
-    /// The number of octaves, less the number of coefficients above zero and of their fitted shape
+    /// The number of octaves that the method uses, less the number of coefficients above zero and of their fitted shape
     /// parameters.
     pub degrees_of_freedom: usize,
     /// Probability of a larger χ² if the model is true. NaN without χ² or without degrees of freedom.

@@ -1,7 +1,7 @@
 //! The studies that the README's figures rest on: `cargo xtask study NAME`.
 
 use allanite::fit::Options;
-use anyhow::Result;
+use anyhow::{Context as _, Result, bail};
 use clap::{Parser, Subcommand};
 use host_tests::{
     simulate::{Coefficients, Preset},
@@ -9,12 +9,16 @@ use host_tests::{
         clean::{self, Absent},
         coefficients,
         hidden_effect::{Strength, both_found, cases, false_alarms, hide, study},
-        lines, precision, quantile,
+        lines, paper, precision, quantile,
         self_test::{self, Looks},
         theory, thermal,
     },
 };
-use std::collections::BTreeMap;
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
 
 /// The symbols of the five terms, in the order of the model.
 const SYMBOLS: [&str; 5] = ["Q", "N", "B", "K", "R"];
@@ -33,6 +37,19 @@ enum Study {
         /// Number of records per table
         #[arg(long, default_value_t = 3000)]
         records: u64,
+    },
+    /// Repeat the experiment of Lv, Liu, Lai & Huang 2015: ordinary and weighted least squares on gyros of
+    /// three grades
+    Paper {
+        /// Number of records per gyro
+        #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(2..))]
+        records: u64,
+        /// Print JSON instead of a table
+        #[arg(long)]
+        json: bool,
+        /// Draw one record of each gyro and its fits into this file, .svg or .png
+        #[arg(long, value_name = "FILE")]
+        figure: Option<PathBuf>,
     },
     /// Count how often a hidden effect is found, named and measured, and how often one is claimed in vain
     HiddenEffect {
@@ -99,6 +116,11 @@ enum Study {
 fn main() -> Result<()> {
     match Arguments::parse().study {
         Study::Theory { records } => theory(records),
+        Study::Paper {
+            records,
+            json,
+            figure,
+        } => experiment(records, json, figure.as_deref())?,
         Study::HiddenEffect {
             records,
             clean,
@@ -142,6 +164,31 @@ fn precisions(records: u64) -> Result<()> {
         println!("{name:>28} {:>9} {:>22}", alike.same, alike.ambiguous);
     }
     Ok(())
+}
+
+fn experiment(records: u64, json: bool, figure: Option<&Path>) -> Result<()> {
+    if let Some(path) = figure {
+        draw(path).with_context(|| path.display().to_string())?;
+    }
+    let experiment = paper::study(records);
+    if json {
+        println!("{}", serde_json::to_string_pretty(&experiment)?);
+    } else {
+        print!("{experiment}");
+    }
+    Ok(())
+}
+
+/// Draws the first record of each gyro.
+fn draw(path: &Path) -> Result<()> {
+    let drawing = || paper::figure::figure(0);
+    let bytes = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("svg") => drawing().into_bytes(),
+        #[cfg(feature = "pictures")]
+        Some("png") => host_tests::plot::png(&drawing())?,
+        _ => bail!("a figure must end in .svg, or in .png with the feature `pictures`"),
+    };
+    Ok(fs::write(path, bytes)?)
 }
 
 fn theory(records: u64) {
@@ -243,7 +290,7 @@ fn accuracies(records: u64, tolerance: f64) {
 
 fn hidden(records: u64, clean: u64, only: Option<Preset>, effect: Option<&str>) {
     let presets = || {
-        Preset::ALL
+        Preset::TYPICAL
             .into_iter()
             .filter(|&preset| only.is_none_or(|only| only == preset))
     };
@@ -355,7 +402,7 @@ fn random_lines(records: u64) {
         "{:<8} {:>7} {:>7} {:>7} | {:>7} {:>7}",
         "", "", "", "", "alone", "1 %"
     );
-    for preset in Preset::ALL {
+    for preset in Preset::TYPICAL {
         let t = lines::study(preset, records);
         println!(
             "{:<8} {:>7} {:>7} {:>7} | {:>7} {:>7} {:>9} | {:>8} {:>7} {:>11}",
@@ -380,7 +427,7 @@ fn random_lines(records: u64) {
 }
 
 fn clean_records(records: u64, only: Option<Preset>, walk: f64) {
-    let presets = Preset::ALL.into_iter();
+    let presets = Preset::TYPICAL.into_iter();
     for preset in presets.filter(|&preset| only.is_none_or(|only| only == preset)) {
         for absent in [0, 2, 3, 4]
             .map(Absent::Term)

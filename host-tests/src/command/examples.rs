@@ -12,6 +12,7 @@ macro_rules! examples {
 
 pub(super) const SIMULATE: &str = examples! {
     "allanite simulate mems --duration 1h --axes 3 --output log.csv"
+    "allanite simulate vg951 --rate 2.5 --duration 12h --output log.npy"
     "allanite simulate mems --effect sinusoid:frequency_hz=7.7,amplitude=0.02 --output log.npy"
 };
 

@@ -15,7 +15,7 @@ const WIDTH: f64 = 1030.0;
 /// Height of one figure, including its axis of averaging times.
 const HEIGHT: f64 = 664.0;
 const MARGIN: f64 = 24.0;
-const CURVE: Panel = Panel {
+pub(super) const CURVE: Panel = Panel {
     left: 92.0,
     top: 84.0,
     width: 690.0,
@@ -27,22 +27,22 @@ const RESIDUAL: Panel = Panel {
     width: CURVE.width,
     height: 154.0,
 };
-const LEGEND: (f64, f64) = (CURVE.left + CURVE.width + 22.0, CURVE.top + 12.0);
-const LEGEND_ROW: f64 = 24.0;
+pub(super) const LEGEND: (f64, f64) = (CURVE.left + CURVE.width + 22.0, CURVE.top + 12.0);
+pub(super) const LEGEND_ROW: f64 = 24.0;
 /// Largest numbers of characters in a title and in the smaller subtitle.
 const LONGEST: [usize; 2] = [72, 120];
 /// A residual is noticeable beyond this many standard errors. It is the limit that the library's
 /// `Comparison::stretches` has.
 const NOTICEABLE: f64 = 2.0;
 
-const MODEL: Stroke = Stroke {
+pub(super) const MODEL: Stroke = Stroke {
     colour: "#0969da",
     width: 2.5,
     dashes: "none",
 };
 /// Lines of effects. The colours are legible on white, and the dashes distinguish the lines without
 /// colour.
-const EFFECTS: [(&str, &str); 8] = [
+pub(super) const EFFECTS: [(&str, &str); 8] = [
     ("#6e7781", "2 4"),
     ("#b35900", "8 4"),
     ("#1a7f37", "8 3 2 3"),
@@ -72,7 +72,12 @@ pub struct Drawing {
 
 /// The drawing of figures, one below the other, as the text of an SVG file.
 pub fn svg(drawings: &[Drawing]) -> String {
-    let height = HEIGHT * drawings.len() as f64;
+    document(drawings.iter().map(Drawing::draw).collect(), HEIGHT)
+}
+
+/// The text of an SVG file with figures of one height, one below the other.
+pub(super) fn document(figures: Vec<Group>, each: f64) -> String {
+    let height = each * figures.len() as f64;
     let paper = Rectangle::new()
         .set("width", "100%")
         .set("height", "100%")
@@ -83,31 +88,25 @@ pub fn svg(drawings: &[Drawing]) -> String {
         .set("viewBox", (0, 0, WIDTH as u32, height as u32))
         .set("font-family", "'DejaVu Sans', Verdana, sans-serif")
         .add(paper);
-    for (number, drawing) in drawings.iter().enumerate() {
-        let down = HEIGHT * number as f64;
-        let place = Group::new().set("transform", format!("translate(0 {down})"));
-        document = document.add(drawing.draw(place));
+    for (number, figure) in figures.into_iter().enumerate() {
+        let down = each * number as f64;
+        document = document.add(figure.set("transform", format!("translate(0 {down})")));
     }
     format!("{document}\n")
 }
 
+/// The title and the subtitle of a figure.
+pub(super) fn heading(title: &str, subtitle: &str) -> Group {
+    let title = shown(title, LONGEST[0]);
+    let subtitle = shown(subtitle, LONGEST[1]);
+    let title = text((MARGIN, 36.0), &title, 18.0, "start", INK).set("font-weight", "bold");
+    let subtitle = text((MARGIN, 60.0), &subtitle, 13.0, "start", PALE);
+    Group::new().add(title).add(subtitle)
+}
+
 impl Drawing {
-    fn draw(&self, group: Group) -> Group {
-        let title = text(
-            (MARGIN, 36.0),
-            &shown(&self.title, LONGEST[0]),
-            18.0,
-            "start",
-            INK,
-        );
-        let subtitle = text(
-            (MARGIN, 60.0),
-            &shown(&self.subtitle, LONGEST[1]),
-            13.0,
-            "start",
-            PALE,
-        );
-        let group = group.add(title.set("font-weight", "bold")).add(subtitle);
+    fn draw(&self) -> Group {
+        let group = heading(&self.title, &self.subtitle);
         let group = self.draw_residual(self.draw_curve(group));
         let middle = CURVE.left + 0.5 * CURVE.width;
         let bottom = RESIDUAL.top + RESIDUAL.height;
@@ -263,7 +262,7 @@ impl Drawing {
 }
 
 /// The ticks with their positions instead of their values.
-fn placed(span: &Span, ticks: Vec<(f64, String)>) -> Vec<(f64, String)> {
+pub(super) fn placed(span: &Span, ticks: Vec<(f64, String)>) -> Vec<(f64, String)> {
     let ticks = ticks.into_iter();
     ticks
         .map(|(value, label)| (span.along(value), label))
@@ -271,7 +270,7 @@ fn placed(span: &Span, ticks: Vec<(f64, String)>) -> Vec<(f64, String)> {
 }
 
 /// The title of a vertical axis.
-fn upright(panel: &Panel, words: &str) -> Group {
+pub(super) fn upright(panel: &Panel, words: &str) -> Group {
     let (x, y) = (MARGIN + 4.0, panel.top + 0.5 * panel.height);
     let turned = Group::new().set("transform", format!("translate({x} {y}) rotate(-90)"));
     turned.add(text((0.0, 0.0), words, 13.0, "middle", INK))

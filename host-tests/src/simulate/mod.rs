@@ -13,7 +13,7 @@ mod thermal;
 mod two_levels;
 
 pub use hidden::Hidden;
-pub use preset::Preset;
+pub use preset::{CUSTOMARY, Preset};
 pub use random::Random;
 pub use simulator::Simulator;
 pub use thermal::{Course, Thermal};

@@ -67,10 +67,11 @@ pub fn accuracy(
     (accuracies, any)
 }
 
-/// All four methods with their names.
-pub const METHODS: [(&str, Method); 4] = [
+/// All methods with their names.
+pub const METHODS: [(&str, Method); 5] = [
     ("covariance", Method::Covariance),
     ("relative accuracy", Method::RelativeAccuracy),
     ("ordinary", Method::Ordinary),
+    ("accurate part", Method::AccuratePart),
     ("cluster count", Method::ClusterCount),
 ];

@@ -5,6 +5,7 @@ pub mod clean;
 pub mod coefficients;
 pub mod hidden_effect;
 pub mod lines;
+pub mod paper;
 pub mod precision;
 pub mod self_test;
 pub mod theory;
@@ -30,9 +31,20 @@ pub fn record(
     simulator: &mut Simulator,
     coefficients: Coefficients,
     samples: usize,
+    watch: impl FnMut(&[i32]),
+) -> Curve<OCTAVES> {
+    record_at(RATE_HZ, simulator, coefficients, samples, watch)
+}
+
+/// The curve of the next `samples` of a simulator that has this rate.
+fn record_at(
+    rate_hz: f64,
+    simulator: &mut Simulator,
+    coefficients: Coefficients,
+    samples: usize,
     mut watch: impl FnMut(&[i32]),
 ) -> Curve<OCTAVES> {
-    let quantum = quantum(coefficients, RATE_HZ);
+    let quantum = quantum(coefficients, rate_hz);
     let mut accumulator = Accumulator::<OCTAVES>::new();
     let mut counts = [0; 1024];
     let mut left = samples;
@@ -46,7 +58,7 @@ pub fn record(
         watch(chunk);
         left -= chunk.len();
     }
-    let scale = Scale::new(quantum, RATE_HZ).expect("positive");
+    let scale = Scale::new(quantum, rate_hz).expect("positive");
     accumulator.curve(scale)
 }
 

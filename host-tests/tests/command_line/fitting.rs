@@ -117,6 +117,7 @@ fn every_method_is_named_and_reports_its_statistics() {
     let folder = folder();
     for (method, judges) in [
         ("ordinary", false),
+        ("accurate-part", false),
         ("relative-accuracy", true),
         ("cluster-count", false),
         ("covariance", true),

@@ -14,8 +14,9 @@ const OCTAVES: usize = study::OCTAVES;
 
 const RATE_HZ: f64 = 100.0;
 
-const METHODS: [Method; 4] = [
+const METHODS: [Method; 5] = [
     Method::Ordinary,
+    Method::AccuratePart,
     Method::RelativeAccuracy,
     Method::ClusterCount,
     Method::Covariance,

@@ -13,6 +13,8 @@ use std::path::Path;
 pub(crate) enum MethodName {
     /// Unweighted, unconstrained least squares, as a baseline
     Ordinary,
+    /// The same without the octaves whose relative error exceeds 25 %
+    AccuratePart,
     /// The standard error of each octave is its relative accuracy times its value; unconstrained
     RelativeAccuracy,
     /// The weight of each octave follows from its number of clusters; unconstrained, for comparison only
@@ -25,6 +27,7 @@ impl MethodName {
     const fn method(self) -> Method {
         match self {
             Self::Ordinary => Method::Ordinary,
+            Self::AccuratePart => Method::AccuratePart,
             Self::RelativeAccuracy => Method::RelativeAccuracy,
             Self::ClusterCount => Method::ClusterCount,
             Self::Covariance => Method::Covariance,
@@ -35,6 +38,7 @@ impl MethodName {
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Ordinary => "ordinary",
+            Self::AccuratePart => "accurate-part",
             Self::RelativeAccuracy => "relative-accuracy",
             Self::ClusterCount => "cluster-count",
             Self::Covariance => "covariance",

@@ -413,7 +413,7 @@ fn coefficients(arguments: &Arguments) -> Result<Coefficients, Failure> {
     if !anything {
         return Err(Failure::option(
             "no preset and no coefficient is given",
-            "name a preset (tactical, fog, mems) or give coefficients such as --angle-random-walk",
+            "name a preset (tactical, fog, mems, srs2000, vg951, crg20) or give coefficients such as --angle-random-walk",
         ));
     }
     Ok(coefficients)

@@ -1,7 +1,9 @@
 //! A look of a self-test: the five terms are fitted to the record so far, and each limit is compared with it.
 
+use super::plan::Limit;
 use crate::{
     curve::Curve,
+    effect::IEEE_952,
     fit::{Fitting, LikelihoodRatio, Options},
     integrity::Reason,
     limits::MAX_EFFECTS,
@@ -64,17 +66,27 @@ pub struct Look<const OCTAVES: usize> {
     ratio: Option<LikelihoodRatio>,
 }
 
-/// A limit and how far its coefficient lies above it.
+/// A limit, and how far its coefficient lies above it.
 #[derive(Clone, Copy)]
 pub(super) struct Compared {
-    /// The limit's place in the plan.
-    pub(super) limit: usize,
+    pub(super) limit: Limit,
     /// The coefficient's place in the model.
     pub(super) place: usize,
-    /// The limit itself.
-    pub(super) most: Real,
-    /// The [`LikelihoodRatio`], in standard errors; `None` until it is known, and if the curve does not tell.
+    /// The statistic of the [`LikelihoodRatio`], in standard errors. It is `None` until it is known, and
+    /// stays so where the curve cannot be compared with the limit.
     pub(super) above: Option<Real>,
+}
+
+impl Compared {
+    /// The limit of one of the five terms, before the comparison.
+    pub(super) fn new(limit: &Limit) -> Option<Self> {
+        let mut effects = IEEE_952.iter();
+        Some(Self {
+            limit: *limit,
+            place: effects.position(|effect| effect.name() == limit.effect)?,
+            above: None,
+        })
+    }
 }
 
 impl<const OCTAVES: usize> Look<OCTAVES> {
@@ -118,7 +130,7 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
         let advanced = match &mut self.ratio {
             Some(ratio) => ratio.advance(&problem, solver),
             None => {
-                let (place, most) = (compared.place, compared.most);
+                let (place, most) = (compared.place, compared.limit.most);
                 let begun = LikelihoodRatio::begin(&problem, solver, fit, place, most);
                 begun.map(|ratio| {
                     self.ratio = Some(ratio);
@@ -136,9 +148,9 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
         self.next >= self.limits.len()
     }
 
-    /// The comparison with a limit of the plan.
-    pub(super) fn compared(&self, limit: usize) -> Option<Compared> {
+    /// The comparison with a limit. It is `None` if the look has none with this limit.
+    pub(super) fn compared(&self, limit: &Limit) -> Option<&Compared> {
         let mut compared = self.limits.iter();
-        compared.find(|compared| compared.limit == limit).copied()
+        compared.find(|compared| compared.limit == *limit)
     }
 }

@@ -18,7 +18,6 @@ use crate::{
     curve::{Curve, Scale},
     integrity::Reason,
     list::numbered,
-    model::Model,
     real::{Real, real, single},
 };
 use decide::quantile;
@@ -92,7 +91,7 @@ pub enum Failure {
 ///
 /// The test holds no samples. [`is_due`](Self::is_due) says after each sample whether a look is due, at the
 /// cost of one comparison. The caller then takes the [`look`](Self::look) at a curve when it has time for a
-/// [`fit`](crate::fit::fit()). A late look loses nothing.
+/// [`fit`](crate::fit::fit()) and one more for each undecided limit. A late look loses nothing.
 ///
 /// # Example
 ///
@@ -205,17 +204,9 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         curve: Curve<OCTAVES>,
         invalid: Option<Reason>,
     ) -> Look<OCTAVES> {
-        let model = Model::ieee_952();
         let limits = numbered(self.plan.limits.iter());
         let undecided = limits.filter(|&(i, _)| !self.progress.kept.has(i));
-        let compared = undecided.filter_map(|(limit, asked)| {
-            Some(Compared {
-                limit,
-                place: model.position(asked.effect)?,
-                most: asked.most,
-                above: None,
-            })
-        });
+        let compared = undecided.filter_map(|(_, limit)| Compared::new(limit));
         Look::new(samples, curve, invalid, compared)
     }
 
@@ -237,7 +228,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
 
     /// Takes a whole look in one go, and says how the test stands: [`begin_look`](Self::begin_look),
     /// [`Look::advance`] until it is complete, and [`conclude`](Self::conclude). It takes a
-    /// [`fit`](crate::fit::fit()) where a look is due, and next to nothing otherwise.
+    /// [`fit`](crate::fit::fit()) and one more for each undecided limit where a look is due, and next to
+    /// nothing otherwise.
     pub fn look(
         &mut self,
         samples: u64,
@@ -281,14 +273,16 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             if self.progress.kept.has(i) {
                 continue;
             }
-            let Some(compared) = look.compared(i) else {
-                continue;
-            };
-            let Some(coefficient) = fit.coefficients.get(compared.place) else {
+            let compared = look.compared(limit);
+            let known = compared.and_then(|compared| {
+                let coefficient = fit.coefficients.get(compared.place)?;
+                Some((coefficient, compared.above?))
+            });
+            let Some((coefficient, above)) = known else {
+                open = Some((i, Real::INFINITY));
                 continue;
             };
             // The fit must lie on the same side, so that no value within the limit fails.
-            let above = compared.above.unwrap_or(0.0);
             if above < -self.pass && coefficient.value < limit.most {
                 self.progress.kept.add(i);
             } else if above > self.fail && coefficient.value > limit.most {

@@ -272,3 +272,29 @@ fn a_look_in_pieces_judges_the_record_that_it_began_with() {
     assert!(looks > 1, "{looks} looks");
     assert_eq!(pieces, whole);
 }
+
+#[test]
+fn a_look_that_is_not_complete_or_belongs_to_another_test_decides_nothing() {
+    let new = |most| SelfTest::<16>::new(plan("angle_random_walk", most), scale()).unwrap();
+    let mut gyro = Gyro::new();
+    for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7).take(1000) {
+        gyro.push((rate / UNIT).round() as i32);
+    }
+    let record = gyro.evidence(0, scale(), []).unwrap();
+    let begin = |test: &SelfTest<16>| {
+        test.begin_look(record.samples, record.curve.clone(), record.invalid)
+    };
+    let mut look = begin(&new(0.02));
+    let not_complete = new(0.02).conclude(&look);
+    assert!(
+        matches!(not_complete, Status::Running { .. }),
+        "{not_complete:?}"
+    );
+    while !look.advance() {}
+    assert_eq!(new(0.02).conclude(&look), Status::Passed);
+    let of_another = new(0.03).conclude(&look);
+    assert!(
+        matches!(of_another, Status::Running { .. }),
+        "{of_another:?}"
+    );
+}

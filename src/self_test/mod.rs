@@ -1,8 +1,8 @@
 //! A self-test with limits. It looks at a growing record and gives a verdict as early as the record allows.
 
-mod decide;
 mod look;
 mod plan;
+mod quantile;
 #[cfg(feature = "storage")]
 mod stored;
 
@@ -20,8 +20,8 @@ use crate::{
     list::numbered,
     real::{Real, real, single},
 };
-use decide::quantile;
 use look::Compared;
+use quantile::quantile;
 
 /// The state of a self-test.
 #[derive(Clone, Copy, Debug, PartialEq)]

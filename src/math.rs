@@ -4,11 +4,10 @@
 
 use crate::real::{Real, consts::PI, real, single};
 #[cfg(feature = "double")]
-pub(crate) use libm::{cbrt, ceil, erfc, exp, floor, log, sqrt};
+pub(crate) use libm::{ceil, erfc, exp, floor, log, sqrt};
 #[cfg(not(feature = "double"))]
 pub(crate) use libm::{
-    cbrtf as cbrt, ceilf as ceil, erfcf as erfc, expf as exp, floorf as floor, logf as log,
-    sqrtf as sqrt,
+    ceilf as ceil, erfcf as erfc, expf as exp, floorf as floor, logf as log, sqrtf as sqrt,
 };
 
 /// Sine and cosine of an angle in turns, accurate to 3e-16 (2e-7 in single precision). Whole quadrants

@@ -16,7 +16,7 @@
 //! | for each axis, each covariate, each octave: Σ D_g D_x as `low + 2^64 · upper` | i64, i128 |
 //! | losses | u64 |
 //! | with a gate: samples left out, then for each axis the integrity of all samples | u64, … |
-//! | for each self-test: plan, next look, remaining probability, limits kept, verdict | |
+//! | for each self-test: plan, next look, limits kept, verdict | |
 
 use super::{Axes, GatePart, MomentPart, gate::Passing, moments::MomentSums};
 use crate::{

@@ -8,7 +8,7 @@ use super::{
     result::Fit,
     solver::{Solver, Start, Tolerance},
 };
-use crate::{curve::Curve, error::Error, model::Model, real::Real};
+use crate::{curve::Curve, error::Error, model::Model};
 
 /// Fits a model's coefficients to a curve.
 ///
@@ -108,10 +108,11 @@ impl<const K: usize> Fitting<K> {
         &self.fit
     }
 
-    /// The standard error of a squared coefficient with its neighbours in the model free.
-    pub(crate) fn error_beside(&self, i: usize) -> Real {
+    /// The problem, the memory of its solution, and the fit as far as it is complete. Once it is complete,
+    /// the memory is free for another solution of the same problem.
+    pub(crate) fn parts(&mut self) -> (Problem<'_, K>, &mut Solver<K>, &Fit) {
         let problem = Problem::new(&self.curve, &self.model, &self.work.columns);
-        self.work.solver.error_beside(&problem, i)
+        (problem, &mut self.work.solver, &self.fit)
     }
 
     /// The curve that is fitted.

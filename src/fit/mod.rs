@@ -10,6 +10,7 @@ mod correlation;
 mod estimate;
 mod fitting;
 mod independent;
+mod likelihood_ratio;
 mod method;
 mod problem;
 mod result;
@@ -28,6 +29,7 @@ pub use result::{Fit, ShapeEstimate};
 
 pub(crate) use estimate::Estimator;
 pub(crate) use fitting::Work;
+pub(crate) use likelihood_ratio::LikelihoodRatio;
 pub(crate) use problem::{Columns, Problem, check};
 pub(crate) use shape::ShapeEquations;
 pub(crate) use solver::{Solver, Start, Tolerance};

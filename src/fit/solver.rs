@@ -59,7 +59,7 @@ pub(crate) enum Start {
 
 /// The number of rounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Rounds {
+pub(super) enum Rounds {
     /// There is a single round.
     One,
     /// The rounds go on until covariance and solution agree. They end after the first one if it shows
@@ -141,7 +141,8 @@ impl<const K: usize> Solver<K> {
         self.begin_rounds(problem, start_squares, granted, rounds)
     }
 
-    fn begin_rounds(
+    /// Begins with the first of several rounds.
+    pub(super) fn begin_rounds(
         &mut self,
         problem: &Problem<'_, K>,
         start: Vector,
@@ -188,13 +189,7 @@ impl<const K: usize> Solver<K> {
         weights.equations(problem, &|_| 1.0, &[], &curve, equations)?;
         (self.squares, self.free) = self.equations.solve_non_negative(&problem.held());
         self.degrees_of_freedom = degrees_of_freedom(problem, &self.free);
-        let change = algebra::Vector::<K>::from_fn(|k| {
-            if k < problem.points.len() {
-                problem.variance(k, &self.squares) / self.weights.model[k] - 1.0
-            } else {
-                0.0
-            }
-        });
+        let change = self.change(problem);
         let is_last = change.amax() < CONVERGED
             || match self.rounds {
                 Rounds::One => true,
@@ -208,6 +203,39 @@ impl<const K: usize> Solver<K> {
             self.chi_squared = self.weights.chi_squared(problem, &self.squares);
             return Ok(true);
         }
+        self.begin_next(problem, change)?;
+        Ok(false)
+    }
+
+    /// Whether the rounds have ended at a solution that the caller has put into `squares`. If they have
+    /// not, the next round has begun.
+    pub(super) fn has_ended(&mut self, problem: &Problem<'_, K>) -> Result<bool, Error> {
+        let change = self.change(problem);
+        let has_ended = change.amax() < CONVERGED || self.round >= ROUNDS;
+        if !has_ended {
+            self.begin_next(problem, change)?;
+        }
+        Ok(has_ended)
+    }
+
+    /// The relative change of the model from the squares at which the covariance is taken to the
+    /// solution.
+    fn change(&self, problem: &Problem<'_, K>) -> algebra::Vector<K> {
+        algebra::Vector::<K>::from_fn(|k| {
+            if k < problem.points.len() {
+                problem.variance(k, &self.squares) / self.weights.model[k] - 1.0
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// Begins the next round, nearer to the solution.
+    fn begin_next(
+        &mut self,
+        problem: &Problem<'_, K>,
+        change: algebra::Vector<K>,
+    ) -> Result<(), Error> {
         if let Some(last) = self.last {
             // The changes of rounds that swing to and fro, or that creep, have a ratio. The next round
             // starts where this ratio leads (Aitken 1926).
@@ -225,8 +253,7 @@ impl<const K: usize> Solver<K> {
         });
         self.round = self.round.saturating_add(1);
         let tolerance = self.weights.tolerance;
-        self.weights.begin(problem, &self.assumed, tolerance)?;
-        Ok(false)
+        self.weights.begin(problem, &self.assumed, tolerance)
     }
 
     /// The number of octaves, less the number of coefficients above zero and of their fitted shape
@@ -267,17 +294,6 @@ impl<const K: usize> Solver<K> {
             .filter(|&(_, error)| DETERMINED_BY * error < before)
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(i, _)| i)
-    }
-
-    /// The standard error of a squared coefficient with its neighbours in the model free, even if they
-    /// were held at zero: this coefficient may have taken over what belongs to a neighbour. It is
-    /// infinite if they cannot be told apart.
-    pub(crate) fn error_beside(&self, problem: &Problem<'_, K>, i: usize) -> Real {
-        let neighbours = [i.saturating_sub(1), i, i.saturating_add(1)];
-        let known = neighbours.into_iter().filter(|&j| j < problem.count());
-        let free = known.fold(self.free, Free::with);
-        let variance = self.equations.variance(i, &free);
-        variance.map_or(Real::INFINITY, crate::math::sqrt) * problem.variance_unit
     }
 }
 

@@ -1,14 +1,21 @@
-//! A look of a self-test: the five terms are fitted to the record so far.
+//! A look of a self-test: the five terms are fitted to the record so far, and each limit is compared with it.
 
+use super::plan::Limit;
 use crate::{
     curve::Curve,
-    fit::{Fitting, Options},
+    effect::IEEE_952,
+    fit::{Fitting, LikelihoodRatio, Options},
     integrity::Reason,
+    limits::MAX_EFFECTS,
+    list,
     model::Model,
+    real::Real,
 };
+use heapless::Vec;
 
 /// A look in progress, for a main loop that has other work to do: one call of
-/// [`advance`](Self::advance) takes as long as one of [`Fitting::advance`]. Samples may be pushed
+/// [`advance`](Self::advance) takes as long as one of [`Fitting::advance`]. The calls of a look take as
+/// long as a fit, and as long again for each limit that is not decided yet. Samples may be pushed
 /// meanwhile; the look is at the record as it was when the look began.
 ///
 /// # Example
@@ -50,10 +57,45 @@ pub struct Look<const OCTAVES: usize> {
     pub(super) invalid: Option<Reason>,
     /// `None` where the curve cannot be fitted.
     pub(super) fitting: Option<Fitting<OCTAVES>>,
+    is_fitted: bool,
+    /// The limits that were undecided when the look began.
+    limits: Vec<Compared, MAX_EFFECTS>,
+    /// The place in `limits` of the next comparison.
+    next: usize,
+    /// The comparison in progress.
+    ratio: Option<LikelihoodRatio>,
+}
+
+/// A limit, and how far its coefficient lies above it.
+#[derive(Clone, Copy)]
+pub(super) struct Compared {
+    pub(super) limit: Limit,
+    /// The coefficient's place in the model.
+    pub(super) place: usize,
+    /// The statistic of the [`LikelihoodRatio`], in standard errors. It is `None` until it is known, and
+    /// stays so where the curve cannot be compared with the limit.
+    pub(super) above: Option<Real>,
+}
+
+impl Compared {
+    /// The limit of one of the five terms, before the comparison.
+    pub(super) fn new(limit: &Limit) -> Option<Self> {
+        let mut effects = IEEE_952.iter();
+        Some(Self {
+            limit: *limit,
+            place: effects.position(|effect| effect.name() == limit.effect)?,
+            above: None,
+        })
+    }
 }
 
 impl<const OCTAVES: usize> Look<OCTAVES> {
-    pub(super) fn new(samples: u64, curve: Curve<OCTAVES>, invalid: Option<Reason>) -> Self {
+    pub(super) fn new(
+        samples: u64,
+        curve: Curve<OCTAVES>,
+        invalid: Option<Reason>,
+        limits: impl Iterator<Item = Compared>,
+    ) -> Self {
         let fitting = match invalid {
             Some(_) => None,
             None => Some(Fitting::new(curve, Model::ieee_952(), Options::default())),
@@ -62,6 +104,10 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
             samples,
             invalid,
             fitting,
+            is_fitted: false,
+            limits: list::fill(limits),
+            next: 0,
+            ratio: None,
         }
     }
 
@@ -70,12 +116,41 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
         let Some(fitting) = &mut self.fitting else {
             return true;
         };
-        match fitting.advance() {
-            Ok(fit) => fit.is_some(),
-            Err(_) => {
-                self.fitting = None;
-                true
+        if !self.is_fitted {
+            match fitting.advance() {
+                Ok(fit) => self.is_fitted = fit.is_some(),
+                Err(_) => self.fitting = None,
             }
+            return self.fitting.is_none() || (self.is_fitted && self.limits.is_empty());
         }
+        let Some(compared) = self.limits.get_mut(self.next) else {
+            return true;
+        };
+        let (problem, solver, fit) = fitting.parts();
+        let advanced = match &mut self.ratio {
+            Some(ratio) => ratio.advance(&problem, solver),
+            None => {
+                let (place, most) = (compared.place, compared.limit.most);
+                let begun = LikelihoodRatio::begin(&problem, solver, fit, place, most);
+                begun.map(|ratio| {
+                    self.ratio = Some(ratio);
+                    None
+                })
+            }
+        };
+        if let Ok(None) = advanced {
+            return false;
+        }
+        // A limit that the curve cannot be compared with stays undecided.
+        compared.above = advanced.unwrap_or(None);
+        self.ratio = None;
+        self.next = self.next.saturating_add(1);
+        self.next >= self.limits.len()
+    }
+
+    /// The comparison with a limit. It is `None` if the look has none with this limit.
+    pub(super) fn compared(&self, limit: &Limit) -> Option<&Compared> {
+        let mut compared = self.limits.iter();
+        compared.find(|compared| compared.limit == *limit)
     }
 }

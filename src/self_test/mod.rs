@@ -1,8 +1,8 @@
 //! A self-test with limits. It looks at a growing record and gives a verdict as early as the record allows.
 
-mod decide;
 mod look;
 mod plan;
+mod quantile;
 #[cfg(feature = "storage")]
 mod stored;
 
@@ -16,12 +16,12 @@ use crate::{
     algebra::Choice,
     coefficient::{Coefficient, State},
     curve::{Curve, Scale},
-    fit::Fitting,
     integrity::Reason,
     list::numbered,
     real::{Real, real, single},
 };
-use decide::{Side, quantile, side};
+use look::Compared;
+use quantile::quantile;
 
 /// The state of a self-test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,17 +74,24 @@ pub enum Failure {
 /// # The statistics
 ///
 /// The test looks at the record at the shortest length, whenever the record has doubled, and at the
-/// longest length. At each look it fits the coefficients, and it decides a limit as soon as the limit is
-/// outside the coefficient's interval. Each look is a chance of an error. Therefore the probabilities of
-/// the plan are divided among the looks (Bonferroni 1936), and that of a false fail also among the limits.
-/// That of a false pass is not, because a false pass requires one particular coefficient above its limit
-/// to pass, whatever the others do. A decision is final: later looks do not repeat it.
+/// longest length. At each look it fits the coefficients, and compares each limit with the curve by the
+/// likelihood ratio (Wilks 1938): the curve is fitted once more with the coefficient held at its limit and
+/// the others free, also those that the first fit held at zero. The covariance of the curve is taken at
+/// that fit, because the question is how far chance may carry the curve of a gyro that is at its limit.
+/// The signed root of the difference in χ² between this fit and the best one is compared with the
+/// quantile of the normal distribution.
+///
+/// Each look is a chance of an error. Therefore the probabilities of the plan are divided evenly among the
+/// looks (Bonferroni 1936), and that of a false fail also among the limits. That of a false pass is not,
+/// because a false pass requires one particular coefficient above its limit to pass, whatever the others
+/// do. Looks share samples, so that the errors are fewer than the plan allows. A decision is final: later
+/// looks do not repeat it.
 ///
 /// # How to use it
 ///
 /// The test holds no samples. [`is_due`](Self::is_due) says after each sample whether a look is due, at the
 /// cost of one comparison. The caller then takes the [`look`](Self::look) at a curve when it has time for a
-/// [`fit`](crate::fit::fit()). A late look loses nothing.
+/// [`fit`](crate::fit::fit()) and one more for each undecided limit. A late look loses nothing.
 ///
 /// # Example
 ///
@@ -127,6 +134,8 @@ pub struct SelfTest<const OCTAVES: usize> {
     last: u64,
     /// The distance below a limit at which a gyro passes, in standard errors.
     pass: Real,
+    /// The distance above a limit at which a gyro fails, in standard errors.
+    fail: Real,
     /// The number of looks in the plan.
     looks: u32,
     progress: Progress,
@@ -137,10 +146,6 @@ pub struct SelfTest<const OCTAVES: usize> {
 struct Progress {
     /// The number of samples at the next look.
     next: u64,
-    /// The probability of a false fail that is left for the coming looks. Each look spends half of it, and
-    /// the last look spends all of it. Early looks get the most, because they need it most, and a gyro far
-    /// above a limit fails at one of them.
-    fail_left: Real,
     /// The limits that are known to be kept.
     kept: Choice,
     /// The status at the last look.
@@ -160,10 +165,10 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             scale,
             last,
             pass: quantile(plan.false_pass / real(looks)),
+            fail: quantile(plan.false_fail / (real(looks) * limits)),
             looks,
             progress: Progress {
                 next: first,
-                fail_left: plan.false_fail / limits,
                 kept: Choice::default(),
                 status: Status::Running {
                     progress: 0.0,
@@ -199,7 +204,10 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         curve: Curve<OCTAVES>,
         invalid: Option<Reason>,
     ) -> Look<OCTAVES> {
-        Look::new(samples, curve, invalid)
+        let limits = numbered(self.plan.limits.iter());
+        let undecided = limits.filter(|&(i, _)| !self.progress.kept.has(i));
+        let compared = undecided.filter_map(|(_, limit)| Compared::new(limit));
+        Look::new(samples, curve, invalid, compared)
     }
 
     /// Takes up a look that is [complete](Look::advance), and says how the test stands.
@@ -208,7 +216,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         if self.is_due(samples) {
             self.progress.status = match look.invalid {
                 Some(reason) => Status::Invalid(reason),
-                None => self.judge(samples, look.fitting.as_ref()),
+                None => self.judge(look),
             };
             while self.progress.next <= samples {
                 let twice = self.progress.next.saturating_mul(2);
@@ -220,7 +228,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
 
     /// Takes a whole look in one go, and says how the test stands: [`begin_look`](Self::begin_look),
     /// [`Look::advance`] until it is complete, and [`conclude`](Self::conclude). It takes a
-    /// [`fit`](crate::fit::fit()) where a look is due, and next to nothing otherwise.
+    /// [`fit`](crate::fit::fit()) and one more for each undecided limit where a look is due, and next to
+    /// nothing otherwise.
     pub fn look(
         &mut self,
         samples: u64,
@@ -241,10 +250,11 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     }
 
     #[inline(never)]
-    fn judge(&mut self, samples: u64, fitting: Option<&Fitting<OCTAVES>>) -> Status {
+    fn judge(&mut self, look: &Look<OCTAVES>) -> Status {
+        let samples = look.samples;
         let is_last = samples >= self.last;
         let seconds = samples as Real / self.scale.rate_hz();
-        let Some(fitting) = fitting else {
+        let Some(fitting) = &look.fitting else {
             // Gaps may have left too few differences; the first limit stands for all.
             return if is_last {
                 self.undecided(0, None)
@@ -252,10 +262,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
                 self.running(samples, Real::INFINITY)
             };
         };
-        let (fit, model) = (fitting.so_far(), fitting.model());
-        let spent = if is_last { 1.0 } else { 0.5 } * self.progress.fail_left;
-        self.progress.fail_left -= spent;
-        let fail = quantile(spent);
+        let fit = fitting.so_far();
         if fit.p_value < self.plan.least_p / real(self.looks) {
             return Status::Failed(Failure::Misfit {
                 p_value: fit.p_value,
@@ -266,26 +273,27 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             if self.progress.kept.has(i) {
                 continue;
             }
-            let Some(at) = model.position(limit.effect) else {
+            let compared = look.compared(limit);
+            let known = compared.and_then(|compared| {
+                let coefficient = fit.coefficients.get(compared.place)?;
+                Some((coefficient, compared.above?))
+            });
+            let Some((coefficient, above)) = known else {
+                open = Some((i, Real::INFINITY));
                 continue;
             };
-            let Some(coefficient) = fit.coefficients.get(at) else {
-                continue;
-            };
-            let beside = fitting.error_beside(at);
-            match side(coefficient, beside, limit.most, self.pass, fail) {
-                Side::Below => self.progress.kept.add(i),
-                Side::Above => {
-                    return Status::Failed(Failure::Limit {
-                        limit: *limit,
-                        value: coefficient.value,
-                    });
-                }
-                Side::Open { standard_errors } => {
-                    let needed = self.needed_s(coefficient, standard_errors, fail, seconds);
-                    if open.is_none_or(|(_, longest)| needed > longest) {
-                        open = Some((i, needed));
-                    }
+            // The fit must lie on the same side, so that no value within the limit fails.
+            if above < -self.pass && coefficient.value < limit.most {
+                self.progress.kept.add(i);
+            } else if above > self.fail && coefficient.value > limit.most {
+                return Status::Failed(Failure::Limit {
+                    limit: *limit,
+                    value: coefficient.value,
+                });
+            } else {
+                let needed = self.needed_s(coefficient, above, seconds);
+                if open.is_none_or(|(_, longest)| needed > longest) {
+                    open = Some((i, needed));
                 }
             }
         }
@@ -301,20 +309,14 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
 
     /// The length in seconds of a record that would decide, if the estimate is right. Standard errors fall
     /// with the square root of the length.
-    fn needed_s(
-        &self,
-        coefficient: &Coefficient,
-        standard_errors: Real,
-        fail: Real,
-        seconds: Real,
-    ) -> Real {
+    fn needed_s(&self, coefficient: &Coefficient, standard_errors: Real, seconds: Real) -> Real {
         if let State::NotObservable { after_s } = coefficient.state {
             return after_s.unwrap_or(Real::INFINITY);
         }
         let enough = if standard_errors < 0.0 {
             self.pass
         } else {
-            fail
+            self.fail
         };
         let factor = enough / standard_errors;
         let longest = (1_u64 << 30) as Real / self.scale.rate_hz();

@@ -1,9 +1,9 @@
-//! The state of a self-test in a snapshot: the next look, the limits kept, the error probability left.
+//! The state of a self-test in a snapshot: the next look, the limits kept, the verdict.
 
 use super::{Failure, Limit, Plan, Progress, SelfTest, Status};
 use crate::{
     algebra::Choice,
-    real::{Real, double, real},
+    real::{double, real},
     storage::Error,
     storage::{certificate::WireReason, envelope::CRC},
 };
@@ -12,12 +12,14 @@ use serde::{Deserialize, Serialize};
 /// The largest number of bytes of a stored test.
 pub(crate) const LONGEST: usize = 80;
 
+/// The rule by which limits are decided. It is a part of the plan's checksum.
+const RULE: &[u8] = b"likelihood ratio";
+
 #[derive(Serialize, Deserialize)]
 struct Stored {
-    /// The CRC-32 of the plan and the scale.
+    /// The CRC-32 of the rule, the plan and the scale.
     plan: u32,
     next: u64,
-    fail_left: f64,
     kept: u16,
     verdict: Verdict,
 }
@@ -47,16 +49,10 @@ enum Verdict {
 impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     /// The state that a snapshot holds.
     pub(crate) fn stored(&self) -> impl Serialize + use<OCTAVES> {
-        let Progress {
-            next,
-            fail_left,
-            kept,
-            status,
-        } = self.progress;
+        let Progress { next, kept, status } = self.progress;
         Stored {
             plan: self.fingerprint(),
             next,
-            fail_left: double(fail_left),
             kept: kept.bits(),
             verdict: self.stored_verdict(status),
         }
@@ -97,12 +93,9 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         if stored.plan != self.fingerprint() {
             return Err(Error::OtherPlan);
         }
-        let fail_left: Real = real(stored.fail_left);
         let status = self.status_of(stored.verdict);
-        let status = status.filter(|_| (0.0..0.5).contains(&fail_left));
         self.progress = Progress {
             next: stored.next,
-            fail_left,
             kept: Choice::from_bits(stored.kept),
             status: status.ok_or(Error::Impossible)?,
         };
@@ -152,6 +145,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             longest_s,
         } = &self.plan;
         let mut digest = CRC.digest();
+        // A test that another rule has begun cannot be continued.
+        digest.update(RULE);
         for limit in limits {
             digest.update(limit.effect.as_bytes());
             digest.update(&double(limit.most).to_le_bytes());

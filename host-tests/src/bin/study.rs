@@ -93,7 +93,7 @@ enum Study {
     /// Count how often the self-test errs, and compare its length with a test of fixed length
     SelfTest {
         /// Number of devices per case
-        #[arg(long, default_value_t = 2000)]
+        #[arg(long, default_value_t = 4000)]
         devices: u64,
     },
     /// Compare single with double precision on the same records
@@ -522,27 +522,38 @@ fn temperatures(records: u64) {
     }
 }
 
+/// The factors between coefficient and limit that are studied.
+const FACTORS: [f64; 7] = [0.5, 1.0 / 1.3, 0.9, 1.0, 1.1, 1.3, 2.0];
+
 fn self_tests(devices: u64) {
     println!(
         "{devices} devices per line; the plan allows {} % of false pass and as much of false fail",
         100.0 * self_test::PROBABILITY
     );
+    println!(
+        "false verdicts: share of passes above the limit, of fails below it, of either at it;"
+    );
+    println!("in brackets the upper end of its one-sided 95 % confidence interval");
     for case in self_test::CASES {
         let (shortest, longest) = case.lengths_s;
         println!(
             "\n{}, {shortest} s to {longest} s, {} times the flicker noise",
             case.effect, case.flicker
         );
-        println!("coefficient / limit   passed   failed  undecided  median s");
+        println!(
+            "coefficient / limit   passed   failed  undecided  median s   false passes    false fails"
+        );
         let mut missed: f64 = 0.0;
-        for factor in [0.5, 1.0 / 1.3, 0.9, 1.0, 1.1, 1.3, 2.0] {
-            let tally = self_test::study(case, factor, devices, Looks::Early);
+        let tallies = self_test::study(case, &FACTORS, devices, Looks::Early);
+        for (factor, tally) in FACTORS.into_iter().zip(tallies) {
             println!(
-                "{factor:>19.3} {:>6.2} % {:>6.2} % {:>8.2} % {:>9.2}",
+                "{factor:>19.3} {:>6.2} % {:>6.2} % {:>8.2} % {:>9.2} {} {}",
                 100.0 * tally.passed,
                 100.0 * tally.failed,
                 100.0 * tally.undecided,
-                tally.median_s
+                tally.median_s,
+                false_share(factor >= 1.0, tally.passed, devices),
+                false_share(factor <= 1.0, tally.failed, devices),
             );
             if factor == 1.3 || factor == 1.0 / 1.3 {
                 let right = if factor > 1.0 {
@@ -562,4 +573,14 @@ fn self_tests(devices: u64) {
             );
         }
     }
+}
+
+/// A share of false verdicts with the upper end of its confidence interval; nothing if the verdict is
+/// right.
+fn false_share(is_false: bool, share: f64, devices: u64) -> String {
+    if !is_false {
+        return format!("{:>14}", "");
+    }
+    let upper = self_test::at_most(share, devices);
+    format!("{:>5.2} ({:.2}) %", 100.0 * share, 100.0 * upper)
 }

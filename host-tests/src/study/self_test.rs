@@ -7,6 +7,7 @@ use allanite::{
     self_test::{Limit, Plan, SelfTest, Status},
 };
 use rayon::prelude::*;
+use statrs::distribution::{Beta, ContinuousCDF as _};
 
 /// The probabilities of false pass and false fail that the tests are planned for.
 pub const PROBABILITY: f64 = 0.01;
@@ -25,28 +26,37 @@ pub struct Case {
     pub compared: bool,
 }
 
-/// The first limit is decided in seconds and the second in minutes. The third is hidden by other
-/// noise at first.
-pub const CASES: [Case; 3] = [
+/// Limits that are decided in seconds and in minutes, for gyros whose flicker noise hides them more and
+/// more.
+pub const CASES: [Case; 6] = [
+    Case {
+        compared: true,
+        ..angle_random_walk(1.0)
+    },
+    angle_random_walk(4.0),
+    angle_random_walk(10.0),
+    bias_instability(1.0),
+    bias_instability(4.0),
+    bias_instability(10.0),
+];
+
+const fn angle_random_walk(flicker: f64) -> Case {
     Case {
         effect: "angle_random_walk",
         lengths_s: (1.0, 256.0),
-        flicker: 1.0,
-        compared: true,
-    },
+        flicker,
+        compared: false,
+    }
+}
+
+const fn bias_instability(flicker: f64) -> Case {
     Case {
         effect: "bias_instability",
         lengths_s: (40.96, 1310.72),
-        flicker: 1.0,
+        flicker,
         compared: false,
-    },
-    Case {
-        effect: "angle_random_walk",
-        lengths_s: (1.0, 256.0),
-        flicker: 4.0,
-        compared: false,
-    },
-];
+    }
+}
 
 /// The results for devices whose coefficient is `factor` times the limit.
 #[derive(Clone, Copy, Debug)]
@@ -61,14 +71,25 @@ pub struct Tally {
     pub median_s: f64,
 }
 
-/// Tests `devices` devices of the preset "mems" whose limited coefficient is `factor` times the
-/// limit.
-pub fn study(case: Case, factor: f64, devices: u64, looks: Looks) -> Tally {
-    let one = |seed| test(case, factor, seed, looks);
-    let verdicts: Vec<(Status, f64)> = (0..devices).into_par_iter().map(one).collect();
+/// Tests `devices` devices of the preset "mems" for several limits, of which the limited coefficient is
+/// `factors` times as large. A device is simulated once for all of them.
+pub fn study(case: Case, factors: &[f64], devices: u64, looks: Looks) -> Vec<Tally> {
+    let one = |seed| test(case, factors, seed, looks);
+    let verdicts: Vec<Vec<Verdict>> = (0..devices).into_par_iter().map(one).collect();
+    let of_factor = |i: usize| {
+        let verdicts: Vec<Verdict> = verdicts.iter().map(|device| device[i]).collect();
+        tally(&verdicts)
+    };
+    (0..factors.len()).map(of_factor).collect()
+}
+
+/// A verdict, and the length of the record at the verdict, in seconds.
+type Verdict = (Status, f64);
+
+fn tally(verdicts: &[Verdict]) -> Tally {
     let share = |is: fn(&Status) -> bool| {
         let count = verdicts.iter().filter(|(status, _)| is(status)).count();
-        count as f64 / devices as f64
+        count as f64 / verdicts.len() as f64
     };
     let mut lengths: Vec<f64> = verdicts.iter().map(|(_, seconds)| *seconds).collect();
     lengths.sort_by(f64::total_cmp);
@@ -80,6 +101,16 @@ pub fn study(case: Case, factor: f64, devices: u64, looks: Looks) -> Tally {
     }
 }
 
+/// The upper end of the one-sided 95 % confidence interval of a probability, from a share of `devices`
+/// (Clopper & Pearson 1934).
+pub fn at_most(share: f64, devices: u64) -> f64 {
+    let count = (share * devices as f64).round();
+    let others = devices as f64 - count;
+    let beta = Beta::new(count + 1.0, others).ok();
+    // Without others, the share is one.
+    beta.map_or(1.0, |beta| beta.inverse_cdf(0.95))
+}
+
 /// When a test looks at its record.
 #[derive(Clone, Copy, Debug)]
 pub enum Looks {
@@ -89,50 +120,63 @@ pub enum Looks {
     Once(f64),
 }
 
-fn test(case: Case, factor: f64, seed: u64, looks: Looks) -> (Status, f64) {
+fn test(case: Case, factors: &[f64], seed: u64, looks: Looks) -> Vec<Verdict> {
     let mut base = Preset::Mems.coefficients();
     base.bias_instability *= case.flicker;
-    let limited = limited(&mut base, case.effect);
-    let most = *limited / factor;
+    let unit = quantum(base, RATE_HZ);
+    let scale = Scale::new(unit, RATE_HZ).expect("positive");
+    let coefficient = limited(base, case.effect);
+    let plans = factors
+        .iter()
+        .map(|factor| plan(case, coefficient / factor, looks));
+    let mut tests: Vec<SelfTest<OCTAVES>> = plans
+        .map(|plan| SelfTest::new(plan, scale).expect("a plan"))
+        .collect();
+    let mut verdicts = vec![None; tests.len()];
+    let mut gyro = Axis::<OCTAVES, 0, (), ()>::new();
+    for rate in Simulator::new(base, RATE_HZ, seed) {
+        gyro.push((rate / unit).round() as i32);
+        let samples = gyro.samples();
+        if !tests.iter().any(|test| test.is_due(samples)) {
+            continue;
+        }
+        let record = gyro.evidence(0, scale, []).expect("one axis");
+        for (test, verdict) in tests.iter_mut().zip(&mut verdicts) {
+            let status = test.look(samples, &record.curve, record.invalid);
+            if verdict.is_none() && !matches!(status, Status::Running { .. }) {
+                *verdict = Some((status, samples as f64 / RATE_HZ));
+            }
+        }
+        if verdicts.iter().all(Option::is_some) {
+            break;
+        }
+    }
+    verdicts.into_iter().flatten().collect()
+}
+
+fn plan(case: Case, most: f64, looks: Looks) -> Plan {
     let (shortest_s, longest_s) = match looks {
         Looks::Early => case.lengths_s,
         Looks::Once(seconds) => (seconds, seconds),
     };
-    let plan = Plan {
-        limits: [Limit {
-            effect: case.effect,
-            most,
-        }]
-        .into_iter()
-        .collect(),
+    let limit = Limit {
+        effect: case.effect,
+        most,
+    };
+    Plan {
+        limits: [limit].into_iter().collect(),
         least_p: 0.0,
         false_pass: PROBABILITY,
         false_fail: PROBABILITY,
         shortest_s,
         longest_s,
-    };
-    let unit = quantum(base, RATE_HZ);
-    let scale = Scale::new(unit, RATE_HZ).expect("positive");
-    let mut test = SelfTest::<OCTAVES>::new(plan, scale).expect("a plan");
-    let mut gyro = Axis::<OCTAVES, 0, (), ()>::new();
-    for rate in Simulator::new(base, RATE_HZ, seed) {
-        gyro.push((rate / unit).round() as i32);
-        if !test.is_due(gyro.samples()) {
-            continue;
-        }
-        let record = gyro.evidence(0, scale, []).expect("one axis");
-        let status = test.look(record.samples, &record.curve, record.invalid);
-        if !matches!(status, Status::Running { .. }) {
-            return (status, record.samples as f64 / RATE_HZ);
-        }
     }
-    unreachable!("a simulator never ends")
 }
 
-fn limited<'a>(base: &'a mut Coefficients, effect: &str) -> &'a mut f64 {
+fn limited(base: Coefficients, effect: &str) -> f64 {
     match effect {
-        "bias_instability" => &mut base.bias_instability,
-        _ => &mut base.angle_random_walk,
+        "bias_instability" => base.bias_instability,
+        _ => base.angle_random_walk,
     }
 }
 
@@ -142,8 +186,8 @@ fn limited<'a>(base: &'a mut Coefficients, effect: &str) -> &'a mut f64 {
 pub fn fixed_length_s(case: Case, devices: u64, missed: f64) -> f64 {
     let mut seconds = case.lengths_s.0;
     loop {
-        let once = |factor| study(case, factor, devices, Looks::Once(seconds));
-        let (good, bad) = (once(1.0 / 1.3), once(1.3));
+        let tallies = study(case, &[1.0 / 1.3, 1.3], devices, Looks::Once(seconds));
+        let (good, bad) = (tallies[0], tallies[1]);
         if good.passed >= 1.0 - missed && bad.failed >= 1.0 - missed {
             return seconds;
         }

@@ -239,7 +239,8 @@ pub(crate) fn longest_stretch_of_diagnosis<const OCTAVES: usize>(
     Some(longest)
 }
 
-/// The largest number of instructions between two returns of a fit; a look of the self-test is such a fit.
+/// The largest number of instructions between two returns of a fit; a look of the self-test consists of the
+/// same pieces of work.
 #[inline(never)]
 pub(crate) fn longest_stretch_of_fit<const OCTAVES: usize>(
     clock: &Clock,

@@ -19,6 +19,11 @@
 //! Weights need no more than six digits, and a core that computes single precision in hardware takes
 //! half as long.
 
+mod detailed;
+mod products;
+mod series;
+mod starts;
+
 use crate::{
     curve::{Curve, Point},
     lattice::{self, Rounded, SecondDifferences},
@@ -28,20 +33,11 @@ use crate::{
     model::{Model, Term},
     real::{Real, consts::PI, real, single},
 };
+use detailed::Detailed;
 use heapless::Vec;
 use nalgebra::{Complex, SMatrix};
-
-/// Up to this distance from 0 or from the middle, the sum takes the lags one by one, in quarters of the
-/// shorter cluster. The kinks lie within one cluster, which is four quarters. Chosen by hand, and held
-/// to 1 % of the full sum by `host-tests/tests/covariance.rs`.
-const KINK: u32 = 6;
-/// Up to this distance, the sum takes every second lag. Beyond it, the step is the distance's power of
-/// two, or half of that for octaves less than [`FAR`] apart. Chosen by hand, and held to 1 % of the
-/// full sum by `host-tests/tests/covariance.rs`.
-const NEAR: u32 = 8;
-/// The distance of two octaves, in quarters of the shorter cluster, from which on the longer steps are
-/// enough. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/covariance.rs`.
-const FAR: u32 = 256;
+use products::Products;
+use starts::{NEAR, Starts, advance, step_after};
 
 /// The outward tail of the sum ends after two lags in a row that each add less than this share of the
 /// sum. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/covariance.rs`.
@@ -103,14 +99,25 @@ pub(crate) fn covariance_row(
     let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
     let m_j = real(shorter.m);
     let mut random = SecondDifferences::zero(shorter.m, reach);
+    let (mut with_detail, mut of_detailed) = (Vec::<_, DETAILED>::new(), 0.0);
     for (term, &square) in present() {
         let shape = term.sampled_shape(interval_s);
-        if term.effect.response(m_j, &shape).is_none() {
+        if term.effect.response(m_j, &shape).is_some() {
+            continue;
+        }
+        let has_detail = term.effect.tail(m_j, &shape).is_some();
+        if has_detail && with_detail.push((term, square)).is_ok() {
+            of_detailed += square * term.effect.variance(m_j, &shape);
+        } else {
             term.effect
                 .add_second_differences(m_j, square, &shape, &mut random);
         }
     }
-    let random = random.rounded();
+    let random = random.rounded(of_detailed * shorter.tau_s * shorter.tau_s);
+    let detailed = with_detail.into_iter().filter_map(|(term, square)| {
+        Detailed::of(term, square, shorter.m, interval_s, 1.0 / random.unit())
+    });
+    let detailed: Vec<Detailed, DETAILED> = detailed.collect();
     let per_unit = 2.0 / random.unit();
     let mut turns = Vec::<Turn, TABLES>::new();
     let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
@@ -150,7 +157,12 @@ pub(crate) fn covariance_row(
             0.5 * wave.scatter * long * math::sincos_of_turns(apart).1
         });
         let of_phases: Real = of_phases.sum();
-        each(k, of_phases + pair.covariance(&random, &turns, &mut waves));
+        let mut own = pair.covariance(&random, &turns, &mut waves);
+        if !detailed.is_empty() {
+            let products = Products::new(&pair, &random, &detailed);
+            own += pair.scaled(2.0 * products.sum(&detailed, &waves), 1, &random);
+        }
+        each(k, of_phases + own);
     }
 }
 
@@ -177,6 +189,24 @@ impl Wave<'_> {
         self.product * self.now.re
     }
 
+    /// `product · e^(i · phase · lag)`, at any lag.
+    fn from(&self, lag: u32) -> Complex<f32> {
+        let turns = self.phase / (2.0 * PI) * real(lag);
+        let (sine, cosine) = math::sincos_of_turns(turns);
+        Complex::new(single(cosine), single(sine)) * self.product
+    }
+
+    /// `1 − e^(i · phase)` for the phase over a number of quarters.
+    fn rest(&self, quarters: u32) -> Complex<f32> {
+        detailed::rest(0.0, self.phase * real(quarters))
+    }
+
+    /// The magnitude of that phase below half a turn, or a little less.
+    fn speed(&self, quarters: u32) -> f32 {
+        let rest = self.rest(quarters);
+        rest.re.abs().max(rest.im.abs())
+    }
+
     /// Advances from a lag by a step, which is a power of two.
     fn advance(&mut self, lag: u32, step: u32, turns: &[Turn]) {
         if self.phase == 0.0 {
@@ -201,11 +231,18 @@ const START: Complex<f32> = Complex::new(1.0, 0.0);
 /// per lag.
 const TABLES: usize = 2;
 
+/// The number of effects of a model whose detail is summed. Any further one is taken at the lags of the lattice
+/// alone.
+const DETAILED: usize = 2;
+
+/// The number of powers of two among the steps of the sum.
+const LEVELS: usize = (lattice::END / 2).ilog2() as usize;
+
 /// The powers `e^(i · phase · 2^k)`, by repeated squaring: one exponential replaces the cosines of a
 /// lattice.
 struct Turn {
     phase: Real,
-    steps: [Complex<f32>; (lattice::END / 2).ilog2() as usize],
+    steps: [Complex<f32>; LEVELS],
 }
 
 impl Turn {
@@ -313,92 +350,14 @@ impl Pair<'_> {
                 break;
             }
         }
+        self.scaled(sum, stride, differences)
+    }
+
+    /// The covariance that belongs to a sum over pairs, which took every pair `2 stride` times.
+    fn scaled(&self, sum: f32, stride: u32, differences: &Rounded) -> Real {
         let counts = self.shorter.differences as Real * self.longer.differences as Real;
         // The square of τ² would leave the range of single precision, so τ² is divided out first.
         let unit = differences.unit() / (self.shorter.tau_s * self.longer.tau_s);
         0.25 * real(sum) * (unit * unit) / (real(stride) * counts)
-    }
-}
-
-/// Where the differences of two octaves start.
-struct Starts {
-    /// The binary logarithm of the number of samples between two starts of the longer difference.
-    advance_bits: u32,
-    /// The binary logarithm of the shorter cluster's length in samples. It turns quarters of the
-    /// cluster into samples, with a shift by two less.
-    quarter_bits: u32,
-    /// The room that the longer difference leaves on either side of the shorter one, in samples.
-    inside: u64,
-    /// The last start of the shorter difference, in samples.
-    last: u64,
-    /// The number of starts of the longer difference.
-    count: u64,
-}
-
-impl Starts {
-    fn new(shorter: &Point, longer: &Point) -> Self {
-        Self {
-            advance_bits: floor_log2(advance(longer.m)),
-            quarter_bits: floor_log2(shorter.m),
-            inside: u64::from(longer.m.saturating_sub(shorter.m)),
-            last: shorter
-                .differences
-                .saturating_sub(1)
-                .wrapping_shl(floor_log2(advance(shorter.m))),
-            count: longer.differences,
-        }
-    }
-
-    /// The number of pairs of starts whose differences have their middles `lag` quarters of the shorter
-    /// cluster apart, in either order.
-    fn pairs(&self, lag: u32) -> u64 {
-        let distance = u64::from(lag).wrapping_shl(self.quarter_bits) >> 2;
-        // In one order, the partners of these starts of the longer difference would lie before the
-        // record.
-        let outside = distance.saturating_sub(self.inside);
-        let advance = 1_u64.wrapping_shl(self.advance_bits);
-        let partly = outside.saturating_add(advance.saturating_sub(1));
-        let before = partly.wrapping_shr(self.advance_bits);
-        // In the other order, these starts have a partner that does not lie beyond the end of the
-        // record.
-        let end = distance.saturating_add(self.inside);
-        let after = match self.last.checked_sub(end) {
-            Some(room) => room.wrapping_shr(self.advance_bits).saturating_add(1),
-            None => 0,
-        };
-        let kept = self.count.saturating_sub(before);
-        kept.saturating_add(after.min(self.count))
-    }
-}
-
-/// The number of samples from one start to the next.
-fn advance(m: u32) -> u32 {
-    (m / 4).max(1)
-}
-
-/// The step from a lag of the sum to the next one: a quarter of a cluster near 0 and near the middle,
-/// where the kinks are, then two quarters, then the power of two of the distance.
-fn step_after(lag: u32, middle: u32, stride: u32) -> u32 {
-    // Octaves that lie far apart are correlated too little for half steps to matter.
-    let halvings = if middle < FAR { 1 } else { 0 };
-    let power = |distance: u32| 1_u32.wrapping_shl(floor_log2(distance).saturating_sub(halvings));
-    let away = |distance: u32| match distance {
-        0..KINK => stride,
-        KINK..NEAR => stride.max(2),
-        _ => power(distance),
-    };
-    let towards = |distance: u32| match distance {
-        0..=KINK => stride,
-        _ if distance <= NEAR => stride.max(2),
-        _ => power(distance.saturating_sub(1)),
-    };
-    if lag >= middle {
-        away(lag - middle)
-    } else if middle <= 2 * NEAR {
-        stride
-    } else if lag < middle / 2 {
-        away(lag)
-    } else {
-        towards(middle - lag)
     }
 }

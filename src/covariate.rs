@@ -10,13 +10,22 @@
 //!
 //! Here `C_gx` and `σ²_x` are the numbers of the [`CrossCurve`], `σ²` is the Allan variance of the
 //! noise, and `n/m` is the number of clusters in an octave. An octave sees the spectral density of the
-//! covariate through `|H(f)|² = 2 sin⁴(πfτ)/(πfτ)²`, and all octaves together weight it with
-//! `W(f) = Σ_k (n/m_k) |H_k(f)|²/σ²_k`. The factor `c` is `W` times the spectral density of the noise.
-//! It is 2 for white noise, whose `Σ|H|²` is 2. It is `π²/(6 ln² 2) = 3.42` for flicker noise, from
-//! `∫ sin⁴u/u⁴ du = π/3` over `(2 ln 2/π) B²`. The covariates that a gyro may follow are slow, so the
-//! value for flicker noise is taken. It is cautious where the noise is white.
+//! covariate through `|H(f)|² = 2 sin⁴u/u²` with `u = πfτ`, and all octaves together weight it with
+//! `W(f) = Σ_k (n/m_k) |H_k(f)|²/σ²_k`. The variance of the slope follows from `W²` times the densities of
+//! the noise and of the covariate. So `c` is the mean of `W(f) S(f)` over the frequencies that inform about the
+//! slope, where `S` is the density of the noise:
+//!
+//! | noise | `W S` |
+//! |---|---|
+//! | white | `2 Σ_k sin⁴u_k/u_k² = 2` |
+//! | flicker | `π²/(6 ln² 2) = 3.42` on average, from `∫ sin⁴u/u⁴ du = π/3` over `(2 ln 2/π) B²` |
+//! | random walk | `1.5 Σ_k sin⁴u_k/u_k⁴`: 1.5 for each octave that is shorter than the covariate's changes |
+//!
+//! A random walk makes octaves repeat each other, and a slow covariate does so too. The density of the noise follows
+//! from the fitted model, and that of the covariate from its own Allan variances.
 
 mod cross_sums;
+mod scatter;
 
 pub(crate) use cross_sums::CrossSums;
 #[cfg(feature = "storage")]
@@ -145,10 +154,6 @@ impl<const K: usize> CrossCurve<K> {
 /// it.
 const RISEN: Real = 4.0;
 
-/// The factor `c` of the slope's variance, for flicker noise; see the [module](self).
-/// `cargo xtask study thermal` confirms it: the intervals cover 94 to 95 % of the slopes.
-const CAUTION: Real = 3.42;
-
 /// The slope with which a rate follows a covariate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -174,9 +179,10 @@ impl Slope {
             product += weight * cross.covariance;
             information += weight * cross.variance;
         }
+        let factor = scatter::factor(cross, first, &noise);
         (information > 0.0 && information.is_finite()).then(|| Self {
             value: product / information,
-            error: math::sqrt(CAUTION / information),
+            error: math::sqrt(factor / information),
         })
     }
 

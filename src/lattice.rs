@@ -155,9 +155,10 @@ impl SecondDifferences {
         }
     }
 
-    /// The same differences in single precision, in units of τ² times the Allan variance.
-    pub(crate) fn rounded(&self) -> Rounded {
-        let unit = self.values[4] - self.values[0];
+    /// The same differences in single precision, in units of τ² times the Allan variance. `more` is what
+    /// effects that are not on the lattice add to the unit.
+    pub(crate) fn rounded(&self, more: Real) -> Rounded {
+        let unit = self.values[4] - self.values[0] + more;
         let unit = if unit > 0.0 { unit } else { 1.0 };
         let reciprocal = 1.0 / unit;
         Rounded {

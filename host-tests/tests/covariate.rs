@@ -1,7 +1,13 @@
 //! Compares the covariance of a gyro with a covariate with a direct computation.
 
-use allanite::{Axis, Error, Scale};
+use allanite::{
+    Axis, Error, Model, Scale,
+    diagnosis::{Addition, Diagnosis, Evidence, Options},
+    effect::CATALOGUE,
+};
+use host_tests::simulate::{Coefficients, Course, Simulator, Thermal};
 use proptest::prelude::*;
+use rayon::prelude::*;
 
 const OCTAVES: usize = 10;
 
@@ -78,4 +84,83 @@ fn impossible_units_and_axes_are_refused() {
     }
     let refused = gyro.evidence(1, scale, [1.0]).unwrap_err();
     assert_eq!(refused, Error::UnknownAxis { axis: 1, axes: 1 });
+}
+
+/// The slopes that diagnoses of records of a random walk claim, with their standard errors. The rate follows a
+/// temperature with `slope`.
+fn claimed(
+    coefficients: Coefficients,
+    course: Course,
+    slope: f64,
+    records: u64,
+) -> Vec<(f64, f64)> {
+    const RATE_HZ: f64 = 20.0;
+    const COUNT: f64 = 1e-4;
+    const KELVIN: f64 = 1e-3;
+    let thermal = Thermal {
+        slope,
+        kelvin: 10.0,
+        course,
+    };
+    let one = |seed: u64| {
+        let mut simulator = Simulator::new(coefficients, RATE_HZ, seed);
+        let mut gyro = Gyro::new();
+        for n in 0..1 << 13 {
+            let time_s = f64::from(n) / RATE_HZ;
+            let rate = simulator.next().unwrap_or_default() + thermal.rate_at(time_s);
+            let celsius = thermal.celsius_at(time_s);
+            gyro.push((
+                (rate / COUNT).round() as i32,
+                [(celsius / KELVIN).round() as i32],
+            ));
+        }
+        let scale = Scale::new(COUNT, RATE_HZ).expect("positive");
+        let record = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
+        let evidence = Evidence {
+            covariates: &record.covariates,
+            ..Evidence::NONE
+        };
+        let (model, options) = (Model::ieee_952(), Options::default());
+        let mut diagnosis = Diagnosis::new(record.curve, evidence, &model, &CATALOGUE, options);
+        let mut slope = None;
+        let report = diagnosis.run(|step| {
+            if let Some(Addition::Covariate(followed)) = &step.added {
+                slope = Some((followed.slope.value, followed.slope.error));
+            }
+        });
+        report.expect("a curve to diagnose");
+        slope
+    };
+    (0..records).into_par_iter().filter_map(one).collect()
+}
+
+/// The coefficients of a gyro whose random walk dominates.
+const WALK: Coefficients = Coefficients {
+    quantization: 0.0,
+    angle_random_walk: 5e-3,
+    bias_instability: 0.0,
+    rate_random_walk: 3e-3,
+    rate_ramp: 0.0,
+};
+
+/// The slope of an unrelated temperature exceeds 3.5 standard errors in 0.05 % of records: 1 of 2000.
+#[test]
+fn a_random_walk_is_not_blamed_on_an_unrelated_warm_up() {
+    for time_s in [20.0, 100.0, 400.0, 1e6] {
+        let blamed = claimed(WALK, Course::WarmUp { time_s }, 0.0, 2000);
+        assert!(blamed.len() <= 5, "{time_s} s: {} of 2000", blamed.len());
+    }
+}
+
+#[test]
+fn a_coupling_that_stands_out_of_a_random_walk_is_found() {
+    let slope = 0.05;
+    let found = claimed(WALK, Course::WarmUp { time_s: 100.0 }, slope, 100);
+    assert!(found.len() >= 98, "{}", found.len());
+    let mean = found.iter().map(|one| one.0).sum::<f64>() / found.len() as f64;
+    assert!((mean / slope - 1.0).abs() < 0.05, "{mean}");
+    let inside = found
+        .iter()
+        .filter(|(value, error)| (value - slope).abs() < 1.96 * error);
+    assert!(inside.count() >= 88, "of {}", found.len());
 }

@@ -1,6 +1,6 @@
 use super::{
     Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, angle_random_walk::AngleRandomWalk,
+    SampledShape, SearchRange, SecondDifferences, Tail, angle_random_walk::AngleRandomWalk,
 };
 use crate::math;
 use crate::real::Real;
@@ -185,6 +185,18 @@ impl Effect for DecimationFilter {
         sum.add_below(m, m + filter.support, |x| {
             weight * filter.second_difference(x, m)
         });
+    }
+
+    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
+        let support = Filter::new(shape).support;
+        // The autocovariance may end within the part of the lattice that is coarse.
+        (support > 2.0 * m).then_some(Tail {
+            start: m + support,
+            decay: 0.0,
+            phase: 0.0,
+            cosine: 0.0,
+            sine: 0.0,
+        })
     }
 }
 

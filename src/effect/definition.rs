@@ -89,6 +89,23 @@ pub struct Response {
     pub phase: Real,
 }
 
+/// The second differences of a random effect from the lag `start` on:
+/// `e^(−decay (x − start)) [cosine cos(phase (x − start)) − sine sin(phase (x − start))]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Tail {
+    /// The first lag `x` of the tail, in samples.
+    pub start: Real,
+    /// Logarithmic decay from one sample to the next, above zero.
+    pub decay: Real,
+    /// Phase from one sample to the next, in radians, from −π to π.
+    pub phase: Real,
+    /// The second difference at the start, in the unit of the kernel.
+    pub cosine: Real,
+    /// The part that is a quarter of a turn ahead, in the same unit.
+    pub sine: Real,
+}
+
 /// A physical effect that shows in an Allan curve.
 ///
 /// Only the description and the kernel have to be given. Everything else has a default that follows
@@ -150,6 +167,18 @@ pub trait Effect: Sync {
     /// A deterministic effect is the same in every record but for its phase. It shifts the curve,
     /// but scatters it only where random effects beat against it.
     fn response(&self, m: Real, shape: &SampledShape) -> Option<Response> {
+        let _ = (m, shape);
+        None
+    }
+
+    /// The tail of a random effect whose second differences, for clusters of `m` samples, have more detail
+    /// than the lattice resolves: it holds every lag up to four clusters, and four an octave beyond. `None` for
+    /// any other effect.
+    ///
+    /// The covariance of a curve takes such an effect at every lag up to the tail, and sums the tail in closed
+    /// form. The tail starts at `m`, or it is zero and starts after at most 95 distances of starts, which are
+    /// the greater of `m/4` and 1.
+    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
         let _ = (m, shape);
         None
     }

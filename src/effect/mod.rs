@@ -18,7 +18,9 @@ mod sampled_shape;
 mod search_range;
 
 pub use crate::{lattice::SecondDifferences, limits::MAX_PARAMETERS};
-pub use definition::{Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Response};
+pub use definition::{
+    Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Response, Tail,
+};
 pub use explanation::{Explain, Explanation};
 pub use sampled_shape::SampledShape;
 pub use search_range::{SearchRange, Span};

@@ -1,6 +1,6 @@
 //! The kernel of one complex pole, which Gauss–Markov noise, resonances and low-passed noise share.
 
-use super::SecondDifferences;
+use super::{SecondDifferences, Tail};
 use crate::{
     lattice, math,
     real::{Real, by_precision, consts::PI, real},
@@ -120,6 +120,19 @@ impl Pole {
         } else {
             let rest = self.power(m).rest();
             -(self.factor * self.power(x - m).power * rest * rest).re
+        }
+    }
+
+    /// The second differences from `m` on, divided by τ₀².
+    pub(super) fn tail(&self, m: Real) -> Tail {
+        let rest = self.power(m).rest();
+        let at_m = -(self.factor * rest * rest);
+        Tail {
+            start: m,
+            decay: self.decay,
+            phase: -self.exponent.im,
+            cosine: at_m.re,
+            sine: at_m.im,
         }
     }
 

@@ -1,6 +1,6 @@
 use super::{
     Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, pole::Pole, sinusoid::frequencies,
+    SampledShape, SearchRange, SecondDifferences, Tail, pole::Pole, sinusoid::frequencies,
 };
 use crate::real::{Real, consts::PI};
 
@@ -91,6 +91,16 @@ impl Effect for Resonance {
     ) {
         let weight = weight * squared(shape.interval_s);
         pole(shape).add_second_differences(m, weight, sum);
+    }
+
+    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
+        let scale = squared(shape.interval_s);
+        let unit = pole(shape).tail(m);
+        Some(Tail {
+            cosine: scale * unit.cosine,
+            sine: scale * unit.sine,
+            ..unit
+        })
     }
 }
 

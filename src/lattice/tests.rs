@@ -156,7 +156,7 @@ fn rounded_second_differences_are_in_units_of_the_variance() {
         // The effect has a second difference of `unit` at one cluster, and of 0 elsewhere.
         let mut sum = SecondDifferences::zero(4, END);
         sum.add_at(4, unit);
-        let rounded = sum.rounded();
+        let rounded = sum.rounded(0.0);
         assert_eq!(rounded.unit(), expected);
         let ratio = double(unit) / double(expected);
         assert!((f64::from(rounded.at(4)) - ratio).abs() <= 1e-6);
@@ -174,7 +174,7 @@ fn values_between_positions_are_interpolated_linearly() {
         _ => random.real(),
     });
     sum.add_scaled(1.0, &table);
-    let rounded = sum.rounded();
+    let rounded = sum.rounded(0.0);
     let value = |slot: usize| double(table[slot]) + f64::from(u8::from(slot == 4));
     let far = core::iter::repeat_with(|| random.bits() % END).take(2000);
     for lag in (0..4096).chain(far).chain([END - 1]) {

@@ -1,5 +1,9 @@
 //! Compares the covariance of a curve with the sum over every pair of its differences.
 
+mod catalogue;
+mod every_pair;
+mod simulated;
+
 use allanite::{
     Curve, Model, Term,
     effect::{IEEE_952, SampledShape, Sinusoid},

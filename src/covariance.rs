@@ -28,7 +28,7 @@ use crate::{
     curve::{Curve, Point},
     lattice::{self, Rounded, SecondDifferences},
     limits::MAX_EFFECTS,
-    list::numbered,
+    list::{self, numbered},
     math::{self, floor_log2},
     model::{Model, Term},
     real::{Real, consts::PI, real, single},
@@ -114,10 +114,11 @@ pub(crate) fn covariance_row(
         }
     }
     let random = random.rounded(of_detailed * shorter.tau_s * shorter.tau_s);
-    let detailed = with_detail.into_iter().filter_map(|(term, square)| {
-        Detailed::of(term, square, shorter.m, interval_s, 1.0 / random.unit())
+    let per_unit = 1.0 / random.unit();
+    let detailed = with_detail.iter().filter_map(|&(term, square)| {
+        Detailed::of(term, square, shorter.m, interval_s, per_unit)
     });
-    let detailed: Vec<Detailed, DETAILED> = detailed.collect();
+    let detailed: Vec<Detailed, DETAILED> = list::fill(detailed);
     let per_unit = 2.0 / random.unit();
     let mut turns = Vec::<Turn, TABLES>::new();
     let mut waves = Vec::<Wave, MAX_EFFECTS>::new();

@@ -281,9 +281,8 @@ fn a_look_that_is_not_complete_or_belongs_to_another_test_decides_nothing() {
         gyro.push((rate / UNIT).round() as i32);
     }
     let record = gyro.evidence(0, scale(), []).unwrap();
-    let begin = |test: &SelfTest<16>| {
-        test.begin_look(record.samples, record.curve.clone(), record.invalid)
-    };
+    let begin =
+        |test: &SelfTest<16>| test.begin_look(record.samples, record.curve.clone(), record.invalid);
     let mut look = begin(&new(0.02));
     let not_complete = new(0.02).conclude(&look);
     assert!(

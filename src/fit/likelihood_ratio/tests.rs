@@ -17,7 +17,7 @@ const SQUARES: [f64; 5] = [0.0, 1e-2, 4e-3, 2e-4, 0.0];
 
 /// The curve of such a gyro, with octaves that are off by about their standard error.
 fn curve(random: &mut Random) -> Curve<OCTAVES> {
-    let squares = SQUARES.map(|square| real(square));
+    let squares = SQUARES.map(real);
     let octaves = (0..OCTAVES).map(|k| {
         let (m, clusters) = (1_u32 << k, 4096.0 * 4.0 / f64::from(1_u32 << k));
         let off = 1.5 * random.signed() / libm::sqrt(clusters);
@@ -54,15 +54,15 @@ fn descend(
 ) -> f64 {
     let ones = SVector::<f64, OCTAVES>::from_element(1.0);
     let hessian = columns.transpose() * inverse * columns;
-    let right = columns.transpose() * inverse * &ones;
+    let right = columns.transpose() * inverse * ones;
     for _ in 0..4000 {
         for i in (0..5).filter(|&i| free(i)) {
             let slope = right[i] - hessian.row(i).transpose().dot(squares);
             squares[i] = (squares[i] + slope / hessian[(i, i)]).max(0.0);
         }
     }
-    let residual = ones - columns * &*squares;
-    (residual.transpose() * inverse * &residual)[(0, 0)]
+    let residual = ones - columns * *squares;
+    (residual.transpose() * inverse * residual)[(0, 0)]
 }
 
 /// The same statistic by a slow, separate computation relative to the measured curve.

@@ -115,9 +115,9 @@ pub(crate) fn covariance_row(
     }
     let random = random.rounded(of_detailed * shorter.tau_s * shorter.tau_s);
     let per_unit = 1.0 / random.unit();
-    let detailed = with_detail.iter().filter_map(|&(term, square)| {
-        Detailed::of(term, square, shorter.m, interval_s, per_unit)
-    });
+    let detailed = with_detail
+        .iter()
+        .filter_map(|&(term, square)| Detailed::of(term, square, shorter.m, interval_s, per_unit));
     let detailed: Vec<Detailed, DETAILED> = list::fill(detailed);
     let per_unit = 2.0 / random.unit();
     let mut turns = Vec::<Turn, TABLES>::new();

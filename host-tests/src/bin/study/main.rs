@@ -1,0 +1,138 @@
+//! The studies that the README's figures rest on: `cargo xtask study NAME`.
+
+mod clean;
+mod coefficients;
+mod hidden_effect;
+mod lines;
+mod paper;
+mod precision;
+mod self_test;
+mod theory;
+mod thermal;
+
+use allanite::fit::Options;
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+use host_tests::simulate::Preset;
+use std::path::PathBuf;
+
+/// The symbols of the five terms, in the order of the model.
+const SYMBOLS: [&str; 5] = ["Q", "N", "B", "K", "R"];
+
+#[derive(Parser)]
+#[command(about = "Statistics over thousands of simulated records")]
+struct Arguments {
+    #[command(subcommand)]
+    study: Study,
+}
+
+#[derive(Subcommand)]
+enum Study {
+    /// Compare the theoretical covariance of the curve and χ² of the fit with simulated records
+    Theory {
+        /// Number of records per table
+        #[arg(long, default_value_t = 3000)]
+        records: u64,
+    },
+    /// Repeat the experiment of Lv, Liu, Lai & Huang 2015: ordinary and weighted least squares on gyros of
+    /// three grades
+    Paper {
+        /// Number of records per gyro
+        #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(2..))]
+        records: u64,
+        /// Print JSON instead of a table
+        #[arg(long)]
+        json: bool,
+        /// Draw one record of each gyro and its fits into this file, .svg or .png
+        #[arg(long, value_name = "FILE")]
+        figure: Option<PathBuf>,
+    },
+    /// Count how often a hidden effect is found, named and measured, and how often one is claimed in vain
+    HiddenEffect {
+        /// Number of records per case
+        #[arg(long, default_value_t = 100)]
+        records: u64,
+        /// Number of records per preset in which nothing is hidden
+        #[arg(long, default_value_t = 1000)]
+        clean: u64,
+        /// Study only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
+        /// Study only this effect
+        #[arg(long)]
+        effect: Option<String>,
+    },
+    /// Count what is said about records with one line of random frequency and amplitude
+    Lines {
+        /// Number of records per preset
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+    },
+    /// Count what is claimed of records in which nothing is hidden, at every length, and which absent terms are measured
+    Clean {
+        /// Number of records per gyro
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+        /// Study only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
+        /// Multiply the rate random walk
+        #[arg(long, default_value_t = 1.0)]
+        walk: f64,
+    },
+    /// Count how often a temperature that the rate depends on is found, and another one is blamed
+    Thermal {
+        /// Number of records per case
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+    },
+    /// Count how often the self-test errs, and compare its length with a test of fixed length
+    SelfTest {
+        /// Number of devices per case
+        #[arg(long, default_value_t = 4000)]
+        devices: u64,
+    },
+    /// Compare single with double precision on the same records
+    Precision {
+        /// Number of records per table
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+    },
+    /// Measure errors of the coefficients and coverage of their intervals, for every method
+    Coefficients {
+        /// Number of records per method
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+        /// Relative tolerance of the model
+        #[arg(long, default_value_t = Options::default().tolerance)]
+        tolerance: f64,
+    },
+}
+
+fn main() -> Result<()> {
+    match Arguments::parse().study {
+        Study::Theory { records } => theory::print(records),
+        Study::Paper {
+            records,
+            json,
+            figure,
+        } => paper::print(records, json, figure.as_deref())?,
+        Study::HiddenEffect {
+            records,
+            clean,
+            preset,
+            effect,
+        } => hidden_effect::print(records, clean, preset, effect.as_deref()),
+        Study::Lines { records } => lines::print(records),
+        Study::Clean {
+            records,
+            preset,
+            walk,
+        } => clean::print(records, preset, walk),
+        Study::Thermal { records } => thermal::print(records),
+        Study::SelfTest { devices } => self_test::print(devices),
+        Study::Precision { records } => precision::print(records)?,
+        Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),
+    }
+    Ok(())
+}

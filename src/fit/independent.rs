@@ -53,7 +53,8 @@ const ACCURATE: Real = 0.25;
 pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> Result<Fit, Error> {
     let is_used =
         |point: &&Point| method != Method::AccuratePart || relative_accuracy(point) <= ACCURATE;
-    let octaves = problem.points.iter().filter(is_used).count();
+    let used = problem.points.iter().filter(is_used);
+    let octaves = used.fold(0_usize, |count, _| count.saturating_add(1));
     let needed = problem.count();
     if octaves < needed {
         return Err(Error::TooFewOctaves {

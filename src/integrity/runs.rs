@@ -70,7 +70,8 @@ impl Runs {
         let stuck = self.is_implausible(self.present, self.ended_samples, factor);
         if stuck {
             // When the run becomes implausible, all its samples so far count.
-            let before = self.is_implausible(self.present - 1, self.ended_samples, factor);
+            let before =
+                self.is_implausible(self.present.saturating_sub(1), self.ended_samples, factor);
             let new = if before { 1 } else { self.present };
             self.stuck = self.stuck.saturating_add(u64::from(!before));
             self.stuck_samples = self.stuck_samples.saturating_add(new.into());

@@ -51,6 +51,8 @@ struct Axis {
     chi2: Option<f64>,
     dof: Option<u32>,
     p_value: Option<f64>,
+    birge_ratio: f64,
+    notes: Vec<String>,
 }
 
 #[derive(Deserialize)]

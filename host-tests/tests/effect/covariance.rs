@@ -3,7 +3,7 @@
 use super::shapes::{assert_relative, for_every_shape, octaves, rounding};
 use allanite::{
     Curve, Model, Term,
-    effect::{Description, Distribution, Effect, Response, SampledShape},
+    effect::{Description, Distribution, Effect, Response, SampledShape, Tail},
     fit::curve_covariance,
 };
 
@@ -21,6 +21,10 @@ impl Effect for KernelOnly {
 
     fn response(&self, m: f64, shape: &SampledShape) -> Option<Response> {
         self.0.response(m, shape)
+    }
+
+    fn tail(&self, m: f64, shape: &SampledShape) -> Option<Tail> {
+        self.0.tail(m, shape)
     }
 }
 

@@ -20,28 +20,35 @@
 //! half as long.
 
 mod detailed;
+mod pair;
 mod products;
 mod series;
 mod starts;
+mod wave;
 
 use crate::{
     curve::{Curve, Point},
-    lattice::{self, Rounded, SecondDifferences},
+    lattice::{self, SecondDifferences},
     limits::MAX_EFFECTS,
     list::{self, numbered},
-    math::{self, floor_log2},
-    model::{Model, Term},
+    math,
+    model::Model,
     real::{Real, consts::PI, real, single},
 };
 use detailed::Detailed;
 use heapless::Vec;
-use nalgebra::{Complex, SMatrix};
+use nalgebra::SMatrix;
+use pair::Pair;
 use products::Products;
-use starts::{NEAR, Starts, advance, step_after};
+use wave::{START, TABLES, Turn, Wave, coherent, middle};
 
-/// The outward tail of the sum ends after two lags in a row that each add less than this share of the
-/// sum. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/covariance.rs`.
-const NEGLIGIBLE: f32 = 1e-4;
+/// The number of effects of a model whose detail is summed. Any further one is taken at the lags of the lattice
+/// alone.
+const DETAILED: usize = 2;
+
+/// The number of pairs of octaves that are computed in one go if an effect has detail. Chosen by hand, so that one
+/// piece of a diagnosis stays below 2 million instructions (`cargo xtask bench`).
+const PAIRS_AT_ONCE: usize = 4;
 
 /// The covariance of a curve's Allan variances, in rate units to the fourth, for a model whose effects
 /// have the squared coefficients `squares`. A fit takes its weights from this matrix. Rows and columns
@@ -70,30 +77,33 @@ pub(crate) fn covariance(
     each: &mut dyn FnMut(usize, usize, Real),
 ) {
     for j in 0..points.len() {
-        covariance_row(points, model, squares, interval_s, j, &mut |k, value| {
-            each(k, j, value);
-        });
+        let mut next = j;
+        while next < points.len() {
+            let each = &mut |k, value| each(k, j, value);
+            next = covariance_row(points, model, squares, interval_s, (j, next), each);
+        }
     }
 }
 
-/// Computes the covariance of octave `j` with itself and with all longer octaves. Calls
-/// `each(k, covariance)` for `k ≥ j`. Calls nothing for an octave that the curve does not have.
+/// Computes covariances of octave `j` with itself and with longer octaves, from octave `from ≥ j` on. Calls
+/// `each(k, covariance)` for each of them, and returns the octave that comes next: effects with detail take several
+/// calls. Calls nothing for an octave that the curve does not have.
 #[inline(never)]
 pub(crate) fn covariance_row(
     points: &[Point],
     model: &Model,
     squares: &[Real],
     interval_s: Real,
-    j: usize,
+    (j, from): (usize, usize),
     each: &mut dyn FnMut(usize, Real),
-) {
+) -> usize {
     let longest = points.last().map_or(1, |point| point.m);
     let present = || {
         let terms = model.terms().iter().zip(squares);
         terms.filter(|&(_, &square)| square > 0.0)
     };
     let Some(shorter) = points.get(j) else {
-        return;
+        return points.len();
     };
     let ratio = longest.checked_div(shorter.m).unwrap_or(0);
     let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
@@ -139,7 +149,13 @@ pub(crate) fn covariance_row(
             });
         }
     }
-    for (k, longer) in numbered(points.iter()).skip(j) {
+    let at_once = if detailed.is_empty() {
+        points.len()
+    } else {
+        PAIRS_AT_ONCE
+    };
+    let next = from.saturating_add(at_once).min(points.len());
+    for (k, longer) in numbered(points.iter()).take(next).skip(from) {
         let pair = Pair { shorter, longer };
         // Octaves a factor of 2^18 apart lie beyond the lattice. Their correlation is below 0.002.
         if pair.middle() >= lattice::END / 4 {
@@ -165,200 +181,5 @@ pub(crate) fn covariance_row(
         }
         each(k, of_phases + own);
     }
-}
-
-/// What a deterministic effect adds to the product of two differences, times two. It is
-/// `product · cos(phase · ℓ)` at a lag of `ℓ` quarters of the shorter cluster.
-struct Wave<'a> {
-    term: &'a Term,
-    square: Real,
-    /// Its [`coherent`] share of the shorter octave.
-    scatter: Real,
-    /// The phase from one sample to the next, in radians.
-    sample_phase: Real,
-    /// The product without the factor of the longer octave.
-    size: Real,
-    product: f32,
-    phase: Real,
-    turn: Option<usize>,
-    /// `e^(i · phase · ℓ)` at the present lag.
-    now: Complex<f32>,
-}
-
-impl Wave<'_> {
-    fn value(&self) -> f32 {
-        self.product * self.now.re
-    }
-
-    /// `product · e^(i · phase · lag)`, at any lag.
-    fn from(&self, lag: u32) -> Complex<f32> {
-        let turns = self.phase / (2.0 * PI) * real(lag);
-        let (sine, cosine) = math::sincos_of_turns(turns);
-        Complex::new(single(cosine), single(sine)) * self.product
-    }
-
-    /// `1 − e^(i · phase)` for the phase over a number of quarters.
-    fn rest(&self, quarters: u32) -> Complex<f32> {
-        detailed::rest(0.0, self.phase * real(quarters))
-    }
-
-    /// The magnitude of that phase below half a turn, or a little less.
-    fn speed(&self, quarters: u32) -> f32 {
-        let rest = self.rest(quarters);
-        rest.re.abs().max(rest.im.abs())
-    }
-
-    /// Advances from a lag by a step, which is a power of two.
-    fn advance(&mut self, lag: u32, step: u32, turns: &[Turn]) {
-        if self.phase == 0.0 {
-            return;
-        }
-        let turn = self
-            .turn
-            .and_then(|turn| turns.get(turn)?.steps.get(floor_log2(step) as usize));
-        self.now = match turn {
-            Some(turn) => self.now * turn,
-            None => {
-                let turns = self.phase / (2.0 * PI) * (real(lag) + real(step));
-                Complex::new(single(math::sincos_of_turns(turns).1), 0.0)
-            }
-        };
-    }
-}
-
-const START: Complex<f32> = Complex::new(1.0, 0.0);
-
-/// The number of oscillations of a model whose turns are kept in tables. Any further one takes a cosine
-/// per lag.
-const TABLES: usize = 2;
-
-/// The number of effects of a model whose detail is summed. Any further one is taken at the lags of the lattice
-/// alone.
-const DETAILED: usize = 2;
-
-/// The number of powers of two among the steps of the sum.
-const LEVELS: usize = (lattice::END / 2).ilog2() as usize;
-
-/// The powers `e^(i · phase · 2^k)`, by repeated squaring: one exponential replaces the cosines of a
-/// lattice.
-struct Turn {
-    phase: Real,
-    steps: [Complex<f32>; LEVELS],
-}
-
-impl Turn {
-    /// The place of a phase's turns in `known`, where they are added if they are missing. `None` if
-    /// there is no room.
-    fn of(phase: Real, known: &mut Vec<Self, TABLES>) -> Option<usize> {
-        if let Some(at) = known.iter().position(|turn| turn.phase == phase) {
-            return Some(at);
-        }
-        let (sine, cosine) = math::sincos_of_turns(phase / (2.0 * PI));
-        let mut turn = Complex::new(cosine, sine);
-        let steps = core::array::from_fn(|_| {
-            let here = Complex::new(single(turn.re), single(turn.im));
-            turn *= turn;
-            here
-        });
-        known.push(Self { phase, steps }).ok()?;
-        known.len().checked_sub(1)
-    }
-}
-
-/// The part of an oscillation's variance in an octave that depends on its phase, which nobody knows: the
-/// amplitude of `σ̂² = σ²(τ) + coherent · cos 2φ`.
-///
-/// A difference of phase `φ + ωs` contributes `2σ² cos²(φ + ωs)` to the average, and `cos 2(φ + ωs)` sums
-/// over `n` starts that are `a` samples apart to `sin(nωa)/sin(ωa)`. Only a record of many periods averages
-/// it away. The phase `2φ` is that in the [`middle`] of the octave.
-fn coherent(term: &Term, square: Real, point: &Point, interval_s: Real) -> Real {
-    let shape = term.sampled_shape(interval_s);
-    let Some(sample) = term
-        .effect
-        .response(1.0, &shape)
-        .filter(|sample| sample.phase != 0.0)
-    else {
-        return 0.0;
-    };
-    let apart = sample.phase / (2.0 * PI) * real(advance(point.m));
-    let count = point.differences as Real;
-    let sine = math::sincos_of_turns(apart).0;
-    // Starts that are whole half periods apart all have the same phase.
-    let mean = if sine.abs() * count < 1e-3 {
-        1.0
-    } else {
-        math::sincos_of_turns(apart * count).0 / (count * sine)
-    };
-    square * term.effect.variance(real(point.m), &shape) * mean
-}
-
-/// The time, in samples, around which an octave's differences lie.
-fn middle(point: &Point) -> Real {
-    let starts = (point.differences as Real - 1.0) * real(advance(point.m));
-    0.5 * starts + real(point.m)
-}
-
-/// Two octaves of a curve.
-struct Pair<'a> {
-    shorter: &'a Point,
-    longer: &'a Point,
-}
-
-impl Pair<'_> {
-    /// The length of the longer cluster in quarters of the shorter one: the lag of the outer kinks.
-    fn middle(&self) -> u32 {
-        let ratio = self.longer.m.checked_div(self.shorter.m).unwrap_or(0);
-        ratio.saturating_mul(4)
-    }
-
-    fn covariance(&self, differences: &Rounded, turns: &[Turn], waves: &mut [Wave<'_>]) -> Real {
-        let middle = self.middle();
-        let stride = lattice::stride(self.shorter.m);
-        let starts = Starts::new(self.shorter, self.longer);
-        let outer = middle.saturating_add(NEAR);
-        let (mut sum, mut quiet) = (0.0_f32, 0_u32);
-        let (mut lag, mut step_before) = (0_u32, 0);
-        loop {
-            let step = step_after(lag, middle, stride);
-            let pairs = starts.pairs(lag);
-            let here = differences.at(lag);
-            let random = differences.at(lag.abs_diff(middle)) - (here + here)
-                + differences.at(lag.saturating_add(middle));
-            if random != 0.0 {
-                // The trapezoidal rule weights a lag with half the steps to either side. The factor of
-                // one half follows below, and so does the division by the stride. `pairs` counts both
-                // signs of the lag.
-                let weight =
-                    (u64::from(step_before) + u64::from(step)).saturating_mul(pairs) as f32;
-                let mut factor = random;
-                for wave in &*waves {
-                    factor += wave.value();
-                }
-                let term = weight * (random * factor);
-                sum += term;
-                let counts = lag <= outer || term.abs() > NEGLIGIBLE * sum.abs();
-                quiet = if counts { 0 } else { quiet.saturating_add(1) };
-            } else {
-                quiet = quiet.saturating_add(1);
-            }
-            for wave in &mut *waves {
-                wave.advance(lag, step, turns);
-            }
-            lag = lag.saturating_add(step);
-            step_before = step;
-            let far = lag > outer && quiet >= 2;
-            if far || pairs == 0 || lag >= lattice::END / 2 {
-                break;
-            }
-        }
-        self.scaled(sum, stride, differences)
-    }
-
-    /// The covariance that belongs to a sum over pairs, which took every pair `2 stride` times.
-    fn scaled(&self, sum: f32, stride: u32, differences: &Rounded) -> Real {
-        let counts = self.shorter.differences as Real * self.longer.differences as Real;
-        // The square of τ² would leave the range of single precision, so τ² is divided out first.
-        let unit = differences.unit() / (self.shorter.tau_s * self.longer.tau_s);
-        0.25 * real(sum) * (unit * unit) / (real(stride) * counts)
-    }
+    next
 }

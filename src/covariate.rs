@@ -179,7 +179,8 @@ impl Slope {
             product += weight * cross.covariance;
             information += weight * cross.variance;
         }
-        let factor = scatter::factor(cross, first, &noise);
+        let points = cross.points().iter().map(|point| (point.m, point.variance));
+        let factor = scatter::factor::<K>(points, first, &noise);
         (information > 0.0 && information.is_finite()).then(|| Self {
             value: product / information,
             error: math::sqrt(factor / information),

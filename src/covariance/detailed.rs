@@ -8,9 +8,8 @@
 //! without a resonance, and its product with each power of `q` is summed in closed form (Filon 1928).
 
 use super::{
-    LEVELS,
     series::{ONE, Series, ZERO, joined},
-    starts::advance,
+    starts::{LEVELS, advance},
 };
 use crate::{
     math::{self, floor_log2},

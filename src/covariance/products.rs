@@ -1,10 +1,11 @@
 //! The sum over two octaves of the products of an effect with detail with itself and with the other effects.
 
 use super::{
-    NEGLIGIBLE, Pair, Wave,
     detailed::{Detailed, SMOOTH, Tail},
+    pair::Pair,
     series::ZERO,
-    starts::{NEAR, Starts, advance, step_after},
+    starts::{NEAR, NEGLIGIBLE, Starts, advance, step_after},
+    wave::Wave,
 };
 use crate::{
     lattice::{self, Rounded},

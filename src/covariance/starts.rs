@@ -1,6 +1,13 @@
 //! The lags at which the differences of two octaves meet.
 
-use crate::{curve::Point, math::floor_log2};
+use crate::{curve::Point, lattice, math::floor_log2};
+
+/// The outward tail of the sum ends after two lags in a row that each add less than this share of the
+/// sum. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/covariance.rs`.
+pub(super) const NEGLIGIBLE: f32 = 1e-4;
+
+/// The number of powers of two among the steps of the sum.
+pub(super) const LEVELS: usize = (lattice::END / 2).ilog2() as usize;
 
 /// Up to this distance from 0 or from the middle, the sum takes the lags one by one, in quarters of the
 /// shorter cluster. The kinks lie within one cluster, which is four quarters. Chosen by hand, and held

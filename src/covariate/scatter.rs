@@ -1,6 +1,5 @@
 //! The factor `c` of the variance of a slope, from the Allan variances of the noise and of the covariate.
 
-use super::CrossCurve;
 use crate::{
     list::numbered,
     math,
@@ -31,22 +30,22 @@ struct Octave {
 /// cover.
 const MARGIN: Real = 1.25;
 
-/// The factor `c` for a covariate that counts from the octave `first` on, where the noise has the Allan variance
-/// `noise(k)` in octave `k`.
+/// The factor `c` for a covariate that counts from the octave `first` on. `points` are the averaging factor and the
+/// Allan variance of the covariate in every octave, and `noise(k)` is the Allan variance of the noise in octave `k`.
 pub(super) fn factor<const K: usize>(
-    cross: &CrossCurve<K>,
+    points: impl ExactSizeIterator<Item = (u32, Real)>,
     first: usize,
     noise: &dyn Fn(usize) -> Real,
 ) -> Real {
+    let last = points.len().saturating_sub(1);
     let mut octaves = Vec::<Octave, K>::new();
-    for (k, point) in numbered(cross.points().iter()).skip(first) {
-        let last = cross.points().len().saturating_sub(1);
+    for (k, (m, covariate)) in numbered(points).skip(first) {
         // There is room for every octave.
         let _ = octaves.push(Octave {
-            m: real(point.m),
+            m: real(m),
             noise: noise(k),
-            density: noise(k) * real(point.m) * density(k, last, noise),
-            covariate: point.variance,
+            density: noise(k) * real(m) * density(k, last, noise),
+            covariate,
         });
     }
     // A longer octave is the first to see a slow change of the covariate. What it leaves of a shorter octave's

@@ -30,9 +30,10 @@ pub(crate) struct Weights<const K: usize> {
     pub(crate) log_determinant: Real,
     pub(crate) tolerance: Real,
     pub(crate) shrinkage: Real,
-    /// The next row of the covariance, and the present attempt at a positive definite one. They are
+    /// The next row and column of the covariance, and the present attempt at a positive definite one. They are
     /// where [`advance`](Self::advance) goes on.
     row: usize,
+    column: usize,
     attempt: usize,
 }
 
@@ -46,6 +47,7 @@ impl<const K: usize> Weights<K> {
         tolerance: 0.0,
         shrinkage: 0.0,
         row: 0,
+        column: 0,
         attempt: 0,
     };
 
@@ -79,7 +81,7 @@ impl<const K: usize> Weights<K> {
             self.model.put(k, variance);
         }
         self.tolerance = tolerance;
-        self.row = 0;
+        (self.row, self.column) = (0, 0);
         self.attempt = 0;
         Ok(())
     }
@@ -96,7 +98,7 @@ impl<const K: usize> Weights<K> {
         }
     }
 
-    /// Computes one more row of the covariance, or factors the covariance when all rows are there.
+    /// Computes one more row of the covariance or a part of it, or factors the covariance when all rows are there.
     /// Returns `true` when the weights are complete.
     ///
     /// # Errors
@@ -111,13 +113,16 @@ impl<const K: usize> Weights<K> {
         let shrinkage = SHRINKAGES.get(self.attempt).copied();
         self.shrinkage = shrinkage.ok_or(Error::Singular)?;
         if self.row < n {
-            self.set_row(problem, squares, 1.0 - self.shrinkage);
-            self.row = self.row.saturating_add(1);
+            self.column = self.set_row(problem, squares, 1.0 - self.shrinkage);
+            if self.column >= n {
+                self.row = self.row.saturating_add(1);
+                self.column = self.row;
+            }
             return Ok(false);
         }
         if !cholesky::factor(&mut self.factor, n) {
             self.attempt = self.attempt.saturating_add(1);
-            self.row = 0;
+            (self.row, self.column) = (0, 0);
             return Ok(false);
         }
         let diagonal = |k: usize| self.model[k] * problem.variance_unit / real(self.factor[(k, k)]);
@@ -125,9 +130,9 @@ impl<const K: usize> Weights<K> {
         Ok(true)
     }
 
-    /// Computes one row of the covariance relative to the model. The correlations are multiplied by
-    /// `keep`.
-    fn set_row(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: Real) {
+    /// Computes a part of one row of the covariance relative to the model, and returns the column that comes next.
+    /// The correlations are multiplied by `keep`.
+    fn set_row(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: Real) -> usize {
         let (row, model, tolerance) = (self.row, &self.model, self.tolerance);
         let factor = &mut self.factor;
         let own = 1.0 / model[row];
@@ -136,7 +141,7 @@ impl<const K: usize> Weights<K> {
             problem.model,
             squares.as_slice(),
             problem.interval_s,
-            row,
+            (row, self.column),
             &mut |k, covariance| {
                 let relative = covariance * own / model[k];
                 let kept = if k == row {
@@ -146,7 +151,7 @@ impl<const K: usize> Weights<K> {
                 };
                 factor.put((k, row), single(kept));
             },
-        );
+        )
     }
 
     /// The standard error of octave `k`, relative to the model's variance.

@@ -48,7 +48,7 @@ const DETAILED: usize = 2;
 
 /// The number of pairs of octaves that are computed in one go if an effect has detail. Chosen by hand, so that one
 /// piece of a diagnosis stays below 2 million instructions (`cargo xtask bench`).
-const PAIRS_AT_ONCE: usize = 4;
+const PAIRS_AT_ONCE: usize = 2;
 
 /// The covariance of a curve's Allan variances, in rate units to the fourth, for a model whose effects
 /// have the squared coefficients `squares`. A fit takes its weights from this matrix. Rows and columns

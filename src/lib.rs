@@ -90,9 +90,9 @@
 //! |---|---|
 //! | a sample into an accumulator, any number of octaves | 140 instructions |
 //! | RAM of an accumulator of 24 octaves | 2400 bytes |
-//! | flash of accumulator, curve and fit | 25 400 bytes |
-//! | flash with the diagnosis and the whole catalogue | 51 400 bytes |
-//! | a fit of 20 octaves | 6.3 million instructions |
+//! | flash of accumulator, curve and fit | 34 800 bytes |
+//! | flash with the diagnosis and the whole catalogue | 63 600 bytes |
+//! | a fit of 20 octaves | 7.6 million instructions |
 //!
 //! A sample always takes a bounded number of instructions, whatever the input and however long the record. The
 //! library does not allocate and has no `unsafe` code, and no input makes it panic. [`Axes`] names its own cost,

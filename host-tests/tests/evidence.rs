@@ -127,6 +127,9 @@ fn noise_below_half_a_count_is_invalid() {
         fitted[0].starts_with("the noise is below half a count"),
         "{fitted:?}"
     );
+    let text = output(folder.path(), &["fit", "log.csv", "--scale", "0.2"]);
+    assert!(text.contains("The curve is not valid: the noise is below half a count"));
+    assert!(!text.contains("adequate"), "{text}");
     let diagnosed = json(folder.path(), &["diagnose", "log.csv", "--scale", "0.2"]);
     let axis = &diagnosed["axes"][0];
     assert_eq!(axis["verdict"], "invalid");

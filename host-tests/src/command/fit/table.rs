@@ -34,11 +34,20 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
             fitted.method.name()
         )?;
         writeln!(output, "{}", table(&fitted.fit, axis.unit).trim_fmt())?;
-        for line in verdict(&fitted.fit, fitted.method) {
+        let note = rounding::note(axis, &fitted.fit);
+        // Whether the model explains a curve that is not valid does not matter.
+        let is_coarse = rounding::is_coarse(axis);
+        let lines = verdict(&fitted.fit, fitted.method);
+        for line in lines.iter().take(if is_coarse { 1 } else { lines.len() }) {
             writeln!(output, "{line}")?;
         }
-        if let Some(note) = rounding::note(axis, &fitted.fit) {
-            writeln!(output, "Note: {note}.")?;
+        let what = if is_coarse {
+            "The curve is not valid"
+        } else {
+            "Note"
+        };
+        if let Some(note) = note {
+            writeln!(output, "{what}: {note}.")?;
         }
     }
     Ok(())

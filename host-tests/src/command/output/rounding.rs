@@ -12,17 +12,22 @@ use allanite::{
 /// exceeds it at a noise of two counts rms or less.
 const LEAST_PERCENT: f64 = 1.0;
 
+/// Whether the noise is below half a count. The result of a fit then follows from the constant offset.
+pub(crate) fn is_coarse(axis: &AxisCurve) -> bool {
+    let square = axis.rate_per_count * axis.rate_per_count;
+    // A difference of neighbours has twice their Allan variance.
+    let first = axis.octaves.first().filter(|octave| octave.m == 1);
+    let least = f64::from(Limits::DEFAULT.difference_per_mille) / 1000.0;
+    first.is_some_and(|first| 2.0 * first.variance / square < least)
+}
+
 /// A note on the share of rounding in an axis, or `None` if there is nothing to tell.
 ///
 /// Rounding to whole counts adds white noise of 1/12 count² to a noise of half a count rms or more
 /// (Widrow & Kollár 2008, chapter 4). Below that, the result of the fit follows from the constant offset.
 pub(crate) fn note(axis: &AxisCurve, fit: &Fit) -> Option<String> {
     let square = axis.rate_per_count * axis.rate_per_count;
-    let first = axis.octaves.first().filter(|octave| octave.m == 1)?;
-    // A difference of neighbours has twice their Allan variance.
-    let difference = 2.0 * first.variance / square;
-    let least = f64::from(Limits::DEFAULT.difference_per_mille) / 1000.0;
-    if difference < least {
+    if is_coarse(axis) {
         return Some(
             "the noise is below half a count, so that the coefficients follow from the constant \
              offset: use a finer range"

@@ -111,7 +111,7 @@
 //!
 //! The library computes in single precision unless the program asks for `double`. Single precision needs two
 //! thirds of the flash. On a core that computes it in hardware, a fit takes a third of the time and a diagnosis a
-//! fifth. The results agree to a thousandth of their standard errors. Of 4000 simulated gyros, 1000 with each of
+//! quarter. The results agree to a thousandth of their standard errors. Of 4000 simulated gyros, 1000 with each of
 //! three hidden effects and 1000 with none, 3999 get the same diagnosis as in double precision. The other one
 //! gets the second of two effects that are called ambiguous (`cargo xtask study precision`).
 //!

@@ -10,6 +10,12 @@ pub(crate) fn numbered<I: IntoIterator>(items: I) -> Zip<Range<usize>, I::IntoIt
     (0..usize::MAX).zip(items)
 }
 
+/// The number of items. Unlike that of `Iterator::count`, the arithmetic cannot overflow, so that it has no path to a
+/// panic where overflow is checked.
+pub(crate) fn count(items: impl Iterator) -> usize {
+    items.fold(0, |count: usize, _| count.saturating_add(1))
+}
+
 /// A list of the first items, as many as there is room for.
 pub(crate) fn fill<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();

@@ -21,6 +21,7 @@ use crate::{
     effect::{Effect, Span},
     error::Error,
     fit::{Problem, Start, Tolerance, Work, check},
+    list,
     model::Model,
 };
 
@@ -85,12 +86,6 @@ pub struct Diagnosis<'a, const K: usize> {
     stage: Stage<K>,
 }
 
-/// The number of effects in a model whose shapes are fitted.
-fn number_of_fitted(model: &Model) -> usize {
-    let fitted = model.terms().iter().filter(|term| term.fitted);
-    fitted.fold(0_usize, |count, _| count.saturating_add(1))
-}
-
 /// The stage that is in progress.
 // The large variants share their memory. A diagnosis is stored once and never copied.
 #[allow(clippy::large_enum_variant)]
@@ -150,7 +145,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
             judged: Judged::none(),
             best: Fitted::empty(),
             additions: 0,
-            given: number_of_fitted(model),
+            given: list::count(model.terms().iter().filter(|term| term.fitted)),
             preferred: None,
             work: Work::NEW,
             stage: Stage::Beginning,

@@ -49,9 +49,6 @@ impl Estimator {
         fit.method = Method::Covariance;
         fit.coefficients.clear();
         fit.shape.clear();
-        if self.is_valid {
-            fit.shape = self.shape.estimates(&solver.free);
-        }
         fit.chi_squared = solver.chi_squared;
         fit.degrees_of_freedom = solver.degrees_of_freedom();
         fit.p_value = solver.p_value();
@@ -59,8 +56,8 @@ impl Estimator {
         fit.tolerance = solver.weights.tolerance;
         fit.shrinkage = solver.weights.shrinkage;
         fit.birge_ratio = birge_ratio(fit);
-        for shape in &mut fit.shape {
-            shape.widen(fit.birge_ratio);
+        if self.is_valid {
+            fit.shape = self.shape.estimates(&solver.free, fit.birge_ratio);
         }
     }
 

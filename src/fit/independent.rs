@@ -11,7 +11,7 @@ use crate::{
     coefficient::Coefficient,
     curve::Point,
     error::Error,
-    list::numbered,
+    list::{self, numbered},
     nnls::{Free, Interval, NormalEquations},
     real::Real,
 };
@@ -53,8 +53,7 @@ const ACCURATE: Real = 0.25;
 pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> Result<Fit, Error> {
     let is_used =
         |point: &&Point| method != Method::AccuratePart || relative_accuracy(point) <= ACCURATE;
-    let used = problem.points.iter().filter(is_used);
-    let octaves = used.fold(0_usize, |count, _| count.saturating_add(1));
+    let octaves = list::count(problem.points.iter().filter(is_used));
     let needed = problem.count();
     if octaves < needed {
         return Err(Error::TooFewOctaves {

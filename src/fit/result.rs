@@ -4,7 +4,6 @@ use super::method::{ADEQUATE_P, Method};
 use crate::{
     coefficient::Coefficient,
     limits::{MAX_EFFECTS, MAX_SHAPE},
-    math,
     real::Real,
 };
 use heapless::Vec;
@@ -23,18 +22,6 @@ pub struct ShapeEstimate {
     pub lower: Real,
     /// Upper end of the interval.
     pub upper: Real,
-}
-
-impl ShapeEstimate {
-    /// Multiplies the standard error of the logarithm by a factor.
-    pub(super) fn widen(&mut self, factor: Real) {
-        if factor <= 1.0 {
-            return;
-        }
-        let more = math::exp((factor - 1.0) * math::log(self.upper / self.value));
-        self.lower /= more;
-        self.upper *= more;
-    }
 }
 
 /// Coefficients of a model, with what they are worth.

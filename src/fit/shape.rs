@@ -114,8 +114,9 @@ impl ShapeEquations {
             .fold(0.0, Real::max)
     }
 
-    /// The fitted parameters with their intervals, which are symmetric in the logarithm.
-    pub(crate) fn estimates(&self, free: &Free) -> Vec<ShapeEstimate, MAX_SHAPE> {
+    /// The fitted parameters with their intervals, which are symmetric in the logarithm. The standard errors are
+    /// multiplied by `widened`.
+    pub(crate) fn estimates(&self, free: &Free, widened: Real) -> Vec<ShapeEstimate, MAX_SHAPE> {
         let count = self.count();
         let free = self.with_shapes(free, count);
         let parameters = numbered(self.parameters.iter());
@@ -123,7 +124,7 @@ impl ShapeEquations {
             let value = shape.parameter(j);
             let variance = self.equations.variance(count.saturating_add(at), &free);
             let error = variance.map_or(Real::INFINITY, math::sqrt);
-            let factor = math::exp(real(TWO_SIDED_95) * error);
+            let factor = math::exp(real(TWO_SIDED_95) * error * widened);
             ShapeEstimate {
                 term,
                 name: shape.parameter_name(j),

@@ -109,27 +109,29 @@ pub(crate) fn covariance_row(
     let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
     let m_j = real(shorter.m);
     let mut random = SecondDifferences::zero(shorter.m, reach);
-    let (mut with_detail, mut of_detailed) = (Vec::<_, DETAILED>::new(), 0.0);
+    let (mut tails, mut of_detailed) = (Vec::<_, DETAILED>::new(), 0.0);
     for (term, &square) in present() {
         let shape = term.sampled_shape(interval_s);
         if term.effect.response(m_j, &shape).is_some() {
             continue;
         }
-        let has_detail = term.effect.tail(m_j, &shape).is_some();
-        if has_detail && with_detail.push((term, square)).is_ok() {
-            of_detailed += square * term.effect.variance(m_j, &shape);
-        } else {
-            term.effect
-                .add_second_differences(m_j, square, &shape, &mut random);
+        match term.effect.tail(m_j, &shape) {
+            Some(tail) if tails.push((tail, term, square)).is_ok() => {
+                of_detailed += square * term.effect.variance(m_j, &shape);
+            }
+            _ => {
+                let effect = term.effect;
+                effect.add_second_differences(m_j, square, &shape, &mut random);
+            }
         }
     }
     let random = random.rounded(of_detailed * shorter.tau_s * shorter.tau_s);
     let per_unit = 1.0 / random.unit();
-    let detailed = with_detail
-        .iter()
-        .filter_map(|&(term, square)| Detailed::of(term, square, shorter.m, interval_s, per_unit));
+    let detailed = tails.iter().filter_map(|(tail, term, square)| {
+        let shape = term.sampled_shape(interval_s);
+        Detailed::of(tail, term.effect, &shape, shorter.m, square * per_unit)
+    });
     let detailed: Vec<Detailed, DETAILED> = list::fill(detailed);
-    let per_unit = 2.0 / random.unit();
     let mut turns = Vec::<Turn, TABLES>::new();
     let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
     for (term, &square) in present() {
@@ -139,7 +141,7 @@ pub(crate) fn covariance_row(
             let _ = waves.push(Wave {
                 term,
                 square,
-                size: per_unit * square * short.amplitude,
+                size: 2.0 * per_unit * square * short.amplitude,
                 product: 0.0,
                 phase,
                 turn: Turn::of(phase, &mut turns),

@@ -12,8 +12,8 @@ use super::{
     starts::{LEVELS, advance},
 };
 use crate::{
+    effect::{self, Effect, SampledShape},
     math::{self, floor_log2},
-    model::Term,
     real::{Real, consts::PI, real, single},
 };
 use nalgebra::Complex;
@@ -62,23 +62,19 @@ struct Step {
 }
 
 impl Detailed {
-    /// The effect for clusters of `m` samples, times `scale`. `None` for an effect that the lattice resolves, or
-    /// that has no room here.
+    /// The effect with this tail for clusters of `m` samples, times `scale`. `None` if it has no room here.
     pub(super) fn of(
-        term: &Term,
-        square: Real,
+        tail: &effect::Tail,
+        effect: &dyn Effect,
+        shape: &SampledShape,
         m: u32,
-        interval_s: Real,
         scale: Real,
     ) -> Option<Self> {
-        let shape = term.sampled_shape(interval_s);
-        let tail = term.effect.tail(real(m), &shape)?;
         let step = real(advance(m));
         let start = math::ceil(tail.start / step) as u32;
-        let scale = scale * square;
         let second_difference = |x: u32| {
             let x = real(x) * step;
-            let value = term.effect.second_difference(x, real(m), &shape);
+            let value = effect.second_difference(x, real(m), shape);
             single(scale * (value - tail.cosine))
         };
         if tail.cosine == 0.0 && tail.sine == 0.0 {

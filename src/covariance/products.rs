@@ -195,6 +195,7 @@ impl<'a> Products<'a> {
         };
         let (inner_tail, outer_tail) = (one.inner(middle, reach), one.outer(middle, reach));
         let (mut sum, mut lag, mut quiet) = (0.0_f32, 0_u32, 0_u32);
+        let mut before: Option<(Part, Here)> = None;
         while quiet < 2 && lag < lattice::END / 2 && self.starts.pairs(lag) > 0 {
             let from = lag.checked_div(stride).unwrap_or(0);
             let (part, end) = self.part(from);
@@ -207,7 +208,10 @@ impl<'a> Products<'a> {
             };
             let to = from.saturating_add(starts);
             let next = to.saturating_mul(stride);
-            let (first, last) = (at(lag, part), at(next, part));
+            // A step begins with the numbers with which the step before it ended.
+            let first = before.take().filter(|(ended, _)| *ended == part);
+            let first = first.map_or_else(|| at(lag, part), |(_, here)| here);
+            let last = at(next, part);
             let half = 0.5 * starts as f32;
             let mut here = half * (first.partners + last.partners);
             here += if starts <= 1 || one.speed * (starts as f32) < SMOOTH {
@@ -228,12 +232,13 @@ impl<'a> Products<'a> {
             let counts = to <= outer || here.abs() > NEGLIGIBLE * size;
             quiet = if counts { 0 } else { quiet.saturating_add(1) };
             lag = next;
+            before = Some((part, last));
         }
         sum
     }
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Part {
     Kink,
     Inner,

@@ -8,7 +8,7 @@ use super::{
 use crate::{failure::one_line, unit::Unit};
 use svg::{
     Document,
-    node::element::{Circle, Group, Rectangle},
+    node::element::{Circle, Group, Rectangle, Text},
 };
 
 const WIDTH: f64 = 1030.0;
@@ -27,8 +27,8 @@ const RESIDUAL: Panel = Panel {
     width: CURVE.width,
     height: 154.0,
 };
-pub(super) const LEGEND: (f64, f64) = (CURVE.left + CURVE.width + 22.0, CURVE.top + 12.0);
-pub(super) const LEGEND_ROW: f64 = 24.0;
+const LEGEND: (f64, f64) = (CURVE.left + CURVE.width + 22.0, CURVE.top + 12.0);
+const LEGEND_ROW: f64 = 24.0;
 /// Largest numbers of characters in a title and in the smaller subtitle.
 const LONGEST: [usize; 2] = [72, 120];
 /// A residual is noticeable beyond this many standard errors. It is the limit that the library's
@@ -216,27 +216,11 @@ impl Drawing {
     }
 
     fn legend(&self) -> Group {
-        let (left, mut top) = LEGEND;
-        let row = |top: f64, words: &str| text((left + 40.0, top + 4.0), words, 12.0, "start", INK);
-        let sample = Panel {
-            left,
-            top: top - 8.0,
-            width: 56.0,
-            height: 16.0,
-        };
-        let mut group = Group::new()
-            .add(sample.stem(0.1, 0.0, 1.0, 1.5))
-            .add(sample.mark(0.1, 0.5))
-            .add(row(top, "measured ± std. error"));
         let mut lines = vec![(MODEL, "model".to_owned())];
         let effects = self.figure.shares.iter();
         lines.extend(effects.map(|share| (effect(share), share.effect.replace('_', " "))));
-        for (stroke, words) in lines {
-            top += LEGEND_ROW;
-            let sample = Panel { top, ..sample };
-            let ends = [(-0.4, 1.0), (0.7, 1.0)].into_iter();
-            group = group.add(sample.curve(ends, stroke)).add(row(top, &words));
-        }
+        let group = legend(lines);
+        let left = LEGEND.0;
         let band = Rectangle::new()
             .set("x", left)
             .set("y", RESIDUAL.top + 4.0)
@@ -245,20 +229,54 @@ impl Drawing {
             .set("fill", "#ddf4ff");
         let group = group
             .add(band)
-            .add(row(RESIDUAL.top + 12.0, "± 2 std. errors"));
+            .add(legend_row(RESIDUAL.top + 12.0, "± 2 std. errors"));
         let Some(worst) = self.worst() else {
             return group;
         };
         let sample = Panel {
             top: RESIDUAL.top + 36.0 - 8.0,
-            ..sample
+            ..legend_sample()
         };
         let words = format!("worst octave: {:+.0}", self.figure.z[worst]).replace('-', "−");
         group
             .add(sample.mark(0.1, 0.5))
             .add(ring(&sample, 0.1, 0.5))
-            .add(row(RESIDUAL.top + 36.0, &words))
+            .add(legend_row(RESIDUAL.top + 36.0, &words))
     }
+}
+
+/// The words of a row of the legend.
+fn legend_row(top: f64, words: &str) -> Text {
+    text((LEGEND.0 + 40.0, top + 4.0), words, 12.0, "start", INK)
+}
+
+/// The panel in which the first row of the legend shows its mark.
+fn legend_sample() -> Panel {
+    let (left, top) = LEGEND;
+    Panel {
+        left,
+        top: top - 8.0,
+        width: 56.0,
+        height: 16.0,
+    }
+}
+
+/// The legend: what is measured, then a row for each line.
+pub(super) fn legend(lines: impl IntoIterator<Item = (Stroke, String)>) -> Group {
+    let (sample, mut top) = (legend_sample(), LEGEND.1);
+    let mut group = Group::new()
+        .add(sample.stem(0.1, 0.0, 1.0, 1.5))
+        .add(sample.mark(0.1, 0.5))
+        .add(legend_row(top, "measured ± std. error"));
+    for (stroke, words) in lines {
+        top += LEGEND_ROW;
+        let sample = Panel { top, ..sample };
+        let ends = [(-0.4, 1.0), (0.7, 1.0)].into_iter();
+        group = group
+            .add(sample.curve(ends, stroke))
+            .add(legend_row(top, &words));
+    }
+    group
 }
 
 /// The ticks with their positions instead of their values.

@@ -1,9 +1,9 @@
 //! A drawing of one curve beside those of several models, without residuals.
 
 use super::{
-    drawing::{CURVE, EFFECTS, LEGEND, LEGEND_ROW, MODEL, document, heading, placed, upright},
+    drawing::{CURVE, EFFECTS, MODEL, document, heading, legend, placed, upright},
     frame::Span,
-    panel::{INK, Panel, Stroke, text},
+    panel::{INK, Stroke, text},
 };
 use svg::node::element::Group;
 
@@ -84,31 +84,10 @@ impl Overlay {
                 .add(CURVE.stem(across, low, high, 1.5))
                 .add(CURVE.mark(across, up));
         }
-        group.add(self.legend())
-    }
-
-    fn legend(&self) -> Group {
-        let (left, mut top) = LEGEND;
-        let row = |top: f64, words: &str| text((left + 40.0, top + 4.0), words, 12.0, "start", INK);
-        let sample = Panel {
-            left,
-            top: top - 8.0,
-            width: 56.0,
-            height: 16.0,
-        };
-        let mut group = Group::new()
-            .add(sample.stem(0.1, 0.0, 1.0, 1.5))
-            .add(sample.mark(0.1, 0.5))
-            .add(row(top, "measured ± std. error"));
-        for (number, (name, _)) in self.curves.iter().enumerate() {
-            top += LEGEND_ROW;
-            let sample = Panel { top, ..sample };
-            let ends = [(-0.4, 1.0), (0.7, 1.0)].into_iter();
-            group = group
-                .add(sample.curve(ends, stroke(number, self.curves.len())))
-                .add(row(top, name));
-        }
-        group
+        let curves = self.curves.iter().enumerate();
+        let lines =
+            curves.map(|(number, (name, _))| (stroke(number, self.curves.len()), name.clone()));
+        group.add(legend(lines))
     }
 }
 

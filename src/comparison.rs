@@ -2,15 +2,18 @@
 
 use crate::{
     chi_squared::chi_squared_tail,
-    curve::Curve,
+    covariance::covariance_row,
+    curve::Point,
     error::Error,
     fit::{Columns, Fit, Problem, Weights},
     limits::MAX_EFFECTS,
-    list::numbered,
+    list::{self, numbered},
     math,
     model::Model,
     nnls::Vector,
-    real::{Real, single},
+    observed::Observed,
+    real::{Real, real, single},
+    spectrum::Bin,
 };
 use heapless::Vec;
 
@@ -50,6 +53,19 @@ impl ComparedOctave {
     }
 }
 
+/// One bin of a measured density beside a model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ComparedBin {
+    /// What was measured.
+    pub bin: Bin,
+    /// The model's density, in rate units squared per hertz.
+    pub model: Real,
+    /// How far the measured density lies above the model's, in standard errors of the measured density. The
+    /// standard error includes the model's tolerance.
+    pub z: Real,
+}
+
 /// Neighbouring octaves that all disagree noticeably to the same side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -65,12 +81,14 @@ pub struct Stretch {
 /// A measurement beside a model, octave by octave and as a whole.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Comparison<const K: usize> {
+pub struct Comparison<const K: usize, const B: usize = 0> {
     /// The octaves, shortest averaging time first.
     pub octaves: Vec<ComparedOctave, K>,
-    /// χ²: the squared disagreement in units of the curve's covariance.
+    /// The bins of the density, those of the shortest blocks first. Empty without a density.
+    pub bins: Vec<ComparedBin, B>,
+    /// χ²: the squared disagreement of all that is fitted, in units of its covariance.
     pub chi_squared: Real,
-    /// The number of octaves, less the number of unknowns that were fitted to them.
+    /// The number of octaves and bins that are fitted, less the number of unknowns.
     pub degrees_of_freedom: usize,
     /// Probability of a larger χ² if the model is true. NaN without degrees of freedom.
     pub p_value: Real,
@@ -78,14 +96,19 @@ pub struct Comparison<const K: usize> {
     pub rms_percent: Real,
 }
 
-impl<const K: usize> Comparison<K> {
+impl<const K: usize, const B: usize> Comparison<K, B> {
     /// Compares the fit of a model with the curve that it was fitted to.
     ///
     /// # Errors
     /// The same as those of [`fit`](crate::fit::fit()).
-    pub fn new(curve: &Curve<K>, model: &Model, fit: &Fit) -> Result<Self, Error> {
-        let unknowns = curve.points().len().saturating_sub(fit.degrees_of_freedom);
-        let mut comparison = Self::with_unknowns(curve, model, fit, fit.tolerance, unknowns)?;
+    pub fn new<'a>(
+        observed: impl Into<Observed<'a, K, B>>,
+        model: &Model,
+        fit: &Fit,
+    ) -> Result<Self, Error> {
+        let observed = observed.into();
+        let unknowns = observed.rows().saturating_sub(fit.degrees_of_freedom);
+        let mut comparison = Self::with_unknowns(observed, model, fit, fit.tolerance, unknowns)?;
         if !fit.chi_squared.is_nan() {
             // The covariance at the end of a fit differs a little from the covariance at its result.
             comparison.chi_squared = fit.chi_squared;
@@ -100,24 +123,24 @@ impl<const K: usize> Comparison<K> {
     ///
     /// # Errors
     /// The same as those of [`fit`](crate::fit::fit()).
-    pub fn held_out(
-        curve: &Curve<K>,
+    pub fn held_out<'a>(
+        observed: impl Into<Observed<'a, K, B>>,
         model: &Model,
         fit: &Fit,
         tolerance: Real,
     ) -> Result<Self, Error> {
-        Self::with_unknowns(curve, model, fit, tolerance, 0)
+        Self::with_unknowns(observed.into(), model, fit, tolerance, 0)
     }
 
     fn with_unknowns(
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         model: &Model,
         fit: &Fit,
         tolerance: Real,
         unknowns: usize,
     ) -> Result<Self, Error> {
-        let columns = Columns::new(curve, model);
-        let problem = Problem::new(curve, model, &columns);
+        let columns = Columns::new(observed, model);
+        let problem = Problem::new(observed, model, &columns);
         let squares = problem.squares_of(fit);
         let mut weights = Weights::EMPTY;
         weights.set(&problem, &squares, tolerance)?;
@@ -130,6 +153,7 @@ impl<const K: usize> Comparison<K> {
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const EMPTY: Self = Self {
         octaves: Vec::new(),
+        bins: Vec::new(),
         chi_squared: 0.0,
         degrees_of_freedom: 0,
         p_value: 0.0,
@@ -140,14 +164,22 @@ impl<const K: usize> Comparison<K> {
     #[inline(never)]
     pub(crate) fn set(
         &mut self,
-        problem: &Problem<'_, K>,
-        weights: &Weights<K>,
+        problem: &Problem<'_, K, B>,
+        weights: &Weights<K, B>,
         squares: &Vector,
         unknowns: usize,
     ) {
         self.octaves.clear();
         let mut sum_of_squares = 0.0;
-        for (k, point) in numbered(problem.points.iter()) {
+        let points = problem.observed.curve().points();
+        // The short octaves are not fitted where a density takes their place.
+        let (short, fitted) = points.split_at(points.len().saturating_sub(problem.points.len()));
+        for point in short {
+            let octave = compare_short(problem, point, squares, weights.tolerance);
+            sum_of_squares += octave.percent() * octave.percent();
+            let _ = self.octaves.push(octave);
+        }
+        for (k, point) in numbered(fitted.iter()) {
             let model = problem.variance(k, squares);
             let octave = ComparedOctave {
                 m: point.m,
@@ -161,8 +193,18 @@ impl<const K: usize> Comparison<K> {
             // There is a place for every octave of the curve.
             let _ = self.octaves.push(octave);
         }
+        let bins = problem.rows().skip(fitted.len()).zip(problem.bins);
+        self.bins = list::fill(bins.map(|(row, bin)| {
+            let model = problem.variance(row, squares);
+            let error = weights.model[row] * weights.relative_error(row);
+            ComparedBin {
+                bin: *bin,
+                model: model * problem.variance_unit,
+                z: (problem.measured(row) - model) / error,
+            }
+        }));
         self.chi_squared = weights.chi_squared(problem, squares);
-        self.degrees_of_freedom = self.octaves.len().saturating_sub(unknowns);
+        self.degrees_of_freedom = problem.row_count().saturating_sub(unknowns);
         self.p_value = chi_squared_tail(self.chi_squared, self.degrees_of_freedom);
         self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as Real);
     }
@@ -194,7 +236,7 @@ impl<const K: usize> Comparison<K> {
 }
 
 /// Writes one sentence: the worst octave comes first, then the stretches.
-impl<const K: usize> core::fmt::Display for Comparison<K> {
+impl<const K: usize, const B: usize> core::fmt::Display for Comparison<K, B> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Some(worst) = self.worst() else {
             return write!(f, "the curve has no octaves to compare");
@@ -238,6 +280,42 @@ impl<const K: usize> core::fmt::Display for Comparison<K> {
             }
         }
         Ok(())
+    }
+}
+
+/// An octave that is not fitted beside a model that is.
+#[inline(never)]
+fn compare_short<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    point: &Point,
+    squares: &Vector,
+    tolerance: Real,
+) -> ComparedOctave {
+    let mut shares = [0.0; MAX_EFFECTS];
+    let mut model = 0.0;
+    let terms = problem.model.terms().iter();
+    for ((i, term), share) in numbered(terms).zip(&mut shares) {
+        let shape = term.sampled_shape(problem.interval_s);
+        *share = squares[i] * term.effect.variance(real(point.m), &shape);
+        model += *share;
+    }
+    let mut relative = tolerance * tolerance;
+    let squares = squares.as_slice();
+    covariance_row(
+        core::slice::from_ref(point),
+        problem.model,
+        squares,
+        problem.interval_s,
+        (0, 0),
+        &mut |_, covariance| relative += covariance / (model * model),
+    );
+    ComparedOctave {
+        m: point.m,
+        tau_s: point.tau_s,
+        measured: point.variance,
+        model: model * problem.variance_unit,
+        z: (point.variance / problem.variance_unit / model - 1.0) / math::sqrt(relative),
+        shares: shares.map(|share| single(share / model)),
     }
 }
 

@@ -226,12 +226,14 @@ mod math;
 pub mod model;
 mod nnls;
 mod observability;
+mod observed;
 pub mod octave;
 mod profile;
 pub mod queue;
 mod real;
 pub mod self_test;
 pub mod sensor;
+pub mod spectrum;
 mod square_sum;
 #[cfg(feature = "storage")]
 pub mod storage;
@@ -245,6 +247,7 @@ pub use curve::{Curve, Scale};
 pub use error::Error;
 pub use heapless;
 pub use model::{Model, Term};
+pub use observed::Observed;
 pub use octave::Accumulator;
 pub use real::Real;
 

@@ -6,10 +6,10 @@ use super::{
     trial::{Fitted, Trial},
 };
 use crate::{
-    curve::Curve,
     error::Error,
     fit::{Problem, Start, Tolerance, Work},
     model::{Model, Term},
+    observed::Observed,
     real::Real,
 };
 
@@ -24,12 +24,12 @@ use crate::{
 /// # Errors
 /// The same as those of [`fit`](crate::fit::fit()), and [`Error::TooManyEffects`] if the model has no
 /// room.
-pub fn alternative<const K: usize>(
-    curve: &Curve<K>,
-    step: &Step<K>,
-    before: Option<&Step<K>>,
+pub fn alternative<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
+    step: &Step<K, B>,
+    before: Option<&Step<K, B>>,
     candidate: &Candidate,
-) -> Result<Step<K>, Error> {
+) -> Result<Step<K, B>, Error> {
     let mut model = step.model.clone();
     if let Some(swap) = candidate.swap {
         let known = before.into_iter().flat_map(|before| &before.candidates);
@@ -41,36 +41,37 @@ pub fn alternative<const K: usize>(
         model.remove(replaced.name());
     }
     model.add(candidate.term)?;
-    let fitted = polished(curve, model, step.fit.tolerance, candidate)?;
+    let fitted = polished(observed, model, step.fit.tolerance, candidate)?;
     let mut alternative = Step::of(&fitted.model);
     alternative.covariate = step.covariate;
-    judged(curve, &fitted, step.fit.tolerance, &mut alternative)?;
+    judged(observed, &fitted, step.fit.tolerance, &mut alternative)?;
     Ok(alternative)
 }
 
 /// Fits the model and polishes its shapes.
-fn polished<const K: usize>(
-    curve: &Curve<K>,
+fn polished<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
     model: Model,
     tolerance: Real,
     candidate: &Candidate,
 ) -> Result<Fitted, Error> {
     let mut work = Work::NEW;
     work.begin_at(
-        curve,
+        observed,
         &model,
         Start::Independent,
         Tolerance::Fixed(tolerance),
     )?;
-    let problem = Problem::new(curve, &model, &work.columns);
+    let problem = Problem::new(observed, &model, &work.columns);
     while !work.solver.advance(&problem)? {}
     let squares = work.solver.squares;
     let mut trial = Trial::new(Fitted { model, squares });
     let mut candidate = *candidate;
     loop {
         // No other candidate competes, so no round is hopeless.
-        let (span, best) = (curve.span(), Real::INFINITY);
-        let completed = trial.advance(curve, &span, tolerance, best, &mut work, &mut candidate)?;
+        let (span, best) = (observed.span(), Real::INFINITY);
+        let completed =
+            trial.advance(observed, &span, tolerance, best, &mut work, &mut candidate)?;
         if let Some(completed) = completed {
             return Ok(completed.fitted);
         }
@@ -78,18 +79,18 @@ fn polished<const K: usize>(
 }
 
 /// Compares a fitted model with the curve.
-fn judged<const K: usize>(
-    curve: &Curve<K>,
+fn judged<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
     fitted: &Fitted,
     tolerance: Real,
-    step: &mut Step<K>,
+    step: &mut Step<K, B>,
 ) -> Result<Judged, Error> {
     let mut work = Work::NEW;
     let start = Start::Once(fitted.squares);
-    work.begin_at(curve, &step.model, start, Tolerance::Fixed(tolerance))?;
+    work.begin_at(observed, &step.model, start, Tolerance::Fixed(tolerance))?;
     let mut judging = Judging::new();
     loop {
-        if let Some(judged) = judging.advance(curve, &curve.span(), &mut work, step)? {
+        if let Some(judged) = judging.advance(observed, &observed.span(), &mut work, step)? {
             return Ok(judged);
         }
     }

@@ -7,11 +7,11 @@ use super::{
     tried::Contest,
 };
 use crate::{
-    curve::Curve,
     fit::Work,
     list::numbered,
     model::{Model, Term},
     nnls::Vector,
+    observed::Observed,
     real::Real,
 };
 
@@ -50,13 +50,13 @@ impl Dropping {
 
     /// Does one piece of work, and returns whether all additions have been tried.
     #[inline(never)]
-    pub(super) fn advance<const K: usize>(
+    pub(super) fn advance<const K: usize, const B: usize>(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         contest: &Contest,
         model: &Model,
         squares: &Vector,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
     ) -> bool {
         let Some((trial, candidate)) = &mut self.trial else {
             return self.begin_next(model, squares);
@@ -69,7 +69,7 @@ impl Dropping {
         let dropped = candidate.term;
         // No other model competes, so no round is hopeless.
         let best = Real::INFINITY;
-        let completed = match trial.advance(curve, span, *tolerance, best, work, candidate) {
+        let completed = match trial.advance(observed, span, *tolerance, best, work, candidate) {
             Ok(None) => {
                 candidate.term = dropped;
                 return false;

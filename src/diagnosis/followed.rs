@@ -9,6 +9,7 @@ use crate::{
     fit::{Problem, Start, Tolerance, Work},
     model::Model,
     nnls::Vector,
+    observed::Observed,
     real::Real,
 };
 
@@ -52,29 +53,35 @@ impl<const K: usize> Following<K> {
     /// # Errors
     /// The same as those of a fit.
     #[inline(never)]
-    pub(super) fn advance(
+    pub(super) fn advance<const B: usize>(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         covariates: &[CrossCurve<K>],
         model: &Model,
         judged: &Judged,
         least_z: Real,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
     ) -> Result<Option<Option<FollowedCovariate>>, Error> {
         let Some(cross) = covariates.get(self.covariate) else {
             let sure = |followed: &FollowedCovariate| square(followed.slope.z()) > square(least_z);
             return Ok(Some(self.best.filter(sure)));
         };
         if self.solving {
-            let problem = Problem::new(&self.corrected, model, &work.columns);
+            let corrected = observed.with_curve(&self.corrected);
+            let problem = Problem::new(corrected, model, &work.columns);
             if !work.solver.advance(&problem)? {
                 return Ok(None);
             }
             self.squares = work.solver.squares;
             self.solving = false;
         }
-        let problem = Problem::new(curve, model, &work.columns);
-        let noise = |k: usize| problem.variance(k, &self.squares) * problem.variance_unit;
+        let curve = observed.curve();
+        let octaves = curve.points();
+        let noise = |k: usize| {
+            let m = octaves.get(k).map_or(1, |point| point.m);
+            let squares = self.squares.as_slice();
+            model.variance(squares, m, curve.interval_s()) * curve.variance_unit()
+        };
         self.slope = Slope::of(cross, curve.points(), noise);
         self.round = self.round.saturating_add(1);
         match self.slope.filter(|_| self.round < ROUNDS) {
@@ -83,7 +90,8 @@ impl<const K: usize> Following<K> {
                 cross.correct(&mut self.corrected, &slope);
                 let start = Start::From(self.squares);
                 let tolerance = Tolerance::Fixed(judged.tolerance);
-                work.begin_at(&self.corrected, model, start, tolerance)?;
+                let corrected = observed.with_curve(&self.corrected);
+                work.begin_at(corrected, model, start, tolerance)?;
                 self.solving = true;
             }
             None => self.next_covariate(),

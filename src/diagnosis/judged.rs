@@ -3,12 +3,12 @@
 use super::step::Step;
 use crate::{
     comparison::Comparison,
-    curve::Curve,
     effect::Span,
     error::Error,
     fit::{Estimator, Fit, Problem, Solver, Work},
     model::Term,
     nnls::Vector,
+    observed::Observed,
     profile::{Evaluation, JointInterval, Profile},
     real::Real,
 };
@@ -44,7 +44,7 @@ impl Judged {
 /// The judgement of a model, in progress.
 // The large variants share their memory with those of other stages.
 #[allow(clippy::large_enum_variant)]
-pub(super) enum Judging<const K: usize> {
+pub(super) enum Judging<const K: usize, const B: usize> {
     /// The model is being solved.
     Solving,
     /// Its coefficients are being estimated.
@@ -53,11 +53,11 @@ pub(super) enum Judging<const K: usize> {
     Bounding {
         shape: usize,
         interval: Option<JointInterval>,
-        profile: Profile<K>,
+        profile: Profile<K, B>,
     },
 }
 
-impl<const K: usize> Judging<K> {
+impl<const K: usize, const B: usize> Judging<K, B> {
     /// Begins with a model that the solver has begun to solve.
     pub(super) const fn new() -> Self {
         Self::Solving
@@ -71,12 +71,12 @@ impl<const K: usize> Judging<K> {
     #[inline(never)]
     pub(super) fn advance(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         span: &Span,
-        work: &mut Work<K>,
-        step: &mut Step<K>,
+        work: &mut Work<K, B>,
+        step: &mut Step<K, B>,
     ) -> Result<Option<Judged>, Error> {
-        let problem = Problem::new(curve, &step.model, &work.columns);
+        let problem = Problem::new(observed, &step.model, &work.columns);
         let solver = &mut work.solver;
         match self {
             Self::Solving => {
@@ -141,9 +141,14 @@ impl<const K: usize> Judging<K> {
 
 // What begins a stage is apart from what goes on with it, so that its temporaries do not lie on the stack below
 // the deepest calls.
-impl<const K: usize> Judging<K> {
+impl<const K: usize, const B: usize> Judging<K, B> {
     #[inline(never)]
-    fn begin_estimating(&mut self, problem: &Problem<'_, K>, solver: &Solver<K>, fit: &mut Fit) {
+    fn begin_estimating(
+        &mut self,
+        problem: &Problem<'_, K, B>,
+        solver: &Solver<K, B>,
+        fit: &mut Fit,
+    ) {
         *self = Self::Estimating(Estimator::NEW);
         if let Self::Estimating(estimator) = self {
             estimator.begin(problem, solver, fit);
@@ -151,7 +156,7 @@ impl<const K: usize> Judging<K> {
     }
 
     #[inline(never)]
-    fn begin_bounding(&mut self, problem: &Problem<'_, K>, solver: &Solver<K>) {
+    fn begin_bounding(&mut self, problem: &Problem<'_, K, B>, solver: &Solver<K, B>) {
         *self = Self::Bounding {
             shape: 0,
             interval: None,
@@ -164,9 +169,9 @@ impl<const K: usize> Judging<K> {
 }
 
 #[inline(never)]
-fn begin_interval<const K: usize>(
+fn begin_interval<const K: usize, const B: usize>(
     interval: &mut Option<JointInterval>,
-    evaluation: &mut Evaluation<'_, K>,
+    evaluation: &mut Evaluation<'_, K, B>,
     term: Term,
     j: usize,
     span: &Span,
@@ -177,7 +182,10 @@ fn begin_interval<const K: usize>(
 
 /// The term at this place in the model and its fitted parameter, if that is its only fitted parameter.
 /// Terms with several have no profile.
-fn only_shape<const K: usize>(problem: &Problem<'_, K>, place: usize) -> Option<(Term, usize)> {
+fn only_shape<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    place: usize,
+) -> Option<(Term, usize)> {
     let term = problem.model.terms().get(place)?;
     let mut parameters = term.fitted_parameters();
     let first = parameters.next()?;
@@ -186,11 +194,11 @@ fn only_shape<const K: usize>(problem: &Problem<'_, K>, place: usize) -> Option<
 
 /// Compares a fitted model with the curve.
 #[inline(never)]
-fn compare<const K: usize>(
-    problem: &Problem<'_, K>,
-    solver: &Solver<K>,
+fn compare<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    solver: &Solver<K, B>,
     fit: &Fit,
-    comparison: &mut Comparison<K>,
+    comparison: &mut Comparison<K, B>,
 ) -> Judged {
     let unknowns = problem.points.len().saturating_sub(fit.degrees_of_freedom);
     comparison.set(problem, &solver.weights, &solver.squares, unknowns);

@@ -6,24 +6,24 @@ use super::{
     trial::Fitted,
 };
 use crate::{
-    curve::Curve,
     effect::Effect,
     fit::{Columns, Problem},
     kurtosis::Kurtosis,
     list,
+    observed::Observed,
 };
 
 /// Names the mirror of every ambiguous effect beside it. For the best candidate, the kurtosis may
 /// decide between the effect and its mirror. The right one is then added, and the other one is not
 /// named. The memory of `columns` is used.
 #[inline(never)]
-pub(super) fn tell_from_mirror<const K: usize>(
-    curve: &Curve<K>,
+pub(super) fn tell_from_mirror<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
     kurtosis: Option<&Kurtosis<K>>,
     effects: &[&'static dyn Effect],
-    columns: &mut Columns<K>,
+    columns: &mut Columns<K, B>,
     best: &mut Fitted,
-    step: &mut Step<K>,
+    step: &mut Step<K, B>,
 ) {
     let Step {
         added,
@@ -48,11 +48,14 @@ pub(super) fn tell_from_mirror<const K: usize>(
         return;
     };
     let place = best.model.terms().len().saturating_sub(1);
-    columns.set(curve, &best.model);
-    let problem = Problem::new(curve, &best.model, columns);
+    // The kurtosis is known by octaves, and not only by those that are fitted.
+    let octaves = observed.octaves();
+    columns.set(octaves, &best.model);
+    let problem = Problem::new(octaves, &best.model, columns);
     let share = |k: usize| problem.share(k, place, &best.squares);
     let correlation_time_s = term.parameters[0];
-    let jumps = kurtosis.and_then(|kurtosis| kurtosis.jumps(curve, correlation_time_s, share));
+    let jumps =
+        kurtosis.and_then(|kurtosis| kurtosis.jumps(observed.curve(), correlation_time_s, share));
     match jumps {
         Some(true) => {
             term.effect = mirror;

@@ -23,6 +23,8 @@ use crate::{
     fit::{Problem, Start, Tolerance, Work, check},
     list,
     model::Model,
+    observed::Observed,
+    spectrum::Density,
 };
 
 /// A diagnosis in progress, which finds out which effect is missing.
@@ -64,15 +66,16 @@ use crate::{
 /// assert_eq!(verdict, Verdict::Adequate);
 /// # Ok::<(), allanite::Error>(())
 /// ```
-pub struct Diagnosis<'a, const K: usize> {
+pub struct Diagnosis<'a, const K: usize, const B: usize = 0> {
     /// The curve, without what follows a covariate.
     curve: Curve<K>,
+    density: Density<B>,
     span: Span,
     evidence: Evidence<'a, K>,
     effects: &'a [&'static dyn Effect],
     options: Options,
     /// The present model, and what is reported about it.
-    step: Step<K>,
+    step: Step<K, B>,
     judged: Judged,
     /// The model with the first of the step's candidates.
     best: Fitted,
@@ -82,18 +85,18 @@ pub struct Diagnosis<'a, const K: usize> {
     given: usize,
     /// The effect that was added last, and the effects to which it was preferred.
     preferred: Option<Preferred>,
-    work: Work<K>,
-    stage: Stage<K>,
+    work: Work<K, B>,
+    stage: Stage<K, B>,
 }
 
 /// The stage that is in progress.
 // The large variants share their memory. A diagnosis is stored once and never copied.
 #[allow(clippy::large_enum_variant)]
-enum Stage<const K: usize> {
+enum Stage<const K: usize, const B: usize> {
     /// Nothing has been done yet.
     Beginning,
     /// The step's model is fitted and compared.
-    Judging(Judging<K>),
+    Judging(Judging<K, B>),
     /// The model is tried without each of its earlier additions.
     Dropping(Dropping),
     /// The covariates are tested for whether the rate follows them.
@@ -102,11 +105,11 @@ enum Stage<const K: usize> {
     /// covariates. The covariates come next, unless they have been tested.
     Resolving { followed: bool },
     /// The effects are scanned for their best shapes.
-    Scanning(Scanning<K>),
+    Scanning(Scanning<K, B>),
     /// The best shapes are fitted in full.
     Trying(Trying),
     /// Pairs of effects are tried in the place of the effect that was added last.
-    Swapping(Swapping<K>),
+    Swapping(Swapping<K, B>),
     /// The step is reported. What it adds comes next.
     Reported,
     /// There is nothing left to do.
@@ -115,11 +118,11 @@ enum Stage<const K: usize> {
 
 /// The result of one piece of a diagnosis.
 #[derive(Debug)]
-pub enum Progress<'s, const K: usize> {
+pub enum Progress<'s, const K: usize, const B: usize = 0> {
     /// There is more to do.
     Working,
     /// A model has been judged, and it has been decided what to add.
-    Step(&'s Step<K>),
+    Step(&'s Step<K, B>),
     /// The diagnosis is complete.
     Finished(Verdict),
 }
@@ -135,9 +138,26 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         effects: &'a [&'static dyn Effect],
         options: Options,
     ) -> Self {
+        Self::with_density(curve, Density::EMPTY, evidence, model, effects, options)
+    }
+}
+
+impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
+    /// A diagnosis of a curve and of the density of the same record.
+    // Inlined, so that some 7 KiB are built where they stay and not moved there.
+    #[inline(always)]
+    pub fn with_density(
+        curve: Curve<K>,
+        density: Density<B>,
+        evidence: Evidence<'a, K>,
+        model: &Model,
+        effects: &'a [&'static dyn Effect],
+        options: Options,
+    ) -> Self {
         Self {
             span: curve.span(),
             curve,
+            density,
             evidence,
             effects,
             options,
@@ -156,7 +176,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
     ///
     /// # Errors
     /// As of [`fit`](crate::fit::fit()).
-    pub fn run(&mut self, mut report: impl FnMut(&Step<K>)) -> Result<Verdict, Error> {
+    pub fn run(&mut self, mut report: impl FnMut(&Step<K, B>)) -> Result<Verdict, Error> {
         loop {
             match self.advance()? {
                 Progress::Working => {}
@@ -170,7 +190,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
     ///
     /// # Errors
     /// The same as those of [`fit`](crate::fit::fit()). An error ends the diagnosis.
-    pub fn advance(&mut self) -> Result<Progress<'_, K>, Error> {
+    pub fn advance(&mut self) -> Result<Progress<'_, K, B>, Error> {
         let advanced = match self.work() {
             Ok(false) => Ok(()),
             Ok(true) => self.go_on(),
@@ -194,6 +214,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         let contest = self.contest();
         let Self {
             curve,
+            density,
             span,
             evidence,
             effects,
@@ -205,33 +226,34 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
             stage,
             ..
         } = self;
+        let observed = Observed::new(curve, density);
         match stage {
             Stage::Judging(judging) => {
-                let complete = judging.advance(curve, span, work, step)?;
+                let complete = judging.advance(observed, span, work, step)?;
                 if let Some(complete) = complete {
                     *judged = complete;
                 }
                 Ok(complete.is_some())
             }
             Stage::Dropping(dropping) => {
-                Ok(dropping.advance(curve, &contest, &step.model, &judged.squares, work))
+                Ok(dropping.advance(observed, &contest, &step.model, &judged.squares, work))
             }
             Stage::Following(following) => {
                 let covariates = evidence.covariates;
                 let (model, least_z) = (&step.model, options.covariate_z);
                 let complete =
-                    following.advance(curve, covariates, model, judged, least_z, work)?;
+                    following.advance(observed, covariates, model, judged, least_z, work)?;
                 if let Some(followed) = complete {
                     step.added = followed.map(Addition::Covariate);
                 }
                 Ok(complete.is_some())
             }
             Stage::Resolving { .. } => {
-                let problem = Problem::new(curve, &step.model, &work.columns);
+                let problem = Problem::new(observed, &step.model, &work.columns);
                 work.solver.advance(&problem)
             }
             Stage::Scanning(scanning) => {
-                let problem = Problem::new(curve, &step.model, &work.columns);
+                let problem = Problem::new(observed, &step.model, &work.columns);
                 Ok(scanning.advance(&problem, &work.solver, effects, span))
             }
             Stage::Trying(trying) => {
@@ -239,10 +261,10 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                     model: &step.model,
                     swap: None,
                 };
-                Ok(trying.advance(curve, &contest, base, work, &mut step.candidates, best))
+                Ok(trying.advance(observed, &contest, base, work, &mut step.candidates, best))
             }
             Stage::Swapping(swapping) => {
-                Ok(swapping.advance(curve, effects, &contest, work, step, best))
+                Ok(swapping.advance(observed, effects, &contest, work, step, best))
             }
             Stage::Beginning | Stage::Reported | Stage::Finished(_) => Ok(true),
         }
@@ -285,8 +307,9 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
 
     /// Begins to judge the step's model.
     fn judge(&mut self, start: Start, tolerance: Tolerance) -> Result<(), Error> {
+        let observed = Observed::new(&self.curve, &self.density);
         self.work
-            .begin_at(&self.curve, &self.step.model, start, tolerance)?;
+            .begin_at(observed, &self.step.model, start, tolerance)?;
         self.stage = Stage::Judging(Judging::new());
         Ok(())
     }
@@ -304,7 +327,8 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         }
         self.stage = Stage::Scanning(Scanning::new());
         if let Stage::Scanning(scanning) = &mut self.stage {
-            let problem = Problem::new(&self.curve, &self.step.model, &self.work.columns);
+            let observed = Observed::new(&self.curve, &self.density);
+            let problem = Problem::new(observed, &self.step.model, &self.work.columns);
             scanning.begin(&problem, &mut self.work.solver.weights);
         }
     }
@@ -324,7 +348,8 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         let start = Start::Once(self.judged.assumed);
         let tolerance = Tolerance::Fixed(self.judged.tolerance);
         let model = &self.step.model;
-        self.work.begin_at(&self.curve, model, start, tolerance)?;
+        let observed = Observed::new(&self.curve, &self.density);
+        self.work.begin_at(observed, model, start, tolerance)?;
         self.stage = Stage::Resolving { followed };
         Ok(())
     }
@@ -399,7 +424,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
                 .first()
                 .map(|first| Addition::Effect(first.term));
             tell_from_mirror(
-                &self.curve,
+                Observed::new(&self.curve, &self.density),
                 self.evidence.kurtosis,
                 self.effects,
                 &mut self.work.columns,

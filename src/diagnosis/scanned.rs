@@ -13,8 +13,8 @@ use heapless::Vec;
 pub(super) type Shapes = Vec<Found, MAX_CANDIDATES>;
 
 /// A scan of the effects of a list, in progress. It takes octaves for independent.
-pub(super) struct Scanning<const K: usize> {
-    profile: Profile<K>,
+pub(super) struct Scanning<const K: usize, const B: usize> {
+    profile: Profile<K, B>,
     /// The effect that comes next, and the search for the shape of the present effect, with the
     /// effect's place.
     next: usize,
@@ -22,7 +22,7 @@ pub(super) struct Scanning<const K: usize> {
     shapes: Shapes,
 }
 
-impl<const K: usize> Scanning<K> {
+impl<const K: usize, const B: usize> Scanning<K, B> {
     /// A scan that has not begun.
     // Inlined, so that it is set where it stays and not moved there.
     #[inline(always)]
@@ -36,7 +36,7 @@ impl<const K: usize> Scanning<K> {
     }
 
     /// Begins to scan beside a solved model. The weights of its solution are replaced.
-    pub(super) fn begin(&mut self, problem: &Problem<'_, K>, weights: &mut Weights<K>) {
+    pub(super) fn begin(&mut self, problem: &Problem<'_, K, B>, weights: &mut Weights<K, B>) {
         weights.set_independent(problem);
         self.profile.begin(problem, weights);
     }
@@ -50,8 +50,8 @@ impl<const K: usize> Scanning<K> {
     #[inline(never)]
     pub(super) fn advance(
         &mut self,
-        problem: &Problem<'_, K>,
-        solver: &Solver<K>,
+        problem: &Problem<'_, K, B>,
+        solver: &Solver<K, B>,
         effects: &[&'static dyn Effect],
         span: &Span,
     ) -> bool {
@@ -85,7 +85,10 @@ impl<const K: usize> Scanning<K> {
 /// one behind the others. `None` for an effect that would add nothing. Such an effect has a fixed shape
 /// and is in the model already, or replaces an effect that the model lacks, or shares its Allan
 /// variance with another effect of the catalogue.
-fn place<const K: usize>(problem: &Problem<'_, K>, effect: &'static dyn Effect) -> Option<usize> {
+fn place<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    effect: &'static dyn Effect,
+) -> Option<usize> {
     let model = problem.model;
     let present = model.position(effect.name()).is_some();
     if effect.mirror().is_some() || (present && effect.parameters().is_empty()) {

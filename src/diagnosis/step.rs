@@ -120,7 +120,7 @@ pub enum Addition {
 
 /// One step of a diagnosis: a model, and what is added to it.
 #[derive(Clone, Debug)]
-pub struct Step<const K: usize> {
+pub struct Step<const K: usize, const B: usize = 0> {
     /// The model so far.
     pub model: Model,
     /// The effects of the step before that this model does not need any more.
@@ -130,7 +130,7 @@ pub struct Step<const K: usize> {
     /// The model's fit.
     pub fit: Fit,
     /// Where the model fails.
-    pub comparison: Comparison<K>,
+    pub comparison: Comparison<K, B>,
     /// What was tried next, best first. Empty if the model is adequate.
     pub candidates: Candidates,
     /// What was added to the model; `None` if nothing was.
@@ -139,7 +139,7 @@ pub struct Step<const K: usize> {
     pub ambiguous: Vec<&'static str, MAX_AMBIGUOUS>,
 }
 
-impl<const K: usize> Step<K> {
+impl<const K: usize, const B: usize> Step<K, B> {
     /// A step of which only the model is known.
     #[inline(always)]
     pub(super) fn of(model: &Model) -> Self {

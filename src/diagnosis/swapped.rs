@@ -9,12 +9,12 @@ use super::{
     tried::{Base, Contest, Trying},
 };
 use crate::{
-    curve::Curve,
     effect::Effect,
     fit::{Problem, Start, Tolerance, Work},
     limits::MAX_PARAMETERS,
     list,
     model::{Model, Term},
+    observed::Observed,
     real::{Real, single},
 };
 use heapless::Vec;
@@ -53,29 +53,29 @@ fn is_as_simple(effect: &'static dyn Effect, as_what: &'static dyn Effect) -> bo
 
 /// Swaps in progress. Beside each effect to which the last addition was preferred, the effects of the
 /// list are scanned and the best ones are tried.
-pub(super) struct Swapping<const K: usize> {
+pub(super) struct Swapping<const K: usize, const B: usize> {
     preferred: Preferred,
     next: usize,
     /// The present swap, and the model that it leads to.
     swap: Option<Swap>,
     base: Model,
-    stage: Stage<K>,
+    stage: Stage<K, B>,
 }
 
 // The large variants share their memory with those of other stages.
 #[allow(clippy::large_enum_variant)]
-enum Stage<const K: usize> {
+enum Stage<const K: usize, const B: usize> {
     /// The next effect to which the last addition was preferred takes its place.
     Exchanging,
     /// The model with that effect is fitted.
     Solving,
     /// The list of effects is scanned beside that effect.
-    Scanning(Scanning<K>),
+    Scanning(Scanning<K, B>),
     /// The best effects of the scan are tried.
     Trying(Trying),
 }
 
-impl<const K: usize> Swapping<K> {
+impl<const K: usize, const B: usize> Swapping<K, B> {
     #[inline(always)]
     pub(super) fn new(preferred: Preferred) -> Self {
         Self {
@@ -92,19 +92,19 @@ impl<const K: usize> Swapping<K> {
     #[inline(never)]
     pub(super) fn advance(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         effects: &[&'static dyn Effect],
         contest: &Contest,
-        work: &mut Work<K>,
-        step: &mut Step<K>,
+        work: &mut Work<K, B>,
+        step: &mut Step<K, B>,
         best: &mut Fitted,
     ) -> bool {
-        let problem = Problem::new(curve, &self.base, &work.columns);
+        let problem = Problem::new(observed, &self.base, &work.columns);
         match &mut self.stage {
-            Stage::Exchanging => return self.exchange(curve, &step.model, contest, work),
+            Stage::Exchanging => return self.exchange(observed, &step.model, contest, work),
             Stage::Solving => match work.solver.advance(&problem) {
                 Ok(false) => {}
-                Ok(true) => self.scan(curve, work),
+                Ok(true) => self.scan(observed, work),
                 Err(_) => self.stage = Stage::Exchanging,
             },
             Stage::Scanning(scanning) => {
@@ -117,7 +117,7 @@ impl<const K: usize> Swapping<K> {
                     model: &self.base,
                     swap: self.swap,
                 };
-                if trying.advance(curve, contest, base, work, &mut step.candidates, best) {
+                if trying.advance(observed, contest, base, work, &mut step.candidates, best) {
                     self.stage = Stage::Exchanging;
                 }
             }
@@ -128,10 +128,10 @@ impl<const K: usize> Swapping<K> {
     /// Begins to scan beside the solved model.
     // This is a function of its own, because its temporaries would lie on the stack below all stages.
     #[inline(never)]
-    fn scan(&mut self, curve: &Curve<K>, work: &mut Work<K>) {
+    fn scan(&mut self, observed: Observed<'_, K, B>, work: &mut Work<K, B>) {
         self.stage = Stage::Scanning(Scanning::new());
         if let Stage::Scanning(scanning) = &mut self.stage {
-            let problem = Problem::new(curve, &self.base, &work.columns);
+            let problem = Problem::new(observed, &self.base, &work.columns);
             scanning.begin(&problem, &mut work.solver.weights);
         }
     }
@@ -155,10 +155,10 @@ impl<const K: usize> Swapping<K> {
     #[inline(never)]
     fn exchange(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         model: &Model,
         contest: &Contest,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
     ) -> bool {
         let Some(&(taken, parameters)) = self.preferred.others.get(self.next) else {
             return true;
@@ -176,7 +176,7 @@ impl<const K: usize> Swapping<K> {
         self.base.clone_from(model);
         if self.base.exchange(swap.dropped, term).is_ok() {
             let tolerance = Tolerance::Fixed(contest.tolerance);
-            let begun = work.begin_at(curve, &self.base, Start::Independent, tolerance);
+            let begun = work.begin_at(observed, &self.base, Start::Independent, tolerance);
             if begun.is_ok() {
                 self.stage = Stage::Solving;
             }

@@ -51,11 +51,11 @@ fn without() -> Curve<OCTAVES> {
 
 fn judge(curve: &Curve<OCTAVES>, work: &mut Work<OCTAVES>, step: &mut Step<OCTAVES>) -> Judged {
     let tolerance = Tolerance::IfNeeded(0.01);
-    work.begin_at(curve, &step.model, Start::Independent, tolerance)
+    work.begin_at(curve.into(), &step.model, Start::Independent, tolerance)
         .unwrap();
     let mut judging = Judging::new();
     loop {
-        let judged = judging.advance(curve, &curve.span(), work, step);
+        let judged = judging.advance(curve.into(), &curve.span(), work, step);
         if let Some(judged) = judged.unwrap() {
             return judged;
         }
@@ -85,9 +85,14 @@ fn solving_again_from_the_assumed_squares_gives_the_same_solution() {
     let mut step = Step::of(&Model::ieee_952());
     let judged = judge(&curve, &mut work, &mut step);
     let tolerance = Tolerance::Fixed(judged.tolerance);
-    work.begin_at(&curve, &step.model, Start::Once(judged.assumed), tolerance)
-        .unwrap();
-    let problem = Problem::new(&curve, &step.model, &work.columns);
+    work.begin_at(
+        (&curve).into(),
+        &step.model,
+        Start::Once(judged.assumed),
+        tolerance,
+    )
+    .unwrap();
+    let problem = Problem::new((&curve).into(), &step.model, &work.columns);
     while !work.solver.advance(&problem).unwrap() {}
     assert_eq!(work.solver.chi_squared, step.fit.chi_squared);
     assert_eq!(work.solver.squares.as_slice(), judged.squares.as_slice());
@@ -100,7 +105,7 @@ fn a_scan_finds_the_hidden_shape_and_a_trial_fits_its_size() {
     let mut work = Work::NEW;
     let mut step = Step::of(&Model::ieee_952());
     let judged = judge(&curve, &mut work, &mut step);
-    let problem = Problem::new(&curve, &step.model, &work.columns);
+    let problem = Problem::new((&curve).into(), &step.model, &work.columns);
     let mut scanning = Scanning::new();
     scanning.begin(&problem, &mut work.solver.weights);
     let effects: [&'static dyn Effect; 2] = [&Sinusoid, &GaussMarkov];
@@ -123,7 +128,7 @@ fn a_scan_finds_the_hidden_shape_and_a_trial_fits_its_size() {
     };
     let mut best = Fitted::empty();
     while !trying.advance(
-        &curve,
+        (&curve).into(),
         &contest,
         base,
         &mut work,
@@ -262,7 +267,13 @@ fn an_addition_that_the_model_does_not_need_is_dropped() {
     // An effect that was given, or that was added last, stays.
     assert!(Dropping::new(&model, 1).is_none());
     let mut dropping = Dropping::new(&model, 0).unwrap();
-    while !dropping.advance(&curve, &contest, &model, &judged.squares, &mut work) {}
+    while !dropping.advance(
+        (&curve).into(),
+        &contest,
+        &model,
+        &judged.squares,
+        &mut work,
+    ) {}
     let (term, fitted) = dropping.dropped(8.0).unwrap();
     assert_eq!(term.effect.name(), "gauss_markov");
     let last = fitted.model.terms().last();

@@ -3,7 +3,6 @@
 
 use super::step::Candidate;
 use crate::{
-    curve::Curve,
     effect::Span,
     error::Error,
     fit::{ADEQUATE_P, Problem, ShapeEquations, Start, Tolerance, Work},
@@ -11,6 +10,7 @@ use crate::{
     math,
     model::Model,
     nnls::Vector,
+    observed::Observed,
     profile::{Found, Neighbourhood},
     real::{Real, real, single},
 };
@@ -37,7 +37,7 @@ const STRIDE: Real = 0.2;
 /// sixteenth of the first. `cargo xtask study hidden-effect` runs with this value and does not vary it.
 const HALVINGS: u8 = 4;
 
-/// If the rounds do not explain the curve, they are repeated from a shape of the neighbourhood that lowers
+/// If the rounds do not explain the observed, they are repeated from a shape of the neighbourhood that lowers
 /// χ² by this factor at least. Chosen by hand: a minimum that is no better is not worth the rounds.
 const MUCH_BETTER: Real = 0.5;
 
@@ -186,20 +186,20 @@ impl Trial {
     /// # Errors
     /// An error means that the model cannot be fitted. The effect is then no candidate.
     #[inline(never)]
-    pub(super) fn advance<const K: usize>(
+    pub(super) fn advance<const K: usize, const B: usize>(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         span: &Span,
         tolerance: Real,
         best: Real,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
         candidate: &mut Candidate,
     ) -> Result<Option<Completed>, Error> {
         if self.stage == Stage::Begin {
-            self.begin(Stage::Round, curve, tolerance, work)?;
+            self.begin(Stage::Round, observed, tolerance, work)?;
             return Ok(None);
         }
-        let problem = Problem::new(curve, &self.present.model, &work.columns);
+        let problem = Problem::new(observed, &self.present.model, &work.columns);
         if self.stage == Stage::Looking {
             let looking = self.neighbourhood.as_mut();
             let seen = looking.and_then(|looking| looking.advance(&problem, &work.solver, span));
@@ -207,9 +207,9 @@ impl Trial {
                 None => {}
                 Some(seen) if seen.chi_squared < MUCH_BETTER * work.solver.chi_squared => {
                     self.begin_again(&seen);
-                    self.begin(Stage::Round, curve, tolerance, work)?;
+                    self.begin(Stage::Round, observed, tolerance, work)?;
                 }
-                Some(_) => self.begin_last(curve, tolerance, work)?,
+                Some(_) => self.begin_last(observed, tolerance, work)?,
             }
             return Ok(None);
         }
@@ -237,7 +237,7 @@ impl Trial {
         };
         self.round = self.round.saturating_add(1);
         if goes_on && self.round < ROUNDS {
-            self.begin(Stage::Round, curve, tolerance, work)?;
+            self.begin(Stage::Round, observed, tolerance, work)?;
         } else {
             let last = self.present.model.terms().last().copied();
             if self.neighbourhood.is_none()
@@ -248,21 +248,21 @@ impl Trial {
                 self.stage = Stage::Looking;
                 return Ok(None);
             }
-            self.begin_last(curve, tolerance, work)?;
+            self.begin_last(observed, tolerance, work)?;
         }
         Ok(None)
     }
 
     /// Begins the last fit. The rounds are over. The best one is fitted again, with fixed shapes.
-    fn begin_last<const K: usize>(
+    fn begin_last<const K: usize, const B: usize>(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         tolerance: Real,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
     ) -> Result<(), Error> {
         let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
         self.present = fitted;
-        self.begin(Stage::Last, curve, tolerance, work)
+        self.begin(Stage::Last, observed, tolerance, work)
     }
 
     /// Begins the rounds again, from a shape of the neighbourhood.
@@ -277,12 +277,12 @@ impl Trial {
     }
 
     /// Begins the fit of a stage.
-    fn begin<const K: usize>(
+    fn begin<const K: usize, const B: usize>(
         &mut self,
         stage: Stage,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         tolerance: Real,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
     ) -> Result<(), Error> {
         self.stage = stage;
         let start = match stage {
@@ -290,7 +290,7 @@ impl Trial {
             _ => Start::Once(self.present.squares),
         };
         let tolerance = Tolerance::Fixed(tolerance);
-        work.begin_at(curve, &self.present.model, start, tolerance)
+        work.begin_at(observed, &self.present.model, start, tolerance)
     }
 
     /// Keeps a round that is the best so far, and changes the shapes for the next round. Returns
@@ -326,10 +326,10 @@ impl Trial {
     }
 
     /// The complete fit, with fixed shapes.
-    fn complete<const K: usize>(
+    fn complete<const K: usize, const B: usize>(
         &self,
-        problem: &Problem<'_, K>,
-        work: &Work<K>,
+        problem: &Problem<'_, K, B>,
+        work: &Work<K, B>,
         candidate: &mut Candidate,
     ) -> Completed {
         let solver = &work.solver;
@@ -352,9 +352,9 @@ impl Trial {
 /// Finds how the shapes should change. Returns the effect that must be held at zero before the shapes
 /// are determined, if there is one.
 #[inline(never)]
-fn polish<const K: usize>(
-    problem: &Problem<'_, K>,
-    work: &Work<K>,
+fn polish<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    work: &Work<K, B>,
     steps: &mut Steps,
 ) -> Option<usize> {
     let solver = &work.solver;

@@ -5,7 +5,7 @@ use super::{
     step::{Candidate, Candidates, Swap},
     trial::{Fitted, Trial},
 };
-use crate::{curve::Curve, effect::Span, fit::Work, list, model::Model, real::Real};
+use crate::{effect::Span, fit::Work, list, model::Model, observed::Observed, real::Real};
 
 /// What the candidates are compared with, and how.
 #[derive(Clone, Copy)]
@@ -44,12 +44,12 @@ impl Trying {
     /// Does one piece of work, and returns whether all shapes have been tried. A shape that lowers the
     /// score becomes a candidate. The model with the best candidate is kept as `best`.
     #[inline(never)]
-    pub(super) fn advance<const K: usize>(
+    pub(super) fn advance<const K: usize, const B: usize>(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         contest: &Contest,
         base: Base<'_>,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
         candidates: &mut Candidates,
         best: &mut Fitted,
     ) -> bool {
@@ -63,7 +63,7 @@ impl Trying {
             tolerance,
             span,
         } = contest;
-        let completed = match trial.advance(curve, span, *tolerance, least, work, candidate) {
+        let completed = match trial.advance(observed, span, *tolerance, least, work, candidate) {
             Ok(None) => return false,
             Ok(completed) => completed,
             // An effect that cannot be fitted is no candidate.

@@ -8,12 +8,12 @@ use super::{
     weights::Weights,
 };
 use crate::{
-    curve::Curve,
     error::Error,
     limits::{MAX_EFFECTS, PAIRS},
     math,
     model::Model,
     nnls::{Free, NormalEquations, Vector},
+    observed::Observed,
     real::{Real, real, single},
 };
 
@@ -78,9 +78,9 @@ impl Fit {
     ///
     /// # Errors
     /// [`Error::Singular`] if the model or the curve is not that of the fit.
-    pub fn correlations<const K: usize>(
+    pub fn correlations<'a, const K: usize, const B: usize>(
         &self,
-        curve: &Curve<K>,
+        observed: impl Into<Observed<'a, K, B>>,
         model: &Model,
     ) -> Result<Correlations, Error> {
         let mut correlations = Correlations::UNKNOWN;
@@ -91,8 +91,9 @@ impl Fit {
         if count != self.coefficients.len() {
             return Err(Error::Singular);
         }
-        let columns = Columns::new(curve, model);
-        let problem = Problem::new(curve, model, &columns);
+        let observed = observed.into();
+        let columns = Columns::new(observed, model);
+        let problem = Problem::new(observed, model, &columns);
         let squares = problem.squares_of(self);
         let free = Free::of(|i| i < MAX_EFFECTS && squares[i] > 0.0);
         let mut weights = Weights::EMPTY;

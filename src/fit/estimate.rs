@@ -37,10 +37,10 @@ impl Estimator {
 
     /// Begins with a solution. What belongs to the whole model is written to the fit immediately.
     #[inline(never)]
-    pub(crate) fn begin<const K: usize>(
+    pub(crate) fn begin<const K: usize, const B: usize>(
         &mut self,
-        problem: &Problem<'_, K>,
-        solver: &Solver<K>,
+        problem: &Problem<'_, K, B>,
+        solver: &Solver<K, B>,
         fit: &mut Fit,
     ) {
         // A model without shapes does not pay for their equations.
@@ -63,10 +63,10 @@ impl Estimator {
 
     /// Estimates one more coefficient and returns whether it was the last.
     #[inline(never)]
-    pub(crate) fn advance<const K: usize>(
+    pub(crate) fn advance<const K: usize, const B: usize>(
         &mut self,
-        problem: &Problem<'_, K>,
-        solver: &Solver<K>,
+        problem: &Problem<'_, K, B>,
+        solver: &Solver<K, B>,
         fit: &mut Fit,
     ) -> bool {
         let Some(term) = problem.model.terms().get(self.next) else {
@@ -94,9 +94,9 @@ fn birge_ratio(fit: &Fit) -> Real {
 }
 
 /// The coefficient of one effect, in the problem's variance unit. Its errors are multiplied by `widened`.
-fn coefficient<const K: usize>(
-    problem: &Problem<'_, K>,
-    solver: &Solver<K>,
+fn coefficient<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    solver: &Solver<K, B>,
     i: usize,
     term: &Term,
     shape: Option<&ShapeEquations>,
@@ -126,9 +126,9 @@ fn coefficient<const K: usize>(
 /// A coefficient whose interval includes zero, with its bound, or with the length of a record that would show
 /// it.
 #[inline(never)]
-fn bounded<const K: usize>(
-    problem: &Problem<'_, K>,
-    solver: &Solver<K>,
+fn bounded<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    solver: &Solver<K, B>,
     i: usize,
     coefficient: Coefficient,
 ) -> Coefficient {
@@ -161,9 +161,9 @@ fn bounded<const K: usize>(
 /// zero at the minimum may grow in the place of this one, and its neighbours may fall to zero. If shapes are
 /// fitted, the interval is not shorter than that of the normal distribution with the shapes free.
 #[inline(never)]
-fn interval<const K: usize>(
-    problem: &Problem<'_, K>,
-    solver: &Solver<K>,
+fn interval<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    solver: &Solver<K, B>,
     i: usize,
     shape: Option<&ShapeEquations>,
     widened: Real,
@@ -187,9 +187,9 @@ fn interval<const K: usize>(
 /// The one-sided 95 % bound of a square. It uses the covariance that the model would have at that
 /// bound, because an effect that adds to an octave may also scatter it.
 #[inline(never)]
-fn bound<const K: usize>(
-    problem: &Problem<'_, K>,
-    solver: &Solver<K>,
+fn bound<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    solver: &Solver<K, B>,
     i: usize,
     first: Real,
 ) -> Real {
@@ -214,12 +214,12 @@ fn bound<const K: usize>(
 }
 
 /// Whether a bound says more than that the effect cannot exceed the whole curve.
-fn is_informative<const K: usize>(
-    problem: &Problem<'_, K>,
-    solver: &Solver<K>,
+fn is_informative<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    solver: &Solver<K, B>,
     i: usize,
     bound: Real,
 ) -> bool {
-    let mut octaves = 0..problem.points.len();
-    octaves.all(|k| bound * problem.unit(i, k) < solver.weights.model[k])
+    let mut rows = problem.rows();
+    rows.all(|k| bound * problem.unit(i, k) < solver.weights.model[k])
 }

@@ -8,7 +8,7 @@ use super::{
     result::Fit,
     solver::{Solver, Start, Tolerance},
 };
-use crate::{curve::Curve, error::Error, model::Model};
+use crate::{curve::Curve, error::Error, model::Model, observed::Observed, spectrum::Density};
 
 /// Fits a model's coefficients to a curve.
 ///
@@ -29,15 +29,16 @@ use crate::{curve::Curve, error::Error, model::Model};
 /// assert!((fit.coefficients[1].value - 0.1).abs() < 1e-6);
 /// # Ok::<(), allanite::Error>(())
 /// ```
-pub fn fit<const K: usize>(
-    curve: &Curve<K>,
+pub fn fit<'a, const K: usize, const B: usize>(
+    observed: impl Into<Observed<'a, K, B>>,
     model: &Model,
     options: Options,
 ) -> Result<Fit, Error> {
+    let observed = observed.into();
     let mut fit = Fit::EMPTY;
     let mut work = Work::NEW;
     let mut stage = Stage::Beginning;
-    while !stage.advance(curve, model, options, &mut work, &mut fit)? {}
+    while !stage.advance(observed, model, options, &mut work, &mut fit)? {}
     Ok(fit)
 }
 
@@ -62,10 +63,11 @@ pub fn fit<const K: usize>(
 /// assert!((fit.coefficients[1].value - 0.1).abs() < 1e-6);
 /// # Ok::<(), allanite::Error>(())
 /// ```
-pub struct Fitting<const K: usize> {
+pub struct Fitting<const K: usize, const B: usize = 0> {
     curve: Curve<K>,
+    density: Density<B>,
     model: Model,
-    work: Work<K>,
+    work: Work<K, B>,
     fit: Fit,
     options: Options,
     stage: Stage,
@@ -76,8 +78,23 @@ impl<const K: usize> Fitting<K> {
     // Inlined, so that some kilobytes are built where they stay and not moved there.
     #[inline(always)]
     pub fn new(curve: Curve<K>, model: Model, options: Options) -> Self {
+        Self::with_density(curve, Density::EMPTY, model, options)
+    }
+}
+
+impl<const K: usize, const B: usize> Fitting<K, B> {
+    /// A fit of a model to a curve and to the density of the same record. It does not begin before it is advanced.
+    // Inlined, so that some kilobytes are built where they stay and not moved there.
+    #[inline(always)]
+    pub fn with_density(
+        curve: Curve<K>,
+        density: Density<B>,
+        model: Model,
+        options: Options,
+    ) -> Self {
         Self {
             curve,
+            density,
             model,
             work: Work::NEW,
             fit: Fit::EMPTY,
@@ -93,13 +110,15 @@ impl<const K: usize> Fitting<K> {
     pub fn advance(&mut self) -> Result<Option<&Fit>, Error> {
         let Self {
             curve,
+            density,
             model,
             work,
             fit,
             options,
             stage,
         } = self;
-        let complete = stage.advance(curve, model, *options, work, fit)?;
+        let observed = Observed::new(curve, density);
+        let complete = stage.advance(observed, model, *options, work, fit)?;
         Ok(complete.then_some(&self.fit))
     }
 
@@ -110,8 +129,9 @@ impl<const K: usize> Fitting<K> {
 
     /// The problem, the memory of its solution, and the fit as far as it is complete. Once it is complete,
     /// the memory is free for another solution of the same problem.
-    pub(crate) fn parts(&mut self) -> (Problem<'_, K>, &mut Solver<K>, &Fit) {
-        let problem = Problem::new(&self.curve, &self.model, &self.work.columns);
+    pub(crate) fn parts(&mut self) -> (Problem<'_, K, B>, &mut Solver<K, B>, &Fit) {
+        let observed = Observed::new(&self.curve, &self.density);
+        let problem = Problem::new(observed, &self.model, &self.work.columns);
         (problem, &mut self.work.solver, &self.fit)
     }
 
@@ -127,12 +147,12 @@ impl<const K: usize> Fitting<K> {
 }
 
 /// The memory of a fit by the covariance: the columns of the model, and their solution.
-pub(crate) struct Work<const K: usize> {
-    pub(crate) columns: Columns<K>,
-    pub(crate) solver: Solver<K>,
+pub(crate) struct Work<const K: usize, const B: usize = 0> {
+    pub(crate) columns: Columns<K, B>,
+    pub(crate) solver: Solver<K, B>,
 }
 
-impl<const K: usize> Work<K> {
+impl<const K: usize, const B: usize> Work<K, B> {
     /// No fit yet.
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const NEW: Self = Self {
@@ -147,13 +167,13 @@ impl<const K: usize> Work<K> {
     #[inline(never)]
     pub(crate) fn begin_at(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         model: &Model,
         start: Start,
         tolerance: Tolerance,
     ) -> Result<(), Error> {
-        self.columns.set(curve, model);
-        let problem = Problem::new(curve, model, &self.columns);
+        self.columns.set(observed, model);
+        let problem = Problem::new(observed, model, &self.columns);
         self.solver.begin(&problem, start, tolerance)
     }
 }
@@ -172,28 +192,30 @@ impl Stage {
     /// Begins a fit. Returns `None` if the fit is already complete, as it is with the methods that take
     /// octaves for independent.
     #[inline(never)]
-    fn begin<const K: usize>(
+    fn begin<const K: usize, const B: usize>(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         model: &Model,
         options: Options,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
         fit: &mut Fit,
     ) -> Result<(), Error> {
         let needed = match options.method {
             Method::Covariance => 2,
             _ => model.terms().len(),
         };
-        check(curve.points(), needed)?;
+        check(observed.curve().points(), needed)?;
         *self = match options.method {
             Method::Covariance => {
                 let tolerance = Tolerance::IfNeeded(options.tolerance);
-                work.begin_at(curve, model, Start::Independent, tolerance)?;
+                work.begin_at(observed, model, Start::Independent, tolerance)?;
                 Self::Solving
             }
             method => {
-                work.columns.set(curve, model);
-                let problem = Problem::new(curve, model, &work.columns);
+                // These methods are for curves only.
+                let octaves = observed.octaves();
+                work.columns.set(octaves, model);
+                let problem = Problem::new(octaves, model, &work.columns);
                 *fit = independent::fit(&problem, method)?;
                 Self::Complete
             }
@@ -203,10 +225,10 @@ impl Stage {
 
     // Apart from what goes on with it: its temporaries do not lie on the stack below the deepest calls.
     #[inline(never)]
-    fn begin_estimating<const K: usize>(
+    fn begin_estimating<const K: usize, const B: usize>(
         &mut self,
-        problem: &Problem<'_, K>,
-        solver: &Solver<K>,
+        problem: &Problem<'_, K, B>,
+        solver: &Solver<K, B>,
         fit: &mut Fit,
     ) {
         *self = Self::Estimating(Estimator::NEW);
@@ -216,24 +238,24 @@ impl Stage {
     }
 
     /// Does one piece of work, and returns whether the fit is complete.
-    fn advance<const K: usize>(
+    fn advance<const K: usize, const B: usize>(
         &mut self,
-        curve: &Curve<K>,
+        observed: Observed<'_, K, B>,
         model: &Model,
         options: Options,
-        work: &mut Work<K>,
+        work: &mut Work<K, B>,
         fit: &mut Fit,
     ) -> Result<bool, Error> {
         match self {
-            Self::Beginning => self.begin(curve, model, options, work, fit)?,
+            Self::Beginning => self.begin(observed, model, options, work, fit)?,
             Self::Solving => {
-                let problem = Problem::new(curve, model, &work.columns);
+                let problem = Problem::new(observed, model, &work.columns);
                 if work.solver.advance(&problem)? {
                     self.begin_estimating(&problem, &work.solver, fit);
                 }
             }
             Self::Estimating(estimator) => {
-                let problem = Problem::new(curve, model, &work.columns);
+                let problem = Problem::new(observed, model, &work.columns);
                 if estimator.advance(&problem, &work.solver, fit) {
                     *self = Self::Complete;
                 }

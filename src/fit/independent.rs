@@ -16,16 +16,15 @@ use crate::{
     real::Real,
 };
 
-/// Sets the normal equations of weighted octaves that are taken for independent.
-pub(super) fn equations<const K: usize>(
-    problem: &Problem<'_, K>,
-    weight: impl Fn(&Point, Real) -> Real,
+/// Sets the normal equations of weighted octaves and bins that are taken for independent.
+pub(super) fn equations<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    weight: impl Fn(usize) -> Real,
     equations: &mut NormalEquations,
 ) -> Result<(), Error> {
     let sum = |i: usize, other: &dyn Fn(usize) -> Real| -> Real {
-        let octaves = numbered(problem.points.iter());
-        octaves
-            .map(|(k, point)| weight(point, problem.measured(k)) * problem.unit(i, k) * other(k))
+        let rows = problem.rows();
+        rows.map(|row| weight(row) * problem.unit(i, row) * other(row))
             .sum()
     };
     equations.set(problem.count(), &|i, row| {
@@ -36,9 +35,12 @@ pub(super) fn equations<const K: usize>(
     })
 }
 
-/// The inverse square of an octave's standard error, which is `δσ̂²` for the measured variance.
-pub(super) fn by_relative_accuracy(point: &Point, measured: Real) -> Real {
-    let error = relative_accuracy(point) * measured;
+/// The inverse square of a row's standard error, which is `δσ̂²` for the measured variance.
+pub(super) fn by_relative_accuracy<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    row: usize,
+) -> Real {
+    let error = problem.relative_accuracy(row) * problem.measured(row);
     1.0 / (error * error)
 }
 
@@ -50,7 +52,10 @@ const ACCURATE: Real = 0.25;
 /// # Errors
 /// [`Error::TooFewOctaves`] if the method leaves out so many octaves that fewer than there are effects
 /// remain. [`Error::Singular`] if the equations have no solution.
-pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> Result<Fit, Error> {
+pub(super) fn fit<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    method: Method,
+) -> Result<Fit, Error> {
     let is_used =
         |point: &&Point| method != Method::AccuratePart || relative_accuracy(point) <= ACCURATE;
     let octaves = list::count(problem.points.iter().filter(is_used));
@@ -61,20 +66,22 @@ pub(super) fn fit<const K: usize>(problem: &Problem<'_, K>, method: Method) -> R
             needed,
         });
     }
-    let weight = |point: &Point, measured: Real| match method {
-        _ if !is_used(&point) => 0.0,
+    let weight = |row: usize| match method {
+        _ if !problem.points.get(row).is_some_and(|point| is_used(&point)) => 0.0,
         Method::Ordinary | Method::AccuratePart => 1.0,
-        Method::ClusterCount => by_relative_accuracy(point, 1.0),
-        _ => by_relative_accuracy(point, measured),
+        Method::ClusterCount => {
+            let error = problem.relative_accuracy(row);
+            1.0 / (error * error)
+        }
+        _ => by_relative_accuracy(problem, row),
     };
     let mut equations = NormalEquations::EMPTY;
     self::equations(problem, weight, &mut equations)?;
     let squares = equations.solve()?;
     let free = Free::of(|i| i < problem.count());
-    let residuals = numbered(problem.points.iter()).map(|(k, point)| {
-        let measured = problem.measured(k);
-        let residual = measured - problem.variance(k, &squares);
-        weight(point, measured) * residual * residual
+    let residuals = problem.rows().map(|row| {
+        let residual = problem.measured(row) - problem.variance(row, &squares);
+        weight(row) * residual * residual
     });
     let mut chi_squared: Real = residuals.sum();
     let degrees_of_freedom = octaves.saturating_sub(needed);

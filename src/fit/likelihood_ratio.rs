@@ -44,14 +44,15 @@ impl LikelihoodRatio {
     /// # Errors
     /// [`Error::Singular`] if the limit or the curve is beyond the range of numbers.
     #[inline(never)]
-    pub(crate) fn begin<const K: usize>(
-        problem: &Problem<'_, K>,
-        solver: &mut Solver<K>,
+    pub(crate) fn begin<const K: usize, const B: usize>(
+        problem: &Problem<'_, K, B>,
+        solver: &mut Solver<K, B>,
         fit: &Fit,
         place: usize,
         limit: Real,
     ) -> Result<Self, Error> {
-        let most = (0..problem.points.len())
+        let most = problem
+            .rows()
             .map(|k| problem.measured(k) / problem.unit(place, k))
             .fold(0.0, Real::max);
         let root = limit / math::sqrt(problem.variance_unit);
@@ -72,10 +73,10 @@ impl LikelihoodRatio {
     /// # Errors
     /// [`Error::Singular`] if the covariance at the hypothesis cannot be factored.
     #[inline(never)]
-    pub(crate) fn advance<const K: usize>(
+    pub(crate) fn advance<const K: usize, const B: usize>(
         &mut self,
-        problem: &Problem<'_, K>,
-        solver: &mut Solver<K>,
+        problem: &Problem<'_, K, B>,
+        solver: &mut Solver<K, B>,
     ) -> Result<Option<Real>, Error> {
         if let Some(at_limit) = self.at_limit {
             return self.compare(problem, solver, at_limit).map(Some);
@@ -97,10 +98,10 @@ impl LikelihoodRatio {
     }
 
     /// Fits all coefficients with the covariance at the limit, and compares the two fits.
-    fn compare<const K: usize>(
+    fn compare<const K: usize, const B: usize>(
         &self,
-        problem: &Problem<'_, K>,
-        solver: &mut Solver<K>,
+        problem: &Problem<'_, K, B>,
+        solver: &mut Solver<K, B>,
         at_limit: Real,
     ) -> Result<Real, Error> {
         let curve = |k: usize| problem.measured(k);

@@ -8,12 +8,14 @@
 
 mod correlation;
 mod estimate;
+mod factor;
 mod fitting;
 mod independent;
 mod likelihood_ratio;
 mod method;
 mod problem;
 mod result;
+mod rows;
 mod shape;
 mod solver;
 mod weights;

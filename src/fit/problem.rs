@@ -1,100 +1,143 @@
-//! A curve, and what each effect of a model would contribute to it.
+//! What is known of a record, and what each effect of a model would contribute to it.
 
-use super::result::Fit;
+use super::{result::Fit, rows::Rows};
 use crate::{
-    algebra,
-    curve::{Curve, Point, clusters},
+    curve::{Point, clusters},
     error::Error,
     limits::MAX_EFFECTS,
     list, math,
     model::{Model, Term},
     nnls::{Free, Vector},
+    observed::Observed,
     real::{Real, real, single},
+    spectrum::Bin,
 };
 use heapless::Vec;
 
-/// Allan variances of each effect of a model at the averaging times of a curve, for coefficients of
-/// one. The rounding of single precision is far below what any record can show.
+/// Allan variances and densities of each effect of a model in the octaves and bins that are fitted, for
+/// coefficients of one. The rounding of single precision is far below what any record can show.
 #[derive(Clone, Debug)]
-pub(crate) struct Columns<const K: usize>(Vec<algebra::Vector<K, f32>, MAX_EFFECTS>);
+pub(crate) struct Columns<const K: usize, const B: usize = 0>(Vec<Rows<K, B, f32>, MAX_EFFECTS>);
 
-impl<const K: usize> Columns<K> {
+impl<const K: usize, const B: usize> Columns<K, B> {
     /// Columns of no model yet.
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const EMPTY: Self = Self(Vec::new());
 
     /// The columns of a model.
-    pub(crate) fn new(curve: &Curve<K>, model: &Model) -> Self {
+    pub(crate) fn new(observed: Observed<'_, K, B>, model: &Model) -> Self {
         let mut columns = Self::EMPTY;
-        columns.set(curve, model);
+        columns.set(observed, model);
         columns
     }
 
     /// Computes the columns of a model in place.
     #[inline(never)]
-    pub(crate) fn set(&mut self, curve: &Curve<K>, model: &Model) {
+    pub(crate) fn set(&mut self, observed: Observed<'_, K, B>, model: &Model) {
         let terms = model.terms().iter();
-        self.0 = list::fill(terms.map(|term| column(curve, term).map(single).into()));
+        self.0 = list::fill(terms.map(|term| column(observed, term).map(single)));
     }
 }
 
-/// The Allan variances of one effect, for a coefficient of one.
-fn column<const K: usize>(curve: &Curve<K>, term: &Term) -> algebra::Vector<K> {
-    let mut column = algebra::Vector::<K>::zeros();
-    let mut k = 0_usize;
-    let mut factors = curve.points().iter().map(|point| real(point.m));
-    let shape = term.sampled_shape(curve.interval_s());
+/// The Allan variances and densities of one effect, for a coefficient of one.
+fn column<const K: usize, const B: usize>(observed: Observed<'_, K, B>, term: &Term) -> Rows<K, B> {
+    let mut column = Rows::ZEROS;
+    let mut row = 0_usize;
+    let mut factors = observed.points().iter().map(|point| real(point.m));
+    let shape = term.sampled_shape(observed.interval_s());
     term.effect
         .variances(&mut factors, &shape, &mut |variance| {
-            column.put(k, variance);
-            k = k.saturating_add(1);
+            column.put(row, variance);
+            row = row.saturating_add(1);
         });
+    if let Some(density) = observed.density() {
+        row = K;
+        density.expected(term.effect, &shape, &mut |expected| {
+            column.put(row, expected);
+            row = row.saturating_add(1);
+        });
+    }
     column
 }
 
-/// A curve, a model, and the columns of that model. This is what a fit works on.
+/// Octaves and bins, a model, and the columns of that model. This is what a fit works on. Each octave and each bin
+/// is a row, with the same numbers as in [`Rows`].
 ///
-/// Variances and squared coefficients are counted in the curve's `variance_unit`, so that their squares
+/// Variances, densities and squared coefficients are counted in the curve's `variance_unit`, so that their squares
 /// stay within the range of single precision.
 #[derive(Clone, Copy)]
-pub(crate) struct Problem<'a, const K: usize> {
-    pub(crate) curve: &'a Curve<K>,
+pub(crate) struct Problem<'a, const K: usize, const B: usize = 0> {
+    pub(crate) observed: Observed<'a, K, B>,
+    /// The octaves that are fitted.
     pub(crate) points: &'a [Point],
+    pub(crate) bins: &'a [Bin],
     pub(crate) model: &'a Model,
     pub(crate) interval_s: Real,
     pub(crate) variance_unit: Real,
     per_unit: Real,
-    columns: &'a Columns<K>,
+    columns: &'a Columns<K, B>,
 }
 
-impl<'a, const K: usize> Problem<'a, K> {
+impl<'a, const K: usize, const B: usize> Problem<'a, K, B> {
     /// The problem of a model whose columns are known.
-    pub(crate) fn new(curve: &'a Curve<K>, model: &'a Model, columns: &'a Columns<K>) -> Self {
+    pub(crate) fn new(
+        observed: Observed<'a, K, B>,
+        model: &'a Model,
+        columns: &'a Columns<K, B>,
+    ) -> Self {
+        let unit = observed.curve().variance_unit();
         Self {
-            curve,
-            points: curve.points(),
+            observed,
+            points: observed.points(),
+            bins: observed.bins(),
             model,
-            interval_s: curve.interval_s(),
-            variance_unit: curve.variance_unit(),
-            per_unit: 1.0 / curve.variance_unit(),
+            interval_s: observed.interval_s(),
+            variance_unit: unit,
+            per_unit: 1.0 / unit,
             columns,
         }
     }
 
-    /// The Allan variances of one effect, for a coefficient of one.
-    pub(crate) fn column(&self, term: &Term) -> algebra::Vector<K> {
-        column(self.curve, term)
+    /// The rows of all octaves and bins.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = usize> + Clone + use<K, B> {
+        let bins = K..K.saturating_add(self.bins.len().min(B));
+        (0..self.points.len().min(K)).chain(bins)
+    }
+
+    /// The number of rows.
+    pub(crate) fn row_count(&self) -> usize {
+        self.points.len().saturating_add(self.bins.len())
+    }
+
+    /// The contribution of one effect, for a coefficient of one.
+    pub(crate) fn column(&self, term: &Term) -> Rows<K, B> {
+        column(self.observed, term)
     }
 
     /// The columns of the model.
-    pub(crate) fn columns(&self) -> &'a [algebra::Vector<K, f32>] {
+    pub(crate) fn columns(&self) -> &'a [Rows<K, B, f32>] {
         &self.columns.0
     }
 
-    /// The measured variance of octave `k`.
-    pub(crate) fn measured(&self, k: usize) -> Real {
-        let point = self.points.get(k);
-        point.map_or(0.0, |point| point.variance * self.per_unit)
+    /// The measured variance or density of a row.
+    pub(crate) fn measured(&self, row: usize) -> Real {
+        let measured = match row.checked_sub(K) {
+            None => self.points.get(row).map_or(0.0, |point| point.variance),
+            Some(bin) => self.bins.get(bin).map_or(0.0, |bin| bin.density),
+        };
+        measured * self.per_unit
+    }
+
+    /// The relative accuracy of a row whose measurement is independent of all others: that of the paper for an
+    /// octave, and `1/√n` for a bin of `n` independent segments.
+    pub(crate) fn relative_accuracy(&self, row: usize) -> Real {
+        match row.checked_sub(K) {
+            None => self.points.get(row).map_or(1.0, relative_accuracy),
+            Some(bin) => self
+                .bins
+                .get(bin)
+                .map_or(1.0, |bin| 1.0 / math::sqrt(bin.effective)),
+        }
     }
 
     /// The squared coefficients of a fit.
@@ -105,17 +148,17 @@ impl<'a, const K: usize> Problem<'a, K> {
         })
     }
 
-    /// The variance of effect `i` in octave `k`, for a coefficient of one.
-    pub(crate) fn unit(&self, i: usize, k: usize) -> Real {
+    /// What effect `i` contributes to a row, for a coefficient of one.
+    pub(crate) fn unit(&self, i: usize, row: usize) -> Real {
         let column = self.columns.0.get(i);
-        column.map_or(0.0, |column| real(column[k]))
+        column.map_or(0.0, |column| real(column[row]))
     }
 
-    /// The share of effect `i` in the model's variance of octave `k`, from 0 to 1. It is 0 for an
-    /// effect beyond the model.
-    pub(crate) fn share(&self, k: usize, i: usize, squares: &Vector) -> Real {
+    /// The share of effect `i` in the model's value of a row, from 0 to 1. It is 0 for an effect beyond the
+    /// model.
+    pub(crate) fn share(&self, row: usize, i: usize, squares: &Vector) -> Real {
         if i < self.count() {
-            self.unit(i, k) * squares[i] / self.variance(k, squares)
+            self.unit(i, row) * squares[i] / self.variance(row, squares)
         } else {
             0.0
         }
@@ -131,10 +174,20 @@ impl<'a, const K: usize> Problem<'a, K> {
         self.model.terms().len()
     }
 
-    /// The model's variance in octave `k`.
-    pub(crate) fn variance(&self, k: usize, squares: &Vector) -> Real {
+    /// The share of deterministic effects in the model's value of a row, from 0 to 1.
+    pub(crate) fn deterministic_share(&self, row: usize, squares: &Vector) -> Real {
+        let terms = list::numbered(self.model.terms().iter());
+        let steady = terms.filter(|(_, term)| {
+            let shape = term.sampled_shape(self.interval_s);
+            term.effect.response(1.0, &shape).is_some()
+        });
+        steady.map(|(i, _)| self.share(row, i, squares)).sum()
+    }
+
+    /// The model's variance or density of a row.
+    pub(crate) fn variance(&self, row: usize, squares: &Vector) -> Real {
         (0..self.count())
-            .map(|i| self.unit(i, k) * squares[i])
+            .map(|i| self.unit(i, row) * squares[i])
             .sum()
     }
 }

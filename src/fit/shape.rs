@@ -1,8 +1,7 @@
 //! The uncertainty of fitted shapes, and what it adds to the uncertainty of the coefficients.
 
-use super::{problem::Problem, result::ShapeEstimate, weights::Weights};
+use super::{problem::Problem, result::ShapeEstimate, rows::Rows, weights::Weights};
 use crate::{
-    algebra,
     limits::{MAX_SHAPE, TWO_SIDED_95},
     list::{self, numbered},
     math,
@@ -34,10 +33,10 @@ impl ShapeEquations {
     /// Sets the equations at a solution. Returns `false` if the model has no fitted shapes, or if they
     /// cannot be told from the rest.
     #[inline(never)]
-    pub(crate) fn set<const K: usize>(
+    pub(crate) fn set<const K: usize, const B: usize>(
         &mut self,
-        problem: &Problem<'_, K>,
-        weights: &Weights<K>,
+        problem: &Problem<'_, K, B>,
+        weights: &Weights<K, B>,
         squares: &Vector,
     ) -> bool {
         self.parameters.clear();
@@ -52,17 +51,21 @@ impl ShapeEquations {
             return false;
         }
         // The coefficients come first, the shapes follow.
-        let mut derivatives: Vec<algebra::Vector<K, f32>, MAX_SHAPE> = Vec::new();
+        let mut derivatives: Vec<Rows<K, B, f32>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
             let column = |factor: Real| {
                 let mut term = term;
                 term.scale_parameter(j, factor);
                 problem.column(&term)
             };
-            let change = *column(math::exp(STEP)) - *column(math::exp(-STEP));
+            let (above, below) = (column(math::exp(STEP)), column(math::exp(-STEP)));
             let scale = 0.5 * squares[i] / STEP;
+            let mut derivative = Rows::ZEROS;
+            for row in problem.rows() {
+                derivative.put(row, single((above[row] - below[row]) * scale));
+            }
             // There is a place for every parameter.
-            let _ = derivatives.push(change.map(|change| single(change * scale)).into());
+            let _ = derivatives.push(derivative);
         }
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
         let equations = &mut self.equations;

@@ -3,10 +3,10 @@
 //! until they agree.
 
 use super::{
-    independent, method::ADEQUATE_P, problem::Problem, shape::ShapeEquations, weights::Weights,
+    independent, method::ADEQUATE_P, problem::Problem, rows::Rows, shape::ShapeEquations,
+    weights::Weights,
 };
 use crate::{
-    algebra,
     chi_squared::chi_squared_tail,
     error::Error,
     list::numbered,
@@ -72,8 +72,8 @@ pub(super) enum Rounds {
 /// Squared coefficients, and the covariance with which they were found. One call of
 /// [`advance`](Self::advance) computes a row of the covariance or solves the normal equations, so that
 /// a caller can do something else in between.
-pub(crate) struct Solver<const K: usize> {
-    pub(crate) weights: Weights<K>,
+pub(crate) struct Solver<const K: usize, const B: usize = 0> {
+    pub(crate) weights: Weights<K, B>,
     pub(crate) equations: NormalEquations,
     pub(crate) squares: Vector,
     pub(crate) free: Free,
@@ -82,7 +82,7 @@ pub(crate) struct Solver<const K: usize> {
     pub(crate) assumed: Vector,
     degrees_of_freedom: usize,
     /// The relative change of the model in the last round, and the share of the change that was taken.
-    last: Option<algebra::Vector<K>>,
+    last: Option<Rows<K, B>>,
     stride: Real,
     round: u8,
     rounds: Rounds,
@@ -90,7 +90,7 @@ pub(crate) struct Solver<const K: usize> {
     if_needed: Option<Real>,
 }
 
-impl<const K: usize> Solver<K> {
+impl<const K: usize, const B: usize> Solver<K, B> {
     /// A solver without a problem.
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const NEW: Self = Self {
@@ -116,13 +116,13 @@ impl<const K: usize> Solver<K> {
     #[inline(never)]
     pub(crate) fn begin(
         &mut self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         start: Start,
         tolerance: Tolerance,
     ) -> Result<(), Error> {
         let start_squares = match start {
             Start::Independent => {
-                let weight = independent::by_relative_accuracy;
+                let weight = |row| independent::by_relative_accuracy(problem, row);
                 independent::equations(problem, weight, &mut self.equations)?;
                 self.equations.solve_non_negative(&problem.held()).0
             }
@@ -144,7 +144,7 @@ impl<const K: usize> Solver<K> {
     /// Begins with the first of several rounds.
     pub(super) fn begin_rounds(
         &mut self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         start: Vector,
         tolerance: Real,
         rounds: Rounds,
@@ -164,7 +164,7 @@ impl<const K: usize> Solver<K> {
     /// [`Error::Singular`] if the covariance cannot be made positive definite, if a column is zero or
     /// not finite, or if the model has no variance in an octave.
     #[inline(never)]
-    pub(crate) fn advance(&mut self, problem: &Problem<'_, K>) -> Result<bool, Error> {
+    pub(crate) fn advance(&mut self, problem: &Problem<'_, K, B>) -> Result<bool, Error> {
         if !self.weights.advance(problem, &self.assumed)? {
             return Ok(false);
         }
@@ -183,7 +183,7 @@ impl<const K: usize> Solver<K> {
     /// Solves the normal equations with the present weights. Returns whether this was the last round.
     /// If it was not, the next round has begun.
     #[inline(never)]
-    fn end_round(&mut self, problem: &Problem<'_, K>) -> Result<bool, Error> {
+    fn end_round(&mut self, problem: &Problem<'_, K, B>) -> Result<bool, Error> {
         let curve = |k: usize| problem.measured(k);
         let (weights, equations) = (&self.weights, &mut self.equations);
         weights.equations(problem, &|_| 1.0, &[], &curve, equations)?;
@@ -209,7 +209,7 @@ impl<const K: usize> Solver<K> {
 
     /// Whether the rounds have ended at a solution that the caller has put into `squares`. If they have
     /// not, the next round has begun.
-    pub(super) fn has_ended(&mut self, problem: &Problem<'_, K>) -> Result<bool, Error> {
+    pub(super) fn has_ended(&mut self, problem: &Problem<'_, K, B>) -> Result<bool, Error> {
         let change = self.change(problem);
         let has_ended = change.amax() < CONVERGED || self.round >= ROUNDS;
         if !has_ended {
@@ -220,22 +220,17 @@ impl<const K: usize> Solver<K> {
 
     /// The relative change of the model from the squares at which the covariance is taken to the
     /// solution.
-    fn change(&self, problem: &Problem<'_, K>) -> algebra::Vector<K> {
-        algebra::Vector::<K>::from_fn(|k| {
-            if k < problem.points.len() {
-                problem.variance(k, &self.squares) / self.weights.model[k] - 1.0
-            } else {
-                0.0
-            }
-        })
+    fn change(&self, problem: &Problem<'_, K, B>) -> Rows<K, B> {
+        let mut change = Rows::ZEROS;
+        for row in problem.rows() {
+            let ratio = problem.variance(row, &self.squares) / self.weights.model[row];
+            change.put(row, ratio - 1.0);
+        }
+        change
     }
 
     /// Begins the next round, nearer to the solution.
-    fn begin_next(
-        &mut self,
-        problem: &Problem<'_, K>,
-        change: algebra::Vector<K>,
-    ) -> Result<(), Error> {
+    fn begin_next(&mut self, problem: &Problem<'_, K, B>, change: Rows<K, B>) -> Result<(), Error> {
         if let Some(last) = self.last {
             // The changes of rounds that swing to and fro, or that creep, have a ratio. The next round
             // starts where this ratio leads (Aitken 1926).
@@ -276,7 +271,7 @@ impl<const K: usize> Solver<K> {
     /// shape becomes determined. `None` if all shapes are determined or no such effect exists.
     pub(crate) fn confused(
         &self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         shape: &ShapeEquations,
     ) -> Option<usize> {
         let before = shape.worst_error(&self.free);
@@ -299,10 +294,13 @@ impl<const K: usize> Solver<K> {
 
 /// The number of octaves, less the number of coefficients above zero and of their fitted shape
 /// parameters.
-fn degrees_of_freedom<const K: usize>(problem: &Problem<'_, K>, free: &Free) -> usize {
+fn degrees_of_freedom<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    free: &Free,
+) -> usize {
     let terms = numbered(problem.model.terms().iter());
     let active = terms.filter(|&(i, _)| free.has(i));
-    active.fold(problem.points.len(), |rest, (_, term)| {
+    active.fold(problem.row_count(), |rest, (_, term)| {
         let shapes = term.fitted_parameters();
         shapes.fold(rest.saturating_sub(1), |rest, _| rest.saturating_sub(1))
     })

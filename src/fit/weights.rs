@@ -1,13 +1,14 @@
-//! The covariance of a curve, factored. It gives the units in which octaves are independent.
+//! The covariance of octaves and bins, factored. It gives the units in which they are independent.
 
-use super::problem::{Problem, relative_accuracy};
+use super::{
+    factor::{Factor, NEIGHBOURS},
+    problem::Problem,
+    rows::Rows,
+};
 use crate::{
-    algebra::{self, Triangle},
-    cholesky,
     covariance::covariance_row,
     error::Error,
     limits::MAX_EFFECTS,
-    list::numbered,
     math,
     nnls::{NormalEquations, Vector},
     real::{Real, real, single},
@@ -19,13 +20,12 @@ use heapless::Vec;
 /// always works.
 const SHRINKAGES: [Real; 6] = [0.0, 0.01, 0.03, 0.1, 0.3, 1.0];
 
-/// The covariance of a curve relative to a model, factored.
-pub(crate) struct Weights<const K: usize> {
-    /// The model's variances.
-    pub(crate) model: algebra::Vector<K>,
-    /// The Cholesky factor of the covariance relative to the model's variances. Single precision is
-    /// enough for it, because the covariance itself is no more precise.
-    factor: Triangle<K, K, f32>,
+/// The covariance of octaves and bins relative to a model, factored.
+pub(crate) struct Weights<const K: usize, const B: usize = 0> {
+    /// The model's variances and densities.
+    pub(crate) model: Rows<K, B>,
+    /// The Cholesky factor of the covariance relative to the model.
+    factor: Factor<K, B>,
     /// The logarithm of the determinant of the covariance, in rate units.
     pub(crate) log_determinant: Real,
     pub(crate) tolerance: Real,
@@ -37,12 +37,12 @@ pub(crate) struct Weights<const K: usize> {
     attempt: usize,
 }
 
-impl<const K: usize> Weights<K> {
+impl<const K: usize, const B: usize> Weights<K, B> {
     /// The weights of no model yet.
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const EMPTY: Self = Self {
-        model: algebra::Vector::ZEROS,
-        factor: Triangle::ZEROS,
+        model: Rows::ZEROS,
+        factor: Factor::ZEROS,
         log_determinant: 0.0,
         tolerance: 0.0,
         shrinkage: 0.0,
@@ -54,7 +54,7 @@ impl<const K: usize> Weights<K> {
     /// Computes the weights of a model with these squared coefficients, in one go.
     pub(crate) fn set(
         &mut self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         squares: &Vector,
         tolerance: Real,
     ) -> Result<(), Error> {
@@ -69,16 +69,16 @@ impl<const K: usize> Weights<K> {
     /// [`Error::Singular`] if the model has no variance in an octave.
     pub(crate) fn begin(
         &mut self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         squares: &Vector,
         tolerance: Real,
     ) -> Result<(), Error> {
-        for k in 0..problem.points.len().min(K) {
-            let variance = problem.variance(k, squares);
+        for row in problem.rows() {
+            let variance = problem.variance(row, squares);
             if !(variance.is_finite() && variance > 0.0) {
                 return Err(Error::Singular);
             }
-            self.model.put(k, variance);
+            self.model.put(row, variance);
         }
         self.tolerance = tolerance;
         (self.row, self.column) = (0, 0);
@@ -86,15 +86,19 @@ impl<const K: usize> Weights<K> {
         Ok(())
     }
 
-    /// Sets the weights of octaves that are taken for independent, each with the scatter that Lv, Liu, Lai
-    /// & Huang 2015 give it at its measured variance. A model that lacks an effect knows neither the
-    /// scatter nor the correlations of the octaves where it fails, so they say nothing about the effect.
-    pub(crate) fn set_independent(&mut self, problem: &Problem<'_, K>) {
-        self.factor = Triangle::ZEROS;
-        for (k, point) in numbered(problem.points.iter()).take(K) {
-            self.model.put(k, problem.measured(k));
-            self.factor
-                .put((k, k), single(1.0 / relative_accuracy(point)));
+    /// Sets the weights of octaves and bins that are taken for independent. Each octave gets the scatter that Lv,
+    /// Liu, Lai & Huang 2015 give it at its measured variance, and each bin that of its segments. A model that lacks
+    /// an effect knows neither the scatter nor the correlations of the octaves where it fails, so they say nothing
+    /// about the effect.
+    pub(crate) fn set_independent(&mut self, problem: &Problem<'_, K, B>) {
+        self.factor = Factor::ZEROS;
+        for row in problem.rows() {
+            self.model.put(row, problem.measured(row));
+            let diagonal = single(1.0 / problem.relative_accuracy(row));
+            match row.checked_sub(K) {
+                None => self.factor.put_octaves((row, row), diagonal),
+                Some(bin) => self.factor.put_bins(bin, 0, diagonal),
+            }
         }
     }
 
@@ -106,7 +110,7 @@ impl<const K: usize> Weights<K> {
     #[inline(never)]
     pub(crate) fn advance(
         &mut self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         squares: &Vector,
     ) -> Result<bool, Error> {
         let n = problem.points.len().min(K);
@@ -120,19 +124,49 @@ impl<const K: usize> Weights<K> {
             }
             return Ok(false);
         }
-        if !cholesky::factor(&mut self.factor, n) {
+        self.set_bins(problem, squares, 1.0 - self.shrinkage);
+        if !self.factor.factor(n, problem.bins.len()) {
             self.attempt = self.attempt.saturating_add(1);
             (self.row, self.column) = (0, 0);
             return Ok(false);
         }
-        let diagonal = |k: usize| self.model[k] * problem.variance_unit / real(self.factor[(k, k)]);
-        self.log_determinant = (0..n).map(|k| 2.0 * math::log(diagonal(k))).sum();
+        let diagonal =
+            |row| self.model[row] * problem.variance_unit / real(self.factor.diagonal(row));
+        self.log_determinant = problem
+            .rows()
+            .map(|row| 2.0 * math::log(diagonal(row)))
+            .sum();
         Ok(true)
+    }
+
+    /// Sets the covariance of the bins relative to the model. Bins of different block lengths are independent.
+    /// The correlations are multiplied by `keep`.
+    fn set_bins(&mut self, problem: &Problem<'_, K, B>, squares: &Vector, keep: Real) {
+        for (b, bin) in problem.bins.iter().enumerate().take(B) {
+            for d in 0..=NEIGHBOURS {
+                let other = b
+                    .checked_sub(d)
+                    .and_then(|at| Some((at, problem.bins.get(at)?)));
+                let relative = match other.filter(|(_, other)| other.block == bin.block) {
+                    None => 0.0,
+                    Some((at, _)) => {
+                        let steady = |b: usize| problem.deterministic_share(K + b, squares);
+                        bin.relative_covariance(d) * (1.0 - steady(b) * steady(at))
+                    }
+                };
+                let kept = if d == 0 {
+                    relative + self.tolerance * self.tolerance
+                } else {
+                    relative * keep
+                };
+                self.factor.put_bins(b, d, single(kept));
+            }
+        }
     }
 
     /// Computes a part of one row of the covariance relative to the model, and returns the column that comes next.
     /// The correlations are multiplied by `keep`.
-    fn set_row(&mut self, problem: &Problem<'_, K>, squares: &Vector, keep: Real) -> usize {
+    fn set_row(&mut self, problem: &Problem<'_, K, B>, squares: &Vector, keep: Real) -> usize {
         let (row, model, tolerance) = (self.row, &self.model, self.tolerance);
         let factor = &mut self.factor;
         let own = 1.0 / model[row];
@@ -149,38 +183,34 @@ impl<const K: usize> Weights<K> {
                 } else {
                     relative * keep
                 };
-                factor.put((k, row), single(kept));
+                factor.put_octaves((k, row), single(kept));
             },
         )
     }
 
-    /// The standard error of octave `k`, relative to the model's variance.
-    pub(crate) fn relative_error(&self, k: usize) -> Real {
-        let element = |j: usize| real(self.factor[(k, j)]);
-        let row = (0..k).map(|j| element(j) * element(j));
-        let diagonal = 1.0 / element(k);
-        math::sqrt(row.sum::<Real>() + diagonal * diagonal)
+    /// The standard error of a row, relative to the model.
+    pub(crate) fn relative_error(&self, row: usize) -> Real {
+        self.factor.standard_error(row)
     }
 
-    /// χ² of the curve for the model with these squared coefficients.
-    pub(crate) fn chi_squared(&self, problem: &Problem<'_, K>, squares: &Vector) -> Real {
+    /// χ² of octaves and bins for the model with these squared coefficients.
+    pub(crate) fn chi_squared(&self, problem: &Problem<'_, K, B>, squares: &Vector) -> Real {
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
         self.whiten(problem, &|_| 1.0, &residual).norm_squared()
     }
 
     /// Sets the normal equations `A'C⁻¹A β = A'C⁻¹y`, one column at a time. The standard error of
-    /// octave `k` is enlarged by the factor `scatter(k)`. `more` holds further columns behind those of
+    /// a row is enlarged by the factor `scatter(row)`. `more` holds further columns behind those of
     /// the model.
     #[inline(never)]
     pub(crate) fn equations(
         &self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         scatter: &dyn Fn(usize) -> Real,
-        more: &[algebra::Vector<K, f32>],
+        more: &[Rows<K, B, f32>],
         right: &dyn Fn(usize) -> Real,
         equations: &mut NormalEquations,
     ) -> Result<(), Error> {
-        let n = problem.points.len().min(K);
         let count = problem.count();
         let unit = |i: usize, k: usize| match i.checked_sub(count) {
             None => problem.unit(i, k),
@@ -190,21 +220,22 @@ impl<const K: usize> Weights<K> {
         equations.set(count.saturating_add(more.len()), &|i, row| {
             // This is C⁻¹ times the column, in units of the squared errors.
             let mut column = self.whiten(problem, scatter, &|k| unit(i, k));
-            cholesky::backward(&self.factor, n, &mut column);
-            for k in 0..n {
+            let (octaves, bins) = (problem.points.len(), problem.bins.len());
+            self.factor.backward(octaves, bins, &mut column);
+            for k in problem.rows() {
                 column.put(k, column[k] * per_error(k));
             }
             for j in 0..=i {
-                row.put(j, (0..n).map(|k| column[k] * unit(j, k)).sum());
+                row.put(j, problem.rows().map(|k| column[k] * unit(j, k)).sum());
             }
-            (0..n).map(|k| column[k] * right(k)).sum()
+            problem.rows().map(|k| column[k] * right(k)).sum()
         })
     }
 
-    /// Expresses the curve and the columns in units in which octaves are independent and have a
+    /// Expresses the measurement and the columns in units in which all rows are independent and have a
     /// variance of one.
     #[inline(never)]
-    pub(crate) fn whiten_into(&self, problem: &Problem<'_, K>, whitened: &mut Whitened<K>) {
+    pub(crate) fn whiten_into(&self, problem: &Problem<'_, K, B>, whitened: &mut Whitened<K, B>) {
         whitened.columns.clear();
         for column in problem.columns() {
             // There is a place for the column of every effect.
@@ -219,16 +250,16 @@ impl<const K: usize> Weights<K> {
     #[inline(never)]
     pub(crate) fn whiten(
         &self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         scatter: &dyn Fn(usize) -> Real,
         variance: &dyn Fn(usize) -> Real,
-    ) -> algebra::Vector<K> {
-        let mut column = algebra::Vector::<K>::zeros();
-        let n = problem.points.len().min(K);
-        for k in 0..n {
+    ) -> Rows<K, B> {
+        let mut column = Rows::ZEROS;
+        for k in problem.rows() {
             column.put(k, variance(k) / (self.model[k] * scatter(k)));
         }
-        cholesky::forward(&self.factor, n, &mut column);
+        let (octaves, bins) = (problem.points.len(), problem.bins.len());
+        self.factor.forward(octaves, bins, &mut column);
         column
     }
 
@@ -237,32 +268,31 @@ impl<const K: usize> Weights<K> {
     /// hundred standard errors. The column is in units of its largest number, which is returned too.
     pub(crate) fn whiten_trial(
         &self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         variance: &dyn Fn(usize) -> Real,
-    ) -> (algebra::Vector<K, f32>, Real) {
-        let n = problem.points.len().min(K);
+    ) -> (Rows<K, B, f32>, Real) {
         let relative = |k: usize| variance(k) / self.model[k];
-        let unit = (0..n).map(relative).fold(0.0, Real::max);
-        let mut column = algebra::Vector::<K, f32>::zeros();
-        for k in 0..n {
+        let unit = problem.rows().map(relative).fold(0.0, Real::max);
+        let mut column = Rows::ZEROS;
+        for k in problem.rows() {
             column.put(k, single(relative(k) / unit));
         }
-        cholesky::forward(&self.factor, n, &mut column);
+        let (octaves, bins) = (problem.points.len(), problem.bins.len());
+        self.factor.forward(octaves, bins, &mut column);
         (column, unit)
     }
 }
 
-/// The curve and the columns in units in which octaves are independent. Octaves that the curve does not
-/// have are zero.
-pub(crate) struct Whitened<const K: usize> {
-    pub(crate) columns: Vec<algebra::Vector<K>, MAX_EFFECTS>,
-    pub(crate) curve: algebra::Vector<K>,
+/// The measurement and the columns in units in which all rows are independent. Rows that there are not are zero.
+pub(crate) struct Whitened<const K: usize, const B: usize> {
+    pub(crate) columns: Vec<Rows<K, B>, MAX_EFFECTS>,
+    pub(crate) curve: Rows<K, B>,
 }
 
-impl<const K: usize> Whitened<K> {
+impl<const K: usize, const B: usize> Whitened<K, B> {
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const EMPTY: Self = Self {
         columns: Vec::new(),
-        curve: algebra::Vector::ZEROS,
+        curve: Rows::ZEROS,
     };
 }

@@ -45,13 +45,13 @@ impl End {
     }
 
     /// Does one evaluation. Returns the end when it is found.
-    fn advance<const K: usize>(
+    fn advance<const K: usize, const B: usize>(
         &mut self,
         best: &Found,
         j: usize,
         grid: &Grid,
         most: Real,
-        evaluation: &mut Evaluation<'_, K>,
+        evaluation: &mut Evaluation<'_, K, B>,
     ) -> Option<Real> {
         let value = best.term.parameter(j);
         let at = |distance: Real| value * math::exp(self.direction * distance);
@@ -130,8 +130,8 @@ enum Stage {
 impl JointInterval {
     /// Begins with the interval of a parameter around a known shape. The errors are multiplied by
     /// `widened`.
-    pub(crate) fn new<const K: usize>(
-        evaluation: &mut Evaluation<'_, K>,
+    pub(crate) fn new<const K: usize, const B: usize>(
+        evaluation: &mut Evaluation<'_, K, B>,
         term: Term,
         j: usize,
         span: &Span,
@@ -156,9 +156,9 @@ impl JointInterval {
 
     /// Does some evaluations. Returns the interval when there are no more to do.
     #[inline(never)]
-    pub(crate) fn advance<const K: usize>(
+    pub(crate) fn advance<const K: usize, const B: usize>(
         &mut self,
-        evaluation: &mut Evaluation<'_, K>,
+        evaluation: &mut Evaluation<'_, K, B>,
         span: &Span,
     ) -> Option<(Real, Real)> {
         for _ in 0..EVALUATIONS_A_CALL {

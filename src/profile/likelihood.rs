@@ -11,8 +11,8 @@ use crate::{
 
 /// The fit of a curve with one effect of any shape, beside other effects of known shapes. It is
 /// computed in units in which octaves are independent.
-pub(crate) struct Profile<const K: usize> {
-    whitened: Whitened<K>,
+pub(crate) struct Profile<const K: usize, const B: usize = 0> {
+    whitened: Whitened<K, B>,
     /// The equations of the other effects, and of the effect with the shape that was tried last.
     equations: NormalEquations,
     /// The effect's place in the model.
@@ -21,7 +21,7 @@ pub(crate) struct Profile<const K: usize> {
     held: Free,
 }
 
-impl<const K: usize> Profile<K> {
+impl<const K: usize, const B: usize> Profile<K, B> {
     /// A profile of no effect yet.
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const EMPTY: Self = Self {
@@ -34,7 +34,7 @@ impl<const K: usize> Profile<K> {
 
     /// Begins with a problem and its weights.
     #[inline(never)]
-    pub(crate) fn begin(&mut self, problem: &Problem<'_, K>, weights: &Weights<K>) {
+    pub(crate) fn begin(&mut self, problem: &Problem<'_, K, B>, weights: &Weights<K, B>) {
         weights.whiten_into(problem, &mut self.whitened);
     }
 
@@ -48,7 +48,7 @@ impl<const K: usize> Profile<K> {
     #[inline(never)]
     pub(crate) fn choose(
         &mut self,
-        problem: &Problem<'_, K>,
+        problem: &Problem<'_, K, B>,
         place: usize,
         squares: &Vector,
     ) -> Result<(), Error> {
@@ -86,17 +86,17 @@ impl<const K: usize> Profile<K> {
 }
 
 /// A profile, with the problem and the weights for which it is evaluated.
-pub(crate) struct Evaluation<'a, const K: usize> {
-    profile: &'a mut Profile<K>,
-    problem: &'a Problem<'a, K>,
-    weights: &'a Weights<K>,
+pub(crate) struct Evaluation<'a, const K: usize, const B: usize = 0> {
+    profile: &'a mut Profile<K, B>,
+    problem: &'a Problem<'a, K, B>,
+    weights: &'a Weights<K, B>,
 }
 
-impl<'a, const K: usize> Evaluation<'a, K> {
+impl<'a, const K: usize, const B: usize> Evaluation<'a, K, B> {
     pub(crate) const fn new(
-        profile: &'a mut Profile<K>,
-        problem: &'a Problem<'a, K>,
-        weights: &'a Weights<K>,
+        profile: &'a mut Profile<K, B>,
+        problem: &'a Problem<'a, K, B>,
+        weights: &'a Weights<K, B>,
     ) -> Self {
         Self {
             profile,

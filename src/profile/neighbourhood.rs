@@ -41,10 +41,10 @@ impl Neighbourhood {
     /// Does some evaluations beside a solved model. When no more are to do, returns the best shape, whose
     /// χ² is infinite if none can be fitted.
     #[inline(never)]
-    pub(crate) fn advance<const K: usize>(
+    pub(crate) fn advance<const K: usize, const B: usize>(
         &mut self,
-        problem: &Problem<'_, K>,
-        solver: &Solver<K>,
+        problem: &Problem<'_, K, B>,
+        solver: &Solver<K, B>,
         span: &Span,
     ) -> Option<Found> {
         let Some((term, others)) = problem.model.terms().split_last() else {

@@ -37,9 +37,9 @@ impl Refinement {
     }
 
     /// Does some evaluations; returns the best shape when no more are to do.
-    pub(crate) fn advance<const K: usize>(
+    pub(crate) fn advance<const K: usize, const B: usize>(
         &mut self,
-        evaluation: &mut Evaluation<'_, K>,
+        evaluation: &mut Evaluation<'_, K, B>,
     ) -> Option<Found> {
         let mut evaluations = 0;
         while evaluations < EVALUATIONS_A_CALL {

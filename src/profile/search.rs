@@ -59,9 +59,9 @@ impl GridSearch {
 
     /// Does some evaluations; returns the best shape when no more are to do.
     #[inline(never)]
-    pub(crate) fn advance<const K: usize>(
+    pub(crate) fn advance<const K: usize, const B: usize>(
         &mut self,
-        evaluation: &mut Evaluation<'_, K>,
+        evaluation: &mut Evaluation<'_, K, B>,
     ) -> Option<Found> {
         if let Some(refinement) = &mut self.refinement {
             let refined = refinement.advance(evaluation)?;

@@ -38,9 +38,9 @@ fn solved(curve: &Curve<OCTAVES>) -> (Model, Columns<OCTAVES>, Solver<OCTAVES>) 
 
 /// A model, solved on a curve.
 fn solve(curve: &Curve<OCTAVES>, model: Model) -> (Model, Columns<OCTAVES>, Solver<OCTAVES>) {
-    let columns = Columns::new(curve, &model);
+    let columns = Columns::new(curve.into(), &model);
     let mut solver = Solver::NEW;
-    let problem = Problem::new(curve, &model, &columns);
+    let problem = Problem::new(curve.into(), &model, &columns);
     let tolerance = Tolerance::Fixed(0.01);
     solver
         .begin(&problem, Start::Independent, tolerance)
@@ -53,7 +53,7 @@ fn solve(curve: &Curve<OCTAVES>, model: Model) -> (Model, Columns<OCTAVES>, Solv
 fn a_search_finds_a_minimum_as_low_as_that_of_a_fine_grid() {
     let curve = curve(&Sinusoid, [3.1, 0.0], 0.03 * 0.03, 2.5e-5);
     let (model, columns, solver) = solved(&curve);
-    let problem = Problem::new(&curve, &model, &columns);
+    let problem = Problem::new((&curve).into(), &model, &columns);
     let mut profile = Profile::EMPTY;
     profile.begin(&problem, &solver.weights);
     profile
@@ -89,7 +89,7 @@ fn a_neighbourhood_leads_from_a_wrong_minimum_to_the_line() {
         term.set_parameter(0, start);
         model.add(term).unwrap();
         let (model, columns, solver) = solve(&curve, model);
-        let problem = Problem::new(&curve, &model, &columns);
+        let problem = Problem::new((&curve).into(), &model, &columns);
         let mut neighbourhood = Neighbourhood::new(term);
         let found = loop {
             if let Some(found) = neighbourhood.advance(&problem, &solver, &curve.span()) {
@@ -110,7 +110,7 @@ fn a_neighbourhood_leads_from_a_wrong_minimum_to_the_line() {
 fn an_interval_ends_where_chi_squared_has_risen_by_that_of_95_percent() {
     let curve = curve(&Sinusoid, [3.1, 0.0], 0.01 * 0.01, 2.5e-5);
     let (model, columns, solver) = solved(&curve);
-    let problem = Problem::new(&curve, &model, &columns);
+    let problem = Problem::new((&curve).into(), &model, &columns);
     let mut profile = Profile::EMPTY;
     profile.begin(&problem, &solver.weights);
     profile
@@ -155,8 +155,8 @@ fn an_interval_includes_those_of_other_whole_numbers_that_explain_the_curve_as_w
     let mut model = Model::ieee_952();
     model.remove("angle_random_walk");
     model.add(replaced).unwrap();
-    let columns = Columns::new(&curve, &model);
-    let problem = Problem::new(&curve, &model, &columns);
+    let columns = Columns::new((&curve).into(), &model);
+    let problem = Problem::new((&curve).into(), &model, &columns);
     let mut solver = Solver::NEW;
     let tolerance = Tolerance::Fixed(0.01);
     solver

@@ -1,0 +1,109 @@
+//! What a fit works on.
+
+use crate::{
+    curve::{Curve, Point},
+    effect::Span,
+    real::Real,
+    spectrum::{Bin, Density},
+};
+
+/// A bin takes the place of the octaves that end below this share of the longest block's segment. The octaves
+/// from there on hold what lies below the lowest bin.
+const OCTAVES_FROM: u32 = 8;
+
+/// What is known of a record: its curve, and its density if there is one.
+///
+/// A fit to both uses all bins of the density, and the octaves that reach below the lowest bin. The other octaves
+/// say nothing that the bins do not say, so that they are compared with the model but not fitted.
+#[derive(Debug)]
+pub struct Observed<'a, const K: usize, const B: usize = 0> {
+    curve: &'a Curve<K>,
+    density: Option<&'a Density<B>>,
+}
+
+impl<const K: usize, const B: usize> Clone for Observed<'_, K, B> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<const K: usize, const B: usize> Copy for Observed<'_, K, B> {}
+
+impl<'a, const K: usize> From<&'a Curve<K>> for Observed<'a, K> {
+    fn from(curve: &'a Curve<K>) -> Self {
+        Self {
+            curve,
+            density: None,
+        }
+    }
+}
+
+impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
+    /// A curve and the density of the same record. A density without bins changes nothing.
+    pub const fn new(curve: &'a Curve<K>, density: &'a Density<B>) -> Self {
+        Self {
+            curve,
+            density: Some(density),
+        }
+    }
+
+    /// The curve.
+    pub const fn curve(&self) -> &'a Curve<K> {
+        self.curve
+    }
+
+    /// The same density beside another curve.
+    pub(crate) const fn with_curve<'b>(&self, curve: &'b Curve<K>) -> Observed<'b, K, B>
+    where
+        'a: 'b,
+    {
+        Observed {
+            curve,
+            density: self.density,
+        }
+    }
+
+    /// The curve alone.
+    pub(crate) const fn octaves(&self) -> Self {
+        Self {
+            density: None,
+            ..*self
+        }
+    }
+
+    /// The density, if there is one that has bins.
+    pub(crate) fn density(&self) -> Option<&'a Density<B>> {
+        self.density.filter(|density| !density.bins().is_empty())
+    }
+
+    /// The bins of the density.
+    pub fn bins(&self) -> &'a [Bin] {
+        self.density.map_or(&[], |density| density.bins())
+    }
+
+    /// The octaves that are fitted.
+    pub fn points(&self) -> &'a [Point] {
+        let points = self.curve.points();
+        let Some(last) = self.bins().last() else {
+            return points;
+        };
+        let from = last.block.saturating_mul(OCTAVES_FROM);
+        let first = points.partition_point(|point| point.m < from);
+        points.get(first..).unwrap_or_default()
+    }
+
+    /// The number of octaves and bins that are fitted.
+    pub(crate) fn rows(&self) -> usize {
+        self.points().len().saturating_add(self.bins().len())
+    }
+
+    /// Sample interval, in seconds.
+    pub(crate) fn interval_s(&self) -> Real {
+        self.curve.interval_s()
+    }
+
+    /// The range of times that is covered.
+    pub(crate) fn span(&self) -> Span {
+        self.curve.span()
+    }
+}

@@ -6,6 +6,7 @@ use crate::{
 use heapless::Vec;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Bin {
     pub block: u32,
     pub index: u32,

@@ -24,12 +24,13 @@ use crate::{
 /// # Errors
 /// The same as those of [`fit`](crate::fit::fit()), and [`Error::TooManyEffects`] if the model has no
 /// room.
-pub fn alternative<const K: usize, const B: usize>(
-    observed: Observed<'_, K, B>,
+pub fn alternative<'a, const K: usize, const B: usize>(
+    observed: impl Into<Observed<'a, K, B>>,
     step: &Step<K, B>,
     before: Option<&Step<K, B>>,
     candidate: &Candidate,
 ) -> Result<Step<K, B>, Error> {
+    let observed = observed.into();
     let mut model = step.model.clone();
     if let Some(swap) = candidate.swap {
         let known = before.into_iter().flat_map(|before| &before.candidates);

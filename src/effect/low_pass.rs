@@ -2,25 +2,75 @@ use super::{
     Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
     SampledShape, SearchRange, SecondDifferences, angle_random_walk::AngleRandomWalk, pole::Pole,
 };
-use crate::real::Real;
+use crate::real::{
+    Real,
+    consts::{FRAC_1_SQRT_2, PI},
+};
+use nalgebra::Complex;
 
-/// Angle random walk that passed a low pass of first order. It takes the place of [`AngleRandomWalk`].
-/// The coefficient is `N` in rate · √s, the shape parameter the time constant `T` of the filter in
-/// seconds, above zero.
+/// The sine of 60 degrees, √3/2.
+const SINE_60: Real = 0.866_025_403_784_438_6;
+
+/// Angle random walk that passed a Butterworth low pass of one, two or three poles. It takes the place of
+/// [`AngleRandomWalk`]. The coefficient is `N` in rate · √s; the shape parameters are the time constant `T` of the
+/// filter in seconds, above zero, and the number of its poles. The density has fallen to a half at the cut-off
+/// frequency `1/(2πT)`.
 ///
-/// The autocovariance is `r(n) = s² zⁿ` with the pole `z = e^(−τ₀/T)`, as that of
-/// [`GaussMarkov`](super::GaussMarkov) noise. The variance `s² = N²(1−z)/((1+z)τ₀)` gives the sampled
-/// rate the spectral density `N²` at frequency zero.
+/// The autocovariance is `r(n) = s² Σ Re −p_k e^(p_k nτ₀/T)` over the poles `p_k` of the filter with a cut-off of
+/// one, which lie on the left half of the unit circle: these are the residues of the density
+/// `1/(1 + ω^(2·poles))`. The scale `s²` gives the sampled rate the spectral density `N²` at frequency zero.
 #[derive(Clone, Copy, Debug)]
 pub struct LowPass;
 
-fn pole(shape: &SampledShape) -> Pole {
-    Pole::new(shape.parameters[0], 0.0, shape.interval_s)
+/// The poles of a filter, those above the real axis and on it, each with the weight that its residue has.
+struct Poles {
+    first: Pole,
+    second: Option<Pole>,
 }
 
-/// The variance `s²` of the rate for `N = 1`.
-fn variance(shape: &SampledShape) -> Real {
-    1.0 / (pole(shape).long_mean() * shape.interval_s)
+impl Poles {
+    fn new(shape: &SampledShape) -> Self {
+        let [time_s, poles] = shape.parameters;
+        let pole = |weight: Complex<Real>, decay: Real, turn: Real| {
+            let frequency_hz = turn / (2.0 * PI * time_s);
+            Pole::weighted(weight, time_s / decay, frequency_hz, shape.interval_s)
+        };
+        // The pole at −1, or a pair at −decay ± i turn, which counts twice.
+        let real = Complex::new(1.0, 0.0);
+        let pair =
+            |decay: Real, turn: Real| pole(Complex::new(2.0 * decay, -2.0 * turn), decay, turn);
+        if poles > 2.5 {
+            Self {
+                first: pair(0.5, SINE_60),
+                second: Some(pole(real, 1.0, 0.0)),
+            }
+        } else if poles > 1.5 {
+            Self {
+                first: pair(FRAC_1_SQRT_2, FRAC_1_SQRT_2),
+                second: None,
+            }
+        } else {
+            Self {
+                first: pole(real, 1.0, 0.0),
+                second: None,
+            }
+        }
+    }
+
+    /// The sum over the poles.
+    fn sum(&self, of: impl Fn(&Pole) -> Real) -> Real {
+        of(&self.first) + self.second.as_ref().map_or(0.0, of)
+    }
+
+    /// The variance `s²` of the rate for `N = 1`, with which the weights are multiplied.
+    fn variance(&self, shape: &SampledShape) -> Real {
+        1.0 / (self.sum(Pole::long_mean) * shape.interval_s)
+    }
+
+    /// The factor between the poles' kernels and that of the effect.
+    fn scale(&self, shape: &SampledShape) -> Real {
+        self.variance(shape) * shape.interval_s * shape.interval_s
+    }
 }
 
 pub(super) const DESCRIPTION: Description = Description {
@@ -29,16 +79,28 @@ pub(super) const DESCRIPTION: Description = Description {
     coefficient: "angle_random_walk",
     half_seconds: 1,
     reference_s: None,
-    parameters: &[Parameter {
-        name: "time_constant_s",
-        unit: "s",
-        is_whole: false,
-        search_range: |span| SearchRange {
-            low: 0.25 * span.interval_s,
-            high: (64.0 * span.interval_s).min(0.1 * span.longest_tau_s),
-            steps_per_octave: 2.0,
+    parameters: &[
+        Parameter {
+            name: "time_constant_s",
+            unit: "s",
+            is_whole: false,
+            search_range: |span| SearchRange {
+                low: 0.25 * span.interval_s,
+                high: (64.0 * span.interval_s).min(0.1 * span.longest_tau_s),
+                steps_per_octave: 2.0,
+            },
         },
-    }],
+        Parameter {
+            name: "poles",
+            unit: "",
+            is_whole: true,
+            search_range: |_| SearchRange {
+                low: 1.0,
+                high: 3.0,
+                steps_per_octave: 1.0,
+            },
+        },
+    ],
     code: 9,
     replaces: Some(&AngleRandomWalk),
     mirror: None,
@@ -51,15 +113,18 @@ impl Effect for LowPass {
     }
 
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        scale(shape) * pole(shape).kernel(lag)
+        let poles = Poles::new(shape);
+        poles.scale(shape) * poles.sum(|pole| pole.kernel(lag))
     }
 
     fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        scale(shape) * pole(shape).second_difference(x, m)
+        let poles = Poles::new(shape);
+        poles.scale(shape) * poles.sum(|pole| pole.second_difference(x, m))
     }
 
     fn variance(&self, m: Real, shape: &SampledShape) -> Real {
-        variance(shape) * pole(shape).variance(m)
+        let poles = Poles::new(shape);
+        poles.variance(shape) * poles.sum(|pole| pole.variance(m))
     }
 
     fn variances(
@@ -68,8 +133,15 @@ impl Effect for LowPass {
         shape: &SampledShape,
         each: &mut dyn FnMut(Real),
     ) {
-        let scale = variance(shape);
-        pole(shape).variances(factors, |value| each(scale * value));
+        let poles = Poles::new(shape);
+        let scale = poles.variance(shape);
+        if poles.second.is_none() {
+            poles.first.variances(factors, |value| each(scale * value));
+            return;
+        }
+        for m in factors {
+            each(scale * poles.sum(|pole| pole.variance(m)));
+        }
     }
 
     fn add_second_differences(
@@ -79,24 +151,25 @@ impl Effect for LowPass {
         shape: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        pole(shape).add_second_differences(m, weight * scale(shape), sum);
+        let poles = Poles::new(shape);
+        let weight = weight * poles.scale(shape);
+        poles.first.add_second_differences(m, weight, sum);
+        if let Some(second) = &poles.second {
+            second.add_second_differences(m, weight, sum);
+        }
     }
 }
 
 impl Explain for LowPass {
     fn explanation(&self) -> Explanation {
         Explanation {
-            what: "a first-order low pass: white noise is cut off before it is sampled",
-            origin: "an analogue RC filter, or a digital smoothing filter of one pole, in the sensor's signal path",
+            what: "a low pass: white noise is cut off before it is sampled",
+            origin: "an analogue filter, or a digital smoothing filter of one to three poles, in the sensor's signal path",
             check: "read the sensor's bandwidth setting; does the deficit at short averaging times move with it?",
         }
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[0.02, 0.0]]
+        &[[0.02, 1.0], [0.008, 2.0], [0.02, 3.0]]
     }
-}
-
-fn scale(shape: &SampledShape) -> Real {
-    variance(shape) * shape.interval_s * shape.interval_s
 }

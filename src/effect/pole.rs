@@ -34,10 +34,10 @@ const RECIPROCALS: [Real; 8] = {
 
 const ONE: Complex<Real> = Complex::new(1.0, 0.0);
 
-/// A rate whose autocovariance at a lag of `n` samples is `Re zⁿ`, with `z = e^(−s)`.
+/// A rate whose autocovariance at a lag of `n` samples is `Re w zⁿ`, with `z = e^(−s)` and a complex weight `w`.
 ///
 /// ```text
-/// G(n) = −½ τ₀² Re[ n (1+z)/(1−z) − 2z (1−zⁿ)/(1−z)² ] = τ₀² Re[ κ n − (e^(−sn) − 1 + sn) z/(1−z)² ],
+/// G(n) = −½ τ₀² Re w[ n (1+z)/(1−z) − 2z (1−zⁿ)/(1−z)² ] = τ₀² Re w[ κ n − (e^(−sn) − 1 + sn) z/(1−z)² ],
 /// κ = s z/(1−z)² − ½ (1+z)/(1−z)
 /// ```
 ///
@@ -50,17 +50,27 @@ pub(super) struct Pole {
     cycles: Real,
     /// The exponent `s`, for the alias of the frequency below half the sample rate.
     exponent: Complex<Real>,
-    /// Re κ.
+    /// Re w κ.
     slope: Real,
-    /// Re (1+z)/(1−z).
+    /// Re w (1+z)/(1−z).
     long: Real,
-    /// z/(1−z)².
+    /// w z/(1−z)².
     factor: Complex<Real>,
 }
 
 impl Pole {
-    /// A pole with time constant `time_s` and frequency `frequency_hz`.
+    /// A pole with time constant `time_s` and frequency `frequency_hz`, whose weight is one.
     pub(super) fn new(time_s: Real, frequency_hz: Real, interval_s: Real) -> Self {
+        Self::weighted(ONE, time_s, frequency_hz, interval_s)
+    }
+
+    /// A pole with this weight.
+    pub(super) fn weighted(
+        weight: Complex<Real>,
+        time_s: Real,
+        frequency_hz: Real,
+        interval_s: Real,
+    ) -> Self {
         let decay = interval_s / time_s;
         let cycles = frequency_hz * interval_s;
         let s = Complex::new(decay, 2.0 * PI * (math::floor(cycles + 0.5) - cycles));
@@ -81,9 +91,9 @@ impl Pole {
             decay,
             cycles,
             exponent: s,
-            slope: slope.re,
-            long: long.re,
-            factor,
+            slope: (weight * slope).re,
+            long: (weight * long).re,
+            factor: weight * factor,
         }
     }
 

@@ -106,6 +106,18 @@ pub struct Tail {
     pub sine: Real,
 }
 
+impl Tail {
+    /// The tail of second differences that are larger by a factor.
+    #[must_use]
+    pub(super) fn scaled(self, factor: Real) -> Self {
+        Self {
+            cosine: factor * self.cosine,
+            sine: factor * self.sine,
+            ..self
+        }
+    }
+}
+
 /// A physical effect that shows in an Allan curve.
 ///
 /// Only the description and the kernel have to be given. Everything else has a default that follows

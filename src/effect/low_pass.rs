@@ -1,6 +1,7 @@
 use super::{
     Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, angle_random_walk::AngleRandomWalk, pole::Pole,
+    SampledShape, SearchRange, SecondDifferences, Tail, angle_random_walk::AngleRandomWalk,
+    pole::Pole,
 };
 use crate::real::{
     Real,
@@ -21,6 +22,10 @@ const SINE_60: Real = 0.866_025_403_784_438_6;
 /// `1/(1 + ω^(2·poles))`. The scale `s²` gives the sampled rate the spectral density `N²` at frequency zero.
 #[derive(Clone, Copy, Debug)]
 pub struct LowPass;
+
+/// The time after which nothing remains of the autocovariance of three poles, in time constants: it has fallen to
+/// e⁻⁷, a thousandth.
+const GONE: Real = 14.0;
 
 /// The poles of a filter, those above the real axis and on it, each with the weight that its residue has.
 struct Poles {
@@ -157,6 +162,23 @@ impl Effect for LowPass {
         if let Some(second) = &poles.second {
             second.add_second_differences(m, weight, sum);
         }
+    }
+
+    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
+        let poles = Poles::new(shape);
+        if poles.second.is_some() {
+            let gone = m + GONE * shape.parameters[0] / shape.interval_s;
+            return Some(Tail {
+                start: gone,
+                decay: 0.0,
+                phase: 0.0,
+                cosine: 0.0,
+                sine: 0.0,
+            })
+            .filter(|_| gone <= 95.0 * (0.25 * m).max(1.0));
+        }
+        // The autocovariance of one pole has no detail.
+        (shape.parameters[1] > 1.5).then(|| poles.first.tail(m).scaled(poles.scale(shape)))
     }
 }
 

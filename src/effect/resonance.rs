@@ -94,13 +94,7 @@ impl Effect for Resonance {
     }
 
     fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
-        let scale = squared(shape.interval_s);
-        let unit = pole(shape).tail(m);
-        Some(Tail {
-            cosine: scale * unit.cosine,
-            sine: scale * unit.sine,
-            ..unit
-        })
+        Some(pole(shape).tail(m).scaled(squared(shape.interval_s)))
     }
 }
 

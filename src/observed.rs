@@ -4,21 +4,21 @@ use crate::{
     curve::{Curve, Point},
     effect::Span,
     real::Real,
-    spectrum::{Bin, Density},
+    spectrum::{Bin, Spectrum},
 };
 
 /// A bin takes the place of the octaves that end below this share of the longest block's segment. The octaves
 /// from there on hold what lies below the lowest bin.
 const OCTAVES_FROM: u32 = 8;
 
-/// What is known of a record: its curve, and its density if there is one.
+/// What is known of a record: its curve, and its spectrum if there is one.
 ///
-/// A fit to both uses all bins of the density, and the octaves that reach below the lowest bin. The other octaves
+/// A fit to both uses all bins of the spectrum, and the octaves that reach below the lowest bin. The other octaves
 /// say nothing that the bins do not say, so that they are compared with the model but not fitted.
 #[derive(Debug)]
 pub struct Observed<'a, const K: usize, const B: usize = 0> {
     curve: &'a Curve<K>,
-    density: Option<&'a Density<B>>,
+    spectrum: Option<&'a Spectrum<B>>,
 }
 
 impl<const K: usize, const B: usize> Clone for Observed<'_, K, B> {
@@ -33,17 +33,17 @@ impl<'a, const K: usize> From<&'a Curve<K>> for Observed<'a, K> {
     fn from(curve: &'a Curve<K>) -> Self {
         Self {
             curve,
-            density: None,
+            spectrum: None,
         }
     }
 }
 
 impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
-    /// A curve and the density of the same record. A density without bins changes nothing.
-    pub const fn new(curve: &'a Curve<K>, density: &'a Density<B>) -> Self {
+    /// A curve and the spectrum of the same record. A spectrum without bins changes nothing.
+    pub const fn new(curve: &'a Curve<K>, spectrum: &'a Spectrum<B>) -> Self {
         Self {
             curve,
-            density: Some(density),
+            spectrum: Some(spectrum),
         }
     }
 
@@ -52,33 +52,33 @@ impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
         self.curve
     }
 
-    /// The same density beside another curve.
+    /// The same spectrum beside another curve.
     pub(crate) const fn with_curve<'b>(&self, curve: &'b Curve<K>) -> Observed<'b, K, B>
     where
         'a: 'b,
     {
         Observed {
             curve,
-            density: self.density,
+            spectrum: self.spectrum,
         }
     }
 
     /// The curve alone.
     pub(crate) const fn octaves(&self) -> Self {
         Self {
-            density: None,
+            spectrum: None,
             ..*self
         }
     }
 
-    /// The density, if there is one that has bins.
-    pub(crate) fn density(&self) -> Option<&'a Density<B>> {
-        self.density.filter(|density| !density.bins().is_empty())
+    /// The spectrum, if there is one that has bins.
+    pub(crate) fn spectrum(&self) -> Option<&'a Spectrum<B>> {
+        self.spectrum.filter(|spectrum| !spectrum.bins().is_empty())
     }
 
-    /// The bins of the density.
+    /// The bins of the spectrum.
     pub fn bins(&self) -> &'a [Bin] {
-        self.density.map_or(&[], |density| density.bins())
+        self.spectrum.map_or(&[], |spectrum| spectrum.bins())
     }
 
     /// The octaves that are fitted.

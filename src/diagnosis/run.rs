@@ -24,7 +24,7 @@ use crate::{
     list,
     model::Model,
     observed::Observed,
-    spectrum::Density,
+    spectrum::Spectrum,
 };
 
 /// A diagnosis in progress, which finds out which effect is missing.
@@ -69,7 +69,7 @@ use crate::{
 pub struct Diagnosis<'a, const K: usize, const B: usize = 0> {
     /// The curve, without what follows a covariate.
     curve: Curve<K>,
-    density: Density<B>,
+    spectrum: Spectrum<B>,
     span: Span,
     evidence: Evidence<'a, K>,
     effects: &'a [&'static dyn Effect],
@@ -138,7 +138,7 @@ impl<'a, const K: usize> Diagnosis<'a, K> {
         effects: &'a [&'static dyn Effect],
         options: Options,
     ) -> Self {
-        Self::with_density(curve, Density::EMPTY, evidence, model, effects, options)
+        Self::with_spectrum(curve, Spectrum::EMPTY, evidence, model, effects, options)
     }
 }
 
@@ -146,9 +146,9 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
     /// A diagnosis of a curve and of the density of the same record.
     // Inlined, so that some 7 KiB are built where they stay and not moved there.
     #[inline(always)]
-    pub fn with_density(
+    pub fn with_spectrum(
         curve: Curve<K>,
-        density: Density<B>,
+        spectrum: Spectrum<B>,
         evidence: Evidence<'a, K>,
         model: &Model,
         effects: &'a [&'static dyn Effect],
@@ -157,7 +157,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         Self {
             span: curve.span(),
             curve,
-            density,
+            spectrum,
             evidence,
             effects,
             options,
@@ -214,7 +214,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         let contest = self.contest();
         let Self {
             curve,
-            density,
+            spectrum,
             span,
             evidence,
             effects,
@@ -226,7 +226,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             stage,
             ..
         } = self;
-        let observed = Observed::new(curve, density);
+        let observed = Observed::new(curve, spectrum);
         match stage {
             Stage::Judging(judging) => {
                 let complete = judging.advance(observed, span, work, step)?;
@@ -307,7 +307,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
 
     /// Begins to judge the step's model.
     fn judge(&mut self, start: Start, tolerance: Tolerance) -> Result<(), Error> {
-        let observed = Observed::new(&self.curve, &self.density);
+        let observed = Observed::new(&self.curve, &self.spectrum);
         self.work
             .begin_at(observed, &self.step.model, start, tolerance)?;
         self.stage = Stage::Judging(Judging::new());
@@ -327,7 +327,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         }
         self.stage = Stage::Scanning(Scanning::new());
         if let Stage::Scanning(scanning) = &mut self.stage {
-            let observed = Observed::new(&self.curve, &self.density);
+            let observed = Observed::new(&self.curve, &self.spectrum);
             let problem = Problem::new(observed, &self.step.model, &self.work.columns);
             scanning.begin(&problem, &mut self.work.solver.weights);
         }
@@ -348,7 +348,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         let start = Start::Once(self.judged.assumed);
         let tolerance = Tolerance::Fixed(self.judged.tolerance);
         let model = &self.step.model;
-        let observed = Observed::new(&self.curve, &self.density);
+        let observed = Observed::new(&self.curve, &self.spectrum);
         self.work.begin_at(observed, model, start, tolerance)?;
         self.stage = Stage::Resolving { followed };
         Ok(())
@@ -424,7 +424,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
                 .first()
                 .map(|first| Addition::Effect(first.term));
             tell_from_mirror(
-                Observed::new(&self.curve, &self.density),
+                Observed::new(&self.curve, &self.spectrum),
                 self.evidence.kurtosis,
                 self.effects,
                 &mut self.work.columns,

@@ -8,7 +8,7 @@ use super::{
     result::Fit,
     solver::{Solver, Start, Tolerance},
 };
-use crate::{curve::Curve, error::Error, model::Model, observed::Observed, spectrum::Density};
+use crate::{curve::Curve, error::Error, model::Model, observed::Observed, spectrum::Spectrum};
 
 /// Fits a model's coefficients to a curve.
 ///
@@ -65,7 +65,7 @@ pub fn fit<'a, const K: usize, const B: usize>(
 /// ```
 pub struct Fitting<const K: usize, const B: usize = 0> {
     curve: Curve<K>,
-    density: Density<B>,
+    spectrum: Spectrum<B>,
     model: Model,
     work: Work<K, B>,
     fit: Fit,
@@ -78,7 +78,7 @@ impl<const K: usize> Fitting<K> {
     // Inlined, so that some kilobytes are built where they stay and not moved there.
     #[inline(always)]
     pub fn new(curve: Curve<K>, model: Model, options: Options) -> Self {
-        Self::with_density(curve, Density::EMPTY, model, options)
+        Self::with_spectrum(curve, Spectrum::EMPTY, model, options)
     }
 }
 
@@ -86,15 +86,15 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
     /// A fit of a model to a curve and to the density of the same record. It does not begin before it is advanced.
     // Inlined, so that some kilobytes are built where they stay and not moved there.
     #[inline(always)]
-    pub fn with_density(
+    pub fn with_spectrum(
         curve: Curve<K>,
-        density: Density<B>,
+        spectrum: Spectrum<B>,
         model: Model,
         options: Options,
     ) -> Self {
         Self {
             curve,
-            density,
+            spectrum,
             model,
             work: Work::NEW,
             fit: Fit::EMPTY,
@@ -110,14 +110,14 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
     pub fn advance(&mut self) -> Result<Option<&Fit>, Error> {
         let Self {
             curve,
-            density,
+            spectrum,
             model,
             work,
             fit,
             options,
             stage,
         } = self;
-        let observed = Observed::new(curve, density);
+        let observed = Observed::new(curve, spectrum);
         let complete = stage.advance(observed, model, *options, work, fit)?;
         Ok(complete.then_some(&self.fit))
     }
@@ -130,7 +130,7 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
     /// The problem, the memory of its solution, and the fit as far as it is complete. Once it is complete,
     /// the memory is free for another solution of the same problem.
     pub(crate) fn parts(&mut self) -> (Problem<'_, K, B>, &mut Solver<K, B>, &Fit) {
-        let observed = Observed::new(&self.curve, &self.density);
+        let observed = Observed::new(&self.curve, &self.spectrum);
         let problem = Problem::new(observed, &self.model, &self.work.columns);
         (problem, &mut self.work.solver, &self.fit)
     }

@@ -50,9 +50,9 @@ fn column<const K: usize, const B: usize>(observed: Observed<'_, K, B>, term: &T
             column.put(row, variance);
             row = row.saturating_add(1);
         });
-    if let Some(density) = observed.density() {
+    if let Some(spectrum) = observed.spectrum() {
         row = K;
-        density.expected(term.effect, &shape, &mut |expected| {
+        spectrum.expected(term.effect, &shape, &mut |expected| {
             column.put(row, expected);
             row = row.saturating_add(1);
         });

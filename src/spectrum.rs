@@ -1,41 +1,33 @@
-//! placeholder
-use crate::{
-    effect::{Effect, SampledShape},
-    real::Real,
-};
-use heapless::Vec;
+//! The spectrum of a record: an accumulator of power spectral densities over block means, what every effect
+//! is expected to add to them, and how they scatter.
+//!
+//! Twenty octaves keep what a power law leaves in a record, but not its fine structure: a line of the
+//! spectrum, a resonance and the edge of a filter look alike in an Allan curve. Densities tell them apart.
+//!
+//! Level `i` takes means over blocks of `M = 8^i` samples and estimates their density after Welch (1967, IEEE
+//! Trans. Audio Electroacoust. AU-15, 70): segments of `P` blocks overlap by half, and each is weighted with
+//! the periodic Hann window `w_j = ½ − ½ cos(2πj/P)`. Only the bins `k = P/16 … P/2 − 1` are kept, which span
+//! three octaves of frequency. The next level continues where they end, so that the levels cover the
+//! frequencies without a hole.
+//!
+//! ```text
+//! P_k = (2Mτ₀/Σw²) |Σ_j w_j y_j e^(−2πijk/P)|²,      f_k = k/(P M τ₀)
+//! ```
+//!
+//! is the one-sided density of the block means `y`, in rate units squared per hertz. Aliases by the block
+//! means and leakage of the window are a part of it, and of [`expected_densities`] too.
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Bin {
-    pub block: u32,
-    pub index: u32,
-    pub frequency_hz: Real,
-    pub density: Real,
-    pub segments: u32,
-    pub effective: Real,
-}
-impl Bin {
-    pub(crate) fn relative_covariance(&self, apart: usize) -> Real {
-        [1.0, 4.0 / 9.0, 1.0 / 36.0]
-            .get(apart)
-            .copied()
-            .unwrap_or(0.0)
-            / self.effective
-    }
-}
+mod accumulator;
+mod covariance;
+mod density;
+mod expected;
+mod level;
+mod line;
+mod transform;
+mod window;
 
-#[derive(Clone, Debug, PartialEq)]
-pub struct Density<const B: usize = 0> {
-    bins: Vec<Bin, B>,
-}
-impl<const B: usize> Density<B> {
-    pub const EMPTY: Self = Self { bins: Vec::new() };
-    pub const fn bins_(&self) -> &Vec<Bin, B> {
-        &self.bins
-    }
-    pub fn bins(&self) -> &[Bin] {
-        &self.bins
-    }
-    pub fn expected(&self, _e: &dyn Effect, _s: &SampledShape, _each: &mut dyn FnMut(Real)) {}
-}
+pub use crate::limits::MAX_SEGMENT;
+pub use accumulator::SpectrumAccumulator;
+pub use covariance::{BAND, covariance_rows, relative_covariance};
+pub use density::{Bin, Spectrum};
+pub use expected::expected_densities;

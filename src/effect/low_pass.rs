@@ -180,6 +180,15 @@ impl Effect for LowPass {
         // The autocovariance of one pole has no detail.
         (shape.parameters[1] > 1.5).then(|| poles.first.tail(m).scaled(poles.scale(shape)))
     }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        let poles = Poles::new(shape);
+        let scale = poles.variance(shape);
+        poles.first.variogram(m, scale, values);
+        if let Some(second) = &poles.second {
+            second.add_variogram(m, scale, values);
+        }
+    }
 }
 
 impl Explain for LowPass {

@@ -96,6 +96,10 @@ impl Effect for Resonance {
     fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
         Some(pole(shape).tail(m).scaled(squared(shape.interval_s)))
     }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        pole(shape).variogram(m, 1.0, values);
+    }
 }
 
 impl Explain for Resonance {

@@ -5,11 +5,9 @@ use crate::{
     algebra::{Number, Triangle, Vector},
     cholesky, math,
     real::{Real, real, single},
+    spectrum::BAND,
 };
 use num_traits::AsPrimitive;
-
-/// A bin is correlated with so many of its neighbours to either side, because Hann's window is three bins wide.
-pub(super) const NEIGHBOURS: usize = 2;
 
 /// The covariance of a curve and of a density, or its Cholesky factor. Octaves and bins are independent of each
 /// other, so that each has a factor of its own: a triangle for the octaves, a band for the bins. Single precision
@@ -18,14 +16,14 @@ pub(super) struct Factor<const K: usize, const B: usize> {
     octaves: Triangle<K, K, f32>,
     /// The diagonal of the bins, whose reciprocal the factor has, and the diagonals below it: element `d` of bin
     /// `b` belongs to the bins `b` and `b − d`.
-    bins: [Vector<B, f32>; NEIGHBOURS + 1],
+    bins: [Vector<B, f32>; BAND],
 }
 
 impl<const K: usize, const B: usize> Factor<K, B> {
     /// Zeros: a constant, so that they are set where they stay and not moved there.
     pub(super) const ZEROS: Self = Self {
         octaves: Triangle::ZEROS,
-        bins: [Vector::ZEROS; NEIGHBOURS + 1],
+        bins: [Vector::ZEROS; BAND],
     };
 
     /// Sets the covariance of two octaves.

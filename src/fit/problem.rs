@@ -51,11 +51,10 @@ fn column<const K: usize, const B: usize>(observed: Observed<'_, K, B>, term: &T
             row = row.saturating_add(1);
         });
     if let Some(spectrum) = observed.spectrum() {
-        row = K;
-        spectrum.expected(term.effect, &shape, &mut |expected| {
+        let expected = spectrum.expected(term.effect, term.parameters);
+        for (row, expected) in (K..usize::MAX).zip(expected) {
             column.put(row, expected);
-            row = row.saturating_add(1);
-        });
+        }
     }
     column
 }
@@ -136,7 +135,7 @@ impl<'a, const K: usize, const B: usize> Problem<'a, K, B> {
             Some(bin) => self
                 .bins
                 .get(bin)
-                .map_or(1.0, |bin| 1.0 / math::sqrt(bin.effective)),
+                .map_or(1.0, |bin| 1.0 / math::sqrt(bin.effective_segments())),
         }
     }
 

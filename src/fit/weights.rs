@@ -1,17 +1,15 @@
 //! The covariance of octaves and bins, factored. It gives the units in which they are independent.
 
-use super::{
-    factor::{Factor, NEIGHBOURS},
-    problem::Problem,
-    rows::Rows,
-};
+use super::{factor::Factor, problem::Problem, rows::Rows};
 use crate::{
     covariance::covariance_row,
     error::Error,
     limits::MAX_EFFECTS,
+    list::numbered,
     math,
     nnls::{NormalEquations, Vector},
     real::{Real, real, single},
+    spectrum::{BAND, relative_covariance},
 };
 use heapless::Vec;
 
@@ -142,16 +140,17 @@ impl<const K: usize, const B: usize> Weights<K, B> {
     /// Sets the covariance of the bins relative to the model. Bins of different block lengths are independent.
     /// The correlations are multiplied by `keep`.
     fn set_bins(&mut self, problem: &Problem<'_, K, B>, squares: &Vector, keep: Real) {
-        for (b, bin) in problem.bins.iter().enumerate().take(B) {
-            for d in 0..=NEIGHBOURS {
+        for (b, bin) in numbered(problem.bins.iter()).take(B) {
+            for d in 0..BAND {
                 let other = b
                     .checked_sub(d)
                     .and_then(|at| Some((at, problem.bins.get(at)?)));
                 let relative = match other.filter(|(_, other)| other.block == bin.block) {
                     None => 0.0,
                     Some((at, _)) => {
-                        let steady = |b: usize| problem.deterministic_share(K + b, squares);
-                        bin.relative_covariance(d) * (1.0 - steady(b) * steady(at))
+                        let shares = [b, at]
+                            .map(|b| problem.deterministic_share(K.saturating_add(b), squares));
+                        relative_covariance(d, bin.effective_segments(), shares)
                     }
                 };
                 let kept = if d == 0 {

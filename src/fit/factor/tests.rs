@@ -15,7 +15,7 @@ fn covariance(random: &mut Random) -> [[Real; ROWS]; ROWS] {
             let is_known = match (i < OCTAVES, j < OCTAVES) {
                 (true, true) => true,
                 // Bin 4 begins another block length.
-                (false, false) => i - j <= NEIGHBOURS && (i < OCTAVES + 4) == (j < OCTAVES + 4),
+                (false, false) => i - j < BAND && (i < OCTAVES + 4) == (j < OCTAVES + 4),
                 _ => false,
             };
             if is_known {
@@ -36,7 +36,7 @@ fn factored(matrix: &[[Real; ROWS]; ROWS]) -> Factor<OCTAVES, BINS> {
         }
     }
     for b in 0..BINS {
-        for d in 0..=NEIGHBOURS.min(b) {
+        for d in 0..=(BAND - 1).min(b) {
             factor.put_bins(b, d, single(matrix[OCTAVES + b][OCTAVES + b - d]));
         }
     }

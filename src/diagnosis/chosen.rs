@@ -24,7 +24,11 @@ pub(super) fn choose(candidates: &[Candidate], threshold: Real, ambiguity: Real)
     let brought = first.brings(dropped);
     let mut ambiguous = Vec::new();
     let close = |other: &&Candidate| other.improvement > first.improvement - ambiguity;
-    for other in others.iter().filter(close) {
+    // An effect that leads over its special case has excluded it.
+    let others = others
+        .iter()
+        .filter(|other| !other.is_special_case_of(first));
+    for other in others.filter(close) {
         for name in other.brings(dropped).into_iter().flatten() {
             if !brought.contains(&Some(name)) && !ambiguous.contains(&name) {
                 // There is a place for every name that candidates can bring.

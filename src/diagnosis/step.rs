@@ -49,7 +49,19 @@ impl Candidate {
         }
     }
 
-    /// The number of parameters that the candidate brings: coefficients and fitted shapes.
+    /// Whether the other candidate becomes this one at the end of its effect's range.
+    pub(super) fn is_special_case_of(&self, other: &Self) -> bool {
+        let special = other.term.effect.description().special_case;
+        let swaps = |one: &Self| {
+            one.swap
+                .map(|swap| (swap.dropped.name(), swap.taken.name()))
+        };
+        special.is_some_and(|special| special.name() == self.term.effect.name())
+            && swaps(self) == swaps(other)
+    }
+
+    /// The number of parameters that the candidate brings: coefficients and fitted shapes, less the coefficient of
+    /// the effect whose place it takes.
     pub(super) fn cost(&self) -> Real {
         let swap = self
             .swap
@@ -103,10 +115,16 @@ pub struct FollowedCovariate {
     pub slope: Slope,
 }
 
-/// The number of parameters of an effect whose shape is fitted.
+/// The number of parameters that an effect adds to a model when its shape is fitted. The coefficient of the effect
+/// whose place it takes goes.
 pub(super) fn cost(effect: &'static dyn Effect) -> Real {
     let shapes = Term::fitted(effect).fitted_parameters();
-    1.0 + shapes.map(|_| 1.0).sum::<Real>()
+    let coefficient = if effect.replaces().is_some() {
+        0.0
+    } else {
+        1.0
+    };
+    shapes.fold(coefficient, |cost, _| cost + 1.0)
 }
 
 /// What a step adds to the model.

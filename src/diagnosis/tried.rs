@@ -17,6 +17,35 @@ pub(super) struct Contest {
     pub(super) span: Span,
 }
 
+/// The lead in improvement that an effect needs over its own special case, which it can imitate. Where the special
+/// case is true, the lead is larger in one of 150 records: half the probability of χ² with one degree of freedom
+/// beyond 7, the lead and the cost of a parameter.
+const OVER_SPECIAL_CASE: Real = 5.0;
+
+/// Enters a candidate into the list, and returns its place. A candidate that does not lead over its special case
+/// does not stay beside it.
+fn enter(candidates: &mut Candidates, candidate: Candidate) -> Option<usize> {
+    let leads = |general: &Candidate, special: &Candidate| {
+        general.improvement > special.improvement + OVER_SPECIAL_CASE
+    };
+    let mut others = candidates.iter();
+    if others.any(|other| other.is_special_case_of(&candidate) && !leads(&candidate, other)) {
+        return None;
+    }
+    let mut others = candidates.iter();
+    let imitates =
+        |other: &Candidate| candidate.is_special_case_of(other) && !leads(other, &candidate);
+    if let Some(place) = others.position(imitates) {
+        list::remove(candidates, place);
+        // The special case explains the curve as well, so that it takes the same place.
+        list::insert(candidates, place, candidate);
+        return Some(place);
+    }
+    list::rank(candidates, candidate, |other| {
+        other.improvement < candidate.improvement
+    })
+}
+
 /// The model beside which a scan was made, and the swap that leads from the step's model to it.
 #[derive(Clone, Copy)]
 pub(super) struct Base<'m> {
@@ -73,10 +102,7 @@ impl Trying {
             let mut candidate = *candidate;
             candidate.improvement = score - completed.score - 2.0 * candidate.cost();
             if candidate.improvement > 0.0 {
-                let place = list::rank(candidates, candidate, |other| {
-                    other.improvement < candidate.improvement
-                });
-                if place == Some(0) {
+                if enter(candidates, candidate) == Some(0) {
                     *best = completed.fitted;
                 }
             }

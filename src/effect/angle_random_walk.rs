@@ -20,6 +20,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 2,
     replaces: None,
     mirror: None,
+    special_case: None,
     distribution: Distribution::Gaussian,
 };
 

@@ -28,6 +28,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 3,
     replaces: None,
     mirror: None,
+    special_case: None,
     distribution: Distribution::Gaussian,
 };
 

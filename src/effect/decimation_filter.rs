@@ -151,6 +151,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 10,
     replaces: Some(&AngleRandomWalk),
     mirror: None,
+    special_case: None,
     distribution: Distribution::Gaussian,
 };
 

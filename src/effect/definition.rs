@@ -40,6 +40,9 @@ pub struct Description {
     /// The effect that has the same Allan variance. A curve cannot tell the two apart, so that a
     /// diagnosis searches for the mirrored effect only and lets the kurtosis decide between them.
     pub mirror: Option<&'static dyn Effect>,
+    /// The simpler effect that this one becomes at the end of its range: a resonance that is too narrow to
+    /// be resolved is a sinusoid. Where the data do not tell the two apart, the simpler one is named.
+    pub special_case: Option<&'static dyn Effect>,
     /// The distribution of the values, which the kernel does not determine.
     pub distribution: Distribution,
 }

@@ -1,6 +1,6 @@
 use super::{
     Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, pole::Pole,
+    SampledShape, SearchRange, SecondDifferences, low_pass::LowPass, pole::Pole,
 };
 use crate::real::Real;
 
@@ -38,6 +38,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 6,
     replaces: None,
     mirror: None,
+    special_case: Some(&LowPass),
     distribution: Distribution::Gaussian,
 };
 

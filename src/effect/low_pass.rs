@@ -92,7 +92,7 @@ pub(super) const DESCRIPTION: Description = Description {
             search_range: |span| SearchRange {
                 low: 0.25 * span.interval_s,
                 high: (64.0 * span.interval_s).min(0.1 * span.longest_tau_s),
-                steps_per_octave: 2.0,
+                steps_per_octave: 4.0,
             },
         },
         Parameter {
@@ -109,6 +109,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 9,
     replaces: Some(&AngleRandomWalk),
     mirror: None,
+    special_case: None,
     distribution: Distribution::Gaussian,
 };
 

@@ -41,6 +41,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 12,
     replaces: Some(&BiasInstability),
     mirror: None,
+    special_case: None,
     distribution: Distribution::Gaussian,
 };
 

@@ -19,6 +19,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 1,
     replaces: None,
     mirror: None,
+    special_case: None,
     distribution: Distribution::Gaussian,
 };
 

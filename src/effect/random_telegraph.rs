@@ -23,6 +23,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 11,
     replaces: None,
     mirror: Some(&GaussMarkov),
+    special_case: None,
     distribution: Distribution::TwoLevels,
 };
 

@@ -18,6 +18,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 5,
     replaces: None,
     mirror: None,
+    special_case: None,
     distribution: Distribution::Deterministic,
 };
 

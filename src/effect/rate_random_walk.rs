@@ -21,6 +21,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 4,
     replaces: None,
     mirror: None,
+    special_case: None,
     distribution: Distribution::Gaussian,
 };
 

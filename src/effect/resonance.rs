@@ -1,6 +1,8 @@
 use super::{
     Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, Tail, pole::Pole, sinusoid::frequencies,
+    SampledShape, SearchRange, SecondDifferences, Tail,
+    pole::Pole,
+    sinusoid::{Sinusoid, frequencies},
 };
 use crate::real::{Real, consts::PI};
 
@@ -53,6 +55,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 8,
     replaces: None,
     mirror: None,
+    special_case: Some(&Sinusoid),
     distribution: Distribution::Gaussian,
 };
 

@@ -44,6 +44,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 7,
     replaces: None,
     mirror: None,
+    special_case: None,
     distribution: Distribution::Deterministic,
 };
 

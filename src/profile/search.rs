@@ -17,7 +17,7 @@ use heapless::Vec;
 
 /// The number of the grid's shapes that are refined. A curve has several minima where an effect
 /// oscillates, and the lowest one of the grid need not be the lowest one between its steps.
-const MINIMA: usize = 3;
+const MINIMA: usize = 4;
 /// The fewest steps of the first parameter between two shapes that are refined.
 const APART: u32 = 2;
 
@@ -94,13 +94,20 @@ impl GridSearch {
     /// Keeps a shape of the grid if it is one of the best, and the best one near it.
     fn keep(&mut self, found: Found) {
         let at = self.at[0];
-        let is_near = |step: u32| step.abs_diff(at) < APART;
+        let parameters = found.term.parameters;
+        let effect = found.term.effect;
+        // Shapes with different whole numbers have minima of their own.
+        let is_alike = |other: &Found| {
+            let pairs = parameters.iter().zip(&other.term.parameters);
+            list::numbered(pairs).all(|(j, (one, other))| !effect.is_whole(j) || one == other)
+        };
+        let is_near = |(other, step): &(Found, u32)| step.abs_diff(at) < APART && is_alike(other);
         let is_worse = |other: &Found| other.chi_squared > found.chi_squared;
-        let mut near = self.minima.iter().filter(|(_, step)| is_near(*step));
+        let mut near = self.minima.iter().filter(|known| is_near(known));
         if near.any(|(other, _)| !is_worse(other)) {
             return;
         }
-        while let Some(place) = self.minima.iter().position(|(_, step)| is_near(*step)) {
+        while let Some(place) = self.minima.iter().position(is_near) {
             list::remove(&mut self.minima, place);
         }
         list::rank(&mut self.minima, (found, at), |(other, _)| is_worse(other));

@@ -154,6 +154,7 @@ impl Effect for Impostor {
             code: 7,
             replaces: None,
             mirror: None,
+            special_case: None,
             distribution: allanite::effect::Distribution::Gaussian,
         }
     }

@@ -37,6 +37,7 @@ impl Effect for SecondOrderGaussMarkov {
             code: FIRST_OWN_CODE,
             replaces: None,
             mirror: None,
+            special_case: None,
             distribution: Distribution::Gaussian,
         }
     }

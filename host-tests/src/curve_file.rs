@@ -5,19 +5,22 @@
 
 use crate::{
     failure::{Failure, Place, brief, one_line, quoted},
-    log::{self, OCTAVES},
+    log::{self, BINS, OCTAVES},
     regular_file,
     unit::Unit,
 };
-use allanite::{Curve, Scale};
+use allanite::{
+    Curve, Scale,
+    spectrum::{Bin, Spectrum},
+};
 use serde::{Deserialize, Serialize};
 use std::{io::Read, path::Path};
 
 /// The name of the format, as it is written in the file.
 pub const FORMAT: &str = "allanite-curve";
 
-/// The version of the format that is written and read.
-pub const VERSION: u32 = 1;
+/// The version of the format that is written. Versions from 1 on are read; version 1 has no spectrum.
+pub const VERSION: u32 = 2;
 
 /// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
 const LARGEST: u64 = 1 << 24;
@@ -69,6 +72,89 @@ pub struct AxisCurve {
     pub licence: Option<String>,
     /// The octaves, shortest averaging time first.
     pub octaves: Vec<Octave>,
+    /// The spectrum. Files of version 1 and records that are too short have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spectrum: Option<SpectrumLevels>,
+}
+
+/// The spectrum of one axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpectrumLevels {
+    /// Number of blocks in a segment.
+    pub segment: u32,
+    /// The levels, shortest blocks first.
+    pub levels: Vec<SpectrumLevel>,
+}
+
+/// One level of a spectrum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpectrumLevel {
+    /// Number of samples in a block, a power of 8.
+    pub block: u32,
+    /// Number of segments that overlap by half.
+    pub segments: u32,
+    /// One-sided densities in rate units squared per hertz, from the bin `segment/16` to the bin before `segment/2`.
+    pub density: Vec<f64>,
+    /// Spectral kurtosis of each bin.
+    pub kurtosis: Vec<f64>,
+}
+
+impl SpectrumLevels {
+    fn of(spectrum: &Spectrum<BINS>) -> Self {
+        let levels = spectrum.levels().map(|level| SpectrumLevel {
+            block: level.first().map_or(0, |bin| bin.block),
+            segments: level.first().map_or(0, |bin| bin.segments),
+            density: level.iter().map(|bin| bin.density).collect(),
+            kurtosis: level.iter().map(|bin| bin.spectral_kurtosis).collect(),
+        });
+        Self {
+            segment: spectrum.segment(),
+            levels: levels.collect(),
+        }
+    }
+
+    fn spectrum(&self, rate_hz: f64) -> Result<Spectrum<BINS>, allanite::Error> {
+        let bins = self.levels.iter().flat_map(|level| {
+            let measured = level.density.iter().zip(&level.kurtosis);
+            let indices = self.segment / 16..;
+            measured
+                .zip(indices)
+                .map(|((density, kurtosis), index)| Bin {
+                    block: level.block,
+                    index,
+                    frequency_hz: 0.0,
+                    density: *density,
+                    segments: level.segments,
+                    spectral_kurtosis: *kurtosis,
+                })
+        });
+        Spectrum::new(rate_hz, self.segment, bins)
+    }
+
+    /// Checks the numbers of the levels of a record with so many samples.
+    fn check(&self, rate_hz: f64, samples: u64) -> Result<(), String> {
+        for level in &self.levels {
+            let here = |what: &str| Err(format!("spectrum, block {}: {what}", level.block));
+            let bins = (self.segment / 2 - self.segment / 16) as usize;
+            if level.density.len() != bins || level.kurtosis.len() != bins {
+                return here("the number of bins is impossible");
+            }
+            let half = u64::from(level.block) * u64::from(self.segment / 2);
+            let most = (samples / half.max(1)).saturating_sub(1);
+            if u64::from(level.segments) > most {
+                return here("there are more segments than samples for them");
+            }
+            if level.segments < Spectrum::<BINS>::MIN_SEGMENTS {
+                return here("there are too few segments");
+            }
+        }
+        let spectrum = self.spectrum(rate_hz);
+        spectrum
+            .map(|_| ())
+            .map_err(|error| format!("spectrum: {error}"))
+    }
 }
 
 /// One octave of a curve.
@@ -144,16 +230,17 @@ impl CurveFile {
                 "give the file that measure wrote",
             ));
         }
-        if head.version != VERSION {
+        if !(1..=VERSION).contains(&head.version) {
             return Err(Place::file(path).failure(
                 format!(
-                    "the format has version {}, but this program reads version {VERSION}",
+                    "the format has version {}, but this program reads versions 1 to {VERSION}",
                     head.version
                 ),
                 "measure the log again",
             ));
         }
         let mut file: Self = serde_json::from_slice(text).map_err(|error| syntax(path, &error))?;
+        file.version = VERSION;
         for axis in &mut file.axes {
             // Names are printed, and control characters would reach the terminal.
             axis.axis = one_line(&axis.axis);
@@ -236,6 +323,19 @@ impl AxisCurve {
             source: None,
             licence: None,
             octaves: octaves.collect::<Result<_, Failure>>()?,
+            spectrum: Some(SpectrumLevels::of(&axis.spectrum.spectrum(scale)))
+                .filter(|spectrum| !spectrum.levels.is_empty()),
+        })
+    }
+
+    /// The spectrum as the library's type; without bins if the file has none.
+    ///
+    /// # Errors
+    /// When the library refuses a number. [`CurveFile::read`] would have refused it too.
+    pub fn spectrum(&self) -> Result<Spectrum<BINS>, allanite::Error> {
+        let spectrum = self.spectrum.as_ref();
+        spectrum.map_or(Ok(Spectrum::EMPTY), |spectrum| {
+            spectrum.spectrum(self.rate_hz)
         })
     }
 
@@ -284,6 +384,9 @@ impl AxisCurve {
             }
             last = octave.m;
             self.check_octave(octave).map_err(here)?;
+        }
+        if let Some(spectrum) = &self.spectrum {
+            spectrum.check(self.rate_hz, self.samples)?;
         }
         Ok(())
     }

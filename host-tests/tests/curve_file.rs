@@ -2,7 +2,7 @@
 
 use host_tests::{
     curve_file::{AxisCurve, CurveFile, FORMAT, VERSION},
-    log::{Axis, OCTAVES},
+    log::{Axis, OCTAVES, SpectrumSums},
     unit::Unit,
 };
 use std::{fs, path::Path};
@@ -20,6 +20,7 @@ fn curve(samples: u32, gap: bool) -> AxisCurve {
         }
     }
     let axis = Axis {
+        spectrum: SpectrumSums::new(),
         name: "gx".into(),
         rate_per_count: 0.05,
         accumulator,
@@ -78,6 +79,7 @@ fn sums_beyond_64_bits_keep_every_digit() {
         accumulator.push(if i / 8 % 2 == 0 { i32::MIN } else { i32::MAX });
     }
     let axis = Axis {
+        spectrum: SpectrumSums::new(),
         name: "gx".into(),
         rate_per_count: 1e-9,
         accumulator,

@@ -5,7 +5,7 @@ use host_tests::{
     curve_file::{AxisCurve, CurveFile},
     demonstration::{AMPLITUDES, diagnose::HIDDEN, lines, simulated::SimulatedGyro, stream::SEED},
     firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run},
-    log::Axis,
+    log::{Axis, SpectrumSums},
     program::command,
     study::precision,
     unit::Unit,
@@ -65,6 +65,7 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
             accumulator.push(count);
         }
         let axis = Axis {
+            spectrum: SpectrumSums::new(),
             name: "image".to_owned(),
             rate_per_count: 1.0,
             accumulator,

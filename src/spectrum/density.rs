@@ -62,7 +62,7 @@ impl<const B: usize> Spectrum<B> {
 
     /// A spectrum without bins.
     // All zero, so that it is set where it stays and not moved there.
-    pub(crate) const EMPTY: Self = Self {
+    pub const EMPTY: Self = Self {
         rate_hz: 0.0,
         segment: 0,
         bins: Vec::new(),

@@ -89,7 +89,10 @@ mod watched;
 mod worker;
 
 use crate::unit::{Sensor, Unit};
-use allanite::{Accumulator, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis};
+use allanite::{
+    Accumulator, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis,
+    spectrum::SpectrumAccumulator,
+};
 pub use covariate::CovariateChoice;
 pub use file::{read, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
@@ -97,6 +100,19 @@ pub use names::TimeUnit;
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
 /// records of years.
 pub const OCTAVES: usize = 30;
+
+/// The number of blocks in a segment of the spectrum that the host accumulates. It is that of a device, so that both
+/// see the same bins.
+pub const SEGMENT: usize = 64;
+
+/// The number of levels of the spectrum.
+pub const LEVELS: usize = 7;
+
+/// The number of bins that there is room for: those of five levels.
+pub const BINS: usize = 140;
+
+/// The spectrum of an axis as the host accumulates it.
+pub type SpectrumSums = SpectrumAccumulator<SEGMENT, LEVELS>;
 
 /// The most axes that are read from a log.
 pub const MOST_AXES: usize = 64;
@@ -172,6 +188,8 @@ pub struct Axis {
     pub rate_per_count: f64,
     /// The accumulator with all samples of the axis.
     pub accumulator: Accumulator<OCTAVES>,
+    /// The spectrum of the same samples.
+    pub spectrum: SpectrumSums,
     /// The evidence beside the curve, if it was asked for.
     pub evidence: Option<Evidence>,
 }

@@ -97,18 +97,20 @@ pub(super) fn read_table(
             name: column.axis,
             rate_per_count: scaling.scale * quantum.step(),
             accumulator: sums.accumulator().clone(),
+            spectrum: sums.spectrum().clone(),
             evidence: None,
         };
         if let (Some(_), worker::Sums::InTwo { rest: behind, .. }) = (first, &sums) {
             let behind = Axis {
-                accumulator: (**behind).clone(),
+                accumulator: behind.accumulator.clone(),
+                spectrum: behind.spectrum.clone(),
                 ..axis.clone()
             };
             check_axis(path, &behind)?;
             rest.push(behind);
         }
         check_axis(path, &axis)?;
-        if let worker::Sums::Watched(watched) = &sums {
+        if let worker::Sums::Watched(watched, _) = &sums {
             let named = covariates.iter().zip(&measured.covariates);
             axis.evidence = Some(evidence(path, &axis, &**watched, named, rate_hz)?);
         }

@@ -1,7 +1,7 @@
 //! Accumulates counts on a thread of its own, while the caller cuts and parses text.
 
 use super::{
-    CovariateChoice, OCTAVES,
+    CovariateChoice, OCTAVES, SpectrumSums,
     covariate::Derived,
     watched::{self, WatchedAxis},
 };
@@ -20,20 +20,51 @@ const BATCH: usize = 1 << 13;
 /// What is kept of one axis.
 pub(super) enum Sums {
     /// The sums of the first rows, and those of the remaining rows.
-    InTwo {
-        accumulator: Box<Accumulator<OCTAVES>>,
-        rest: Box<Accumulator<OCTAVES>>,
-    },
-    /// The axis with everything that is kept beside its curve.
-    Watched(Box<dyn WatchedAxis>),
+    InTwo { first: Box<Part>, rest: Box<Part> },
+    /// The axis with everything that is kept beside its curve, and its spectrum.
+    Watched(Box<dyn WatchedAxis>, Box<SpectrumSums>),
+}
+
+/// The curve and the spectrum of some rows.
+#[derive(Clone)]
+pub(super) struct Part {
+    pub(super) accumulator: Accumulator<OCTAVES>,
+    pub(super) spectrum: SpectrumSums,
+}
+
+impl Part {
+    fn new() -> Box<Self> {
+        Box::new(Self {
+            accumulator: Accumulator::new(),
+            spectrum: SpectrumSums::new(),
+        })
+    }
+
+    fn push(&mut self, counts: &[i32]) {
+        self.accumulator.push_slice(counts);
+        self.spectrum.push_slice(counts);
+    }
+
+    fn gap(&mut self) {
+        self.accumulator.gap();
+        self.spectrum.gap();
+    }
 }
 
 impl Sums {
     /// The accumulator of the rows that were asked for.
     pub(super) fn accumulator(&self) -> &Accumulator<OCTAVES> {
         match self {
-            Self::InTwo { accumulator, .. } => accumulator,
-            Self::Watched(axis) => axis.accumulator(),
+            Self::InTwo { first, .. } => &first.accumulator,
+            Self::Watched(axis, _) => axis.accumulator(),
+        }
+    }
+
+    /// The spectrum of the rows that were asked for.
+    pub(super) fn spectrum(&self) -> &SpectrumSums {
+        match self {
+            Self::InTwo { first, .. } => &first.spectrum,
+            Self::Watched(_, spectrum) => spectrum,
         }
     }
 }
@@ -60,10 +91,13 @@ impl Plan {
 
     fn sums(&self) -> Sums {
         match &self.watch {
-            Some(covariates) => Sums::Watched(watched::axis(covariates.len())),
+            Some(covariates) => {
+                let spectrum = Box::new(SpectrumSums::new());
+                Sums::Watched(watched::axis(covariates.len()), spectrum)
+            }
             None => Sums::InTwo {
-                accumulator: Box::default(),
-                rest: Box::default(),
+                first: Part::new(),
+                rest: Part::new(),
             },
         }
     }
@@ -210,28 +244,34 @@ impl Worker {
         }
         for sums in &mut self.sums {
             match sums {
-                Sums::InTwo { accumulator, rest } => {
-                    if accumulator.samples() >= self.plan.first {
+                Sums::InTwo { first, rest } => {
+                    if first.accumulator.samples() >= self.plan.first {
                         rest.gap();
                     } else {
-                        accumulator.gap();
+                        first.gap();
                     }
                 }
-                Sums::Watched(axis) => axis.gap(),
+                Sums::Watched(axis, spectrum) => {
+                    axis.gap();
+                    spectrum.gap();
+                }
             }
         }
     }
 
     fn accumulate(&mut self, axis: usize, counts: &[i32], covariates: &[Vec<i32>]) {
         match &mut self.sums[axis] {
-            Sums::InTwo { accumulator, rest } => {
-                let room = self.plan.first - accumulator.samples();
+            Sums::InTwo { first, rest } => {
+                let room = self.plan.first - first.accumulator.samples();
                 let room = usize::try_from(room).unwrap_or(usize::MAX);
                 let (of_start, of_rest) = counts.split_at(room.min(counts.len()));
-                accumulator.push_slice(of_start);
-                rest.push_slice(of_rest);
+                first.push(of_start);
+                rest.push(of_rest);
             }
-            Sums::Watched(axis) => axis.push(counts, covariates),
+            Sums::Watched(axis, spectrum) => {
+                axis.push(counts, covariates);
+                spectrum.push_slice(counts);
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The data that a plot shows of a comparison.
 
 use super::frame::Frame;
-use crate::log::OCTAVES;
+use crate::log::{BINS, OCTAVES};
 use allanite::{
     Comparison, Model,
     effect::{CATALOGUE, Effect},
@@ -45,7 +45,7 @@ pub struct Share {
 
 impl Figure {
     /// The figure of a model beside a record. Effects that lie below the frame are left out.
-    pub fn new(model: &Model, comparison: &Comparison<OCTAVES>, frame: &Frame) -> Self {
+    pub fn new(model: &Model, comparison: &Comparison<OCTAVES, BINS>, frame: &Frame) -> Self {
         let octaves = comparison.octaves.iter();
         let roots = |variance: &dyn Fn(&allanite::comparison::ComparedOctave) -> f64| {
             let root = |variance: f64| variance.max(0.0).sqrt() as f32;

@@ -2,7 +2,7 @@
 //! in a file and on a page.
 
 use super::ticks;
-use crate::log::OCTAVES;
+use crate::log::{BINS, OCTAVES};
 use allanite::{Comparison, comparison::ComparedOctave};
 
 /// The span of a logarithmic axis.
@@ -59,7 +59,9 @@ pub struct Frame {
 
 impl Frame {
     /// A frame with room for all octaves of these comparisons.
-    pub fn of<'a>(comparisons: impl IntoIterator<Item = &'a Comparison<OCTAVES>> + Clone) -> Self {
+    pub fn of<'a>(
+        comparisons: impl IntoIterator<Item = &'a Comparison<OCTAVES, BINS>> + Clone,
+    ) -> Self {
         let octaves = || {
             let comparisons = comparisons.clone().into_iter();
             comparisons.flat_map(|comparison| &comparison.octaves)

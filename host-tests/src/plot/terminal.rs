@@ -1,7 +1,10 @@
 //! The plot in a terminal: lines of text, with the model in braille dots.
 
 use super::{canvas::Canvas, frame::Frame, ticks};
-use crate::{log::OCTAVES, unit::Unit};
+use crate::{
+    log::{BINS, OCTAVES},
+    unit::Unit,
+};
 use allanite::Comparison;
 use console::{Term, style};
 use std::fmt;
@@ -22,14 +25,14 @@ const USUAL_WIDTH: usize = 80;
 pub struct Plot<'a> {
     title: &'a str,
     unit: Unit,
-    comparison: &'a Comparison<OCTAVES>,
+    comparison: &'a Comparison<OCTAVES, BINS>,
     frame: Frame,
     width: usize,
 }
 
 impl<'a> Plot<'a> {
     /// A plot as wide as the terminal, or 80 columns wide if standard output is not a terminal.
-    pub fn new(title: &'a str, unit: Unit, comparison: &'a Comparison<OCTAVES>) -> Self {
+    pub fn new(title: &'a str, unit: Unit, comparison: &'a Comparison<OCTAVES, BINS>) -> Self {
         let terminal = Term::stdout().size_checked();
         let width = terminal.map_or(USUAL_WIDTH, |(_, columns)| usize::from(columns));
         Self {

@@ -1,8 +1,11 @@
 //! A model fitted to an axis, and its comparison with the record.
 
-use crate::{curve_file::AxisCurve, log::OCTAVES};
+use crate::{
+    curve_file::AxisCurve,
+    log::{BINS, OCTAVES},
+};
 use allanite::{
-    Comparison, Error, Model,
+    Comparison, Error, Model, Observed,
     fit::{Fit, Options, fit},
 };
 
@@ -12,7 +15,7 @@ pub(super) struct Compared {
     pub(super) model: Model,
     pub(super) fit: Fit,
     /// The comparison with the held-out part, or with the fitted record if nothing was held out.
-    pub(super) comparison: Comparison<OCTAVES>,
+    pub(super) comparison: Comparison<OCTAVES, BINS>,
     pub(super) held_out: Option<HeldOut>,
 }
 
@@ -30,14 +33,17 @@ impl Compared {
         held_out: Option<AxisCurve>,
     ) -> Result<Self, Error> {
         let options = Options::default();
-        let curve = axis.curve()?;
-        let fit = fit(&curve, model, options)?;
-        let fitted = Comparison::new(&curve, model, &fit)?;
+        let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
+        let observed = Observed::new(&curve, &spectrum);
+        let fit = fit(observed, model, options)?;
+        let fitted = Comparison::new(observed, model, &fit)?;
         let (comparison, held_out) = match held_out {
             None => (fitted, None),
             Some(axis) => {
                 let tolerance = options.tolerance;
-                let comparison = Comparison::held_out(&axis.curve()?, model, &fit, tolerance)?;
+                let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
+                let observed = Observed::new(&curve, &spectrum);
+                let comparison = Comparison::held_out(observed, model, &fit, tolerance)?;
                 let held_out = HeldOut {
                     axis,
                     fitted_rms_percent: fitted.rms_percent,

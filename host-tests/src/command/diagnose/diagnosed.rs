@@ -7,10 +7,10 @@ use crate::{
     },
     curve_file::AxisCurve,
     failure::Failure,
-    log::{CovariateChoice, Evidence, OCTAVES},
+    log::{BINS, CovariateChoice, Evidence, OCTAVES},
 };
 use allanite::{
-    Error, Model, Term, covariate,
+    Error, Model, Observed, Term, covariate,
     covariate::CrossCurve,
     diagnosis::{
         Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
@@ -73,7 +73,7 @@ impl DiagnosisSettings {
 pub(crate) struct Diagnosed {
     pub(crate) axis: AxisCurve,
     /// The steps, at least one; the last one has the model that the diagnosis ends with.
-    pub(crate) steps: Vec<Step<OCTAVES>>,
+    pub(crate) steps: Vec<Step<OCTAVES, BINS>>,
     pub(crate) verdict: Verdict,
     /// The options of the search for effects.
     pub(crate) options: Options,
@@ -99,7 +99,9 @@ impl Diagnosed {
         let mut steps = Vec::new();
         let curve = axis.curve()?;
         let model = Model::ieee_952();
-        let mut diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options);
+        let spectrum = axis.spectrum()?;
+        let mut diagnosis =
+            Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options);
         let verdict = diagnosis.run(|step| steps.push(step.clone()))?;
         Ok(Self {
             axis,
@@ -112,7 +114,7 @@ impl Diagnosed {
     }
 
     /// The first step, which has the five terms, and the last one.
-    pub(crate) fn ends(&self) -> Option<(&Step<OCTAVES>, &Step<OCTAVES>)> {
+    pub(crate) fn ends(&self) -> Option<(&Step<OCTAVES, BINS>, &Step<OCTAVES, BINS>)> {
         self.steps.first().zip(self.steps.last())
     }
 
@@ -141,7 +143,7 @@ impl Diagnosed {
         &self,
         step: usize,
         candidate: &Candidate,
-    ) -> Result<Step<OCTAVES>, Error> {
+    ) -> Result<Step<OCTAVES, BINS>, Error> {
         let mut curve = self.axis.curve()?;
         let before = step
             .checked_sub(1)
@@ -150,7 +152,8 @@ impl Diagnosed {
         if let Some(followed) = &step.covariate {
             self.cross[followed.index].correct(&mut curve, &followed.slope);
         }
-        alternative(&curve, step, before, candidate)
+        let spectrum = self.axis.spectrum()?;
+        alternative(Observed::new(&curve, &spectrum), step, before, candidate)
     }
 
     /// The effects that were added and kept, as in the last model. Covariates are not among them.
@@ -162,7 +165,7 @@ impl Diagnosed {
     }
 
     /// The effects of a step that are not in the model of the first step.
-    fn added_in<'a>(&'a self, step: &'a Step<OCTAVES>) -> impl Iterator<Item = &'a Term> {
+    fn added_in<'a>(&'a self, step: &'a Step<OCTAVES, BINS>) -> impl Iterator<Item = &'a Term> {
         let asked = self.steps.first();
         step.model.terms().iter().filter(move |term| {
             let asked = asked.map(|asked| asked.model.position(term.effect.name()));
@@ -186,8 +189,9 @@ impl Diagnosed {
         let kept = steps.iter().enumerate().filter(|&(i, step)| {
             let swapped = steps.get(i + 1).is_some_and(|next| next.swap().is_some());
             let added = step.added.as_ref().map(added_name);
-            let dropped =
-                |later: &Step<OCTAVES>| added.is_some_and(|name| later.dropped.contains(&name));
+            let dropped = |later: &Step<OCTAVES, BINS>| {
+                added.is_some_and(|name| later.dropped.contains(&name))
+            };
             !(swapped || steps[i + 1..].iter().any(dropped))
         });
         kept.filter_map(|(_, step)| {

@@ -6,7 +6,7 @@ use crate::{
         fit,
         output::model_json::{self, Effect, Worst},
     },
-    log::OCTAVES,
+    log::{BINS, OCTAVES},
     unit::Unit,
 };
 use allanite::diagnosis::{Candidate as Tried, Step as Taken};
@@ -93,7 +93,7 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
     }
 }
 
-fn step(step: &Taken<OCTAVES>, diagnosed: &Diagnosed, unit: Unit) -> Step {
+fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step {
     let followed = step.covariate.as_ref();
     let covariate =
         followed.map(|followed| model_json::covariate(followed, diagnosed.covariate(followed)));

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     command::{fit, output::words},
-    log::OCTAVES,
+    log::{BINS, OCTAVES},
     plot::Plot,
 };
 use allanite::diagnosis::{Candidate, Step};
@@ -85,8 +85,8 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
 /// candidates.
 fn print_step(
     number: usize,
-    before: &Step<OCTAVES>,
-    after: &Step<OCTAVES>,
+    before: &Step<OCTAVES, BINS>,
+    after: &Step<OCTAVES, BINS>,
     finding: &Finding,
     output: &mut impl Write,
 ) -> io::Result<()> {
@@ -117,7 +117,7 @@ fn print_step(
     writeln!(output, "  after this step: {}", after.comparison)
 }
 
-fn print_candidates(step: &Step<OCTAVES>, output: &mut impl Write) -> io::Result<()> {
+fn print_candidates(step: &Step<OCTAVES, BINS>, output: &mut impl Write) -> io::Result<()> {
     let line = |candidate: &Candidate| {
         format!(
             "χ² {:>8.1}, improvement {:>8.1}: {}",

@@ -6,7 +6,7 @@ use crate::{
         number::{self, probability},
         words,
     },
-    log::OCTAVES,
+    log::{BINS, OCTAVES},
 };
 use allanite::{
     Term, covariate,
@@ -31,8 +31,8 @@ impl Finding {
     /// The finding that leads from one step to the next, or `None` if nothing was added.
     pub(crate) fn new(
         diagnosed: &Diagnosed,
-        before: &Step<OCTAVES>,
-        after: &Step<OCTAVES>,
+        before: &Step<OCTAVES, BINS>,
+        after: &Step<OCTAVES, BINS>,
     ) -> Option<Self> {
         let mut finding = match before.added.as_ref()? {
             Addition::Effect(added) => Self::effect(diagnosed, before, after, added),
@@ -47,8 +47,8 @@ impl Finding {
 
     fn effect(
         diagnosed: &Diagnosed,
-        before: &Step<OCTAVES>,
-        after: &Step<OCTAVES>,
+        before: &Step<OCTAVES, BINS>,
+        after: &Step<OCTAVES, BINS>,
         added: &Term,
     ) -> Self {
         let effect = added.effect;
@@ -105,7 +105,11 @@ impl Finding {
 }
 
 /// The shape and the coefficient of an effect in a step, with their 95 % intervals.
-pub(crate) fn found(step: &Step<OCTAVES>, effect: &str, diagnosed: &Diagnosed) -> Option<String> {
+pub(crate) fn found(
+    step: &Step<OCTAVES, BINS>,
+    effect: &str,
+    diagnosed: &Diagnosed,
+) -> Option<String> {
     let at = step.model.position(effect)?;
     let term = step.model.terms().get(at)?;
     let mut found = words::shape(term, Some((&step.fit, at)));

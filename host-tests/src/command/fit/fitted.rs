@@ -1,9 +1,15 @@
 //! The five terms fitted to an axis.
 
-use crate::{command::input::record, curve_file::AxisCurve, failure::Failure, log::OCTAVES};
+use crate::{
+    command::input::record,
+    curve_file::AxisCurve,
+    failure::Failure,
+    log::{BINS, OCTAVES},
+};
 use allanite::{
-    Curve, Model,
+    Curve, Model, Observed,
     fit::{Fit, Method, Options, fit},
+    spectrum::Spectrum,
 };
 use clap::ValueEnum;
 use std::path::Path;
@@ -50,6 +56,7 @@ impl MethodName {
 pub(crate) struct Fitted {
     pub(crate) axis: AxisCurve,
     pub(crate) curve: Curve<OCTAVES>,
+    pub(crate) spectrum: Spectrum<BINS>,
     pub(crate) method: MethodName,
     pub(crate) fit: Fit,
 }
@@ -65,13 +72,16 @@ impl Fitted {
             ..Options::default()
         };
         let fitted = axis.curve().and_then(|curve| {
-            let fit = fit(&curve, &Model::ieee_952(), options)?;
-            Ok((curve, fit))
+            let spectrum = axis.spectrum()?;
+            let observed = Observed::new(&curve, &spectrum);
+            let fit = fit(observed, &Model::ieee_952(), options)?;
+            Ok((curve, spectrum, fit))
         });
         match fitted {
-            Ok((curve, fit)) => Ok(Self {
+            Ok((curve, spectrum, fit)) => Ok(Self {
                 axis,
                 curve,
+                spectrum,
                 method,
                 fit,
             }),

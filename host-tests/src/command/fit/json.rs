@@ -63,6 +63,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         curve,
         method,
         fit,
+        ..
     } = fitted;
     let finite = |value: f64| value.is_finite().then_some(value);
     Axis {

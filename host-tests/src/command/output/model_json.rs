@@ -1,7 +1,11 @@
 //! The parts that the JSON documents of `compare` and `diagnose` share.
 
 use super::words;
-use crate::{command::fit, log::OCTAVES, unit::Unit};
+use crate::{
+    command::fit,
+    log::{BINS, OCTAVES},
+    unit::Unit,
+};
 use allanite::{
     Comparison, Model, Term, comparison::ComparedOctave, covariate, diagnosis::FollowedCovariate,
     fit::Fit,
@@ -72,7 +76,7 @@ pub(crate) fn coefficients(fit: &Fit, unit: Unit) -> Vec<fit::json::Term> {
 }
 
 /// The worst octave of a comparison.
-pub(crate) fn worst(comparison: &Comparison<OCTAVES>) -> Option<Worst> {
+pub(crate) fn worst(comparison: &Comparison<OCTAVES, BINS>) -> Option<Worst> {
     let worst = |octave: &ComparedOctave| Worst {
         tau_s: octave.tau_s,
         z: octave.z,

@@ -5,7 +5,7 @@ use super::{
     units,
 };
 use crate::{
-    log::OCTAVES,
+    log::{BINS, OCTAVES},
     unit::{Sensor, Unit},
 };
 use allanite::{
@@ -182,7 +182,11 @@ pub(crate) fn widened(fit: &Fit) -> Option<String> {
 }
 
 /// How the coefficients of the first step were wrong because effects were missing from its model.
-pub(crate) fn damage(first: &Step<OCTAVES>, last: &Step<OCTAVES>, unit: Unit) -> Vec<String> {
+pub(crate) fn damage(
+    first: &Step<OCTAVES, BINS>,
+    last: &Step<OCTAVES, BINS>,
+    unit: Unit,
+) -> Vec<String> {
     let before = first.model.terms().iter().zip(&first.fit.coefficients);
     let same = |name: &str| {
         let mut after = last.model.terms().iter().zip(&last.fit.coefficients);

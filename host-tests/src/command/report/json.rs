@@ -11,7 +11,7 @@ use crate::{
         fit,
         output::{model_json, units},
     },
-    log::OCTAVES,
+    log::{BINS, OCTAVES},
     plot::{Figure, Frame},
     unit::Unit,
 };
@@ -202,7 +202,7 @@ fn fitted(diagnosed: &Diagnosed, at: usize, tried: &Tried, frame: &Frame) -> Opt
 
 /// The view of a step. All steps share the frame of the deviations, but each has its own for the
 /// residuals.
-fn view(model: String, step: &Step<OCTAVES>, frame: &Frame) -> View {
+fn view(model: String, step: &Step<OCTAVES, BINS>, frame: &Frame) -> View {
     let own = Frame::of([&step.comparison]);
     let figure = Figure::new(&step.model, &step.comparison, frame);
     View {

@@ -3,7 +3,7 @@
 use crate::{
     curve_file::AxisCurve,
     failure::Failure,
-    log::{Axis, OCTAVES},
+    log::{Axis, OCTAVES, SpectrumSums},
     unit::Unit,
 };
 use allanite::Axis as Record;
@@ -22,6 +22,8 @@ pub(super) struct Recording {
     names: Option<Vec<String>>,
     /// The axes; their number is known from the first sample on.
     axes: Vec<Gyro>,
+    /// The spectrum of each axis.
+    spectra: Vec<SpectrumSums>,
     /// The bytes received of the next line.
     line: Vec<u8>,
     counts: Vec<i32>,
@@ -77,6 +79,7 @@ impl Recording {
             unit,
             names,
             axes: Vec::new(),
+            spectra: Vec::new(),
             line: Vec::new(),
             counts: Vec::new(),
             garbled: 0,
@@ -142,13 +145,17 @@ impl Recording {
         if !is_valid {
             self.garbled += 1;
             self.axes.iter_mut().for_each(Gyro::gap);
+            self.spectra.iter_mut().for_each(SpectrumSums::gap);
             return;
         }
         if self.axes.is_empty() {
             self.axes = vec![Gyro::new(); self.counts.len()];
+            self.spectra = vec![SpectrumSums::new(); self.counts.len()];
         }
-        for (axis, &count) in self.axes.iter_mut().zip(&self.counts) {
+        let axes = self.axes.iter_mut().zip(&mut self.spectra);
+        for ((axis, spectrum), &count) in axes.zip(&self.counts) {
             axis.push(count);
+            spectrum.push_slice(&[count]);
         }
     }
 
@@ -208,6 +215,7 @@ impl Recording {
         let of_axis = |(i, axis): (usize, &Gyro)| {
             let [accumulator] = axis.accumulators();
             let axis = Axis {
+                spectrum: self.spectra[i].clone(),
                 name: self.name(i),
                 rate_per_count: self.rate_per_count,
                 accumulator: accumulator.clone(),

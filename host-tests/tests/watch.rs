@@ -4,7 +4,7 @@ use allanite::Accumulator;
 use host_tests::program::{command, piped, refusal, signal};
 use host_tests::{
     curve_file::CurveFile,
-    log::{Axis, OCTAVES},
+    log::{Axis, OCTAVES, SpectrumSums},
     unit::Unit,
 };
 use rand::{RngExt, SeedableRng};
@@ -97,30 +97,42 @@ fn saved(folder: &Path) -> CurveFile {
 /// bit.
 fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
     let mut accumulators = [(); 2].map(|()| Accumulator::<OCTAVES>::new());
+    let mut spectra = [(); 2].map(|()| SpectrumSums::new());
     let mut rest = sent.iter();
     while accumulators[0].samples() < samples {
         match rest.next().expect("no more samples than were sent") {
             Sent::Sample(counts) => {
-                for (accumulator, &count) in accumulators.iter_mut().zip(counts) {
+                let sums = accumulators.iter_mut().zip(&mut spectra);
+                for ((accumulator, spectrum), &count) in sums.zip(counts) {
                     accumulator.push(count);
+                    spectrum.push_slice(&[count]);
                 }
             }
-            Sent::Garbled => accumulators.iter_mut().for_each(Accumulator::gap),
+            Sent::Garbled => {
+                accumulators.iter_mut().for_each(Accumulator::gap);
+                spectra.iter_mut().for_each(SpectrumSums::gap);
+            }
         }
     }
     if accumulators[0].gaps() < gaps {
         assert!(matches!(rest.next(), Some(Sent::Garbled)));
         accumulators.iter_mut().for_each(Accumulator::gap);
+        spectra.iter_mut().for_each(SpectrumSums::gap);
     }
-    let axes = AXES.iter().zip(accumulators).map(|(name, accumulator)| {
-        let axis = Axis {
-            name: (*name).to_owned(),
-            rate_per_count: 0.01,
-            accumulator,
-            evidence: None,
-        };
-        host_tests::curve_file::AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
-    });
+    let sums = accumulators.into_iter().zip(spectra);
+    let axes = AXES
+        .iter()
+        .zip(sums)
+        .map(|(name, (accumulator, spectrum))| {
+            let axis = Axis {
+                spectrum,
+                name: (*name).to_owned(),
+                rate_per_count: 0.01,
+                accumulator,
+                evidence: None,
+            };
+            host_tests::curve_file::AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
+        });
     CurveFile::new(axes.collect())
 }
 

@@ -1,7 +1,10 @@
 //! Turns a solution into coefficients with intervals, bounds, and the length of a record that would
 //! show more.
 
-use super::{method::Method, problem::Problem, result::Fit, shape::ShapeEquations, solver::Solver};
+use super::{
+    method::Method, peak::Peak, problem::Problem, result::Fit, shape::ShapeEquations,
+    solver::Solver,
+};
 use crate::{
     coefficient::{Coefficient, State},
     curve::clusters,
@@ -52,6 +55,7 @@ impl Estimator {
         fit.chi_squared = solver.chi_squared;
         fit.degrees_of_freedom = solver.degrees_of_freedom();
         fit.p_value = solver.p_value();
+        fit.peak = Peak::of(problem, &solver.weights, &solver.squares);
         fit.minus_two_log_likelihood = solver.minus_two_log_likelihood();
         fit.tolerance = solver.weights.tolerance;
         fit.shrinkage = solver.weights.shrinkage;
@@ -88,7 +92,8 @@ impl Estimator {
 /// of the curve at the model, and residuals this large say that the model is off by more than that.
 fn birge_ratio(fit: &Fit) -> Real {
     match fit.is_adequate() {
-        Some(false) => math::sqrt(fit.chi_squared / real(fit.degrees_of_freedom)),
+        // A model may fail by a single peak, with a χ² that is not large.
+        Some(false) => math::sqrt(fit.chi_squared / real(fit.degrees_of_freedom)).max(1.0),
         _ => 1.0,
     }
 }

@@ -106,6 +106,7 @@ pub(super) fn fit<const K: usize, const B: usize>(
         chi_squared,
         degrees_of_freedom,
         p_value: chi_squared_tail(chi_squared, degrees_of_freedom),
+        peak: None,
         minus_two_log_likelihood: Real::NAN,
         tolerance: 0.0,
         shrinkage: 0.0,

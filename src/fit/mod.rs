@@ -13,6 +13,7 @@ mod fitting;
 mod independent;
 mod likelihood_ratio;
 mod method;
+mod peak;
 mod problem;
 mod result;
 mod rows;
@@ -27,6 +28,7 @@ pub use crate::{
 pub use correlation::Correlations;
 pub use fitting::{Fitting, fit};
 pub use method::{ADEQUATE_P, Method, Options};
+pub use peak::Peak;
 pub use result::{Fit, ShapeEstimate};
 
 pub(crate) use estimate::Estimator;

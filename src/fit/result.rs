@@ -1,6 +1,9 @@
 //! The result of a fit.
 
-use super::method::{ADEQUATE_P, Method};
+use super::{
+    method::{ADEQUATE_P, Method},
+    peak::Peak,
+};
 use crate::{
     coefficient::Coefficient,
     limits::{MAX_EFFECTS, MAX_SHAPE},
@@ -43,6 +46,8 @@ pub struct Fit {
     pub degrees_of_freedom: usize,
     /// Probability of a larger χ² if the model is true. NaN without χ² or without degrees of freedom.
     pub p_value: Real,
+    /// The largest peak of the spectrum above the model; `None` if no spectrum was fitted.
+    pub peak: Option<Peak>,
     /// `−2 ln L = r'C⁻¹r + ln det C`, up to a constant. It ranks models of one curve. NaN where χ² is
     /// NaN.
     pub minus_two_log_likelihood: Real,
@@ -66,16 +71,18 @@ impl Fit {
         chi_squared: 0.0,
         degrees_of_freedom: 0,
         p_value: 0.0,
+        peak: None,
         minus_two_log_likelihood: 0.0,
         tolerance: 0.0,
         shrinkage: 0.0,
         birge_ratio: 0.0,
     };
 
-    /// Whether the model explains the curve: `Some(true)` if the p-value is [`ADEQUATE_P`] or more.
-    /// `None` if there is no p-value, because the curve is too short or the method has no error model.
+    /// Whether the model explains the record: `Some(true)` if the p-value is [`ADEQUATE_P`] or more, and no
+    /// peak of the spectrum has a probability below 0.001. `None` if there is no p-value, because the curve is too short or the method has no error model.
     pub fn is_adequate(&self) -> Option<bool> {
-        (!self.p_value.is_nan()).then_some(self.p_value >= ADEQUATE_P)
+        let is_high = self.peak.is_some_and(|peak| peak.is_significant());
+        (!self.p_value.is_nan()).then_some(self.p_value >= ADEQUATE_P && !is_high)
     }
 
     /// The squared coefficients, for [`Model::variance`](crate::Model::variance).

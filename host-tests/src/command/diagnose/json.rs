@@ -9,7 +9,10 @@ use crate::{
     log::{BINS, OCTAVES},
     unit::Unit,
 };
-use allanite::diagnosis::{Candidate as Tried, Step as Taken};
+use allanite::{
+    comparison::ComparedBin,
+    diagnosis::{Candidate as Tried, Step as Taken},
+};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -23,6 +26,9 @@ pub(crate) struct Document<'a> {
 struct Axis<'a> {
     axis: &'a str,
     steps: Vec<Step>,
+    /// The spectrum beside the last model.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    spectrum: Vec<Bin>,
     verdict: &'static str,
     missing: Vec<&'static str>,
     ambiguous: Vec<&'static str>,
@@ -45,6 +51,19 @@ struct Step {
     worst: Option<Worst>,
     candidates: Vec<Candidate>,
     added: Option<&'static str>,
+}
+
+/// A bin of the spectrum.
+#[derive(Serialize)]
+struct Bin {
+    frequency_hz: f64,
+    /// The number of samples in a block.
+    block: u32,
+    /// The one-sided density, in rate units squared per hertz.
+    density: f64,
+    /// The density that the model has there.
+    expected: f64,
+    z: f64,
 }
 
 #[derive(Serialize)]
@@ -86,6 +105,10 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             .iter()
             .map(|one| step(one, diagnosed, unit))
             .collect(),
+        spectrum: diagnosed.ends().map_or(Vec::new(), |(_, last)| {
+            let bins = last.comparison.bins.iter();
+            bins.map(bin).collect()
+        }),
         verdict: diagnosed.verdict.name(),
         missing: diagnosed.missing().collect(),
         ambiguous: names,
@@ -112,6 +135,16 @@ fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step 
         worst: model_json::worst(&step.comparison),
         candidates: step.candidates.iter().map(candidate).collect(),
         added: step.added.as_ref().map(added_name),
+    }
+}
+
+fn bin(compared: &ComparedBin) -> Bin {
+    Bin {
+        frequency_hz: compared.bin.frequency_hz,
+        block: compared.bin.block,
+        density: compared.bin.density,
+        expected: compared.model,
+        z: compared.z,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{
     diagnosed::Diagnosed,
-    words::{Finding, candidate_name, shown_p, verdict},
+    words::{Finding, candidate_name, shown_p, unexplained, verdict},
 };
 use crate::{
     command::{fit, output::words},
@@ -39,6 +39,7 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
         first.comparison.rms_percent
     )?;
     writeln!(output, "  {}", first.comparison)?;
+    print_unexplained(first, output)?;
     for (number, pair) in diagnosed.steps.windows(2).enumerate() {
         let [before, after] = pair else { continue };
         if let Some(finding) = Finding::new(diagnosed, before, after) {
@@ -114,7 +115,21 @@ fn print_step(
     if let Some(ambiguous) = &finding.ambiguous {
         writeln!(output, "  ambiguous: {ambiguous}")?;
     }
-    writeln!(output, "  after this step: {}", after.comparison)
+    writeln!(output, "  after this step: {}", after.comparison)?;
+    print_unexplained(after, output)
+}
+
+/// Prints where the spectrum differs from the model, if it does.
+fn print_unexplained(step: &Step<OCTAVES, BINS>, output: &mut impl Write) -> io::Result<()> {
+    let bands = unexplained(&step.comparison);
+    if bands.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        output,
+        "  unexplained in the spectrum: {}",
+        bands.join("; ")
+    )
 }
 
 fn print_candidates(step: &Step<OCTAVES, BINS>, output: &mut impl Write) -> io::Result<()> {

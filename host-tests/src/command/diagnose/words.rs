@@ -9,7 +9,9 @@ use crate::{
     log::{BINS, OCTAVES},
 };
 use allanite::{
-    Term, covariate,
+    Comparison, Term,
+    comparison::ComparedBin,
+    covariate,
     diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
     effect::{Explanation, explanation},
 };
@@ -104,13 +106,15 @@ impl Finding {
     }
 }
 
-/// The shape and the coefficient of an effect in a step, with their 95 % intervals.
+/// The shape and the coefficient of an effect in a step, with their 95 % intervals. Of several effects of one name, it is
+/// the one that was added last.
 pub(crate) fn found(
     step: &Step<OCTAVES, BINS>,
     effect: &str,
     diagnosed: &Diagnosed,
 ) -> Option<String> {
-    let at = step.model.position(effect)?;
+    let mut terms = step.model.terms().iter();
+    let at = terms.rposition(|term| term.effect.name() == effect)?;
     let term = step.model.terms().get(at)?;
     let mut found = words::shape(term, Some((&step.fit, at)));
     if !found.is_empty() {
@@ -119,6 +123,48 @@ pub(crate) fn found(
     let coefficient = step.fit.coefficients.get(at)?;
     found += &words::coefficient(term.effect, coefficient, diagnosed.axis.unit);
     Some(found + ", 95 % intervals")
+}
+
+/// The fewest standard errors of a band of the spectrum that is said to differ from the model.
+const NOTICEABLE_BAND: f64 = 5.0;
+
+/// The most bands that are said to differ.
+const MOST_BANDS: usize = 3;
+
+/// Bands of frequencies in which the spectrum lies on one side of the model, those that differ most first: `12 σ above
+/// the model at 14.1–26.6 Hz`. A band ends where a bin differs by less than two standard errors.
+pub(crate) fn unexplained(comparison: &Comparison<OCTAVES, BINS>) -> Vec<String> {
+    // The bins of the longest blocks have the lowest frequencies.
+    let mut bins: Vec<&ComparedBin> = comparison.bins.iter().collect();
+    bins.sort_by(|one, other| one.bin.frequency_hz.total_cmp(&other.bin.frequency_hz));
+    let side = |bin: &ComparedBin| match bin.z {
+        z if z > 2.0 => 1,
+        z if z < -2.0 => -1,
+        _ => 0,
+    };
+    let runs = bins.chunk_by(|one, other| side(one) == side(other) && side(one) != 0);
+    let mut bands: Vec<(f64, &[&ComparedBin])> = runs
+        .map(|run| {
+            let sum: f64 = run.iter().map(|bin| bin.z).sum();
+            (sum / (run.len() as f64).sqrt(), run)
+        })
+        .filter(|(z, _)| z.abs() >= NOTICEABLE_BAND)
+        .collect();
+    bands.sort_by(|one, other| other.0.abs().total_cmp(&one.0.abs()));
+    let band = |(z, run): &(f64, &[&ComparedBin])| {
+        let ends = [run.first(), run.last()].map(|bin| {
+            let frequency = bin.map_or(f64::NAN, |bin| bin.bin.frequency_hz);
+            number::number(frequency)
+        });
+        let place = if run.len() == 1 {
+            ends[0].clone()
+        } else {
+            ends.join("–")
+        };
+        let side = if *z > 0.0 { "above" } else { "below" };
+        format!("{:.0} σ {side} the model at {place} Hz", z.abs())
+    };
+    bands.iter().take(MOST_BANDS).map(band).collect()
 }
 
 /// The effect that an addition also exchanges: `, sinusoid instead of resonance`, or nothing.

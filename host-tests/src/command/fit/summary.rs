@@ -2,7 +2,7 @@
 
 use super::{fitted::Fitted, table::customary};
 use crate::command::{input::many::shown, output::number::probability};
-use allanite::fit::{ADEQUATE_P, Fit};
+use allanite::fit::Fit;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::{
     io::{self, Write},
@@ -67,9 +67,9 @@ fn row(path: &Path, fitted: &Fitted) -> Vec<String> {
 }
 
 fn adequate(fit: &Fit) -> &'static str {
-    match fit.p_value {
-        p if p >= ADEQUATE_P => "yes",
-        p if p < ADEQUATE_P => "no",
-        _ => "–",
+    match fit.is_adequate() {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "–",
     }
 }

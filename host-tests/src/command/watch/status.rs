@@ -11,7 +11,6 @@ use crate::{
     },
     confidence::TWO_SIDED_95,
 };
-use allanite::fit::ADEQUATE_P;
 use allanite::{
     Coefficient,
     fit::{Fit, State},
@@ -107,10 +106,11 @@ impl Status {
 
 /// The verdict on the five terms, with the p-value.
 pub(super) fn verdict(fit: &Fit) -> String {
-    match fit.p_value {
-        p if p >= ADEQUATE_P => format!("adequate, p {}", probability(p)),
-        p if p < ADEQUATE_P => format!("not adequate, p {}", probability(p)),
-        _ => "too few octaves to judge".into(),
+    let p = probability(fit.p_value);
+    match fit.is_adequate() {
+        Some(true) => format!("adequate, p {p}"),
+        Some(false) => format!("not adequate, p {p}"),
+        None => "too few octaves to judge".into(),
     }
 }
 

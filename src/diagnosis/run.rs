@@ -329,7 +329,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         if let Stage::Scanning(scanning) = &mut self.stage {
             let observed = Observed::new(&self.curve, &self.spectrum);
             let problem = Problem::new(observed, &self.step.model, &self.work.columns);
-            scanning.begin(&problem, &mut self.work.solver.weights);
+            scanning.begin(&problem, &mut self.work.solver);
         }
     }
 

@@ -3,9 +3,10 @@
 use super::step::MAX_CANDIDATES;
 use crate::{
     effect::{Effect, Span},
-    fit::{Problem, Solver, Weights},
+    fit::{Problem, Solver},
     list,
-    profile::{Evaluation, Found, GridSearch, Profile},
+    profile::{Evaluation, Found, GridSearch, Profile, line_frequency},
+    real::Real,
 };
 use heapless::Vec;
 
@@ -19,6 +20,8 @@ pub(super) struct Scanning<const K: usize, const B: usize> {
     /// effect's place.
     next: usize,
     search: Option<(GridSearch, usize)>,
+    /// The frequency of the strongest line of the spectrum that the model lacks, in Hz.
+    peak_hz: Option<Real>,
     shapes: Shapes,
 }
 
@@ -31,14 +34,16 @@ impl<const K: usize, const B: usize> Scanning<K, B> {
             profile: Profile::EMPTY,
             next: 0,
             search: None,
+            peak_hz: None,
             shapes: Shapes::new(),
         }
     }
 
     /// Begins to scan beside a solved model. The weights of its solution are replaced.
-    pub(super) fn begin(&mut self, problem: &Problem<'_, K, B>, weights: &mut Weights<K, B>) {
-        weights.set_independent(problem);
-        self.profile.begin(problem, weights);
+    pub(super) fn begin(&mut self, problem: &Problem<'_, K, B>, solver: &mut Solver<K, B>) {
+        self.peak_hz = line_frequency(problem, &solver.squares);
+        solver.weights.set_independent(problem);
+        self.profile.begin(problem, &solver.weights);
     }
 
     /// The best shapes so far, best first.
@@ -75,7 +80,8 @@ impl<const K: usize, const B: usize> Scanning<K, B> {
         if let Some(place) = place(problem, effect)
             && self.profile.choose(problem, place, &solver.squares).is_ok()
         {
-            self.search = Some((GridSearch::new(effect, span), place));
+            let search = GridSearch::new(effect, span).at_peak(self.peak_hz);
+            self.search = Some((search, place));
         }
         false
     }

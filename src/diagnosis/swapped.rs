@@ -132,7 +132,7 @@ impl<const K: usize, const B: usize> Swapping<K, B> {
         self.stage = Stage::Scanning(Scanning::new());
         if let Stage::Scanning(scanning) = &mut self.stage {
             let problem = Problem::new(observed, &self.base, &work.columns);
-            scanning.begin(&problem, &mut work.solver.weights);
+            scanning.begin(&problem, &mut work.solver);
         }
     }
 

@@ -107,7 +107,7 @@ fn a_scan_finds_the_hidden_shape_and_a_trial_fits_its_size() {
     let judged = judge(&curve, &mut work, &mut step);
     let problem = Problem::new((&curve).into(), &step.model, &work.columns);
     let mut scanning = Scanning::new();
-    scanning.begin(&problem, &mut work.solver.weights);
+    scanning.begin(&problem, &mut work.solver);
     let effects: [&'static dyn Effect; 2] = [&Sinusoid, &GaussMarkov];
     while !scanning.advance(&problem, &work.solver, &effects, &span) {}
     let shapes = scanning.shapes().clone();

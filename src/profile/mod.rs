@@ -9,12 +9,14 @@
 mod grid;
 mod interval;
 mod likelihood;
+mod line;
 mod neighbourhood;
 mod refinement;
 mod search;
 
 pub(crate) use interval::JointInterval;
 pub(crate) use likelihood::{Evaluation, Found, Profile};
+pub(crate) use line::line_frequency;
 pub(crate) use neighbourhood::Neighbourhood;
 pub(crate) use search::GridSearch;
 

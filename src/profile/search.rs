@@ -21,10 +21,15 @@ const MINIMA: usize = 4;
 /// The fewest steps of the first parameter between two shapes that are refined.
 const APART: u32 = 2;
 
+/// The step of shapes with the frequency of a peak, which lie apart from all others.
+const AT_PEAK: u32 = u32::MAX;
+
 /// A search over the grid of an effect's shapes. The best shapes of the grid are then refined.
 pub(crate) struct GridSearch {
     term: Term,
     grids: [Grid; MAX_PARAMETERS],
+    /// The frequency of a peak, at which the search begins.
+    peak_hz: Option<Real>,
     /// The steps of the two parameters that come next.
     at: [u32; MAX_PARAMETERS],
     /// The best shapes of the grid that lie apart, best first, and their step of the first parameter.
@@ -41,11 +46,20 @@ impl GridSearch {
         Self {
             term,
             grids: core::array::from_fn(|i| Grid::of(effect, i, span)),
+            peak_hz: None,
             at: [0; MAX_PARAMETERS],
             minima: Vec::new(),
             best: Found::none(term),
             refinement: None,
         }
+    }
+
+    /// Begins with the frequency of a peak, in Hz. It has no effect on a search that is not for a frequency.
+    pub(crate) fn at_peak(mut self, peak_hz: Option<Real>) -> Self {
+        let parameters = self.term.effect.parameters();
+        let is_frequency = parameters.first().is_some_and(|first| first.unit == "Hz");
+        self.peak_hz = peak_hz.filter(|_| is_frequency);
+        self
     }
 
     /// Begins to search among the shapes with this value of a parameter.
@@ -72,6 +86,14 @@ impl GridSearch {
             }
         }
         let [first, second] = self.grids;
+        if let Some(peak_hz) = self.peak_hz.take() {
+            for step in 0..second.steps {
+                self.term.parameters = [first.clamp(peak_hz), second.at(step)];
+                let found = evaluation.found(self.term);
+                self.keep(found, AT_PEAK);
+            }
+            return None;
+        }
         for _ in 0..EVALUATIONS_A_CALL {
             if self.at[0] >= first.steps {
                 let Some((best, _)) = self.minima.pop() else {
@@ -82,7 +104,7 @@ impl GridSearch {
             }
             self.term.parameters = [first.at(self.at[0]), second.at(self.at[1])];
             let found = evaluation.found(self.term);
-            self.keep(found);
+            self.keep(found, self.at[0]);
             self.at[1] = self.at[1].saturating_add(1);
             if self.at[1] >= second.steps {
                 self.at = [self.at[0].saturating_add(1), 0];
@@ -91,9 +113,8 @@ impl GridSearch {
         None
     }
 
-    /// Keeps a shape of the grid if it is one of the best, and the best one near it.
-    fn keep(&mut self, found: Found) {
-        let at = self.at[0];
+    /// Keeps a shape at a step of the first parameter, if it is one of the best and the best one near it.
+    fn keep(&mut self, found: Found, at: u32) {
         let parameters = found.term.parameters;
         let effect = found.term.effect;
         // Shapes with different whole numbers have minima of their own.

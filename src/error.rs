@@ -22,6 +22,25 @@ pub enum Error {
         /// The number of octaves that there is room for.
         capacity: usize,
     },
+    /// Segments of a spectrum cannot have this length. It must be a power of two from 32 to 256.
+    InvalidSegment {
+        /// The number of blocks in a segment.
+        length: u32,
+    },
+    /// A bin of the spectrum is impossible. Its `block` is not a power of 8 up to 8^9, or its index is not
+    /// one of the bins that are kept, or it does not come after the bin before it, or it has no segments, or
+    /// its density or its kurtosis is negative or not finite.
+    InvalidBin {
+        /// The number of samples in the bin's blocks.
+        block: u32,
+        /// The bin's number of periods in a segment.
+        index: u32,
+    },
+    /// There are more bins than the spectrum has room for.
+    TooManyBins {
+        /// The number of bins that there is room for.
+        capacity: usize,
+    },
     /// Fewer octaves have enough differences than the fit needs: record longer.
     TooFewOctaves {
         /// The number of octaves that the curve has.
@@ -83,6 +102,21 @@ impl core::fmt::Display for Error {
                 write!(
                     f,
                     "there are more than {capacity} octaves: use a curve of larger capacity"
+                )
+            }
+            Self::InvalidSegment { length } => write!(
+                f,
+                "segments of {length} blocks are impossible: give a power of two from 32 to 256"
+            ),
+            Self::InvalidBin { block, index } => write!(
+                f,
+                "the bin {index} of blocks of {block} samples is impossible: give ascending bins of \
+                 powers of 8 up to 8^9, each with segments and a finite density that is not negative"
+            ),
+            Self::TooManyBins { capacity } => {
+                write!(
+                    f,
+                    "there are more than {capacity} bins: use a spectrum of larger capacity"
                 )
             }
             Self::TooFewOctaves { found, needed } => write!(

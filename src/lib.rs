@@ -232,6 +232,7 @@ pub mod queue;
 mod real;
 pub mod self_test;
 pub mod sensor;
+pub mod spectrum;
 mod square_sum;
 #[cfg(feature = "storage")]
 pub mod storage;

@@ -11,6 +11,9 @@ pub const MAX_PARAMETERS: usize = 2;
 /// The number of fitted shape parameters that one model has room for.
 pub const MAX_SHAPE: usize = 4;
 
+/// The largest number of blocks in a segment of a spectrum.
+pub const MAX_SEGMENT: usize = 256;
+
 /// The number of unknowns in the largest system of normal equations. The coefficients of a model come
 /// first, its fitted shape parameters follow.
 pub(crate) const UNKNOWNS: usize = MAX_EFFECTS + MAX_SHAPE;

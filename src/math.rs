@@ -52,6 +52,30 @@ const SERIES: [[Real; 2]; TERMS] = {
     series
 };
 
+/// The sine of the angle `i` of `turn`, up to an eighth of a turn, for tables computed by the compiler.
+pub(crate) const fn sine_series(i: usize, turn: usize) -> f64 {
+    series(i, turn, 1)
+}
+
+/// The cosine of the angle `i` of `turn`, up to an eighth of a turn, for tables computed by the compiler.
+pub(crate) const fn cosine_series(i: usize, turn: usize) -> f64 {
+    series(i, turn, 0)
+}
+
+/// Taylor's series whose first term is the power `first` of the angle: the sine for 1, the cosine for 0.
+const fn series(i: usize, turn: usize, first: u32) -> f64 {
+    let angle = 2.0 * core::f64::consts::PI * i as f64 / turn as f64;
+    let square = angle * angle;
+    // The terms left out are below 1e-20.
+    let mut k = first + 20;
+    let mut sum = 1.0;
+    while k > first {
+        sum = 1.0 - square * sum / (k * (k - 1)) as f64;
+        k -= 2;
+    }
+    if first == 1 { angle * sum } else { sum }
+}
+
 /// The binary logarithm, accurate to about a percent. It sets the number of steps of a search grid.
 pub(crate) fn log2_roughly(x: Real) -> Real {
     real(micromath::F32(single(x)).log2().0)

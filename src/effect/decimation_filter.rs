@@ -96,6 +96,20 @@ impl Filter {
         sum
     }
 
+    /// The autocovariance of the means of blocks of `m` samples, at a distance of `x` samples:
+    /// `Σ_i (m − |i − x|) r_i/m²` over all `i` within a block of `x`.
+    fn of_means(&self, x: Real, m: Real) -> Real {
+        let end = self.support.min(x + m);
+        let mut i = (1.0 - self.support).max(x - m + 1.0);
+        let mut sum = 0.0;
+        while i < end {
+            let (lag, apart) = (i.max(-i), (i - x).max(x - i));
+            sum += (m - apart) * self.at(lag);
+            i += 1.0;
+        }
+        sum / (m * m)
+    }
+
     /// The second difference of [`sum`](Self::sum).
     fn second_difference(&self, x: Real, m: Real) -> Real {
         if x >= m + self.support {
@@ -197,6 +211,16 @@ impl Effect for DecimationFilter {
             cosine: 0.0,
             sine: 0.0,
         })
+    }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        let filter = Filter::new(shape);
+        let at_zero = filter.of_means(0.0, m);
+        let mut distance = m;
+        for value in values {
+            *value = (at_zero - filter.of_means(distance, m)) / shape.interval_s;
+            distance += m;
+        }
     }
 }
 

@@ -162,6 +162,23 @@ pub trait Effect: Sync {
         sum.add(m, |x| weight * self.second_difference(x, m, shape));
     }
 
+    /// Writes the semivariogram `γ(l) = ½ E (y_{j+l} − y_j)²` of the means `y` of blocks of `m` samples, at the
+    /// distances of `l = 1, 2, …` blocks, in the rate unit squared per coefficient squared. At one block it is
+    /// the Allan variance. Unlike the autocovariance, it exists for effects without a variance too.
+    ///
+    /// The default subtracts second differences at `x = 0`. An effect overrides it where its rate changes
+    /// little from block to block, so that they would cancel, or where one distance leads to the next.
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        let tau_s = m * shape.interval_s;
+        let per_square = 1.0 / (tau_s * tau_s);
+        let at_zero = self.second_difference(0.0, m, shape);
+        let mut x = m;
+        for value in values {
+            *value = per_square * (self.second_difference(x, m, shape) - at_zero);
+            x += m;
+        }
+    }
+
     /// The response of a deterministic effect to clusters of `m` samples; `None` for a random one.
     ///
     /// A deterministic effect is the same in every record but for its phase. It shifts the curve,

@@ -77,6 +77,10 @@ impl Effect for GaussMarkov {
         let weight = weight * squared(shape.interval_s);
         pole(shape).add_second_differences(m, weight, sum);
     }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        pole(shape).variogram(m, 1.0, values);
+    }
 }
 
 impl Explain for GaussMarkov {

@@ -81,6 +81,10 @@ impl Effect for LowPass {
     ) {
         pole(shape).add_second_differences(m, weight * scale(shape), sum);
     }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        pole(shape).variogram(m, variance(shape), values);
+    }
 }
 
 impl Explain for LowPass {

@@ -173,6 +173,22 @@ impl Pole {
         }
     }
 
+    /// Writes `scale` times the semivariogram of the means of blocks of `m` samples.
+    ///
+    /// It is `γ(l) = σ²(m) + Re factor (1−W)² (1 − W^(l−1))/m²` with `W = z^m`, in which nothing cancels.
+    pub(super) fn variogram(&self, m: Real, scale: Real, values: &mut [Real]) {
+        let block = self.power(m);
+        let rest = block.rest();
+        let first = scale * self.variance_of(m, block.power);
+        let unit = self.factor * rest * rest * (scale / (m * m));
+        // This is 1 − W^(l−1).
+        let mut gone = Complex::new(0.0, 0.0);
+        for value in values {
+            *value = first + (unit * gone).re;
+            gone = rest + block.power * gone;
+        }
+    }
+
     /// Adds `weight` times the second differences for clusters of `m` samples. The powers follow from one
     /// another by multiplication along the lattice.
     pub(super) fn add_second_differences(

@@ -124,6 +124,22 @@ impl Effect for PowerLaw {
             unit * growth.far(s, *half)
         });
     }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        let growth = Growth::new(variance_exponent(shape));
+        let unit = self.variance(m, shape);
+        let mut distance = 1.0;
+        for value in values {
+            // The second difference at 0 vanishes in this unit.
+            *value = unit
+                * if distance < NEAR {
+                    growth.near(distance, |s| growth.log_like(s))
+                } else {
+                    growth.far(distance, growth.log_like(distance))
+                };
+            distance += 1.0;
+        }
+    }
 }
 
 impl Explain for PowerLaw {

@@ -61,6 +61,10 @@ impl Effect for RandomTelegraph {
     ) {
         GaussMarkov.add_second_differences(m, weight, shape, sum);
     }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        GaussMarkov.variogram(m, shape, values);
+    }
 }
 
 impl Explain for RandomTelegraph {

@@ -102,6 +102,10 @@ impl Effect for Resonance {
             ..unit
         })
     }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        pole(shape).variogram(m, 1.0, values);
+    }
 }
 
 impl Explain for Resonance {

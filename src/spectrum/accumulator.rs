@@ -1,0 +1,250 @@
+//! The accumulator: it turns counts into one sum of powers per bin.
+
+use super::{
+    level::{Level, RADIX, RADIX_BITS},
+    window::is_possible,
+};
+use crate::list::numbered;
+
+/// Sums the power spectral densities of a record, in fixed memory: `LEVELS` levels of segments of `P` blocks.
+/// Level `i` takes blocks of `8^i` samples. The [module](super) gives the definition.
+///
+/// `P` is a power of two from 32 to 256. A target takes 64, so that each level has 28 bins.
+///
+/// # Two halves of the work
+///
+/// [`push`](Self::push) only stores a count, which suits an interrupt. [`advance`](Self::advance) does the
+/// rest in the main loop: one call transforms at most one segment. The accumulator holds `P` counts until they
+/// are worked on, so a main loop that calls `advance` until it returns `false` has to do so every `P` samples.
+///
+/// If it is late, the counts that find no room are left out, and [`lost`](Self::lost) tells their number. The
+/// place is treated as a [`gap`](Self::gap): no segment spans it, and the sums stay right. A gap ends a segment
+/// at every level, so each loss costs the highest levels most.
+///
+/// # How it works
+///
+/// Blocks are sums of integers, less the first count of the stretch. The first block of a segment is subtracted
+/// from the others before they become floats. So a constant offset cancels exactly, and host and target agree
+/// to the bit. Sums of blocks keep all their bits up to a range of 2^30 counts. Beyond it, the level drops the
+/// lowest bits of its blocks, so that any input fits.
+///
+/// The sums are in single precision. From 2^20 segments on, where a bin scatters by 0.1 %, a level halves
+/// its sums and their number: what came earlier then weighs less than what comes later, but no sum grows until
+/// it takes up nothing more.
+///
+/// # Cost
+///
+/// The state takes `24 + 4 P + (8 P + 8) LEVELS` bytes and alignment: 3928 for `P = 64` and 7 levels. An empty
+/// state is all zero, so that a `static` is placed in `.bss`.
+///
+/// # Example
+///
+/// ```
+/// use allanite::{Scale, spectrum::{Spectrum, SpectrumAccumulator}};
+///
+/// let mut accumulator = SpectrumAccumulator::<64, 3>::new();
+/// let mut random = 1_u32;
+/// for _ in 0..10_000 {
+///     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+///     accumulator.push((random >> 24) as i32); // in the interrupt
+///     while accumulator.advance() {} // in the main loop
+/// }
+/// let spectrum: Spectrum<84> = accumulator.spectrum(Scale::new(1.0, 100.0)?);
+/// // The third level has not yet the 16 segments that it needs.
+/// assert_eq!(spectrum.bins().len(), 2 * 28);
+/// // White noise of the variance 256²/12, over 50 Hz.
+/// let bins = spectrum.bins().iter();
+/// let mean = bins.map(|bin| bin.density).sum::<allanite::Real>() / 56.0;
+/// assert!((mean / (256.0 * 256.0 / 12.0 / 50.0) - 1.0).abs() < 0.1);
+/// # Ok::<(), allanite::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpectrumAccumulator<const P: usize, const LEVELS: usize> {
+    /// The samples since the last gap that were worked on.
+    number: u64,
+    /// The samples that found no room.
+    lost: u64,
+    /// The counts that wait to be worked on: `waiting` of them, from the slot `taken` on.
+    counts: [i32; P],
+    waiting: u32,
+    taken: u32,
+    /// The first count since the last gap.
+    reference: i32,
+    /// Bit `i` tells that level `i` has a segment to transform.
+    due: u16,
+    /// Whether samples were lost after those that wait.
+    is_late: bool,
+    levels: [Level<P>; LEVELS],
+}
+
+impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
+    /// The proof that no input overflows, which the compiler checks where the type is used.
+    const BOUNDS: () = {
+        assert!(
+            is_possible(P),
+            "the length of a segment is a power of two from 32 to 256"
+        );
+        assert!(LEVELS >= 1, "a spectrum needs a level");
+        // A sum of counts, less the reference, is below 8^9 · 2^32 = 2^59.
+        assert!(
+            LEVELS <= 10,
+            "a spectrum has at most 10 levels, so that nothing overflows"
+        );
+    };
+
+    /// An empty accumulator.
+    pub const fn new() -> Self {
+        const { Self::BOUNDS };
+        Self {
+            number: 0,
+            lost: 0,
+            counts: [0; P],
+            waiting: 0,
+            taken: 0,
+            reference: 0,
+            due: 0,
+            is_late: false,
+            levels: [Level::EMPTY; LEVELS],
+        }
+    }
+
+    /// Stores one count for [`advance`](Self::advance). If there is no room, the count is [`lost`](Self::lost).
+    #[inline]
+    pub fn push(&mut self, count: i32) {
+        let waiting = self.waiting;
+        if waiting >= P as u32 || self.is_late {
+            self.lose();
+            return;
+        }
+        self.counts[self.taken.wrapping_add(waiting) as usize % P] = count;
+        self.waiting = waiting.wrapping_add(1);
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn lose(&mut self) {
+        // What comes later must not join what came earlier. So nothing is stored until the gap is made.
+        self.is_late = true;
+        self.lost = self.lost.saturating_add(1);
+    }
+
+    /// Adds counts, and does all the work of them and of those that wait. None is lost.
+    pub fn push_slice(&mut self, counts: &[i32]) {
+        self.finish();
+        for &count in counts {
+            self.take(count);
+            while self.transform() {}
+        }
+    }
+
+    /// Does a part of the work that waits, and tells whether there is more. A call transforms at most one
+    /// segment.
+    pub fn advance(&mut self) -> bool {
+        while self.due == 0 && self.waiting > 0 {
+            let count = self.counts[self.taken as usize % P];
+            self.taken = self.taken.wrapping_add(1) % P as u32;
+            self.waiting = self.waiting.wrapping_sub(1);
+            self.take(count);
+        }
+        if self.waiting == 0 && self.is_late && self.due == 0 {
+            self.is_late = false;
+            self.end();
+        }
+        self.transform() && (self.due > 0 || self.waiting > 0 || self.is_late)
+    }
+
+    /// Does all the work that waits.
+    fn finish(&mut self) {
+        while self.advance() {}
+    }
+
+    /// Adds one count to the blocks of every level that it completes. No segment may wait.
+    #[inline]
+    fn take(&mut self, count: i32) {
+        if self.number == 0 {
+            self.reference = count;
+        }
+        let mut block = self.number;
+        self.number = block.wrapping_add(1);
+        let mut sum = i64::from(count).wrapping_sub(i64::from(self.reference));
+        let mut level_bit = 1_u16;
+        for level in &mut self.levels {
+            level.push(block, sum);
+            let blocks = block.wrapping_add(1);
+            if blocks.is_multiple_of(P as u64 / 2) && blocks >= P as u64 {
+                self.due |= level_bit;
+            }
+            if !blocks.is_multiple_of(RADIX as u64) {
+                return;
+            }
+            sum = level.last(block);
+            block >>= RADIX_BITS;
+            level_bit = level_bit.wrapping_shl(1);
+        }
+    }
+
+    /// Transforms one segment; `false` if none is due.
+    fn transform(&mut self) -> bool {
+        for (i, level) in numbered(self.levels.iter_mut()) {
+            let bit = 1_u16.wrapping_shl(i as u32);
+            if self.due & bit != 0 {
+                self.due &= !bit;
+                let block_bits = RADIX_BITS.wrapping_mul(i as u32);
+                level.add_segment(self.number.wrapping_shr(block_bits), block_bits);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Marks a place where samples were lost or the gyro was disturbed. No block and no segment spans this
+    /// place. What was summed stays. A call first does all the work that waits.
+    pub fn gap(&mut self) {
+        self.finish();
+        self.end();
+    }
+
+    /// Forgets what is not yet in a segment.
+    fn end(&mut self) {
+        self.number = 0;
+        self.reference = 0;
+        self.taken = 0;
+        self.counts = [0; P];
+        for level in &mut self.levels {
+            level.end();
+        }
+    }
+
+    /// Adds another record of the same sensor, as if a gap lay between the two.
+    pub fn merge(&mut self, other: &Self) {
+        let mut other = other.clone();
+        other.gap();
+        self.gap();
+        for (own, other) in self.levels.iter_mut().zip(&other.levels) {
+            own.merge(other);
+        }
+        self.lost = self.lost.saturating_add(other.lost);
+    }
+
+    /// Forgets everything.
+    pub fn reset(&mut self) {
+        *self = Self::new();
+    }
+
+    /// The number of samples that found no room, because [`advance`](Self::advance) was called too late.
+    pub const fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// What is kept for every block length, with the number of bits in that length, shortest blocks first.
+    pub(super) fn levels(&self) -> impl Iterator<Item = (u32, &Level<P>)> {
+        let bits = (0_u32..).map(|i| RADIX_BITS.wrapping_mul(i));
+        bits.zip(&self.levels)
+    }
+}
+
+impl<const P: usize, const LEVELS: usize> Default for SpectrumAccumulator<P, LEVELS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

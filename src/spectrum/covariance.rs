@@ -1,0 +1,67 @@
+//! How the bins of a spectrum scatter together.
+
+use super::density::Bin;
+use crate::{math, real::Real};
+
+/// The number of bins, from a bin on, with which it is correlated: itself and the next two.
+pub const BAND: usize = 3;
+
+/// The correlation of the amplitudes of bins at a distance of 0, 1 and 2, without its sign: that of the window's
+/// transform ½, −¼ with itself, relative to ⅜.
+const AMPLITUDES: [Real; BAND] = [1.0, 2.0 / 3.0, 1.0 / 6.0];
+
+/// The covariance of two bins of a level, relative to the product of their expected densities. Bins of
+/// different levels, and those at a distance of [`BAND`] and more, do not scatter together.
+///
+/// `shares` are those that deterministic effects, such as a sinusoid, have in the two expected densities.
+/// With the random part `c`, the deterministic part `g` and the correlation `a = 1, ⅔, ⅙` of the amplitudes,
+///
+/// ```text
+/// Cov(P_k, P_k') = [(a √(c c') + √(g g'))² − g g'] / n_eff
+/// ```
+///
+/// which is `(1, 4/9, 1/36) c c'/n_eff` without deterministic effects, and `[(c+g)² − g²]/n_eff` for one bin. The
+/// amplitudes are taken to be in phase, as they are within the main lobe of a line. The matrix is positive
+/// definite for any shares below 1, and banded.
+///
+/// The number of effective segments is that of the random part. Where a line beats against noise, it is 0.71 to
+/// 1.4 times as many, depending on the place of the line between two bins.
+pub fn relative_covariance(distance: usize, effective_segments: Real, shares: [Real; 2]) -> Real {
+    let Some(amplitude) = AMPLITUDES.get(distance) else {
+        return 0.0;
+    };
+    let [share, other] = shares;
+    let (random, both) = ((1.0 - share) * (1.0 - other), share * other);
+    let beat = if both > 0.0 {
+        2.0 * amplitude * math::sqrt((random * both).max(0.0))
+    } else {
+        0.0
+    };
+    (amplitude * amplitude * random + beat) / effective_segments
+}
+
+/// The upper band of the covariance of all bins, relative to their expected densities: for each bin, its
+/// variance and its covariance with the next bins, up to [`BAND`]` − 1` of them. `shares` are those of
+/// deterministic effects in the bins, in their order; bins beyond their end have none.
+///
+/// [`Spectrum::bins`](super::Spectrum::bins) gives the bins.
+pub fn covariance_rows<'a>(
+    bins: &'a [Bin],
+    shares: &'a [Real],
+) -> impl Iterator<Item = [Real; BAND]> + 'a {
+    let share = |place: usize| shares.get(place).copied().unwrap_or(0.0);
+    (0..bins.len()).map(move |place| {
+        let mut row = [0.0; BAND];
+        let own = bins.get(place);
+        for (covariance, later) in row.iter_mut().zip(place..) {
+            if let (Some(own), Some(other)) = (own, bins.get(later))
+                && own.block == other.block
+            {
+                let distance = other.index.wrapping_sub(own.index) as usize;
+                let shares = [share(place), share(later)];
+                *covariance = relative_covariance(distance, own.effective_segments(), shares);
+            }
+        }
+        row
+    })
+}

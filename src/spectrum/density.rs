@@ -1,0 +1,215 @@
+//! The spectrum, which is what remains of the samples beside the curve.
+
+use super::{
+    accumulator::SpectrumAccumulator,
+    expected::expected_densities,
+    level::UNIT_BITS,
+    window::{bins, first_bin, is_possible, sum_of_squares},
+};
+use crate::{
+    curve::Scale,
+    effect::{Effect, SampledShape},
+    error::Error,
+    real::{Real, real},
+};
+use heapless::Vec;
+
+/// The effective number of segments per segment, `1/(1 + 2/36)`: those that overlap by half are correlated by
+/// 1/36 (Welch 1967, for the Hann window).
+const EFFECTIVE: Real = 18.0 / 19.0;
+
+/// One bin of a spectrum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Bin {
+    /// The number of samples in a block, a power of 8.
+    pub block: u32,
+    /// The number of periods in a segment, `k`.
+    pub index: u32,
+    /// The frequency `f = k/(P M τ₀)`, in Hz.
+    pub frequency_hz: Real,
+    /// The one-sided power spectral density, in rate units squared per hertz.
+    pub density: Real,
+    /// The number of half-overlapping segments behind the density.
+    pub segments: u32,
+    /// The spectral kurtosis of the segments' powers: 1 ± 2/√n for steady Gaussian noise in `n` segments,
+    /// less for a line, more for bursts or noise that changes (Nita & Gary 2010, PASP 122, 595, eq. 8).
+    pub spectral_kurtosis: Real,
+}
+
+impl Bin {
+    /// The number of independent segments that would scatter as much. For Gaussian noise, the relative
+    /// standard error of the density is one over its root.
+    pub fn effective_segments(&self) -> Real {
+        EFFECTIVE * real(self.segments)
+    }
+}
+
+/// The power spectral densities of a record, in up to `B` bins. The bins are in the order of their levels,
+/// shortest blocks first, and within a level in the order of their frequencies.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Spectrum<const B: usize> {
+    rate_hz: Real,
+    segment: u32,
+    bins: Vec<Bin, B>,
+}
+
+impl<const B: usize> Spectrum<B> {
+    /// The number of segments that a level needs to enter a spectrum. With fewer, the distribution of the
+    /// estimates is too far from any that a fit can weight. The number is chosen by hand; no study varies it.
+    pub const MIN_SEGMENTS: u32 = 16;
+
+    /// A spectrum from stored bins, of segments of `segment` blocks. Of each bin, `block`, `index`, `density`,
+    /// `segments` and `spectral_kurtosis` are taken; its frequency follows.
+    ///
+    /// # Errors
+    /// [`Error::InvalidRate`] if `rate_hz` is not positive and finite, [`Error::InvalidSegment`] if segments
+    /// cannot have this length, [`Error::InvalidBin`] if a bin is not possible, [`Error::TooManyBins`] if there
+    /// are more than `B`.
+    pub fn new(
+        rate_hz: Real,
+        segment: u32,
+        bins: impl IntoIterator<Item = Bin>,
+    ) -> Result<Self, Error> {
+        Scale::new(1.0, rate_hz)?;
+        let length = segment as usize;
+        if !is_possible(length) {
+            return Err(Error::InvalidSegment { length: segment });
+        }
+        let mut list: Vec<Bin, B> = Vec::new();
+        let mut last = (0, 0);
+        for bin in bins {
+            let Bin { block, index, .. } = bin;
+            let indices = first_bin(length)..length / 2;
+            let exists = is_block(block) && indices.contains(&(index as usize));
+            let is_number = |x: Real| x.is_finite() && x >= 0.0;
+            let measured = bin.segments > 0 && is_number(bin.density);
+            if !(exists && measured && is_number(bin.spectral_kurtosis) && (block, index) > last) {
+                return Err(Error::InvalidBin { block, index });
+            }
+            last = (block, index);
+            let frequency_hz = frequency(rate_hz, length, block, index);
+            if list
+                .push(Bin {
+                    frequency_hz,
+                    ..bin
+                })
+                .is_err()
+            {
+                return Err(Error::TooManyBins { capacity: B });
+            }
+        }
+        Ok(Self {
+            rate_hz,
+            segment,
+            bins: list,
+        })
+    }
+
+    /// Samples per second.
+    pub const fn rate_hz(&self) -> Real {
+        self.rate_hz
+    }
+
+    /// The number of blocks in a segment, `P`.
+    pub const fn segment(&self) -> u32 {
+        self.segment
+    }
+
+    /// All bins.
+    pub fn bins(&self) -> &[Bin] {
+        &self.bins
+    }
+
+    /// The bins of each level, shortest blocks first.
+    pub fn levels(&self) -> impl Iterator<Item = &[Bin]> {
+        self.bins.chunk_by(|one, next| one.block == next.block)
+    }
+
+    /// The densities that an effect with a coefficient of one is expected to have in the bins, in their order,
+    /// in rate units squared per hertz and per coefficient squared. `parameters` are those of its shape.
+    pub fn expected(
+        &self,
+        effect: &dyn Effect,
+        parameters: [Real; crate::limits::MAX_PARAMETERS],
+    ) -> Vec<Real, B> {
+        let shape = SampledShape {
+            interval_s: 1.0 / self.rate_hz,
+            parameters,
+        };
+        let length = self.segment as usize;
+        let mut all = Vec::new();
+        for level in self.levels() {
+            let Some(block) = level.first().map(|bin| bin.block) else {
+                continue;
+            };
+            let mut densities = [0.0; crate::limits::MAX_SEGMENT / 2];
+            expected_densities(effect, &shape, length, block, &mut densities);
+            for bin in level {
+                let place = (bin.index as usize).wrapping_sub(first_bin(length));
+                // There are as many densities as bins.
+                let _ = all.push(densities.get(place).copied().unwrap_or(0.0));
+            }
+        }
+        all
+    }
+}
+
+/// Whether blocks can have this number of samples: a power of 8 up to 8^9.
+fn is_block(block: u32) -> bool {
+    block.is_power_of_two() && block.trailing_zeros().is_multiple_of(3) && block <= 1 << 27
+}
+
+/// The frequency of a bin, in Hz.
+fn frequency(rate_hz: Real, length: usize, block: u32, index: u32) -> Real {
+    real(index) * (rate_hz / (real(length) * real(block)))
+}
+
+impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
+    /// The spectrum of the levels with at least [`Spectrum::MIN_SEGMENTS`] segments. Only whole levels are
+    /// taken, shortest blocks first, as many as the list has room for. A level has `7P/16` bins.
+    ///
+    /// What still waits for [`advance`](Self::advance) is not in it.
+    pub fn spectrum<const B: usize>(&self, scale: Scale) -> Spectrum<B> {
+        let mut list: Vec<Bin, B> = Vec::new();
+        for (block_bits, level) in self.levels() {
+            let segments = level.segments();
+            let room = B.saturating_sub(list.len());
+            if segments < Spectrum::<B>::MIN_SEGMENTS || room < bins(P) {
+                break;
+            }
+            let block = 1_u32.wrapping_shl(block_bits);
+            let n = real(segments);
+            let unit = scale.rate_per_count() * real(1_u32 << UNIT_BITS);
+            let per_power = 2.0 * real(block) / (scale.rate_hz() * sum_of_squares(P));
+            for ((power, square), index) in level.sums().zip(first_bin(P) as u32..) {
+                let mean = real(power) / n;
+                let bin = Bin {
+                    block,
+                    index,
+                    frequency_hz: frequency(scale.rate_hz(), P, block, index),
+                    density: per_power * (mean * unit) * unit,
+                    segments,
+                    spectral_kurtosis: spectral_kurtosis(n, mean, real(square) / n),
+                };
+                // There is room for the level.
+                let _ = list.push(bin);
+            }
+        }
+        Spectrum {
+            rate_hz: scale.rate_hz(),
+            segment: P as u32,
+            bins: list,
+        }
+    }
+}
+
+/// `(n+1)/(n−1) (n ΣP²/(ΣP)² − 1)`, and 1 where there is no power.
+fn spectral_kurtosis(n: Real, mean: Real, mean_square: Real) -> Real {
+    if mean <= 0.0 {
+        return 1.0;
+    }
+    let ratio = (mean_square / mean) / mean;
+    ((n + 1.0) / (n - 1.0) * (ratio - 1.0)).max(0.0)
+}

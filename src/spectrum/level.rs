@@ -1,0 +1,149 @@
+//! What is kept for one block length.
+
+use super::{transform::Segment, window::bins};
+
+/// The number of blocks that make a block of the next level.
+pub(super) const RADIX: usize = 8;
+
+/// The number of bits by which the block length grows from level to level.
+pub(super) const RADIX_BITS: u32 = RADIX.trailing_zeros();
+
+/// Kept blocks lie within this limit, so that the difference of any two fits in 32 bits.
+const LIMIT: i64 = 1 << 30;
+
+/// The unit of the values that are transformed is this power of two, in counts. With it, neither the square
+/// of a power of full scale nor that of a hundredth of a count leaves the range of single precision.
+pub(super) const UNIT_BITS: u32 = 16;
+
+/// The number of segments at which the sums are halved.
+const MANY: u32 = 1 << 20;
+
+/// The ring of the last blocks of one length, and the sums over their segments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Level<const P: usize> {
+    /// Sums of counts over the last blocks, less that of the reference, in units of `2^exponent`. Block `b` is
+    /// in slot `b % P`.
+    blocks: [i32; P],
+    /// The sums over all segments: in the first half the power of every bin, in the second half its square.
+    sums: [f32; P],
+    exponent: u32,
+    segments: u32,
+}
+
+impl<const P: usize> Level<P> {
+    pub(super) const EMPTY: Self = Self {
+        blocks: [0; P],
+        sums: [0.0; P],
+        exponent: 0,
+        segments: 0,
+    };
+
+    /// Keeps block `number`, counted from 0.
+    #[inline]
+    pub(super) fn push(&mut self, number: u64, sum: i64) {
+        let mut scaled = sum.wrapping_shr(self.exponent);
+        if !(-LIMIT..LIMIT).contains(&scaled) {
+            self.make_room(sum);
+            scaled = sum.wrapping_shr(self.exponent);
+        }
+        self.blocks[number as usize % P] = scaled as i32;
+    }
+
+    /// Makes the unit of the blocks larger, so that this sum can be kept.
+    #[cold]
+    #[inline(never)]
+    fn make_room(&mut self, sum: i64) {
+        let mut raised = 0_u32;
+        while !(-LIMIT..LIMIT).contains(&sum.wrapping_shr(self.exponent.wrapping_add(raised))) {
+            raised = raised.wrapping_add(1);
+        }
+        for block in &mut self.blocks {
+            *block >>= raised.min(i32::BITS - 1);
+        }
+        self.exponent = self.exponent.wrapping_add(raised);
+    }
+
+    /// The sum of the blocks up to block `number` that make a block of the next level.
+    #[inline]
+    pub(super) fn last(&self, number: u64) -> i64 {
+        let end = number as usize;
+        let mut sum = 0_i64;
+        for back in 0..RADIX {
+            let block = self.blocks[end.wrapping_sub(back) % P];
+            sum = sum.wrapping_add(i64::from(block));
+        }
+        sum.wrapping_shl(self.exponent)
+    }
+
+    /// Adds the segment that ends before block `number`, for blocks of `2^block_bits` samples.
+    pub(super) fn add_segment(&mut self, number: u64, block_bits: u32) {
+        let start = number as usize;
+        let first = self.blocks[start % P];
+        // The transform multiplies by 8.
+        let scale = power_of_two(self.exponent, block_bits.wrapping_add(UNIT_BITS + 3));
+        let blocks = &self.blocks;
+        let segment = Segment::<P>::new(|j| {
+            let block = blocks[start.wrapping_add(j) % P];
+            block.wrapping_sub(first) as f32 * scale
+        });
+        if self.segments >= MANY {
+            self.halve();
+        }
+        self.segments = self.segments.saturating_add(1);
+        let Some((powers, squares)) = self.sums.split_at_mut_checked(P / 2) else {
+            return;
+        };
+        let mut sums = powers.iter_mut().zip(squares);
+        segment.powers(|power| {
+            if let Some((sum, square)) = sums.next() {
+                *sum += power;
+                *square += power * power;
+            }
+        });
+    }
+
+    /// Gives everything so far half its weight. A sum in single precision would otherwise stop taking up the
+    /// powers of single segments.
+    #[cold]
+    #[inline(never)]
+    fn halve(&mut self) {
+        self.segments /= 2;
+        for sum in &mut self.sums {
+            *sum *= 0.5;
+        }
+    }
+
+    /// Forgets the blocks.
+    pub(super) fn end(&mut self) {
+        self.blocks = [0; P];
+        self.exponent = 0;
+    }
+
+    /// Adds the sums of another record.
+    pub(super) fn merge(&mut self, other: &Self) {
+        for (own, other) in self.sums.iter_mut().zip(&other.sums) {
+            *own += other;
+        }
+        self.segments = self.segments.saturating_add(other.segments);
+        while self.segments > MANY {
+            self.halve();
+        }
+    }
+
+    /// The number of segments that the sums stand for.
+    pub(super) const fn segments(&self) -> u32 {
+        self.segments
+    }
+
+    /// The sums of power and of its square of every bin, in the unit of [`UNIT_BITS`].
+    pub(super) fn sums(&self) -> impl Iterator<Item = (f32, f32)> + '_ {
+        let squares = self.sums.iter().skip(P / 2);
+        let sums = self.sums.iter().zip(squares).take(bins(P));
+        sums.map(|(&power, &square)| (power, square))
+    }
+}
+
+/// `2^(above − below)`, made from its bits.
+fn power_of_two(above: u32, below: u32) -> f32 {
+    f32::from_bits(127_u32.wrapping_add(above).saturating_sub(below).max(1) << 23)
+}

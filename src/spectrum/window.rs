@@ -1,0 +1,161 @@
+//! The Hann window, and the angles of the transform.
+
+use crate::real::{Real, real};
+use crate::{limits::MAX_SEGMENT, math};
+
+/// The number of angles in a turn, which the table of sines divides evenly.
+const TURN: usize = MAX_SEGMENT;
+
+const QUARTER: usize = TURN / 4;
+
+/// The sines of the angles from 0 to three quarters of a turn. A cosine lies a quarter further on.
+static SINES: [Real; 3 * QUARTER + 1] = {
+    let mut sines = [0.0; 3 * QUARTER + 1];
+    let mut i = 0;
+    while i < sines.len() {
+        sines[i] = sine(i) as Real;
+        i += 1;
+    }
+    sines
+};
+
+/// The sine of the angle `i` of [`TURN`], for the table.
+const fn sine(i: usize) -> f64 {
+    let (half, sign) = if i < 2 * QUARTER {
+        (i, 1.0)
+    } else {
+        (i - 2 * QUARTER, -1.0)
+    };
+    // Below an eighth of a turn, the series of the sine is used, above it that of the cosine.
+    let near = if half <= QUARTER {
+        half
+    } else {
+        2 * QUARTER - half
+    };
+    if 2 * near <= QUARTER {
+        sign * math::sine_series(near, TURN)
+    } else {
+        sign * math::cosine_series(QUARTER - near, TURN)
+    }
+}
+
+/// Cosine and sine of the angle `i` of `length`, below half a turn. `length` is a power of two up to
+/// [`MAX_SEGMENT`].
+#[inline(always)]
+pub(super) fn cosine_and_sine(i: usize, length: usize) -> (Real, Real) {
+    let i = i.wrapping_mul(TURN.checked_div(length).unwrap_or(0)) % (2 * QUARTER);
+    (SINES[i + QUARTER], SINES[i])
+}
+
+/// The cosine of the angle `i` of `length`, for any `i`. `length` is a power of two up to
+/// [`MAX_SEGMENT`].
+#[inline(always)]
+pub(super) fn cosine(i: usize, length: usize) -> Real {
+    cosine_at(place(i, length))
+}
+
+/// The place of the angle `i` of `length` in a turn, for [`cosine_at`].
+#[inline(always)]
+pub(super) fn place(i: usize, length: usize) -> usize {
+    i.wrapping_mul(TURN.checked_div(length).unwrap_or(0)) % TURN
+}
+
+/// The cosine of an angle, given by its place in a turn. Any multiple of a turn may be added.
+#[inline(always)]
+pub(super) fn cosine_at(place: usize) -> Real {
+    let place = place % TURN;
+    let folded = place.min(TURN - place);
+    SINES.get(folded + QUARTER).copied().unwrap_or(0.0)
+}
+
+/// The first bin of a level with segments of this length.
+pub(super) const fn first_bin(length: usize) -> usize {
+    length / 16
+}
+
+/// The number of bins of a level with segments of this length.
+pub(super) const fn bins(length: usize) -> usize {
+    length / 2 - length / 16
+}
+
+/// The sum of the squares of the window's weights, `Σ w² = 3P/8`.
+pub(super) fn sum_of_squares(length: usize) -> Real {
+    0.375 * real(length)
+}
+
+/// Whether segments can have this length: it is a power of two from 32 to [`MAX_SEGMENT`]. The lowest bin must
+/// be 2 or more, because the window spreads a constant to the bins 0 and 1.
+pub(super) const fn is_possible(length: usize) -> bool {
+    length.is_power_of_two() && length >= 32 && length <= MAX_SEGMENT
+}
+
+/// The window's products `c(l) = Σ_j w_j w_{j+l}`, for segments of one length.
+///
+/// ```text
+/// c(l) = ¼ [(P − l)(1 + ½ cos θl) + (¾ q + ¼/q) sin θl],      θ = 2π/P,  q = cot ½θ
+/// ```
+pub(super) struct Products {
+    length: usize,
+    /// The factor of the sine.
+    factor: Real,
+}
+
+impl Products {
+    /// The products for segments of this length.
+    pub(super) fn new(length: usize) -> Self {
+        // The half of θ is not in the table if the length is the largest one.
+        let (sine, cosine) = math::sincos_of_turns(0.5 / real(length));
+        let cotangent = cosine / sine;
+        Self {
+            length,
+            factor: 0.75 * cotangent + 0.25 / cotangent,
+        }
+    }
+
+    /// The product at a distance of `l` blocks, less than the length.
+    pub(super) fn at(&self, l: usize) -> Real {
+        let overlap = real(self.length.saturating_sub(l));
+        let place = place(l, self.length);
+        let (cosine, sine) = (cosine_at(place), cosine_at(place.wrapping_sub(QUARTER)));
+        0.25 * (overlap * (1.0 + 0.5 * cosine) + self.factor * sine)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::{by_precision, double};
+    use core::f64::consts::PI;
+
+    #[test]
+    fn the_tables_are_sines_and_cosines() {
+        for length in [32_usize, 64, MAX_SEGMENT] {
+            for i in 0..3 * length {
+                let angle = 2.0 * PI * (i % length) as f64 / length as f64;
+                let most = double(by_precision(3e-16, 6e-8));
+                assert!((double(cosine(i, length)) - libm::cos(angle)).abs() < most);
+                if i < length / 2 {
+                    let (cosine, sine) = cosine_and_sine(i, length);
+                    assert!((double(cosine) - libm::cos(angle)).abs() < most);
+                    assert!((double(sine) - libm::sin(angle)).abs() < most);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn products_are_those_of_the_window() {
+        for length in [32_usize, 64, 256] {
+            let weight = |j: usize| 0.5 - 0.5 * libm::cos(2.0 * PI * j as f64 / length as f64);
+            let products = Products::new(length);
+            for l in 0..length {
+                let expected: f64 = (0..length - l).map(|j| weight(j) * weight(j + l)).sum();
+                let off = double(products.at(l)) - expected;
+                let most = length as f64 * double(by_precision(2e-16, 6e-8));
+                assert!(off.abs() < most, "{length}, {l}: {off:e} of {expected}");
+            }
+            let off = double(products.at(0) - sum_of_squares(length));
+            assert!(off.abs() < length as f64 * double(by_precision(1e-15, 1e-7)));
+        }
+    }
+}

@@ -1,6 +1,9 @@
 //! Blocks, segments, gaps, merges and a late main loop.
 
-use super::{counts, densities, std::vec::Vec};
+use super::{
+    counts, densities,
+    std::{self, vec::Vec},
+};
 use crate::{
     Scale,
     real::double,
@@ -174,7 +177,8 @@ fn full_scale_input_overflows_nothing() {
         if half == 4 {
             for (bin, expected) in spectrum.bins().iter().zip(expected) {
                 let off = double(bin.density) - expected;
-                assert!(off.abs() < 1e-5 * double(largest), "{}: {off:e}", bin.index);
+                // A thousand equal powers are all rounded the same way.
+                assert!(off.abs() < 1e-4 * double(largest), "{}: {off:e}", bin.index);
             }
         }
     }

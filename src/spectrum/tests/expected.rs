@@ -2,7 +2,7 @@
 
 use super::{PI, std, std::vec::Vec, window};
 use crate::{
-    effect::{CATALOGUE, Effect, MAX_PARAMETERS, SampledShape},
+    effect::{CATALOGUE, MAX_PARAMETERS, SampledShape},
     real::{by_precision, double, real},
     spectrum::expected_densities,
 };
@@ -130,7 +130,7 @@ fn shapes(name: &str) -> &'static [[f64; MAX_PARAMETERS]] {
         ],
         "resonance" => &[[3.0, 3.0], [20.0, 20.0], [0.05, 3.0]],
         "low_pass" => &[[0.02, 0.0], [0.5, 0.0]],
-        "decimation_filter" => &[[0.03, 1.0], [0.03, 2.0], [0.3, 2.0]],
+        "decimation_filter" => &[[0.03, 1.0], [0.03, 2.0], [0.1, 2.0]],
         "power_law" => &[[0.7, 0.0], [1.3, 0.0], [1.5, 0.0], [1.9, 0.0]],
         _ => &[[0.0, 0.0]],
     }

@@ -31,3 +31,6 @@ pub use accumulator::SpectrumAccumulator;
 pub use covariance::{BAND, covariance_rows, relative_covariance};
 pub use density::{Bin, Spectrum};
 pub use expected::expected_densities;
+
+#[cfg(test)]
+mod tests;

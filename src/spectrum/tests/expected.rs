@@ -1,0 +1,196 @@
+//! The expected densities of every effect against sums over single samples in double precision.
+
+use super::{PI, std, std::vec::Vec, window};
+use crate::{
+    effect::{CATALOGUE, MAX_PARAMETERS, SampledShape},
+    real::{by_precision, double, real},
+    spectrum::expected_densities,
+};
+
+const INTERVAL_S: f64 = 0.01;
+
+/// The semivariogram of single samples at a distance of `n`, for a coefficient of one.
+fn single(name: &str, [first, second]: [f64; 2], n: f64) -> f64 {
+    if n == 0.0 {
+        return 0.0;
+    }
+    let t = INTERVAL_S;
+    let decay = |time_s: f64| -libm::expm1(-n * t / time_s);
+    match name {
+        "quantization" => (if n == 1.0 { 3.0 } else { 2.0 }) / (t * t),
+        "angle_random_walk" => 1.0 / t,
+        "bias_instability" => {
+            let h = |x: f64| if x == 0.0 { 0.0 } else { x * x * libm::log(x) };
+            (h(n + 1.0) - 2.0 * h(n) + h(n - 1.0)) / (2.0 * PI)
+        }
+        "rate_random_walk" => 0.5 * n * t,
+        "gauss_markov" | "random_telegraph" => decay(first),
+        "resonance" => {
+            let time_s = second / (PI * first);
+            // 1 − e^(−x) cos y = (1 − e^(−x)) + 2 e^(−x) sin²(y/2)
+            let sine = libm::sin(PI * first * n * t);
+            decay(time_s) + 2.0 * libm::exp(-n * t / time_s) * sine * sine
+        }
+        "low_pass" => {
+            let z = libm::exp(-t / first);
+            (1.0 - z) / ((1.0 + z) * t) * decay(first)
+        }
+        "decimation_filter" => {
+            let width = first / (t * libm::sqrt(second));
+            let spline = |x: f64| match second {
+                1.0 => (1.0 - x).max(0.0),
+                _ if x < 1.0 => 2.0 / 3.0 - x * x + 0.5 * x * x * x,
+                _ => libm::pow((2.0 - x).max(0.0), 3.0) / 6.0,
+            };
+            let sum: f64 = (-200..=200)
+                .map(|i| spline(f64::from(i).abs() / width))
+                .sum();
+            (spline(0.0) - spline(n / width)) / (sum * t)
+        }
+        "power_law" => {
+            let growth = first - 1.0;
+            let h = |x: f64| libm::pow(x, 2.0 + growth);
+            let unit = libm::pow(t, growth) / (4.0 * (libm::pow(2.0, growth) - 1.0));
+            unit * (h(n + 1.0) - 2.0 * h(n) + h(n - 1.0) - 2.0)
+        }
+        _ => panic!("{name} is not known here"),
+    }
+}
+
+/// The semivariogram of block means, at every distance below `length` blocks.
+fn of_means(single: impl Fn(f64) -> f64, length: usize, block: usize) -> Vec<f64> {
+    let all: Vec<f64> = (0..=length * block).map(|n| single(n as f64)).collect();
+    let m = block as isize;
+    let at = |l: usize| {
+        let terms = (1 - m..m).map(|d| {
+            let far = (l as isize * m + d).unsigned_abs();
+            (m - d.abs()) as f64 * (all[far] - all[d.unsigned_abs()])
+        });
+        terms.sum::<f64>() / (m * m) as f64
+    };
+    (0..length).map(at).collect()
+}
+
+/// The expected densities, from sums over the window.
+fn direct(name: &str, parameters: [f64; 2], length: usize, block: usize) -> Vec<f64> {
+    let rate_hz = 1.0 / (INTERVAL_S * block as f64);
+    let mean = |rate: &dyn Fn(f64) -> f64, j: usize| {
+        let samples = (0..block).map(|i| rate((j * block + i) as f64 * INTERVAL_S));
+        samples.sum::<f64>() / block as f64
+    };
+    match name {
+        "rate_ramp" => {
+            let ramp: Vec<f64> = (0..length).map(|j| mean(&|t| t, j)).collect();
+            super::densities(&ramp, rate_hz)
+        }
+        "sinusoid" => {
+            // Two phases, a quarter of a turn apart, have the mean over all phases.
+            let of = |phase: f64| {
+                let sine = |t: f64| libm::sin(2.0 * PI * parameters[0] * t + phase);
+                let means: Vec<f64> = (0..length).map(|j| mean(&sine, j)).collect();
+                super::densities(&means, rate_hz)
+            };
+            let both = of(0.0).into_iter().zip(of(0.5 * PI));
+            both.map(|(one, other)| 0.5 * (one + other)).collect()
+        }
+        _ => {
+            let variogram = of_means(|n| single(name, parameters, n), length, block);
+            let weights = window(length);
+            let squares: f64 = weights.iter().map(|w| w * w).sum();
+            let overlap = |l: usize| -> f64 {
+                weights
+                    .iter()
+                    .zip(&weights[l..])
+                    .map(|(one, other)| one * other)
+                    .sum()
+            };
+            let terms: Vec<f64> = (0..length).map(|l| variogram[l] * overlap(l)).collect();
+            let one = |k: usize| {
+                let turns = |l: usize| ((k * l) % length) as f64 / length as f64;
+                let sum: f64 = (1..length)
+                    .map(|l| terms[l] * libm::cos(2.0 * PI * turns(l)))
+                    .sum();
+                -4.0 * sum / (rate_hz * squares)
+            };
+            (length / 16..length / 2).map(one).collect()
+        }
+    }
+}
+
+/// The typical shapes, and slow ones whose rate hardly changes within a segment.
+fn shapes(name: &str) -> &'static [[f64; MAX_PARAMETERS]] {
+    match name {
+        "gauss_markov" | "random_telegraph" => &[[0.1, 0.0], [1.0, 0.0], [30.0, 0.0], [1e4, 0.0]],
+        "sinusoid" => &[
+            [0.3, 0.0],
+            [7.7, 0.0],
+            [33.0, 0.0],
+            [0.01, 0.0],
+            [81.0, 0.0],
+        ],
+        "resonance" => &[[3.0, 3.0], [20.0, 20.0], [0.05, 3.0]],
+        "low_pass" => &[[0.02, 0.0], [0.5, 0.0]],
+        "decimation_filter" => &[[0.03, 1.0], [0.03, 2.0], [0.1, 2.0]],
+        "power_law" => &[[0.7, 0.0], [1.3, 0.0], [1.5, 0.0], [1.9, 0.0]],
+        _ => &[[0.0, 0.0]],
+    }
+}
+
+fn shape(parameters: [f64; MAX_PARAMETERS]) -> SampledShape {
+    SampledShape {
+        interval_s: real(INTERVAL_S),
+        parameters: parameters.map(real),
+    }
+}
+
+/// Whether rounding explains an error of a bin, of this density, in a level whose largest density is given.
+///
+/// The densities of a random walk fall by 1:64 from the lowest to the highest bin, and single precision keeps
+/// seven digits of the largest terms. With the frequency of a sinusoid, its density changes by 5e-4.
+fn is_rounding(off: f64, density: f64, largest: f64, length: usize) -> bool {
+    let (own, shared) = if length <= 64 {
+        (by_precision(1e-9, 6e-4), by_precision(1e-12, 2e-7))
+    } else {
+        (by_precision(1e-9, 1e-3), by_precision(1e-12, 1e-4))
+    };
+    off.abs() < double(own) * density + double(shared) * largest
+}
+
+#[test]
+fn densities_are_those_of_sums_over_single_samples() {
+    let mut compared = 0;
+    for effect in CATALOGUE {
+        let name = effect.name();
+        for &parameters in shapes(name) {
+            for (length, block) in [(64, 1), (64, 8), (64, 64), (256, 1), (256, 8), (32, 8)] {
+                let expected = direct(name, parameters, length, block as usize);
+                let mut found = std::vec![-1.0; expected.len() + 1];
+                expected_densities(effect, &shape(parameters), length, block, &mut found);
+                assert_eq!(found.pop(), Some(-1.0), "beyond the bins");
+                let largest = expected.iter().copied().fold(0.0, f64::max);
+                for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
+                    let off = double(*found) - expected;
+                    assert!(
+                        is_rounding(off, expected, largest, length),
+                        "{name} {parameters:?}, {length}, {block}, bin {k}: {:e} of {expected:e}, {:e} of the \
+                         largest",
+                        off / expected,
+                        off / largest
+                    );
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared >= 5000, "{compared}");
+}
+
+#[test]
+fn lengths_that_segments_cannot_have_are_left_alone() {
+    for length in [0, 16, 48, 512] {
+        let mut densities = [7.0; 4];
+        let shape = SampledShape::new(1.0);
+        expected_densities(CATALOGUE[0], &shape, length, 1, &mut densities);
+        assert_eq!(densities, [7.0; 4]);
+    }
+}

@@ -170,6 +170,7 @@
 //!             code: FIRST_OWN_CODE, // the number in stored records
 //!             replaces: None,
 //!             mirror: None,
+//!             special_case: None,
 //!             distribution: Distribution::Gaussian,
 //!         }
 //!     }

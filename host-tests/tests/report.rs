@@ -138,7 +138,7 @@ fn steps_are_selected_by_mouse_and_keyboard_and_show_their_own_error() {
     let diagnosis = reported(folder.path(), &[ADIS16405]);
     let mut browser = opened(folder.path());
     let steps = steps(&diagnosis["axes"][2]);
-    assert_eq!(steps.len(), 3);
+    assert_eq!(steps.len(), 4);
     let expect = |browser: &mut Browser, step: usize| {
         assert_eq!(shown_error(browser, 2), error(&steps[step]));
         let tab = browser.text("#axis-2 [role=tab][aria-selected=true] .chi2");
@@ -151,19 +151,22 @@ fn steps_are_selected_by_mouse_and_keyboard_and_show_their_own_error() {
     expect(&mut browser, 1);
     browser.click(&next);
     expect(&mut browser, 2);
+    browser.click(&next);
+    expect(&mut browser, 3);
     // There is no step after the last one.
     browser.click(&next);
-    expect(&mut browser, 2);
+    expect(&mut browser, 3);
     browser.click(&previous);
-    expect(&mut browser, 1);
+    expect(&mut browser, 2);
     browser.click("#axis-2 [role=tab]:first-child");
     expect(&mut browser, 0);
     for (key, step) in [
         ("ArrowDown", 1),
         ("ArrowRight", 2),
-        ("ArrowRight", 2),
-        ("ArrowUp", 1),
-        ("ArrowLeft", 0),
+        ("ArrowRight", 3),
+        ("ArrowRight", 3),
+        ("ArrowUp", 2),
+        ("ArrowLeft", 1),
     ] {
         browser.press(key);
         expect(&mut browser, step);
@@ -195,7 +198,18 @@ fn every_candidate_shows_its_own_fit() {
         "decimation_filter:width_s=0.0235,stages=2",
     ];
     simulate(folder.path(), &hidden);
-    let diagnosis = reported(folder.path(), &["log.csv"]);
+    // The spectrum would show both effects at once, so it is left out.
+    output(
+        folder.path(),
+        &["measure", "log.csv", "--output", "curve.json"],
+    );
+    let path = folder.path().join("curve.json");
+    let mut curve: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    for axis in curve["axes"].as_array_mut().unwrap() {
+        axis.as_object_mut().unwrap().remove("spectrum").unwrap();
+    }
+    fs::write(&path, curve.to_string()).unwrap();
+    let diagnosis = reported(folder.path(), &["curve.json"]);
     let steps = steps(&diagnosis["axes"][0]);
     assert!(steps[1]["candidates"][0]["swap"].is_object());
     let mut browser = opened(folder.path());
@@ -215,12 +229,13 @@ fn every_candidate_shows_its_own_fit() {
                 heading.starts_with("With this candidate") && heading.contains(&name),
                 "{heading}"
             );
-            // The search ends early for candidates whose χ² is more than 60 worse.
+            // The search ends early for candidates whose χ² is more than 60 worse. Candidates that improve the model
+            // by less than 8 would not be accepted, and have several minima that are as good.
             let chi2: f64 = shown.split(' ').nth(1).unwrap().parse().unwrap();
             let change = chi2 - number(&candidate["chi2"]);
             let gain = |candidate: &Value| number(&candidate["improvement"]);
-            if gain(candidate) > gain(&candidates[0]) - 60.0 {
-                assert!(change.abs() < 1.0 + 0.05 * chi2, "{name}: {chi2}");
+            if gain(candidate) > (gain(&candidates[0]) - 60.0).max(8.0) {
+                assert!(change.abs() < 1.0 + 0.05 * chi2, "{name}: {chi2}, {change}");
             }
             assert_ne!(shown, error(step));
         }

@@ -190,10 +190,6 @@ impl Effect for LowPass {
             second.add_variogram(m, scale, values);
         }
     }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        pole(shape).variogram(m, variance(shape), values);
-    }
 }
 
 impl Explain for LowPass {

@@ -103,10 +103,6 @@ impl Effect for Resonance {
     fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
         pole(shape).variogram(m, 1.0, values);
     }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        pole(shape).variogram(m, 1.0, values);
-    }
 }
 
 impl Explain for Resonance {

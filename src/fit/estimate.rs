@@ -3,7 +3,7 @@
 
 use super::{
     method::Method, peak::Peak, problem::Problem, result::Fit, shape::ShapeEquations,
-    solver::Solver,
+    solver::Solver, weights::Weights,
 };
 use crate::{
     coefficient::{Coefficient, State},
@@ -11,9 +11,9 @@ use crate::{
     limits::CHI_SQUARED_95,
     math,
     model::Term,
-    nnls::{Interval, NormalEquations},
+    nnls::{Interval, NormalEquations, Vector},
     observability::record_length_s,
-    real::{Real, real},
+    real::{Real, consts::FRAC_1_SQRT_2, real},
 };
 
 /// The number of rounds in which a bound and the covariance that it implies are computed in turn.
@@ -55,7 +55,7 @@ impl Estimator {
         fit.chi_squared = solver.chi_squared;
         fit.degrees_of_freedom = solver.degrees_of_freedom();
         fit.p_value = solver.p_value();
-        fit.peak = Peak::of(problem, &solver.weights, &solver.squares);
+        fit.peak = highest_peak(problem, &solver.weights, &solver.squares);
         fit.minus_two_log_likelihood = solver.minus_two_log_likelihood();
         fit.tolerance = solver.weights.tolerance;
         fit.shrinkage = solver.weights.shrinkage;
@@ -86,6 +86,38 @@ impl Estimator {
         self.next = self.next.saturating_add(1);
         self.next >= problem.count()
     }
+}
+
+/// The peak of the problem's spectrum above the model with these squared coefficients; `None` if there is no
+/// spectrum.
+#[inline(never)]
+fn highest_peak<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    weights: &Weights<K, B>,
+    squares: &Vector,
+) -> Option<Peak> {
+    if B == 0 {
+        return None;
+    }
+    let rows = problem.rows().skip(problem.points.len());
+    let mut highest: Option<(Real, Real)> = None;
+    for (row, bin) in rows.zip(problem.bins) {
+        let error = weights.relative_error(row);
+        let per_degree = error * error / 9.0;
+        let ratio = problem.measured(row) / problem.variance(row, squares);
+        let root = math::exp(math::log(ratio) / 3.0);
+        let z = (root - 1.0 + per_degree) * 3.0 / error;
+        if highest.is_none_or(|(_, highest)| z > highest) {
+            highest = Some((bin.frequency_hz, z));
+        }
+    }
+    let (frequency_hz, z) = highest?;
+    let one = 0.5 * math::erfc(z * FRAC_1_SQRT_2);
+    Some(Peak {
+        frequency_hz,
+        z,
+        p_value: (real(problem.bins.len()) * one).min(1.0),
+    })
 }
 
 /// The factor by which the errors of a model that is not adequate are widened. They come from the covariance

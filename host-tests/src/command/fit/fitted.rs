@@ -1,15 +1,9 @@
 //! The five terms fitted to an axis.
 
-use crate::{
-    command::input::record,
-    curve_file::AxisCurve,
-    failure::Failure,
-    log::{BINS, OCTAVES},
-};
+use crate::{command::input::record, curve_file::AxisCurve, failure::Failure, log::OCTAVES};
 use allanite::{
     Curve, Model, Observed,
     fit::{Fit, Method, Options, fit},
-    spectrum::Spectrum,
 };
 use clap::ValueEnum;
 use std::path::Path;
@@ -56,7 +50,6 @@ impl MethodName {
 pub(crate) struct Fitted {
     pub(crate) axis: AxisCurve,
     pub(crate) curve: Curve<OCTAVES>,
-    pub(crate) spectrum: Spectrum<BINS>,
     pub(crate) method: MethodName,
     pub(crate) fit: Fit,
 }
@@ -75,13 +68,12 @@ impl Fitted {
             let spectrum = axis.spectrum()?;
             let observed = Observed::new(&curve, &spectrum);
             let fit = fit(observed, &Model::ieee_952(), options)?;
-            Ok((curve, spectrum, fit))
+            Ok((curve, fit))
         });
         match fitted {
-            Ok((curve, spectrum, fit)) => Ok(Self {
+            Ok((curve, fit)) => Ok(Self {
                 axis,
                 curve,
-                spectrum,
                 method,
                 fit,
             }),

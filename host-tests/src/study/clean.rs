@@ -2,12 +2,16 @@
 //! term is called measured that is truly absent.
 
 use super::{OCTAVES, RATE_HZ, quantum};
-use crate::simulate::{Coefficients, Preset, Simulator};
+use crate::{
+    log::{BINS, SpectrumSums},
+    simulate::{Coefficients, Preset, Simulator},
+};
 use allanite::{
     Accumulator, Curve, Model, Scale,
     diagnosis::{Diagnosis, Evidence, Options},
     effect::{CATALOGUE, IEEE_952},
     fit::State,
+    spectrum::Spectrum,
 };
 use rayon::prelude::*;
 
@@ -52,7 +56,10 @@ struct Said {
 pub fn study(coefficients: Coefficients, records: u64) -> [Tally; LENGTHS.len()] {
     let said: Vec<[Option<Said>; LENGTHS.len()]> = (0..records)
         .into_par_iter()
-        .map(|seed| curves(coefficients, seed).map(|curve| diagnose(coefficients, curve)))
+        .map(|seed| {
+            records_of(coefficients, seed)
+                .map(|(curve, spectrum)| diagnose(coefficients, curve, spectrum))
+        })
         .collect();
     std::array::from_fn(|length| {
         let mut tally = Tally::default();
@@ -89,27 +96,38 @@ pub fn without(preset: Preset, absent: Absent) -> Coefficients {
     coefficients
 }
 
-/// The curves of a record at each of its lengths.
-fn curves(coefficients: Coefficients, seed: u64) -> [Curve<OCTAVES>; LENGTHS.len()] {
+/// The curves and spectra of a record at each of its lengths.
+fn records_of(
+    coefficients: Coefficients,
+    seed: u64,
+) -> [(Curve<OCTAVES>, Spectrum<BINS>); LENGTHS.len()] {
     let mut simulator = Simulator::new(coefficients, RATE_HZ, seed);
     let quantum = quantum(coefficients, RATE_HZ);
     let scale = Scale::new(quantum, RATE_HZ).expect("positive");
     let mut accumulator = Accumulator::<OCTAVES>::new();
+    let mut sums = SpectrumSums::new();
     LENGTHS.map(|length| {
         while accumulator.samples() < 1 << length {
             let rate = simulator.next().unwrap_or_default();
-            accumulator.push((rate / quantum).round() as i32);
+            let count = (rate / quantum).round() as i32;
+            accumulator.push(count);
+            sums.push_slice(&[count]);
         }
-        accumulator.curve(scale)
+        (accumulator.curve(scale), sums.spectrum(scale))
     })
 }
 
-fn diagnose(coefficients: Coefficients, curve: Curve<OCTAVES>) -> Option<Said> {
+fn diagnose(
+    coefficients: Coefficients,
+    curve: Curve<OCTAVES>,
+    spectrum: Spectrum<BINS>,
+) -> Option<Said> {
     let mut first = None;
     let mut claimed = None;
     let model = Model::ieee_952();
-    let mut diagnosis = Diagnosis::new(
+    let mut diagnosis = Diagnosis::with_spectrum(
         curve,
+        spectrum,
         Evidence::NONE,
         &model,
         &CATALOGUE,

@@ -1,9 +1,12 @@
 //! Studies whether a hidden effect is found and named.
 
 use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
-use crate::simulate::{Coefficients, Hidden, Preset, Simulator};
+use crate::{
+    log::{BINS, SpectrumSums},
+    simulate::{Coefficients, Hidden, Preset, Simulator},
+};
 use allanite::{
-    Axis, Comparison, Curve, Model, Scale, Term,
+    Axis, Comparison, Curve, Model, Observed, Scale, Term,
     diagnosis::{Addition, Diagnosis, Evidence, Step, Verdict},
     effect::{BiasInstability, CATALOGUE, EXPLAINED, Effect, IEEE_952, MAX_PARAMETERS},
     fit::{Fit, Options, fit},
@@ -139,25 +142,31 @@ pub struct Outcome {
 pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64) -> Outcome {
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
     let mut gyro = Axis::<OCTAVES, 0, ()>::new();
+    let [mut sums, mut other_sums] = [SpectrumSums::new(), SpectrumSums::new()];
     let curve = record(&mut simulator, base, samples, |counts| {
         counts.iter().for_each(|&count| gyro.push(count));
+        sums.push_slice(counts);
     });
-    let other = record(&mut simulator, base, samples, |_| ());
+    let other = record(&mut simulator, base, samples, |counts| {
+        other_sums.push_slice(counts);
+    });
+    let [spectrum, other_spectrum] = [sums, other_sums].map(|sums| super::spectrum(&sums, base));
     let scale = Scale::new(1.0, RATE_HZ).expect("positive");
     let kurtosis = gyro.evidence(0, scale, []).expect("one axis").kurtosis;
-    let mut steps: Vec<Step<OCTAVES>> = Vec::new();
+    let mut steps: Vec<Step<OCTAVES, BINS>> = Vec::new();
     let evidence = Evidence {
         kurtosis: kurtosis.as_ref(),
         ..Evidence::NONE
     };
     let (model, options) = (Model::ieee_952(), allanite::diagnosis::Options::default());
-    let verdict = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options)
+    let verdict = Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options)
         .run(|step| steps.push(step.clone()))
         .ok();
     let (first, last) = (&steps[0], &steps[steps.len() - 1]);
-    let on_other = |step: &Step<OCTAVES>| {
+    let on_other = |step: &Step<OCTAVES, BINS>| {
         let tolerance = Options::default().tolerance;
-        let comparison = Comparison::held_out(&other, &step.model, &step.fit, tolerance);
+        let other = Observed::new(&other, &other_spectrum);
+        let comparison = Comparison::held_out(other, &step.model, &step.fit, tolerance);
         comparison.map_or((f64::NAN, f64::NAN), |c| (c.rms_percent, c.chi_squared))
     };
     let (before, after) = (on_other(first), on_other(last));
@@ -176,7 +185,7 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
 }
 
 /// The effects that the steps added and kept.
-fn added(steps: &[Step<OCTAVES>]) -> Vec<(Term, Vec<&'static str>)> {
+fn added(steps: &[Step<OCTAVES, BINS>]) -> Vec<(Term, Vec<&'static str>)> {
     let mut added = Vec::new();
     for step in steps {
         for dropped in &step.dropped {

@@ -1,7 +1,10 @@
 //! Studies whether a line of any frequency and size is found, and whether anything is named beside it.
 
 use super::{OCTAVES, RATE_HZ, record};
-use crate::simulate::{Hidden, Preset, Random, Simulator};
+use crate::{
+    log::{BINS, SpectrumSums},
+    simulate::{Hidden, Preset, Random, Simulator},
+};
 use allanite::{
     Model, Term,
     diagnosis::{Diagnosis, Evidence, Options, Step},
@@ -132,14 +135,19 @@ pub fn diagnose(preset: Preset, line: Line, seed: u64) -> Said {
         coefficient: line.amplitude,
     };
     let mut simulator = Simulator::with_hidden(base, &[hidden], RATE_HZ, seed);
-    let curve = record(&mut simulator, base, SAMPLES, |_| ());
+    let mut sums = SpectrumSums::new();
+    let curve = record(&mut simulator, base, SAMPLES, |counts| {
+        sums.push_slice(counts);
+    });
+    let spectrum = super::spectrum(&sums, base);
     let (model, options) = (Model::ieee_952(), Options::default());
     if fit(&curve, &model, allanite::fit::Options::default()).is_err() {
         return Said::Aborted;
     }
-    let mut steps: Vec<Step<OCTAVES>> = Vec::new();
-    let verdict = Diagnosis::new(curve, Evidence::NONE, &model, &CATALOGUE, options)
-        .run(|step| steps.push(step.clone()));
+    let mut steps: Vec<Step<OCTAVES, BINS>> = Vec::new();
+    let verdict =
+        Diagnosis::with_spectrum(curve, spectrum, Evidence::NONE, &model, &CATALOGUE, options)
+            .run(|step| steps.push(step.clone()));
     let (Ok(_), Some(last)) = (verdict, steps.last()) else {
         return Said::Aborted;
     };

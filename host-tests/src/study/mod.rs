@@ -3,6 +3,7 @@
 
 pub mod clean;
 pub mod coefficients;
+pub mod confusion;
 pub mod hidden_effect;
 pub mod lines;
 pub mod paper;
@@ -11,8 +12,11 @@ pub mod self_test;
 pub mod theory;
 pub mod thermal;
 
-use crate::simulate::{Coefficients, Simulator};
-use allanite::{Accumulator, Curve, Scale};
+use crate::{
+    log::{BINS, SpectrumSums},
+    simulate::{Coefficients, Simulator},
+};
+use allanite::{Accumulator, Curve, Scale, spectrum::Spectrum};
 
 /// The number of octaves of every curve in the studies.
 pub const OCTAVES: usize = 24;
@@ -60,6 +64,11 @@ fn record_at(
     }
     let scale = Scale::new(quantum, rate_hz).expect("positive");
     accumulator.curve(scale)
+}
+
+/// The spectrum of a record whose counts are those of [`record`].
+pub fn spectrum(sums: &SpectrumSums, coefficients: Coefficients) -> Spectrum<BINS> {
+    sums.spectrum(Scale::new(quantum(coefficients, RATE_HZ), RATE_HZ).expect("positive"))
 }
 
 /// The size of a count: 1/4096 of the standard deviation of the differences between neighbouring

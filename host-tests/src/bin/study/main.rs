@@ -2,6 +2,7 @@
 
 mod clean;
 mod coefficients;
+mod confusion;
 mod hidden_effect;
 mod lines;
 mod paper;
@@ -61,6 +62,15 @@ enum Study {
         /// Study only this effect
         #[arg(long)]
         effect: Option<String>,
+    },
+    /// Count what is named where an effect of a fixed size is hidden
+    Confusion {
+        /// Number of records per case
+        #[arg(long, default_value_t = 100)]
+        records: u64,
+        /// Study only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
     },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
@@ -123,6 +133,7 @@ fn main() -> Result<()> {
             preset,
             effect,
         } => hidden_effect::print(records, clean, preset, effect.as_deref()),
+        Study::Confusion { records, preset } => confusion::print(records, preset),
         Study::Lines { records } => lines::print(records),
         Study::Clean {
             records,

@@ -1,7 +1,7 @@
 //! Tests `diagnose` with the evidence beside the curve: whether the record is valid, and whether it
 //! depends on a covariate.
 
-use host_tests::program::{json, output, refusal};
+use host_tests::program::{json, measure_without_spectrum, output, refusal};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
@@ -204,7 +204,15 @@ fn two_effects_that_resemble_a_third_are_distinguished_from_it() {
         "decimation_filter:width_s=0.0235,stages=2",
     ];
     simulate(folder.path(), &hidden);
+    // The spectrum shows both at once.
     let document = json(folder.path(), &["diagnose", "log.csv"]);
+    let axis = &document["axes"][0];
+    let mut missing = list(&axis["missing"]);
+    missing.sort_unstable();
+    assert_eq!(missing, ["decimation_filter", "sinusoid"]);
+    // In the octaves, they resemble a resonance.
+    measure_without_spectrum(folder.path(), "log.csv");
+    let document = json(folder.path(), &["diagnose", "curve.json"]);
     let axis = &document["axes"][0];
     let named = [list(&axis["missing"]), list(&axis["ambiguous"])].concat();
     assert!(
@@ -217,7 +225,7 @@ fn two_effects_that_resemble_a_third_are_distinguished_from_it() {
         "resonance"
     );
     assert!(!list(&axis["missing"]).contains(&"resonance"));
-    let text = output(folder.path(), &["diagnose", "log.csv"]);
+    let text = output(folder.path(), &["diagnose", "curve.json"]);
     assert!(text.contains(" instead of resonance: χ² "), "{text}");
 }
 

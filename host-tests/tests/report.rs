@@ -5,7 +5,7 @@
 mod browser;
 
 use browser::Browser;
-use host_tests::program::{ADIS16405, json, output, refusal};
+use host_tests::program::{ADIS16405, json, measure_without_spectrum, output, refusal};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
@@ -199,16 +199,7 @@ fn every_candidate_shows_its_own_fit() {
     ];
     simulate(folder.path(), &hidden);
     // The spectrum would show both effects at once, so it is left out.
-    output(
-        folder.path(),
-        &["measure", "log.csv", "--output", "curve.json"],
-    );
-    let path = folder.path().join("curve.json");
-    let mut curve: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-    for axis in curve["axes"].as_array_mut().unwrap() {
-        axis.as_object_mut().unwrap().remove("spectrum").unwrap();
-    }
-    fs::write(&path, curve.to_string()).unwrap();
+    measure_without_spectrum(folder.path(), "log.csv");
     let diagnosis = reported(folder.path(), &["curve.json"]);
     let steps = steps(&diagnosis["axes"][0]);
     assert!(steps[1]["candidates"][0]["swap"].is_object());

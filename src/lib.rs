@@ -56,6 +56,7 @@
 //! | [`queue`] | hands samples from an interrupt to the main loop, and loses none silently |
 //! | [`axis`] | leaves out samples that are stuck, at a rail, spikes or motion, and keeps everything else |
 //! | [`octave`] | is the accumulator: quarter-overlapping differences of adjacent clusters, exact in 192 bits |
+//! | [`spectrum`] | keeps power spectral densities beside the curve, and says what each effect adds to them |
 //! | [`integrity`] | judges whether the record is one of a gyro at rest |
 //! | [`kurtosis`], [`covariate`] | keep evidence beside the curve: jumps of the rate, and what follows a temperature |
 //! | [`curve`] | holds τ, averaging factor, variance and number of differences of each octave |

@@ -34,7 +34,7 @@ use crate::list::numbered;
 ///
 /// # Cost
 ///
-/// The state takes `24 + 4 P + (8 P + 8) LEVELS` bytes and alignment: 3928 for `P = 64` and 7 levels. An empty
+/// The state takes `32 + 4 P + (8 P + 8) LEVELS` bytes, which is 3928 for `P = 64` and 7 levels. An empty
 /// state is all zero, so that a `static` is placed in `.bss`.
 ///
 /// # Example
@@ -133,7 +133,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         self.finish();
         for &count in counts {
             self.take(count);
-            while self.transform() {}
+            while self.due > 0 && self.transform() {}
         }
     }
 
@@ -150,7 +150,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
             self.is_late = false;
             self.end();
         }
-        self.transform() && (self.due > 0 || self.waiting > 0 || self.is_late)
+        self.due > 0 && self.transform() && (self.due > 0 || self.waiting > 0 || self.is_late)
     }
 
     /// Does all the work that waits.

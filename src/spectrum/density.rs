@@ -190,7 +190,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
             let block = 1_u32.wrapping_shl(block_bits);
             let n = real(segments);
             let unit = scale.rate_per_count() * real(1_u32 << UNIT_BITS);
-            let per_power = 2.0 * real(block) / (scale.rate_hz() * sum_of_squares(P));
+            let per_power = 2.0 * real(block) / (scale.rate_hz() * sum_of_squares(real(P)));
             for ((power, square), index) in level.sums().zip(first_bin(P) as u32..) {
                 let mean = real(power) / n;
                 let bin = Bin {

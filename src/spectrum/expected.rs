@@ -2,7 +2,7 @@
 
 use super::{
     line::Line,
-    window::{Products, cosine_at, first_bin, is_possible, place, sum_of_squares},
+    window::{Products, cosine, first_bin, is_possible, places, sum_of_squares},
 };
 use crate::{
     effect::{Effect, SampledShape},
@@ -47,7 +47,7 @@ pub fn expected_densities(
     }
 
     let folded = folded(effect, shape, length, block);
-    let scale = -4.0 * per_block / sum_of_squares(length);
+    let scale = -4.0 * per_block / sum_of_squares(real(length));
     let mut set = |k: usize, sum: Real| {
         let place = k.wrapping_sub(first_bin(length));
         if k < length / 2
@@ -60,12 +60,12 @@ pub fn expected_densities(
     let (pairs, _) = folded.as_chunks::<2>();
     for k in 1..=length / 4 {
         let (mut even, mut odd) = (0.0, 0.0);
-        let step = place(k, length);
-        let mut angle = 0_usize;
+        let step = k.wrapping_mul(places(length));
+        let mut place = 0_usize;
         for [at_even, at_odd] in pairs.iter().take(length / 4 + 1) {
-            even += at_even * cosine_at(angle);
-            odd += at_odd * cosine_at(angle.wrapping_add(step));
-            angle = angle.wrapping_add(step.wrapping_mul(2));
+            even += at_even * cosine(place);
+            odd += at_odd * cosine(place.wrapping_add(step));
+            place = place.wrapping_add(step.wrapping_mul(2));
         }
         set(k, even + odd);
         set((length / 2).wrapping_sub(k), even - odd);

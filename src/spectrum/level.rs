@@ -78,14 +78,9 @@ impl<const P: usize> Level<P> {
     /// Adds the segment that ends before block `number`, for blocks of `2^block_bits` samples.
     pub(super) fn add_segment(&mut self, number: u64, block_bits: u32) {
         let start = number as usize;
-        let first = self.blocks[start % P];
         // The transform multiplies by 8.
         let scale = power_of_two(self.exponent, block_bits.wrapping_add(UNIT_BITS + 3));
-        let blocks = &self.blocks;
-        let segment = Segment::<P>::new(|j| {
-            let block = blocks[start.wrapping_add(j) % P];
-            block.wrapping_sub(first) as f32 * scale
-        });
+        let segment = Segment::<P>::new(&self.blocks, start, scale);
         if self.segments >= MANY {
             self.halve();
         }

@@ -7,10 +7,11 @@ use crate::{
     real::{Real, consts::PI, real},
 };
 
-/// A ramp or a sinusoid as means over blocks see it, in segments of `length` blocks. The rate depends on the
-/// sample interval, and so does the unit of the densities, which the caller applies.
+/// A ramp or a sinusoid as means over blocks see it, in segments of `length` blocks.
 pub(super) struct Line {
     length: Real,
+    /// `sin²(π/P)`.
+    bin: Real,
     kind: Kind,
 }
 
@@ -18,7 +19,12 @@ enum Kind {
     /// The rate changes by this much from block to block.
     Ramp { step: Real },
     /// The sinusoid has this mean square, and as many periods in a segment, up to a multiple of the length.
-    Sinusoid { mean_square: Real, periods: Real },
+    Sinusoid {
+        mean_square: Real,
+        periods: Real,
+        /// `sin(π periods)`, which is that of any bin's distance but for its sign.
+        sine: Real,
+    },
 }
 
 impl Line {
@@ -39,67 +45,74 @@ impl Line {
             let (block_sine, _) = math::sincos_of_turns(0.5 * turns * m);
             let amplitude = difference * block_sine / (m * sine * sine);
             let turns = turns * m;
+            let periods = length * (turns - math::floor(turns));
             Kind::Sinusoid {
                 mean_square: 0.25 * amplitude * amplitude,
-                periods: length * (turns - math::floor(turns)),
+                periods,
+                sine: math::sincos_of_turns(0.5 * periods).0,
             }
         };
-        Self { length, kind }
+        let (bin, _) = math::sincos_of_turns(0.5 / length);
+        Self {
+            length,
+            bin: bin * bin,
+            kind,
+        }
     }
 
     /// The expected density of bin `k`, times the sampling rate of the block means.
     pub(super) fn density(&self, k: usize) -> Real {
-        let (k, length) = (real(k), self.length);
+        let k = real(k);
         let power = match self.kind {
             Kind::Ramp { step } => {
                 // Σ_j j e^(−2πijk/P) is ½P (i cot(πk/P) − 1), which the window mixes.
-                let amplitude = 0.5 * length * step * mixed_cotangent(k, length);
+                let amplitude = 0.5 * self.length * step * self.mixed_cotangent(k);
                 amplitude * amplitude
             }
             Kind::Sinusoid {
                 mean_square,
                 periods,
+                sine,
             } => {
                 // A sinusoid of random phase is two lines of half its mean square each.
-                0.5 * mean_square * (leakage(k - periods, length) + leakage(k + periods, length))
+                let both = self.leakage(k - periods, sine) + self.leakage(k + periods, sine);
+                0.5 * mean_square * both
             }
         };
-        2.0 * power / sum_of_squares(length as usize)
+        2.0 * power / sum_of_squares(self.length)
+    }
+
+    /// `½ cot a − ¼ cot(a + h) − ¼ cot(a − h)` without its sign, where `a = πx/P` and `h = π/P`. It is
+    /// `½ cot a sin²h/(sin²a − sin²h)`, which does not cancel.
+    fn mixed_cotangent(&self, x: Real) -> Real {
+        let (sine, cosine) = math::sincos_of_turns(0.5 * x / self.length);
+        0.5 * cosine * self.bin / (sine * (sine * sine - self.bin))
+    }
+
+    /// The square of the window's transform at a distance of `x` bins, given `sin(πx)` but for its sign.
+    fn leakage(&self, x: Real, sine: Real) -> Real {
+        // The nearest of the aliases, at a positive distance.
+        let x = x - self.length * math::floor(x / self.length + 0.5);
+        let x = if x < 0.0 { -x } else { x };
+        let amplitude = if x < MAIN_LOBE {
+            0.5 * self.lobe(x) + 0.25 * (self.lobe(x + 1.0) + self.lobe(x - 1.0))
+        } else {
+            sine * self.mixed_cotangent(x)
+        };
+        amplitude * amplitude
+    }
+
+    /// `sin(πx) cot(πx/P)`, an even function.
+    fn lobe(&self, x: Real) -> Real {
+        let x = if x < 0.0 { -x } else { x };
+        if x == 0.0 {
+            return self.length;
+        }
+        let (sine, cosine) = math::sincos_of_turns(0.5 * x / self.length);
+        math::sincos_of_turns(0.5 * x).0 * (cosine / sine)
     }
 }
 
-/// `½ cot a − ¼ cot(a + h) − ¼ cot(a − h)` without its sign, where `a = πx/P` and `h = π/P`. It is
-/// `½ cos a sin²h / [sin a sin(a + h) sin(a − h)]`, which does not cancel.
-fn mixed_cotangent(x: Real, length: Real) -> Real {
-    let sine = |x: Real| math::sincos_of_turns(0.5 * x / length).0;
-    let (own, cosine) = math::sincos_of_turns(0.5 * x / length);
-    let bin = sine(1.0);
-    0.5 * (cosine / own) * (bin / sine(x + 1.0)) * (bin / sine(x - 1.0))
-}
-
-/// The square of the window's transform at a distance of `x` bins.
-fn leakage(x: Real, length: Real) -> Real {
-    // The nearest of the aliases, at a positive distance.
-    let x = x - length * math::floor(x / length + 0.5);
-    let x = if x < 0.0 { -x } else { x };
-    let amplitude = if x < MAIN_LOBE {
-        0.5 * lobe(x, length) + 0.25 * (lobe(x + 1.0, length) + lobe(x - 1.0, length))
-    } else {
-        math::sincos_of_turns(0.5 * x).0 * mixed_cotangent(x, length)
-    };
-    amplitude * amplitude
-}
-
-/// The distance below which the terms of the transform have one sign, and single ones of the other form have
-/// poles.
+/// The distance in bins below which the cotangents are summed one by one. None of them cancels there, and the
+/// other form has poles at 0 and 1.
 const MAIN_LOBE: Real = 1.75;
-
-/// `sin(πx) cot(πx/P)`, an even function.
-fn lobe(x: Real, length: Real) -> Real {
-    let x = if x < 0.0 { -x } else { x };
-    let (sine, cosine) = math::sincos_of_turns(0.5 * x / length);
-    if x == 0.0 {
-        return length;
-    }
-    math::sincos_of_turns(0.5 * x).0 * (cosine / sine)
-}

@@ -1,6 +1,6 @@
 //! The windowed transform of one segment.
 
-use super::window::{bins, cosine_and_sine, first_bin};
+use super::window::{cosine_and_sine, first_bin, places};
 use crate::real::single;
 
 /// A complex number: its real and its imaginary part.
@@ -18,19 +18,19 @@ pub(super) struct Segment<const P: usize> {
 }
 
 impl<const P: usize> Segment<P> {
-    /// The segment whose block `j` has the value `value(j)`.
+    /// The segment that begins in slot `start` of a ring. Its blocks are taken less the first one, which is
+    /// subtracted before anything is rounded, and times `scale`.
     #[inline]
-    pub(super) fn new(value: impl Fn(usize) -> f32) -> Self {
+    pub(super) fn new(ring: &[i32; P], start: usize, scale: f32) -> Self {
+        let first = ring[start % P];
+        let value = |j: usize| ring[start.wrapping_add(j) % P].wrapping_sub(first) as f32 * scale;
         let mut values = [0.0; P];
         let (pairs, _) = values.as_chunks_mut::<2>();
-        // The number of bits in the number of a pair.
-        let bits = (P / 2).trailing_zeros();
-        for ([even, odd], slot) in pairs.iter_mut().zip(0_u32..) {
-            let pair = slot
-                .reverse_bits()
-                .wrapping_shr(u32::BITS.wrapping_sub(bits)) as usize;
-            *even = value(pair.wrapping_mul(2));
-            *odd = value(pair.wrapping_mul(2).wrapping_add(1));
+        // The number of bits by which a reversed number is too long for that of a pair.
+        let more = u32::BITS.wrapping_sub((P / 2).trailing_zeros());
+        for (pair, slot) in pairs.iter_mut().zip(0_u32..) {
+            let even = slot.reverse_bits().wrapping_shr(more).wrapping_mul(2) as usize;
+            *pair = [value(even), value(even.wrapping_add(1))];
         }
         Self { values }
     }
@@ -39,17 +39,17 @@ impl<const P: usize> Segment<P> {
     #[inline]
     pub(super) fn powers(mut self, mut each: impl FnMut(f32)) {
         self.transform();
-        let first = first_bin(P);
-        let mut before = self.bin(first.wrapping_sub(1));
-        let mut here = self.bin(first);
-        for k in (first..P / 2).take(bins(P)) {
-            let after = self.bin(k.wrapping_add(1));
-            // The window is ½ − ¼ e^(iθj) − ¼ e^(−iθj), so that it mixes neighbouring bins.
-            let re = 2.0 * here[0] - (before[0] + after[0]);
-            let im = 2.0 * here[1] - (before[1] + after[1]);
-            each(re * re + im * im);
+        let highest = self.separate();
+        let (pairs, _) = self.values.as_chunks::<2>();
+        let mut bins = pairs.iter().skip(first_bin(P).wrapping_sub(1));
+        let (Some(mut before), Some(mut here)) = (bins.next(), bins.next()) else {
+            return;
+        };
+        for after in bins {
+            each(windowed_power(before, here, after));
             (before, here) = (here, after);
         }
+        each(windowed_power(before, here, &highest));
     }
 
     /// The complex transform of the pairs.
@@ -84,30 +84,40 @@ impl<const P: usize> Segment<P> {
         }
     }
 
-    /// `2 Σ_j y_j e^(−2πijk/P)` after the transform, for `k` from 1 to P/2.
+    /// Turns the complex transform of the pairs into twice that of the blocks, for the bins from 1 to P/2 − 1,
+    /// and returns that of bin P/2.
     #[inline]
-    fn bin(&self, k: usize) -> Complex {
-        let [ar, ai] = self.pair(k);
-        let [br, bi] = self.pair((P / 2).wrapping_sub(k));
-        let [sum_re, sum_im] = [ar + br, ai - bi];
-        let [difference_re, difference_im] = [ar - br, ai + bi];
-        let (cosine, sine) = if k == P / 2 {
-            (-1.0, 0.0)
-        } else {
-            twiddle(k, P)
+    fn separate(&mut self) -> Complex {
+        let (pairs, _) = self.values.as_chunks_mut::<2>();
+        let highest = pairs.first().map_or(0.0, |[re, im]| 2.0 * (re - im));
+        let Some((low, high)) = pairs.split_at_mut_checked(P / 4) else {
+            return [0.0; 2];
         };
-        [
-            sum_re + (cosine * difference_im - sine * difference_re),
-            sum_im - (cosine * difference_re + sine * difference_im),
-        ]
+        if let Some([re, im]) = high.first_mut() {
+            [*re, *im] = [2.0 * *re, -2.0 * *im];
+        }
+        let both = low.iter_mut().skip(1).zip(high.iter_mut().rev());
+        for ((low, high), k) in both.zip(1_usize..) {
+            let ([ar, ai], [br, bi]) = (*low, *high);
+            let [sum_re, sum_im] = [ar + br, ai - bi];
+            let [difference_re, difference_im] = [ar - br, ai + bi];
+            let (cosine, sine) = twiddle(k, P);
+            let re = cosine * difference_im - sine * difference_re;
+            let im = cosine * difference_re + sine * difference_im;
+            *low = [sum_re + re, sum_im - im];
+            *high = [sum_re - re, -(sum_im + im)];
+        }
+        [highest, 0.0]
     }
+}
 
-    /// The pair of a number up to P/2, which stands for 0.
-    #[inline(always)]
-    fn pair(&self, k: usize) -> Complex {
-        let (pairs, _) = self.values.as_chunks::<2>();
-        pairs.get(k % (P / 2)).copied().unwrap_or([0.0; 2])
-    }
+/// The power of a bin of the windowed segment, from twice the transform of the segment at the bin and its
+/// neighbours: the window is `½ − ¼ e^(iθj) − ¼ e^(−iθj)`.
+#[inline(always)]
+fn windowed_power(before: &Complex, here: &Complex, after: &Complex) -> f32 {
+    let re = 2.0 * here[0] - (before[0] + after[0]);
+    let im = 2.0 * here[1] - (before[1] + after[1]);
+    re * re + im * im
 }
 
 /// Joins the transforms in the two halves of a group to the transform of `length` pairs.
@@ -117,8 +127,12 @@ fn join(group: &mut [f32], length: usize) {
         return;
     };
     let ((low, _), (high, _)) = (low.as_chunks_mut::<2>(), high.as_chunks_mut::<2>());
-    for ((low, high), i) in low.iter_mut().zip(high).zip(0_usize..) {
-        let (cosine, sine) = twiddle(i, length);
+    let step = places(length);
+    let mut place = 0_usize;
+    for (low, high) in low.iter_mut().zip(high) {
+        let (cosine, sine) = cosine_and_sine(place);
+        let (cosine, sine) = (single(cosine), single(sine));
+        place = place.wrapping_add(step);
         let [re, im] = *high;
         let [turned_re, turned_im] = [cosine * re + sine * im, cosine * im - sine * re];
         let [low_re, low_im] = *low;
@@ -130,30 +144,34 @@ fn join(group: &mut [f32], length: usize) {
 /// Cosine and sine of the angle `i` of `length`, below half a turn.
 #[inline(always)]
 fn twiddle(i: usize, length: usize) -> (f32, f32) {
-    let (cosine, sine) = cosine_and_sine(i, length);
+    let (cosine, sine) = cosine_and_sine(i.wrapping_mul(places(length)));
     (single(cosine), single(sine))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spectrum::window::bins;
     use crate::test_random::Random;
     use core::f64::consts::PI;
 
     fn compare<const P: usize>() {
         let mut random = Random::new(7);
-        let values: [f32; P] = core::array::from_fn(|_| random.signed() as f32);
+        let ring: [i32; P] = core::array::from_fn(|_| random.bits() as i32 >> 8);
+        let start = random.below(P);
+        let scale = 1.0 / (1 << 23) as f32;
+        let value = |j: usize| f64::from(ring[(start + j) % P] - ring[start]) * f64::from(scale);
         let mut found = [0.0; P];
         let mut slots = found.iter_mut();
-        Segment::<P>::new(|j| values[j]).powers(|power| *slots.next().expect("room") = power);
+        Segment::<P>::new(&ring, start, scale).powers(|power| *slots.next().expect("room") = power);
         assert_eq!(slots.len(), P - bins(P));
         for (k, &power) in (first_bin(P)..).zip(&found[..bins(P)]) {
             let (mut re, mut im) = (0.0, 0.0);
-            for (j, &value) in values.iter().enumerate() {
+            for j in 0..P {
                 let weight = 0.5 - 0.5 * libm::cos(2.0 * PI * j as f64 / P as f64);
                 let angle = 2.0 * PI * ((j * k) % P) as f64 / P as f64;
-                re += weight * f64::from(value) * libm::cos(angle);
-                im -= weight * f64::from(value) * libm::sin(angle);
+                re += weight * value(j) * libm::cos(angle);
+                im -= weight * value(j) * libm::sin(angle);
             }
             let expected = 64.0 * (re * re + im * im);
             let off = f64::from(power) - expected;

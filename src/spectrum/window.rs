@@ -8,12 +8,12 @@ const TURN: usize = MAX_SEGMENT;
 
 const QUARTER: usize = TURN / 4;
 
-/// The sines of the angles from 0 to three quarters of a turn. A cosine lies a quarter further on.
-static SINES: [Real; 3 * QUARTER + 1] = {
-    let mut sines = [0.0; 3 * QUARTER + 1];
+/// The sines of the angles from 0 to one and a quarter turns. A cosine lies a quarter further on.
+static SINES: [Real; 5 * QUARTER] = {
+    let mut sines = [0.0; 5 * QUARTER];
     let mut i = 0;
     while i < sines.len() {
-        sines[i] = sine(i) as Real;
+        sines[i] = sine(i % TURN) as Real;
         i += 1;
     }
     sines
@@ -39,33 +39,26 @@ const fn sine(i: usize) -> f64 {
     }
 }
 
-/// Cosine and sine of the angle `i` of `length`, below half a turn. `length` is a power of two up to
+/// The number of places of the table from one angle of `length` to the next. `length` is a power of two up to
 /// [`MAX_SEGMENT`].
 #[inline(always)]
-pub(super) fn cosine_and_sine(i: usize, length: usize) -> (Real, Real) {
-    let i = i.wrapping_mul(TURN.checked_div(length).unwrap_or(0)) % (2 * QUARTER);
-    (SINES[i + QUARTER], SINES[i])
+pub(super) const fn places(length: usize) -> usize {
+    match TURN.checked_div(length) {
+        Some(places) => places,
+        None => 0,
+    }
 }
 
-/// The cosine of the angle `i` of `length`, for any `i`. `length` is a power of two up to
-/// [`MAX_SEGMENT`].
+/// The cosine of the angle at a place. Any multiple of a turn may be added to it.
 #[inline(always)]
-pub(super) fn cosine(i: usize, length: usize) -> Real {
-    cosine_at(place(i, length))
+pub(super) fn cosine(place: usize) -> Real {
+    SINES[place % TURN + QUARTER]
 }
 
-/// The place of the angle `i` of `length` in a turn, for [`cosine_at`].
+/// The cosine and the sine of the angle at a place. Any multiple of a turn may be added to it.
 #[inline(always)]
-pub(super) fn place(i: usize, length: usize) -> usize {
-    i.wrapping_mul(TURN.checked_div(length).unwrap_or(0)) % TURN
-}
-
-/// The cosine of an angle, given by its place in a turn. Any multiple of a turn may be added.
-#[inline(always)]
-pub(super) fn cosine_at(place: usize) -> Real {
-    let place = place % TURN;
-    let folded = place.min(TURN - place);
-    SINES.get(folded + QUARTER).copied().unwrap_or(0.0)
+pub(super) fn cosine_and_sine(place: usize) -> (Real, Real) {
+    (cosine(place), SINES[place % TURN])
 }
 
 /// The first bin of a level with segments of this length.
@@ -79,8 +72,8 @@ pub(super) const fn bins(length: usize) -> usize {
 }
 
 /// The sum of the squares of the window's weights, `Σ w² = 3P/8`.
-pub(super) fn sum_of_squares(length: usize) -> Real {
-    0.375 * real(length)
+pub(super) fn sum_of_squares(length: Real) -> Real {
+    0.375 * length
 }
 
 /// Whether segments can have this length: it is a power of two from 32 to [`MAX_SEGMENT`]. The lowest bin must
@@ -115,8 +108,7 @@ impl Products {
     /// The product at a distance of `l` blocks, less than the length.
     pub(super) fn at(&self, l: usize) -> Real {
         let overlap = real(self.length.saturating_sub(l));
-        let place = place(l, self.length);
-        let (cosine, sine) = (cosine_at(place), cosine_at(place.wrapping_sub(QUARTER)));
+        let (cosine, sine) = cosine_and_sine(l.wrapping_mul(places(self.length)));
         0.25 * (overlap * (1.0 + 0.5 * cosine) + self.factor * sine)
     }
 }
@@ -132,13 +124,10 @@ mod tests {
         for length in [32_usize, 64, MAX_SEGMENT] {
             for i in 0..3 * length {
                 let angle = 2.0 * PI * (i % length) as f64 / length as f64;
-                let most = double(by_precision(3e-16, 6e-8));
-                assert!((double(cosine(i, length)) - libm::cos(angle)).abs() < most);
-                if i < length / 2 {
-                    let (cosine, sine) = cosine_and_sine(i, length);
-                    assert!((double(cosine) - libm::cos(angle)).abs() < most);
-                    assert!((double(sine) - libm::sin(angle)).abs() < most);
-                }
+                let most = double(by_precision(1e-15, 6e-8));
+                let (cosine, sine) = cosine_and_sine(i * places(length));
+                assert!((double(cosine) - libm::cos(angle)).abs() < most);
+                assert!((double(sine) - libm::sin(angle)).abs() < most);
             }
         }
     }
@@ -151,10 +140,10 @@ mod tests {
             for l in 0..length {
                 let expected: f64 = (0..length - l).map(|j| weight(j) * weight(j + l)).sum();
                 let off = double(products.at(l)) - expected;
-                let most = length as f64 * double(by_precision(2e-16, 6e-8));
+                let most = length as f64 * double(by_precision(1e-15, 6e-8));
                 assert!(off.abs() < most, "{length}, {l}: {off:e} of {expected}");
             }
-            let off = double(products.at(0) - sum_of_squares(length));
+            let off = double(products.at(0) - sum_of_squares(real(length)));
             assert!(off.abs() < length as f64 * double(by_precision(1e-15, 1e-7)));
         }
     }

@@ -274,7 +274,7 @@ fn drawing_has_its_marks_at_the_figures_and_describes_them_in_words() {
         "angle random walk",
         "0.1",
         "1 s",
-        "worst octave: +58",
+        "worst octave: +57",
     ] {
         assert!(words.contains(&expected), "{expected}: {words:?}");
     }

@@ -101,10 +101,8 @@ impl Trying {
         if let Some(completed) = completed {
             let mut candidate = *candidate;
             candidate.improvement = score - completed.score - 2.0 * candidate.cost();
-            if candidate.improvement > 0.0 {
-                if enter(candidates, candidate) == Some(0) {
-                    *best = completed.fitted;
-                }
+            if candidate.improvement > 0.0 && enter(candidates, candidate) == Some(0) {
+                *best = completed.fitted;
             }
         }
         self.trial = None;

@@ -4,13 +4,13 @@ use super::{
     pole::Pole,
 };
 use crate::real::{
-    Real,
+    Real, by_precision,
     consts::{FRAC_1_SQRT_2, PI},
 };
 use nalgebra::Complex;
 
 /// The sine of 60 degrees, √3/2.
-const SINE_60: Real = 0.866_025_403_784_438_6;
+const SINE_60: Real = by_precision(0.866_025_403_784_438_6, 0.866_025_4);
 
 /// Angle random walk that passed a Butterworth low pass of one, two or three poles. It takes the place of
 /// [`AngleRandomWalk`]. The coefficient is `N` in rate · √s; the shape parameters are the time constant `T` of the

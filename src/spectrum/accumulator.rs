@@ -150,7 +150,11 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
             self.is_late = false;
             self.end();
         }
-        self.due > 0 && self.transform() && (self.due > 0 || self.waiting > 0 || self.is_late)
+        if self.due == 0 {
+            return false;
+        }
+        self.transform();
+        self.due > 0 || self.waiting > 0 || self.is_late
     }
 
     /// Does all the work that waits.

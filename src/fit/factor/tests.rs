@@ -1,5 +1,8 @@
 //! The factor of octaves and bins against that of one dense matrix.
 
+// The indices are those of rows and columns.
+#![allow(clippy::needless_range_loop)]
+
 use super::*;
 use crate::test_random::Random;
 

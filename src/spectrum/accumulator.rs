@@ -132,7 +132,9 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         self.finish();
         for &count in counts {
             self.take(count);
-            while self.due > 0 && self.transform() {}
+            while self.due > 0 {
+                self.transform();
+            }
         }
     }
 
@@ -149,7 +151,11 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
             self.is_late = false;
             self.end();
         }
-        self.due > 0 && self.transform() && (self.due > 0 || self.waiting > 0 || self.is_late)
+        if self.due == 0 {
+            return false;
+        }
+        self.transform();
+        self.due > 0 || self.waiting > 0 || self.is_late
     }
 
     /// Does all the work that waits.
@@ -182,17 +188,15 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         }
     }
 
-    /// Transforms one segment; `false` if none is due.
-    fn transform(&mut self) -> bool {
+    /// Transforms the segment of the lowest level that has one.
+    fn transform(&mut self) {
         let i = self.due.trailing_zeros();
-        let Some(level) = self.levels.get_mut(i as usize) else {
-            return false;
-        };
         // The lowest bit is no longer set.
         self.due &= self.due.wrapping_sub(1);
-        let block_bits = RADIX_BITS.wrapping_mul(i);
-        level.add_segment(self.number.wrapping_shr(block_bits), block_bits);
-        true
+        if let Some(level) = self.levels.get_mut(i as usize) {
+            let block_bits = RADIX_BITS.wrapping_mul(i);
+            level.add_segment(self.number.wrapping_shr(block_bits), block_bits);
+        }
     }
 
     /// Marks a place where samples were lost or the gyro was disturbed. No block and no segment spans this

@@ -157,7 +157,7 @@ fn full_scale_input_overflows_nothing() {
     for half in [1, 4, 40] {
         let mut accumulator = SpectrumAccumulator::<64, 3>::new();
         let wave = |n: usize| {
-            if (n / half) % 2 == 0 {
+            if (n / half).is_multiple_of(2) {
                 i32::MIN
             } else {
                 i32::MAX

@@ -4,7 +4,6 @@ use super::{
     level::{Level, RADIX, RADIX_BITS},
     window::is_possible,
 };
-use crate::list::numbered;
 
 /// Sums the power spectral densities of a record, in fixed memory: `LEVELS` levels of segments of `P` blocks.
 /// Level `i` takes blocks of `8^i` samples. The [module](super) gives the definition.
@@ -133,7 +132,9 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         self.finish();
         for &count in counts {
             self.take(count);
-            while self.due > 0 && self.transform() {}
+            while self.due > 0 {
+                self.transform();
+            }
         }
     }
 
@@ -187,18 +188,15 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         }
     }
 
-    /// Transforms one segment; `false` if none is due.
-    fn transform(&mut self) -> bool {
-        for (i, level) in numbered(self.levels.iter_mut()) {
-            let bit = 1_u16.wrapping_shl(i as u32);
-            if self.due & bit != 0 {
-                self.due &= !bit;
-                let block_bits = RADIX_BITS.wrapping_mul(i as u32);
-                level.add_segment(self.number.wrapping_shr(block_bits), block_bits);
-                return true;
-            }
+    /// Transforms the segment of the lowest level that has one.
+    fn transform(&mut self) {
+        let i = self.due.trailing_zeros();
+        // The lowest bit is no longer set.
+        self.due &= self.due.wrapping_sub(1);
+        if let Some(level) = self.levels.get_mut(i as usize) {
+            let block_bits = RADIX_BITS.wrapping_mul(i);
+            level.add_segment(self.number.wrapping_shr(block_bits), block_bits);
         }
-        false
     }
 
     /// Marks a place where samples were lost or the gyro was disturbed. No block and no segment spans this
@@ -242,7 +240,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
 
     /// What is kept for every block length, with the number of bits in that length, shortest blocks first.
     pub(super) fn levels(&self) -> impl Iterator<Item = (u32, &Level<P>)> {
-        let bits = (0_u32..).map(|i| RADIX_BITS.wrapping_mul(i));
+        let bits = (0..u32::MAX).map(|i| RADIX_BITS.wrapping_mul(i));
         bits.zip(&self.levels)
     }
 }

@@ -53,7 +53,7 @@ pub fn covariance_rows<'a>(
     (0..bins.len()).map(move |place| {
         let mut row = [0.0; BAND];
         let own = bins.get(place);
-        for (covariance, later) in row.iter_mut().zip(place..) {
+        for (covariance, later) in row.iter_mut().zip(place..usize::MAX) {
             if let (Some(own), Some(other)) = (own, bins.get(later))
                 && own.block == other.block
             {

@@ -132,7 +132,14 @@ impl<const B: usize> Spectrum<B> {
 
     /// The bins of each level, shortest blocks first.
     pub fn levels(&self) -> impl Iterator<Item = &[Bin]> {
-        self.bins.chunk_by(|one, next| one.block == next.block)
+        let mut rest = self.bins();
+        core::iter::from_fn(move || {
+            let block = rest.first()?.block;
+            let end = rest.iter().position(|bin| bin.block != block);
+            let (level, later) = rest.split_at_checked(end.unwrap_or(rest.len()))?;
+            rest = later;
+            Some(level)
+        })
     }
 
     /// The densities that an effect with a coefficient of one is expected to have in the bins, in their order,
@@ -191,7 +198,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
             let n = real(segments);
             let unit = scale.rate_per_count() * real(1_u32 << UNIT_BITS);
             let per_power = 2.0 * real(block) / (scale.rate_hz() * sum_of_squares(real(P)));
-            for ((power, square), index) in level.sums().zip(first_bin(P) as u32..) {
+            for ((power, square), index) in level.sums().zip(first_bin(P) as u32..u32::MAX) {
                 let mean = real(power) / n;
                 let bin = Bin {
                     block,

@@ -76,6 +76,7 @@ impl<const P: usize> Level<P> {
     }
 
     /// Adds the segment that ends before block `number`, for blocks of `2^block_bits` samples.
+    #[inline(never)]
     pub(super) fn add_segment(&mut self, number: u64, block_bits: u32) {
         let start = number as usize;
         // The transform multiplies by 8.
@@ -85,16 +86,9 @@ impl<const P: usize> Level<P> {
             self.halve();
         }
         self.segments = self.segments.saturating_add(1);
-        let Some((powers, squares)) = self.sums.split_at_mut_checked(P / 2) else {
-            return;
-        };
-        let mut sums = powers.iter_mut().zip(squares);
-        segment.powers(|power| {
-            if let Some((sum, square)) = sums.next() {
-                *sum += power;
-                *square += power * power;
-            }
-        });
+        let (powers, squares) = self.sums.split_at_mut(P / 2);
+        let squares = squares.get_mut(..bins(P)).unwrap_or_default();
+        segment.add_powers(powers, squares);
     }
 
     /// Gives everything so far half its weight. A sum in single precision would otherwise stop taking up the

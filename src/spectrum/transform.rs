@@ -23,33 +23,42 @@ impl<const P: usize> Segment<P> {
     #[inline]
     pub(super) fn new(ring: &[i32; P], start: usize, scale: f32) -> Self {
         let first = ring[start % P];
-        let value = |j: usize| ring[start.wrapping_add(j) % P].wrapping_sub(first) as f32 * scale;
         let mut values = [0.0; P];
         let (pairs, _) = values.as_chunks_mut::<2>();
         // The number of bits by which a reversed number is too long for that of a pair.
         let more = u32::BITS.wrapping_sub((P / 2).trailing_zeros());
-        for (pair, slot) in pairs.iter_mut().zip(0_u32..) {
+        for (pair, slot) in pairs.iter_mut().zip(0..u32::MAX) {
             let even = slot.reverse_bits().wrapping_shr(more).wrapping_mul(2) as usize;
-            *pair = [value(even), value(even.wrapping_add(1))];
+            let even = start.wrapping_add(even);
+            *pair = [
+                ring[even % P].wrapping_sub(first) as f32 * scale,
+                ring[even.wrapping_add(1) % P].wrapping_sub(first) as f32 * scale,
+            ];
         }
         Self { values }
     }
 
-    /// Hands `|8 Σ_j w_j y_j e^(−2πijk/P)|²` to `each`, for the bins `k` that are kept, in their order.
+    /// Adds `|8 Σ_j w_j y_j e^(−2πijk/P)|²` to `powers` and its square to `squares`, for the bins `k` that are
+    /// kept, in their order.
     #[inline]
-    pub(super) fn powers(mut self, mut each: impl FnMut(f32)) {
+    pub(super) fn add_powers(mut self, powers: &mut [f32], squares: &mut [f32]) {
         self.transform();
         let highest = self.separate();
         let (pairs, _) = self.values.as_chunks::<2>();
-        let mut bins = pairs.iter().skip(first_bin(P).wrapping_sub(1));
-        let (Some(mut before), Some(mut here)) = (bins.next(), bins.next()) else {
+        let Some([before, here, later @ ..]) = pairs.get(first_bin(P).wrapping_sub(1)..) else {
             return;
         };
+        let (mut before, mut here) = (before, here);
+        let mut sums = powers.iter_mut().zip(squares);
+        let bins = later.iter().chain([&highest]);
         for after in bins {
-            each(windowed_power(before, here, after));
+            if let Some((sum, square)) = sums.next() {
+                let power = windowed_power(before, here, after);
+                *sum += power;
+                *square += power * power;
+            }
             (before, here) = (here, after);
         }
-        each(windowed_power(before, here, &highest));
     }
 
     /// The complex transform of the pairs.
@@ -97,7 +106,7 @@ impl<const P: usize> Segment<P> {
             [*re, *im] = [2.0 * *re, -2.0 * *im];
         }
         let both = low.iter_mut().skip(1).zip(high.iter_mut().rev());
-        for ((low, high), k) in both.zip(1_usize..) {
+        for ((low, high), k) in both.zip(1..usize::MAX) {
             let ([ar, ai], [br, bi]) = (*low, *high);
             let [sum_re, sum_im] = [ar + br, ai - bi];
             let [difference_re, difference_im] = [ar - br, ai + bi];
@@ -161,10 +170,14 @@ mod tests {
         let start = random.below(P);
         let scale = 1.0 / (1 << 23) as f32;
         let value = |j: usize| f64::from(ring[(start + j) % P] - ring[start]) * f64::from(scale);
-        let mut found = [0.0; P];
-        let mut slots = found.iter_mut();
-        Segment::<P>::new(&ring, start, scale).powers(|power| *slots.next().expect("room") = power);
-        assert_eq!(slots.len(), P - bins(P));
+        let (mut found, mut squares) = ([0.0; P], [0.0; P]);
+        Segment::<P>::new(&ring, start, scale).add_powers(&mut found[..bins(P)], &mut squares);
+        assert!(
+            found
+                .iter()
+                .zip(squares)
+                .all(|(power, square)| power * power == square)
+        );
         for (k, &power) in (first_bin(P)..).zip(&found[..bins(P)]) {
             let (mut re, mut im) = (0.0, 0.0);
             for j in 0..P {

@@ -257,6 +257,41 @@ fn sums_of_many_segments_are_halved_and_stay_right() {
     }
 }
 
+/// The numbers were printed by an image on a Cortex-M4F in QEMU, built for size and built for speed.
+#[test]
+#[cfg(not(feature = "double"))]
+fn a_target_computes_the_same_bits() {
+    let mut random = 1_u32;
+    let next = |_| {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (random >> 16) as i32
+    };
+    let counts: Vec<i32> = (0..40_000).map(next).collect();
+    let spectrum = of::<64, 3>(&[&counts]).spectrum::<84>(scale());
+    let bins = spectrum.bins().iter().filter(|bin| bin.index % 9 == 4);
+    let found: Vec<_> = bins
+        .map(|bin| {
+            let bits = (bin.density.to_bits(), bin.spectral_kurtosis.to_bits());
+            (bin.block, bin.index, bits.0, bits.1)
+        })
+        .collect();
+    let expected = [
+        (1, 4, 0x4adc_a20c, 0x3f80_68a0),
+        (1, 13, 0x4ade_14f1, 0x3f71_d584),
+        (1, 22, 0x4adb_85a8, 0x3f74_382a),
+        (1, 31, 0x4ada_9eb5, 0x3f67_2d5a),
+        (8, 4, 0x4abb_3b79, 0x3f68_363a),
+        (8, 13, 0x4aea_c6a8, 0x3f8a_7bf9),
+        (8, 22, 0x4af0_a9e5, 0x3f6a_e091),
+        (8, 31, 0x4ac5_ac78, 0x3f73_1408),
+        (64, 4, 0x4b20_8e52, 0x3f12_e54c),
+        (64, 13, 0x4b15_77ec, 0x3f73_2609),
+        (64, 22, 0x4b09_bfdd, 0x3fcd_41fc),
+        (64, 31, 0x4aba_c638, 0x3f81_b7a2),
+    ];
+    assert_eq!(found, expected);
+}
+
 #[test]
 fn only_whole_levels_enter_a_spectrum() {
     let accumulator = of::<64, 3>(&[&counts(40_000)]);

@@ -213,6 +213,7 @@ pub mod comparison;
 mod covariance;
 pub mod covariate;
 pub mod curve;
+pub mod detection;
 pub mod diagnosis;
 pub mod effect;
 mod error;

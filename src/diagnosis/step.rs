@@ -104,7 +104,7 @@ pub struct FollowedCovariate {
 }
 
 /// The number of parameters of an effect whose shape is fitted.
-pub(super) fn cost(effect: &'static dyn Effect) -> Real {
+pub(crate) fn cost(effect: &'static dyn Effect) -> Real {
     let shapes = Term::fitted(effect).fitted_parameters();
     1.0 + shapes.map(|_| 1.0).sum::<Real>()
 }

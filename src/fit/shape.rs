@@ -16,6 +16,24 @@ use heapless::Vec;
 /// precision, 0.005, where the error of a central difference is smallest.
 const STEP: Real = 0.01;
 
+/// The change of a term's variances with the logarithm of its parameter `j`, for a squared coefficient of
+/// `square`.
+pub(crate) fn derivative<const K: usize>(
+    problem: &Problem<'_, K>,
+    term: Term,
+    j: usize,
+    square: Real,
+) -> algebra::Vector<K, f32> {
+    let column = |factor: Real| {
+        let mut term = term;
+        term.scale_parameter(j, factor);
+        problem.column(&term)
+    };
+    let change = *column(math::exp(STEP)) - *column(math::exp(-STEP));
+    let scale = 0.5 * square / STEP;
+    change.map(|change| single(change * scale)).into()
+}
+
 /// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
 /// linearised around the solution.
 pub(crate) struct ShapeEquations {
@@ -54,15 +72,8 @@ impl ShapeEquations {
         // The coefficients come first, the shapes follow.
         let mut derivatives: Vec<algebra::Vector<K, f32>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
-            let column = |factor: Real| {
-                let mut term = term;
-                term.scale_parameter(j, factor);
-                problem.column(&term)
-            };
-            let change = *column(math::exp(STEP)) - *column(math::exp(-STEP));
-            let scale = 0.5 * squares[i] / STEP;
             // There is a place for every parameter.
-            let _ = derivatives.push(change.map(|change| single(change * scale)).into());
+            let _ = derivatives.push(derivative(problem, term, j, squares[i]));
         }
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
         let equations = &mut self.equations;

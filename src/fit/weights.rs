@@ -250,6 +250,33 @@ impl<const K: usize> Weights<K> {
         cholesky::forward(&self.factor, n, &mut column);
         (column, unit)
     }
+
+    /// The variance of the sum of a whitened curve along `direction`, if the octaves do not have the scatter
+    /// that the weights expect. `ratio(k)` is the standard error of octave `k` relative to the expected one,
+    /// and the tolerance, which no record has, is left out.
+    #[inline(never)]
+    pub(crate) fn variance_along(
+        &self,
+        n: usize,
+        direction: &algebra::Vector<K>,
+        ratio: &dyn Fn(usize) -> Real,
+    ) -> Real {
+        // With the factor L, the covariance of the octaves is S (L L' − tolerance²) S, and whitening
+        // multiplies it by the inverse of L from both sides.
+        let mut x = *direction;
+        cholesky::backward(&self.factor, n, &mut x);
+        for k in 0..n {
+            x.put(k, x[k] * ratio(k));
+        }
+        let column = |j: usize| {
+            let below = (j.saturating_add(1)..n).map(|k| real(self.factor[(k, j)]) * x[k]);
+            x[j] / real(self.factor[(j, j)]) + below.sum::<Real>()
+        };
+        let tolerance = self.tolerance * self.tolerance;
+        (0..n)
+            .map(|j| column(j) * column(j) - tolerance * x[j] * x[j])
+            .sum()
+    }
 }
 
 /// The curve and the columns in units in which octaves are independent. Octaves that the curve does not

@@ -3,6 +3,7 @@
 
 pub mod clean;
 pub mod coefficients;
+pub mod detection;
 pub mod hidden_effect;
 pub mod lines;
 pub mod paper;

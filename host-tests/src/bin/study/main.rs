@@ -2,6 +2,7 @@
 
 mod clean;
 mod coefficients;
+mod detection;
 mod hidden_effect;
 mod lines;
 mod paper;
@@ -61,6 +62,18 @@ enum Study {
         /// Study only this effect
         #[arg(long)]
         effect: Option<String>,
+    },
+    /// Count how often an effect shows that is as large as its limit of detection
+    Detection {
+        /// Number of records per effect
+        #[arg(long, default_value_t = 300)]
+        records: u64,
+        /// Study only this effect
+        #[arg(long)]
+        effect: Option<String>,
+        /// Multiply the limits
+        #[arg(long, default_value_t = 1.0)]
+        factor: f64,
     },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
@@ -123,6 +136,11 @@ fn main() -> Result<()> {
             preset,
             effect,
         } => hidden_effect::print(records, clean, preset, effect.as_deref()),
+        Study::Detection {
+            records,
+            effect,
+            factor,
+        } => detection::print(records, effect.as_deref(), factor),
         Study::Lines { records } => lines::print(records),
         Study::Clean {
             records,

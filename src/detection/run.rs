@@ -1,0 +1,246 @@
+//! The limits of all effects of a list, in pieces.
+
+use super::{
+    expected::{Derivatives, Ground, at_least_zero},
+    limit::{Limit, keeps_coefficient},
+    trial::{Progress as Sought, Trial},
+};
+use crate::{
+    curve::Curve,
+    diagnosis::{Options, Step, cost, place},
+    effect::{Effect, Span},
+    error::Error,
+    fit::{Columns, Problem, Weights, derivative},
+    limits::MAX_PARAMETERS,
+    list::numbered,
+    model::{Model, Term},
+    nnls::Vector,
+    profile::Grid,
+    real::Real,
+};
+
+/// The number of values of the first shape parameter for each factor of two. Between them, the limit of a
+/// sinusoid changes by up to 10 %, because an octave grid sees some frequencies better than others.
+const STEPS_AN_OCTAVE: Real = 4.0;
+
+/// The limits of detection, in progress: the size of each effect that a record would have shown.
+pub struct Detection<'a, const K: usize> {
+    curve: Curve<K>,
+    span: Span,
+    model: Model,
+    squares: Vector,
+    columns: Columns<K>,
+    weights: Weights<K>,
+    derivatives: Derivatives<K>,
+    effects: &'a [&'static dyn Effect],
+    options: Options,
+    /// The effect that comes next, and the next steps of its grids.
+    effect: usize,
+    at: [u32; MAX_PARAMETERS],
+    stage: Stage,
+    limit: Option<Limit>,
+}
+
+enum Stage {
+    Beginning,
+    /// The covariance of the curve is being computed.
+    Weighting,
+    /// The next shape is chosen.
+    Choosing,
+    Searching(Trial),
+    Finished(Result<(), Error>),
+}
+
+/// The result of one piece of work.
+#[derive(Clone, Copy, Debug)]
+pub enum Progress {
+    /// There is more to do.
+    Working,
+    /// The limit of one more shape is known.
+    Limit(Limit),
+    /// All effects have been gone through.
+    Finished,
+}
+
+impl<'a, const K: usize> Detection<'a, K> {
+    /// Begins with the last step of a diagnosis.
+    #[inline(always)]
+    pub fn new(
+        curve: Curve<K>,
+        step: &Step<K>,
+        effects: &'a [&'static dyn Effect],
+        options: Options,
+    ) -> Self {
+        let model = step.model.clone();
+        let columns = Columns::EMPTY;
+        let squares = at_least_zero(&Problem::new(&curve, &model, &columns).squares_of(&step.fit));
+        let stage = if step.fit.is_adequate() == Some(true) {
+            Stage::Beginning
+        } else {
+            Stage::Finished(Ok(()))
+        };
+        Self {
+            span: curve.span(),
+            curve,
+            model,
+            squares,
+            columns,
+            weights: Weights::EMPTY,
+            derivatives: Derivatives::new(),
+            effects,
+            options,
+            effect: 0,
+            at: [0; MAX_PARAMETERS],
+            stage,
+            limit: None,
+        }
+    }
+
+    /// Calls `each` for every limit.
+    ///
+    /// # Errors
+    /// The same as those of [`advance`](Self::advance).
+    pub fn run(&mut self, mut each: impl FnMut(Limit)) -> Result<(), Error> {
+        loop {
+            match self.advance()? {
+                Progress::Working => {}
+                Progress::Limit(limit) => each(limit),
+                Progress::Finished => return Ok(()),
+            }
+        }
+    }
+
+    /// The limit of one shape. `None` if the effect hides in the model.
+    ///
+    /// # Errors
+    /// The same as those of [`advance`](Self::advance).
+    pub fn limit_of(&mut self, term: Term) -> Result<Option<Limit>, Error> {
+        while matches!(self.stage, Stage::Beginning | Stage::Weighting) {
+            self.advance()?;
+        }
+        let Some(range) = term.effect.search_range(0, &self.span) else {
+            return Ok(None);
+        };
+        let problem = Problem::new(&self.curve, &self.model, &self.columns);
+        let ground = Ground {
+            problem: &problem,
+            weights: &self.weights,
+            derivatives: &self.derivatives,
+        };
+        let mut trial = Trial::new(&ground, term, (range.low, range.high));
+        let gain = self.options.threshold + 2.0 * cost(term.effect);
+        loop {
+            match trial.advance(&ground, &self.squares, gain) {
+                Sought::Searching => {}
+                Sought::Hidden => return Ok(None),
+                Sought::Found(limit) => return Ok(Some(limit)),
+            }
+        }
+    }
+
+    /// Does one piece of work.
+    ///
+    /// # Errors
+    /// [`Error::Singular`] if the covariance of the curve cannot be made positive definite. An error ends the
+    /// work.
+    pub fn advance(&mut self) -> Result<Progress, Error> {
+        if let Err(error) = self.work() {
+            self.stage = Stage::Finished(Err(error));
+        }
+        match (&self.stage, self.limit.take()) {
+            (_, Some(limit)) => Ok(Progress::Limit(limit)),
+            (Stage::Finished(result), None) => result.map(|()| Progress::Finished),
+            _ => Ok(Progress::Working),
+        }
+    }
+
+    #[inline(never)]
+    fn work(&mut self) -> Result<(), Error> {
+        match &mut self.stage {
+            Stage::Beginning => self.begin(),
+            Stage::Weighting => {
+                let problem = Problem::new(&self.curve, &self.model, &self.columns);
+                if self.weights.advance(&problem, &self.squares)? {
+                    self.stage = Stage::Choosing;
+                }
+                Ok(())
+            }
+            Stage::Choosing => {
+                self.choose();
+                Ok(())
+            }
+            Stage::Searching(trial) => {
+                let problem = Problem::new(&self.curve, &self.model, &self.columns);
+                let ground = Ground {
+                    problem: &problem,
+                    weights: &self.weights,
+                    derivatives: &self.derivatives,
+                };
+                let effect = self.effects.get(self.effect);
+                let gain =
+                    self.options.threshold + 2.0 * effect.map_or(1.0, |&effect| cost(effect));
+                match trial.advance(&ground, &self.squares, gain) {
+                    Sought::Searching => {}
+                    Sought::Hidden => self.stage = Stage::Choosing,
+                    Sought::Found(limit) => {
+                        self.limit = Some(limit);
+                        self.stage = Stage::Choosing;
+                    }
+                }
+                Ok(())
+            }
+            Stage::Finished(_) => Ok(()),
+        }
+    }
+
+    #[inline(never)]
+    fn begin(&mut self) -> Result<(), Error> {
+        self.columns.set(&self.curve, &self.model);
+        let problem = Problem::new(&self.curve, &self.model, &self.columns);
+        for (i, term) in numbered(self.model.terms().iter()) {
+            for j in term.fitted_parameters().filter(|_| self.squares[i] > 0.0) {
+                let change = derivative(&problem, *term, j, self.squares[i]);
+                // A model has no more shapes than there are places.
+                let _ = self.derivatives.push(change);
+            }
+        }
+        self.weights
+            .begin(&problem, &self.squares, self.options.tolerance)?;
+        self.stage = Stage::Weighting;
+        Ok(())
+    }
+
+    /// Chooses the next shape.
+    #[inline(never)]
+    fn choose(&mut self) {
+        let Some(&effect) = self.effects.get(self.effect) else {
+            self.stage = Stage::Finished(Ok(()));
+            return;
+        };
+        let problem = Problem::new(&self.curve, &self.model, &self.columns);
+        let is_candidate = place(&problem, effect).is_some() && self.model.position(effect.name()).is_none();
+        let is_of_shape = keeps_coefficient(effect);
+        let grids: [Grid; MAX_PARAMETERS] = core::array::from_fn(|j| {
+            Grid::coarse(effect, j, &self.span, STEPS_AN_OCTAVE)
+        });
+        let [first, second] = grids;
+        let firsts = if is_of_shape { 1 } else { first.steps };
+        if !is_candidate || self.at[0] >= firsts {
+            self.effect = self.effect.saturating_add(1);
+            self.at = [0; MAX_PARAMETERS];
+            return;
+        }
+        let mut term = Term::fitted(effect);
+        term.parameters = [first.at(self.at[0]), second.at(self.at[1])];
+        self.at[1] = self.at[1].saturating_add(1);
+        if self.at[1] >= second.steps {
+            self.at = [self.at[0].saturating_add(1), 0];
+        }
+        let ground = Ground {
+            problem: &problem,
+            weights: &self.weights,
+            derivatives: &self.derivatives,
+        };
+        self.stage = Stage::Searching(Trial::new(&ground, term, (first.low, first.high)));
+    }
+}

@@ -39,7 +39,8 @@ pub(super) struct Standing {
 
 impl<const K: usize> Ground<'_, K> {
     /// The standing of an effect with which octave `k` has the variance `expected(k)` and the scatter of
-    /// a random curve of the variance `scatter(k)`. `gain` is the least fall of the score for which the
+    /// a random curve of the variance `scatter(k)`. `surplus` is the relative variance of the effect's power that
+    /// this scatter lacks. `gain` is the least fall of the score for which the
     /// effect is added. `None` if the model follows the effect wherever it leads, or has no degrees of
     /// freedom.
     ///
@@ -52,6 +53,7 @@ impl<const K: usize> Ground<'_, K> {
         &self,
         expected: &dyn Fn(usize) -> Real,
         scatter: &dyn Fn(usize) -> Real,
+        surplus: Real,
         gain: Real,
     ) -> Option<Standing> {
         let Self {
@@ -68,7 +70,8 @@ impl<const K: usize> Ground<'_, K> {
         let root = math::sqrt(shift.norm_squared());
         let ratio = |k: usize| scatter(k) / fitted[k];
         let direction = algebra::Vector::from(*shift * (1.0 / root.max(Real::MIN_POSITIVE)));
-        let along = weights.variance_along(n, &direction, &ratio);
+        let octaves = weights.variance_along(n, &direction, &ratio);
+        let along = octaves + surplus * root * root;
         let basis = self.basis(&scale, &free);
         let unknowns = basis.len();
         let degrees_of_freedom = n.saturating_sub(unknowns);
@@ -83,7 +86,7 @@ impl<const K: usize> Ground<'_, K> {
         let others = real(degrees_of_freedom.saturating_sub(1).max(1));
         let variances = Variances {
             along,
-            rest: ((total - followed - along) / others).max(LEAST_LEFT),
+            rest: ((total - followed - octaves) / others).max(LEAST_LEFT),
         };
         let valid = root.is_finite() && along.is_finite() && along > 0.0;
         let gate = Gate::new(degrees_of_freedom, gain)?;
@@ -91,6 +94,38 @@ impl<const K: usize> Ground<'_, K> {
             root,
             needed: gate.needed(variances),
         })
+    }
+
+    /// By how much the model's coefficients and shapes follow a shift of the curve, in the linear
+    /// approximation: the squared coefficients above zero come first, and the logarithms of the fitted
+    /// shapes behind them. `None` if they cannot be told apart.
+    #[inline(never)]
+    pub(super) fn followed(
+        &self,
+        squares: &Vector,
+        shift: &dyn Fn(usize) -> Real,
+    ) -> Option<Vector> {
+        let Self {
+            problem,
+            weights,
+            derivatives,
+        } = self;
+        let count = problem.count();
+        let mut equations = NormalEquations::EMPTY;
+        let set = weights.equations(problem, &|_| 1.0, derivatives, shift, &mut equations);
+        set.ok()?;
+        let shapes = count..equations.count();
+        let free = Free::of(|i| (i < count && squares[i] > 0.0) || shapes.contains(&i));
+        equations.solve_free(&free)
+    }
+
+    /// The change of octave `k` with the steps of the fitted shapes.
+    pub(super) fn change(&self, k: usize, solution: &Vector) -> Real {
+        let count = self.problem.count();
+        let changes = numbered(self.derivatives.iter());
+        changes
+            .map(|(at, change)| real(change[k]) * solution[count.saturating_add(at)])
+            .sum()
     }
 
     /// Fits the model to the expected curve, with the weights at `fitted`, which becomes the fit. Returns the
@@ -118,15 +153,10 @@ impl<const K: usize> Ground<'_, K> {
             let with_shapes = Free::of(|i| free.has(i) || shapes.contains(&i));
             solution = equations.solve_free(&with_shapes)?;
         }
-        let shape = |k: usize| {
-            let changes = numbered(derivatives.iter());
-            changes
-                .map(|(at, change)| real(change[k]) * solution[count.saturating_add(at)])
-                .sum::<Real>()
-        };
         for k in 0..n {
-            let value = problem.variance(k, &solution) + shape(k);
-            if !(value > LEAST_LEFT * fitted[k]) {
+            let value = problem.variance(k, &solution) + self.change(k, &solution);
+            let is_left = value > LEAST_LEFT * fitted[k];
+            if !is_left {
                 return None;
             }
             fitted.put(k, value);

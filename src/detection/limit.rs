@@ -1,10 +1,6 @@
 //! The size of an effect that a record would have shown.
 
-use crate::{
-    effect::Effect,
-    model::Term,
-    real::Real,
-};
+use crate::{effect::Effect, limits::MAX_EFFECTS, model::Term, real::Real};
 
 /// The size of an effect of one shape that a record would have shown with a probability of 95 %.
 ///
@@ -18,17 +14,30 @@ pub struct Limit {
     /// The coefficient, in the unit that a [`Coefficient`](crate::Coefficient) of the effect has. For a
     /// limit of the shape, it is the coefficient that was measured.
     pub coefficient: Real,
+    /// The coefficients of the model's terms with which a gyro that has the effect would look most like the
+    /// record, in the order of the model. Those beyond the model are zero.
+    pub beside: [Real; MAX_EFFECTS],
 }
 
 impl Limit {
     /// Whether the limit is that of the first shape parameter and not that of the coefficient.
     pub fn is_of_shape(&self) -> bool {
-        keeps_coefficient(self.term.effect)
+        is_of_shape(self.term.effect)
+    }
+
+    /// The limit: the coefficient, or the first shape parameter if the limit [is of it](Self::is_of_shape).
+    pub fn size(&self) -> Real {
+        if self.is_of_shape() {
+            self.term.parameter(0)
+        } else {
+            self.coefficient
+        }
     }
 }
 
-/// Whether the coefficient of an effect is that of the effect that it replaces.
-pub(super) fn keeps_coefficient(effect: &dyn Effect) -> bool {
+/// Whether the limit of an effect is that of its first shape parameter, because its coefficient is that of the
+/// effect that it replaces.
+pub(crate) fn is_of_shape(effect: &dyn Effect) -> bool {
     let replaced = effect.replaces();
     replaced.is_some_and(|replaced| replaced.coefficient() == effect.coefficient())
 }

@@ -4,8 +4,16 @@
 mod expected;
 mod limit;
 mod power;
+mod range;
 mod run;
 mod trial;
 
 pub use limit::Limit;
+pub use range::{MAX_RANGES, Range, Ranges};
 pub use run::{Detection, Progress};
+
+#[cfg(feature = "storage")]
+pub(crate) use limit::is_of_shape;
+
+#[cfg(test)]
+mod tests;

@@ -190,7 +190,12 @@ mod tests {
             along: 1.7,
             rest: 0.8,
         };
-        for (degrees, gain, s) in [(11, 12.0, 5.0), (11, 12.0, 4.0), (4, 20.0, 5.0), (1, 3.0, 3.0)] {
+        for (degrees, gain, s) in [
+            (11, 12.0, 5.0),
+            (11, 12.0, 4.0),
+            (4, 20.0, 5.0),
+            (1, 3.0, 3.0),
+        ] {
             let Some(gate) = Gate::new(degrees, gain) else {
                 continue;
             };

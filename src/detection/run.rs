@@ -2,7 +2,7 @@
 
 use super::{
     expected::{Derivatives, Ground, at_least_zero},
-    limit::{Limit, keeps_coefficient},
+    limit::{Limit, is_of_shape},
     trial::{Progress as Sought, Trial},
 };
 use crate::{
@@ -37,7 +37,11 @@ pub struct Detection<'a, const K: usize> {
     /// The effect that comes next, and the next steps of its grids.
     effect: usize,
     at: [u32; MAX_PARAMETERS],
+    /// The largest limit of the present value of the first shape parameter, for the values of the second one so
+    /// far.
+    worst: Option<Limit>,
     stage: Stage,
+    /// The limit that is handed out next.
     limit: Option<Limit>,
 }
 
@@ -91,6 +95,7 @@ impl<'a, const K: usize> Detection<'a, K> {
             options,
             effect: 0,
             at: [0; MAX_PARAMETERS],
+            worst: None,
             stage,
             limit: None,
         }
@@ -128,7 +133,7 @@ impl<'a, const K: usize> Detection<'a, K> {
             derivatives: &self.derivatives,
         };
         let mut trial = Trial::new(&ground, term, (range.low, range.high));
-        let gain = self.options.threshold + 2.0 * cost(term.effect);
+        let gain = gain(&self.options, term.effect);
         loop {
             match trial.advance(&ground, &self.squares, gain) {
                 Sought::Searching => {}
@@ -176,17 +181,13 @@ impl<'a, const K: usize> Detection<'a, K> {
                     weights: &self.weights,
                     derivatives: &self.derivatives,
                 };
-                let effect = self.effects.get(self.effect);
-                let gain =
-                    self.options.threshold + 2.0 * effect.map_or(1.0, |&effect| cost(effect));
+                let gain = gain(&self.options, trial.effect());
                 match trial.advance(&ground, &self.squares, gain) {
-                    Sought::Searching => {}
-                    Sought::Hidden => self.stage = Stage::Choosing,
-                    Sought::Found(limit) => {
-                        self.limit = Some(limit);
-                        self.stage = Stage::Choosing;
-                    }
+                    Sought::Searching => return Ok(()),
+                    Sought::Hidden => self.skip(),
+                    Sought::Found(limit) => self.keep(limit),
                 }
+                self.stage = Stage::Choosing;
                 Ok(())
             }
             Stage::Finished(_) => Ok(()),
@@ -210,6 +211,26 @@ impl<'a, const K: usize> Detection<'a, K> {
         Ok(())
     }
 
+    /// Leaves out the present value of the first shape parameter, because the effect hides with one value of
+    /// the second.
+    fn skip(&mut self) {
+        if self.at[1] > 0 {
+            self.at = [self.at[0].saturating_add(1), 0];
+        }
+        self.worst = None;
+    }
+
+    /// Keeps the larger limit of the present value of the first shape parameter, and hands it out after the last
+    /// value of the second.
+    fn keep(&mut self, limit: Limit) {
+        if self.worst.is_none_or(|worst| worst.size() < limit.size()) {
+            self.worst = Some(limit);
+        }
+        if self.at[1] == 0 {
+            self.limit = self.worst.take();
+        }
+    }
+
     /// Chooses the next shape.
     #[inline(never)]
     fn choose(&mut self) {
@@ -218,13 +239,11 @@ impl<'a, const K: usize> Detection<'a, K> {
             return;
         };
         let problem = Problem::new(&self.curve, &self.model, &self.columns);
-        let is_candidate = place(&problem, effect).is_some() && self.model.position(effect.name()).is_none();
-        let is_of_shape = keeps_coefficient(effect);
-        let grids: [Grid; MAX_PARAMETERS] = core::array::from_fn(|j| {
-            Grid::coarse(effect, j, &self.span, STEPS_AN_OCTAVE)
-        });
-        let [first, second] = grids;
-        let firsts = if is_of_shape { 1 } else { first.steps };
+        let is_missing = self.model.position(effect.name()).is_none();
+        let is_candidate = is_missing && place(&problem, effect).is_some();
+        let [first, second]: [Grid; MAX_PARAMETERS] =
+            core::array::from_fn(|j| Grid::coarse(effect, j, &self.span, STEPS_AN_OCTAVE));
+        let firsts = if is_of_shape(effect) { 1 } else { first.steps };
         if !is_candidate || self.at[0] >= firsts {
             self.effect = self.effect.saturating_add(1);
             self.at = [0; MAX_PARAMETERS];
@@ -243,4 +262,9 @@ impl<'a, const K: usize> Detection<'a, K> {
         };
         self.stage = Stage::Searching(Trial::new(&ground, term, (first.low, first.high)));
     }
+}
+
+/// The least fall of the score for which a diagnosis adds an effect.
+fn gain(options: &Options, effect: &'static dyn Effect) -> Real {
+    options.threshold + 2.0 * cost(effect)
 }

@@ -2,21 +2,23 @@
 
 use super::{
     expected::{Ground, Standing},
-    limit::{Limit, keeps_coefficient},
+    limit::{Limit, is_of_shape},
 };
 use crate::{
+    algebra,
+    covariance::covariance_row,
     effect::Effect,
     math,
-    model::Term,
+    model::{Model, Term},
     nnls::Vector,
     real::Real,
 };
 
 /// The largest number of steps towards the limit.
-const STEPS: u8 = 12;
+const STEPS: u8 = 14;
 /// The steps end when root and needed root agree to this share, so that the limit of a coefficient is known
 /// to half of it.
-const AGREES: Real = 0.01;
+const AGREES: Real = 0.004;
 /// The effect with which the search begins is at most this share of the curve in every octave.
 const FIRST: Real = 0.1;
 /// How far a coefficient is tried beyond the largest one that is informative. A larger limit is none.
@@ -32,6 +34,8 @@ pub(super) struct Trial {
     /// The logarithm of the size that is tried next.
     next: Real,
     step: u8,
+    /// By how much the effect's own power scatters beyond the octaves.
+    surplus: Real,
     /// Whether a size that is large enough has been seen.
     is_bounded: bool,
 }
@@ -51,12 +55,16 @@ impl Trial {
         term: Term,
         range: (Real, Real),
     ) -> Self {
-        let (low, high, next) = if keeps_coefficient(term.effect) {
+        let (low, high, next) = if is_of_shape(term.effect) {
             let (low, high) = (math::log(range.0), math::log(range.1));
             (low, high, high)
         } else {
             let most = math::log(informative(ground, &term));
-            (most - 30.0, most + math::log(BEYOND), most + math::log(FIRST))
+            (
+                most - 30.0,
+                most + math::log(BEYOND),
+                most + math::log(FIRST),
+            )
         };
         Self {
             term,
@@ -64,8 +72,14 @@ impl Trial {
             high,
             next,
             step: 0,
+            surplus: surplus(ground, &term),
             is_bounded: false,
         }
+    }
+
+    /// The effect whose limit is looked for.
+    pub(super) const fn effect(&self) -> &'static dyn Effect {
+        self.term.effect
     }
 
     /// Does one step.
@@ -77,10 +91,10 @@ impl Trial {
         gain: Real,
     ) -> Progress {
         let size = math::exp(self.next);
-        if keeps_coefficient(self.term.effect) {
+        if is_of_shape(self.term.effect) {
             self.term.set_parameter(0, size);
         }
-        let Some(standing) = standing(ground, squares, &self.term, size, gain) else {
+        let Some(standing) = self.standing(ground, squares, size, gain) else {
             return Progress::Hidden;
         };
         self.step = self.step.saturating_add(1);
@@ -93,7 +107,7 @@ impl Trial {
         }
         let distance = math::log(standing.needed / standing.root);
         let agrees = distance.abs() < AGREES;
-        if keeps_coefficient(self.term.effect) {
+        if is_of_shape(self.term.effect) {
             if !self.is_bounded {
                 return Progress::Hidden;
             }
@@ -124,23 +138,59 @@ impl Trial {
         Progress::Searching
     }
 
+    /// The standing of the effect: of a coefficient with the square `size`, or of its present shape with the
+    /// coefficient of the effect that it replaces.
+    #[inline(never)]
+    fn standing<const K: usize>(
+        &self,
+        ground: &Ground<'_, K>,
+        squares: &Vector,
+        size: Real,
+        gain: Real,
+    ) -> Option<Standing> {
+        let (problem, term) = (ground.problem, &self.term);
+        let column = problem.column(term);
+        let beside = Beside::new(ground, squares, term, &column, size)?;
+        let own = |k: usize| beside.own * column[k];
+        let expected = |k: usize| beside.rest[k] + own(k);
+        // A deterministic effect g scatters a curve only where random effects c beat against it: the
+        // covariance is that of (c + g)² − g².
+        let shape = term.sampled_shape(problem.interval_s);
+        let is_random = term.effect.response(1.0, &shape).is_none();
+        let scatter = |k: usize| {
+            if is_random {
+                expected(k)
+            } else {
+                math::sqrt(beside.rest[k] * (beside.rest[k] + 2.0 * own(k)))
+            }
+        };
+        let positive = (0..problem.points.len()).all(|k| expected(k) > 0.0 && scatter(k) > 0.0);
+        positive
+            .then(|| ground.standing(&expected, &scatter, self.surplus, gain))
+            .flatten()
+    }
+
+    #[inline(never)]
     fn found<const K: usize>(&self, ground: &Ground<'_, K>, squares: &Vector) -> Progress {
-        let unit = ground.problem.variance_unit;
-        if let Some(place) = replaced(ground, self.term.effect).filter(|_| keeps_coefficient(self.term.effect)) {
-            let mut term = self.term;
+        let mut term = self.term;
+        let size = if is_of_shape(term.effect) {
             term.set_parameter(0, math::exp(self.high));
-            return Progress::Found(Limit {
-                term,
-                coefficient: math::sqrt(squares[place] * unit),
-            });
-        }
-        let square = math::exp(self.next);
-        if square >= informative(ground, &self.term) {
+            0.0
+        } else {
+            math::exp(self.next)
+        };
+        if size >= informative(ground, &term) {
             return Progress::Hidden;
         }
+        let column = ground.problem.column(&term);
+        let Some(beside) = Beside::new(ground, squares, &term, &column, size) else {
+            return Progress::Hidden;
+        };
+        let root = |square: Real| math::sqrt(square * ground.problem.variance_unit);
         Progress::Found(Limit {
-            term: self.term,
-            coefficient: math::sqrt(square * unit),
+            term,
+            coefficient: root(beside.own),
+            beside: core::array::from_fn(|i| root(beside.squares[i])),
         })
     }
 }
@@ -159,39 +209,82 @@ fn replaced<const K: usize>(ground: &Ground<'_, K>, effect: &dyn Effect) -> Opti
     ground.problem.model.position(effect.replaces()?.name())
 }
 
-/// The standing of an effect: of a coefficient with the square `size`, or of a shape with the coefficient that
-/// the replaced effect has.
+/// A gyro with an effect that has a given size, and whose other coefficients are such that the model's fit to
+/// its curve comes as near as possible to the fit of the record.
+///
+/// Where an effect adds to octaves that a coefficient dominates, that coefficient would have been smaller
+/// than it was found to be, and larger where the effect takes away from them. What the coefficients can
+/// make up for does not show, and a record does not exclude it.
+struct Beside<const K: usize> {
+    /// The squared coefficients of the model's terms.
+    squares: Vector,
+    /// The squared coefficient of the effect.
+    own: Real,
+    /// The variances of octaves without the effect.
+    rest: algebra::Vector<K>,
+}
+
+impl<const K: usize> Beside<K> {
+    #[inline(never)]
+    fn new(
+        ground: &Ground<'_, K>,
+        squares: &Vector,
+        term: &Term,
+        column: &algebra::Vector<K>,
+        size: Real,
+    ) -> Option<Self> {
+        let problem = ground.problem;
+        let place = replaced(ground, term.effect);
+        let kept = place.filter(|_| is_of_shape(term.effect));
+        let own = kept.map_or(size, |place| squares[place]);
+        let taken = |k: usize| kept.map_or(0.0, |place| problem.unit(place, k) * squares[place]);
+        let change = ground.followed(squares, &|k| own * column[k] - taken(k))?;
+        let own = kept.map_or(own, |place| (squares[place] - change[place]).max(0.0));
+        let squares = Vector::from_fn(|i| {
+            if place == Some(i) || i >= problem.count() {
+                0.0
+            } else {
+                (squares[i] - change[i]).max(0.0)
+            }
+        });
+        let rest = |k: usize| problem.variance(k, &squares) - ground.change(k, &change);
+        Some(Self {
+            squares,
+            own,
+            rest: algebra::Vector::from_fn(rest),
+        })
+    }
+}
+
+/// The relative variance of an effect's power in the octave where it shows most, as far as it exceeds that of the
+/// octave. A narrow resonance makes only a few independent swings in a record, so that all octaves that show
+/// it rise and fall together.
 #[inline(never)]
-fn standing<const K: usize>(
-    ground: &Ground<'_, K>,
-    squares: &Vector,
-    term: &Term,
-    size: Real,
-    gain: Real,
-) -> Option<Standing> {
+fn surplus<const K: usize>(ground: &Ground<'_, K>, term: &Term) -> Real {
     let problem = ground.problem;
-    let column = problem.column(term);
-    let place = replaced(ground, term.effect);
-    let square = match place {
-        Some(place) if keeps_coefficient(term.effect) => squares[place],
-        _ => size,
-    };
-    let taken = |k: usize| place.map_or(0.0, |place| problem.unit(place, k) * squares[place]);
-    let model = &ground.weights.model;
-    let expected = |k: usize| model[k] - taken(k) + square * column[k];
-    // A deterministic effect g scatters a curve only where random effects c beat against it: the
-    // covariance is that of (c + g)² − g².
     let shape = term.sampled_shape(problem.interval_s);
-    let is_random = term.effect.response(1.0, &shape).is_none();
-    let scatter = |k: usize| {
-        if is_random {
-            expected(k)
-        } else {
-            math::sqrt(model[k] * (model[k] + 2.0 * square * column[k]))
-        }
+    if is_of_shape(term.effect) || term.effect.response(1.0, &shape).is_some() {
+        return 0.0;
+    }
+    let column = problem.column(term);
+    let share = |k: usize| column[k] / ground.weights.model[k];
+    let octaves = 0..problem.points.len().min(K);
+    let Some(most) = octaves.max_by(|&i, &j| share(i).total_cmp(&share(j))) else {
+        return 0.0;
     };
-    let positive = (0..problem.points.len()).all(|k| expected(k) > 0.0);
-    positive
-        .then(|| ground.standing(&expected, &scatter, gain))
-        .flatten()
+    let mut alone = Model::default();
+    // There is a place for a single effect.
+    let _ = alone.add(*term);
+    let mut variance = 0.0;
+    let points = problem.points.get(..=most).unwrap_or_default();
+    covariance_row(
+        points,
+        &alone,
+        &[1.0],
+        problem.interval_s,
+        (most, most),
+        &mut |_, value| variance = value,
+    );
+    let error = ground.weights.relative_error(most);
+    (variance / (column[most] * column[most]) - error * error).max(0.0)
 }

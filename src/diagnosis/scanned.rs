@@ -85,7 +85,10 @@ impl<const K: usize> Scanning<K> {
 /// one behind the others. `None` for an effect that would add nothing. Such an effect has a fixed shape
 /// and is in the model already, or replaces an effect that the model lacks, or shares its Allan
 /// variance with another effect of the catalogue.
-pub(crate) fn place<const K: usize>(problem: &Problem<'_, K>, effect: &'static dyn Effect) -> Option<usize> {
+pub(crate) fn place<const K: usize>(
+    problem: &Problem<'_, K>,
+    effect: &'static dyn Effect,
+) -> Option<usize> {
     let model = problem.model;
     let present = model.position(effect.name()).is_some();
     if effect.mirror().is_some() || (present && effect.parameters().is_empty()) {

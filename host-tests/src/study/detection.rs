@@ -5,7 +5,7 @@ use crate::simulate::{Coefficients, Hidden, Preset, Random, Simulator};
 use allanite::{
     Curve, Model, Term,
     detection::{Detection, Limit},
-    diagnosis::{Addition, Diagnosis, Evidence, Options, Step},
+    diagnosis::{Addition, Diagnosis, Evidence, Options, Progress, Step},
     effect::{CATALOGUE, Effect, SearchRange, Span},
 };
 use rand::{RngExt, SeedableRng};
@@ -77,13 +77,27 @@ fn outcome(base: Coefficients, effect: &'static dyn Effect, seed: u64, factor: f
         parameters: limit.term.parameters,
         coefficient: limit.coefficient,
     };
+    let [
+        quantization,
+        angle_random_walk,
+        bias_instability,
+        rate_random_walk,
+        rate_ramp,
+        ..,
+    ] = limit.beside;
+    let beside = Coefficients {
+        quantization,
+        angle_random_walk,
+        bias_instability,
+        rate_random_walk,
+        rate_ramp,
+    };
     if limit.is_of_shape() {
-        hidden.coefficient = base.angle_random_walk;
         hidden.parameters[0] *= factor;
     } else {
         hidden.coefficient *= factor;
     }
-    let mut simulator = Simulator::with_hidden(base, &[hidden], RATE_HZ, 2 * seed + 1);
+    let mut simulator = Simulator::with_hidden(beside, &[hidden], RATE_HZ, 2 * seed + 1);
     let curve = record(&mut simulator, base, SAMPLES, |_| ());
     let Some(step) = first_step(curve) else {
         return Outcome::default();
@@ -95,7 +109,15 @@ fn outcome(base: Coefficients, effect: &'static dyn Effect, seed: u64, factor: f
     let ambiguous = step.ambiguous.as_slice();
     let name = effect.name();
     if std::env::var_os("DETECTION_DEBUG").is_some() {
-        eprintln!("{name} {:?} {} χ² {:.1} dof {} p {:.2e} {added:?} {:?}", hidden.parameters, hidden.coefficient, step.fit.chi_squared, step.fit.degrees_of_freedom, step.fit.p_value, step.candidates.first().map(|c| c.improvement));
+        eprintln!(
+            "{name} {:?} {} χ² {:.1} dof {} p {:.2e} {added:?} {:?}",
+            hidden.parameters,
+            hidden.coefficient,
+            step.fit.chi_squared,
+            step.fit.degrees_of_freedom,
+            step.fit.p_value,
+            step.candidates.first().map(|c| c.improvement)
+        );
     }
     Outcome {
         is_limited: true,
@@ -141,16 +163,18 @@ fn drawn(range: &SearchRange, is_whole: bool, random: &mut Random) -> f64 {
     range.low * (range.high.max(range.low) / range.low).powf(share)
 }
 
-/// The first step of a diagnosis of the five terms.
+/// The first step of a diagnosis of the five terms. The others, which cost more, are not needed: an effect has
+/// shown once another model is preferred.
 fn first_step(curve: Curve<OCTAVES>) -> Option<Step<OCTAVES>> {
-    let mut first = None;
     let (model, options) = (Model::ieee_952(), Options::default());
-    Diagnosis::new(curve, Evidence::NONE, &model, &CATALOGUE, options)
-        .run(|step| {
-            first.get_or_insert_with(|| step.clone());
-        })
-        .ok()?;
-    first
+    let mut diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &CATALOGUE, options);
+    loop {
+        match diagnosis.advance().ok()? {
+            Progress::Working => {}
+            Progress::Step(step) => return Some(step.clone()),
+            Progress::Finished(_) => return None,
+        }
+    }
 }
 
 /// The limits of one clean record.

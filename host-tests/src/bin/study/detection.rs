@@ -1,6 +1,6 @@
 //! How often an effect at its limit of detection shows.
 
-use host_tests::{
+use crate::host_tests::{
     simulate::Preset,
     study::detection::{effects, limits, study},
 };

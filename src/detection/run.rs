@@ -24,6 +24,41 @@ use crate::{
 const STEPS_AN_OCTAVE: Real = 4.0;
 
 /// The limits of detection, in progress: the size of each effect that a record would have shown.
+///
+/// [`run`](Self::run) goes through all effects and shapes, and [`advance`](Self::advance) does one piece of the
+/// work, so that a main loop can do something else in between. A piece is a row of the curve's covariance, the
+/// choice of a shape, or one fit to an expected curve. Nothing is computed unless it is asked for, and a program
+/// that does not name this type holds none of its code.
+///
+/// # Example
+///
+/// ```
+/// use allanite::{Accumulator, Model, Scale};
+/// use allanite::detection::{Detection, Ranges};
+/// use allanite::diagnosis::{Diagnosis, Evidence, Options};
+/// use allanite::effect::CATALOGUE;
+///
+/// let mut gyro = Accumulator::<12>::new();
+/// let mut random = 1_u32;
+/// for _ in 0..10_000 {
+///     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+///     gyro.push((random >> 24) as i32);
+/// }
+/// let curve = gyro.curve(Scale::new(0.01, 100.0)?);
+/// let (model, options) = (Model::ieee_952(), Options::default());
+/// let mut last = None;
+/// Diagnosis::new(curve.clone(), Evidence::NONE, &model, &CATALOGUE, options)
+///     .run(|step| last = Some(step.clone()))?;
+/// let Some(step) = last else { return Ok(()) };
+///
+/// let mut ranges = Ranges::default();
+/// Detection::new(curve, &step, &CATALOGUE, options).run(|limit| ranges.push(&limit))?;
+/// let mut ranges = ranges.as_slice().iter();
+/// let sinusoid = ranges.find(|range| range.effect.name() == "sinusoid");
+/// // The samples have a standard deviation of 0.74 °/s.
+/// assert!(sinusoid.is_some_and(|range| range.size < 0.74));
+/// # Ok::<(), allanite::Error>(())
+/// ```
 pub struct Detection<'a, const K: usize> {
     curve: Curve<K>,
     span: Span,
@@ -67,7 +102,12 @@ pub enum Progress {
 }
 
 impl<'a, const K: usize> Detection<'a, K> {
-    /// Begins with the last step of a diagnosis.
+    /// The limits beside the model of a step, which is the last one of a diagnosis. `curve` is the curve on which
+    /// the step was judged, without what follows a covariate. `effects` and `options` are those of the
+    /// diagnosis.
+    ///
+    /// There are no limits if the model is not adequate.
+    // Inlined, so that some kilobytes are built where they stay and not moved there.
     #[inline(always)]
     pub fn new(
         curve: Curve<K>,
@@ -115,7 +155,8 @@ impl<'a, const K: usize> Detection<'a, K> {
         }
     }
 
-    /// The limit of one shape. `None` if the effect hides in the model.
+    /// The limit of one shape, in one go. The first parameter of a filter is replaced by its limit. `None` if the
+    /// effect hides in the model, if it has no shape, or if the model is not adequate.
     ///
     /// # Errors
     /// The same as those of [`advance`](Self::advance).
@@ -123,7 +164,8 @@ impl<'a, const K: usize> Detection<'a, K> {
         while matches!(self.stage, Stage::Beginning | Stage::Weighting) {
             self.advance()?;
         }
-        let Some(range) = term.effect.search_range(0, &self.span) else {
+        let range = term.effect.search_range(0, &self.span);
+        let Some(range) = range.filter(|_| matches!(self.stage, Stage::Choosing)) else {
             return Ok(None);
         };
         let problem = Problem::new(&self.curve, &self.model, &self.columns);

@@ -94,12 +94,15 @@ impl Trial {
         if is_of_shape(self.term.effect) {
             self.term.set_parameter(0, size);
         }
-        let Some(standing) = self.standing(ground, squares, size, gain) else {
+        self.step = self.step.saturating_add(1);
+        let standing = self.standing(ground, squares, size, gain);
+        if is_of_shape(self.term.effect) {
+            return self.advance_shape(ground, squares, standing);
+        }
+        let Some(standing) = standing else {
             return Progress::Hidden;
         };
-        self.step = self.step.saturating_add(1);
-        let shows = standing.root >= standing.needed;
-        if shows {
+        if standing.root >= standing.needed {
             self.high = self.next;
             self.is_bounded = true;
         } else {
@@ -107,16 +110,6 @@ impl Trial {
         }
         let distance = math::log(standing.needed / standing.root);
         let agrees = distance.abs() < AGREES;
-        if is_of_shape(self.term.effect) {
-            if !self.is_bounded {
-                return Progress::Hidden;
-            }
-            if agrees || self.step >= STEPS || self.high - self.low < AGREES {
-                return self.found(ground, squares);
-            }
-            self.next = 0.5 * (self.low + self.high);
-            return Progress::Searching;
-        }
         if agrees {
             return self.found(ground, squares);
         }
@@ -135,6 +128,33 @@ impl Trial {
         } else {
             self.next = 0.5 * (self.low + self.high);
         }
+        Progress::Searching
+    }
+
+    /// Goes on from the standing of a shape. A filter that is so wide that the model has no fit to it shows, but a
+    /// limit is a filter that has one.
+    fn advance_shape<const K: usize>(
+        &mut self,
+        ground: &Ground<'_, K>,
+        squares: &Vector,
+        standing: Option<Standing>,
+    ) -> Progress {
+        match standing {
+            Some(Standing { root, needed }) if root < needed => self.low = self.next,
+            standing => {
+                self.high = self.next;
+                self.is_bounded = standing.is_some();
+            }
+        }
+        // Without a filter that is wide enough, the range has become empty at its upper end.
+        if self.step >= STEPS || self.high - self.low < AGREES {
+            return if self.is_bounded {
+                self.found(ground, squares)
+            } else {
+                Progress::Hidden
+            };
+        }
+        self.next = 0.5 * (self.low + self.high);
         Progress::Searching
     }
 

@@ -29,17 +29,17 @@ pub struct Tally {
     pub inadequate: usize,
     /// The number of records in which the diagnosis added an effect.
     pub shown: usize,
-    /// The number of records in which the effect was named first, and those in which it was named beside
-    /// another one that would explain the curve as well.
+    /// The number of records in which the effect was named alone.
     pub named: usize,
     /// The number of records in which it was one of several that would explain the curve as well.
     pub ambiguous: usize,
-    /// The number of clean records that were not adequate, so that they have no limits.
+    /// The number of clean records without a limit: those that are not adequate, and those for which every shape
+    /// that was drawn hides in the model.
     pub without_limits: usize,
 }
 
 /// Draws shapes at random, takes their limits from one record, and looks for the effect at its limit in
-/// another record of the same gyro.
+/// another record. Sizes are the limits times `factor`.
 pub fn study(preset: Preset, effect: &'static dyn Effect, records: u64, factor: f64) -> Tally {
     let outcomes: Vec<Outcome> = (0..records)
         .into_par_iter()
@@ -108,17 +108,6 @@ fn outcome(base: Coefficients, effect: &'static dyn Effect, seed: u64, factor: f
     };
     let ambiguous = step.ambiguous.as_slice();
     let name = effect.name();
-    if std::env::var_os("DETECTION_DEBUG").is_some() {
-        eprintln!(
-            "{name} {:?} {} χ² {:.1} dof {} p {:.2e} {added:?} {:?}",
-            hidden.parameters,
-            hidden.coefficient,
-            step.fit.chi_squared,
-            step.fit.degrees_of_freedom,
-            step.fit.p_value,
-            step.candidates.first().map(|c| c.improvement)
-        );
-    }
     Outcome {
         is_limited: true,
         is_inadequate: step.fit.is_adequate() == Some(false),
@@ -175,19 +164,4 @@ fn first_step(curve: Curve<OCTAVES>) -> Option<Step<OCTAVES>> {
             Progress::Finished(_) => return None,
         }
     }
-}
-
-/// The limits of one clean record.
-pub fn limits(preset: Preset, samples: usize, seed: u64) -> Vec<Limit> {
-    let base = preset.coefficients();
-    let mut simulator = Simulator::new(base, RATE_HZ, seed);
-    let curve = record(&mut simulator, base, samples, |_| ());
-    let mut limits = Vec::new();
-    if let Some(step) = first_step(curve.clone()) {
-        let mut detection = Detection::new(curve, &step, &CATALOGUE, Options::default());
-        if let Err(error) = detection.run(|limit| limits.push(limit)) {
-            eprintln!("{error}");
-        }
-    }
-    limits
 }

@@ -1,17 +1,11 @@
 //! How often an effect at its limit of detection shows.
 
-use crate::host_tests::{
+use host_tests::{
     simulate::Preset,
-    study::detection::{effects, limits, study},
+    study::detection::{effects, study},
 };
 
 pub(crate) fn print(records: u64, only: Option<&str>, factor: f64) {
-    if records == 0 {
-        for limit in limits(Preset::Mems, 1 << 17, 1) {
-            println!("{:?} {:.5}", limit.term, limit.coefficient);
-        }
-        return;
-    }
     println!(
         "{:<18} {:>7} {:>10} {:>6} {:>6} {:>9} {:>14}",
         "effect", "records", "inadequate", "shown", "named", "ambiguous", "without limits"

@@ -39,6 +39,7 @@
 //!   that has to feed a watchdog.
 //! * [`Comparison`] says where the model fails, octave by octave and in words.
 //! * [`diagnosis::Diagnosis`] finds the effect that is missing, in one call or in pieces.
+//! * [`detection::Detection`] says from which size on a record would have shown an effect.
 //! * [`self_test::SelfTest`] holds coefficients to limits, and decides as soon as the record allows it.
 //! * [`effect::Effect`] is a physical effect. [`effect::CATALOGUE`] lists the known ones, and
 //!   [one of your own](#an-effect-of-your-own) joins them.
@@ -64,6 +65,7 @@
 //! | [`fit`] | estimates the coefficients, with intervals and a goodness of fit |
 //! | [`comparison`] | compares model and measurement |
 //! | [`diagnosis`] | looks for the missing effect |
+//! | [`detection`] | says how large an effect would have been found |
 //! | [`self_test`] | gives a verdict against limits |
 //! | [`storage`] | keeps what outlives the power, as checked bytes |
 //!
@@ -215,6 +217,7 @@ pub mod comparison;
 mod covariance;
 pub mod covariate;
 pub mod curve;
+pub mod detection;
 pub mod diagnosis;
 pub mod effect;
 mod error;

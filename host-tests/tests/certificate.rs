@@ -12,7 +12,7 @@ use allanite::{
     effect::{AngleRandomWalk, BiasInstability, CATALOGUE, DecimationFilter, RateRandomWalk},
     fit::{Options, State, curve_covariance, fit},
     integrity::Reason,
-    storage::{Certificate, CertifiedState, EffectCode, Error, RateUnit},
+    storage::{Certificate, CertifiedLimit, CertifiedState, EffectCode, Error, RateUnit},
 };
 use factory::{SINUSOID, axis, encoded, record};
 use sealed::sealed;
@@ -28,7 +28,7 @@ fn record_keeps_the_results_of_fit_and_diagnosis() {
     let bytes = encoded(&written);
     let read = Certificate::decode(&bytes).unwrap();
     assert_eq!(encoded(&read), bytes);
-    assert_eq!((bytes.len(), Certificate::MAX_BYTES), (610, 1726));
+    assert_eq!((bytes.len(), Certificate::MAX_BYTES), (610, 2431));
     assert_eq!(read.device, b"SN-0042");
     assert_eq!(read.firmware, [1, 2, 300]);
     assert_eq!(read.conditions, written.conditions);
@@ -327,6 +327,43 @@ fn every_effect_of_the_catalogue_has_a_permanent_code() {
 }
 
 #[test]
+fn limits_of_detection_are_kept_and_a_record_without_them_has_the_first_version() {
+    let version = |bytes: &[u8]| bytes[5];
+    let mut record = three_axes();
+    assert_eq!(version(&encoded(&record)), 1);
+    let sinusoid = allanite::detection::Range {
+        effect: &allanite::effect::Sinusoid,
+        ends: (0.1, 10.0),
+        size: 0.004,
+        is_of_shape: false,
+    };
+    let filter = allanite::detection::Range {
+        effect: &allanite::effect::LowPass,
+        ends: (0.0, 0.0),
+        size: 0.007,
+        is_of_shape: true,
+    };
+    for range in [sinusoid, filter] {
+        let limit = CertifiedLimit::of(&range);
+        record.axes[1].limits.push(limit).unwrap();
+    }
+    let bytes = encoded(&record);
+    assert_eq!(version(&bytes), 2);
+    let read = Certificate::decode(&bytes).unwrap();
+    assert!(read.axes[0].limits.is_empty());
+    assert_eq!(read.axes[1].limits, record.axes[1].limits);
+    let range = read.axes[1].limits[0].range().unwrap();
+    assert_eq!(range.effect.name(), "sinusoid");
+    assert!((range.size / 0.004 - 1.0).abs() < 1e-6 && !range.is_of_shape);
+    assert!(read.axes[1].limits[1].range().unwrap().is_of_shape);
+    for broken in [f32::NAN, -1.0, 0.0, f32::INFINITY] {
+        record.axes[1].limits[0].size = broken;
+        let bytes = encoded(&record);
+        assert_eq!(Certificate::decode(&bytes), Err(Error::Impossible));
+    }
+}
+
+#[test]
 fn largest_record_fits_and_a_larger_one_is_refused() {
     let mut largest = three_axes();
     let axes = largest.axes;
@@ -351,6 +388,13 @@ fn largest_record_fits_and_a_larger_one_is_refused() {
             };
             while term.shape.push(one).is_ok() {}
         }
+        let limit = CertifiedLimit {
+            effect: EffectCode::OTHER,
+            size: 1.0,
+            low: 0.5,
+            high: 2.0,
+        };
+        while axis.limits.push(limit).is_ok() {}
         axis.degrees_of_freedom = u16::MAX;
         axis.verdict = Some(Verdict::Invalid(Reason::Stuck {
             longest_run: u32::MAX,

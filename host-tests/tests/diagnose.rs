@@ -104,6 +104,54 @@ fn no_effect_is_found_where_none_is_hidden() {
 }
 
 #[test]
+fn an_adequate_record_says_what_it_would_have_shown() {
+    let folder = TempDir::new().unwrap();
+    hide(folder.path(), "3", &[]);
+    let document = json(folder.path(), &["diagnose", "log.csv"]);
+    let limits = document["axes"][0]["detection_limits"].as_array().unwrap();
+    let text = output(folder.path(), &["diagnose", "log.csv"]);
+    let (_, list) = text.split_once("the record would have shown with").unwrap();
+    assert_eq!(
+        list.lines().filter(|line| line.starts_with("  ")).count(),
+        limits.len()
+    );
+    let of = |name: &str| {
+        let limits = limits.iter().filter(|limit| limit["effect"] == name);
+        limits.collect::<Vec<_>>()
+    };
+    for limit in of("sinusoid") {
+        assert_eq!(limit["limited"], "amplitude");
+        assert_eq!(limit["unit"], "deg/s");
+        let shapes = limit["shapes"].as_array().unwrap();
+        let largest = shapes.iter().map(|shape| number(&shape["amplitude"]));
+        assert_eq!(largest.fold(0.0, f64::max), number(&limit["limit"]));
+        let ends = &limit["frequency_hz"];
+        assert!(number(&ends[0]) <= number(&ends[1]));
+        assert_eq!(ends[0], shapes[0]["frequency_hz"]);
+    }
+    // A line of 0.02 deg/s at 7.7 Hz is found, and one of 0.002 deg/s is not.
+    let near = of("sinusoid").into_iter().find(|limit| {
+        let ends = &limit["frequency_hz"];
+        (number(&ends[0])..=number(&ends[1])).contains(&7.7)
+    });
+    let near = number(&near.unwrap()["limit"]);
+    assert!((0.004..0.03).contains(&near), "{near}");
+    let filter = of("low_pass");
+    assert_eq!(filter.len(), 1);
+    assert_eq!(filter[0]["limited"], "time_constant_s");
+    assert!((0.003..0.02).contains(&number(&filter[0]["limit"])));
+
+    // An inadequate record says nothing of the kind.
+    let line = "sinusoid:frequency_hz=7.7,amplitude=0.02";
+    hide(folder.path(), "11", &[line]);
+    let text = output(
+        folder.path(),
+        &["diagnose", "log.csv", "--max-effects", "0"],
+    );
+    assert!(!text.contains("would have shown"), "{text}");
+}
+
+#[test]
 fn no_more_effects_are_added_than_allowed() {
     let folder = TempDir::new().unwrap();
     hide(
@@ -177,7 +225,7 @@ fn json_has_the_documented_fields_and_no_others() {
     let axis = &document["axes"][2];
     assert_eq!(
         keys(axis),
-        "ambiguous axis missing notes spectrum steps verdict"
+        "ambiguous axis detection_limits missing notes spectrum steps verdict"
     );
     assert_eq!(
         keys(&axis["spectrum"][0]),
@@ -200,6 +248,12 @@ fn json_has_the_documented_fields_and_no_others() {
     );
     let line = parameters(&axis["steps"][1], "resonance").unwrap();
     assert_eq!(keys(line), "frequency_hz quality rms");
+    // The last model of this axis is not adequate, so that it has no limits.
+    assert_eq!(axis["detection_limits"].as_array().unwrap().len(), 0);
+    let limit = &document["axes"][0]["detection_limits"][0];
+    for key in ["effect", "limit", "limited", "shapes", "unit"] {
+        assert!(!limit[key].is_null(), "{key}: {limit}");
+    }
 }
 
 #[test]

@@ -31,3 +31,6 @@ pub use options::Options;
 pub use run::{Diagnosis, Progress};
 pub use step::{Addition, Candidate, FollowedCovariate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap};
 pub use verdict::Verdict;
+
+pub(crate) use scanned::place;
+pub(crate) use step::cost;

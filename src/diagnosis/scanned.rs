@@ -91,7 +91,7 @@ impl<const K: usize, const B: usize> Scanning<K, B> {
 /// one behind the others. `None` for an effect that would add nothing. Such an effect has a fixed shape
 /// and is in the model already, or replaces an effect that the model lacks, or shares its Allan
 /// variance with another effect of the catalogue.
-fn place<const K: usize, const B: usize>(
+pub(crate) fn place<const K: usize, const B: usize>(
     problem: &Problem<'_, K, B>,
     effect: &'static dyn Effect,
 ) -> Option<usize> {

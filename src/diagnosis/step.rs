@@ -117,7 +117,7 @@ pub struct FollowedCovariate {
 
 /// The number of parameters that an effect adds to a model when its shape is fitted. The coefficient of the effect
 /// whose place it takes goes.
-pub(super) fn cost(effect: &'static dyn Effect) -> Real {
+pub(crate) fn cost(effect: &'static dyn Effect) -> Real {
     let shapes = Term::fitted(effect).fitted_parameters();
     let coefficient = if effect.replaces().is_some() {
         0.0

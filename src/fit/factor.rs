@@ -114,6 +114,35 @@ impl<const K: usize, const B: usize> Factor<K, B> {
         }
     }
 
+    /// The product `L'x`.
+    pub(super) fn transposed_times(
+        &self,
+        octaves: usize,
+        bins: usize,
+        x: &Rows<K, B>,
+    ) -> Rows<K, B> {
+        let mut product: Rows<K, B> = Rows::ZEROS;
+        for j in 0..octaves.min(K) {
+            let below = j.saturating_add(1)..octaves.min(K);
+            let below = below.map(|k| real(self.octaves[(k, j)]) * x.octaves[k]);
+            let own = x.octaves[j] / real(self.octaves[(j, j)]);
+            product.octaves.put(j, own + below.sum::<Real>());
+        }
+        let [diagonal, first, second] = &self.bins;
+        for b in 0..bins.min(B) {
+            let mut sum = x.bins[b] / real(diagonal[b]);
+            let (next, after) = (b.saturating_add(1), b.saturating_add(2));
+            if next < bins {
+                sum += real(first[next]) * x.bins[next];
+            }
+            if after < bins {
+                sum += real(second[after]) * x.bins[after];
+            }
+            product.bins.put(b, sum);
+        }
+        product
+    }
+
     /// The root of a row's element on the diagonal of the covariance that was factored.
     pub(super) fn standard_error(&self, row: usize) -> Real {
         let pivot = 1.0 / real(self.diagonal(row));

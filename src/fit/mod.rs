@@ -35,6 +35,7 @@ pub(crate) use estimate::Estimator;
 pub(crate) use fitting::Work;
 pub(crate) use likelihood_ratio::LikelihoodRatio;
 pub(crate) use problem::{Columns, Problem, check};
-pub(crate) use shape::ShapeEquations;
+pub(crate) use rows::Rows;
+pub(crate) use shape::{ShapeEquations, derivative};
 pub(crate) use solver::{Solver, Start, Tolerance};
 pub(crate) use weights::{Weights, Whitened};

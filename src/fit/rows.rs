@@ -21,6 +21,15 @@ impl<const K: usize, const B: usize, E: Number> Rows<K, B, E> {
         bins: Vector::ZEROS,
     };
 
+    /// The numbers of some rows; zero in all others.
+    pub(crate) fn of(rows: impl Iterator<Item = usize>, number: impl Fn(usize) -> E) -> Self {
+        let mut all = Self::ZEROS;
+        for row in rows {
+            all.put(row, number(row));
+        }
+        all
+    }
+
     /// Sets the number of one row.
     pub(crate) fn put(&mut self, row: usize, value: E) {
         match row.checked_sub(K) {

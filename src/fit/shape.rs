@@ -15,6 +15,28 @@ use heapless::Vec;
 /// precision, 0.005, where the error of a central difference is smallest.
 const STEP: Real = 0.01;
 
+/// The change of a term's variances with the logarithm of its parameter `j`, for a squared coefficient of
+/// `square`.
+pub(crate) fn derivative<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    term: Term,
+    j: usize,
+    square: Real,
+) -> Rows<K, B, f32> {
+    let column = |factor: Real| {
+        let mut term = term;
+        term.scale_parameter(j, factor);
+        problem.column(&term)
+    };
+    let (above, below) = (column(math::exp(STEP)), column(math::exp(-STEP)));
+    let scale = 0.5 * square / STEP;
+    let mut derivative = Rows::ZEROS;
+    for row in problem.rows() {
+        derivative.put(row, single((above[row] - below[row]) * scale));
+    }
+    derivative
+}
+
 /// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
 /// linearised around the solution.
 pub(crate) struct ShapeEquations {
@@ -53,19 +75,8 @@ impl ShapeEquations {
         // The coefficients come first, the shapes follow.
         let mut derivatives: Vec<Rows<K, B, f32>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
-            let column = |factor: Real| {
-                let mut term = term;
-                term.scale_parameter(j, factor);
-                problem.column(&term)
-            };
-            let (above, below) = (column(math::exp(STEP)), column(math::exp(-STEP)));
-            let scale = 0.5 * squares[i] / STEP;
-            let mut derivative = Rows::ZEROS;
-            for row in problem.rows() {
-                derivative.put(row, single((above[row] - below[row]) * scale));
-            }
             // There is a place for every parameter.
-            let _ = derivatives.push(derivative);
+            let _ = derivatives.push(derivative(problem, term, j, squares[i]));
         }
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
         let equations = &mut self.equations;

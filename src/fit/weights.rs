@@ -280,6 +280,29 @@ impl<const K: usize, const B: usize> Weights<K, B> {
         self.factor.forward(octaves, bins, &mut column);
         (column, unit)
     }
+
+    /// The variance of the sum of a whitened curve along `direction`, if the octaves do not have the scatter
+    /// that the weights expect. `ratio(row)` is the standard error of a row relative to the expected one,
+    /// and the tolerance, which no record has, is left out.
+    #[inline(never)]
+    pub(crate) fn variance_along(
+        &self,
+        problem: &Problem<'_, K, B>,
+        direction: &Rows<K, B>,
+        ratio: &dyn Fn(usize) -> Real,
+    ) -> Real {
+        // With the factor L, the covariance of the octaves is S (L L' − tolerance²) S, and whitening
+        // multiplies it by the inverse of L from both sides.
+        let (octaves, bins) = (problem.points.len(), problem.bins.len());
+        let mut x = *direction;
+        self.factor.backward(octaves, bins, &mut x);
+        for row in problem.rows() {
+            x.put(row, x[row] * ratio(row));
+        }
+        let tolerance = self.tolerance * self.tolerance;
+        let correlated = self.factor.transposed_times(octaves, bins, &x);
+        correlated.norm_squared() - tolerance * x.norm_squared()
+    }
 }
 
 /// The measurement and the columns in units in which all rows are independent. Rows that there are not are zero.

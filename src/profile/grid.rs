@@ -8,12 +8,12 @@ use crate::{
 
 /// Values of a shape parameter, at equal distances of the logarithm or at whole numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grid {
-    pub(super) low: Real,
-    pub(super) high: Real,
+pub(crate) struct Grid {
+    pub(crate) low: Real,
+    pub(crate) high: Real,
     /// The distance between the logarithms of neighbouring values; zero for whole numbers.
     pub(super) log_step: Real,
-    pub(super) steps: u32,
+    pub(crate) steps: u32,
 }
 
 impl Grid {
@@ -43,6 +43,17 @@ impl Grid {
         Self::new(range)
     }
 
+    /// The grid of a parameter with no more than so many values for each factor of two.
+    pub(crate) fn coarse(effect: &dyn Effect, parameter: usize, span: &Span, most: Real) -> Self {
+        match effect.search_range(parameter, span) {
+            Some(range) if !effect.is_whole(parameter) => Self::new(SearchRange {
+                steps_per_octave: range.steps_per_octave.min(most),
+                ..range
+            }),
+            _ => Self::of(effect, parameter, span),
+        }
+    }
+
     fn new(range: SearchRange) -> Self {
         let high = range.high.max(range.low);
         let octaves = math::log2_roughly(high / range.low);
@@ -57,7 +68,7 @@ impl Grid {
     }
 
     /// The value after `step` steps.
-    pub(super) fn at(&self, step: u32) -> Real {
+    pub(crate) fn at(&self, step: u32) -> Real {
         if step == 0 {
             return self.low;
         }

@@ -14,6 +14,7 @@ mod neighbourhood;
 mod refinement;
 mod search;
 
+pub(crate) use grid::Grid;
 pub(crate) use interval::JointInterval;
 pub(crate) use likelihood::{Evaluation, Found, Profile};
 pub(crate) use line::line_frequency;

@@ -10,8 +10,8 @@ mod interval;
 pub mod snapshot;
 
 pub use certificate::{
-    AxisCertificate, Certificate, CertifiedShape, CertifiedState, CertifiedTerm, Conditions,
-    EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit,
+    AxisCertificate, Certificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm,
+    Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit,
 };
 pub use error::Error;
 #[cfg(feature = "flash")]

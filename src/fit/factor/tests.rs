@@ -64,6 +64,13 @@ fn the_factor_solves_the_equations_of_the_whole_matrix() {
         // The whitened right-hand side has the norm b'A⁻¹b.
         let norm: Real = (0..ROWS).map(|i| right[i] * solution[i]).sum();
         assert!((x.norm_squared() / norm - 1.0).abs() < 1e-5);
+        // L'y for y = L'⁻¹x is x again.
+        let mut y = x;
+        factor.backward(OCTAVES, BINS, &mut y);
+        let again = factor.transposed_times(OCTAVES, BINS, &y);
+        for i in 0..ROWS {
+            assert!((again[i] - x[i]).abs() < 1e-5, "row {i}");
+        }
         factor.backward(OCTAVES, BINS, &mut x);
         for i in 0..ROWS {
             assert!((x[i] - solution[i]).abs() < 1e-5, "row {i}");

@@ -3,12 +3,13 @@
 use super::EffectCode;
 use crate::{
     Curve, Error, Model,
+    detection::{MAX_RANGES, Range, is_of_shape},
     diagnosis::Verdict,
     effect::IEEE_952,
     fit::{Correlations, Fit, State},
     limits::MAX_PARAMETERS,
     model::MAX_EFFECTS,
-    real::{double, single},
+    real::{double, real, single},
 };
 use heapless::Vec;
 
@@ -30,6 +31,8 @@ pub struct AxisCertificate {
     pub tolerance: f32,
     /// The verdict of a diagnosis; `None` if there was no diagnosis.
     pub verdict: Option<Verdict>,
+    /// The sizes of effects that the record would have shown. Empty until they are pushed.
+    pub limits: Vec<CertifiedLimit, MAX_RANGES>,
 }
 
 /// A term of a model: an effect with its coefficient and its shape.
@@ -80,9 +83,50 @@ pub struct CertifiedShape {
     pub upper: f32,
 }
 
+/// The size of an effect that a record would have shown with a probability of 95 %, as the ranges of
+/// [`Ranges`](crate::detection::Ranges) have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct CertifiedLimit {
+    /// The effect.
+    pub effect: EffectCode,
+    /// The limit: a coefficient in rate unit · s^(half_seconds/2) of the effect, or the first shape parameter of
+    /// a filter in its own unit.
+    pub size: f32,
+    /// The lowest value of the effect's first shape parameter to which the limit applies; zero if the effect
+    /// has none or if the limit is that of this parameter.
+    pub low: f32,
+    /// The highest value.
+    pub high: f32,
+}
+
+impl CertifiedLimit {
+    /// The limit of a range.
+    pub fn of(range: &Range) -> Self {
+        Self {
+            effect: EffectCode::of(range.effect),
+            size: single(range.size),
+            low: single(range.ends.0),
+            high: single(range.ends.1),
+        }
+    }
+
+    /// The range, if the effect belongs to the catalogue.
+    pub fn range(&self) -> Option<Range> {
+        let effect = self.effect.effect()?;
+        Some(Range {
+            effect,
+            ends: (real(self.low), real(self.high)),
+            size: real(self.size),
+            is_of_shape: is_of_shape(effect),
+        })
+    }
+}
+
 impl AxisCertificate {
     /// The certificate of a fit of this model to this curve, which is either a single fit or the last
-    /// [`Step`](crate::diagnosis::Step) of a diagnosis. Its verdict is `None` until it is set.
+    /// [`Step`](crate::diagnosis::Step) of a diagnosis. Its verdict is `None` until it is set, and it has no limits of
+    /// detection until they are pushed.
     ///
     /// This weighs the octaves once more for the correlations, at a few per cent of the cost of a fit.
     ///
@@ -99,6 +143,7 @@ impl AxisCertificate {
             p_value: double(fit.p_value),
             tolerance: single(fit.tolerance),
             verdict: None,
+            limits: Vec::new(),
         })
     }
 

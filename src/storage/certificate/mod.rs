@@ -1,7 +1,7 @@
 //! Certificates of a gyro's calibration: the identity of the gyro, the conditions of the measurement,
 //! and its results.
 //!
-//! This table describes version 1 of the payload of the [envelope](crate::storage::envelope). The payload is
+//! This table describes version 2 of the payload of the [envelope](crate::storage::envelope). The payload is
 //! in postcard's encoding: f32 and f64 are little endian, integers longer than one byte are varints, and an
 //! option is a byte 0, or a byte 1 followed by its content. NaN stands for an unknown number.
 //!
@@ -24,6 +24,12 @@
 //! | – – state: 0 measured, 1 upper bound, 2 not observable and the length in s that would do | u8, option of f32 |
 //! | – – number of shape parameters up to 2; for each: value, lower, upper | u8, 3 × f32 |
 //! | – correlations of the squares, lower triangle row by row without diagonal | f32 each |
+//! | – number of limits of detection up to 18; for each of them: | u8 |
+//! | – – code of the effect | u8 |
+//! | – – limit, lowest and highest value of the first shape parameter | 3 × f32 |
+//!
+//! Version 1 is the same without limits of detection. A certificate without limits is written as version 1, so
+//! that earlier readers read it.
 //!
 //! A reason is 0 stuck (longest run u32, changes u64, samples u64), 1 railed (hits u64, samples u64),
 //! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8), 4 missing (missing u64,
@@ -35,7 +41,7 @@ mod possible;
 mod verdict;
 mod wire;
 
-pub use axis::{AxisCertificate, CertifiedShape, CertifiedState, CertifiedTerm};
+pub use axis::{AxisCertificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm};
 pub use effect_code::EffectCode;
 pub(crate) use verdict::WireReason;
 

@@ -1,7 +1,8 @@
 //! Whether the contents of a certificate are possible: every number has a range, and numbers agree.
 
 use super::{
-    AxisCertificate, CertifiedShape, CertifiedState, CertifiedTerm, Conditions, EffectCode,
+    AxisCertificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm, Conditions,
+    EffectCode,
 };
 use crate::{
     diagnosis::Verdict,
@@ -51,6 +52,7 @@ impl AxisCertificate {
                 let ranged = correlation.abs() <= 1.001;
                 distinct && (ranged || (correlation.is_nan() && !(known(i) && known(j))))
             })
+            && self.limits.iter().all(CertifiedLimit::is_possible)
             && self.verdict.is_none_or(is_possible_verdict)
     }
 }
@@ -92,6 +94,14 @@ impl CertifiedTerm {
             && self.effect == other.effect
             && self.shape.len() == other.shape.len()
             && shapes.all(|(one, other)| one.value == other.value)
+    }
+}
+
+impl CertifiedLimit {
+    fn is_possible(&self) -> bool {
+        // A comparison with NaN is false.
+        let size = self.size > 0.0 && self.size.is_finite();
+        size && 0.0 <= self.low && self.low <= self.high && self.high.is_finite()
     }
 }
 

@@ -1,10 +1,11 @@
 //! The encoding of certificates as bytes.
 
 use super::{
-    AxisCertificate, Certificate, CertifiedShape, CertifiedState, CertifiedTerm, Conditions,
-    EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, verdict::WireVerdict,
+    AxisCertificate, Certificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm,
+    Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, verdict::WireVerdict,
 };
 use crate::{
+    detection::MAX_RANGES,
     fit::Correlations,
     limits::{MAX_EFFECTS, MAX_PARAMETERS, PAIRS},
     storage::Error,
@@ -13,7 +14,9 @@ use crate::{
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-const VERSION: u8 = 1;
+/// The version with limits of detection, and the one without.
+const VERSION: u8 = 2;
+const WITHOUT_LIMITS: u8 = 1;
 
 #[derive(Serialize, Deserialize)]
 struct WireHead<'a> {
@@ -59,14 +62,20 @@ enum WireState {
 /// The value, the lower end and the upper end of a shape parameter's interval.
 type WireShape = (f32, f32, f32);
 
+/// The effect, the limit, and the lowest and highest value of the first shape parameter.
+type WireLimit = (u8, f32, f32, f32);
+
 // The sizes are in bytes, with every varint at its longest.
 const HEAD_BYTES: usize = 1 + MAX_DEVICE_BYTES + 9 + 9 + 16 + 20 + 2;
 const AXIS_BYTES: usize = 16 + 3 + 4 + 27 + 1 + 4 * PAIRS;
 const TERM_BYTES: usize = 1 + 16 + 6 + 1 + 12 * MAX_PARAMETERS;
-const PAYLOAD_BYTES: usize = HEAD_BYTES + MAX_AXES * (AXIS_BYTES + MAX_EFFECTS * TERM_BYTES);
+const LIMIT_BYTES: usize = 13;
+const PAYLOAD_BYTES: usize =
+    HEAD_BYTES + MAX_AXES * (AXIS_BYTES + MAX_EFFECTS * TERM_BYTES + 1 + MAX_RANGES * LIMIT_BYTES);
 
 impl Certificate {
-    /// The size in bytes of a buffer that holds any certificate; three axes of five terms take 600.
+    /// The size in bytes of a buffer that holds any certificate; three axes of five terms take 600, and each
+    /// limit of detection takes 13 more.
     pub const MAX_BYTES: usize = PAYLOAD_BYTES + OVERHEAD;
 
     /// Writes the certificate to a buffer and returns the part of it that was used.
@@ -79,7 +88,12 @@ impl Certificate {
         if !conditions.are_possible() {
             return Err(Error::Impossible);
         }
-        let mut writer = Writer::new(buffer, Kind::Certificate, VERSION, PAYLOAD_BYTES)?;
+        let version = if self.axes.iter().any(|axis| !axis.limits.is_empty()) {
+            VERSION
+        } else {
+            WITHOUT_LIMITS
+        };
+        let mut writer = Writer::new(buffer, Kind::Certificate, version, PAYLOAD_BYTES)?;
         writer.push(&WireHead {
             device: &self.device,
             firmware: self.firmware,
@@ -96,6 +110,9 @@ impl Certificate {
         })?;
         for axis in &self.axes {
             encode_axis(axis, &mut writer)?;
+            if version == VERSION {
+                encode_limits(axis, &mut writer)?;
+            }
         }
         writer.finish()
     }
@@ -106,8 +123,14 @@ impl Certificate {
     /// [`Error::UnknownMagic`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::WrongKind`],
     /// [`Error::UnknownVersion`]; [`Error::Impossible`] if no fit has such numbers.
     pub fn decode(bytes: &[u8]) -> Result<Self, Error> {
-        let mut rest = envelope::open(bytes, Kind::Certificate, VERSION)?;
-        let record = decode_payload(&mut rest).ok_or(Error::Impossible)?;
+        let (version, mut rest) = envelope::open_any(bytes, Kind::Certificate)?;
+        if !(WITHOUT_LIMITS..=VERSION).contains(&version) {
+            return Err(Error::UnknownVersion {
+                found: version,
+                known: VERSION,
+            });
+        }
+        let record = decode_payload(&mut rest, version).ok_or(Error::Impossible)?;
         rest.is_empty().then_some(record).ok_or(Error::Impossible)
     }
 }
@@ -145,6 +168,14 @@ fn encode_axis(axis: &AxisCertificate, writer: &mut Writer<'_>) -> Result<(), Er
     Ok(())
 }
 
+fn encode_limits(axis: &AxisCertificate, writer: &mut Writer<'_>) -> Result<(), Error> {
+    writer.push(&(axis.limits.len() as u8))?;
+    for limit in &axis.limits {
+        writer.push(&(limit.effect.number(), limit.size, limit.low, limit.high))?;
+    }
+    Ok(())
+}
+
 /// Reads the next part of a payload.
 fn take<'b, T: Deserialize<'b>>(rest: &mut &'b [u8]) -> Option<T> {
     let (part, after) = postcard::take_from_bytes(rest).ok()?;
@@ -152,7 +183,7 @@ fn take<'b, T: Deserialize<'b>>(rest: &mut &'b [u8]) -> Option<T> {
     Some(part)
 }
 
-fn decode_payload(rest: &mut &[u8]) -> Option<Certificate> {
+fn decode_payload(rest: &mut &[u8], version: u8) -> Option<Certificate> {
     let head: WireHead = take(rest)?;
     let conditions = Conditions {
         temperature_c: head.temperature_c,
@@ -166,7 +197,7 @@ fn decode_payload(rest: &mut &[u8]) -> Option<Certificate> {
     }
     let mut axes = Vec::new();
     for _ in 0..head.axes {
-        axes.push(decode_axis(rest)?).ok()?;
+        axes.push(decode_axis(rest, version)?).ok()?;
     }
     Some(Certificate {
         device: Vec::from_slice(head.device).ok()?,
@@ -181,7 +212,7 @@ fn decode_payload(rest: &mut &[u8]) -> Option<Certificate> {
     })
 }
 
-fn decode_axis(rest: &mut &[u8]) -> Option<AxisCertificate> {
+fn decode_axis(rest: &mut &[u8], version: u8) -> Option<AxisCertificate> {
     let axis: WireAxis = take(rest)?;
     let mut terms = Vec::new();
     for _ in 0..axis.terms {
@@ -192,6 +223,12 @@ fn decode_axis(rest: &mut &[u8]) -> Option<AxisCertificate> {
     for slot in below.iter_mut().take(pairs) {
         *slot = take(rest)?;
     }
+    let mut limits = Vec::new();
+    if version == VERSION {
+        for _ in 0..take::<u8>(rest)? {
+            limits.push(decode_limit(rest)?).ok()?;
+        }
+    }
     let axis = AxisCertificate {
         terms,
         correlations: Correlations::from_triangle(below),
@@ -200,8 +237,19 @@ fn decode_axis(rest: &mut &[u8]) -> Option<AxisCertificate> {
         p_value: axis.p_value,
         tolerance: axis.tolerance,
         verdict: axis.verdict.into(),
+        limits,
     };
     axis.is_possible().then_some(axis)
+}
+
+fn decode_limit(rest: &mut &[u8]) -> Option<CertifiedLimit> {
+    let (effect, size, low, high): WireLimit = take(rest)?;
+    Some(CertifiedLimit {
+        effect: EffectCode::from_number(effect)?,
+        size,
+        low,
+        high,
+    })
 }
 
 fn decode_term(rest: &mut &[u8]) -> Option<CertifiedTerm> {

@@ -3,6 +3,7 @@
 mod clean;
 mod coefficients;
 mod confusion;
+mod detection;
 mod hidden_effect;
 mod lines;
 mod paper;
@@ -72,6 +73,18 @@ enum Study {
         #[arg(long)]
         preset: Option<Preset>,
     },
+    /// Count how often an effect shows that is as large as its limit of detection
+    Detection {
+        /// Number of records per effect
+        #[arg(long, default_value_t = 300)]
+        records: u64,
+        /// Study only this effect
+        #[arg(long)]
+        effect: Option<String>,
+        /// Multiply the limits
+        #[arg(long, default_value_t = 1.0)]
+        factor: f64,
+    },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
         /// Number of records per preset
@@ -134,6 +147,11 @@ fn main() -> Result<()> {
             effect,
         } => hidden_effect::print(records, clean, preset, effect.as_deref()),
         Study::Confusion { records, preset } => confusion::print(records, preset),
+        Study::Detection {
+            records,
+            effect,
+            factor,
+        } => detection::print(records, effect.as_deref(), factor),
         Study::Lines { records } => lines::print(records),
         Study::Clean {
             records,

@@ -1,10 +1,13 @@
 //! Factory certificates and snapshots as a JSON document.
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
-use crate::{command::output::units, unit::Unit};
+use crate::{
+    command::output::{model_json, units},
+    unit::Unit,
+};
 use allanite::{
     diagnosis::Verdict,
-    storage::{AxisCertificate, Certificate, CertifiedState, CertifiedTerm},
+    storage::{AxisCertificate, Certificate, CertifiedLimit, CertifiedState, CertifiedTerm},
 };
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -48,6 +51,8 @@ struct Axis {
     dof: u16,
     p_value: f64,
     tolerance: f32,
+    /// The sizes of effects that the record would have shown with a probability of 95 %.
+    detection_limits: Vec<model_json::DetectionRange>,
 }
 
 #[derive(Serialize)]
@@ -133,6 +138,12 @@ fn axis(name: String, axis: &AxisCertificate, unit: Unit) -> Axis {
         dof: axis.degrees_of_freedom,
         p_value: axis.p_value,
         tolerance: axis.tolerance,
+        detection_limits: axis
+            .limits
+            .iter()
+            .filter_map(CertifiedLimit::range)
+            .map(|range| model_json::detection_range(&range, unit))
+            .collect(),
     }
 }
 

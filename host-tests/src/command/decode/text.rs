@@ -11,7 +11,9 @@ use crate::{
 use allanite::{
     diagnosis::Verdict,
     effect::{Effect, IEEE_952, Parameter},
-    storage::{AxisCertificate, Certificate, CertifiedShape, CertifiedState, CertifiedTerm},
+    storage::{
+        AxisCertificate, Certificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm,
+    },
 };
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
@@ -65,6 +67,12 @@ fn print_record(record: &Certificate, output: &mut impl Write) -> io::Result<()>
             axis.degrees_of_freedom,
             p_value(axis, ", p ")
         )?;
+        if !axis.limits.is_empty() {
+            writeln!(output, "{}", words::LIMITS)?;
+        }
+        for range in axis.limits.iter().filter_map(CertifiedLimit::range) {
+            writeln!(output, "  {}", words::limit(&range, record.unit.into()))?;
+        }
     }
     Ok(())
 }

@@ -10,8 +10,9 @@ use crate::{
     log::{BINS, CovariateChoice, Evidence, OCTAVES},
 };
 use allanite::{
-    Error, Model, Observed, Term, covariate,
+    Curve, Error, Model, Observed, Term, covariate,
     covariate::CrossCurve,
+    detection::{Detection, Limit, Ranges},
     diagnosis::{
         Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
     },
@@ -75,6 +76,8 @@ pub(crate) struct Diagnosed {
     /// The steps, at least one; the last one has the model that the diagnosis ends with.
     pub(crate) steps: Vec<Step<OCTAVES, BINS>>,
     pub(crate) verdict: Verdict,
+    /// The sizes of effects that the record would have shown. Empty unless the last model is adequate.
+    pub(crate) limits: Vec<Limit>,
     /// The options of the search for effects.
     pub(crate) options: Options,
     /// Names of the covariates.
@@ -103,14 +106,46 @@ impl Diagnosed {
         let mut diagnosis =
             Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options);
         let verdict = diagnosis.run(|step| steps.push(step.clone()))?;
-        Ok(Self {
+        let mut diagnosed = Self {
             axis,
             steps,
             verdict,
+            limits: Vec::new(),
             options,
             covariates,
             cross,
-        })
+        };
+        diagnosed.limits = diagnosed.detection_limits()?;
+        Ok(diagnosed)
+    }
+
+    /// The sizes of effects that the record would have shown.
+    fn detection_limits(&self) -> Result<Vec<Limit>, Error> {
+        let mut limits = Vec::new();
+        let adequate = matches!(self.verdict, Verdict::Adequate | Verdict::Improved);
+        if let Some(last) = self.steps.last().filter(|_| adequate) {
+            let curve = self.curve_of(last)?;
+            let spectrum = self.axis.spectrum()?;
+            Detection::with_spectrum(curve, spectrum, last, &CATALOGUE, self.options)
+                .run(|limit| limits.push(limit))?;
+        }
+        Ok(limits)
+    }
+
+    /// The limits of detection as ranges of shapes.
+    pub(crate) fn ranges(&self) -> Ranges {
+        let mut ranges = Ranges::default();
+        self.limits.iter().for_each(|limit| ranges.push(limit));
+        ranges
+    }
+
+    /// The curve on which a step was judged: without what follows a covariate.
+    fn curve_of(&self, step: &Step<OCTAVES, BINS>) -> Result<Curve<OCTAVES>, Error> {
+        let mut curve = self.axis.curve()?;
+        if let Some(followed) = &step.covariate {
+            self.cross[followed.index].correct(&mut curve, &followed.slope);
+        }
+        Ok(curve)
     }
 
     /// The first step, which has the five terms, and the last one.
@@ -144,14 +179,11 @@ impl Diagnosed {
         step: usize,
         candidate: &Candidate,
     ) -> Result<Step<OCTAVES, BINS>, Error> {
-        let mut curve = self.axis.curve()?;
         let before = step
             .checked_sub(1)
             .and_then(|before| self.steps.get(before));
         let step = &self.steps[step];
-        if let Some(followed) = &step.covariate {
-            self.cross[followed.index].correct(&mut curve, &followed.slope);
-        }
+        let curve = self.curve_of(step)?;
         let spectrum = self.axis.spectrum()?;
         alternative(Observed::new(&curve, &spectrum), step, before, candidate)
     }

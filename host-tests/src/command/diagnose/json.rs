@@ -11,6 +11,7 @@ use crate::{
 };
 use allanite::{
     comparison::ComparedBin,
+    detection::Range,
     diagnosis::{Candidate as Tried, Step as Taken},
 };
 use serde::Serialize;
@@ -32,7 +33,17 @@ struct Axis<'a> {
     verdict: &'static str,
     missing: Vec<&'static str>,
     ambiguous: Vec<&'static str>,
+    /// The sizes of effects that the record would have shown with a probability of 95 %, over ranges of shapes.
+    detection_limits: Vec<DetectionLimit>,
     notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct DetectionLimit {
+    #[serde(flatten)]
+    range: model_json::DetectionRange,
+    /// The limit of every shape of the range that was computed.
+    shapes: Vec<Map<String, Value>>,
 }
 
 #[derive(Serialize)]
@@ -112,8 +123,23 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
         verdict: diagnosed.verdict.name(),
         missing: diagnosed.missing().collect(),
         ambiguous: names,
+        detection_limits: limits(diagnosed),
         notes: diagnosed.notes(),
     }
+}
+
+fn limits(diagnosed: &Diagnosed) -> Vec<DetectionLimit> {
+    let ranges = diagnosed.ranges();
+    let with_shapes = |range: &Range| DetectionLimit {
+        range: model_json::detection_range(range, diagnosed.axis.unit),
+        shapes: diagnosed
+            .limits
+            .iter()
+            .filter(|limit| range.has(limit))
+            .map(|limit| model_json::parameters(&limit.term, limit.coefficient))
+            .collect(),
+    };
+    ranges.as_slice().iter().map(with_shapes).collect()
 }
 
 fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step {

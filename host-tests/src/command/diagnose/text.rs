@@ -2,7 +2,7 @@
 
 use super::{
     diagnosed::Diagnosed,
-    words::{Finding, candidate_name, shown_p, unexplained, verdict},
+    words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
 };
 use crate::{
     command::{fit, output::words},
@@ -79,7 +79,15 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     );
     write!(output, "{}", Plot::new(&title, axis.unit, &last.comparison))?;
     writeln!(output)?;
-    writeln!(output, "{}: {}", axis.axis, verdict(diagnosed))
+    writeln!(output, "{}: {}", axis.axis, verdict(diagnosed))?;
+    let limits = limits(diagnosed);
+    if !limits.is_empty() {
+        writeln!(output, "\n{}", words::LIMITS)?;
+    }
+    for limit in limits {
+        writeln!(output, "  {limit}")?;
+    }
+    Ok(())
 }
 
 /// Prints one line with the error before and after, then the addition, its explanation and the

@@ -12,6 +12,7 @@ use allanite::{
     Comparison, Term,
     comparison::ComparedBin,
     covariate,
+    detection::Range,
     diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
     effect::{Explanation, explanation},
 };
@@ -185,6 +186,13 @@ pub(crate) fn candidate_name(candidate: &Candidate) -> String {
     } else {
         format!("{name} ({shape}){instead}")
     }
+}
+
+/// The limits of detection, a line for each range of shapes.
+pub(crate) fn limits(diagnosed: &Diagnosed) -> Vec<String> {
+    let unit = diagnosed.axis.unit;
+    let line = |range: &Range| words::limit(range, unit);
+    diagnosed.ranges().as_slice().iter().map(line).collect()
 }
 
 /// A p-value with its relation, such as `= 0.338`, or `unknown` if there is none.

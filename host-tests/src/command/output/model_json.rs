@@ -1,14 +1,14 @@
 //! The parts that the JSON documents of `compare` and `diagnose` share.
 
-use super::words;
+use super::{units, words};
 use crate::{
     command::fit,
     log::{BINS, OCTAVES},
     unit::Unit,
 };
 use allanite::{
-    Comparison, Model, Term, comparison::ComparedOctave, covariate, diagnosis::FollowedCovariate,
-    fit::Fit,
+    Comparison, Model, Term, comparison::ComparedOctave, covariate, detection::Range,
+    diagnosis::FollowedCovariate, fit::Fit,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -47,6 +47,39 @@ pub(crate) struct Worst {
     tau_s: f64,
     z: f64,
     percent: f64,
+}
+
+/// The size of an effect that a record would have shown, over a range of shapes.
+#[derive(Serialize)]
+pub(crate) struct DetectionRange {
+    effect: &'static str,
+    /// The name of the number that is limited: the coefficient or, for a filter, a shape parameter.
+    limited: &'static str,
+    limit: f64,
+    unit: String,
+    /// The ends of the range of the first shape parameter, by its name.
+    #[serde(flatten)]
+    ends: Map<String, Value>,
+}
+
+/// The limit of detection of a range of shapes.
+pub(crate) fn detection_range(range: &Range, unit: Unit) -> DetectionRange {
+    let effect = range.effect;
+    let parameter = effect.parameters().first();
+    let limited = parameter.filter(|_| range.is_of_shape);
+    let (low, high) = range.ends;
+    let ends = parameter.filter(|_| !range.is_of_shape);
+    let ends = ends.map(|parameter| (parameter.name.to_owned(), Value::from(vec![low, high])));
+    DetectionRange {
+        effect: effect.name(),
+        limited: limited.map_or(effect.coefficient(), |parameter| parameter.name),
+        limit: range.size,
+        unit: match limited {
+            Some(parameter) => parameter.unit.to_owned(),
+            None => units::unit(unit, effect.half_seconds()),
+        },
+        ends: ends.into_iter().collect(),
+    }
 }
 
 /// The shape and the coefficient of a term by name; numbers that are not finite are `null`.

@@ -16,6 +16,28 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
+/// A positive number with two significant digits.
+pub(crate) fn two_digits(value: f64) -> String {
+    round_to_two(value, f64::round)
+}
+
+/// A positive number with two significant digits, rounded up, so that what is said of a limit holds.
+pub(crate) fn rounded_up(value: f64) -> String {
+    // A number with two digits stays what it is, whatever its last bit.
+    round_to_two(value, |digits| (digits - 1e-9).ceil())
+}
+
+fn round_to_two(value: f64, round: impl Fn(f64) -> f64) -> String {
+    let exponent = value.log10().floor() as i32 - 1;
+    let unit = 10_f64.powi(exponent);
+    let rounded = round(value / unit) * unit;
+    if (-5..=3).contains(&exponent) {
+        format!("{rounded:.*}", (-exponent).max(0) as usize)
+    } else {
+        format!("{rounded:.1e}")
+    }
+}
+
 /// A p-value with its relation, such as `= 0.338`.
 pub(crate) fn probability(p: f64) -> String {
     if p >= 0.001 {
@@ -42,6 +64,17 @@ pub(crate) fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn limits_have_two_digits_and_are_rounded_up() {
+        let numbers = [0.004_61, 0.0046, 1.21, 12.01, 990.1, 3.3e-9];
+        let texts = numbers.map(rounded_up);
+        assert_eq!(texts, ["0.0047", "0.0046", "1.3", "13", "1000", "3.3e-9"]);
+        assert_eq!(
+            [0.004_64, 49.5, 0.1].map(two_digits),
+            ["0.0046", "50", "0.10"]
+        );
+    }
 
     #[test]
     fn four_digits_are_shown_wherever_the_point_is() {

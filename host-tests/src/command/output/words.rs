@@ -1,7 +1,7 @@
 //! Effects, coefficients and records in words, for tables, sentences and the notes of JSON documents.
 
 use super::{
-    number::{duration, number},
+    number::{duration, number, rounded_up, two_digits},
     units,
 };
 use crate::{
@@ -10,6 +10,7 @@ use crate::{
 };
 use allanite::{
     Coefficient, Term,
+    detection::Range,
     diagnosis::Step,
     effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
     fit::{Fit, State},
@@ -92,6 +93,11 @@ pub(crate) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
 
 /// A shape parameter and its value: `frequency 19.6 Hz`.
 pub(crate) fn shape_value(parameter: &Parameter, value: f64) -> String {
+    shape_words(parameter, &short(value))
+}
+
+/// A shape parameter and its values in words: `frequency 19 … 20 Hz`.
+pub(crate) fn shape_words(parameter: &Parameter, values: &str) -> String {
     // The unit is written after the value, so the name goes without its suffix.
     let suffix = format!("_{}", parameter.unit.to_lowercase());
     let name = plain(
@@ -101,8 +107,8 @@ pub(crate) fn shape_value(parameter: &Parameter, value: f64) -> String {
             .unwrap_or(parameter.name),
     );
     match parameter.unit {
-        "" => format!("{name} {}", short(value)),
-        unit => format!("{name} {} {unit}", short(value)),
+        "" => format!("{name} {values}"),
+        unit => format!("{name} {values} {unit}"),
     }
 }
 
@@ -134,6 +140,37 @@ pub(crate) fn coefficient(effect: &dyn Effect, coefficient: &Coefficient, unit: 
         State::UpperBound => format!("{name} < {} {unit}", value(coefficient.upper)),
         State::NotObservable { .. } => format!("{name} not observable"),
     }
+}
+
+/// What limits of detection are, as the heading of their list.
+pub(crate) const LIMITS: &str =
+    "Beside this model, the record would have shown with a probability of 95 %:";
+
+/// A limit of detection: `a sinusoid of amplitude 0.0047 deg/s, frequency 0.026 … 0.41 Hz`.
+pub(crate) fn limit(range: &Range, unit: Unit) -> String {
+    let effect = range.effect;
+    let name = in_sentence(effect.name());
+    let parameter = effect.parameters().first();
+    let limit = rounded_up(range.size);
+    if let Some(parameter) = parameter.filter(|_| range.is_of_shape) {
+        let shape = shape_words(parameter, &limit);
+        return format!("{name} with a {shape} or more");
+    }
+    let size = format!(
+        "{name} of {} {limit} {}",
+        of_sensor(effect.coefficient(), unit),
+        units::unit(unit, effect.half_seconds()),
+    );
+    let Some(parameter) = parameter else {
+        return size;
+    };
+    let (low, high) = range.ends;
+    let values = if low == high {
+        two_digits(low)
+    } else {
+        format!("{} … {}", two_digits(low), two_digits(high))
+    };
+    format!("{size}, {}", shape_words(parameter, &values))
 }
 
 /// The factor to the customary unit and its name, or 1 and the log's own unit if there is none.

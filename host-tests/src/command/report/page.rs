@@ -2,7 +2,10 @@
 
 use crate::{
     command::{
-        diagnose::{diagnosed::Diagnosed, words::lead},
+        diagnose::{
+            diagnosed::Diagnosed,
+            words::{lead, limits},
+        },
         output::words,
     },
     plot,
@@ -130,12 +133,19 @@ fn axis(number: usize, diagnosed: &Diagnosed) -> Markup {
     let axis = &diagnosed.axis;
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
     let notes = diagnosed.notes();
+    let limits = limits(diagnosed);
     html! {
         section.axis id={ "axis-" (number) } aria-label={ "Axis " (axis.axis) } {
             h2 { (axis.axis) }
             p.record { (record) }
             // The script fills this element.
             div.walk data-axis=(number) {}
+            @if !limits.is_empty() {
+                div.notes {
+                    h3 { (words::LIMITS) }
+                    ul { @for limit in &limits { li { (limit) } } }
+                }
+            }
             @if !notes.is_empty() {
                 div.notes {
                     h3 { "Notes" }

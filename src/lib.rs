@@ -211,6 +211,7 @@ mod cholesky;
 mod coefficient;
 pub mod comparison;
 mod covariance;
+pub mod course;
 pub mod covariate;
 pub mod curve;
 pub mod diagnosis;

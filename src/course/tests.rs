@@ -1,0 +1,3 @@
+//! The exactness of the sums.
+use super::*;
+use crate::test_random::Random;

@@ -238,9 +238,7 @@ impl<const COVARIATES: usize> Course<COVARIATES> {
     fn sums(&self) -> impl Iterator<Item = (&Sums<COVARIATES>, u32)> {
         let complete = self.blocks.iter().take(usize::from(self.complete));
         let open = (self.filled > 0).then_some((&self.open, self.filled));
-        complete
-            .map(|sums| (sums, self.block_length()))
-            .chain(open)
+        complete.map(|sums| (sums, self.block_length())).chain(open)
     }
 
     /// The exact sum of the counts of every block, and that of the squared differences of neighbouring counts, in

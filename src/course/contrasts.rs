@@ -160,8 +160,7 @@ impl Contrasts {
         interval_s: Real,
     ) -> Option<Self> {
         let length = real(block_length);
-        let is_usable =
-            |level: &&Level| is_complete(level, block_length) && level.mean.is_finite();
+        let is_usable = |level: &&Level| is_complete(level, block_length) && level.mean.is_finite();
         let levels: Vec<Level, BLOCKS> = list::fill(levels.iter().filter(is_usable).copied());
         if levels.len() < MIN_BLOCKS || length < MIN_SAMPLES {
             return None;
@@ -446,12 +445,7 @@ fn keep_better(best: &mut Option<Tried>, form: Form, along: Real, square: Real) 
 }
 
 /// The covariance of two block means at every distance, up to a constant.
-fn covariances(
-    model: &Model,
-    squares: &[Real],
-    length: Real,
-    interval_s: Real,
-) -> [Real; BLOCKS] {
+fn covariances(model: &Model, squares: &[Real], length: Real, interval_s: Real) -> [Real; BLOCKS] {
     let duration_s = length * interval_s;
     core::array::from_fn(|k| {
         let lag = real(k as u32) * length;

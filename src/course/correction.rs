@@ -117,7 +117,11 @@ fn response_at(form: Form, start: Real, at: Real, starts: Starts, length: Real) 
     match form {
         Form::Step { .. } => {
             let u = (at - start) / real(starts.m);
-            if u < 1.0 { u.max(0.0) } else { (2.0 - u).max(0.0) }
+            if u < 1.0 {
+                u.max(0.0)
+            } else {
+                (2.0 - u).max(0.0)
+            }
         }
         Form::WarmUp { time_constant } => {
             let time_constant = time_constant * length;
@@ -135,9 +139,7 @@ impl Sums {
             places: 0,
         };
         let (mut present, mut mean) = (0_u32, 0.0);
-        for (block, (count, total)) in
-            (0_u32..).zip(sums.present.iter_mut().zip(&mut sums.means))
-        {
+        for (block, (count, total)) in (0_u32..).zip(sums.present.iter_mut().zip(&mut sums.means)) {
             (*count, *total) = (present, mean);
             let mut usable = levels
                 .iter()
@@ -182,9 +184,8 @@ impl Sums {
             let whole = present(end).saturating_sub(present(start));
             if whole as usize == width.saturating_mul(2) {
                 let measured = difference(&self.means);
-                let columns: Vector<COLUMNS> = Vector::from_fn(|p| {
-                    self.columns.get(p).map_or(0.0, difference)
-                });
+                let columns: Vector<COLUMNS> =
+                    Vector::from_fn(|p| self.columns.get(p).map_or(0.0, difference));
                 let rest = measured - columns.dot(&shifts.coefficients);
                 found.measured += measured * measured;
                 found.rest += rest * rest;

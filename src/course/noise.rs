@@ -6,11 +6,12 @@ use super::{
     event::{Event, Largest, What},
 };
 use crate::{
+    chi_squared::chi_squared_tail,
     limits::TWO_SIDED_95,
     list::{self, numbered},
     math,
-    model::Model,
-    real::{Real, real},
+    model::{Model, Term},
+    real::{Real, consts::PI, real},
 };
 use heapless::Vec;
 
@@ -21,6 +22,13 @@ const CHANGE: f64 = 4.5;
 /// A burst is told from this standardised ratio on. `cargo xtask study course` measures how often it is exceeded in
 /// clean records.
 const BURST: f64 = 4.9;
+
+/// Bursts are told as well if the noise is not the same in all blocks between two changes, with this p-value or less.
+/// Then every block that exceeds its neighbourhood by [`MARKED`] is one with a burst.
+const HOMOGENEOUS: f64 = 1e-5;
+
+/// The standardised ratio from which on a block has a burst, where the noise is not the same in all blocks.
+const MARKED: f64 = 3.0;
 
 /// The number of noise changes that are told at most.
 pub(super) const MAX_CHANGES: usize = 3;
@@ -46,7 +54,7 @@ pub(super) fn freedom_per_difference(model: &Model, squares: &[Real], interval_s
     let terms = || model.terms().iter().zip(squares);
     // Second differences of G, whose second differences are the autocovariance but for a factor.
     let second = |lag: Real| -> Real {
-        let of = |(term, square): (&crate::model::Term, &Real)| {
+        let of = |(term, square): (&Term, &Real)| {
             let shape = term.sampled_shape(interval_s);
             square * term.effect.second_difference(lag, 1.0, &shape)
         };
@@ -123,10 +131,49 @@ pub(super) fn find(
     for block in &mut blocks {
         block.freedom /= widened * widened;
     }
-    if let Some(event) = bursts(&mut blocks, block_s, largest) {
-        each(event);
+    let mut strongest = bursts(&mut blocks, real(BURST));
+    let mut found = changes(&blocks, largest);
+    if homogeneity(&blocks, &found) < real(HOMOGENEOUS) {
+        strongest = bursts(&mut blocks, real(MARKED));
+        found = changes(&blocks, largest);
     }
-    changes(&blocks, block_s, largest, each);
+    if let Some(strongest) = strongest {
+        largest.burst = strongest.z;
+        if let Some(event) = strongest.event(&blocks, block_s) {
+            each(event);
+        }
+    }
+    tell_changes(&blocks, &found, block_s, each);
+}
+
+/// The probability that blocks of the same noise differ as much as these do between the changes, bursts left out:
+/// the test of Bartlett, Proceedings of the Royal Society A 160, 268, 1937. 1 if there are too few blocks.
+fn homogeneity(blocks: &[Noise], changes: &[usize]) -> Real {
+    let (mut statistic, mut freedom) = (0.0, 0);
+    let mut from = 0;
+    for to in changes.iter().copied().chain([blocks.len()]) {
+        let part = blocks.get(from..to).unwrap_or_default();
+        from = to;
+        let (square, whole) = pooled(part);
+        let steady = || part.iter().filter(|block| !block.is_burst);
+        let number = list::count(steady());
+        if number < 2 {
+            continue;
+        }
+        let (mut sum, mut reciprocals) = (0.0, 0.0);
+        for block in steady() {
+            sum += block.freedom * math::log(square / block.square);
+            reciprocals += 1.0 / block.freedom;
+        }
+        let others = number.saturating_sub(1);
+        let bias = (reciprocals - 1.0 / whole) / (3.0 * real(others as u32));
+        statistic += sum / (1.0 + bias);
+        freedom = others.saturating_add(freedom);
+    }
+    if freedom == 0 {
+        return 1.0;
+    }
+    chi_squared_tail(statistic, freedom)
 }
 
 /// How much more neighbouring blocks differ than their degrees of freedom say, as a ratio of standard deviations; 1
@@ -145,9 +192,31 @@ fn overdispersion(blocks: &[Noise]) -> Real {
     if ratio > OVERDISPERSED { ratio } else { 1.0 }
 }
 
-/// Marks the bursts, and returns their event.
-fn bursts(blocks: &mut Vec<Noise, BLOCKS>, block_s: Real, largest: &mut Largest) -> Option<Event> {
-    let mut strongest: Option<(Real, Noise, Real, Real)> = None;
+/// The block that exceeds its neighbourhood most.
+struct Strongest {
+    z: Real,
+    block: Noise,
+    /// The mean square of the neighbourhood, and its degrees of freedom.
+    near: (Real, Real),
+}
+
+impl Strongest {
+    /// The event of all blocks that are marked; `None` if there is none.
+    fn event(&self, blocks: &[Noise], block_s: Real) -> Option<Event> {
+        let number = list::count(blocks.iter().filter(|block| block.is_burst));
+        let what = What::Bursts {
+            blocks: number.min(BLOCKS) as u8,
+        };
+        let at_s = (real(self.block.place) + 0.5) * block_s;
+        let own = (self.block.square, self.block.freedom);
+        (number > 0).then(|| ratio(what, at_s, self.z, own, self.near))
+    }
+}
+
+/// Marks the blocks whose noise exceeds that of their neighbourhood by a standardised ratio of `limit`, and returns
+/// the strongest block.
+fn bursts(blocks: &mut Vec<Noise, BLOCKS>, limit: Real) -> Option<Strongest> {
+    let mut strongest: Option<Strongest> = None;
     let mut marked = [false; BLOCKS];
     for (b, (block, mark)) in numbered(blocks.iter().zip(&mut marked)) {
         let last_first = blocks.len().saturating_sub(NEIGHBOURS);
@@ -155,44 +224,37 @@ fn bursts(blocks: &mut Vec<Noise, BLOCKS>, block_s: Real, largest: &mut Largest)
         let near = || blocks.iter().skip(first).take(NEIGHBOURS);
         let level = median(near().map(|block| block.square));
         // The median of normal variables has π/2 times the variance of their mean.
-        let freedom = near().map(|block| block.freedom).sum::<Real>() * real(0.637);
+        let freedom = near().map(|block| block.freedom).sum::<Real>() * (2.0 / PI);
         let z = standardised_ratio(block.square / level, block.freedom, freedom);
-        *mark = z > real(BURST);
-        if strongest.is_none_or(|(other, ..)| z > other) {
-            strongest = Some((z, *block, level, freedom));
+        *mark = z > limit;
+        if strongest.as_ref().is_none_or(|other| z > other.z) {
+            strongest = Some(Strongest {
+                z,
+                block: *block,
+                near: (level, freedom),
+            });
         }
     }
-    let mut number = 0_u8;
     for (block, mark) in blocks.iter_mut().zip(marked) {
         block.is_burst = mark;
-        number = number.saturating_add(u8::from(mark));
     }
-    let (z, block, level, freedom) = strongest?;
-    largest.burst = z;
-    let what = What::Bursts { blocks: number };
-    let at_s = (real(block.place) + 0.5) * block_s;
-    (number > 0).then(|| ratio(what, at_s, z, (block.square, block.freedom), (level, freedom)))
+    strongest
 }
 
-/// Hands every change of the noise to `each`: the split with the largest standardised ratio, and then those of its
-/// two parts.
-fn changes(
-    blocks: &[Noise],
-    block_s: Real,
-    largest: &mut Largest,
-    each: &mut dyn FnMut(Event),
-) {
-    // The first block after each change, in the order of time.
+/// The first block after each change of the noise, in the order of time: the split with the largest standardised
+/// ratio, and then those of its two parts.
+fn changes(blocks: &[Noise], largest: &mut Largest) -> Vec<usize, MAX_CHANGES> {
     let mut found: Vec<usize, MAX_CHANGES> = Vec::new();
     let mut parts: Vec<(usize, usize), { 2 * MAX_CHANGES + 1 }> = Vec::new();
     let _ = parts.push((0, blocks.len()));
-    let mut next = 0;
+    let mut next = 0_usize;
     while let Some(&(from, to)) = parts.get(next) {
-        next += 1;
+        let is_first = next == 0;
+        next = next.saturating_add(1);
         let Some((at, z)) = split(blocks, from, to) else {
             continue;
         };
-        if next == 1 {
+        if is_first {
             largest.noise_change = z;
         }
         if z * z <= real(CHANGE * CHANGE) || found.is_full() {
@@ -202,21 +264,22 @@ fn changes(
         let _ = parts.push((from, at));
         let _ = parts.push((at, to));
     }
+    found
+}
+
+/// Hands every change of the noise to `each`, with the noise between its two neighbouring changes.
+fn tell_changes(blocks: &[Noise], found: &[usize], block_s: Real, each: &mut dyn FnMut(Event)) {
+    let mut from = 0;
     for (i, &at) in numbered(found.iter()) {
-        let from = i.checked_sub(1).and_then(|i| found.get(i)).copied();
-        let to = found.get(i.saturating_add(1)).copied();
+        let next = found.get(i.saturating_add(1)).copied();
         let part = |from: usize, to: usize| pooled(blocks.get(from..to).unwrap_or_default());
-        let before = part(from.unwrap_or(0), at);
-        let after = part(at, to.unwrap_or(blocks.len()));
+        let before = part(from, at);
+        let after = part(at, next.unwrap_or(blocks.len()));
+        from = at;
         let z = standardised_ratio(after.0 / before.0, after.1, before.1);
         let place = blocks.get(at).map_or(0, |block| block.place);
-        each(ratio(
-            What::NoiseChange,
-            real(place) * block_s,
-            z,
-            after,
-            before,
-        ));
+        let at_s = real(place) * block_s;
+        each(ratio(What::NoiseChange, at_s, z, after, before));
     }
 }
 

@@ -1,3 +1,179 @@
-//! The exactness of the sums.
+//! The exactness of the sums, and where the course's time goes.
+
+extern crate std;
+
 use super::*;
-use crate::test_random::Random;
+use crate::{real::by_precision, test_random::Random};
+use std::vec::Vec as List;
+
+/// What one sample of time held: a count with a covariate, and whether it follows the sample before it.
+type Slot = Option<(i32, i32, bool)>;
+
+/// The course, and every sample of time.
+struct Recorded {
+    course: Course<1>,
+    slots: List<Slot>,
+    is_running: bool,
+}
+
+impl Recorded {
+    fn new() -> Self {
+        Self {
+            course: Course::new(),
+            slots: List::new(),
+            is_running: false,
+        }
+    }
+
+    fn push(&mut self, count: i32, covariate: i32) {
+        self.course.push(count, [covariate]);
+        self.slots.push(Some((count, covariate, self.is_running)));
+        self.is_running = true;
+    }
+
+    fn missing(&mut self, samples: usize) {
+        self.course.missing(samples as u64);
+        self.slots.resize(self.slots.len() + samples, None);
+        self.is_running &= samples == 0;
+    }
+
+    fn gap(&mut self) {
+        self.course.gap();
+        self.is_running = false;
+    }
+
+    /// Compares every block with plain sums over its samples.
+    fn assert_exact(&self) {
+        let length = self.course.block_length() as usize;
+        assert_eq!(self.course.time(), self.slots.len() as u64);
+        let expected = self.slots.chunks(length);
+        assert!(expected.len() <= BLOCKS);
+        assert!(length == 1 || expected.len() > BLOCKS / 2);
+        let scale = Scale::new(1.0, 1.0).expect("positive");
+        let found: List<_> = self
+            .course
+            .exact_sums()
+            .zip(self.course.blocks(scale))
+            .collect();
+        assert_eq!(found.len(), expected.len());
+        let mut before = 0_i64;
+        for (slots, ((counts, squares), block)) in expected.zip(found) {
+            let (mut sum, mut sum_of_squares, mut samples, mut differences) = (0, 0, 0, 0);
+            let mut covariates = 0;
+            for (count, covariate, has_difference) in slots.iter().flatten() {
+                sum += i64::from(*count);
+                covariates += i64::from(*covariate);
+                samples += 1;
+                if *has_difference {
+                    let difference = i128::from(i64::from(*count) - before);
+                    sum_of_squares += (difference * difference) as u128;
+                    differences += 1;
+                }
+                before = i64::from(*count);
+            }
+            assert_eq!((counts, squares), (sum, sum_of_squares));
+            assert_eq!(block.samples, samples);
+            assert_eq!(block.duration_s, slots.len() as Real);
+            if samples == 0 {
+                assert!(block.mean.is_nan() && block.covariates[0].is_nan());
+                continue;
+            }
+            let close = |found: Real, expected: f64| {
+                let off = f64::from(found) - expected;
+                off.abs() <= f64::from(by_precision(1e-12, 1e-5)) * expected.abs()
+            };
+            assert!(close(block.mean, sum as f64 / f64::from(samples)));
+            assert!(close(
+                block.covariates[0],
+                covariates as f64 / f64::from(samples)
+            ));
+            if differences == 0 {
+                assert!(block.mean_square_difference.is_nan());
+            } else {
+                let mean = sum_of_squares as f64 / f64::from(differences);
+                assert!(close(block.mean_square_difference, mean));
+            }
+        }
+    }
+}
+
+#[test]
+fn sums_are_exact_through_doublings_and_gaps() {
+    let mut random = Random::new(71);
+    for wide in [false, true] {
+        let mut recorded = Recorded::new();
+        for n in 0..3000 {
+            match random.below(40) {
+                0 => recorded.gap(),
+                1 => recorded.missing(random.below(30)),
+                _ => {}
+            }
+            // Counts of a gyro at rest, or those at both ends of their range.
+            let count = match random.below(3) {
+                _ if !wide => random.below(1000) as i32 - 480,
+                0 => i32::MIN,
+                1 => i32::MAX,
+                _ => (random.signed() * 2_147_483_647.0) as i32,
+            };
+            recorded.push(count, random.below(100) as i32);
+            if n < 300 || n % 97 == 0 {
+                recorded.assert_exact();
+            }
+        }
+        assert!(recorded.course.block_length() >= 64);
+    }
+}
+
+#[test]
+fn blocks_double_when_the_sample_after_the_last_block_comes() {
+    let mut course = Course::<0>::new();
+    for n in 1..=4096_u32 {
+        course.push(1, []);
+        let length = n.div_ceil(64).next_power_of_two();
+        assert_eq!(
+            (course.block_length(), course.time()),
+            (length, u64::from(n))
+        );
+        assert_eq!(course.exact_sums().count() as u32, n.div_ceil(length));
+    }
+}
+
+#[test]
+fn a_course_ends_after_its_longest_blocks_and_keeps_what_it_has() {
+    let mut course = Course::<0>::new();
+    course.push(7, []);
+    course.missing(u64::MAX);
+    assert_eq!(course.time(), 1 << 37);
+    assert_eq!(course.block_length(), LONGEST);
+    let full = course.clone();
+    course.push(5, []);
+    course.missing(3);
+    assert_eq!(course.exact_sums().next(), Some((7, 0)));
+    assert!(course.exact_sums().eq(full.exact_sums()));
+    assert_eq!(course.time(), full.time());
+}
+
+#[test]
+fn an_offset_of_the_counts_leaves_the_levels_as_they_are() {
+    let scale = Scale::new(0.5, 100.0).expect("positive");
+    let mut random = Random::new(72);
+    let counts: List<i32> = (0..5000).map(|_| random.below(200) as i32).collect();
+    let levels = |offset: i32| {
+        let mut course = Course::<0>::new();
+        counts
+            .iter()
+            .for_each(|count| course.push(count + offset, []));
+        course.levels(scale)
+    };
+    for (plain, shifted) in levels(0).iter().zip(&levels(1 << 30)) {
+        assert_eq!((plain.mean, plain.square), (shifted.mean, shifted.square));
+    }
+}
+
+#[test]
+fn a_new_course_is_empty_and_takes_the_memory_that_is_documented() {
+    let scale = Scale::new(1.0, 1.0).expect("positive");
+    assert_eq!(Course::<2>::new().blocks(scale).count(), 0);
+    assert!(size_of::<Course>() <= 2144, "{}", size_of::<Course>());
+    assert!(size_of::<Course<1>>() <= 2144 + 65 * 8);
+}

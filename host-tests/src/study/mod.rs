@@ -3,6 +3,7 @@
 
 pub mod clean;
 pub mod coefficients;
+pub mod course;
 pub mod hidden_effect;
 pub mod lines;
 pub mod paper;

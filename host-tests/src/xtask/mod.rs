@@ -26,7 +26,7 @@ enum Task {
     /// Set up, then check and test everything.
     Test,
     /// Run a study behind the README's figures: theory, coefficients, paper, hidden-effect, lines,
-    /// thermal, self-test or precision.
+    /// course, thermal, self-test or precision.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]

@@ -17,11 +17,11 @@ use heapless::Vec;
 
 /// A noise change is told from this standardised ratio on. `cargo xtask study course` measures how often it is
 /// exceeded in clean records.
-const CHANGE: f64 = 4.5;
+const CHANGE: f64 = 4.4;
 
 /// A burst is told from this standardised ratio on. `cargo xtask study course` measures how often it is exceeded in
 /// clean records.
-const BURST: f64 = 4.9;
+const BURST: f64 = 4.6;
 
 /// Bursts are told as well if the noise is not the same in all blocks between two changes, with this p-value or less.
 /// Then every block that exceeds its neighbourhood by [`MARKED`] is one with a burst.

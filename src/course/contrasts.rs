@@ -20,9 +20,13 @@ const PER_SHIFT: usize = 2;
 /// The number of columns of all shifts.
 pub(super) const COLUMNS: usize = PER_SHIFT * MAX_SHIFTS;
 
-/// A step or a warm-up is told from this standardised size on. `cargo xtask study course` measures how often it is
-/// exceeded in clean records.
-const LIMIT: f64 = 5.0;
+/// A step is told from this standardised size on. `cargo xtask study course` measures how often it is exceeded in
+/// clean records.
+const STEP: f64 = 5.0;
+
+/// A warm-up is told from this standardised size on: less than that of a step, because it has no choice of a time.
+/// `cargo xtask study course` measures how often it is exceeded in clean records.
+const WARM_UP: f64 = 4.6;
 
 /// The blocks that the tests of the mean need.
 const MIN_BLOCKS: usize = 8;
@@ -264,7 +268,11 @@ impl Contrasts {
                 (None, None) => break,
             };
             let z = self.standardised(best);
-            if z * z <= real(LIMIT * LIMIT) {
+            let limit = match best.form {
+                Form::Step { .. } => real(STEP),
+                Form::WarmUp { .. } => real(WARM_UP),
+            };
+            if z * z <= limit * limit {
                 break;
             }
             for derivative in [false, true] {

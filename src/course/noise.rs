@@ -17,17 +17,16 @@ use heapless::Vec;
 
 /// A noise change is told from this standardised ratio on. `cargo xtask study course` measures how often it is
 /// exceeded in clean records.
-const CHANGE: f64 = 4.4;
+const CHANGE: f64 = 4.1;
 
 /// A burst is told from this standardised ratio on. `cargo xtask study course` measures how often it is exceeded in
 /// clean records.
 const BURST: f64 = 4.6;
 
 /// Bursts are told as well if the noise is not the same in all blocks between two changes, with this p-value or less.
-/// Then every block that exceeds its neighbourhood by [`MARKED`] is one with a burst.
 const HOMOGENEOUS: f64 = 1e-5;
 
-/// The standardised ratio from which on a block has a burst, where the noise is not the same in all blocks.
+/// The standardised ratio from which on a block has a burst, where there are bursts.
 const MARKED: f64 = 3.0;
 
 /// The number of noise changes that are told at most.
@@ -40,8 +39,8 @@ const NEIGHBOURS: usize = 9;
 const MIN_DIFFERENCES: Real = 32.0;
 
 /// Blocks scatter more than the model says, and not by chance, if their deviation is this many times as large. With
-/// 63 pairs of neighbours, it is a distance of four standard errors. Chosen by hand.
-const OVERDISPERSED: Real = 1.5;
+/// 63 pairs of neighbours, it is a distance of more than four standard errors. Chosen by hand.
+const OVERDISPERSED: Real = 1.8;
 
 /// The number of lags at which the differences of neighbouring samples may be correlated.
 const LAGS: u32 = 64;
@@ -127,13 +126,17 @@ pub(super) fn find(
     if blocks.len() < NEIGHBOURS {
         return;
     }
+    // Bursts are left out, because they would look like the scatter of all blocks.
+    bursts(&mut blocks, real(MARKED));
     let widened = overdispersion(&blocks);
     for block in &mut blocks {
         block.freedom /= widened * widened;
     }
     let mut strongest = bursts(&mut blocks, real(BURST));
     let mut found = changes(&blocks, largest);
-    if homogeneity(&blocks, &found) < real(HOMOGENEOUS) {
+    let has_bursts = blocks.iter().any(|block| block.is_burst);
+    if has_bursts || homogeneity(&blocks, &found) < real(HOMOGENEOUS) {
+        // Where there are bursts, weaker ones are likely. They would pass for changes of the noise.
         strongest = bursts(&mut blocks, real(MARKED));
         found = changes(&blocks, largest);
     }
@@ -180,11 +183,10 @@ fn homogeneity(blocks: &[Noise], changes: &[usize]) -> Real {
 /// if it may be chance. Counts of few levels, telegraph noise and other noise that is not Gaussian have a larger one.
 fn overdispersion(blocks: &[Noise]) -> Real {
     let pairs = blocks.windows(2).filter_map(|pair| match pair {
-        [a, b] => Some(standardised_ratio(
-            b.square / a.square,
-            b.freedom,
-            a.freedom,
-        )),
+        [a, b] if !a.is_burst && !b.is_burst => {
+            let ratio = b.square / a.square;
+            Some(standardised_ratio(ratio, b.freedom, a.freedom))
+        }
         _ => None,
     });
     let sizes = pairs.map(|z| if z < 0.0 { -z } else { z });

@@ -179,7 +179,7 @@ impl Contrasts {
             data: Vector::ZEROS,
             basis: Vec::new(),
         };
-        let count = levels.len() - 1;
+        let count = levels.len().saturating_sub(1);
         let extra = |level: &Level| white * (1.0 / level.samples - 1.0 / length);
         for (i, pair) in numbered(levels.windows(2)) {
             let [a, b] = pair else { continue };
@@ -288,7 +288,8 @@ impl Contrasts {
     /// The standardised size of a form, reduced where what remains of the data scatters more than the model says.
     fn standardised(&self, tried: Tried) -> Real {
         let rest = self.data.norm_squared() - tried.z * tried.z;
-        let freedom = self.count().saturating_sub(self.basis.len()).max(2) - 1;
+        let left = self.count().saturating_sub(self.basis.len());
+        let freedom = left.saturating_sub(1).max(1);
         let ratio = rest / real(freedom as u32);
         if ratio > 1.0 {
             tried.z / math::sqrt(ratio)
@@ -380,7 +381,7 @@ impl Contrasts {
         if tried.is_empty() {
             return found;
         }
-        let number = PER_SHIFT * tried.len();
+        let number = tried.len().saturating_mul(PER_SHIFT).min(COLUMNS);
         let column = |p: usize| {
             let form = tried.get(p / PER_SHIFT).map(|tried| tried.form);
             form.map_or(Vector::ZEROS, |form| {
@@ -424,7 +425,7 @@ impl Contrasts {
             }
         }
         found.shifts = list::fill(numbered(tried.iter()).map(|(i, tried)| {
-            let p = PER_SHIFT * i;
+            let p = i.saturating_mul(PER_SHIFT);
             Shift {
                 form: tried.form,
                 size: found.coefficients[p],

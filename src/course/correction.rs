@@ -139,7 +139,9 @@ impl Sums {
             places: 0,
         };
         let (mut present, mut mean) = (0_u32, 0.0);
-        for (block, (count, total)) in (0_u32..).zip(sums.present.iter_mut().zip(&mut sums.means)) {
+        for (block, (count, total)) in
+            (0..u32::MAX).zip(sums.present.iter_mut().zip(&mut sums.means))
+        {
             (*count, *total) = (present, mean);
             let mut usable = levels
                 .iter()
@@ -155,7 +157,7 @@ impl Sums {
                 break;
             };
             let mut total = 0.0;
-            for (block, sum) in (0_u32..).zip(column.iter_mut()) {
+            for (block, sum) in (0..u32::MAX).zip(column.iter_mut()) {
                 *sum = total;
                 total += shift.form.column(p % 2 == 1, block);
             }

@@ -19,8 +19,12 @@ pub(super) struct Starts {
 impl Starts {
     pub(super) const fn new(m: u32, n: u64) -> Self {
         let distance = if m < 4 { 1 } else { m / 4 };
-        let number = match n.checked_sub(2 * m as u64) {
-            Some(room) => (room / distance as u64).saturating_add(1),
+        let room = n.checked_sub(2 * m as u64);
+        let number = match room {
+            Some(room) => match room.checked_div(distance as u64) {
+                Some(last) => last.saturating_add(1),
+                None => 0,
+            },
             None => 0,
         };
         Self {

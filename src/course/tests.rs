@@ -180,3 +180,61 @@ fn a_new_course_is_empty_and_takes_the_memory_that_is_documented() {
     assert_eq!(size_of::<Course>(), 2096);
     assert_eq!(size_of::<Course<1>>(), 2096 + 520);
 }
+
+/// A record of white noise of 100 counts, with whatever `change` makes of a count.
+fn told(change: impl Fn(u32, f64) -> f64) -> List<Event> {
+    let mut random = Random::new(73);
+    let mut course = Course::<0>::new();
+    for n in 0..1 << 14 {
+        // The sum of twelve uniform numbers between −1 and 1 has the variance 4.
+        let noise: f64 = (0..12).map(|_| random.signed()).sum::<f64>() * 50.0;
+        course.push(libm::round(change(n, noise)) as i32, []);
+    }
+    let scale = Scale::new(0.01, 100.0).expect("positive");
+    // The rate has a standard deviation of 1, N² = 1/100, and a little flicker noise and random walk.
+    let squares = [0.0, 0.01, 1e-6, 1e-8, 0.0];
+    let events = events(&course, scale, &crate::Model::ieee_952(), &squares);
+    events.iter().copied().collect()
+}
+
+#[test]
+fn events_in_white_noise_are_told_in_either_precision() {
+    assert_eq!(told(|_, noise| noise), []);
+    let contains = |event: &Event, size: Real| event.lower < size && size < event.upper;
+    let one = |events: List<Event>| {
+        assert_eq!(events.len(), 1, "{events:?}");
+        events[0]
+    };
+    // Blocks are 2.56 s long. An offset of a million counts is no event.
+    let step = one(told(|n, noise| {
+        noise + 1e6 + if n >= 9000 { 30.0 } else { 0.0 }
+    }));
+    assert_eq!(step.what, What::Step);
+    assert!(
+        (step.at_s - 90.0).abs() < 2.56 && contains(&step, 0.3),
+        "{step:?}"
+    );
+    let warm_up = one(told(|n, noise| {
+        noise + 60.0 * libm::exp(-f64::from(n) / 2000.0)
+    }));
+    let What::WarmUp { time_constant_s } = warm_up.what else {
+        panic!("{warm_up:?}")
+    };
+    assert!(
+        (12.0..32.0).contains(&time_constant_s) && contains(&warm_up, 0.6),
+        "{warm_up:?}"
+    );
+    let change = one(told(|n, noise| noise * if n < 4096 { 1.0 } else { 0.8 }));
+    assert_eq!(change.what, What::NoiseChange);
+    assert!(
+        (change.at_s - 40.96).abs() < 2.57 && contains(&change, 0.8),
+        "{change:?}"
+    );
+    let bursts = one(told(|n, noise| {
+        noise * if n % 5000 < 30 { 5.0 } else { 1.0 }
+    }));
+    assert!(
+        matches!(bursts.what, What::Bursts { blocks: 3..=5 }),
+        "{bursts:?}"
+    );
+}

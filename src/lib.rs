@@ -60,6 +60,7 @@
 //! | [`spectrum`] | keeps power spectral densities beside the curve, and says what each effect adds to them |
 //! | [`integrity`] | judges whether the record is one of a gyro at rest |
 //! | [`kurtosis`], [`covariate`] | keep evidence beside the curve: jumps of the rate, and what follows a temperature |
+//! | [`course`] | says when the noise changed, a burst or a step came, and whether the gyro warmed up |
 //! | [`curve`] | holds τ, averaging factor, variance and number of differences of each octave |
 //! | [`effect`], [`model`] | say what a curve is made of: one file an effect, and lists of effects |
 //! | [`fit`] | estimates the coefficients, with intervals and a goodness of fit |
@@ -214,6 +215,7 @@ mod chi_squared;
 mod cholesky;
 mod coefficient;
 pub mod comparison;
+pub mod course;
 mod covariance;
 pub mod covariate;
 pub mod curve;

@@ -4,6 +4,7 @@
 pub mod clean;
 pub mod coefficients;
 pub mod confusion;
+pub mod course;
 pub mod detection;
 pub mod hidden_effect;
 pub mod lines;

@@ -3,6 +3,7 @@
 mod clean;
 mod coefficients;
 mod confusion;
+mod course;
 mod detection;
 mod hidden_effect;
 mod lines;
@@ -109,6 +110,18 @@ enum Study {
         #[arg(long, default_value_t = 1000)]
         records: u64,
     },
+    /// Count how often the course of a record tells of a change of noise, of bursts, a step and a warm-up, when there is one and when there is none
+    Course {
+        /// Number of records per preset
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+        /// Study only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
+        /// Study only records without events
+        #[arg(long)]
+        clean: bool,
+    },
     /// Count how often the self-test errs, and compare its length with a test of fixed length
     SelfTest {
         /// Number of devices per case
@@ -159,6 +172,11 @@ fn main() -> Result<()> {
             walk,
         } => clean::print(records, preset, walk),
         Study::Thermal { records } => thermal::print(records),
+        Study::Course {
+            records,
+            preset,
+            clean,
+        } => course::print(records, preset, clean),
         Study::SelfTest { devices } => self_test::print(devices),
         Study::Precision { records } => precision::print(records)?,
         Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),

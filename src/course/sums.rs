@@ -1,0 +1,125 @@
+//! The exact sums of one block of a course.
+
+use crate::real::{Real, real};
+
+/// The exact sums of one block. A block spans at most 2^31 samples of time.
+///
+/// The sum of counts is at most 2^62. A squared difference of two counts is below 2^64, so that the sum of
+/// squares is below 2^95. Nothing can overflow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Sums<const COVARIATES: usize> {
+    counts: i64,
+    /// The lower 64 bits of the sum of squared differences of neighbouring counts.
+    squares: u64,
+    /// The upper bits of that sum.
+    squares_high: u32,
+    /// Samples of time that are missing.
+    missing: u32,
+    /// Samples that have no difference, because a gap lies before them.
+    starts: u32,
+    covariates: [i64; COVARIATES],
+}
+
+impl<const COVARIATES: usize> Sums<COVARIATES> {
+    pub(super) const ZERO: Self = Self {
+        counts: 0,
+        squares: 0,
+        squares_high: 0,
+        missing: 0,
+        starts: 0,
+        covariates: [0; COVARIATES],
+    };
+
+    /// Adds a count and the covariates' counts.
+    #[inline(always)]
+    pub(super) fn add(&mut self, count: i32, covariates: &[i32; COVARIATES]) {
+        self.counts = self.counts.wrapping_add(i64::from(count));
+        for (sum, &covariate) in self.covariates.iter_mut().zip(covariates) {
+            *sum = sum.wrapping_add(i64::from(covariate));
+        }
+    }
+
+    /// Adds the squared difference of two neighbouring counts.
+    #[inline(always)]
+    pub(super) fn add_difference(&mut self, count: i32, before: i32) {
+        let (difference, is_wide) = count.overflowing_sub(before);
+        let square = if is_wide {
+            wide_square(count, before)
+        } else {
+            i64::from(difference).wrapping_mul(i64::from(difference)) as u64
+        };
+        let (squares, carry) = self.squares.overflowing_add(square);
+        self.squares = squares;
+        self.squares_high = self.squares_high.wrapping_add(u32::from(carry));
+    }
+
+    /// Counts a sample that has no difference.
+    #[inline(always)]
+    pub(super) fn add_start(&mut self) {
+        self.starts = self.starts.wrapping_add(1);
+    }
+
+    /// Counts samples of time that are missing.
+    pub(super) fn add_missing(&mut self, samples: u32) {
+        self.missing = self.missing.saturating_add(samples);
+    }
+
+    /// The sums of two blocks together.
+    pub(super) fn merged(&self, other: &Self) -> Self {
+        let (squares, carry) = self.squares.overflowing_add(other.squares);
+        let mut merged = Self {
+            counts: self.counts.wrapping_add(other.counts),
+            squares,
+            squares_high: self
+                .squares_high
+                .wrapping_add(other.squares_high)
+                .wrapping_add(u32::from(carry)),
+            missing: self.missing.saturating_add(other.missing),
+            starts: self.starts.saturating_add(other.starts),
+            covariates: self.covariates,
+        };
+        for (sum, other) in merged.covariates.iter_mut().zip(&other.covariates) {
+            *sum = sum.wrapping_add(*other);
+        }
+        merged
+    }
+
+    /// The number of samples in a block that spans `time` samples of time.
+    pub(super) const fn samples(&self, time: u32) -> u32 {
+        time.saturating_sub(self.missing)
+    }
+
+    /// The number of differences in a block that spans `time` samples of time.
+    pub(super) const fn differences(&self, time: u32) -> u32 {
+        self.samples(time).saturating_sub(self.starts)
+    }
+
+    /// The sum of counts.
+    pub(super) const fn counts(&self) -> i64 {
+        self.counts
+    }
+
+    /// The sum of squared differences.
+    pub(super) const fn squares(&self) -> u128 {
+        (self.squares_high as u128) << 64 | self.squares as u128
+    }
+
+    /// The sum of squared differences, rounded.
+    pub(super) fn squares_real(&self) -> Real {
+        const LIMB: Real = 18_446_744_073_709_551_616.0; // 2^64
+        real(self.squares_high) * LIMB + self.squares as Real
+    }
+
+    /// The sums of the covariates' counts.
+    pub(super) const fn covariates(&self) -> &[i64; COVARIATES] {
+        &self.covariates
+    }
+}
+
+/// The square of a difference of 32 bits and a sign, which is below 2^64.
+#[cold]
+#[inline(never)]
+fn wide_square(count: i32, before: i32) -> u64 {
+    let size = u64::from(count.abs_diff(before));
+    size.wrapping_mul(size)
+}

@@ -90,7 +90,7 @@ mod worker;
 
 use crate::unit::{Sensor, Unit};
 use allanite::{
-    Accumulator, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis,
+    Accumulator, course::Course, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis,
     spectrum::SpectrumAccumulator,
 };
 pub use covariate::CovariateChoice;
@@ -203,4 +203,6 @@ pub struct Evidence {
     pub covariates: Vec<(String, CrossCurve<OCTAVES>)>,
     /// The reason why the curve is not valid, if there is one.
     pub invalid: Option<Reason>,
+    /// The course of the axis over time.
+    pub course: Option<Course>,
 }

@@ -110,9 +110,13 @@ pub(super) fn read_table(
             rest.push(behind);
         }
         check_axis(path, &axis)?;
-        if let worker::Sums::Watched(watched, _) = &sums {
+        if let worker::Sums::Watched(watched, beside) = &sums {
             let named = covariates.iter().zip(&measured.covariates);
-            axis.evidence = Some(evidence(path, &axis, &**watched, named, rate_hz)?);
+            let evidence = evidence(path, &axis, &**watched, named, rate_hz)?;
+            axis.evidence = Some(Evidence {
+                course: Some(beside.course.clone()),
+                ..evidence
+            });
         }
         if quantum.is_whole() && !scaling.scale_is_told {
             notes.push(format!(
@@ -210,6 +214,7 @@ fn evidence<'a>(
         kurtosis: told.kurtosis,
         covariates: names.into_iter().zip(told.covariates).collect(),
         invalid: told.invalid,
+        course: None,
     })
 }
 

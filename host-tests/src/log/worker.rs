@@ -5,7 +5,7 @@ use super::{
     covariate::Derived,
     watched::{self, WatchedAxis},
 };
-use allanite::Accumulator;
+use allanite::{Accumulator, course::Course};
 use std::{
     collections::VecDeque,
     mem::replace,
@@ -21,8 +21,8 @@ const BATCH: usize = 1 << 13;
 pub(super) enum Sums {
     /// The sums of the first rows, and those of the remaining rows.
     InTwo { first: Box<Part>, rest: Box<Part> },
-    /// The axis with everything that is kept beside its curve, and its spectrum.
-    Watched(Box<dyn WatchedAxis>, Box<SpectrumSums>),
+    /// The axis with everything that is kept beside its curve.
+    Watched(Box<dyn WatchedAxis>, Box<Beside>),
 }
 
 /// The curve and the spectrum of some rows.
@@ -30,6 +30,13 @@ pub(super) enum Sums {
 pub(super) struct Part {
     pub(super) accumulator: Accumulator<OCTAVES>,
     pub(super) spectrum: SpectrumSums,
+}
+
+/// What is kept beside an axis of the library.
+#[derive(Clone)]
+pub(super) struct Beside {
+    pub(super) spectrum: SpectrumSums,
+    pub(super) course: Course,
 }
 
 impl Part {
@@ -64,7 +71,7 @@ impl Sums {
     pub(super) fn spectrum(&self) -> &SpectrumSums {
         match self {
             Self::InTwo { first, .. } => &first.spectrum,
-            Self::Watched(_, spectrum) => spectrum,
+            Self::Watched(_, beside) => &beside.spectrum,
         }
     }
 }
@@ -92,8 +99,11 @@ impl Plan {
     fn sums(&self) -> Sums {
         match &self.watch {
             Some(covariates) => {
-                let spectrum = Box::new(SpectrumSums::new());
-                Sums::Watched(watched::axis(covariates.len()), spectrum)
+                let beside = Box::new(Beside {
+                    spectrum: SpectrumSums::new(),
+                    course: Course::new(),
+                });
+                Sums::Watched(watched::axis(covariates.len()), beside)
             }
             None => Sums::InTwo {
                 first: Part::new(),
@@ -251,9 +261,10 @@ impl Worker {
                         first.gap();
                     }
                 }
-                Sums::Watched(axis, spectrum) => {
+                Sums::Watched(axis, beside) => {
                     axis.gap();
-                    spectrum.gap();
+                    beside.spectrum.gap();
+                    beside.course.gap();
                 }
             }
         }
@@ -268,9 +279,12 @@ impl Worker {
                 first.push(of_start);
                 rest.push(of_rest);
             }
-            Sums::Watched(axis, spectrum) => {
+            Sums::Watched(axis, beside) => {
                 axis.push(counts, covariates);
-                spectrum.push_slice(counts);
+                beside.spectrum.push_slice(counts);
+                for &count in counts {
+                    beside.course.push(count, []);
+                }
             }
         }
     }

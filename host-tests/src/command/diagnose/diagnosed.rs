@@ -10,19 +10,25 @@ use crate::{
     log::{BINS, CovariateChoice, Evidence, OCTAVES},
 };
 use allanite::{
-    Curve, Error, Model, Observed, Term, covariate,
+    Curve, Error, Model, Observed, Scale, Term,
+    course::{Course, Event, analyse},
+    covariate,
     covariate::CrossCurve,
     detection::{Detection, Limit, Ranges},
     diagnosis::{
         Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
     },
     effect::CATALOGUE,
+    fit,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// What a p-value is worth after an effect was chosen.
 const SELECTED: &str = "the last p-value takes the added effects for known: they were the best of many, so it is too high";
+
+/// What events mean for the coefficients.
+const NOT_STATIONARY: &str = "the record is not stationary: its coefficients are those of a mixture, so leave out the disturbed part or record again";
 
 /// The input of a diagnosis and its settings.
 #[derive(Debug, Args)]
@@ -78,6 +84,9 @@ pub(crate) struct Diagnosed {
     pub(crate) verdict: Verdict,
     /// The sizes of effects that the record would have shown. Empty unless the last model is adequate.
     pub(crate) limits: Vec<Limit>,
+    /// What happened during the record. Empty for a curve file, which has no course, and for a record that is not
+    /// valid.
+    pub(crate) events: Vec<Event>,
     /// The options of the search for effects.
     pub(crate) options: Options,
     /// Names of the covariates.
@@ -93,6 +102,7 @@ impl Diagnosed {
             max_effects: max_effects.unwrap_or(default.max_effects),
             ..default
         };
+        let course = evidence.course;
         let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
         let evidence = allanite::diagnosis::Evidence {
             kurtosis: Some(&evidence.kurtosis),
@@ -111,12 +121,28 @@ impl Diagnosed {
             steps,
             verdict,
             limits: Vec::new(),
+            events: Vec::new(),
             options,
             covariates,
             cross,
         };
         diagnosed.limits = diagnosed.detection_limits()?;
+        if let Some(course) = course {
+            diagnosed.events = diagnosed.events_in(&course)?;
+        }
         Ok(diagnosed)
+    }
+
+    /// What happened during the record, beside the noise of the last model.
+    fn events_in(&self, course: &Course) -> Result<Vec<Event>, Error> {
+        let valid = !matches!(self.verdict, Verdict::Invalid(_) | Verdict::TooShort);
+        let Some(last) = self.steps.last().filter(|_| valid) else {
+            return Ok(Vec::new());
+        };
+        let scale = Scale::new(self.axis.rate_per_count, self.axis.rate_hz)?;
+        let curve = self.curve_of(last)?;
+        let analysis = analyse(&curve, &last.model, course, scale, fit::Options::default())?;
+        Ok(analysis.events.iter().copied().collect())
     }
 
     /// The sizes of effects that the record would have shown.
@@ -251,6 +277,14 @@ impl Diagnosed {
             notes.push(reason.to_string());
         } else {
             notes.extend(rounding::note(&self.axis, &last.fit));
+        }
+        notes.extend(
+            self.events
+                .iter()
+                .map(|event| words::event(event, self.axis.unit)),
+        );
+        if !self.events.is_empty() {
+            notes.push(NOT_STATIONARY.into());
         }
         for (added, others) in self.ambiguous() {
             notes.push(format!(

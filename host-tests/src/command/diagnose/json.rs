@@ -11,6 +11,7 @@ use crate::{
 };
 use allanite::{
     comparison::ComparedBin,
+    course::{Event as Told, What},
     detection::Range,
     diagnosis::{Candidate as Tried, Step as Taken},
 };
@@ -30,6 +31,8 @@ struct Axis<'a> {
     /// The spectrum beside the last model.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     spectrum: Vec<Bin>,
+    /// What happened during the record.
+    events: Vec<Event>,
     verdict: &'static str,
     missing: Vec<&'static str>,
     ambiguous: Vec<&'static str>,
@@ -62,6 +65,20 @@ struct Step {
     worst: Option<Worst>,
     candidates: Vec<Candidate>,
     added: Option<&'static str>,
+}
+
+/// Something that happened during the record.
+#[derive(Serialize)]
+struct Event {
+    what: &'static str,
+    at_s: f64,
+    /// A ratio of standard deviations for noise and bursts, in rate units for a step and a warm-up.
+    size: f64,
+    lower: f64,
+    upper: f64,
+    z: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_constant_s: Option<f64>,
 }
 
 /// A bin of the spectrum.
@@ -120,6 +137,7 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             let bins = last.comparison.bins.iter();
             bins.map(bin).collect()
         }),
+        events: diagnosed.events.iter().map(event).collect(),
         verdict: diagnosed.verdict.name(),
         missing: diagnosed.missing().collect(),
         ambiguous: names,
@@ -161,6 +179,25 @@ fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step 
         worst: model_json::worst(&step.comparison),
         candidates: step.candidates.iter().map(candidate).collect(),
         added: step.added.as_ref().map(added_name),
+    }
+}
+
+fn event(event: &Told) -> Event {
+    let (what, time_constant_s) = match event.what {
+        What::NoiseChange => ("noise_change", None),
+        What::Bursts { .. } => ("burst", None),
+        What::Step => ("step", None),
+        What::WarmUp { time_constant_s } => ("warm_up", Some(time_constant_s)),
+        _ => ("other", None),
+    };
+    Event {
+        what,
+        at_s: event.at_s,
+        size: event.size,
+        lower: event.lower,
+        upper: event.upper,
+        z: event.z,
+        time_constant_s,
     }
 }
 

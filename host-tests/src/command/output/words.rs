@@ -10,6 +10,7 @@ use crate::{
 };
 use allanite::{
     Coefficient, Term,
+    course::{Event, What},
     detection::Range,
     diagnosis::Step,
     effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
@@ -292,5 +293,31 @@ mod tests {
             alternatives(names),
             "a low pass or a sinusoid or random telegraph noise or rate random walk"
         );
+    }
+}
+
+/// What happened during a record, in a sentence: `the noise rose 1.50-fold at 11 min 20 s (40 σ)`.
+pub(crate) fn event(event: &Event, unit: Unit) -> String {
+    let z = format!("{:.0} σ", event.z.abs());
+    let at = duration(event.at_s);
+    let size = number(event.size.abs());
+    match event.what {
+        What::NoiseChange if event.size > 1.0 => {
+            format!("the noise rose {:.2}-fold at {at} ({z})", event.size)
+        }
+        What::NoiseChange => format!(
+            "the noise fell to {:.2} of what it was at {at} ({z})",
+            event.size
+        ),
+        What::Bursts { blocks } => format!(
+            "bursts of noise in {blocks} of 64 parts of the record, the strongest at {at}, {:.1} times as large ({z})",
+            event.size
+        ),
+        What::Step => format!("the rate stepped by {size} {unit} at {at} ({z})"),
+        What::WarmUp { time_constant_s } => format!(
+            "the gyro warmed up: the rate began {size} {unit} off, time constant {} ({z})",
+            duration(time_constant_s)
+        ),
+        _ => format!("something happened at {at} ({z})"),
     }
 }

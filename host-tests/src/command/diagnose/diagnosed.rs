@@ -11,7 +11,7 @@ use crate::{
 };
 use allanite::{
     Curve, Error, Model, Observed, Scale, Term,
-    course::{Course, Event, analyse},
+    course::{Course, Event, What, analyse},
     covariate,
     covariate::CrossCurve,
     detection::{Detection, Limit, Ranges},
@@ -26,6 +26,9 @@ use std::path::{Path, PathBuf};
 
 /// What a p-value is worth after an effect was chosen.
 const SELECTED: &str = "the last p-value takes the added effects for known: they were the best of many, so it is too high";
+
+/// A change of the noise by less than this share of it changes the coefficients by no more. Chosen by hand.
+const SLIGHT: f64 = 0.05;
 
 /// What events mean for the coefficients.
 const NOT_STATIONARY: &str = "the record is not stationary: its coefficients are those of a mixture, so leave out the disturbed part or record again";
@@ -283,7 +286,10 @@ impl Diagnosed {
                 .iter()
                 .map(|event| words::event(event, self.axis.unit)),
         );
-        if !self.events.is_empty() {
+        let is_slight = |event: &Event| {
+            matches!(event.what, What::NoiseChange) && (event.size - 1.0).abs() < SLIGHT
+        };
+        if !self.events.iter().all(is_slight) {
             notes.push(NOT_STATIONARY.into());
         }
         for (added, others) in self.ambiguous() {

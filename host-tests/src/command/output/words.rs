@@ -277,25 +277,6 @@ pub(crate) fn record(samples: u64, rate_hz: f64, octaves: usize) -> String {
     format!("{samples} samples at {rate_hz} Hz ({length}), {octaves} octaves")
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn effects_in_a_sentence_have_their_article_or_are_called_a_noise() {
-        let names = [
-            "low_pass",
-            "sinusoid",
-            "random_telegraph",
-            "rate_random_walk",
-        ];
-        assert_eq!(
-            alternatives(names),
-            "a low pass or a sinusoid or random telegraph noise or rate random walk"
-        );
-    }
-}
-
 /// What happened during a record, in a sentence: `the noise rose 1.50-fold at 11 min 20 s (40 σ)`.
 pub(crate) fn event(event: &Event, unit: Unit) -> String {
     let z = format!("{:.0} σ", event.z.abs());
@@ -315,9 +296,28 @@ pub(crate) fn event(event: &Event, unit: Unit) -> String {
         ),
         What::Step => format!("the rate stepped by {size} {unit} at {at} ({z})"),
         What::WarmUp { time_constant_s } => format!(
-            "the gyro warmed up: the rate began {size} {unit} off, time constant {} ({z})",
-            duration(time_constant_s)
+            "the gyro warmed up: the rate began {size} {unit} off, time constant {} s ({z})",
+            two_digits(time_constant_s)
         ),
         _ => format!("something happened at {at} ({z})"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_in_a_sentence_have_their_article_or_are_called_a_noise() {
+        let names = [
+            "low_pass",
+            "sinusoid",
+            "random_telegraph",
+            "rate_random_walk",
+        ];
+        assert_eq!(
+            alternatives(names),
+            "a low pass or a sinusoid or random telegraph noise or rate random walk"
+        );
     }
 }

@@ -94,9 +94,9 @@
 //! |---|---|
 //! | a sample into an accumulator, any number of octaves | 140 instructions |
 //! | RAM of an accumulator of 24 octaves | 2400 bytes |
-//! | flash of accumulator, curve and fit | 34 800 bytes |
-//! | flash with the diagnosis and the whole catalogue | 63 600 bytes |
-//! | a fit of 20 octaves | 7.6 million instructions |
+//! | flash of accumulator, curve and fit | 36 000 bytes |
+//! | flash with the diagnosis and the whole catalogue | 68 500 bytes |
+//! | a fit of 20 octaves | 7.7 million instructions |
 //!
 //! A sample always takes a bounded number of instructions, whatever the input and however long the record. The
 //! library does not allocate and has no `unsafe` code, and no input makes it panic. [`Axes`] names its own cost,
@@ -115,7 +115,7 @@
 //!
 //! The library computes in single precision unless the program asks for `double`. Single precision needs two
 //! thirds of the flash. On a core that computes it in hardware, a fit takes a third of the time and a diagnosis a
-//! quarter. The results agree to a thousandth of their standard errors. Of 4000 simulated gyros, 1000 with each of
+//! fifth. The results agree to a thousandth of their standard errors. Of 4000 simulated gyros, 1000 with each of
 //! three hidden effects and 1000 with none, 3999 get the same diagnosis as in double precision. The other one
 //! gets the second of two effects that are called ambiguous (`cargo xtask study precision`).
 //!

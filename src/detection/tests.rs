@@ -73,8 +73,8 @@ fn at_limit(limit: &Limit, factor: Real) -> (Real, Real) {
     (fit.chi_squared, fit.p_value)
 }
 
-/// The expected χ² at the limit is its noncentrality: some 30, of which the 1 % quantile of 11 degrees of freedom
-/// leaves 5 % below it.
+/// The χ² of the expected curve is the noncentrality: some 32 at the limit. Half of the coefficient would have a
+/// sixteenth of it if the weights stayed the same, but the smaller effect scatters less.
 #[test]
 fn an_effect_at_its_limit_makes_the_expected_curve_inadequate() {
     let mut detection = detection(&curve(&MEMS, &[]));
@@ -96,9 +96,9 @@ fn an_effect_at_its_limit_makes_the_expected_curve_inadequate() {
             "{name}: χ² {chi_squared}"
         );
         assert!(p < 0.01, "{name}: p {p}");
-        let (smaller, _) = at_limit(&limit, 0.7);
+        let (smaller, _) = at_limit(&limit, 0.5);
         assert!(
-            smaller < 0.45 * chi_squared,
+            smaller < 0.5 * chi_squared,
             "{name}: χ² {smaller} below the limit"
         );
     }

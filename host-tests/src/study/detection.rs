@@ -133,7 +133,7 @@ fn drawn_limit(
         interval_s: curve.interval_s(),
         longest_tau_s: curve.points().last()?.tau_s,
     };
-    (0..100).find_map(|_| {
+    (0..20).find_map(|_| {
         let mut term = Term::new(effect);
         term.fitted = true;
         for (j, parameter) in effect.parameters().iter().enumerate() {

@@ -203,6 +203,6 @@ fn promised(way: Way) {
         most(precision, "stack_bytes_fit_20", 12);
         most(precision, "stack_bytes_diagnosis_20", 25);
     }
-    most(Precision::Single, "flash_bytes_with_fit", 34);
-    most(Precision::Single, "flash_bytes_with_diagnosis", 63);
+    most(Precision::Single, "flash_bytes_with_fit", 36);
+    most(Precision::Single, "flash_bytes_with_diagnosis", 67);
 }

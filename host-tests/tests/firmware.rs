@@ -61,11 +61,13 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
         let saved = CurveFile::read(&curve).expect("a curve");
         let samples = saved.axes[0].samples;
         let mut accumulator = Accumulator::new();
+        let mut spectrum = SpectrumSums::new();
         for count in SimulatedGyro::new(AMPLITUDES, SEED).take(samples as usize) {
             accumulator.push(count);
+            spectrum.push_slice(&[count]);
         }
         let axis = Axis {
-            spectrum: SpectrumSums::new(),
+            spectrum,
             name: "image".to_owned(),
             rate_per_count: 1.0,
             accumulator,

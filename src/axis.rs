@@ -8,11 +8,13 @@ mod moments;
 mod sample;
 #[cfg(feature = "storage")]
 pub mod snapshot;
+mod spectra;
 
 pub use evidence::AxisEvidence;
 pub use gate::{GatePart, Gated};
 pub use moments::{MomentPart, Moments};
 pub use sample::Sample;
+pub use spectra::{Spectral, SpectrumPart};
 
 use crate::{
     integrity::{Integrity, InvalidLimit, Limits},
@@ -22,15 +24,15 @@ use gate::{Passed, Passing};
 use kept::Kept;
 
 /// One axis: [`Axes`] for a gyro of which a single axis is recorded.
-pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = Moments> =
-    Axes<OCTAVES, COVARIATES, G, M, 1>;
+pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = Moments, S = ()> =
+    Axes<OCTAVES, COVARIATES, G, M, 1, S>;
 
 /// Everything that is kept of a record, for three axes or for as many as `AXES` says.
 ///
 /// Every sample takes this path, in integers only:
 ///
 /// ```text
-/// counts + covariates ─► gate ─► integrity, accumulator, fourth moments, products with covariates
+/// counts + covariates ─► gate ─► integrity, accumulator, fourth moments, products with covariates, spectrum
 /// ```
 ///
 /// The gate sees every sample. It passes on those of a gyro at rest, and replaces the others by a gap.
@@ -43,11 +45,11 @@ pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = 
 /// | parameter | stands for | default |
 /// |---|---|---|
 /// | `OCTAVES` | octaves of averaging time, 2 to 30 | – |
-///
 /// | `COVARIATES` | covariates sampled with every count, such as a temperature or a supply voltage | 0 |
 /// | `G` | [`Gated`], or `()` to keep every sample | [`Gated`] |
 /// | `M` | [`Moments`], or `()`: then telegraph and Gauss–Markov noise cannot be told apart | [`Moments`] |
 /// | `AXES` | axes that share the gate's decision and the covariates; see [`Axis`] for one | 3 |
+/// | `S` | [`Spectral`], or `()`: then the diagnosis sees octaves alone | `()` |
 ///
 /// A part that is left out takes no memory, no flash and no time. If only the curve is needed, an
 /// [`Accumulator`] is enough.
@@ -93,17 +95,19 @@ pub struct Axes<
     G: GatePart = Gated,
     M: MomentPart = Moments,
     const AXES: usize = 3,
+    S: SpectrumPart = (),
 > {
     gate: G::State<AXES, COVARIATES>,
-    kept: Kept<OCTAVES, COVARIATES, M, AXES>,
+    kept: Kept<OCTAVES, COVARIATES, M, AXES, S>,
     losses: u64,
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize>
-    Axes<OCTAVES, COVARIATES, G, M, AXES>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S>
+    Axes<OCTAVES, COVARIATES, G, M, AXES, S>
 where
     G: GatePart,
     M: MomentPart,
+    S: SpectrumPart,
 {
     /// An empty record that is judged by the [default limits](Limits::DEFAULT).
     pub const fn new() -> Self {
@@ -135,6 +139,16 @@ where
         }
     }
 
+    /// Does a part of the work of the spectra that waits, and tells whether there is more. A call transforms
+    /// at most one segment of one axis.
+    ///
+    /// Calling it is optional. If a main loop calls it while it has nothing else to do, [`push`](Self::push)
+    /// finds less to do. Otherwise `push` itself transforms a segment, at most one for a sample unless more
+    /// than four axes are recorded.
+    pub fn advance(&mut self) -> bool {
+        self.kept.advance()
+    }
+
     /// Marks a place where samples were lost or the gyro was disturbed. No difference spans this place.
     pub fn gap(&mut self) {
         self.losses = self.losses.saturating_add(1);
@@ -152,15 +166,16 @@ where
     }
 
     /// Keeps the samples that the gate still holds back, up to 128, as if they were known to be at
-    /// rest. Call it at the end of a record. It is not a gap.
+    /// rest, and does all the work that waits. Call it at the end of a record. It is not a gap.
     pub fn release(&mut self) {
         loop {
             let passed = self.gate.release();
             if passed == Passed::Nothing {
-                return;
+                break;
             }
             self.keep(passed);
         }
+        while self.advance() {}
     }
 
     fn keep(&mut self, passed: Passed<AXES, COVARIATES>) {
@@ -239,11 +254,12 @@ where
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize> Default
-    for Axes<OCTAVES, COVARIATES, G, M, AXES>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S> Default
+    for Axes<OCTAVES, COVARIATES, G, M, AXES, S>
 where
     G: GatePart,
     M: MomentPart,
+    S: SpectrumPart,
 {
     fn default() -> Self {
         Self::new()

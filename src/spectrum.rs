@@ -23,6 +23,8 @@ mod density;
 mod expected;
 mod level;
 mod line;
+#[cfg(feature = "storage")]
+mod stored;
 mod transform;
 mod window;
 

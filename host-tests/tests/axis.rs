@@ -6,7 +6,7 @@ mod seeded;
 
 use allanite::{
     Axes, Axis, Model, Scale,
-    axis::{GatePart, MomentPart},
+    axis::{GatePart, Gated, MomentPart, Moments, Spectral, SpectrumPart},
     fit::{Options, fit},
     integrity::{Integrity, Limits, Reason},
     self_test::{Limit, Plan, SelfTest, Status},
@@ -27,6 +27,12 @@ fn scale() -> Scale {
 }
 
 type Counts = ([i32; 3], [i32; 1]);
+
+/// Three levels of spectrum.
+type Bins = Spectral<64, 3, 84>;
+
+/// Three axes and a temperature with every part, and the gate as chosen.
+type Whole<G = Gated> = Axes<OCTAVES, 1, G, Moments, 3, Bins>;
 
 /// The counts of three axes at rest and of a temperature.
 fn rest() -> Vec<Counts> {
@@ -122,8 +128,8 @@ fn plan() -> Plan {
 }
 
 /// Takes a look at the first axis if one is due.
-fn look<G: GatePart, M: MomentPart>(
-    axes: &Axes<OCTAVES, 1, G, M>,
+fn look<G: GatePart, M: MomentPart, S: SpectrumPart>(
+    axes: &Axes<OCTAVES, 1, G, M, 3, S>,
     test: &mut SelfTest<OCTAVES>,
     looks: &mut Vec<(u64, Status)>,
 ) {
@@ -135,7 +141,7 @@ fn look<G: GatePart, M: MomentPart>(
 
 #[test]
 fn spikes_a_motion_and_a_power_loss_give_the_same_result_as_the_cleaned_record() {
-    type Gyro = Axes<OCTAVES, 1>;
+    type Gyro = Whole;
     let samples = disturbed();
     let new_test = || SelfTest::<OCTAVES>::new(plan(), scale()).unwrap();
     let (mut gyro, mut test, mut looks) = (Gyro::new(), new_test(), Vec::new());
@@ -168,7 +174,7 @@ fn spikes_a_motion_and_a_power_loss_give_the_same_result_as_the_cleaned_record()
     // interrupted.
     let mut places = cleaning.kept;
     places.extend(cleaning.held);
-    let mut clean = Axes::<OCTAVES, 1, ()>::new();
+    let mut clean = Whole::<()>::new();
     let (mut clean_test, mut clean_looks) = (new_test(), Vec::new());
     for place in places {
         match place {
@@ -188,16 +194,17 @@ fn spikes_a_motion_and_a_power_loss_give_the_same_result_as_the_cleaned_record()
         let one = one.unwrap();
         assert_eq!((one.invalid, one.kurtosis.is_some()), (None, true));
         assert_eq!(one.covariates.len(), 1);
+        assert_eq!(one.spectrum.bins().len(), 84);
         assert_eq!(one, other.unwrap());
     }
     assert!(looks.len() >= 5, "{looks:?}");
     assert_eq!(looks, clean_looks);
-    // The envelope's head and the parts take 8 + 5 bytes before the kept record. The losses, one byte,
+    // The envelope's head, the parts and the size of the spectrum take 8 + 5 + 2 bytes before the kept record. The losses, one byte,
     // and the checksum of four bytes follow it.
     let (mut buffer, mut clean_buffer) = ([0; 16_384], [0; 16_384]);
     let stored = gyro.snapshot(&[], &mut buffer).unwrap();
     let of_clean = clean.snapshot(&[], &mut clean_buffer).unwrap();
-    let kept = 13..of_clean.len() - 4 - 1;
+    let kept = 15..of_clean.len() - 4 - 1;
     assert!(kept.len() > 500);
     assert_eq!(stored[kept.clone()], of_clean[kept]);
     // The gate leaves out three spikes, the motion, and the clusters of 1024 samples in which the
@@ -406,7 +413,7 @@ proptest! {
 }
 
 fn merge_and_restore<G: GatePart>(stretches: &[Vec<Counts>]) -> Result<(), TestCaseError> {
-    type Gyro<G> = Axes<OCTAVES, 1, G>;
+    type Gyro<G> = Whole<G>;
     let mut batch = Gyro::<G>::new();
     let mut merged = Gyro::<G>::new();
     let mut restored = Gyro::<G>::new();

@@ -4,6 +4,7 @@ use super::{
     Axes,
     gate::{Gate, GatePart, Passing as _},
     moments::{MomentPart, MomentSums as _},
+    spectra::{SpectrumPart, SpectrumSums as _},
 };
 use crate::{
     covariate::CrossCurve,
@@ -13,18 +14,21 @@ use crate::{
     integrity::{Integrity, Reason, exceeds},
     kurtosis::Kurtosis,
     real::Real,
+    spectrum::Spectrum,
 };
 use heapless::Vec;
 
-/// The evidence that a record gives about one axis.
+/// The evidence that a record gives about one axis. `D` is the type of its spectrum.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct AxisEvidence<const OCTAVES: usize, const COVARIATES: usize = 0> {
+pub struct AxisEvidence<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spectrum<0>> {
     /// The number of samples that are kept.
     pub samples: u64,
     /// The Allan curve.
     pub curve: Curve<OCTAVES>,
+    /// The power spectral densities; without bins if no spectrum is kept.
+    pub spectrum: D,
     /// The kurtosis of the differences, which tells whether they are Gaussian; `None` if fourth moments
     /// are not kept.
     pub kurtosis: Option<Kurtosis<OCTAVES>>,
@@ -34,8 +38,8 @@ pub struct AxisEvidence<const OCTAVES: usize, const COVARIATES: usize = 0> {
     pub invalid: Option<Reason>,
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize> AxisEvidence<OCTAVES, COVARIATES> {
-    /// The evidence that a diagnosis takes in addition to the curve.
+impl<const OCTAVES: usize, const COVARIATES: usize, D> AxisEvidence<OCTAVES, COVARIATES, D> {
+    /// The evidence that a diagnosis takes in addition to the curve and the spectrum.
     pub fn evidence(&self) -> Evidence<'_, OCTAVES> {
         Evidence {
             kurtosis: self.kurtosis.as_ref(),
@@ -45,13 +49,15 @@ impl<const OCTAVES: usize, const COVARIATES: usize> AxisEvidence<OCTAVES, COVARI
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize>
-    Axes<OCTAVES, COVARIATES, G, M, AXES>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S>
+    Axes<OCTAVES, COVARIATES, G, M, AXES, S>
 where
     G: GatePart,
     M: MomentPart,
+    S: SpectrumPart,
 {
-    /// The evidence about an axis at this moment, without the samples that the gate holds back.
+    /// The evidence about an axis at this moment, without the samples that the gate holds back. The spectrum
+    /// also lacks up to `P` samples that wait for [`advance`](Self::advance).
     /// `per_count` gives, for each covariate, its unit per count.
     ///
     /// # Errors
@@ -62,7 +68,7 @@ where
         axis: usize,
         scale: Scale,
         per_count: [Real; COVARIATES],
-    ) -> Result<AxisEvidence<OCTAVES, COVARIATES>, Error> {
+    ) -> Result<AxisEvidence<OCTAVES, COVARIATES, S::Spectrum>, Error> {
         let sums = self.kept.axes.get(axis);
         let sums = sums.ok_or(Error::UnknownAxis { axis, axes: AXES })?;
         let mut covariates = Vec::new();
@@ -77,6 +83,7 @@ where
         Ok(AxisEvidence {
             samples: sums.accumulator.samples(),
             curve: sums.accumulator.curve(scale),
+            spectrum: sums.spectrum.spectrum(scale),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
             covariates,
             invalid: self.verdict(axis),

@@ -3,6 +3,7 @@
 use super::{
     moments::{MomentPart, MomentSums},
     sample::Sample,
+    spectra::{SpectrumPart, SpectrumSums, Waits},
 };
 use crate::{
     covariate::CrossSums,
@@ -13,22 +14,28 @@ use crate::{
 /// The sums of all axes and covariates. They all receive the same samples and gaps, so that all results
 /// describe the same record.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Kept<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize>
+pub(super) struct Kept<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S>
 where
     M: MomentPart,
+    S: SpectrumPart,
 {
-    pub(super) axes: [AxisSums<OCTAVES, COVARIATES, M>; AXES],
+    pub(super) axes: [AxisSums<OCTAVES, COVARIATES, M, S>; AXES],
     /// One accumulator for each covariate, shared by all axes.
     pub(super) covariates: [Accumulator<OCTAVES>; COVARIATES],
 }
 
 /// The sums of one axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M: MomentPart> {
+pub(super) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M, S>
+where
+    M: MomentPart,
+    S: SpectrumPart,
+{
     pub(super) accumulator: Accumulator<OCTAVES>,
     pub(super) integrity: Integrity,
     pub(super) moments: M::Sums<OCTAVES>,
     pub(super) cross: [CrossSums<OCTAVES>; COVARIATES],
+    pub(super) spectrum: S::Sums,
 }
 
 /// The differences of a covariate that one sample completes: those of octaves 0, 1 and 2, and at most one
@@ -72,15 +79,17 @@ where
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, M> AxisSums<OCTAVES, COVARIATES, M>
+impl<const OCTAVES: usize, const COVARIATES: usize, M, S> AxisSums<OCTAVES, COVARIATES, M, S>
 where
     M: MomentPart,
+    S: SpectrumPart,
 {
     const NEW: Self = Self {
         accumulator: Accumulator::new(),
         integrity: Integrity::new(),
         moments: M::Sums::NEW,
         cross: [const { CrossSums::NEW }; COVARIATES],
+        spectrum: S::Sums::NEW,
     };
 
     #[inline(always)]
@@ -90,8 +99,10 @@ where
             integrity,
             moments,
             cross,
+            spectrum,
         } = self;
         integrity.push(count);
+        spectrum.push(count);
         let mut beside = Beside {
             moments,
             cross,
@@ -116,10 +127,11 @@ where
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize>
-    Kept<OCTAVES, COVARIATES, M, AXES>
+impl<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S>
+    Kept<OCTAVES, COVARIATES, M, AXES, S>
 where
     M: MomentPart,
+    S: SpectrumPart,
 {
     pub(super) const NEW: Self = Self {
         axes: [const { AxisSums::NEW }; AXES],
@@ -144,6 +156,31 @@ where
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
             axis.push(count, &completed);
         }
+        self.make_room();
+    }
+
+    /// Transforms a segment of an axis of which half of the room for counts is taken. The axes take turns, so
+    /// that one sample has to wait for one transform only. A segment is due every half of the room. So each of
+    /// up to four axes gets its turn in time, even if segments of seven levels are due at once.
+    #[inline(always)]
+    fn make_room(&mut self) {
+        let mut is_done = false;
+        for axis in &mut self.axes {
+            let is_due = match axis.spectrum.waits() {
+                Waits::Little => false,
+                Waits::Half => !is_done,
+                Waits::Full => true,
+            };
+            if is_due {
+                axis.spectrum.advance();
+                is_done = true;
+            }
+        }
+    }
+
+    /// Does a part of the work of the spectra that waits, and tells whether there is more.
+    pub(super) fn advance(&mut self) -> bool {
+        self.axes.iter_mut().any(|axis| axis.spectrum.advance())
     }
 
     #[inline(never)]
@@ -152,6 +189,7 @@ where
             axis.add_pending(&self.covariates);
             axis.accumulator.gap();
             axis.integrity.gap();
+            axis.spectrum.gap();
         }
         self.covariates.iter_mut().for_each(Accumulator::gap);
     }
@@ -171,6 +209,7 @@ where
             own.accumulator.merge(&other.accumulator);
             own.integrity.merge(&other.integrity);
             own.moments.merge(&other.moments);
+            own.spectrum.merge(&other.spectrum);
             for (own, other) in own.cross.iter_mut().zip(&other.cross) {
                 own.merge(other);
             }

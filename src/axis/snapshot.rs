@@ -1,4 +1,4 @@
-//! Snapshots of everything that is kept of a record, including the self-tests: version 3 of the format.
+//! Snapshots of everything that is kept of a record, including the self-tests: version 4 of the format.
 //!
 //! This table describes the payload of the [`envelope`]. The payload is in
 //! postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits first,
@@ -8,17 +8,26 @@
 //! |---|---|
 //! | number of octaves, axes, covariates, self-tests | 4 × u8 |
 //! | parts: 1 for a gate, 2 for fourth moments, 3 for both | u8 |
+//! | spectrum: number of blocks of a segment, number of levels; zeros without one | u16, u8 |
 //! | samples; gaps, including one at the end of the snapshot | 2 × u64 |
 //! | for each octave `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
 //! | for each axis, then for each covariate: Σ D² of each octave in counts², lowest limb first | 3 × u64 |
 //! | for each axis: its integrity, as the structure `integrity::State` has it | |
-//! | for each axis, with fourth moments: Σ D⁴ of each octave, lowest limb first | 3 × u64 |
-//! | for each axis, each covariate, each octave: Σ D_g D_x as `low + 2^64 · upper` | i64, i128 |
+//! | and with fourth moments: Σ D⁴ of each octave, lowest limb first | 3 × u64 |
+//! | and for each covariate, each octave: Σ D_g D_x as `low + 2^64 · upper` | i64, i128 |
+//! | and with a spectrum: samples that found no room | u64 |
+//! | and for each level, shortest blocks first: number of segments | u32 |
+//! | and for each bin, if there are segments: Σ P and Σ P² over the segments | 2 × f32 |
 //! | losses | u64 |
 //! | with a gate: samples left out, then for each axis the integrity of all samples | u64, … |
 //! | for each self-test: plan, next look, limits kept, verdict | |
+//!
+//! Version 3, which has no spectrum, is read too.
 
-use super::{Axes, GatePart, MomentPart, gate::Passing, moments::MomentSums};
+use super::{
+    Axes, GatePart, MomentPart, SpectrumPart, gate::Passing, moments::MomentSums,
+    spectra::SpectrumSums,
+};
 use crate::{
     covariate::ProductSum,
     octave::{Accumulator, OctaveSum},
@@ -26,13 +35,16 @@ use crate::{
     square_sum::SquareSum,
     storage::Error,
     storage::{
-        envelope::{self, Kind, OVERHEAD, Writer},
+        envelope::{self, Kind, OVERHEAD, Writer, take},
         snapshot::{self, LONGEST, has_possible_gaps, is_possible},
     },
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-const VERSION: u8 = 3;
+const VERSION: u8 = 4;
+
+/// The version without a spectrum.
+const WITHOUT_SPECTRUM: u8 = 3;
 
 /// The largest number of bytes that the integrity of an axis takes.
 const INTEGRITY: usize = 520;
@@ -60,18 +72,16 @@ struct Reader<'b>(&'b [u8]);
 
 impl Reader<'_> {
     fn take<T: DeserializeOwned>(&mut self) -> Result<T, Error> {
-        let taken = postcard::take_from_bytes(self.0);
-        let (part, rest) = taken.map_err(|_| Error::Impossible)?;
-        self.0 = rest;
-        Ok(part)
+        take(&mut self.0).ok_or(Error::Impossible)
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize>
-    Axes<OCTAVES, COVARIATES, G, M, AXES>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S>
+    Axes<OCTAVES, COVARIATES, G, M, AXES, S>
 where
     G: GatePart,
     M: MomentPart,
+    S: SpectrumPart,
 {
     const HAS_GATE: bool = <G::State<AXES, COVARIATES> as Passing<AXES, COVARIATES>>::EXISTS;
     const HAS_MOMENTS: bool = <M::Sums<OCTAVES> as MomentSums<OCTAVES>>::EXIST;
@@ -83,8 +93,9 @@ where
         let moments = if Self::HAS_MOMENTS { sums } else { 0 };
         let products = COVARIATES * OCTAVES * (LONGEST + LONGEST_128);
         let seen = if Self::HAS_GATE { INTEGRITY } else { 0 };
-        let axis = sums + INTEGRITY + moments + products + seen;
-        let head = 5 + (4 + OCTAVES) * LONGEST;
+        let spectrum = <S::Sums as SpectrumSums>::LONGEST;
+        let axis = sums + INTEGRITY + moments + products + seen + spectrum;
+        let head = 5 + 4 + (4 + OCTAVES) * LONGEST;
         head + AXES * axis + COVARIATES * sums + self_tests * self_test::LONGEST + OVERHEAD
     }
 
@@ -136,6 +147,7 @@ where
         let most = Self::snapshot_bytes(self_tests.len()) - OVERHEAD;
         let mut writer = Writer::new(buffer, Kind::Snapshot, VERSION, most)?;
         writer.push(&Self::parts(self_tests.len()))?;
+        writer.push(&<S::Sums as SpectrumSums>::SIZE)?;
         self.write_sums(&mut writer)?;
         for axis in &self.kept.axes {
             writer.push(&axis.integrity.stored())?;
@@ -150,6 +162,7 @@ where
                     writer.push(&sum.parts())?;
                 }
             }
+            writer.push_with(|rest| axis.spectrum.write(rest))?;
         }
         writer.push(&self.losses)?;
         if let Some(gate) = self.gate.gate() {
@@ -213,7 +226,7 @@ where
     fn read(&mut self, self_tests: &mut [SelfTest<OCTAVES>], bytes: &[u8]) -> Result<(), Error> {
         let (version, payload) = envelope::open_any(bytes, Kind::Snapshot)?;
         match version {
-            VERSION => {}
+            VERSION | WITHOUT_SPECTRUM => {}
             snapshot::VERSION => return self.read_accumulator(self_tests, bytes),
             found => {
                 return Err(Error::UnknownVersion {
@@ -233,6 +246,13 @@ where
         if parts != Self::parts(self_tests.len()) {
             return Err(Error::OtherParts);
         }
+        let size = match version {
+            WITHOUT_SPECTRUM => (0, 0),
+            _ => reader.take()?,
+        };
+        if size != <S::Sums as SpectrumSums>::SIZE {
+            return Err(Error::OtherParts);
+        }
         self.read_sums(&mut reader)?;
         for axis in &mut self.kept.axes {
             let rest = axis.integrity.restore(reader.0);
@@ -246,6 +266,7 @@ where
                 let (low, upper) = reader.take()?;
                 *sum = ProductSum::from_parts(low, upper);
             }
+            reader.0 = axis.spectrum.read(reader.0).ok_or(Error::Impossible)?;
         }
         self.losses = reader.take()?;
         if let Some(gate) = self.gate.gate_mut() {
@@ -298,7 +319,8 @@ where
         let [axis] = &mut self.kept.axes[..] else {
             return Err(Error::OtherParts);
         };
-        if COVARIATES > 0 || Self::HAS_MOMENTS || !self_tests.is_empty() {
+        let has_spectrum = <S::Sums as SpectrumSums>::SIZE != (0, 0);
+        if COVARIATES > 0 || Self::HAS_MOMENTS || has_spectrum || !self_tests.is_empty() {
             return Err(Error::OtherParts);
         }
         axis.accumulator = Accumulator::restore(bytes)?;

@@ -1,12 +1,13 @@
 //! Records what a sensor's driver returns.
 
 use super::{Error, Reading};
-use crate::axis::{Axes, GatePart, MomentPart};
+use crate::axis::{Axes, GatePart, MomentPart, SpectrumPart};
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M> Axes<OCTAVES, COVARIATES, G, M>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, S> Axes<OCTAVES, COVARIATES, G, M, 3, S>
 where
     G: GatePart,
     M: MomentPart,
+    S: SpectrumPart,
 {
     /// Records the result of [`Imu::read`](super::Imu::read), so that no loss goes unnoticed. A sample is
     /// pushed, after a gap if samples were lost before it. An error becomes a gap. `covariates` returns the

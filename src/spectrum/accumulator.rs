@@ -233,6 +233,18 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         *self = Self::new();
     }
 
+    /// The number of counts that wait to be worked on.
+    pub(crate) const fn waiting(&self) -> u32 {
+        self.waiting
+    }
+
+    /// The levels to restore, and the number of samples that were lost.
+    #[cfg(feature = "storage")]
+    pub(super) fn start_with(&mut self, lost: u64) -> &mut [Level<P>; LEVELS] {
+        self.lost = lost;
+        &mut self.levels
+    }
+
     /// The number of samples that found no room, because [`advance`](Self::advance) was called too late.
     pub const fn lost(&self) -> u64 {
         self.lost
@@ -244,6 +256,9 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         bits.zip(&self.levels)
     }
 }
+
+// All sums are numbers, and not NaN.
+impl<const P: usize, const LEVELS: usize> Eq for SpectrumAccumulator<P, LEVELS> {}
 
 impl<const P: usize, const LEVELS: usize> Default for SpectrumAccumulator<P, LEVELS> {
     fn default() -> Self {

@@ -132,6 +132,39 @@ impl<const P: usize> Level<P> {
     }
 }
 
+/// Sums that rounding changes stay within this share of each other.
+#[cfg(feature = "storage")]
+const ROUNDING: f32 = 1.1;
+
+#[cfg(feature = "storage")]
+impl<const P: usize> Level<P> {
+    /// Takes over stored sums, bin by bin: of powers and of their squares. Returns `None` if no segments can
+    /// have such sums.
+    pub(super) fn restore(
+        &mut self,
+        segments: u32,
+        mut next: impl FnMut() -> Option<(f32, f32)>,
+    ) -> Option<()> {
+        if segments > MANY {
+            return None;
+        }
+        self.segments = segments;
+        let number = segments as f32;
+        let (powers, squares) = self.sums.split_at_mut(P / 2);
+        for (power, square) in powers.iter_mut().zip(squares).take(bins(P)) {
+            (*power, *square) = next()?;
+            let is_number = |x: f32| x.is_finite() && x >= 0.0;
+            // The mean of squares is at least the square of the mean.
+            let mean = *power / number;
+            let is_possible = mean * mean <= *square / number * ROUNDING;
+            if !(is_number(*power) && is_number(*square) && is_possible) {
+                return None;
+            }
+        }
+        Some(())
+    }
+}
+
 /// `2^(above − below)`, made from its bits.
 fn power_of_two(above: u32, below: u32) -> f32 {
     f32::from_bits(127_u32.wrapping_add(above).saturating_sub(below).max(1) << 23)

@@ -15,7 +15,7 @@
 
 use super::error::Error;
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 const MAGIC: [u8; 4] = *b"ALNT";
 /// The number of bytes before the payload.
@@ -69,9 +69,20 @@ impl<'b> Writer<'b> {
         let too_small = Error::BufferTooSmall {
             needed: self.needed,
         };
-        let rest = self.buffer.get_mut(self.length..).ok_or(too_small)?;
-        let written = postcard::to_slice(part, rest).map_err(|_| too_small)?;
-        self.length += written.len();
+        put(part, self.buffer, &mut self.length).ok_or(too_small)
+    }
+
+    /// Appends a part that writes itself. `write` returns the number of bytes, or `None` if the buffer is too
+    /// small.
+    pub(crate) fn push_with(
+        &mut self,
+        write: impl FnOnce(&mut [u8]) -> Option<usize>,
+    ) -> Result<(), Error> {
+        let rest = self.buffer.get_mut(self.length..);
+        let written = rest.and_then(write).ok_or(Error::BufferTooSmall {
+            needed: self.needed,
+        })?;
+        self.length = self.length.saturating_add(written);
         Ok(())
     }
 
@@ -90,6 +101,22 @@ impl<'b> Writer<'b> {
         }
         Ok(all)
     }
+}
+
+/// Writes a part behind the first `length` bytes of a buffer, and adds the number of its bytes; `None` if the
+/// buffer is too small.
+pub(crate) fn put(part: &impl Serialize, buffer: &mut [u8], length: &mut usize) -> Option<()> {
+    let rest = buffer.get_mut(*length..)?;
+    let written = postcard::to_slice(part, rest).ok()?.len();
+    *length = length.saturating_add(written);
+    Some(())
+}
+
+/// Reads the next part of a payload.
+pub(crate) fn take<'b, T: Deserialize<'b>>(rest: &mut &'b [u8]) -> Option<T> {
+    let (part, after) = postcard::take_from_bytes(rest).ok()?;
+    *rest = after;
+    Some(part)
 }
 
 /// Returns the payload of an intact envelope of this kind and version.

@@ -2,7 +2,7 @@
 //!
 //! This table describes version 1 of the payload of the [`envelope`]. The payload is
 //! in postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits
-//! first. [`Axes`](crate::Axes) writes version 2.
+//! first. [`Axes`](crate::Axes) writes a [later version](crate::axis::snapshot).
 //!
 //! | content | type |
 //! |---|---|

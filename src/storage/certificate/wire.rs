@@ -9,7 +9,7 @@ use crate::{
     fit::Correlations,
     limits::{MAX_EFFECTS, MAX_PARAMETERS, PAIRS},
     storage::Error,
-    storage::envelope::{self, Kind, OVERHEAD, Writer},
+    storage::envelope::{self, Kind, OVERHEAD, Writer, take},
 };
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -174,13 +174,6 @@ fn encode_limits(axis: &AxisCertificate, writer: &mut Writer<'_>) -> Result<(), 
         writer.push(&(limit.effect.number(), limit.size, limit.low, limit.high))?;
     }
     Ok(())
-}
-
-/// Reads the next part of a payload.
-fn take<'b, T: Deserialize<'b>>(rest: &mut &'b [u8]) -> Option<T> {
-    let (part, after) = postcard::take_from_bytes(rest).ok()?;
-    *rest = after;
-    Some(part)
 }
 
 fn decode_payload(rest: &mut &[u8], version: u8) -> Option<Certificate> {

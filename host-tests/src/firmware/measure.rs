@@ -6,10 +6,11 @@ use serde_json::{Map, Number, Value, json};
 
 /// The part of the library that each image contains besides the start-up code, and the name of the
 /// figure for it.
-const PARTS: [(&str, &str); 3] = [
+const PARTS: [(&str, &str); 4] = [
     ("footprint_accumulator", "flash_bytes_accumulator"),
     ("footprint_fit", "flash_bytes_with_fit"),
     ("footprint_diagnosis", "flash_bytes_with_diagnosis"),
+    ("footprint_spectrum", "flash_bytes_with_spectrum"),
 ];
 
 /// The figures that the image `bench` measures on a core. The image measures many more on a

@@ -74,7 +74,7 @@ pub struct Alike {
 /// # Errors
 /// The errors are those of [`fits`].
 pub fn diagnoses(records: u64) -> Result<Vec<(&'static str, Alike)>> {
-    let names = HIDDEN.iter().map(|(name, _)| *name).chain(["nothing"]);
+    let names = HIDDEN.iter().map(|hidden| hidden.case).chain(["nothing"]);
     names
         .map(|name| {
             let mut alike = Alike::default();

@@ -20,7 +20,8 @@ mod image {
     use crate::{stack, work};
     use allanite::{
         Accumulator, Axes, Curve, Model,
-        axis::{Gated, Moments},
+        axis::{Gated, Moments, Spectral},
+        spectrum::SpectrumAccumulator,
     };
     use core::hint::black_box;
     #[cfg(target_arch = "arm")]
@@ -30,6 +31,8 @@ mod image {
     /// The number of octaves of an axis whose fit still fits into 16 KiB.
     const SMALL: usize = 14;
     const USUAL: usize = 20;
+    /// Four levels of spectrum.
+    const BINS: usize = 112;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
     #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
@@ -50,10 +53,14 @@ mod image {
                 samples(&clock);
                 slices(&clock);
                 axes(&clock);
+                spectrum(&clock);
                 worst::<12>(&clock, LATE);
                 worst::<24>(&clock, LATE);
                 worst::<30>(&clock, LATE);
-                fit::<USUAL>(&clock) && diagnosis(&clock) && stretches(&clock)
+                fit::<USUAL>(&clock)
+                    && diagnosis(&clock)
+                    && diagnosis_with_spectrum(&clock)
+                    && stretches(&clock)
             }
             _ => {
                 samples(&clock);
@@ -84,10 +91,55 @@ mod image {
     /// Measures three axes with every part of the library and one covariate.
     #[inline(never)]
     fn axes(clock: &Clock) {
-        let mean = work::mean_of_axes::<1, Gated, Moments>(clock);
+        let mean = work::mean_of_axes::<1, Gated, Moments, ()>(clock);
         defmt::info!("instructions_per_sample_three_axes {=f64}", mean);
         let axis = size_of::<Axes<USUAL, 1>>() / 3;
         defmt::info!("ram_bytes_per_axis_20_with_all_parts {=usize}", axis);
+        let with_spectrum = work::mean_of_axes::<1, Gated, Moments, Spectral>(clock);
+        defmt::info!(
+            "instructions_per_sample_three_axes_with_spectrum {=f64}",
+            with_spectrum
+        );
+        defmt::info!(
+            "ram_bytes_per_axis_of_spectrum {=usize}",
+            size_of::<SpectrumAccumulator<64, 7>>()
+        );
+    }
+
+    /// Measures the two halves of a spectrum's work for one axis.
+    #[inline(never)]
+    fn spectrum(clock: &Clock) {
+        let [interrupt, main_loop] = work::mean_of_spectrum(clock);
+        defmt::info!(
+            "instructions_per_sample_spectrum_interrupt {=f64}",
+            interrupt
+        );
+        defmt::info!(
+            "instructions_per_sample_spectrum_main_loop {=f64}",
+            main_loop
+        );
+    }
+
+    /// Measures a diagnosis of a record of 2^21 samples that has a spectrum.
+    #[inline(never)]
+    fn diagnosis_with_spectrum(clock: &Clock) -> bool {
+        let model = Model::ieee_952();
+        let Some(curve) = work::curve::<USUAL>(&[work::SINUSOID]) else {
+            return false;
+        };
+        let Some(spectrum) = work::spectrum::<BINS>(&[work::SINUSOID]) else {
+            return false;
+        };
+        let mut found = false;
+        let instructions = clock.instructions(|| {
+            found = work::diagnose_both(black_box(&curve), black_box(&spectrum), &model);
+        });
+        let stack = stack::used_by(|| {
+            black_box(work::diagnose_both(black_box(&curve), &spectrum, &model));
+        });
+        defmt::info!("instructions_diagnosis_with_spectrum {=f64}", instructions);
+        defmt::info!("stack_bytes_diagnosis_with_spectrum {=usize}", stack);
+        found
     }
 
     #[inline(never)]

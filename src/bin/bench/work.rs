@@ -7,9 +7,10 @@ use allanite::effect::{
 };
 use allanite::{
     Accumulator, Axes, Curve, Error, Model, Real,
-    axis::{GatePart, MomentPart},
+    axis::{GatePart, MomentPart, SpectrumPart},
     diagnosis::{self, Diagnosis, Evidence, Progress, Verdict},
     fit::{Fit, Fitting, Options, fit},
+    spectrum::{Bin, Spectrum, SpectrumAccumulator},
 };
 use core::hint::black_box;
 use demonstration::{
@@ -56,11 +57,14 @@ pub(crate) fn mean(clock: &Clock, work: fn(&mut Accumulator<24>, i32)) -> f64 {
 }
 
 /// The mean number of instructions of a sample of three axes with the given parts, including the loop.
-pub(crate) fn mean_of_axes<const COVARIATES: usize, G: GatePart, M: MomentPart>(
-    clock: &Clock,
-) -> f64 {
+pub(crate) fn mean_of_axes<const COVARIATES: usize, G, M, S>(clock: &Clock) -> f64
+where
+    G: GatePart,
+    M: MomentPart,
+    S: SpectrumPart,
+{
     let counts = counts();
-    let mut axes = Axes::<20, COVARIATES, G, M>::new();
+    let mut axes = Axes::<20, COVARIATES, G, M, 3, S>::new();
     let mut round = |n: i32| {
         for (i, &count) in (0..).zip(&counts) {
             let at = |behind: usize| counts[(i + behind) % LENGTH];
@@ -71,6 +75,27 @@ pub(crate) fn mean_of_axes<const COVARIATES: usize, G: GatePart, M: MomentPart>(
     let total = clock.instructions(|| (1..=ROUNDS as i32).for_each(&mut round));
     black_box(&axes);
     total / SAMPLES
+}
+
+/// The mean numbers of instructions of one count in the interrupt and in the main loop, for a spectrum.
+pub(crate) fn mean_of_spectrum(clock: &Clock) -> [f64; 2] {
+    /// The number of counts that wait when the main loop comes.
+    const LATE: usize = 8;
+    let counts = counts();
+    let mut accumulator = SpectrumAccumulator::<64, 7>::new();
+    let (mut interrupt, mut main_loop) = (0.0, 0.0);
+    for _ in 0..ROUNDS {
+        for counts in counts.chunks(LATE) {
+            interrupt += clock.instructions(|| {
+                for &count in counts {
+                    accumulator.push(black_box(count));
+                }
+            });
+            main_loop += clock.instructions(|| while accumulator.advance() {});
+        }
+    }
+    black_box(&accumulator);
+    [interrupt / SAMPLES, main_loop / SAMPLES]
 }
 
 /// The mean number of instructions of one count in a slice.
@@ -157,6 +182,51 @@ pub(crate) const HIDDEN: [(&str, &[Hidden]); 11] = [
 /// An oscillation at 7.7 Hz.
 pub(crate) const SINUSOID: Hidden = (&Sinusoid, [7.7, 0.0], 0.02);
 
+/// The coefficients of the five terms of [`curve`], in the model's order.
+const SMOOTH: [Real; 5] = [2.0e-4, 5.0e-3, 4.0e-3, 3.0e-4, 5.0e-6];
+
+/// The spectrum of a gyro with all five terms and hidden effects, after 2^21 samples. Each bin deviates by
+/// about its standard error.
+pub(crate) fn spectrum<const B: usize>(hidden: &[Hidden]) -> Option<Spectrum<B>> {
+    let levels = [(1, 65_535), (8, 8191), (64, 1023), (512, 127)];
+    let bins = levels.iter().flat_map(|&(block, segments)| {
+        (4..32).map(move |index| Bin {
+            block,
+            index,
+            frequency_hz: 0.0,
+            density: 0.0,
+            segments,
+            spectral_kurtosis: 1.0,
+        })
+    });
+    let empty: Spectrum<B> = Spectrum::new(100.0, 64, bins).ok()?;
+    let is_filter = |(effect, ..): &Hidden| effect.replaces().is_some();
+    let is_replaced = |name: &str| name == "angle_random_walk" && hidden.iter().any(is_filter);
+    let model = Model::ieee_952();
+    let terms = model.terms().iter().zip(SMOOTH);
+    let terms = terms.filter(|(term, _)| !is_replaced(term.effect.name()));
+    let terms = terms.map(|(term, coefficient)| (term.effect, term.parameters, coefficient));
+    let mut densities = [0.0; B];
+    for (effect, parameters, coefficient) in terms.chain(hidden.iter().copied()) {
+        for (sum, density) in densities.iter_mut().zip(empty.expected(effect, parameters)) {
+            *sum += coefficient * coefficient * density;
+        }
+    }
+    let mut random = Random::new(1);
+    let bins = empty.bins().iter().zip(densities).map(|(bin, density)| {
+        // Four uniform numbers have the variance 1/3.
+        let bits = random.bits().to_le_bytes();
+        let off = bits
+            .iter()
+            .map(|&byte| Real::from(byte) - 127.5)
+            .sum::<Real>()
+            / 147.8;
+        let density = density * (1.0 + off / bin.effective_segments().sqrt());
+        Bin { density, ..*bin }
+    });
+    Spectrum::new(100.0, 64, bins).ok()
+}
+
 /// The curve of a gyro with all five terms and hidden effects. Each octave deviates by a few per cent.
 pub(crate) fn curve<const OCTAVES: usize>(hidden: &[Hidden]) -> Option<Curve<OCTAVES>> {
     let is_filter = |(effect, ..): &Hidden| effect.replaces().is_some();
@@ -198,6 +268,23 @@ pub(crate) fn characterise<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Resu
 #[inline(never)]
 pub(crate) fn diagnose<const OCTAVES: usize>(curve: &Curve<OCTAVES>, model: &Model) -> bool {
     let mut diagnosis = begin(curve, model);
+    let verdict = diagnosis.run(|step| {
+        black_box(step);
+    });
+    verdict == Ok(Verdict::Improved)
+}
+
+/// Diagnoses the curve and the spectrum, and returns whether the diagnosis found an effect.
+#[inline(never)]
+pub(crate) fn diagnose_both<const OCTAVES: usize, const B: usize>(
+    curve: &Curve<OCTAVES>,
+    spectrum: &Spectrum<B>,
+    model: &Model,
+) -> bool {
+    let options = diagnosis::Options::default();
+    let (curve, spectrum) = (curve.clone(), spectrum.clone());
+    let none = Evidence::NONE;
+    let mut diagnosis = Diagnosis::with_spectrum(curve, spectrum, none, model, &CATALOGUE, options);
     let verdict = diagnosis.run(|step| {
         black_box(step);
     });

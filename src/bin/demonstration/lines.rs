@@ -6,6 +6,7 @@ use allanite::{
     Curve, Real,
     axis::AxisEvidence,
     diagnosis::{Addition, Step},
+    spectrum::Spectrum,
 };
 use core::fmt::{self, Arguments, Display, Formatter};
 
@@ -31,8 +32,8 @@ pub fn curve<const K: usize>(curve: &Curve<K>, mut line: impl FnMut(Arguments<'_
 }
 
 /// Prints the curve of an axis and the other evidence for a diagnosis.
-pub fn evidence<const K: usize, const C: usize>(
-    axis: &AxisEvidence<K, C>,
+pub fn evidence<const K: usize, const C: usize, const B: usize>(
+    axis: &AxisEvidence<K, C, Spectrum<B>>,
     mut line: impl FnMut(Arguments<'_>),
 ) {
     curve(&axis.curve, &mut line);
@@ -45,6 +46,13 @@ pub fn evidence<const K: usize, const C: usize>(
         line(format_args!(
             "covariate m {} covariance {covariance} variance {variance}",
             point.m
+        ));
+    }
+    for bin in axis.spectrum.bins() {
+        let (density, kurtosis) = (Exact(bin.density), Exact(bin.spectral_kurtosis));
+        line(format_args!(
+            "bin block {} index {} segments {} density {density} kurtosis {kurtosis}",
+            bin.block, bin.index, bin.segments
         ));
     }
     line(format_args!("invalid {:?}", axis.invalid));
@@ -71,8 +79,11 @@ pub fn characterised(test: &Characterised, mut line: impl FnMut(Arguments<'_>)) 
     ));
 }
 
-/// Prints a step of a diagnosis: the error of each octave, the fit, the candidates, and the effect added.
-pub fn step<const K: usize>(step: &Step<K>, mut line: impl FnMut(Arguments<'_>)) {
+/// Prints a step of a diagnosis: the error of each octave and of each bin, the fit, the candidates, and the effect added.
+pub fn step<const K: usize, const B: usize>(
+    step: &Step<K, B>,
+    mut line: impl FnMut(Arguments<'_>),
+) {
     for octave in &step.comparison.octaves {
         line(format_args!(
             "octave m {} measured {:e} model {:e} z {}",
@@ -80,6 +91,15 @@ pub fn step<const K: usize>(step: &Step<K>, mut line: impl FnMut(Arguments<'_>))
             octave.measured,
             octave.model,
             Exact(octave.z)
+        ));
+    }
+    for bin in &step.comparison.bins {
+        line(format_args!(
+            "bin {:e} Hz measured {:e} model {:e} z {}",
+            bin.bin.frequency_hz,
+            bin.bin.density,
+            bin.model,
+            Exact(bin.z)
         ));
     }
     line(format_args!("comparison {}", step.comparison));

@@ -6,7 +6,7 @@
 use super::{AMPLITUDES, lines, simulated::SimulatedGyro};
 use allanite::{
     Axes, Error, Model, Real, Scale,
-    axis::Sample,
+    axis::{Gated, Moments, Sample, Spectral},
     diagnosis::{Diagnosis, Options},
     effect::CATALOGUE,
     queue::{self, Queued},
@@ -19,8 +19,8 @@ use heapless::{Vec, spsc::Queue};
 /// The number of octaves of averaging time.
 pub const OCTAVES: usize = 16;
 
-/// Three axes and a temperature, with a gate and with fourth moments.
-pub type Gyro = Axes<OCTAVES, 1>;
+/// Three axes and a temperature, with a gate, fourth moments and a spectrum.
+pub type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 84>>;
 
 /// The number of samples that the sensor makes: 11 minutes.
 pub const SAMPLES: u32 = 1 << 16;
@@ -158,6 +158,8 @@ pub fn run(
             gyro.missing(lost.into());
             gyro.push(sample);
         }
+        // The main loop has nothing else to do.
+        while gyro.advance() {}
         if tests[0].is_due(gyro.samples()) {
             let x = gyro.evidence(0, scale, [KELVIN])?;
             let status = tests[0].look(x.samples, &x.curve, x.invalid);
@@ -193,7 +195,9 @@ pub fn run(
     }
     let x = gyro.evidence(0, scale, [KELVIN])?;
     let (model, options) = (Model::ieee_952(), Options::default());
-    let mut diagnosis = Diagnosis::new(x.curve.clone(), x.evidence(), &model, &CATALOGUE, options);
+    let (curve, spectrum) = (x.curve.clone(), x.spectrum.clone());
+    let mut diagnosis =
+        Diagnosis::with_spectrum(curve, spectrum, x.evidence(), &model, &CATALOGUE, options);
     let verdict = diagnosis.run(|step| lines::step(step, &mut line))?;
     line(format_args!("verdict {verdict:?}"));
     Ok(())

@@ -13,6 +13,7 @@ mod image {
     use allanite::self_test::{Plan, SelfTest};
     use allanite::{
         Accumulator, Axes, Model, Scale,
+        axis::{Gated, Moments, Spectral},
         diagnosis::{self, Diagnosis},
         fit::{Options, fit},
     };
@@ -20,7 +21,7 @@ mod image {
     use heapless::{Vec, spsc::Queue};
 
     /// Three axes and a temperature, with every part.
-    type Gyro = Axes<20, 1>;
+    type Gyro = Axes<20, 1, Gated, Moments, 3, Spectral>;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
     #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
@@ -75,8 +76,11 @@ mod image {
         let report = |step: &_| {
             black_box(step);
         };
-        let (curve, options) = (x.curve.clone(), diagnosis::Options::default());
-        let verdict = Diagnosis::new(curve, x.evidence(), &model, &CATALOGUE, options).run(report);
+        let (curve, spectrum) = (x.curve.clone(), x.spectrum.clone());
+        let options = diagnosis::Options::default();
+        let verdict =
+            Diagnosis::with_spectrum(curve, spectrum, x.evidence(), &model, &CATALOGUE, options)
+                .run(report);
         let _ = black_box(verdict);
         if let Ok(fit) = fit(&x.curve, &model, Options::default()) {
             let _ = black_box(fit.correlations(&x.curve, &model));

@@ -24,7 +24,23 @@ pub enum Disturbance {
         /// The number of samples that are averaged, at most 16.
         length: u8,
     },
+    /// White noise behind a low pass of two poles (Butterworth), instead of the white noise. The cut-off
+    /// frequency is a fifth of the sample rate.
+    TwoPoleLowPass {
+        /// The standard deviation in 2^-24 counts. White noise of the same density has 1.503 times as much.
+        deviation: u32,
+    },
 }
+
+/// One step of the low pass: a state of unit variance, its rate of change in the same unit, and two
+/// independent normal numbers. The rows give the next state and its rate, in 2^-24.
+///
+/// The oscillator `ẍ + √2 ω ẋ + ω² x = white noise` has the transition `F = exp(A τ₀)`, and the noise of a step
+/// the covariance `1 − F Fᵀ`, whose Cholesky factor makes the last two columns.
+const STEP: [[i64; 4]; 2] = [
+    [9_705_439, 7_573_396, 11_398_382, 0],
+    [-7_573_396, -1_004_961, 7_116_281, 13_132_678],
+];
 
 /// The state of a disturbance.
 #[derive(Clone, Debug)]
@@ -42,6 +58,10 @@ pub(super) enum Source {
         ring: [i64; 16],
         length: usize,
         next: usize,
+    },
+    TwoPoleLowPass {
+        deviation: u32,
+        state: [i64; 2],
     },
 }
 
@@ -65,6 +85,10 @@ impl Source {
                 length: usize::from(length).clamp(1, 16),
                 next: 0,
             },
+            Some(Disturbance::TwoPoleLowPass { deviation }) => Self::TwoPoleLowPass {
+                deviation,
+                state: [(); 2].map(|()| random.normal(deviation)),
+            },
         }
     }
 
@@ -86,6 +110,20 @@ impl Source {
                 ring[*next] = white;
                 *next = (*next + 1) % *length;
                 ring[..*length].iter().sum::<i64>() / *length as i64
+            }
+            Self::TwoPoleLowPass { deviation, state } => {
+                let [x, rate] = *state;
+                let from = [
+                    x,
+                    rate,
+                    random.normal(*deviation),
+                    random.normal(*deviation),
+                ];
+                *state = STEP.map(|row| {
+                    let sum = row.iter().zip(from).map(|(&weight, value)| weight * value);
+                    rounded(sum.sum(), FRACTION)
+                });
+                state[0]
             }
         }
     }

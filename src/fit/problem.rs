@@ -52,7 +52,7 @@ fn column<const K: usize, const B: usize>(observed: Observed<'_, K, B>, term: &T
         });
     if let Some(spectrum) = observed.spectrum() {
         let expected = spectrum.expected(term.effect, term.parameters);
-        for (row, expected) in (K..usize::MAX).zip(expected) {
+        for (row, &expected) in (K..usize::MAX).zip(&expected) {
             column.put(row, expected);
         }
     }

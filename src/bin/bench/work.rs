@@ -221,7 +221,8 @@ pub(crate) fn spectrum<const B: usize>(hidden: &[Hidden]) -> Option<Spectrum<B>>
             .map(|&byte| Real::from(byte) - 127.5)
             .sum::<Real>()
             / 147.8;
-        let density = density * (1.0 + off / bin.effective_segments().sqrt());
+        let error = libm::sqrt(1.0 / f64::from(bin.effective_segments())) as Real;
+        let density = density * (1.0 + off * error);
         Bin { density, ..*bin }
     });
     Spectrum::new(100.0, 64, bins).ok()

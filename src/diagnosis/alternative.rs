@@ -70,9 +70,9 @@ fn polished<const K: usize, const B: usize>(
     let mut candidate = *candidate;
     loop {
         // No other candidate competes, so no round is hopeless.
-        let (span, best) = (observed.span(), Real::INFINITY);
+        let span = observed.span();
         let completed =
-            trial.advance(observed, &span, tolerance, best, &mut work, &mut candidate)?;
+            trial.advance(observed, &span, tolerance, None, &mut work, &mut candidate)?;
         if let Some(completed) = completed {
             return Ok(completed.fitted);
         }

@@ -68,8 +68,7 @@ impl Dropping {
         } = contest;
         let dropped = candidate.term;
         // No other model competes, so no round is hopeless.
-        let best = Real::INFINITY;
-        let completed = match trial.advance(observed, span, *tolerance, best, work, candidate) {
+        let completed = match trial.advance(observed, span, *tolerance, None, work, candidate) {
             Ok(None) => {
                 candidate.term = dropped;
                 return false;

@@ -5,8 +5,7 @@ use crate::{
     effect::{Effect, Span},
     fit::{Problem, Solver},
     list,
-    profile::{Evaluation, Found, GridSearch, Profile, line_frequency},
-    real::Real,
+    profile::{Evaluation, Found, GridSearch, Peak, Profile, strongest_peak},
 };
 use heapless::Vec;
 
@@ -20,8 +19,8 @@ pub(super) struct Scanning<const K: usize, const B: usize> {
     /// effect's place.
     next: usize,
     search: Option<(GridSearch, usize)>,
-    /// The frequency of the strongest line of the spectrum that the model lacks, in Hz.
-    peak_hz: Option<Real>,
+    /// The strongest peak of the spectrum that the model lacks.
+    peak: Option<Peak>,
     shapes: Shapes,
 }
 
@@ -34,14 +33,14 @@ impl<const K: usize, const B: usize> Scanning<K, B> {
             profile: Profile::EMPTY,
             next: 0,
             search: None,
-            peak_hz: None,
+            peak: None,
             shapes: Shapes::new(),
         }
     }
 
     /// Begins to scan beside a solved model. The weights of its solution are replaced.
     pub(super) fn begin(&mut self, problem: &Problem<'_, K, B>, solver: &mut Solver<K, B>) {
-        self.peak_hz = line_frequency(problem, &solver.squares);
+        self.peak = strongest_peak(problem, &solver.squares);
         solver.weights.set_independent(problem);
         self.profile.begin(problem, &solver.weights);
     }
@@ -80,7 +79,7 @@ impl<const K: usize, const B: usize> Scanning<K, B> {
         if let Some(place) = place(problem, effect)
             && self.profile.choose(problem, place, &solver.squares).is_ok()
         {
-            let search = GridSearch::new(effect, span).at_peak(self.peak_hz);
+            let search = GridSearch::new(effect, span).at_peak(self.peak);
             self.search = Some((search, place));
         }
         false

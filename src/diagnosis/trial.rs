@@ -23,7 +23,8 @@ const ROUNDS: u8 = 10;
 /// beside the improvement of 8 for which an effect is accepted.
 const SETTLED: Real = 0.5;
 /// The rounds end as well when `−2 ln L` lags behind that of the best candidate by more than this, and
-/// a round makes up for less than the share [`CATCHING_UP`] of the lag. Chosen by hand.
+/// a round makes up for less than the share [`CATCHING_UP`] of the lag. If that candidate explains the observed,
+/// nothing can lead it by so much, and the trial ends with the round. Chosen by hand.
 /// `cargo xtask study hidden-effect` runs with this value and does not vary it.
 const HOPELESS: Real = 60.0;
 /// The share of the lag behind the best candidate that a round must make up for; see [`HOPELESS`].
@@ -158,10 +159,21 @@ enum Stage {
     Last,
 }
 
+/// The best of the other candidates.
+#[derive(Clone, Copy)]
+pub(super) struct Rival {
+    /// Its `−2 ln L`, costs included.
+    pub(super) score: Real,
+    /// Whether its model is adequate.
+    pub(super) explains: bool,
+}
+
 /// The fit of a candidate, the squares at which its covariance was taken, and its score.
 pub(super) struct Completed {
     pub(super) fitted: Fitted,
     pub(super) score: Real,
+    /// Whether the model is adequate.
+    pub(super) explains: bool,
 }
 
 impl Trial {
@@ -180,7 +192,7 @@ impl Trial {
     }
 
     /// Does one piece of work. When the fit is complete, returns it and writes its effect, coefficient
-    /// and χ² to the candidate. The rounds end early if the score lags behind the `best` score of other
+    /// and χ² to the candidate. The rounds end early if the score lags behind that of the `best` of the other
     /// candidates without catching up.
     ///
     /// # Errors
@@ -191,7 +203,7 @@ impl Trial {
         observed: Observed<'_, K, B>,
         span: &Span,
         tolerance: Real,
-        best: Real,
+        best: Option<Rival>,
         work: &mut Work<K, B>,
         candidate: &mut Candidate,
     ) -> Result<Option<Completed>, Error> {
@@ -223,6 +235,10 @@ impl Trial {
         let confused = polish(&problem, work, &mut next);
         self.present.squares = work.solver.squares;
         let now = work.solver.minus_two_log_likelihood();
+        let adequate = best.filter(|best| best.explains);
+        if confused.is_none() && self.is_hopeless(now, adequate) {
+            return Ok(Some(self.complete(&problem, work, candidate)));
+        }
         let goes_on = match confused {
             Some(confused) => {
                 // This is another model, whose scores cannot be compared with the earlier ones.
@@ -295,14 +311,14 @@ impl Trial {
 
     /// Keeps a round that is the best so far, and changes the shapes for the next round. Returns
     /// whether there is a next round.
-    fn step(&mut self, now: Real, best: Real, next: Steps, span: &Span) -> bool {
-        let (gain, lag) = (self.before - now, now - best);
+    fn step(&mut self, now: Real, best: Option<Rival>, next: Steps, span: &Span) -> bool {
+        let gain = self.before - now;
         let is_best = self.kept.as_ref().is_none_or(|(_, score)| now < *score);
         if is_best {
             self.kept = Some((self.present.clone(), now));
         }
         if gain > -SETTLED {
-            if gain < SETTLED || (lag > HOPELESS && gain < CATCHING_UP * lag) {
+            if gain < SETTLED || self.is_hopeless(now, best) {
                 if let Some((fitted, _)) = self.kept.as_mut().filter(|_| is_best) {
                     fitted.change(&next, 1.0, span);
                 }
@@ -325,6 +341,16 @@ impl Trial {
         true
     }
 
+    /// Whether a round with this score lags far behind the best one, and catches up too little.
+    /// A round that led too far tells nothing.
+    fn is_hopeless(&self, now: Real, best: Option<Rival>) -> bool {
+        let gain = self.before - now;
+        best.is_some_and(|best| {
+            let lag = now - best.score;
+            gain > -SETTLED && lag > HOPELESS && gain < CATCHING_UP * lag
+        })
+    }
+
     /// The complete fit, with fixed shapes.
     fn complete<const K: usize, const B: usize>(
         &self,
@@ -345,6 +371,7 @@ impl Trial {
                 squares: solver.assumed,
             },
             score: solver.minus_two_log_likelihood(),
+            explains: solver.p_value() >= ADEQUATE_P,
         }
     }
 }

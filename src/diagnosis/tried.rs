@@ -3,7 +3,7 @@
 use super::{
     scanned::Shapes,
     step::{Candidate, Candidates, Swap},
-    trial::{Fitted, Trial},
+    trial::{Fitted, Rival, Trial},
 };
 use crate::{effect::Span, fit::Work, list, model::Model, observed::Observed, real::Real};
 
@@ -58,6 +58,8 @@ pub(super) struct Trying {
     shapes: Shapes,
     next: usize,
     trial: Option<(Trial, Candidate)>,
+    /// Whether the model with the best candidate so far is adequate.
+    explains: bool,
 }
 
 impl Trying {
@@ -67,6 +69,7 @@ impl Trying {
             shapes,
             next: 0,
             trial: None,
+            explains: false,
         }
     }
 
@@ -86,7 +89,10 @@ impl Trying {
             return self.begin_next(base, candidates);
         };
         let gained = candidates.first();
-        let least = contest.score - gained.map_or(0.0, |first| first.improvement);
+        let least = Some(Rival {
+            score: contest.score - gained.map_or(0.0, |first| first.improvement),
+            explains: self.explains,
+        });
         let Contest {
             score,
             tolerance,
@@ -103,6 +109,7 @@ impl Trying {
             candidate.improvement = score - completed.score - 2.0 * candidate.cost();
             if candidate.improvement > 0.0 && enter(candidates, candidate) == Some(0) {
                 *best = completed.fitted;
+                self.explains = completed.explains;
             }
         }
         self.trial = None;

@@ -15,7 +15,16 @@ const STANDS_OUT: Real = 6.0;
 /// stands out is below a tenth of a bin, which is less than one bin of the next level.
 const NEARBY: Real = 1.5;
 
-/// The frequency of the strongest line beyond a model, in Hz. `None` if the problem has no spectrum, or nothing of it
+/// The strongest peak of a spectrum beyond a model.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Peak {
+    /// The frequency of a line that makes such a peak, in Hz.
+    pub(crate) frequency_hz: Real,
+    /// The frequency of the lowest bin, in Hz.
+    pub(crate) lowest_hz: Real,
+}
+
+/// The strongest peak beyond a model, taken for a line. `None` if the problem has no spectrum, or nothing of it
 /// lies above the model.
 ///
 /// The highest bin and its larger neighbour tell the frequency to a part of a bin: a line `δ` bins from the middle of
@@ -23,10 +32,10 @@ const NEARBY: Real = 1.5;
 /// Collins & Davis 1979). Blocks that are longer show the line too, at an alias and smaller, but in bins that are
 /// narrower by the ratio of the blocks. They correct the frequency one after the other.
 #[inline(never)]
-pub(crate) fn line_frequency<const K: usize, const B: usize>(
+pub(crate) fn strongest_peak<const K: usize, const B: usize>(
     problem: &Problem<'_, K, B>,
     squares: &Vector,
-) -> Option<Real> {
+) -> Option<Peak> {
     let excess = |at: usize| {
         let row = K.saturating_add(at);
         problem.measured(row) - problem.variance(row, squares)
@@ -77,7 +86,11 @@ pub(crate) fn line_frequency<const K: usize, const B: usize>(
             frequency_hz += change * bin_hz(lowest);
         }
     }
-    Some(frequency_hz)
+    let frequencies = bins.iter().map(|bin| bin.frequency_hz);
+    Some(Peak {
+        frequency_hz,
+        lowest_hz: frequencies.fold(Real::INFINITY, Real::min),
+    })
 }
 
 /// The place of a line between the bins, from the highest bin and its larger neighbour of the same level.

@@ -17,7 +17,7 @@ mod search;
 pub(crate) use grid::Grid;
 pub(crate) use interval::JointInterval;
 pub(crate) use likelihood::{Evaluation, Found, Profile};
-pub(crate) use line::line_frequency;
+pub(crate) use line::{Peak, strongest_peak};
 pub(crate) use neighbourhood::Neighbourhood;
 pub(crate) use search::GridSearch;
 

@@ -4,6 +4,7 @@ use super::{
     EVALUATIONS_A_CALL,
     grid::Grid,
     likelihood::{Evaluation, Found},
+    line::Peak,
     refinement::Refinement,
 };
 use crate::{
@@ -30,6 +31,8 @@ pub(crate) struct GridSearch {
     grids: [Grid; MAX_PARAMETERS],
     /// The frequency of a peak, at which the search begins.
     peak_hz: Option<Real>,
+    /// The number of steps of the first parameter that are searched.
+    steps: u32,
     /// The steps of the two parameters that come next.
     at: [u32; MAX_PARAMETERS],
     /// The best shapes of the grid that lie apart, best first, and their step of the first parameter.
@@ -43,9 +46,11 @@ impl GridSearch {
     /// Begins to search for an effect's shape on a curve of this span.
     pub(crate) fn new(effect: &'static dyn Effect, span: &Span) -> Self {
         let term = Term::fitted(effect);
+        let grids: [Grid; MAX_PARAMETERS] = core::array::from_fn(|i| Grid::of(effect, i, span));
         Self {
             term,
-            grids: core::array::from_fn(|i| Grid::of(effect, i, span)),
+            steps: grids.first().map_or(0, |first| first.steps),
+            grids,
             peak_hz: None,
             at: [0; MAX_PARAMETERS],
             minima: Vec::new(),
@@ -54,11 +59,18 @@ impl GridSearch {
         }
     }
 
-    /// Begins with the frequency of a peak, in Hz. It has no effect on a search that is not for a frequency.
-    pub(crate) fn at_peak(mut self, peak_hz: Option<Real>) -> Self {
+    /// Begins at a peak. It has no effect on a search that is not for a frequency. A line in the range of the bins
+    /// is the peak, so that the grid is searched only below that range.
+    pub(crate) fn at_peak(mut self, peak: Option<Peak>) -> Self {
         let parameters = self.term.effect.parameters();
         let is_frequency = parameters.first().is_some_and(|first| first.unit == "Hz");
-        self.peak_hz = peak_hz.filter(|_| is_frequency);
+        let Some(peak) = peak.filter(|_| is_frequency) else {
+            return self;
+        };
+        self.peak_hz = Some(peak.frequency_hz);
+        if let ([_], [first, ..]) = (parameters, self.grids) {
+            self.steps = first.steps_to(peak.lowest_hz);
+        }
         self
     }
 
@@ -68,6 +80,7 @@ impl GridSearch {
         if let Some(grid) = search.grids.get_mut(j) {
             *grid = Grid::only(value);
         }
+        search.steps = search.grids.first().map_or(0, |first| first.steps);
         search
     }
 
@@ -95,7 +108,7 @@ impl GridSearch {
             return None;
         }
         for _ in 0..EVALUATIONS_A_CALL {
-            if self.at[0] >= first.steps {
+            if self.at[0] >= self.steps {
                 let Some((best, _)) = self.minima.pop() else {
                     return Some(self.best);
                 };

@@ -9,23 +9,33 @@ mod sample;
 #[cfg(feature = "storage")]
 pub mod snapshot;
 mod spectra;
+mod track;
 
 pub use evidence::AxisEvidence;
 pub use gate::{GatePart, Gated};
 pub use moments::{MomentPart, Moments};
 pub use sample::Sample;
 pub use spectra::{Spectral, SpectrumPart};
+pub use track::{TrackPart, Tracked};
 
 use crate::{
+    course::Course,
     integrity::{Integrity, InvalidLimit, Limits},
     octave::Accumulator,
 };
 use gate::{Passed, Passing};
 use kept::Kept;
+use track::Track as _;
 
 /// One axis: [`Axes`] for a gyro of which a single axis is recorded.
-pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = Moments, S = ()> =
-    Axes<OCTAVES, COVARIATES, G, M, 1, S>;
+pub type Axis<
+    const OCTAVES: usize,
+    const COVARIATES: usize = 0,
+    G = Gated,
+    M = Moments,
+    S = (),
+    T = (),
+> = Axes<OCTAVES, COVARIATES, G, M, 1, S, T>;
 
 /// Everything that is kept of a record, for three axes or for as many as `AXES` says.
 ///
@@ -50,6 +60,7 @@ pub type Axis<const OCTAVES: usize, const COVARIATES: usize = 0, G = Gated, M = 
 /// | `M` | [`Moments`], or `()`: then telegraph and Gauss–Markov noise cannot be told apart | [`Moments`] |
 /// | `AXES` | axes that share the gate's decision and the covariates; see [`Axis`] for one | 3 |
 /// | `S` | [`Spectral`], or `()`: then the diagnosis sees octaves alone | `()` |
+/// | `T` | [`Tracked`], or `()`: then it is not known when something happened | `()` |
 ///
 /// A part that is left out takes no memory, no flash and no time. If only the curve is needed, an
 /// [`Accumulator`] is enough.
@@ -96,18 +107,20 @@ pub struct Axes<
     M: MomentPart = Moments,
     const AXES: usize = 3,
     S: SpectrumPart = (),
+    T: TrackPart = (),
 > {
     gate: G::State<AXES, COVARIATES>,
-    kept: Kept<OCTAVES, COVARIATES, M, AXES, S>,
+    kept: Kept<OCTAVES, COVARIATES, M, AXES, S, T>,
     losses: u64,
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S>
-    Axes<OCTAVES, COVARIATES, G, M, AXES, S>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S, T>
+    Axes<OCTAVES, COVARIATES, G, M, AXES, S, T>
 where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     /// An empty record that is judged by the [default limits](Limits::DEFAULT).
     pub const fn new() -> Self {
@@ -135,7 +148,7 @@ where
         match self.gate.push(sample.into()) {
             Passed::Nothing => {}
             Passed::Sample(sample) => self.kept.push(&sample),
-            Passed::Gap => self.kept.gap(),
+            Passed::Gap(missing) => self.kept.gap(missing),
         }
     }
 
@@ -151,8 +164,13 @@ where
 
     /// Marks a place where samples were lost or the gyro was disturbed. No difference spans this place.
     pub fn gap(&mut self) {
+        self.lose(0);
+    }
+
+    /// Marks a place where so many samples were lost, or an unknown number if it is 0.
+    fn lose(&mut self, samples: u64) {
         self.losses = self.losses.saturating_add(1);
-        let passed = self.gate.gap();
+        let passed = self.gate.gap(samples);
         self.keep(passed);
     }
 
@@ -161,7 +179,7 @@ where
     pub fn missing(&mut self, samples: u64) {
         if samples > 0 {
             self.kept.add_missing(samples);
-            self.gap();
+            self.lose(samples);
         }
     }
 
@@ -182,12 +200,13 @@ where
         match passed {
             Passed::Nothing => {}
             Passed::Sample(sample) => self.kept.push(&sample),
-            Passed::Gap => self.kept.gap(),
+            Passed::Gap(missing) => self.kept.gap(missing),
         }
     }
 
     /// Adds another record of the same sensor, as if a gap lay between the two. Both gates first
-    /// release the samples that they hold back.
+    /// release the samples that they hold back. The courses stay those of this record, because another record has
+    /// no place in its time.
     pub fn merge(&mut self, other: &Self) {
         let mut other = other.clone();
         self.release();
@@ -244,6 +263,11 @@ where
         self.kept.axes.each_ref().map(|axis| &axis.integrity)
     }
 
+    /// The course of every axis, if it is kept. Samples that were left out or are known to be missing count as time.
+    pub fn courses(&self) -> [Option<&Course<COVARIATES>>; AXES] {
+        self.kept.axes.each_ref().map(|axis| axis.track.course())
+    }
+
     /// The integrity of all samples, for every axis: the gate counts the spikes and motions of the
     /// samples that it leaves out as well. Without a gate, this is the integrity of the record.
     pub fn seen(&self) -> [&Integrity; AXES] {
@@ -254,12 +278,13 @@ where
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S> Default
-    for Axes<OCTAVES, COVARIATES, G, M, AXES, S>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S, T> Default
+    for Axes<OCTAVES, COVARIATES, G, M, AXES, S, T>
 where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     fn default() -> Self {
         Self::new()

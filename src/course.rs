@@ -21,6 +21,8 @@ mod correction;
 mod event;
 mod noise;
 mod response;
+#[cfg(feature = "storage")]
+mod stored;
 mod sums;
 
 pub use analysis::{Analysis, analyse, events};
@@ -164,6 +166,8 @@ impl<const COVARIATES: usize> Course<COVARIATES> {
     /// time passes.
     pub const fn gap(&mut self) {
         self.is_running = false;
+        // It is not needed any more, and courses that agree in everything else are equal.
+        self.before = 0;
     }
 
     /// Counts samples that were lost at this place. Their time passes, and no difference spans them. Does nothing

@@ -6,7 +6,8 @@ mod seeded;
 
 use allanite::{
     Axes, Axis, Model, Scale,
-    axis::{GatePart, Gated, MomentPart, Moments, Spectral, SpectrumPart},
+    axis::{GatePart, Gated, MomentPart, Moments, Spectral, SpectrumPart, TrackPart, Tracked},
+    course::Course,
     fit::{Options, fit},
     integrity::{Integrity, Limits, Reason},
     self_test::{Limit, Plan, SelfTest, Status},
@@ -31,8 +32,8 @@ type Counts = ([i32; 3], [i32; 1]);
 /// Three levels of spectrum.
 type Bins = Spectral<64, 3, 84>;
 
-/// Three axes and a temperature with every part, and the gate as chosen.
-type Whole<G = Gated> = Axes<OCTAVES, 1, G, Moments, 3, Bins>;
+/// Three axes and a temperature with every part, and the gate and the course as chosen.
+type Whole<G = Gated, T = ()> = Axes<OCTAVES, 1, G, Moments, 3, Bins, T>;
 
 /// The counts of three axes at rest and of a temperature.
 fn rest() -> Vec<Counts> {
@@ -103,6 +104,17 @@ impl Cleaning {
         }
     }
 
+    /// Samples were lost before the next one.
+    fn gap(&mut self) {
+        if self.held.last() != Some(&None) {
+            self.held.push(None);
+        }
+        if self.held.len() > 128 {
+            self.kept.push(self.held.remove(0));
+        }
+        self.seen.iter_mut().for_each(Integrity::gap);
+    }
+
     /// Simulates a power failure: the samples that the gate holds back are lost.
     fn cut(&mut self) {
         self.held = vec![None];
@@ -128,8 +140,8 @@ fn plan() -> Plan {
 }
 
 /// Takes a look at the first axis if one is due.
-fn look<G: GatePart, M: MomentPart, S: SpectrumPart>(
-    axes: &Axes<OCTAVES, 1, G, M, 3, S>,
+fn look<G: GatePart, M: MomentPart, S: SpectrumPart, T: TrackPart>(
+    axes: &Axes<OCTAVES, 1, G, M, 3, S, T>,
     test: &mut SelfTest<OCTAVES>,
     looks: &mut Vec<(u64, Status)>,
 ) {
@@ -392,6 +404,41 @@ fn snapshot_of_an_accumulator_is_restored_into_an_axis_without_other_parts() {
     assert_eq!(more.restore(&mut [], stored), Err(Error::OtherParts));
 }
 
+#[test]
+fn samples_that_are_left_out_or_missing_count_as_time_of_the_course() {
+    let samples = disturbed();
+    let mut gyro = Whole::<Gated, Tracked>::new();
+    let mut cleaning = Cleaning::new();
+    for (n, &sample) in samples.iter().enumerate() {
+        // A hundred samples are lost on the way, and their number is known.
+        if (50_000..50_100).contains(&n) {
+            continue;
+        }
+        if n == 50_100 {
+            gyro.missing(100);
+            cleaning.gap();
+        }
+        gyro.push(sample);
+        cleaning.push(n, sample.0);
+    }
+    gyro.release();
+    let mut places = cleaning.kept;
+    places.extend(cleaning.held);
+    for axis in 0..3 {
+        let mut expected = Course::<1>::new();
+        let mut next = 0;
+        for at in places.iter().copied().flatten() {
+            expected.missing((at - next) as u64);
+            let (counts, covariates) = samples[at];
+            expected.push(counts[axis], covariates);
+            next = at + 1;
+        }
+        assert_eq!(expected.time(), SAMPLES as u64);
+        assert_eq!(gyro.courses()[axis], Some(&expected));
+    }
+    assert!(gyro.left_out() > 600, "{}", gyro.left_out());
+}
+
 /// Stretches of three axes and a covariate with any counts.
 fn stretches() -> impl Strategy<Value = Vec<Vec<Counts>>> {
     let count = || prop_oneof![4 => -100..100, 1 => any::<i32>(), 1 => Just(i32::MIN)];
@@ -413,7 +460,7 @@ proptest! {
 }
 
 fn merge_and_restore<G: GatePart>(stretches: &[Vec<Counts>]) -> Result<(), TestCaseError> {
-    type Gyro<G> = Whole<G>;
+    type Gyro<G> = Whole<G, Tracked>;
     let mut batch = Gyro::<G>::new();
     let mut merged = Gyro::<G>::new();
     let mut restored = Gyro::<G>::new();
@@ -439,6 +486,7 @@ fn merge_and_restore<G: GatePart>(stretches: &[Vec<Counts>]) -> Result<(), TestC
     prop_assert_eq!(restored.accumulators(), batch.accumulators());
     prop_assert_eq!(restored.integrity(), batch.integrity());
     prop_assert_eq!(restored.left_out(), batch.left_out());
+    prop_assert_eq!(restored.courses(), batch.courses());
     for axis in 0..3 {
         let expected = batch.evidence(axis, scale(), [0.01]).unwrap();
         let after = restored.evidence(axis, scale(), [0.01]).unwrap();

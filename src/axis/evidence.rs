@@ -5,6 +5,7 @@ use super::{
     gate::{Gate, GatePart, Passing as _},
     moments::{MomentPart, MomentSums as _},
     spectra::{SpectrumPart, SpectrumSums as _},
+    track::TrackPart,
 };
 use crate::{
     covariate::CrossCurve,
@@ -49,12 +50,13 @@ impl<const OCTAVES: usize, const COVARIATES: usize, D> AxisEvidence<OCTAVES, COV
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S>
-    Axes<OCTAVES, COVARIATES, G, M, AXES, S>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S, T>
+    Axes<OCTAVES, COVARIATES, G, M, AXES, S, T>
 where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     /// The evidence about an axis at this moment, without the samples that the gate holds back. The spectrum
     /// also lacks up to `P` samples that wait for [`advance`](Self::advance).

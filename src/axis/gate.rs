@@ -30,8 +30,8 @@ pub enum Passed<const AXES: usize, const COVARIATES: usize> {
     Nothing,
     /// A sample.
     Sample(Sample<AXES, COVARIATES>),
-    /// The place of a sample that was left out or lost.
-    Gap,
+    /// The place of samples that were left out or lost: how many, or 0 if the number is not known.
+    Gap(u64),
 }
 
 /// How samples pass a gate. Without one, everything passes at once.
@@ -50,8 +50,9 @@ pub trait Passing<const AXES: usize, const COVARIATES: usize>:
     /// A sample comes; what passes now.
     fn push(&mut self, sample: Sample<AXES, COVARIATES>) -> Passed<AXES, COVARIATES>;
 
-    /// The next sample does not adjoin the last; what passes now.
-    fn gap(&mut self) -> Passed<AXES, COVARIATES>;
+    /// The next sample does not adjoin the last; what passes now. So many samples were lost in between, or an
+    /// unknown number if it is 0.
+    fn gap(&mut self, lost: u64) -> Passed<AXES, COVARIATES>;
 
     /// The oldest that is held back; [`Passed::Nothing`] where nothing is.
     fn release(&mut self) -> Passed<AXES, COVARIATES>;
@@ -80,8 +81,8 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES> for (
         Passed::Sample(sample)
     }
 
-    fn gap(&mut self) -> Passed<AXES, COVARIATES> {
-        Passed::Gap
+    fn gap(&mut self, lost: u64) -> Passed<AXES, COVARIATES> {
+        Passed::Gap(lost)
     }
 
     fn release(&mut self) -> Passed<AXES, COVARIATES> {
@@ -125,7 +126,8 @@ pub struct Gate<const AXES: usize, const COVARIATES: usize> {
     /// The integrity of all samples, including those that were left out.
     integrity: [Integrity; AXES],
     held: [Sample<AXES, COVARIATES>; HELD],
-    /// One bit for each slot, which is set if the slot marks a gap and holds no sample.
+    /// One bit for each slot, which is set if the slot marks a gap and holds no sample. Its first count then holds
+    /// the number of samples that are missing there.
     is_gap: [u32; HELD / WORD],
     /// The slot of the oldest entry.
     first: u8,
@@ -167,30 +169,46 @@ impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
         passed
     }
 
-    /// Appends a gap to the queue. Consecutive samples that are left out or lost share one gap.
+    /// Appends a gap of so many samples to the queue. Consecutive samples that are left out or lost share one gap.
     #[inline(never)]
-    fn hold_gap(&mut self) -> Passed<AXES, COVARIATES> {
-        if self.length > 0 {
-            let newest = self.slot(self.length.wrapping_sub(1));
-            if self.is_gap(newest) {
-                return Passed::Nothing;
-            }
+    fn hold_gap(&mut self, samples: u64) -> Passed<AXES, COVARIATES> {
+        let mut passed = Passed::Nothing;
+        let mut newest = self.slot(self.length.wrapping_sub(1));
+        if self.length == 0 || !self.is_gap(newest) {
+            passed = self.hold(Sample::ZERO);
+            newest = self.slot(self.length.wrapping_sub(1));
+            self.is_gap[newest / WORD] |= flag(newest);
         }
-        let passed = self.hold(Sample::ZERO);
-        let newest = self.slot(self.length.wrapping_sub(1));
-        self.is_gap[newest / WORD] |= flag(newest);
+        if let Some(missing) = self.held[newest].counts.first_mut() {
+            let samples = i32::try_from(samples).unwrap_or(i32::MAX);
+            *missing = missing.saturating_add(samples);
+        }
         passed
     }
 
-    /// Leaves out all samples that are held back.
+    /// The number of samples that are missing at a slot that marks a gap.
+    fn missing_at(&self, slot: usize) -> u64 {
+        let missing = self.held[slot].counts.first();
+        missing.map_or(0, |&missing| u64::from(missing.unsigned_abs()))
+    }
+
+    /// Leaves out all samples that are held back, and returns the number of samples that are missing in their place.
     #[cold]
     #[inline(never)]
-    fn leave_out_held(&mut self) {
-        let gaps: u32 = self.is_gap.iter().map(|flags| flags.count_ones()).sum();
-        let samples = u64::from(self.length).saturating_sub(gaps.into());
+    fn leave_out_held(&mut self) -> u64 {
+        let (mut samples, mut missing) = (0_u64, 0_u64);
+        for behind in 0..self.length {
+            let slot = self.slot(behind);
+            if self.is_gap(slot) {
+                missing = missing.saturating_add(self.missing_at(slot));
+            } else {
+                samples = samples.saturating_add(1);
+            }
+        }
         self.left_out = self.left_out.saturating_add(samples);
         self.is_gap = [0; HELD / WORD];
         self.length = 0;
+        missing.saturating_add(samples)
     }
 
     /// The slot at this distance from the oldest entry.
@@ -243,18 +261,19 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES>
         }
         self.left_out = self.left_out.saturating_add(1);
         self.behind = self.behind.saturating_sub(1);
+        let mut missing = 1_u64;
         if seen.moving || seen.stuck {
-            self.leave_out_held();
+            missing = missing.saturating_add(self.leave_out_held());
         }
         if seen.moving {
             self.behind = CLUSTER;
         }
-        self.hold_gap()
+        self.hold_gap(missing)
     }
 
-    fn gap(&mut self) -> Passed<AXES, COVARIATES> {
+    fn gap(&mut self, lost: u64) -> Passed<AXES, COVARIATES> {
         self.integrity.iter_mut().for_each(Integrity::gap);
-        self.hold_gap()
+        self.hold_gap(lost)
     }
 
     #[inline(always)]
@@ -267,7 +286,7 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES>
         self.length = self.length.wrapping_sub(1);
         if self.is_gap(oldest) {
             self.is_gap[oldest / WORD] &= !flag(oldest);
-            return Passed::Gap;
+            return Passed::Gap(self.missing_at(oldest));
         }
         Passed::Sample(self.held[oldest])
     }

@@ -4,6 +4,7 @@ use super::{
     moments::{MomentPart, MomentSums},
     sample::Sample,
     spectra::{SpectrumPart, SpectrumSums, Waits},
+    track::{Track, TrackPart},
 };
 use crate::{
     covariate::CrossSums,
@@ -14,28 +15,31 @@ use crate::{
 /// The sums of all axes and covariates. They all receive the same samples and gaps, so that all results
 /// describe the same record.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Kept<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S>
+pub(super) struct Kept<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S, T>
 where
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
-    pub(super) axes: [AxisSums<OCTAVES, COVARIATES, M, S>; AXES],
+    pub(super) axes: [AxisSums<OCTAVES, COVARIATES, M, S, T>; AXES],
     /// One accumulator for each covariate, shared by all axes.
     pub(super) covariates: [Accumulator<OCTAVES>; COVARIATES],
 }
 
 /// The sums of one axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M, S>
+pub(super) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M, S, T>
 where
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     pub(super) accumulator: Accumulator<OCTAVES>,
     pub(super) integrity: Integrity,
     pub(super) moments: M::Sums<OCTAVES>,
     pub(super) cross: [CrossSums<OCTAVES>; COVARIATES],
     pub(super) spectrum: S::Sums,
+    pub(super) track: T::Track<COVARIATES>,
 }
 
 /// The differences of a covariate that one sample completes: those of octaves 0, 1 and 2, and at most one
@@ -79,10 +83,11 @@ where
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, M, S> AxisSums<OCTAVES, COVARIATES, M, S>
+impl<const OCTAVES: usize, const COVARIATES: usize, M, S, T> AxisSums<OCTAVES, COVARIATES, M, S, T>
 where
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     const NEW: Self = Self {
         accumulator: Accumulator::new(),
@@ -90,6 +95,7 @@ where
         moments: M::Sums::NEW,
         cross: [const { CrossSums::NEW }; COVARIATES],
         spectrum: S::Sums::NEW,
+        track: T::Track::NEW,
     };
 
     #[inline(always)]
@@ -100,6 +106,7 @@ where
             moments,
             cross,
             spectrum,
+            ..
         } = self;
         integrity.push(count);
         spectrum.push(count);
@@ -127,11 +134,12 @@ where
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S>
-    Kept<OCTAVES, COVARIATES, M, AXES, S>
+impl<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S, T>
+    Kept<OCTAVES, COVARIATES, M, AXES, S, T>
 where
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     pub(super) const NEW: Self = Self {
         axes: [const { AxisSums::NEW }; AXES],
@@ -155,6 +163,7 @@ where
         }
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
             axis.push(count, &completed);
+            axis.track.push(count, sample.covariates);
         }
         self.make_room();
     }
@@ -183,13 +192,15 @@ where
         self.axes.iter_mut().any(|axis| axis.spectrum.advance())
     }
 
+    /// No difference spans this place, where so many samples are missing, or an unknown number if it is 0.
     #[inline(never)]
-    pub(super) fn gap(&mut self) {
+    pub(super) fn gap(&mut self, missing: u64) {
         for axis in &mut self.axes {
             axis.add_pending(&self.covariates);
             axis.accumulator.gap();
             axis.integrity.gap();
             axis.spectrum.gap();
+            axis.track.gap(missing);
         }
         self.covariates.iter_mut().for_each(Accumulator::gap);
     }
@@ -201,10 +212,10 @@ where
     }
 
     pub(super) fn merge(&mut self, other: &Self) {
-        self.gap();
+        self.gap(0);
         // The pending differences of the other record belong to its own sums.
         let mut other = other.clone();
-        other.gap();
+        other.gap(0);
         for (own, other) in self.axes.iter_mut().zip(&other.axes) {
             own.accumulator.merge(&other.accumulator);
             own.integrity.merge(&other.integrity);

@@ -7,7 +7,7 @@
 //! | content | type |
 //! |---|---|
 //! | number of octaves, axes, covariates, self-tests | 4 × u8 |
-//! | parts: 1 for a gate, 2 for fourth moments, 3 for both | u8 |
+//! | parts: 1 for a gate, plus 2 for fourth moments, plus 4 for the course | u8 |
 //! | spectrum: number of blocks of a segment, number of levels; zeros without one | u16, u8 |
 //! | samples; gaps, including one at the end of the snapshot | 2 × u64 |
 //! | for each octave `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
@@ -18,17 +18,22 @@
 //! | and with a spectrum: samples that found no room | u64 |
 //! | and for each level, shortest blocks first: number of segments | u32 |
 //! | and for each bin, if there are segments: Σ P and Σ P² over the segments | 2 × f32 |
+//! | and with the course: its blocks, as `course::stored` says | |
 //! | losses | u64 |
 //! | with a gate: samples left out, then for each axis the integrity of all samples | u64, … |
 //! | for each self-test: plan, next look, limits kept, verdict | |
 //!
-//! Version 3, which has no spectrum, is read too.
+//! Version 3, which has neither spectrum nor course, is read too.
 
 use super::{
-    Axes, GatePart, MomentPart, SpectrumPart, gate::Passing, moments::MomentSums,
+    Axes, GatePart, MomentPart, SpectrumPart,
+    gate::Passing,
+    moments::MomentSums,
     spectra::SpectrumSums,
+    track::{Track, TrackPart},
 };
 use crate::{
+    course::Course,
     covariate::ProductSum,
     octave::{Accumulator, OctaveSum},
     self_test::{self, SelfTest},
@@ -76,15 +81,17 @@ impl Reader<'_> {
     }
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S>
-    Axes<OCTAVES, COVARIATES, G, M, AXES, S>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S, T>
+    Axes<OCTAVES, COVARIATES, G, M, AXES, S, T>
 where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     const HAS_GATE: bool = <G::State<AXES, COVARIATES> as Passing<AXES, COVARIATES>>::EXISTS;
     const HAS_MOMENTS: bool = <M::Sums<OCTAVES> as MomentSums<OCTAVES>>::EXIST;
+    const HAS_COURSE: bool = <T::Track<COVARIATES> as Track<COVARIATES>>::EXISTS;
 
     /// The size in bytes of a buffer that holds a snapshot of any record with this number of self-tests.
     /// The snapshot of a gyro at rest takes about a third of it.
@@ -94,7 +101,12 @@ where
         let products = COVARIATES * OCTAVES * (LONGEST + LONGEST_128);
         let seen = if Self::HAS_GATE { INTEGRITY } else { 0 };
         let spectrum = <S::Sums as SpectrumSums>::LONGEST;
-        let axis = sums + INTEGRITY + moments + products + seen + spectrum;
+        let course = if Self::HAS_COURSE {
+            Course::<COVARIATES>::LONGEST_STORED
+        } else {
+            0
+        };
+        let axis = sums + INTEGRITY + moments + products + seen + spectrum + course;
         let head = 5 + 4 + (4 + OCTAVES) * LONGEST;
         head + AXES * axis + COVARIATES * sums + self_tests * self_test::LONGEST + OVERHEAD
     }
@@ -105,7 +117,9 @@ where
             axes: AXES as u8,
             covariates: COVARIATES as u8,
             self_tests: self_tests as u8,
-            kept: u8::from(Self::HAS_GATE) + 2 * u8::from(Self::HAS_MOMENTS),
+            kept: u8::from(Self::HAS_GATE)
+                + 2 * u8::from(Self::HAS_MOMENTS)
+                + 4 * u8::from(Self::HAS_COURSE),
         }
     }
 
@@ -163,6 +177,9 @@ where
                 }
             }
             writer.push_with(|rest| axis.spectrum.write(rest))?;
+            if let Some(course) = axis.track.course() {
+                writer.push_with(|rest| course.write(rest))?;
+            }
         }
         writer.push(&self.losses)?;
         if let Some(gate) = self.gate.gate() {
@@ -267,6 +284,9 @@ where
                 *sum = ProductSum::from_parts(low, upper);
             }
             reader.0 = axis.spectrum.read(reader.0).ok_or(Error::Impossible)?;
+            if let Some(course) = axis.track.course_mut() {
+                reader.0 = course.read(reader.0).ok_or(Error::Impossible)?;
+            }
         }
         self.losses = reader.take()?;
         if let Some(gate) = self.gate.gate_mut() {
@@ -320,7 +340,8 @@ where
             return Err(Error::OtherParts);
         };
         let has_spectrum = <S::Sums as SpectrumSums>::SIZE != (0, 0);
-        if COVARIATES > 0 || Self::HAS_MOMENTS || has_spectrum || !self_tests.is_empty() {
+        let has_more = Self::HAS_MOMENTS || Self::HAS_COURSE || has_spectrum;
+        if COVARIATES > 0 || has_more || !self_tests.is_empty() {
             return Err(Error::OtherParts);
         }
         axis.accumulator = Accumulator::restore(bytes)?;

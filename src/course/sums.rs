@@ -99,6 +99,44 @@ impl<const COVARIATES: usize> Sums<COVARIATES> {
         self.counts
     }
 
+    /// What is stored beside the covariates: the sum of the counts, the lower and the upper part of that of the
+    /// squares, and the numbers of samples that are missing and of those without a difference.
+    #[cfg(feature = "storage")]
+    pub(super) const fn parts(&self) -> (i64, u64, u32, u32, u32) {
+        let Self {
+            counts,
+            squares,
+            squares_high,
+            missing,
+            starts,
+            ..
+        } = *self;
+        (counts, squares, squares_high, missing, starts)
+    }
+
+    /// The sums of a block that spans `time` samples of time, from what was stored; `None` if no block can have them.
+    #[cfg(feature = "storage")]
+    pub(super) fn from_parts(
+        (counts, squares, squares_high, missing, starts): (i64, u64, u32, u32, u32),
+        covariates: [i64; COVARIATES],
+        time: u32,
+    ) -> Option<Self> {
+        let samples = time.checked_sub(missing)?;
+        let differences = samples.checked_sub(starts)?;
+        let most = i64::from(samples).wrapping_shl(31);
+        let fits = |sum: &i64| (most.wrapping_neg()..=most).contains(sum);
+        // A square is below 2^64.
+        let possible = squares_high < differences || (squares_high, squares) == (0, 0);
+        (fits(&counts) && covariates.iter().all(fits) && possible).then_some(Self {
+            counts,
+            squares,
+            squares_high,
+            missing,
+            starts,
+            covariates,
+        })
+    }
+
     /// The sum of squared differences.
     pub(super) const fn squares(&self) -> u128 {
         (self.squares_high as u128) << 64 | self.squares as u128

@@ -22,6 +22,10 @@ const MINIMA: usize = 4;
 /// The fewest steps of the first parameter between two shapes that are refined.
 const APART: u32 = 2;
 
+/// The factor by which the frequency of a line may differ from that of its peak: a line between the lowest two bins
+/// of a level, 4 and 5, is nearer than that.
+const AROUND: Real = 1.4;
+
 /// The step of shapes with the frequency of a peak, which lie apart from all others.
 const AT_PEAK: u32 = u32::MAX;
 
@@ -31,8 +35,10 @@ pub(crate) struct GridSearch {
     grids: [Grid; MAX_PARAMETERS],
     /// The frequency of a peak, at which the search begins.
     peak_hz: Option<Real>,
-    /// The number of steps of the first parameter that are searched.
+    /// The number of steps of the first parameter that are searched, and the steps among them that are skipped: the
+    /// first of them, and the one behind them.
     steps: u32,
+    skipped: (u32, u32),
     /// The steps of the two parameters that come next.
     at: [u32; MAX_PARAMETERS],
     /// The best shapes of the grid that lie apart, best first, and their step of the first parameter.
@@ -50,6 +56,7 @@ impl GridSearch {
         Self {
             term,
             steps: grids.first().map_or(0, |first| first.steps),
+            skipped: (0, 0),
             grids,
             peak_hz: None,
             at: [0; MAX_PARAMETERS],
@@ -60,7 +67,7 @@ impl GridSearch {
     }
 
     /// Begins at a peak. It has no effect on a search that is not for a frequency. A line in the range of the bins
-    /// is the peak, so that the grid is searched only below that range.
+    /// is at the peak, so that the grid is searched only around the peak and below that range.
     pub(crate) fn at_peak(mut self, peak: Option<Peak>) -> Self {
         let parameters = self.term.effect.parameters();
         let is_frequency = parameters.first().is_some_and(|first| first.unit == "Hz");
@@ -69,7 +76,14 @@ impl GridSearch {
         };
         self.peak_hz = Some(peak.frequency_hz);
         if let ([_], [first, ..]) = (parameters, self.grids) {
-            self.steps = first.steps_to(peak.lowest_hz);
+            let [below, around, above] = [
+                peak.lowest_hz,
+                peak.frequency_hz / AROUND,
+                peak.frequency_hz * AROUND,
+            ]
+            .map(|frequency_hz| first.steps_to(frequency_hz));
+            self.skipped = (below, around.max(below));
+            self.steps = above.max(below);
         }
         self
     }
@@ -121,6 +135,10 @@ impl GridSearch {
             self.at[1] = self.at[1].saturating_add(1);
             if self.at[1] >= second.steps {
                 self.at = [self.at[0].saturating_add(1), 0];
+            }
+            let (skipped, behind) = self.skipped;
+            if self.at[0] == skipped && skipped < behind {
+                self.at[0] = behind;
             }
         }
         None

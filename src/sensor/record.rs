@@ -1,13 +1,15 @@
 //! Records what a sensor's driver returns.
 
 use super::{Error, Reading};
-use crate::axis::{Axes, GatePart, MomentPart, SpectrumPart};
+use crate::axis::{Axes, GatePart, MomentPart, SpectrumPart, TrackPart};
 
-impl<const OCTAVES: usize, const COVARIATES: usize, G, M, S> Axes<OCTAVES, COVARIATES, G, M, 3, S>
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, S, T>
+    Axes<OCTAVES, COVARIATES, G, M, 3, S, T>
 where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     /// Records the result of [`Imu::read`](super::Imu::read), so that no loss goes unnoticed. A sample is
     /// pushed, after a gap if samples were lost before it. An error becomes a gap. `covariates` returns the

@@ -20,7 +20,8 @@ mod image {
     use crate::{stack, work};
     use allanite::{
         Accumulator, Axes, Curve, Model,
-        axis::{Gated, Moments, Spectral},
+        axis::{Gated, Moments, Spectral, Tracked},
+        course::Course,
         spectrum::SpectrumAccumulator,
     };
     use core::hint::black_box;
@@ -91,14 +92,23 @@ mod image {
     /// Measures three axes with every part of the library and one covariate.
     #[inline(never)]
     fn axes(clock: &Clock) {
-        let mean = work::mean_of_axes::<1, Gated, Moments, ()>(clock);
+        let mean = work::mean_of_axes::<1, Gated, Moments, (), ()>(clock);
         defmt::info!("instructions_per_sample_three_axes {=f64}", mean);
         let axis = size_of::<Axes<USUAL, 1>>() / 3;
         defmt::info!("ram_bytes_per_axis_20_with_all_parts {=usize}", axis);
-        let with_spectrum = work::mean_of_axes::<1, Gated, Moments, Spectral>(clock);
+        let with_spectrum = work::mean_of_axes::<1, Gated, Moments, Spectral, ()>(clock);
         defmt::info!(
             "instructions_per_sample_three_axes_with_spectrum {=f64}",
             with_spectrum
+        );
+        let with_course = work::mean_of_axes::<1, Gated, Moments, Spectral, Tracked>(clock);
+        defmt::info!(
+            "instructions_per_sample_three_axes_with_spectrum_and_course {=f64}",
+            with_course
+        );
+        defmt::info!(
+            "ram_bytes_per_axis_of_course {=usize}",
+            size_of::<Course<1>>()
         );
         defmt::info!(
             "ram_bytes_per_axis_of_spectrum {=usize}",

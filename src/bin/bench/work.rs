@@ -7,7 +7,7 @@ use allanite::effect::{
 };
 use allanite::{
     Accumulator, Axes, Curve, Error, Model, Real,
-    axis::{GatePart, MomentPart, SpectrumPart},
+    axis::{GatePart, MomentPart, SpectrumPart, TrackPart},
     diagnosis::{self, Diagnosis, Evidence, Progress, Verdict},
     fit::{Fit, Fitting, Options, fit},
     spectrum::{Bin, Spectrum, SpectrumAccumulator},
@@ -57,14 +57,15 @@ pub(crate) fn mean(clock: &Clock, work: fn(&mut Accumulator<24>, i32)) -> f64 {
 }
 
 /// The mean number of instructions of a sample of three axes with the given parts, including the loop.
-pub(crate) fn mean_of_axes<const COVARIATES: usize, G, M, S>(clock: &Clock) -> f64
+pub(crate) fn mean_of_axes<const COVARIATES: usize, G, M, S, T>(clock: &Clock) -> f64
 where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
+    T: TrackPart,
 {
     let counts = counts();
-    let mut axes = Axes::<20, COVARIATES, G, M, 3, S>::new();
+    let mut axes = Axes::<20, COVARIATES, G, M, 3, S, T>::new();
     let mut round = |n: i32| {
         for (i, &count) in (0..).zip(&counts) {
             let at = |behind: usize| counts[(i + behind) % LENGTH];

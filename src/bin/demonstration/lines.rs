@@ -5,6 +5,7 @@ use super::{characterise::Characterised, double};
 use allanite::{
     Curve, Real,
     axis::AxisEvidence,
+    course::Block,
     diagnosis::{Addition, Step},
     spectrum::Spectrum,
 };
@@ -56,6 +57,15 @@ pub fn evidence<const K: usize, const C: usize, const B: usize>(
         ));
     }
     line(format_args!("invalid {:?}", axis.invalid));
+}
+
+/// Prints a block of a course.
+pub fn block<const C: usize>(block: &Block<C>, mut line: impl FnMut(Arguments<'_>)) {
+    let [mean, square] = [block.mean, block.mean_square_difference].map(Exact);
+    line(format_args!(
+        "block start_s {} samples {} mean {mean} mean_square_difference {square}",
+        block.start_s, block.samples
+    ));
 }
 
 /// Prints the curve, one line for each coefficient, and one line for the fit.

@@ -6,9 +6,11 @@
 use super::{AMPLITUDES, lines, simulated::SimulatedGyro};
 use allanite::{
     Axes, Error, Model, Real, Scale,
-    axis::{Gated, Moments, Sample, Spectral},
+    axis::{Gated, Moments, Sample, Spectral, Tracked},
+    course::analyse,
     diagnosis::{Diagnosis, Options},
     effect::CATALOGUE,
+    fit,
     queue::{self, Queued},
     self_test::{Limit, Plan, SelfTest},
     storage,
@@ -19,8 +21,8 @@ use heapless::{Vec, spsc::Queue};
 /// The number of octaves of averaging time.
 pub const OCTAVES: usize = 16;
 
-/// Three axes and a temperature, with a gate, fourth moments and a spectrum.
-pub type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 84>>;
+/// Three axes and a temperature, with a gate, fourth moments, a spectrum and the course.
+pub type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 84>, Tracked>;
 
 /// The number of samples that the sensor makes: 11 minutes.
 pub const SAMPLES: u32 = 1 << 16;
@@ -200,5 +202,30 @@ pub fn run(
         Diagnosis::with_spectrum(curve, spectrum, x.evidence(), &model, &CATALOGUE, options);
     let verdict = diagnosis.run(|step| lines::step(step, &mut line))?;
     line(format_args!("verdict {verdict:?}"));
+    course(gyro, scale, &mut line)?;
+    Ok(())
+}
+
+/// Prints the course of the second axis, and what happened in it.
+#[inline(never)]
+fn course(gyro: &Gyro, scale: Scale, line: &mut impl FnMut(Arguments<'_>)) -> Result<(), Error> {
+    let [_, Some(course), _] = gyro.courses() else {
+        return Ok(());
+    };
+    for block in course.blocks(scale) {
+        lines::block(&block, &mut *line);
+    }
+    let y = gyro.evidence(1, scale, [KELVIN])?;
+    let analysis = analyse(
+        &y.curve,
+        &Model::ieee_952(),
+        course,
+        scale,
+        fit::Options::default(),
+    )?;
+    for event in &analysis.events {
+        line(format_args!("event {event:?}"));
+    }
+    line(format_args!("largest {:?}", analysis.largest));
     Ok(())
 }

@@ -13,7 +13,8 @@ mod image {
     use allanite::self_test::{Plan, SelfTest};
     use allanite::{
         Accumulator, Axes, Model, Scale,
-        axis::{Gated, Moments, Spectral},
+        axis::{Gated, Moments, Spectral, Tracked},
+        course::analyse,
         diagnosis::{self, Diagnosis},
         fit::{Options, fit},
     };
@@ -21,7 +22,7 @@ mod image {
     use heapless::{Vec, spsc::Queue};
 
     /// Three axes and a temperature, with every part.
-    type Gyro = Axes<20, 1, Gated, Moments, 3, Spectral>;
+    type Gyro = Axes<20, 1, Gated, Moments, 3, Spectral, Tracked>;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
     #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
@@ -82,6 +83,10 @@ mod image {
             Diagnosis::with_spectrum(curve, spectrum, x.evidence(), &model, &CATALOGUE, options)
                 .run(report);
         let _ = black_box(verdict);
+        if let [Some(course), ..] = records.courses() {
+            let analysis = analyse(&x.curve, &model, course, scale, Options::default());
+            black_box(analysis.is_ok());
+        }
         if let Ok(fit) = fit(&x.curve, &model, Options::default()) {
             let _ = black_box(fit.correlations(&x.curve, &model));
         }

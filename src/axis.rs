@@ -67,17 +67,19 @@ pub type Axis<
 ///
 /// # Cost
 ///
-/// With every part, 20 octaves and one covariate, three axes take 5.2 KiB per axis on a 32-bit core. An
-/// empty state is all zero, so that a `static` is placed in `.bss`. `cargo xtask bench` measures the
-/// memory and the instructions per sample.
+/// With the parts that are the default, 20 octaves and one covariate, three axes take 5.2 KiB per axis on a 32-bit
+/// core. A spectrum takes 3.9 KiB more per axis, and a course 2.6 KiB. An empty state is all zero, so that a
+/// `static` is placed in `.bss`. `cargo xtask bench` measures the memory and the instructions per sample.
 ///
 /// # Example
 ///
 /// ```
 /// use allanite::{Axes, Model, Scale, diagnosis::{Diagnosis, Options}, effect::CATALOGUE};
+/// use allanite::axis::{Gated, Moments, Spectral};
 ///
-/// // Three axes of 12 octaves, with a temperature as the covariate.
-/// static EMPTY: Axes<12, 1> = Axes::new();
+/// // Three axes of 12 octaves, with a temperature as the covariate, and with a spectrum of three levels.
+/// type Gyro = Axes<12, 1, Gated, Moments, 3, Spectral<64, 3, 84>>;
+/// static EMPTY: Gyro = Gyro::new();
 /// let mut axes = EMPTY.clone();
 /// let mut random = 1_u32;
 /// let mut noise = || {
@@ -95,8 +97,11 @@ pub type Axis<
 /// let x = axes.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [0.01])?;
 /// assert_eq!(x.invalid, None);
 /// let (model, options) = (Model::ieee_952(), Options::default());
-/// let mut diagnosis = Diagnosis::new(x.curve.clone(), x.evidence(), &model, &CATALOGUE, options);
+/// let mut diagnosis = Diagnosis::with_spectrum(
+///     x.curve.clone(), x.spectrum.clone(), x.evidence(), &model, &CATALOGUE, options,
+/// );
 /// diagnosis.run(|step| println!("{}", step.comparison))?;
+/// assert_eq!(x.spectrum.bins().len(), 2 * 28); // a third level needs 35 000 samples
 /// # Ok::<(), allanite::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]

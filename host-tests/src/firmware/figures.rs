@@ -37,9 +37,10 @@ fn rows(target: &Figures<'_>) -> Result<Vec<(&'static str, String)>> {
     let mean = target.of("instructions_per_sample")?;
     let of = |name| target.of(name);
     let bytes = |name| Ok::<_, anyhow::Error>(format!("{} bytes", of(name)?));
+    let whole = |name| Ok::<_, anyhow::Error>(format!("{:.0}", of(name)?));
     let run = |of: &str| -> Result<String> {
-        let instructions = target.million(&format!("instructions_{of}_20"))?;
-        let stack = target.of(&format!("stack_bytes_{of}_20"))?;
+        let instructions = target.million(&format!("instructions_{of}"))?;
+        let stack = target.of(&format!("stack_bytes_{of}"))?;
         Ok(format!(
             "{instructions} million instructions, {stack} bytes of stack"
         ))
@@ -71,14 +72,54 @@ fn rows(target: &Figures<'_>) -> Result<Vec<(&'static str, String)>> {
             "flash with the whole diagnosis",
             bytes("flash_bytes_with_diagnosis")?,
         ),
-        ("fit of 20 octaves", run("fit")?),
+        ("fit of 20 octaves", run("fit_20")?),
         (
             "diagnosis of 20 octaves with one hidden effect",
-            run("diagnosis")?,
+            run("diagnosis_20")?,
         ),
         (
             "RAM of three axes of 20 octaves, stack of a diagnosis included",
             bytes("ram_bytes_three_axes_20_with_diagnosis")?,
+        ),
+        (
+            "instructions a sample of three axes with every part but spectrum and course, and a temperature",
+            whole("instructions_per_sample_three_axes")?,
+        ),
+        (
+            "the same with spectra",
+            whole("instructions_per_sample_three_axes_with_spectrum")?,
+        ),
+        (
+            "the same with spectra and courses",
+            whole("instructions_per_sample_three_axes_with_spectrum_and_course")?,
+        ),
+        (
+            "instructions a sample of a spectrum alone, in the interrupt and in the main loop",
+            format!(
+                "{} and {}",
+                whole("instructions_per_sample_spectrum_interrupt")?,
+                whole("instructions_per_sample_spectrum_main_loop")?
+            ),
+        ),
+        (
+            "RAM an axis with every part but spectrum and course, 20 octaves",
+            bytes("ram_bytes_per_axis_20_with_all_parts")?,
+        ),
+        (
+            "RAM an axis for a spectrum of 7 levels, and for a course with a temperature",
+            format!(
+                "{} and {} bytes",
+                of("ram_bytes_per_axis_of_spectrum")?,
+                of("ram_bytes_per_axis_of_course")?
+            ),
+        ),
+        (
+            "flash with the whole diagnosis and a spectrum",
+            bytes("flash_bytes_with_spectrum")?,
+        ),
+        (
+            "diagnosis with a spectrum of 112 bins",
+            run("diagnosis_with_spectrum")?,
         ),
     ])
 }

@@ -1,5 +1,5 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
     SampledShape, SearchRange, SecondDifferences, Tail, angle_random_walk::AngleRandomWalk,
     pole::Pole,
 };
@@ -94,6 +94,11 @@ pub(super) const DESCRIPTION: Description = Description {
                 high: (64.0 * span.interval_s).min(0.1 * span.longest_tau_s),
                 steps_per_octave: 4.0,
             },
+            reciprocal: Some(Reciprocal {
+                name: "cutoff_hz",
+                unit: "Hz",
+                product: 0.5 / PI,
+            }),
         },
         Parameter {
             name: "poles",
@@ -104,6 +109,7 @@ pub(super) const DESCRIPTION: Description = Description {
                 high: 3.0,
                 steps_per_octave: 1.0,
             },
+            reciprocal: None,
         },
     ],
     code: 9,

@@ -4,12 +4,13 @@ use super::diagnosed::{Diagnosed, added_name};
 use crate::{
     command::{
         fit,
-        output::model_json::{self, Effect, Worst},
+        output::model_json::{self, Effect, Shape, Worst},
     },
     log::{BINS, OCTAVES},
     unit::Unit,
 };
 use allanite::{
+    Term,
     comparison::ComparedBin,
     course::{Event as Told, What},
     detection::Range,
@@ -27,6 +28,9 @@ pub(crate) struct Document<'a> {
 #[derive(Serialize)]
 struct Axis<'a> {
     axis: &'a str,
+    /// The filter that was given, and whether it fits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    filter: Option<Filter>,
     steps: Vec<Step>,
     /// The spectrum beside the last model.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -39,6 +43,15 @@ struct Axis<'a> {
     /// The sizes of effects that the record would have shown with a probability of 95 %, over ranges of shapes.
     detection_limits: Vec<DetectionLimit>,
     notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Filter {
+    #[serde(flatten)]
+    given: Shape,
+    fits: bool,
+    /// The filter that fits better; `null` if the given one fits, or no filter does.
+    better: Option<Shape>,
 }
 
 #[derive(Serialize)]
@@ -128,6 +141,7 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
     names.dedup();
     Axis {
         axis: &diagnosed.axis.axis,
+        filter: diagnosed.filter().map(|given| filter(given, diagnosed)),
         steps: diagnosed
             .steps
             .iter()
@@ -143,6 +157,17 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
         ambiguous: names,
         detection_limits: limits(diagnosed),
         notes: diagnosed.notes(),
+    }
+}
+
+fn filter(given: &Term, diagnosed: &Diagnosed) -> Filter {
+    let better = diagnosed.better.as_ref();
+    Filter {
+        given: model_json::shape(given),
+        fits: better.is_none(),
+        better: better
+            .and_then(|better| better.filter.as_ref())
+            .map(model_json::shape),
     }
 }
 

@@ -5,7 +5,7 @@ use super::{
     words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
 };
 use crate::{
-    command::{fit, output::words},
+    command::{fit, known_filter::described, output::words},
     log::{BINS, OCTAVES},
     plot::Plot,
 };
@@ -30,9 +30,13 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     };
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
     writeln!(output, "{}: {record}", axis.axis)?;
+    if let Some(filter) = diagnosed.filter() {
+        writeln!(output, "given: {}", described(filter))?;
+    }
     writeln!(
         output,
-        "five terms: χ² {:.1}, {} degrees of freedom, p {}; misfit {:.1} % rms",
+        "{}: χ² {:.1}, {} degrees of freedom, p {}; misfit {:.1} % rms",
+        diagnosed.model_name(0),
         first.fit.chi_squared,
         first.fit.degrees_of_freedom,
         shown_p(first.fit.p_value),

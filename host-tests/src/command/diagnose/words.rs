@@ -1,10 +1,13 @@
 //! The words of a diagnosis, which `diagnose` prints and the page of `report` shows.
 
-use super::diagnosed::Diagnosed;
+use super::{diagnosed::Diagnosed, given_filter::Better};
 use crate::{
-    command::output::{
-        number::{self, probability},
-        words,
+    command::{
+        known_filter,
+        output::{
+            number::{self, probability},
+            words,
+        },
     },
     log::{BINS, OCTAVES},
 };
@@ -210,16 +213,26 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
         return String::new();
     };
     let p = shown_p(last.fit.p_value);
+    let terms = known_filter::terms(&first.model);
     match diagnosed.verdict {
         Verdict::Invalid(reason) => {
             format!("no effect was looked for, because the curve is not valid: {reason}.")
         }
-        Verdict::Adequate => format!("the five terms are adequate (p {p}): no effect is missing."),
+        Verdict::Adequate => format!("the {terms} are adequate (p {p}): no effect is missing."),
         Verdict::TooShort => {
-            "there are too few octaves to judge the five terms: record longer.".into()
+            format!("there are too few octaves to judge the {terms}: record longer.")
+        }
+        Verdict::Unexplained | Verdict::Incomplete if diagnosed.better.is_some() => {
+            let better = diagnosed
+                .better
+                .as_ref()
+                .map_or(String::new(), Better::words);
+            format!(
+                "the {terms} are not adequate (p {p}), because the filter does not fit: {better}."
+            )
         }
         Verdict::Unexplained => format!(
-            "the five terms are not adequate (p {p}), and no effect in the catalogue explains the difference."
+            "the {terms} are not adequate (p {p}), and no effect in the catalogue explains the difference."
         ),
         _ => {
             let names = diagnosed.missing().map(|name| match &last.covariate {
@@ -247,7 +260,7 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
                 "missing effects"
             };
             let missing = if first.fit.is_adequate() == Some(true) {
-                format!("{effects}: {names}{alike}, although the five terms fit the curve; {error}")
+                format!("{effects}: {names}{alike}, although the {terms} fit the curve; {error}")
             } else {
                 format!("{effects}: {names}{alike}; {error}")
             };

@@ -62,6 +62,7 @@ catalogue! {
     decimation_filter::DecimationFilter,
     random_telegraph::RandomTelegraph,
     power_law::PowerLaw,
+    notch::Notch,
 }
 
 /// The five terms of IEEE Std 952-1997, annex C, in the order of their slopes.

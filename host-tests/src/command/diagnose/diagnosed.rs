@@ -1,11 +1,15 @@
 //! A record and the steps of its diagnosis, which `diagnose` prints, `report` shows and `plot` draws.
 
-use super::given_filter::Better;
+use super::{
+    given_filter::Better,
+    lines::{self, Line, comb_words},
+};
 use crate::{
+    comb::Comb,
     command::{
         input::record::{self, LogArguments},
         known_filter::{self, KnownFilter, known_filter},
-        output::{rounding, words},
+        output::{number::number, rounding, words},
     },
     curve_file::AxisCurve,
     failure::Failure,
@@ -97,6 +101,9 @@ pub(crate) struct Diagnosed {
     /// What happened during the record. Empty for a curve file, which has no course, and for a record that is not
     /// valid.
     pub(crate) events: Vec<Event>,
+    /// The sinusoids of the last model, and those of them that are harmonics of one fundamental.
+    pub(crate) lines: Vec<Line>,
+    pub(crate) combs: Vec<Comb>,
     /// The options of the search for effects.
     pub(crate) options: Options,
     /// Names of the covariates.
@@ -153,11 +160,15 @@ impl Diagnosed {
             better,
             limits: Vec::new(),
             events: Vec::new(),
+            lines: Vec::new(),
+            combs: Vec::new(),
             options,
             covariates,
             cross,
         };
         diagnosed.limits = diagnosed.detection_limits()?;
+        diagnosed.lines = diagnosed.lines()?;
+        diagnosed.combs = lines::combs(&diagnosed.lines, diagnosed.axis.rate_hz);
         if let Some(course) = course {
             diagnosed.events = diagnosed.events_in(&course)?;
         }
@@ -187,6 +198,15 @@ impl Diagnosed {
                 .run(|limit| limits.push(limit))?;
         }
         Ok(limits)
+    }
+
+    /// The sinusoids of the last model.
+    fn lines(&self) -> Result<Vec<Line>, Error> {
+        let Some(last) = self.steps.last() else {
+            return Ok(Vec::new());
+        };
+        let (curve, spectrum) = (self.curve_of(last)?, self.axis.spectrum()?);
+        lines::lines(Observed::new(&curve, &spectrum), last)
     }
 
     /// The limits of detection as ranges of shapes.
@@ -277,6 +297,47 @@ impl Diagnosed {
             .chain(self.added().map(|term| term.effect.name()))
     }
 
+    /// The covariate and the effects that were added and kept, in words. Lines that are one comb are said as one.
+    pub(crate) fn missing_words(&self) -> Vec<String> {
+        let followed = self.steps.last().and_then(|last| last.covariate.as_ref());
+        let covariate =
+            followed.map(|followed| format!("{} {}", covariate::NAME, self.covariate(followed)));
+        let model = self.steps.last().map(|last| &last.model);
+        let terms = model.map_or(&[][..], |model| model.terms());
+        let place = |line: usize| self.lines[line].place;
+        let in_comb = |at: usize| {
+            let mut members = self.combs.iter().flat_map(|comb| &comb.members);
+            members.any(|(line, _)| place(*line) == at)
+        };
+        let asked = self.steps.first().map(|first| &first.model);
+        let is_added =
+            |term: &Term| asked.is_some_and(|asked| asked.position(term.effect.name()).is_none());
+        let single = terms
+            .iter()
+            .enumerate()
+            .filter(|(at, term)| is_added(term) && !in_comb(*at));
+        let single = single.map(|(_, term)| words::plain(term.effect.name()));
+        let combs = self.combs.iter();
+        let combs = combs.map(|comb| format!("sinusoids ({})", comb_words(comb)));
+        covariate.into_iter().chain(combs).chain(single).collect()
+    }
+
+    /// What each comb consists of, one sentence each.
+    fn comb_notes(&self) -> impl Iterator<Item = String> {
+        self.combs.iter().map(|comb| {
+            let frequency = |(line, _): &(usize, u32)| number(self.lines[*line].frequency_hz);
+            let frequencies = words::list_of(comb.members.iter().map(frequency).collect());
+            let origin = match comb.mains_hz {
+                Some(_) => "which come in through wires or the supply",
+                None => "which one source makes, such as a motor or a clock",
+            };
+            format!(
+                "the sinusoids at {frequencies} Hz are one comb: {}, {origin}",
+                comb_words(comb)
+            )
+        })
+    }
+
     /// The addition of each step that has ambiguous alternatives, with the names of these alternatives:
     /// they explain the curve about as well. Steps whose addition was dropped later are not among them.
     pub(crate) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
@@ -333,6 +394,7 @@ impl Diagnosed {
                 words::alternatives(others.iter().copied())
             ));
         }
+        notes.extend(self.comb_notes());
         if self.added().next().is_some() && self.verdict == Verdict::Improved {
             notes.push(SELECTED.into());
         }

@@ -3,6 +3,7 @@
 pub(super) mod diagnosed;
 mod given_filter;
 pub(super) mod json;
+pub(super) mod lines;
 pub(super) mod text;
 pub(super) mod words;
 

@@ -5,7 +5,11 @@ use super::{
     words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
 };
 use crate::{
-    command::{fit, known_filter::described, output::words},
+    command::{
+        fit,
+        known_filter::described,
+        output::{number::two_digits, words},
+    },
     log::{BINS, OCTAVES},
     plot::Plot,
 };
@@ -68,7 +72,16 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     for (at, term) in last.model.terms().iter().enumerate() {
         let shape = words::shape(term, Some((&last.fit, at)));
         if !shape.is_empty() {
-            writeln!(output, "{}: {shape}", words::plain(term.effect.name()))?;
+            let mut lines = diagnosed.lines.iter().filter(|line| line.place == at);
+            let width = lines.next().and_then(|line| line.narrower_than_hz);
+            let width = width.map_or(String::new(), |width_hz| {
+                format!(", narrower than {} Hz", two_digits(width_hz))
+            });
+            writeln!(
+                output,
+                "{}: {shape}{width}",
+                words::plain(term.effect.name())
+            )?;
         }
     }
     writeln!(

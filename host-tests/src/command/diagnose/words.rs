@@ -235,13 +235,12 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
             "the {terms} are not adequate (p {p}), and no effect in the catalogue explains the difference."
         ),
         _ => {
-            let names = diagnosed.missing().map(|name| match &last.covariate {
-                Some(followed) if name == covariate::NAME => {
-                    format!("{name} {}", diagnosed.covariate(followed))
-                }
-                _ => words::plain(name),
-            });
-            let names = words::list_of(names.collect());
+            let names = diagnosed.missing_words();
+            let effects = match names.len() {
+                1 if diagnosed.combs.is_empty() => "missing effect",
+                _ => "missing effects",
+            };
+            let names = words::list_of(names);
             let alike = if diagnosed.ambiguous().next().is_some() {
                 " (or an ambiguous alternative)"
             } else {
@@ -254,11 +253,6 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
                 first.comparison.rms_percent,
                 last.comparison.rms_percent
             );
-            let effects = if diagnosed.missing().count() == 1 {
-                "missing effect"
-            } else {
-                "missing effects"
-            };
             let missing = if first.fit.is_adequate() == Some(true) {
                 format!("{effects}: {names}{alike}, although the {terms} fit the curve; {error}")
             } else {

@@ -1,15 +1,18 @@
 //! Lines of a spectrum that are harmonics of one fundamental.
 
-/// A line: its frequency between 0 and half the sample rate, and the standard error of the frequency, in Hz.
+/// A line of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
+    /// The frequency, between 0 and half the sample rate.
     pub frequency_hz: f64,
+    /// The standard error of the frequency.
     pub error_hz: f64,
 }
 
 /// Lines that are harmonics of one fundamental, or their aliases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comb {
+    /// The frequency of the fundamental, as all lines give it.
     pub fundamental_hz: f64,
     /// The nominal frequency of the mains, if the fundamental agrees with it.
     pub mains_hz: Option<f64>,

@@ -2,14 +2,14 @@
 
 use super::{
     given_filter::Better,
-    lines::{self, Line, comb_words},
+    lines::{self, Line, comb_notes},
 };
 use crate::{
     comb::Comb,
     command::{
         input::record::{self, LogArguments},
         known_filter::{self, KnownFilter, known_filter},
-        output::{number::number, rounding, words},
+        output::{rounding, words},
     },
     curve_file::AxisCurve,
     failure::Failure,
@@ -272,7 +272,7 @@ impl Diagnosed {
     }
 
     /// The effects that were added and kept, as in the last model. Covariates are not among them.
-    fn added(&self) -> impl Iterator<Item = &Term> {
+    pub(super) fn added(&self) -> impl Iterator<Item = &Term> {
         self.steps
             .last()
             .into_iter()
@@ -295,47 +295,6 @@ impl Diagnosed {
         covariate
             .into_iter()
             .chain(self.added().map(|term| term.effect.name()))
-    }
-
-    /// The covariate and the effects that were added and kept, in words. Lines that are one comb are said as one.
-    pub(crate) fn missing_words(&self) -> Vec<String> {
-        let followed = self.steps.last().and_then(|last| last.covariate.as_ref());
-        let covariate =
-            followed.map(|followed| format!("{} {}", covariate::NAME, self.covariate(followed)));
-        let model = self.steps.last().map(|last| &last.model);
-        let terms = model.map_or(&[][..], |model| model.terms());
-        let place = |line: usize| self.lines[line].place;
-        let in_comb = |at: usize| {
-            let mut members = self.combs.iter().flat_map(|comb| &comb.members);
-            members.any(|(line, _)| place(*line) == at)
-        };
-        let asked = self.steps.first().map(|first| &first.model);
-        let is_added =
-            |term: &Term| asked.is_some_and(|asked| asked.position(term.effect.name()).is_none());
-        let single = terms
-            .iter()
-            .enumerate()
-            .filter(|(at, term)| is_added(term) && !in_comb(*at));
-        let single = single.map(|(_, term)| words::plain(term.effect.name()));
-        let combs = self.combs.iter();
-        let combs = combs.map(|comb| format!("sinusoids ({})", comb_words(comb)));
-        covariate.into_iter().chain(combs).chain(single).collect()
-    }
-
-    /// What each comb consists of, one sentence each.
-    fn comb_notes(&self) -> impl Iterator<Item = String> {
-        self.combs.iter().map(|comb| {
-            let frequency = |(line, _): &(usize, u32)| number(self.lines[*line].frequency_hz);
-            let frequencies = words::list_of(comb.members.iter().map(frequency).collect());
-            let origin = match comb.mains_hz {
-                Some(_) => "which come in through wires or the supply",
-                None => "which one source makes, such as a motor or a clock",
-            };
-            format!(
-                "the sinusoids at {frequencies} Hz are one comb: {}, {origin}",
-                comb_words(comb)
-            )
-        })
     }
 
     /// The addition of each step that has ambiguous alternatives, with the names of these alternatives:
@@ -394,7 +353,7 @@ impl Diagnosed {
                 words::alternatives(others.iter().copied())
             ));
         }
-        notes.extend(self.comb_notes());
+        notes.extend(comb_notes(&self.lines, &self.combs));
         if self.added().next().is_some() && self.verdict == Verdict::Improved {
             notes.push(SELECTED.into());
         }

@@ -2,7 +2,7 @@
 
 use crate::{
     comb::{self, Comb},
-    command::output::number::number,
+    command::output::{number::number, words},
     log::{BINS, OCTAVES},
 };
 use allanite::{
@@ -60,6 +60,23 @@ pub(super) fn combs(lines: &[Line], rate_hz: f64) -> Vec<Comb> {
     };
     let seen: Vec<comb::Line> = lines.iter().map(as_seen).collect();
     comb::combs(&seen, rate_hz)
+}
+
+/// What each comb consists of, one sentence each.
+pub(super) fn comb_notes(lines: &[Line], combs: &[Comb]) -> Vec<String> {
+    let note = |comb: &Comb| {
+        let frequency = |(line, _): &(usize, u32)| number(lines[*line].frequency_hz);
+        let frequencies = words::list_of(comb.members.iter().map(frequency).collect());
+        let origin = match comb.mains_hz {
+            Some(_) => "which come in through wires or the supply",
+            None => "which one source makes, such as a motor or a clock",
+        };
+        format!(
+            "the sinusoids at {frequencies} Hz are one comb: {}, {origin}",
+            comb_words(comb)
+        )
+    };
+    combs.iter().map(note).collect()
 }
 
 /// A comb in words: `6.100 Hz and 2 harmonics`, `50 Hz mains and 2 harmonics`.

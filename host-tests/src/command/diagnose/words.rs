@@ -1,6 +1,6 @@
 //! The words of a diagnosis, which `diagnose` prints and the page of `report` shows.
 
-use super::{diagnosed::Diagnosed, given_filter::Better};
+use super::{diagnosed::Diagnosed, given_filter::Better, lines::comb_words};
 use crate::{
     command::{
         known_filter,
@@ -207,6 +207,26 @@ pub(crate) fn shown_p(p: f64) -> String {
     }
 }
 
+/// The covariate and the effects that were added and kept, in words. Lines that are one comb are said as one.
+fn missing(diagnosed: &Diagnosed) -> Vec<String> {
+    let Some((_, last)) = diagnosed.ends() else {
+        return Vec::new();
+    };
+    let followed = last.covariate.as_ref();
+    let covariate =
+        followed.map(|followed| format!("{} {}", covariate::NAME, diagnosed.covariate(followed)));
+    let in_a_comb = |term: &Term| {
+        let members = diagnosed.combs.iter().flat_map(|comb| &comb.members);
+        let mut places = members.map(|(line, _)| diagnosed.lines[*line].place);
+        places.any(|place| std::ptr::eq(term, &last.model.terms()[place]))
+    };
+    let combs = diagnosed.combs.iter();
+    let combs = combs.map(|comb| format!("sinusoids ({})", comb_words(comb)));
+    let single = diagnosed.added().filter(|term| !in_a_comb(term));
+    let single = single.map(|term| words::plain(term.effect.name()));
+    covariate.into_iter().chain(combs).chain(single).collect()
+}
+
 /// The result of the diagnosis in a sentence.
 pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
     let Some((first, last)) = diagnosed.ends() else {
@@ -235,7 +255,7 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
             "the {terms} are not adequate (p {p}), and no effect in the catalogue explains the difference."
         ),
         _ => {
-            let names = diagnosed.missing_words();
+            let names = missing(diagnosed);
             let effects = match names.len() {
                 1 if diagnosed.combs.is_empty() => "missing effect",
                 _ => "missing effects",

@@ -223,6 +223,10 @@ pub(crate) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static
 
 /// A note that names the frequencies of which a term's frequency may be the alias.
 pub(crate) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
+    if term.effect.replaces().is_some() {
+        // A filter is not sampled.
+        return None;
+    }
     let mut parameters = term.effect.parameters().iter().zip(term.parameters);
     let (_, frequency_hz) = parameters.find(|(parameter, _)| parameter.name == "frequency_hz")?;
     Some(format!(

@@ -37,6 +37,15 @@ impl Term {
         }
     }
 
+    /// An effect whose shape is known, such as the filter of a sensor's data sheet. The parameters come in the order
+    /// in which the effect names them.
+    pub fn known(effect: &'static dyn Effect, parameters: [Real; MAX_PARAMETERS]) -> Self {
+        Self {
+            parameters,
+            ..Self::new(effect)
+        }
+    }
+
     /// An effect whose shape, if it has one, is to be fitted.
     pub(crate) fn fitted(effect: &'static dyn Effect) -> Self {
         Self {
@@ -123,6 +132,38 @@ impl Model {
         self.terms.push(term).map_err(|_| Error::TooManyEffects {
             capacity: MAX_EFFECTS,
         })
+    }
+
+    /// Adds an effect in the place of the effect that it replaces, such as a filter on white noise in the place of
+    /// the angle random walk; at the end if the model has no such effect.
+    ///
+    /// A [diagnosis](crate::diagnosis) keeps what its first model has: it never drops or exchanges an effect of
+    /// [known](Term::known) shape, and never looks for another filter on the same noise.
+    ///
+    /// ```
+    /// use allanite::{Model, Term, effect::LowPass};
+    ///
+    /// // A sensor whose data sheet gives a cut-off of 42 Hz and two poles.
+    /// let time_constant_s = 1.0 / (2.0 * core::f32::consts::PI * 42.0);
+    /// let mut model = Model::ieee_952();
+    /// model.put(Term::known(&LowPass, [time_constant_s.into(), 2.0]))?;
+    /// assert_eq!(model.position("low_pass"), Some(1));
+    /// assert_eq!(model.position("angle_random_walk"), None);
+    /// # Ok::<(), allanite::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::TooManyEffects`] if the model already has [`MAX_EFFECTS`] and the effect replaces none of them.
+    pub fn put(&mut self, term: Term) -> Result<(), Error> {
+        let replaced = term.effect.replaces();
+        let place = replaced.and_then(|replaced| self.position(replaced.name()));
+        match place.and_then(|place| self.terms.get_mut(place)) {
+            Some(replaced) => {
+                *replaced = term;
+                Ok(())
+            }
+            None => self.add(term),
+        }
     }
 
     /// Puts an effect without a shape back. One of the five terms returns to its usual place, another

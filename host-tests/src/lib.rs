@@ -1,5 +1,6 @@
 //! The host's side of the project: simulator, logs, curve files, command line and studies.
 
+pub mod comb;
 pub mod command;
 pub mod confidence;
 pub mod curve_file;

@@ -307,7 +307,7 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
         let observed = Observed::new(&self.curve, &self.spectrum);
         let problem = Problem::new(observed, &self.model, &self.columns);
         let is_missing = self.model.position(effect.name()).is_none();
-        let is_candidate = is_missing && place(&problem, effect).is_some();
+        let is_candidate = is_missing && has_limit(effect) && place(&problem, effect).is_some();
         let [first, second]: [Grid; MAX_PARAMETERS] =
             core::array::from_fn(|j| Grid::coarse(effect, j, &self.span, STEPS_AN_OCTAVE));
         let firsts = if is_of_shape(effect) { 1 } else { first.steps };
@@ -329,6 +329,13 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
         };
         self.stage = Stage::Searching(Trial::new(&ground, term, (first.low, first.high)));
     }
+}
+
+/// Whether there is a size from which on an effect shows. That of a filter is its length, which a filter around a
+/// frequency does not have.
+fn has_limit(effect: &dyn Effect) -> bool {
+    let first = effect.parameters().first();
+    !(is_of_shape(effect) && first.is_some_and(|first| first.unit == "Hz"))
 }
 
 /// The least fall of the score for which a diagnosis adds an effect.

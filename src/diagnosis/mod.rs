@@ -24,6 +24,7 @@ mod tests;
 mod trial;
 mod tried;
 mod verdict;
+mod width;
 
 pub use alternative::alternative;
 pub use evidence::Evidence;
@@ -31,6 +32,7 @@ pub use options::Options;
 pub use run::{Diagnosis, Progress};
 pub use step::{Addition, Candidate, FollowedCovariate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap};
 pub use verdict::Verdict;
+pub use width::line_width;
 
 pub(crate) use scanned::place;
 pub(crate) use step::cost;

@@ -136,6 +136,7 @@ pub(super) const DESCRIPTION: Description = Description {
                 high: (32.0 * span.interval_s).min(0.1 * span.longest_tau_s),
                 steps_per_octave: 4.0,
             },
+            reciprocal: None,
         },
         Parameter {
             name: "stages",
@@ -146,6 +147,7 @@ pub(super) const DESCRIPTION: Description = Description {
                 high: 2.0,
                 steps_per_octave: 1.0,
             },
+            reciprocal: None,
         },
     ],
     code: 10,

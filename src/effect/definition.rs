@@ -74,6 +74,21 @@ pub struct Parameter {
     pub is_whole: bool,
     /// The values that a search tries on a curve of a given span.
     pub search_range: fn(&Span) -> SearchRange,
+    /// The quantity by which the parameter is known as well; `None` if there is none.
+    pub reciprocal: Option<Reciprocal>,
+}
+
+/// A quantity that is inversely proportional to a parameter, such as the cut-off frequency of a filter with a
+/// time constant. Data sheets give the one, formulas the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Reciprocal {
+    /// The name in files and on the command line, which ends in the unit: `cutoff_hz`.
+    pub name: &'static str,
+    /// The unit.
+    pub unit: &'static str,
+    /// The product of the quantity and the parameter: 1/2π for a cut-off frequency and a time constant.
+    pub product: Real,
 }
 
 /// The differences of adjacent cluster means that a deterministic effect makes.

@@ -34,6 +34,7 @@ pub(super) const DESCRIPTION: Description = Description {
             high: 0.5 * span.longest_tau_s,
             steps_per_octave: 2.0,
         },
+        reciprocal: None,
     }],
     code: 6,
     replaces: None,

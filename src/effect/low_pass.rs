@@ -1,5 +1,5 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
     SampledShape, SearchRange, SecondDifferences, Tail, angle_random_walk::AngleRandomWalk,
     pole::Pole,
 };
@@ -12,7 +12,7 @@ use nalgebra::Complex;
 /// The sine of 60 degrees, √3/2.
 const SINE_60: Real = by_precision(0.866_025_403_784_438_6, 0.866_025_4);
 
-/// Angle random walk that passed a Butterworth low pass of one, two or three poles. It takes the place of
+/// Angle random walk that passed a Butterworth low pass of one to four poles. It takes the place of
 /// [`AngleRandomWalk`]. The coefficient is `N` in rate · √s; the shape parameters are the time constant `T` of the
 /// filter in seconds, above zero, and the number of its poles. The density has fallen to a half at the cut-off
 /// frequency `1/(2πT)`.
@@ -23,11 +23,16 @@ const SINE_60: Real = by_precision(0.866_025_403_784_438_6, 0.866_025_4);
 #[derive(Clone, Copy, Debug)]
 pub struct LowPass;
 
-/// The time after which nothing remains of the autocovariance of three poles, in time constants: it has fallen to
-/// e⁻⁷, a thousandth.
-const GONE: Real = 14.0;
+/// The sine and the cosine of 22.5 degrees.
+const SINE_22: Real = by_precision(0.382_683_432_365_089_8, 0.382_683_43);
+const COSINE_22: Real = by_precision(0.923_879_532_511_286_7, 0.923_879_5);
 
-/// The poles of a filter, those above the real axis and on it, each with the weight that its residue has.
+/// The time after which nothing remains of the autocovariance of three or four poles, in time constants: the slowest
+/// pole has fallen to e⁻⁷, a thousandth.
+const GONE: [Real; 2] = [14.0, 18.3];
+
+/// The poles of a filter, those above the real axis and on it, each with the weight that its residue has. The pair
+/// that is nearest to the imaginary axis comes first.
 struct Poles {
     first: Pole,
     second: Option<Pole>,
@@ -44,7 +49,12 @@ impl Poles {
         let real = Complex::new(1.0, 0.0);
         let pair =
             |decay: Real, turn: Real| pole(Complex::new(2.0 * decay, -2.0 * turn), decay, turn);
-        if poles > 2.5 {
+        if poles > 3.5 {
+            Self {
+                first: pair(SINE_22, COSINE_22),
+                second: Some(pair(COSINE_22, SINE_22)),
+            }
+        } else if poles > 2.5 {
             Self {
                 first: pair(0.5, SINE_60),
                 second: Some(pole(real, 1.0, 0.0)),
@@ -92,8 +102,13 @@ pub(super) const DESCRIPTION: Description = Description {
             search_range: |span| SearchRange {
                 low: 0.25 * span.interval_s,
                 high: (64.0 * span.interval_s).min(0.1 * span.longest_tau_s),
-                steps_per_octave: 4.0,
+                steps_per_octave: 3.0,
             },
+            reciprocal: Some(Reciprocal {
+                name: "cutoff_hz",
+                unit: "Hz",
+                product: 0.5 / PI,
+            }),
         },
         Parameter {
             name: "poles",
@@ -101,9 +116,10 @@ pub(super) const DESCRIPTION: Description = Description {
             is_whole: true,
             search_range: |_| SearchRange {
                 low: 1.0,
-                high: 3.0,
+                high: 4.0,
                 steps_per_octave: 1.0,
             },
+            reciprocal: None,
         },
     ],
     code: 9,
@@ -168,7 +184,13 @@ impl Effect for LowPass {
     fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
         let poles = Poles::new(shape);
         if poles.second.is_some() {
-            let gone = m + GONE * shape.parameters[0] / shape.interval_s;
+            let [of_three, of_four] = GONE;
+            let gone = if shape.parameters[1] > 3.5 {
+                of_four
+            } else {
+                of_three
+            };
+            let gone = m + gone * shape.parameters[0] / shape.interval_s;
             return Some(Tail {
                 start: gone,
                 decay: 0.0,
@@ -196,12 +218,12 @@ impl Explain for LowPass {
     fn explanation(&self) -> Explanation {
         Explanation {
             what: "a low pass: white noise is cut off before it is sampled",
-            origin: "an analogue filter, or a digital smoothing filter of one to three poles, in the sensor's signal path",
+            origin: "an analogue filter, or a digital smoothing filter of one to four poles, in the sensor's signal path",
             check: "read the sensor's bandwidth setting; does the deficit at short averaging times move with it?",
         }
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[0.02, 1.0], [0.008, 2.0], [0.02, 3.0]]
+        &[[0.02, 1.0], [0.008, 2.0], [0.02, 3.0], [0.012, 4.0]]
     }
 }

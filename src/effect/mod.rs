@@ -19,7 +19,7 @@ mod search_range;
 
 pub use crate::{lattice::SecondDifferences, limits::MAX_PARAMETERS};
 pub use definition::{
-    Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Response, Tail,
+    Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Reciprocal, Response, Tail,
 };
 pub use explanation::{Explain, Explanation};
 pub use sampled_shape::SampledShape;
@@ -62,6 +62,7 @@ catalogue! {
     decimation_filter::DecimationFilter,
     random_telegraph::RandomTelegraph,
     power_law::PowerLaw,
+    notch::Notch,
 }
 
 /// The five terms of IEEE Std 952-1997, annex C, in the order of their slopes.

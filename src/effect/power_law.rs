@@ -37,6 +37,7 @@ pub(super) const DESCRIPTION: Description = Description {
             high: 1.8,
             steps_per_octave: 6.0,
         },
+        reciprocal: None,
     }],
     code: 12,
     replaces: Some(&BiasInstability),

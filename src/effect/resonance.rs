@@ -40,6 +40,7 @@ pub(super) const DESCRIPTION: Description = Description {
                 steps_per_octave: 3.0,
                 ..frequencies(span)
             },
+            reciprocal: None,
         },
         Parameter {
             name: "quality",
@@ -50,6 +51,7 @@ pub(super) const DESCRIPTION: Description = Description {
                 high: 32.0,
                 steps_per_octave: 0.5,
             },
+            reciprocal: None,
         },
     ],
     code: 8,

@@ -40,6 +40,7 @@ pub(super) const DESCRIPTION: Description = Description {
         unit: "Hz",
         is_whole: false,
         search_range: frequencies,
+        reciprocal: None,
     }],
     code: 7,
     replaces: None,

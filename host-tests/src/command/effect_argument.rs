@@ -1,7 +1,7 @@
 //! Effects as options of the command line: `EFFECT[:parameter=value,…]`.
 
 use crate::failure::{Failure, quoted};
-use allanite::effect::{CATALOGUE, Effect, MAX_PARAMETERS, Span};
+use allanite::effect::{CATALOGUE, Effect, MAX_PARAMETERS, Parameter, Span};
 
 /// The effect that an option names, with the values that have not been taken from it yet.
 #[derive(Clone, Debug)]
@@ -139,10 +139,32 @@ impl<'a> EffectArgument<'a> {
                 }
                 value
             } else {
-                self.require(parameter.name)?
+                self.value(parameter)?
             };
         }
         Ok(shape)
+    }
+
+    /// Takes a shape parameter, which may be given by its reciprocal.
+    fn value(&mut self, parameter: &Parameter) -> Result<f64, Failure> {
+        let Some(reciprocal) = parameter.reciprocal else {
+            return self.require(parameter.name);
+        };
+        let own = self.take_positive(parameter.name)?;
+        let other = self.take_positive(reciprocal.name)?;
+        match (own, other) {
+            (Some(value), None) => Ok(value),
+            (None, Some(value)) => Ok(reciprocal.product / value),
+            (Some(_), Some(_)) => {
+                let names = format!("{} and {}", parameter.name, reciprocal.name);
+                Err(self.failure(format!("{names} give the same"), "give one of them"))
+            }
+            (None, None) => {
+                let what = format!("{} or {} is missing", reciprocal.name, parameter.name);
+                let remedy = format!("write {}:{}=VALUE", self.name, reciprocal.name);
+                Err(self.failure(what, &remedy))
+            }
+        }
     }
 
     /// Ends the reading of the option.
@@ -187,6 +209,10 @@ mod tests {
         );
         assert_eq!(shape("decimation_filter:width_s=0.02"), Ok([0.02, 1.0]));
         assert_eq!(shape("rate_ramp"), Ok([0.0, 0.0]));
+        // A cut-off of 42 Hz is that of a time constant of 1/(2π 42 Hz).
+        let [time_constant_s, poles] = shape("low_pass:cutoff_hz=42,poles=2").expect("a shape");
+        assert!((time_constant_s - 0.003_789_403_5).abs() < 1e-10);
+        assert_eq!(poles, 2.0);
         assert_eq!(DecimationFilter.description().parameters[0].name, "width_s");
     }
 
@@ -221,6 +247,14 @@ mod tests {
             (
                 "decimation_filter:width_s=1,stages=1.5",
                 "stages=1.5 is impossible; give a whole number, 1 to 2",
+            ),
+            (
+                "low_pass:poles=2",
+                "cutoff_hz or time_constant_s is missing; write low_pass:cutoff_hz=VALUE",
+            ),
+            (
+                "low_pass:cutoff_hz=20,time_constant_s=0.01",
+                "time_constant_s and cutoff_hz give the same; give one of them",
             ),
             (
                 "rate_ramp:slope=1",

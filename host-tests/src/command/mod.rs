@@ -9,6 +9,7 @@ mod examples;
 mod export;
 mod fit;
 mod input;
+mod known_filter;
 mod measure;
 mod output;
 mod plot;

@@ -33,6 +33,7 @@ impl Effect for SecondOrderGaussMarkov {
                     high: 0.1 * span.longest_tau_s,
                     steps_per_octave: 2.0,
                 },
+                reciprocal: None,
             }],
             code: FIRST_OWN_CODE,
             replaces: None,

@@ -31,9 +31,26 @@ fn single(name: &str, [first, second]: [f64; 2], n: f64) -> f64 {
             let sine = libm::sin(PI * first * n * t);
             decay(time_s) + 2.0 * libm::exp(-n * t / time_s) * sine * sine
         }
-        "low_pass" => {
+        "low_pass" if second < 1.5 => {
             let z = libm::exp(-t / first);
             (1.0 - z) / ((1.0 + z) * t) * decay(first)
+        }
+        "low_pass" => {
+            // The sum over the poles of the filter, at which 1 + ω^(2·poles) is zero.
+            let poles = second as u32;
+            let covariance = |n: f64| {
+                let pole = |k: u32| {
+                    let angle = PI * (2.0 * f64::from(k) + 1.0) / (2.0 * f64::from(poles));
+                    let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+                    let (decay, turn) = (n * t / first * sine, n * t / first * cosine);
+                    libm::exp(-decay) * (sine * libm::cos(turn) + cosine * libm::sin(turn))
+                };
+                (0..poles).map(pole).sum::<f64>()
+            };
+            // The slowest pole has fallen to e⁻²³.
+            let far = (60.0 * first / t) as i32;
+            let sum: f64 = (-far..=far).map(|i| covariance(f64::from(i).abs())).sum();
+            (covariance(0.0) - covariance(n)) / (sum * t)
         }
         "decimation_filter" => {
             let width = first / (t * libm::sqrt(second));
@@ -47,6 +64,18 @@ fn single(name: &str, [first, second]: [f64; 2], n: f64) -> f64 {
                 .sum();
             (spline(0.0) - spline(n / width)) / (sum * t)
         }
+        "notch" => {
+            let response = notch(first, second);
+            let at = |l: usize| -> f64 {
+                let later = response.iter().skip(l);
+                response
+                    .iter()
+                    .zip(later)
+                    .map(|(one, other)| one * other)
+                    .sum()
+            };
+            (at(0) - at(n as usize)) / t
+        }
         "power_law" => {
             let growth = first - 1.0;
             let h = |x: f64| libm::pow(x, 2.0 + growth);
@@ -55,6 +84,25 @@ fn single(name: &str, [first, second]: [f64; 2], n: f64) -> f64 {
         }
         _ => panic!("{name} is not known here"),
     }
+}
+
+/// The impulse response of a notch filter, by its difference equation.
+fn notch(frequency_hz: f64, quality: f64) -> Vec<f64> {
+    let turn = 2.0 * PI * frequency_hz * INTERVAL_S;
+    let tangent = libm::tan(turn / (2.0 * quality)).min(0.95 * libm::sin(turn));
+    let gain = 1.0 / (1.0 + tangent);
+    let cosine = libm::cos(turn);
+    let (mut inputs, mut outputs) = ([0.0; 2], [0.0; 2]);
+    let output = |i: usize| {
+        let input = if i == 0 { 1.0 } else { 0.0 };
+        let forward = input - 2.0 * cosine * inputs[0] + inputs[1];
+        let output =
+            gain * forward + 2.0 * gain * cosine * outputs[0] - (2.0 * gain - 1.0) * outputs[1];
+        inputs = [input, inputs[0]];
+        outputs = [output, outputs[0]];
+        output
+    };
+    (0..800).map(output).collect()
 }
 
 /// The semivariogram of block means, at every distance below `length` blocks.
@@ -129,7 +177,15 @@ fn shapes(name: &str) -> &'static [[f64; MAX_PARAMETERS]] {
             [81.0, 0.0],
         ],
         "resonance" => &[[3.0, 3.0], [20.0, 20.0], [0.05, 3.0]],
-        "low_pass" => &[[0.02, 0.0], [0.5, 0.0]],
+        "low_pass" => &[
+            [0.02, 1.0],
+            [0.5, 1.0],
+            [0.008, 2.0],
+            [0.02, 3.0],
+            [0.012, 4.0],
+            [0.03, 4.0],
+        ],
+        "notch" => &[[20.0, 2.0], [8.0, 4.0], [33.0, 1.5], [3.0, 3.0]],
         "decimation_filter" => &[[0.03, 1.0], [0.03, 2.0], [0.1, 2.0]],
         "power_law" => &[[0.7, 0.0], [1.3, 0.0], [1.5, 0.0], [1.9, 0.0]],
         _ => &[[0.0, 0.0]],

@@ -1,7 +1,7 @@
 //! The model of `compare`: the five terms, with the effects that options add or leave out.
 
 use crate::{
-    command::effect_argument::EffectArgument,
+    command::{effect_argument::EffectArgument, known_filter::KnownFilter},
     failure::{Failure, quoted},
 };
 use allanite::{Model, Term, model::MAX_EFFECTS};
@@ -18,6 +18,8 @@ pub(super) struct ModelArguments {
     /// Leave out a term, such as `rate_ramp`
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
+    #[command(flatten)]
+    filter: KnownFilter,
 }
 
 impl ModelArguments {
@@ -27,7 +29,7 @@ impl ModelArguments {
     /// When an effect is unknown, lacks a parameter, is in the model twice or not in it, or when the
     /// model gets too large or empty.
     pub(super) fn model(&self) -> Result<Model, Failure> {
-        let mut model = Model::ieee_952();
+        let mut model = self.filter.model()?;
         for name in &self.without {
             if model.position(name).is_none() {
                 let names = model.terms().iter().map(|term| term.effect.name());
@@ -53,10 +55,7 @@ impl ModelArguments {
                 let what = format!("{} is fitted, not given", effect.coefficient());
                 return Err(argument.failure(what, "give only the shape parameters"));
             }
-            if let Some(replaced) = effect.replaces() {
-                model = model.without(replaced.name());
-            }
-            model.add(term).map_err(|_| {
+            model.put(term).map_err(|_| {
                 argument.failure(
                     format!("the model would have more than {MAX_EFFECTS} effects"),
                     "leave some out with --without",

@@ -1,8 +1,14 @@
 //! A record and the steps of its diagnosis, which `diagnose` prints, `report` shows and `plot` draws.
 
+use super::{
+    given_filter::Better,
+    lines::{self, Line, comb_notes},
+};
 use crate::{
+    comb::Comb,
     command::{
         input::record::{self, LogArguments},
+        known_filter::{self, KnownFilter, known_filter},
         output::{rounding, words},
     },
     curve_file::AxisCurve,
@@ -63,15 +69,18 @@ pub(crate) struct DiagnosisSettings {
     #[arg(long, value_delimiter = ',', value_name = "COLUMN,…")]
     covariates: Vec<CovariateChoice>,
     #[command(flatten)]
+    filter: KnownFilter,
+    #[command(flatten)]
     about_log: LogArguments,
 }
 
 impl DiagnosisSettings {
     /// Diagnoses every axis of a record.
     pub(crate) fn diagnosed(&self, path: &Path) -> Result<Vec<Diagnosed>, Failure> {
+        let model = self.filter.model()?;
         let diagnose = |(axis, evidence): (AxisCurve, Evidence)| {
             let name = axis.axis.clone();
-            Diagnosed::new(axis, evidence, self.max_effects)
+            Diagnosed::new(axis, evidence, &model, self.max_effects)
                 .map_err(|error| record::library_failure(path, &name, error))
         };
         let axes = record::read_with_evidence(path, &self.about_log, &self.covariates)?;
@@ -85,11 +94,16 @@ pub(crate) struct Diagnosed {
     /// The steps, at least one; the last one has the model that the diagnosis ends with.
     pub(crate) steps: Vec<Step<OCTAVES, BINS>>,
     pub(crate) verdict: Verdict,
+    /// What fits better than the filter that was given; `None` if that fits or none was given.
+    pub(crate) better: Option<Better>,
     /// The sizes of effects that the record would have shown. Empty unless the last model is adequate.
     pub(crate) limits: Vec<Limit>,
     /// What happened during the record. Empty for a curve file, which has no course, and for a record that is not
     /// valid.
     pub(crate) events: Vec<Event>,
+    /// The sinusoids of the last model, and those of them that are harmonics of one fundamental.
+    pub(crate) lines: Vec<Line>,
+    pub(crate) combs: Vec<Comb>,
     /// The options of the search for effects.
     pub(crate) options: Options,
     /// Names of the covariates.
@@ -99,7 +113,12 @@ pub(crate) struct Diagnosed {
 }
 
 impl Diagnosed {
-    fn new(axis: AxisCurve, evidence: Evidence, max_effects: Option<usize>) -> Result<Self, Error> {
+    fn new(
+        axis: AxisCurve,
+        evidence: Evidence,
+        model: &Model,
+        max_effects: Option<usize>,
+    ) -> Result<Self, Error> {
         let default = Options::default();
         let options = Options {
             max_effects: max_effects.unwrap_or(default.max_effects),
@@ -112,24 +131,44 @@ impl Diagnosed {
             covariates: &cross,
             invalid: evidence.invalid,
         };
-        let mut steps = Vec::new();
-        let curve = axis.curve()?;
-        let model = Model::ieee_952();
-        let spectrum = axis.spectrum()?;
-        let mut diagnosis =
-            Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options);
-        let verdict = diagnosis.run(|step| steps.push(step.clone()))?;
+        let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
+        let diagnose = |model: &Model, options| {
+            let mut steps = Vec::new();
+            let (curve, spectrum) = (curve.clone(), spectrum.clone());
+            let verdict =
+                Diagnosis::with_spectrum(curve, spectrum, evidence, model, &CATALOGUE, options)
+                    .run(|step| steps.push(step.clone()))?;
+            Ok((steps, verdict))
+        };
+        let (mut steps, mut verdict) = diagnose(model, options)?;
+        let five = |options| diagnose(&Model::ieee_952(), options);
+        let better = match verdict {
+            Verdict::Invalid(_) => None,
+            _ => Better::than_given(&steps, options, five)?,
+        };
+        if better.is_some() {
+            Better::keep_what_is_sure(&mut steps);
+            verdict = match steps.len() {
+                1 => Verdict::Unexplained,
+                _ => Verdict::Incomplete,
+            };
+        }
         let mut diagnosed = Self {
             axis,
             steps,
             verdict,
+            better,
             limits: Vec::new(),
             events: Vec::new(),
+            lines: Vec::new(),
+            combs: Vec::new(),
             options,
             covariates,
             cross,
         };
         diagnosed.limits = diagnosed.detection_limits()?;
+        diagnosed.lines = diagnosed.lines()?;
+        diagnosed.combs = lines::combs(&diagnosed.lines, diagnosed.axis.rate_hz);
         if let Some(course) = course {
             diagnosed.events = diagnosed.events_in(&course)?;
         }
@@ -159,6 +198,15 @@ impl Diagnosed {
                 .run(|limit| limits.push(limit))?;
         }
         Ok(limits)
+    }
+
+    /// The sinusoids of the last model.
+    fn lines(&self) -> Result<Vec<Line>, Error> {
+        let Some(last) = self.steps.last() else {
+            return Ok(Vec::new());
+        };
+        let (curve, spectrum) = (self.curve_of(last)?, self.axis.spectrum()?);
+        lines::lines(Observed::new(&curve, &spectrum), last)
     }
 
     /// The limits of detection as ranges of shapes.
@@ -194,9 +242,15 @@ impl Diagnosed {
         let added = self
             .added_in(step)
             .map(|term| words::plain(term.effect.name()));
-        let parts = std::iter::once("five terms".to_owned());
+        let asked = self.steps.first().map(|first| &first.model);
+        let parts = asked.map(known_filter::terms).into_iter();
         let parts = parts.chain(channel.map(str::to_owned)).chain(added);
         parts.collect::<Vec<_>>().join(" + ")
+    }
+
+    /// The filter that was given.
+    pub(crate) fn filter(&self) -> Option<&Term> {
+        known_filter(&self.steps.first()?.model)
     }
 
     /// The step that would have followed if this candidate had been added.
@@ -218,7 +272,7 @@ impl Diagnosed {
     }
 
     /// The effects that were added and kept, as in the last model. Covariates are not among them.
-    fn added(&self) -> impl Iterator<Item = &Term> {
+    pub(super) fn added(&self) -> impl Iterator<Item = &Term> {
         self.steps
             .last()
             .into_iter()
@@ -299,6 +353,7 @@ impl Diagnosed {
                 words::alternatives(others.iter().copied())
             ));
         }
+        notes.extend(comb_notes(&self.lines, &self.combs));
         if self.added().next().is_some() && self.verdict == Verdict::Improved {
             notes.push(SELECTED.into());
         }

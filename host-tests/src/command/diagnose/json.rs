@@ -1,15 +1,20 @@
 //! The JSON document of a diagnosis.
 
-use super::diagnosed::{Diagnosed, added_name};
+use super::{
+    diagnosed::{Diagnosed, added_name},
+    lines::{Line, comb_words},
+};
 use crate::{
+    comb::Comb,
     command::{
         fit,
-        output::model_json::{self, Effect, Worst},
+        output::model_json::{self, Effect, Shape, Worst},
     },
     log::{BINS, OCTAVES},
     unit::Unit,
 };
 use allanite::{
+    Term,
     comparison::ComparedBin,
     course::{Event as Told, What},
     detection::Range,
@@ -27,18 +32,57 @@ pub(crate) struct Document<'a> {
 #[derive(Serialize)]
 struct Axis<'a> {
     axis: &'a str,
+    /// The filter that was given, and whether it fits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    filter: Option<Filter>,
     steps: Vec<Step>,
     /// The spectrum beside the last model.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     spectrum: Vec<Bin>,
     /// What happened during the record.
     events: Vec<Event>,
+    /// The sinusoids of the last model.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    lines: Vec<SpectralLine>,
+    /// The sinusoids that are harmonics of one fundamental.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    combs: Vec<Harmonics>,
     verdict: &'static str,
     missing: Vec<&'static str>,
     ambiguous: Vec<&'static str>,
     /// The sizes of effects that the record would have shown with a probability of 95 %, over ranges of shapes.
     detection_limits: Vec<DetectionLimit>,
     notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct SpectralLine {
+    frequency_hz: f64,
+    lower_hz: f64,
+    upper_hz: f64,
+    amplitude: f64,
+    /// The width in hertz that is excluded with a probability of 95 %, as that of a resonance.
+    narrower_than_hz: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Harmonics {
+    fundamental_hz: f64,
+    /// The nominal frequency of the mains, if the fundamental agrees with it.
+    mains_hz: Option<f64>,
+    /// The places of the lines in `lines`, and their orders.
+    lines: Vec<usize>,
+    orders: Vec<u32>,
+    words: String,
+}
+
+#[derive(Serialize)]
+struct Filter {
+    #[serde(flatten)]
+    given: Shape,
+    fits: bool,
+    /// The filter that fits better; `null` if the given one fits, or no filter does.
+    better: Option<Shape>,
 }
 
 #[derive(Serialize)]
@@ -128,6 +172,7 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
     names.dedup();
     Axis {
         axis: &diagnosed.axis.axis,
+        filter: diagnosed.filter().map(|given| filter(given, diagnosed)),
         steps: diagnosed
             .steps
             .iter()
@@ -138,11 +183,45 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             bins.map(bin).collect()
         }),
         events: diagnosed.events.iter().map(event).collect(),
+        lines: diagnosed.lines.iter().map(line).collect(),
+        combs: diagnosed.combs.iter().map(harmonics).collect(),
         verdict: diagnosed.verdict.name(),
         missing: diagnosed.missing().collect(),
         ambiguous: names,
         detection_limits: limits(diagnosed),
         notes: diagnosed.notes(),
+    }
+}
+
+fn line(line: &Line) -> SpectralLine {
+    SpectralLine {
+        frequency_hz: line.frequency_hz,
+        lower_hz: line.lower_hz,
+        upper_hz: line.upper_hz,
+        amplitude: line.amplitude,
+        narrower_than_hz: line.narrower_than_hz,
+    }
+}
+
+fn harmonics(comb: &Comb) -> Harmonics {
+    let (lines, orders) = comb.members.iter().copied().unzip();
+    Harmonics {
+        fundamental_hz: comb.fundamental_hz,
+        mains_hz: comb.mains_hz,
+        lines,
+        orders,
+        words: comb_words(comb),
+    }
+}
+
+fn filter(given: &Term, diagnosed: &Diagnosed) -> Filter {
+    let better = diagnosed.better.as_ref();
+    Filter {
+        given: model_json::shape(given),
+        fits: better.is_none(),
+        better: better
+            .and_then(|better| better.filter.as_ref())
+            .map(model_json::shape),
     }
 }
 

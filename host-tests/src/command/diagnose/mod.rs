@@ -1,7 +1,9 @@
 //! `diagnose`: finds the effects of a curve that the five terms do not describe.
 
 pub(super) mod diagnosed;
+mod given_filter;
 pub(super) mod json;
+pub(super) mod lines;
 pub(super) mod text;
 pub(super) mod words;
 

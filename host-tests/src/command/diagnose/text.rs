@@ -5,7 +5,11 @@ use super::{
     words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
 };
 use crate::{
-    command::{fit, output::words},
+    command::{
+        fit,
+        known_filter::described,
+        output::{number::two_digits, words},
+    },
     log::{BINS, OCTAVES},
     plot::Plot,
 };
@@ -30,9 +34,13 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     };
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
     writeln!(output, "{}: {record}", axis.axis)?;
+    if let Some(filter) = diagnosed.filter() {
+        writeln!(output, "given: {}", described(filter))?;
+    }
     writeln!(
         output,
-        "five terms: χ² {:.1}, {} degrees of freedom, p {}; misfit {:.1} % rms",
+        "{}: χ² {:.1}, {} degrees of freedom, p {}; misfit {:.1} % rms",
+        diagnosed.model_name(0),
         first.fit.chi_squared,
         first.fit.degrees_of_freedom,
         shown_p(first.fit.p_value),
@@ -64,7 +72,16 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     for (at, term) in last.model.terms().iter().enumerate() {
         let shape = words::shape(term, Some((&last.fit, at)));
         if !shape.is_empty() {
-            writeln!(output, "{}: {shape}", words::plain(term.effect.name()))?;
+            let mut lines = diagnosed.lines.iter().filter(|line| line.place == at);
+            let width = lines.next().and_then(|line| line.narrower_than_hz);
+            let width = width.map_or(String::new(), |width_hz| {
+                format!(", narrower than {} Hz", two_digits(width_hz))
+            });
+            writeln!(
+                output,
+                "{}: {shape}{width}",
+                words::plain(term.effect.name())
+            )?;
         }
     }
     writeln!(

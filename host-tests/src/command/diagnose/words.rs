@@ -1,10 +1,13 @@
 //! The words of a diagnosis, which `diagnose` prints and the page of `report` shows.
 
-use super::diagnosed::Diagnosed;
+use super::{diagnosed::Diagnosed, given_filter::Better, lines::comb_words};
 use crate::{
-    command::output::{
-        number::{self, probability},
-        words,
+    command::{
+        known_filter,
+        output::{
+            number::{self, probability},
+            words,
+        },
     },
     log::{BINS, OCTAVES},
 };
@@ -204,31 +207,60 @@ pub(crate) fn shown_p(p: f64) -> String {
     }
 }
 
+/// The covariate and the effects that were added and kept, in words. Lines that are one comb are said as one.
+fn missing(diagnosed: &Diagnosed) -> Vec<String> {
+    let Some((_, last)) = diagnosed.ends() else {
+        return Vec::new();
+    };
+    let followed = last.covariate.as_ref();
+    let covariate =
+        followed.map(|followed| format!("{} {}", covariate::NAME, diagnosed.covariate(followed)));
+    let in_a_comb = |term: &Term| {
+        let members = diagnosed.combs.iter().flat_map(|comb| &comb.members);
+        let mut places = members.map(|(line, _)| diagnosed.lines[*line].place);
+        places.any(|place| std::ptr::eq(term, &last.model.terms()[place]))
+    };
+    let combs = diagnosed.combs.iter();
+    let combs = combs.map(|comb| format!("sinusoids ({})", comb_words(comb)));
+    let single = diagnosed.added().filter(|term| !in_a_comb(term));
+    let single = single.map(|term| words::plain(term.effect.name()));
+    covariate.into_iter().chain(combs).chain(single).collect()
+}
+
 /// The result of the diagnosis in a sentence.
 pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
     let Some((first, last)) = diagnosed.ends() else {
         return String::new();
     };
     let p = shown_p(last.fit.p_value);
+    let terms = known_filter::terms(&first.model);
     match diagnosed.verdict {
         Verdict::Invalid(reason) => {
             format!("no effect was looked for, because the curve is not valid: {reason}.")
         }
-        Verdict::Adequate => format!("the five terms are adequate (p {p}): no effect is missing."),
+        Verdict::Adequate => format!("the {terms} are adequate (p {p}): no effect is missing."),
         Verdict::TooShort => {
-            "there are too few octaves to judge the five terms: record longer.".into()
+            format!("there are too few octaves to judge the {terms}: record longer.")
+        }
+        Verdict::Unexplained | Verdict::Incomplete if diagnosed.better.is_some() => {
+            let better = diagnosed
+                .better
+                .as_ref()
+                .map_or(String::new(), Better::words);
+            format!(
+                "the {terms} are not adequate (p {p}), because the filter does not fit: {better}."
+            )
         }
         Verdict::Unexplained => format!(
-            "the five terms are not adequate (p {p}), and no effect in the catalogue explains the difference."
+            "the {terms} are not adequate (p {p}), and no effect in the catalogue explains the difference."
         ),
         _ => {
-            let names = diagnosed.missing().map(|name| match &last.covariate {
-                Some(followed) if name == covariate::NAME => {
-                    format!("{name} {}", diagnosed.covariate(followed))
-                }
-                _ => words::plain(name),
-            });
-            let names = words::list_of(names.collect());
+            let names = missing(diagnosed);
+            let effects = match names.len() {
+                1 if diagnosed.combs.is_empty() => "missing effect",
+                _ => "missing effects",
+            };
+            let names = words::list_of(names);
             let alike = if diagnosed.ambiguous().next().is_some() {
                 " (or an ambiguous alternative)"
             } else {
@@ -241,13 +273,8 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
                 first.comparison.rms_percent,
                 last.comparison.rms_percent
             );
-            let effects = if diagnosed.missing().count() == 1 {
-                "missing effect"
-            } else {
-                "missing effects"
-            };
             let missing = if first.fit.is_adequate() == Some(true) {
-                format!("{effects}: {names}{alike}, although the five terms fit the curve; {error}")
+                format!("{effects}: {names}{alike}, although the {terms} fit the curve; {error}")
             } else {
                 format!("{effects}: {names}{alike}; {error}")
             };

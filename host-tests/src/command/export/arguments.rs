@@ -1,6 +1,6 @@
 //! The options of `export`.
 
-use crate::command::{examples, input::record::LogArguments};
+use crate::command::{examples, input::record::LogArguments, known_filter::KnownFilter};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -35,6 +35,8 @@ pub(in crate::command) struct Arguments {
     /// ArduPilot]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) prediction_interval: Option<f64>,
+    #[command(flatten)]
+    pub(super) filter: KnownFilter,
     #[command(flatten)]
     pub(super) about_log: LogArguments,
 }

@@ -7,7 +7,7 @@ use crate::{
     equivalent::Equivalent,
     overbound::Overbound,
 };
-use allanite::{Coefficient, Model, fit::State};
+use allanite::{Coefficient, fit::State};
 
 /// The noise of one axis.
 pub(super) struct AxisNoise {
@@ -40,10 +40,13 @@ impl AxisNoise {
     /// The noise of a fitted axis, or `None` if the limits of its curve are not finite.
     pub(super) fn of(fitted: Fitted) -> Option<Self> {
         let Fitted {
-            axis, curve, fit, ..
+            axis,
+            curve,
+            model,
+            fit,
+            ..
         } = fitted;
         let radians = axis.unit.in_si();
-        let model = Model::ieee_952();
         let limits = limits(&curve, &model, &fit);
         let overbound = Overbound::of(&curve, &limits)?;
         let with_process = Overbound::with_gauss_markov(&curve, &limits)?;

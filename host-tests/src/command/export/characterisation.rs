@@ -80,6 +80,7 @@ pub(super) struct Choice {
 /// When the input cannot be read or fitted, is of an accelerometer, or has axes of different rates.
 pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Failure> {
     let path = &arguments.input;
+    let model = arguments.filter.model()?;
     let mut axes = Vec::new();
     for axis in record::read(path, &arguments.about_log)? {
         if axis.unit.sensor() != Sensor::Gyro {
@@ -90,7 +91,7 @@ pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Fa
             let remedy = "export a gyro; `fit` prints the coefficients of an accelerometer";
             return Err(Place::file(path).failure(what, remedy));
         }
-        let fitted = Fitted::new(path, axis, MethodName::Covariance)?;
+        let fitted = Fitted::new(path, axis, &model, MethodName::Covariance)?;
         let name = fitted.axis.axis.clone();
         let noise = AxisNoise::of(fitted).ok_or_else(|| {
             let what = format!("axis {name}: its curve has no finite confidence limits");

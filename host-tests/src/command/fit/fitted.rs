@@ -50,16 +50,22 @@ impl MethodName {
 pub(crate) struct Fitted {
     pub(crate) axis: AxisCurve,
     pub(crate) curve: Curve<OCTAVES>,
+    pub(crate) model: Model,
     pub(crate) method: MethodName,
     pub(crate) fit: Fit,
 }
 
 impl Fitted {
-    /// Fits the five terms to an axis of a file.
+    /// Fits a model, which is the five terms or has them behind a known filter, to an axis of a file.
     ///
     /// # Errors
     /// When the curve cannot be fitted; the failure names the file and the axis.
-    pub(crate) fn new(path: &Path, axis: AxisCurve, method: MethodName) -> Result<Self, Failure> {
+    pub(crate) fn new(
+        path: &Path,
+        axis: AxisCurve,
+        model: &Model,
+        method: MethodName,
+    ) -> Result<Self, Failure> {
         let options = Options {
             method: method.method(),
             ..Options::default()
@@ -67,13 +73,14 @@ impl Fitted {
         let fitted = axis.curve().and_then(|curve| {
             let spectrum = axis.spectrum()?;
             let observed = Observed::new(&curve, &spectrum);
-            let fit = fit(observed, &Model::ieee_952(), options)?;
+            let fit = fit(observed, model, options)?;
             Ok((curve, fit))
         });
         match fitted {
             Ok((curve, fit)) => Ok(Self {
                 axis,
                 curve,
+                model: model.clone(),
                 method,
                 fit,
             }),

@@ -2,7 +2,13 @@
 
 use super::fitted::Fitted;
 use crate::{
-    command::output::{rounding, units},
+    command::{
+        known_filter::known_filter,
+        output::{
+            model_json::{self, Shape},
+            rounding, units,
+        },
+    },
     unit::Unit,
 };
 use allanite::{Coefficient, fit::State};
@@ -21,6 +27,9 @@ struct Axis<'a> {
     unit: Unit,
     octaves: Vec<Octave>,
     method: &'static str,
+    /// The filter that was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    filter: Option<Shape>,
     coefficients: Vec<Term>,
     chi2: Option<f64>,
     dof: Option<usize>,
@@ -61,9 +70,9 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
     let Fitted {
         axis,
         curve,
+        model,
         method,
         fit,
-        ..
     } = fitted;
     let finite = |value: f64| value.is_finite().then_some(value);
     Axis {
@@ -81,6 +90,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
             })
             .collect(),
         method: method.name(),
+        filter: known_filter(model).map(model_json::shape),
         coefficients: fit
             .coefficients
             .iter()

@@ -12,6 +12,7 @@ use crate::{
             many::{self, FilesArguments, Findings},
             record::{self, LogArguments},
         },
+        known_filter::KnownFilter,
     },
     failure::Failure,
 };
@@ -31,6 +32,8 @@ pub(super) struct Arguments {
     /// Method that weights the octaves
     #[arg(long, default_value = "covariance")]
     method: MethodName,
+    #[command(flatten)]
+    filter: KnownFilter,
     #[command(flatten)]
     about_log: LogArguments,
 }
@@ -53,9 +56,10 @@ impl Findings for Vec<Fitted> {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
+    let model = arguments.filter.model()?;
     let work = |path: &Path| {
         let axes = record::read(path, &arguments.about_log)?.into_iter();
-        axes.map(|axis| Fitted::new(path, axis, arguments.method))
+        axes.map(|axis| Fitted::new(path, axis, &model, arguments.method))
             .collect::<Result<Vec<_>, _>>()
     };
     many::run(&arguments.files, work, output)

@@ -2,9 +2,12 @@
 
 use super::fitted::{Fitted, MethodName};
 use crate::{
-    command::output::{
-        number::{duration, number, probability},
-        rounding, units, words,
+    command::{
+        known_filter::{described, known_filter},
+        output::{
+            number::{duration, number, probability},
+            rounding, units, words,
+        },
     },
     unit::Unit,
 };
@@ -33,11 +36,14 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
             axis.octaves.len(),
             fitted.method.name()
         )?;
+        if let Some(filter) = known_filter(&fitted.model) {
+            writeln!(output, "behind {}", described(filter))?;
+        }
         writeln!(output, "{}", table(&fitted.fit, axis.unit).trim_fmt())?;
         let note = rounding::note(axis, &fitted.fit);
         // Whether the model explains a curve that is not valid does not matter.
         let is_coarse = rounding::is_coarse(axis);
-        let lines = verdict(&fitted.fit, fitted.method);
+        let lines = verdict(fitted);
         for line in lines.iter().take(if is_coarse { 1 } else { lines.len() }) {
             writeln!(output, "{line}")?;
         }
@@ -145,7 +151,13 @@ pub(crate) fn state(coefficient: &Coefficient) -> String {
 }
 
 /// One line with χ² and one with the judgement that follows from it.
-fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
+fn verdict(fitted: &Fitted) -> Vec<String> {
+    let Fitted {
+        fit, method, model, ..
+    } = fitted;
+    let behind = known_filter(model).map_or(String::new(), |filter| {
+        format!(" behind the {}", words::plain(filter.effect.name()))
+    });
     if !fit.chi_squared.is_finite() {
         return vec![
             "This method has no error model and no χ²: judge the model with --method covariance."
@@ -169,16 +181,19 @@ fn verdict(fit: &Fit, method: MethodName) -> Vec<String> {
         );
     }
     let judgement = if !fit.p_value.is_finite() {
-        "There are too few octaves to judge the five-term model: record longer."
-    } else if method == MethodName::RelativeAccuracy {
+        format!("There are too few octaves to judge the five-term model{behind}: record longer.")
+    } else if *method == MethodName::RelativeAccuracy {
         "This method treats octaves as independent: judge the model with --method covariance."
+            .into()
     } else if fit.is_adequate() == Some(true) {
-        "The five-term model is adequate for this record."
+        format!("The five-term model{behind} is adequate for this record.")
     } else {
-        "The five-term model is not adequate: the record has another effect, which distorts the \
-         coefficients."
+        format!(
+            "The five-term model{behind} is not adequate: the record has another effect, which \
+             distorts the coefficients."
+        )
     };
-    [first, judgement.into()]
+    [first, judgement]
         .into_iter()
         .chain(words::widened(fit))
         .collect()

@@ -52,12 +52,26 @@ pub(crate) fn alternatives<'a>(names: impl IntoIterator<Item = &'a str>) -> Stri
     names.join(" or ")
 }
 
+/// The noun with which the explanation of an effect begins.
+fn noun(name: &str) -> &'static str {
+    let what = explanation(name).map_or("", |explanation| explanation.what);
+    what.split(':').next().unwrap_or_default()
+}
+
+/// The article of an effect's name, with a blank behind it, or nothing.
+pub(crate) fn article(name: &str) -> &'static str {
+    if noun(name).starts_with("a ") {
+        "a "
+    } else {
+        ""
+    }
+}
+
 /// The name of an effect in a sentence: `a sinusoid`, `random telegraph noise`. The explanation of the effect
 /// begins with a noun, which tells whether there is an article and whether the effect is a noise.
 pub(crate) fn in_sentence(name: &str) -> String {
-    let what = explanation(name).map_or("", |explanation| explanation.what);
-    let noun = what.split(':').next().unwrap_or_default();
-    let article = if noun.starts_with("a ") { "a " } else { "" };
+    let noun = noun(name);
+    let article = article(name);
     let noise = if noun.ends_with(" noise") {
         " noise"
     } else {
@@ -72,22 +86,29 @@ Misfit is the rms difference of the variances in percent: the longest octaves,
 whose scatter is largest, dominate it. χ² weights each octave by its error.";
 
 /// The shape parameters of a term: `frequency 19.6 Hz (19.5 … 19.7), quality 4`. Intervals are shown
-/// where a fit gives them.
+/// where a fit gives them. A parameter that is known by its reciprocal as well is shown as both:
+/// `cutoff 42 Hz, time constant 0.003789 s`.
 pub(crate) fn shape(term: &Term, fit: Option<(&Fit, usize)>) -> String {
     let parameters = term.effect.parameters().iter().zip(term.parameters);
     let one = |(parameter, value): (&Parameter, f64)| {
-        let mut text = shape_value(parameter, value);
         let estimate = fit.and_then(|(fit, at)| {
             let mut shape = fit.shape.iter();
             shape.find(|one| one.term == at && one.name == parameter.name)
         });
-        if let Some(estimate) = estimate {
-            text += &match estimate.upper.is_finite() {
-                true => format!(" ({} … {})", short(estimate.lower), short(estimate.upper)),
-                false => " (any value)".into(),
-            };
-        }
-        text
+        let interval = |ends: [f64; 2]| match estimate {
+            Some(estimate) if !estimate.upper.is_finite() => " (any value)".into(),
+            Some(_) => format!(" ({})", ends.map(short).join(" … ")),
+            None => String::new(),
+        };
+        let ends = estimate.map_or([f64::NAN; 2], |estimate| [estimate.lower, estimate.upper]);
+        let own = shape_value(parameter, value) + &interval(ends);
+        let Some(reciprocal) = parameter.reciprocal else {
+            return own;
+        };
+        let [upper, lower] = ends.map(|end| reciprocal.product / end);
+        let other = short(reciprocal.product / value);
+        let other = named(reciprocal.name, reciprocal.unit, &other);
+        format!("{other}{}, {own}", interval([lower, upper]))
     };
     parameters.map(one).collect::<Vec<_>>().join(", ")
 }
@@ -99,15 +120,15 @@ pub(crate) fn shape_value(parameter: &Parameter, value: f64) -> String {
 
 /// A shape parameter and its values in words: `frequency 19 … 20 Hz`.
 pub(crate) fn shape_words(parameter: &Parameter, values: &str) -> String {
+    named(parameter.name, parameter.unit, values)
+}
+
+/// Values of a quantity in words: `frequency 19 … 20 Hz` for `frequency_hz`.
+fn named(name: &str, unit: &str, values: &str) -> String {
     // The unit is written after the value, so the name goes without its suffix.
-    let suffix = format!("_{}", parameter.unit.to_lowercase());
-    let name = plain(
-        parameter
-            .name
-            .strip_suffix(&suffix)
-            .unwrap_or(parameter.name),
-    );
-    match parameter.unit {
+    let suffix = format!("_{}", unit.to_lowercase());
+    let name = plain(name.strip_suffix(&suffix).unwrap_or(name));
+    match unit {
         "" => format!("{name} {values}"),
         unit => format!("{name} {values} {unit}"),
     }
@@ -182,14 +203,17 @@ pub(crate) fn customary(unit: Unit, half_seconds: i8) -> (f64, String) {
     }
 }
 
-/// An effect's shape parameters by the names that options use. The coefficient is added where its name
+/// An effect's shape parameters by the names that options use, each with its reciprocal if it is known by
+/// that as well. The coefficient is added where its name
 /// differs from that of the effect.
 pub(crate) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static str, f64)> {
     let shape = term.effect.parameters().iter().take(MAX_PARAMETERS);
-    let mut named: Vec<_> = shape
-        .zip(term.parameters)
-        .map(|(parameter, value)| (parameter.name, value))
-        .collect();
+    let both = |(parameter, value): (&Parameter, f64)| {
+        let reciprocal = parameter.reciprocal;
+        let other = reciprocal.map(|other| (other.name, other.product / value));
+        std::iter::once((parameter.name, value)).chain(other)
+    };
+    let mut named: Vec<_> = shape.zip(term.parameters).flat_map(both).collect();
     let name = term.effect.coefficient();
     if name != term.effect.name() {
         named.extend(coefficient.map(|value| (name, value)));
@@ -199,6 +223,10 @@ pub(crate) fn parameters(term: &Term, coefficient: Option<f64>) -> Vec<(&'static
 
 /// A note that names the frequencies of which a term's frequency may be the alias.
 pub(crate) fn alias(term: &Term, rate_hz: f64) -> Option<String> {
+    if term.effect.replaces().is_some() {
+        // A filter is not sampled.
+        return None;
+    }
     let mut parameters = term.effect.parameters().iter().zip(term.parameters);
     let (_, frequency_hz) = parameters.find(|(parameter, _)| parameter.name == "frequency_hz")?;
     Some(format!(

@@ -12,7 +12,7 @@ use crate::{
     confidence::TWO_SIDED_95,
 };
 use allanite::{
-    Coefficient,
+    Coefficient, Model,
     fit::{Fit, State},
 };
 use std::path::Path;
@@ -40,16 +40,18 @@ pub(super) struct AxisStatus {
 impl Status {
     /// Fits the samples that every axis has so far.
     pub(super) fn of(recording: &Recording, saving: String) -> Self {
+        let model = Model::ieee_952();
         let curves = recording.curves().ok().flatten().unwrap_or_default();
         let axes = curves.into_iter().map(|curve| {
             let name = curve.axis.clone();
             let is_constant = curve.octaves.iter().all(|octave| octave.sum == 0);
             // An axis that cannot be fitted yet may be fitted later.
-            let (fitted, why) = match Fitted::new(Path::new(""), curve, MethodName::Covariance) {
-                Ok(fitted) => (Some(fitted), None),
-                Err(_) if is_constant => (None, Some("its values never change".into())),
-                Err(_) => (None, Some("the fit failed".into())),
-            };
+            let (fitted, why) =
+                match Fitted::new(Path::new(""), curve, &model, MethodName::Covariance) {
+                    Ok(fitted) => (Some(fitted), None),
+                    Err(_) if is_constant => (None, Some("its values never change".into())),
+                    Err(_) => (None, Some("the fit failed".into())),
+                };
             AxisStatus { name, fitted, why }
         });
         Self {

@@ -90,6 +90,10 @@ pub(crate) struct Diagnosed {
     /// What happened during the record. Empty for a curve file, which has no course, and for a record that is not
     /// valid.
     pub(crate) events: Vec<Event>,
+    /// The course of the record. A curve file has none.
+    pub(crate) course: Option<Course>,
+    /// The columns that were recorded beside the axis, with their means in the blocks of the course.
+    pub(crate) columns: Vec<(String, Vec<f64>)>,
     /// The options of the search for effects.
     pub(crate) options: Options,
     /// Names of the covariates.
@@ -105,7 +109,7 @@ impl Diagnosed {
             max_effects: max_effects.unwrap_or(default.max_effects),
             ..default
         };
-        let course = evidence.course;
+        let (course, columns) = (evidence.course, evidence.columns);
         let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
         let evidence = allanite::diagnosis::Evidence {
             kurtosis: Some(&evidence.kurtosis),
@@ -125,6 +129,8 @@ impl Diagnosed {
             verdict,
             limits: Vec::new(),
             events: Vec::new(),
+            course: None,
+            columns,
             options,
             covariates,
             cross,
@@ -132,6 +138,7 @@ impl Diagnosed {
         diagnosed.limits = diagnosed.detection_limits()?;
         if let Some(course) = course {
             diagnosed.events = diagnosed.events_in(&course)?;
+            diagnosed.course = Some(course);
         }
         Ok(diagnosed)
     }
@@ -169,7 +176,7 @@ impl Diagnosed {
     }
 
     /// The curve on which a step was judged: without what follows a covariate.
-    fn curve_of(&self, step: &Step<OCTAVES, BINS>) -> Result<Curve<OCTAVES>, Error> {
+    pub(crate) fn curve_of(&self, step: &Step<OCTAVES, BINS>) -> Result<Curve<OCTAVES>, Error> {
         let mut curve = self.axis.curve()?;
         if let Some(followed) = &step.covariate {
             self.cross[followed.index].correct(&mut curve, &followed.slope);
@@ -180,6 +187,14 @@ impl Diagnosed {
     /// The first step, which has the five terms, and the last one.
     pub(crate) fn ends(&self) -> Option<(&Step<OCTAVES, BINS>, &Step<OCTAVES, BINS>)> {
         self.steps.first().zip(self.steps.last())
+    }
+
+    /// Why the record is not valid, if it is not.
+    pub(crate) fn invalid(&self) -> Option<String> {
+        match self.verdict {
+            Verdict::Invalid(reason) => Some(reason.to_string()),
+            _ => None,
+        }
     }
 
     /// The model of a step in words: `five terms + sinusoid`.

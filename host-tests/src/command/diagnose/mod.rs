@@ -2,6 +2,7 @@
 
 pub(super) mod diagnosed;
 pub(super) mod json;
+pub(super) mod pictures;
 pub(super) mod text;
 pub(super) mod words;
 

@@ -2,12 +2,13 @@
 
 use super::{
     diagnosed::Diagnosed,
+    pictures::Pictures,
     words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
 };
 use crate::{
     command::{fit, output::words},
     log::{BINS, OCTAVES},
-    plot::Plot,
+    plot::{Frame, Plot, Timeline},
 };
 use allanite::diagnosis::{Candidate, Step};
 use std::io::{self, Write};
@@ -30,6 +31,9 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     };
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
     writeln!(output, "{}: {record}", axis.axis)?;
+    if let Some(reason) = diagnosed.invalid() {
+        writeln!(output, "the curve is not valid: {reason}")?;
+    }
     writeln!(
         output,
         "five terms: χ² {:.1}, {} degrees of freedom, p {}; misfit {:.1} % rms",
@@ -73,12 +77,7 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
         fit::table::table(&last.fit, axis.unit).trim_fmt()
     )?;
     writeln!(output)?;
-    let title = format!(
-        "{}: Allan deviation of the record and of the model",
-        axis.axis
-    );
-    write!(output, "{}", Plot::new(&title, axis.unit, &last.comparison))?;
-    writeln!(output)?;
+    print_plots(diagnosed, last, output)?;
     writeln!(output, "{}: {}", axis.axis, verdict(diagnosed))?;
     let limits = limits(diagnosed);
     if !limits.is_empty() {
@@ -86,6 +85,33 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     }
     for limit in limits {
         writeln!(output, "  {limit}")?;
+    }
+    Ok(())
+}
+
+/// Prints the record beside the model of a step, and the record over time.
+fn print_plots(
+    diagnosed: &Diagnosed,
+    step: &Step<OCTAVES, BINS>,
+    output: &mut impl Write,
+) -> io::Result<()> {
+    let axis = &diagnosed.axis;
+    let pictures = Pictures::of(diagnosed);
+    for frame in pictures.frames() {
+        // A single model needs no room for the residuals of others.
+        let frame = Frame::of(frame.quantity, [&step.comparison]);
+        let title = format!(
+            "{}: {} of the record and of the model",
+            axis.axis,
+            frame.quantity.name()
+        );
+        let figure = pictures.figure(step, &frame);
+        let plot = Plot::new(&title, axis.unit, &figure, &frame);
+        writeln!(output, "{plot}")?;
+    }
+    if let Some(course) = pictures.course() {
+        let title = format!("{}: the record over time", axis.axis);
+        writeln!(output, "{}", Timeline::new(&title, &course))?;
     }
     Ok(())
 }

@@ -267,6 +267,9 @@ pub(crate) fn lead(diagnosed: &Diagnosed) -> String {
     let Some((first, _)) = diagnosed.ends() else {
         return verdict;
     };
+    if let Some(reason) = diagnosed.invalid() {
+        return format!("the curve is not valid: {reason}; no effect was looked for.");
+    }
     if matches!(diagnosed.verdict, Verdict::Adequate) {
         return verdict;
     }

@@ -87,7 +87,9 @@ impl Pair<'_> {
             group = group.add(self.line(&share.line, effect(share)));
         }
         group = group.add(self.line(&self.figure.model, MODEL).set("class", "model"));
-        let bars = self.points(&measured.lower).zip(self.points(&measured.upper));
+        let bars = self
+            .points(&measured.lower)
+            .zip(self.points(&measured.upper));
         for ((across, low), (_, high)) in bars {
             group = group.add(CURVE.stem(across, low, high, 1.5).set("class", "bar"));
         }

@@ -64,9 +64,7 @@ pub(super) struct Weighted<'a> {
 impl Weighted<'_> {
     fn terms(&self) -> impl Iterator<Item = (&Term, f64, SampledShape)> {
         let terms = self.model.terms().iter().zip(self.squares);
-        terms.map(|(term, square)| {
-            (term, *square, term.sampled_shape(self.interval_s))
-        })
+        terms.map(|(term, square)| (term, *square, term.sampled_shape(self.interval_s)))
     }
 
     /// The Allan variances from one averaging factor to another, both of which are powers of two.
@@ -288,7 +286,10 @@ mod tests {
                 let window = Window::new(effect, &shape, 64, bin.block);
                 let density = window.density(bin.index.into());
                 let off = (density - expected).abs();
-                assert!(off <= 1e-6 * expected + 1e-9 * largest, "{off:e} {expected:e}");
+                assert!(
+                    off <= 1e-6 * expected + 1e-9 * largest,
+                    "{off:e} {expected:e}"
+                );
             }
         }
     }

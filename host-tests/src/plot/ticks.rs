@@ -1,7 +1,7 @@
 //! Ticks: round numbers along an axis, and their labels.
 
 /// Powers of ten between two positive numbers. If there are fewer than four, also 2 and 5 times a power of ten, and
-/// if there are fewer than two of all these, more digits.
+/// if there are fewer than three of all these, more digits.
 pub(super) fn logarithmic(low: f64, high: f64) -> Vec<f64> {
     let between = |factors: &[f64]| -> Vec<f64> {
         let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
@@ -15,7 +15,7 @@ pub(super) fn logarithmic(low: f64, high: f64) -> Vec<f64> {
         return powers;
     }
     let few = between(&[1.0, 2.0, 5.0]);
-    if few.len() >= 2 {
+    if few.len() >= 3 {
         return few;
     }
     between(&[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
@@ -73,7 +73,11 @@ pub(super) fn told_apart(values: &[f64]) -> Vec<(f64, String)> {
     // Rounding can leave the logarithm of a power of ten slightly too small.
     let exponent = (step.log10() + 1e-9).floor();
     let label = |value: &f64| {
-        let value = if value.abs() < 1e-9 * step { 0.0 } else { *value };
+        let value = if value.abs() < 1e-9 * step {
+            0.0
+        } else {
+            *value
+        };
         let label = if exponent < -5.0 {
             power(value)
         } else {
@@ -112,7 +116,10 @@ mod tests {
     fn ticks_are_round_and_inside() {
         assert_eq!(logarithmic(0.02, 300.0), [0.1, 1.0, 10.0, 100.0]);
         assert_eq!(logarithmic(0.7, 30.0), [1.0, 2.0, 5.0, 10.0, 20.0]);
-        assert_eq!(logarithmic(0.015, 0.06), [0.02, 0.05]);
+        assert_eq!(
+            logarithmic(0.015, 0.06),
+            [0.015, 0.02, 0.03, 0.04, 0.05, 0.06]
+        );
         assert_eq!(linear(-0.11, 0.4), [-0.1, 0.0, 0.1, 0.2, 0.3, 0.4]);
         assert_eq!(
             [3.0, 10.0, 51.0, 200.0].map(round_up),
@@ -140,7 +147,10 @@ mod tests {
             let ticks = logarithmic(low, 2.25 * low);
             assert!(ticks.len() >= 2, "{low}: {ticks:?}");
             let labels: Vec<String> = ticks.iter().copied().map(plain).collect();
-            assert!(labels.windows(2).all(|pair| pair[0] != pair[1]), "{labels:?}");
+            assert!(
+                labels.windows(2).all(|pair| pair[0] != pair[1]),
+                "{labels:?}"
+            );
             let (from, to) = (-low, low * f64::from(k + 1));
             let ticks = linear(from, to);
             assert!((2..=7).contains(&ticks.len()), "{from} {to}: {ticks:?}");

@@ -49,7 +49,8 @@ class Sheet {
   }
 
   dot(panel, across, up, name) {
-    this.add("circle", { cx: this.x(across), cy: this.y(panel, clamp(up)), r: name === "worst" ? 8 : 3.5, class: name });
+    const r = { worst: 8, dot: 3.5, small: 2.3 }[name];
+    this.add("circle", { cx: this.x(across), cy: this.y(panel, clamp(up)), r, class: name === "small" ? "dot" : name });
   }
 
   /// A vertical line, clipped to the panel.
@@ -142,24 +143,27 @@ function drawFigure(frame, view, figure, unit, width) {
   sheet.frame(residual, frame.residuals, "residual, std. errors");
   sheet.line(sheet.left, sheet.y(residual, 0.5), sheet.right, sheet.y(residual, 0.5), "zero");
   const place = ([at, value]) => [across(at), up(value)];
+  // More dots than there is room for are smaller.
+  const dot = 8 * x.length > sheet.right - sheet.left ? "small" : "dot";
   for (const share of figure.shares) sheet.path(curve, share.line, place, `line effect-${share.colour}`);
   sheet.path(curve, figure.model, place, "line model");
   x.forEach((at, k) => {
     sheet.stem(curve, across(at), up(lower[k]), up(upper[k]));
-    sheet.dot(curve, across(at), up(measured[k]), "dot");
+    sheet.dot(curve, across(at), up(measured[k]), dot);
     sheet.stem(residual, across(at), 0.5, figure.up[k]);
-    sheet.dot(residual, across(at), figure.up[k], "dot");
+    sheet.dot(residual, across(at), figure.up[k], dot);
   });
   const z = figure.z[figure.worst];
   if (Math.abs(z) > 2) {
     const at = across(x[figure.worst]);
     sheet.dot(curve, at, up(measured[figure.worst]), "worst");
     sheet.dot(residual, at, figure.up[figure.worst], "worst");
-    // The label is on the side of the ring that has more room.
-    const begin = at < 0.6;
-    const side = [sheet.x(at) + (begin ? 13 : -13), sheet.y(residual, figure.up[figure.worst]) + 4];
-    sheet.text(side, { "text-anchor": begin ? "start" : "end", class: "worst-label" },
-      `worst ${frame.point}: ${z > 0 ? "+" : "−"}${Math.abs(z).toFixed(0)} std. errors`);
+    const words = `worst ${frame.point}: ${z > 0 ? "+" : "−"}${Math.abs(z).toFixed(0)} std. errors`;
+    // The label is at the edge of the panel that is farther from the ring, where few dots are, and inside the frame.
+    const half = 0.31 * sheet.size * words.length;
+    const middle = Math.min(sheet.right - half - 4, Math.max(sheet.left + half + 4, sheet.x(at)));
+    const edge = figure.up[figure.worst] > 0.6 ? residual.top + residual.height - 7 : residual.top + 15;
+    sheet.text([middle, edge], { "text-anchor": "middle", class: "worst-label" }, words);
   }
   return sheet.svg;
 }

@@ -7,7 +7,7 @@ use crate::{
             self,
             diagnosed::Diagnosed,
             pictures::Pictures,
-            words::{Finding, candidate_name, shown_p},
+            words::{Finding, candidate_name, disagreement, shown_p},
         },
         fit,
         output::{model_json, units},
@@ -310,7 +310,7 @@ impl Shared<'_> {
             model,
             front: largest.map_or(0, |(at, _)| at),
             figures: figures.collect(),
-            words: step.comparison.to_string(),
+            words: disagreement(&step.comparison),
             p: shown_p(step.fit.p_value),
             states: step
                 .fit

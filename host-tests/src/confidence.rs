@@ -36,14 +36,23 @@ pub struct Limits {
 /// Var(σ̂²) is taken from the covariance of the curve at this model. The interval is
 /// `σ̂² ν/χ²_ν(0.975) … σ̂² ν/χ²_ν(0.025)`.
 pub fn limits(curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Vec<Limits> {
+    let errors = relative_errors(curve, model, fit);
+    let octaves = curve.points().iter().zip(errors);
+    octaves
+        .map(|(point, error)| interval(point.variance, 2.0 / (error * error)))
+        .collect()
+}
+
+/// The standard error of every octave's Allan variance, relative to the variance. It follows from the covariance of the
+/// curve at a fitted model.
+pub fn relative_errors(curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Vec<f64> {
     let squares = fit.squares();
     let covariance = curve_covariance(curve, model, &squares);
     let octaves = curve.points().iter().enumerate();
     octaves
         .map(|(k, point)| {
             let variance = model.variance(&squares, point.m, curve.interval_s());
-            let freedom = 2.0 * variance * variance / covariance[(k, k)];
-            interval(point.variance, freedom)
+            covariance[(k, k)].sqrt() / variance
         })
         .collect()
 }

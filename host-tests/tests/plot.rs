@@ -88,10 +88,12 @@ fn marks_lie_where_the_figures_are() {
             let octaves = axis["octaves"].as_array().unwrap();
             assert_eq!(curve.marks.len(), octaves.len());
             assert_eq!(residual.marks.len(), octaves.len());
-            let (top, bottom) = (&residual.labels[0], &residual.labels[2]);
+            let (top, bottom) = (&residual.labels[0], residual.labels.last().unwrap());
             assert_eq!((top.0, bottom.0), (0, residual.rows - 1));
             assert_eq!(top.1, -bottom.1);
-            let step = 2.0 * top.1 / (residual.rows - 1) as f64;
+            // The scale is linear near zero and logarithmic beyond.
+            let along = |z: f64| (z / 3.0).asinh() / (top.1 / 3.0).asinh();
+            let half = 0.5 * (residual.rows - 1) as f64;
             // Rows with labels are exact, and the values between them are interpolated.
             let (high, low) = (curve.labels[0], curve.labels[curve.labels.len() - 1]);
             let per_row = (high.1 / low.1).ln() / (low.0 - high.0) as f64;
@@ -100,11 +102,8 @@ fn marks_lie_where_the_figures_are() {
                 assert_eq!(column, curve.marks[k].0);
                 let expected = k as f64 / (octaves.len() - 1) as f64 * 67.0;
                 assert!((column as f64 - expected).abs() <= 0.5);
-                let z = top.1 - step * row as f64;
-                assert!(
-                    (z - number(&octave["z"])).abs() <= 0.501 * step,
-                    "{z}: {octave}"
-                );
+                let expected = half * (1.0 - along(number(&octave["z"])));
+                assert!((row as f64 - expected).abs() <= 0.501, "{row}: {octave}");
                 let row = curve.marks[k].1 as f64;
                 let measured = number(&octave["measured"]);
                 let expected = high.0 as f64 + (high.1 / measured).ln() / per_row;
@@ -197,7 +196,8 @@ fn a_terminal_gets_colours_unless_disabled_and_sets_the_width() {
         let axis = text.lines().map(|line| line.trim_end_matches('\r'));
         let axis = axis.filter(|line| line.contains('└'));
         let widths: Vec<usize> = axis.map(|line| line.chars().count()).collect();
-        assert_eq!(widths, [columns as usize - 1; 3]);
+        // Three axes, each with its Allan deviation and its spectrum.
+        assert_eq!(widths, [columns as usize - 1; 6]);
     }
 }
 
@@ -226,6 +226,8 @@ fn drawing_has_its_marks_at_the_figures_and_describes_them_in_words() {
         "0",
         "--output",
         "curve.svg",
+        "--what",
+        "deviation",
     ];
     assert_eq!(output(folder.path(), &arguments), "");
     let text = fs::read_to_string(folder.path().join("curve.svg")).unwrap();
@@ -239,7 +241,7 @@ fn drawing_has_its_marks_at_the_figures_and_describes_them_in_words() {
     let last = octaves.len() - 1;
     let value = |k: usize, key: &str| number(&octaves[k][key]);
     let log = |k: usize, key: &str| value(k, key).ln();
-    let z = |k: usize| value(k, "z");
+    let z = |k: usize| (value(k, "z") / 3.0).asinh();
     let share = |from: f64, at: f64, to: f64| (at - from) / (to - from);
     for k in 0..=last {
         assert_eq!(curve[k].0, residual[k].0);
@@ -265,7 +267,7 @@ fn drawing_has_its_marks_at_the_figures_and_describes_them_in_words() {
         .map(str::trim)
         .collect();
     for expected in [
-        "gz: Allan deviation, five terms",
+        "gz: five terms",
         "Allan deviation σ, deg/s",
         "residual, std. errors",
         "averaging time τ",
@@ -355,7 +357,7 @@ fn drawing_is_well_formed_for_any_name_of_an_axis() {
     }
     let text = fs::read_to_string(folder.path().join("curve.svg")).unwrap();
     let drawing = Document::parse(&text).unwrap();
-    let shown = format!("{}: Allan", name.replace(['\u{1}', '\u{fffe}'], " "));
+    let shown = format!("{}: five", name.replace(['\u{1}', '\u{fffe}'], " "));
     let mut words = drawing.descendants().filter_map(|node| node.text());
     assert!(words.any(|words| words.trim().starts_with(&shown)));
 }

@@ -96,6 +96,28 @@ fn the_readme_has_at_most_150_lines() {
     assert!((50..=150).contains(&lines), "{lines} lines");
 }
 
+#[test]
+fn pictures_of_the_manual_are_those_that_plot_draws() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    for (step, picture) in [("0", "adis16405-gz-0.svg"), ("9", "adis16405-gz-last.svg")] {
+        let input = "host-tests/data/adis16405.json";
+        let drawn = folder.path().join(picture);
+        let file = drawn.to_string_lossy().into_owned();
+        let what = ["--axis", "gz", "--what", "spectrum", "--step", step];
+        let arguments = [&["plot", input, "--output", &file], &what[..]].concat();
+        output(Path::new(ROOT), &arguments);
+        let shown = text(&format!("host-tests/pictures/{picture}"));
+        let drawn = fs::read_to_string(drawn).expect("a picture");
+        assert!(
+            shown == drawn,
+            "draw it again: cargo allanite {}",
+            arguments
+                .join(" ")
+                .replace(&file, &format!("host-tests/pictures/{picture}"))
+        );
+    }
+}
+
 /// Files that a page links to or draws, without the place in them.
 fn links(page: &str) -> impl Iterator<Item = &str> {
     let targets = page.split("](").skip(1);

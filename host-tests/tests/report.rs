@@ -3,44 +3,15 @@
 
 #[path = "common/browser.rs"]
 mod browser;
+#[path = "common/page.rs"]
+mod page;
 
 use browser::Browser;
-use host_tests::program::{ADIS16405, json, measure_without_spectrum, output, refusal};
+use host_tests::program::{ADIS16405, measure_without_spectrum, output, refusal};
+use page::{embedded, number, opened, reported, simulate, steps};
 use serde_json::Value;
-use std::{fs, path::Path};
+use std::fs;
 use tempfile::TempDir;
-
-/// Writes the page of an input into a folder, and returns the diagnosis of the same input.
-fn reported(folder: &Path, arguments: &[&str]) -> Value {
-    let report = [&["report"], arguments, &["--output", "report.html"]].concat();
-    assert_eq!(output(folder, &report), "");
-    json(folder, &[&["diagnose"], arguments].concat())
-}
-
-/// Writes the log of a consumer gyro, 2^16 samples at 100 Hz, with hidden effects.
-fn simulate(folder: &Path, effects: &[&str]) {
-    let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", "5"];
-    let effects = effects.iter().flat_map(|effect| ["--effect", *effect]);
-    let effects: Vec<&str> = effects.collect();
-    output(
-        folder,
-        &[&simulate[..], &effects, &["--output", "log.csv"]].concat(),
-    );
-}
-
-fn opened(folder: &Path) -> Browser {
-    let mut browser = Browser::start();
-    browser.open(&folder.join("report.html"));
-    browser
-}
-
-fn steps(axis: &Value) -> &[Value] {
-    axis["steps"].as_array().unwrap()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
-}
 
 /// The text of the page about the error of a fit.
 fn error(fit: &Value) -> String {
@@ -54,12 +25,6 @@ fn shown_error(browser: &mut Browser, axis: usize) -> String {
     let text = |nth: usize| format!("#axis-{axis} .error .figures:nth-child({nth})");
     let [chi2, misfit] = [1, 2].map(|nth| browser.text(&text(nth)));
     format!("{chi2}|{misfit}")
-}
-
-/// The data in the page that the script reads.
-fn embedded(page: &str) -> Value {
-    let (_, rest) = page.split_once("id=\"data\">").unwrap();
-    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
 }
 
 /// The contrast of two colours like `rgb(1, 2, 3)`, as in WCAG 2.
@@ -118,7 +83,7 @@ fn each_axis_begins_with_its_misfit_the_missing_effect_and_the_decrease_of_the_e
             assert!(lead.contains(&part), "{part}: {lead}");
         }
         // The worst octave is marked and named in both panels.
-        let figure = format!("#axis-{number_of_axis} .figure");
+        let figure = format!("#axis-{number_of_axis} .figure.deviation");
         let rings = browser.value(&format!(
             "document.querySelectorAll('{figure} .worst').length"
         ));

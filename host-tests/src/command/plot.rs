@@ -4,18 +4,20 @@ use crate::{
     command::{
         diagnose::{
             diagnosed::{Diagnosed, DiagnosisArguments},
+            pictures::Pictures,
             words::shown_p,
         },
         examples,
         output::{file::OutputFile, words},
     },
     failure::{Failure, Place, quoted},
-    plot::{Drawing, Figure, Frame, svg},
+    plot::{Drawing, Quantity, svg},
 };
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::{io::Write, path::Path, path::PathBuf};
 
-/// Draw the Allan curve beside the last model of `diagnose`, and the difference of the two
+/// Draw the Allan deviation and the spectrum beside the last model of `diagnose`, with the differences, and the rate
+/// over time
 #[derive(Debug, Args)]
 #[command(after_help = examples::PLOT)]
 pub(super) struct Arguments {
@@ -31,13 +33,27 @@ pub(super) struct Arguments {
     /// shows its last [default: the last]
     #[arg(long, value_name = "N")]
     step: Option<usize>,
+    /// What to draw [default: all that the record has; a curve file has no rate over time]
+    #[arg(long, value_delimiter = ',', value_name = "WHAT,…")]
+    what: Vec<What>,
+}
+
+/// A part of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum What {
+    /// The Allan deviation over the averaging time, with its residual
+    Deviation,
+    /// The density over the frequency, with its residual
+    Spectrum,
+    /// The rate, the noise and recorded columns over time, with events
+    Rate,
 }
 
 /// The part of the program that a build without the feature `pictures` leaves out.
 const PNG: &str = "drawing .png pictures";
 
-/// The most figures of a picture of pixels. Each takes eleven megabytes.
-const MOST_FIGURES: usize = 6;
+/// The most axes in a picture of pixels. Each takes up to thirty megabytes.
+const MOST_AXES: usize = 6;
 
 #[derive(Clone, Copy)]
 enum Format {
@@ -65,10 +81,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
     let diagnosed = arguments.diagnosis.diagnosed()?;
     let drawings = chosen(&diagnosed, arguments)?;
-    if matches!(format, Format::Png) && drawings.len() > MOST_FIGURES {
+    if matches!(format, Format::Png) && drawings.len() > MOST_AXES {
         return Err(Place::file(&arguments.output).failure(
             format!(
-                "the picture would have {} figures, more than {MOST_FIGURES}",
+                "the picture would have {} axes, more than {MOST_AXES}",
                 drawings.len()
             ),
             "draw one axis with --axis, or an .svg",
@@ -76,8 +92,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let drawings: Vec<Drawing> = drawings
         .into_iter()
-        .map(|diagnosed| drawing(diagnosed, arguments.step))
-        .collect();
+        .map(|diagnosed| drawing(diagnosed, arguments))
+        .collect::<Result<_, _>>()?;
     let drawing = svg(&drawings);
     let place = || Place::file(&arguments.output);
     let bytes = match format {
@@ -123,19 +139,23 @@ fn chosen<'a>(
 }
 
 /// The drawing of a step, or of the last step if the diagnosis has fewer.
-fn drawing(diagnosed: &Diagnosed, step: Option<usize>) -> Drawing {
+fn drawing(diagnosed: &Diagnosed, arguments: &Arguments) -> Result<Drawing, Failure> {
     let last = diagnosed.steps.len() - 1;
-    let at = step.map_or(last, |step| step.min(last));
+    let at = arguments.step.map_or(last, |step| step.min(last));
     let step = &diagnosed.steps[at];
     let axis = &diagnosed.axis;
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
-    let frame = Frame::of([&step.comparison]);
-    Drawing {
-        title: format!(
-            "{}: Allan deviation, {}",
-            axis.axis,
-            diagnosed.model_name(at)
-        ),
+    let pictures = Pictures::of(diagnosed);
+    let wanted = |what: What| arguments.what.is_empty() || arguments.what.contains(&what);
+    let frames = pictures.frames().into_iter();
+    let frames = frames.filter(|frame| {
+        wanted(match frame.quantity {
+            Quantity::Deviation => What::Deviation,
+            Quantity::Density => What::Spectrum,
+        })
+    });
+    let drawing = Drawing {
+        title: format!("{}: {}", axis.axis, diagnosed.model_name(at)),
         subtitle: format!(
             "χ² {:.1}, {} degrees of freedom, p {}, misfit {:.1} % rms; {record}",
             step.fit.chi_squared,
@@ -143,8 +163,17 @@ fn drawing(diagnosed: &Diagnosed, step: Option<usize>) -> Drawing {
             shown_p(step.fit.p_value),
             step.comparison.rms_percent,
         ),
+        warning: diagnosed.invalid(),
         unit: axis.unit,
-        figure: Figure::new(&step.model, &step.comparison, &frame),
-        frame,
+        figures: frames
+            .map(|frame| (pictures.figure(step, &frame), frame))
+            .collect(),
+        course: pictures.course().filter(|_| wanted(What::Rate)),
+    };
+    if drawing.figures.is_empty() && drawing.course.is_none() {
+        let what = format!("axis {} has nothing of what is to be drawn", axis.axis);
+        let remedy = "give the log instead of a curve file, record longer, or leave out --what";
+        return Err(Place::file(&arguments.diagnosis.input).failure(what, remedy));
     }
+    Ok(drawing)
 }

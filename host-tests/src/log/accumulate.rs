@@ -8,9 +8,10 @@ use super::{
     quantum::{Quantum, Range},
     table::{Ended, Stop, Table, Visitor},
     time_column::TimeColumn,
-    worker::{Batches, Plan, Sums},
+    worker::{Batches, Plan, Sums, Totals},
 };
 use crate::failure::{Failure, Place};
+use allanite::course::Course;
 use indicatif::ProgressBar;
 use std::path::Path;
 
@@ -18,8 +19,8 @@ use std::path::Path;
 pub(super) struct Measured {
     /// The sums of each axis, and the quantum that its counts are in.
     pub(super) axes: Vec<(Sums, Quantum)>,
-    /// The quantum of each covariate.
-    pub(super) covariates: Vec<Quantum>,
+    /// The quantum of each covariate, and the course of its column in counts.
+    pub(super) covariates: Vec<(Quantum, Course)>,
     /// The time stamps that were followed, if the log has a time column.
     pub(super) clock: Option<Clock>,
 }
@@ -171,14 +172,17 @@ fn finish(
     quanta: &[Quantum],
     clock: Option<Clock>,
 ) -> Result<Measured, Failure> {
-    let sums = batches.finish();
+    let Totals {
+        axes: sums,
+        columns,
+    } = batches.finish();
     if sums.iter().any(|axis| axis.accumulator().samples() == 0) {
         return Err(Place::file(path).failure("no rows", "record some samples"));
     }
     let (axes, covariates) = quanta.split_at(sums.len());
     Ok(Measured {
         axes: sums.into_iter().zip(axes.iter().copied()).collect(),
-        covariates: covariates.to_vec(),
+        covariates: covariates.iter().copied().zip(columns).collect(),
         clock,
     })
 }

@@ -205,4 +205,6 @@ pub struct Evidence {
     pub invalid: Option<Reason>,
     /// The course of the axis over time.
     pub course: Option<Course>,
+    /// The columns of the covariates, with their means in the blocks of the course.
+    pub columns: Vec<(String, Vec<f64>)>,
 }

@@ -129,6 +129,11 @@ impl Quantum {
         }
     }
 
+    /// The value of a count or of a mean of counts.
+    pub(super) fn value(&self, count: f64) -> f64 {
+        (count + self.origin) * self.step + self.base as f64
+    }
+
     /// The count of a relative value within the range. Its magnitude is at most 2^29, or that of a
     /// whole number.
     #[inline]
@@ -175,6 +180,17 @@ mod tests {
         let counts = values.map(|value| quantum.count(value));
         let rate = |i: usize, j: usize| f64::from(counts[i] - counts[j]) * quantum.step();
         assert_eq!((rate(1, 0), rate(2, 1)), (0.25, 0.75));
+    }
+
+    #[test]
+    fn values_of_counts_are_those_that_were_counted() {
+        for values in [[0.25, 0.5, 1.25], [-3.0, 4.0, 9.0], [1e6, 1e6, 1e6]] {
+            let quantum = quantum(&values);
+            for value in values {
+                let again = quantum.value(quantum.count(value).into());
+                assert!((again - value).abs() < 1e-9, "{again} {value}");
+            }
+        }
     }
 
     #[test]

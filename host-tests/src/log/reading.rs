@@ -13,7 +13,7 @@ use super::{
     worker,
 };
 use crate::failure::{Failure, Place};
-use allanite::Scale;
+use allanite::{Scale, course::Course};
 use indicatif::ProgressBar;
 use std::path::Path;
 
@@ -90,6 +90,7 @@ pub(super) fn read_table(
     notes.retain(|note| !note.is_empty());
     notes.extend(measured.clock.as_ref().map(Clock::report));
     notes.extend(table.notes());
+    let columns = block_means(covariates, &measured.covariates);
     let mut axes = Vec::new();
     let mut rest = Vec::new();
     for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
@@ -111,10 +112,12 @@ pub(super) fn read_table(
         }
         check_axis(path, &axis)?;
         if let worker::Sums::Watched(watched, beside) = &sums {
-            let named = covariates.iter().zip(&measured.covariates);
+            let quanta = measured.covariates.iter().map(|(quantum, _)| quantum);
+            let named = covariates.iter().zip(quanta);
             let evidence = evidence(path, &axis, &**watched, named, rate_hz)?;
             axis.evidence = Some(Evidence {
                 course: Some(beside.course.clone()),
+                columns: columns.clone(),
                 ..evidence
             });
         }
@@ -190,6 +193,27 @@ fn said(
     parts.join("; ")
 }
 
+/// The columns of the covariates, with their means in the blocks of the course.
+fn block_means(
+    choices: &[CovariateChoice],
+    covariates: &[(quantum::Quantum, Course)],
+) -> Vec<(String, Vec<f64>)> {
+    // A scale of one leaves the means in counts; the times of the blocks are not used.
+    let Ok(counts) = Scale::new(1.0, 1.0) else {
+        return Vec::new();
+    };
+    let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+    for (choice, (quantum, course)) in choices.iter().zip(covariates) {
+        // A column and its rate of change may both be covariates.
+        if columns.iter().all(|(name, _)| *name != choice.column) {
+            let blocks = course.blocks(counts);
+            let means = blocks.map(|block| quantum.value(block.mean)).collect();
+            columns.push((choice.column.clone(), means));
+        }
+    }
+    columns
+}
+
 /// The evidence of an axis, in units.
 fn evidence<'a>(
     path: &Path,
@@ -215,6 +239,7 @@ fn evidence<'a>(
         covariates: names.into_iter().zip(told.covariates).collect(),
         invalid: told.invalid,
         course: None,
+        columns: Vec::new(),
     })
 }
 

@@ -130,7 +130,16 @@ pub(super) struct Batches {
     full: SyncSender<Work>,
     /// Batches that have been accumulated and can be filled again.
     empty: Receiver<Vec<i32>>,
-    thread: JoinHandle<Vec<Sums>>,
+    thread: JoinHandle<Totals>,
+}
+
+/// What the thread has accumulated.
+pub(super) struct Totals {
+    /// The sums of each axis.
+    pub(super) axes: Vec<Sums>,
+    /// The course of the column of each covariate, in counts. The course of a column is the same whether its rate
+    /// of change is the covariate or not.
+    pub(super) columns: Vec<Course>,
 }
 
 impl Batches {
@@ -150,7 +159,10 @@ impl Batches {
                     Work::Gap => worker.gap(),
                 }
             }
-            worker.sums
+            Totals {
+                axes: worker.sums,
+                columns: worker.columns,
+            }
         });
         Self {
             open: vec![Vec::with_capacity(BATCH); columns],
@@ -193,7 +205,7 @@ impl Batches {
         }
     }
 
-    pub(super) fn finish(mut self) -> Vec<Sums> {
+    pub(super) fn finish(mut self) -> Totals {
         self.send_all();
         drop(self.full);
         self.thread
@@ -206,6 +218,7 @@ struct Worker {
     plan: Plan,
     sums: Vec<Sums>,
     derived: Vec<Derived>,
+    columns: Vec<Course>,
     /// With covariates, a batch waits until the batches of the other columns with the same rows
     /// arrive.
     waiting: Vec<VecDeque<Vec<i32>>>,
@@ -216,6 +229,7 @@ impl Worker {
         Self {
             sums: (0..plan.axes).map(|_| plan.sums()).collect(),
             derived: plan.covariates().iter().map(Derived::new).collect(),
+            columns: plan.covariates().iter().map(|_| Course::new()).collect(),
             waiting: vec![VecDeque::new(); plan.columns()],
             plan,
         }
@@ -237,6 +251,9 @@ impl Worker {
             .filter_map(VecDeque::pop_front)
             .collect();
         let (axes, covariates) = rows.split_at_mut(self.plan.axes);
+        for (course, counts) in self.columns.iter_mut().zip(covariates.iter()) {
+            counts.iter().for_each(|&count| course.push(count, []));
+        }
         for (derived, counts) in self.derived.iter_mut().zip(covariates.iter_mut()) {
             for count in counts {
                 *count = derived.next(*count);
@@ -251,6 +268,9 @@ impl Worker {
     fn gap(&mut self) {
         for derived in &mut self.derived {
             derived.gap();
+        }
+        for course in &mut self.columns {
+            course.gap();
         }
         for sums in &mut self.sums {
             match sums {

@@ -1,35 +1,65 @@
 //! The data that a plot shows of a comparison.
 
-use super::frame::Frame;
+use super::{
+    frame::Frame,
+    lines::{self, Line, Weighted},
+    quantity::{Quantity, Row},
+};
 use crate::log::{BINS, OCTAVES};
 use allanite::{
     Comparison, Model,
     effect::{CATALOGUE, Effect},
+    fit::Fit,
+    spectrum::{Bin, Spectrum},
 };
 use serde::Serialize;
 
-/// An effect is shown if its share of the model's variance is at least this large in some octave. A
-/// smaller one rounds to 0 %.
-const LEAST_SHARE: f32 = 0.005;
+/// An effect is shown if its share of the model is at least this large somewhere. A smaller one rounds
+/// to 0 %.
+const LEAST_SHARE: f64 = 0.005;
 
-/// A record and a model octave by octave, with deviations in rate units. Single precision is enough for
-/// a drawing.
-#[derive(Clone, Debug, Serialize)]
+/// A model that was fitted to a record, and their comparison.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Its fit.
+    pub fit: &'a Fit,
+    /// The record beside the model.
+    pub comparison: &'a Comparison<OCTAVES, BINS>,
+    /// The spectrum of the record.
+    pub spectrum: &'a Spectrum<BINS>,
+    /// The standard errors of the octaves' measured variances, relative to the variances.
+    pub errors: &'a [f64],
+    /// Sample interval, in seconds.
+    pub interval_s: f64,
+}
+
+/// A record and a model octave by octave or bin by bin, in rate units or in rate units per √Hz. Single
+/// precision is enough for a drawing.
+#[derive(Clone, Debug)]
 pub struct Figure {
-    /// Averaging times, in seconds.
-    pub tau_s: Vec<f32>,
-    /// Measured deviations.
-    pub measured: Vec<f32>,
-    /// The measured deviations less one standard error.
-    pub lower: Vec<f32>,
-    /// The measured deviations plus one standard error.
-    pub upper: Vec<f32>,
-    /// Deviations of the model.
-    pub model: Vec<f32>,
+    /// What is measured.
+    pub measured: Measured,
     /// Residuals, in standard errors.
     pub z: Vec<f32>,
+    /// The line of the model.
+    pub model: Line,
     /// The effects that are large enough to be shown.
     pub shares: Vec<Share>,
+}
+
+/// The points of a figure, with ascending averaging times or frequencies.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measured {
+    /// Averaging times in seconds, or frequencies in Hz.
+    pub x: Vec<f32>,
+    /// Measured deviations, or roots of densities.
+    pub measured: Vec<f32>,
+    /// The same less one standard error of the measurement.
+    pub lower: Vec<f32>,
+    /// The same plus one standard error.
+    pub upper: Vec<f32>,
 }
 
 /// The contribution of an effect to a model.
@@ -39,56 +69,96 @@ pub struct Share {
     pub effect: &'static str,
     /// Index of its colour. Effects that replace each other share a colour.
     pub colour: usize,
-    /// Deviations of the effect, in rate units.
-    pub sigma: Vec<f32>,
+    /// Deviations, or roots of densities, of the effect.
+    pub line: Line,
 }
 
 impl Figure {
     /// The figure of a model beside a record. Effects that lie below the frame are left out.
-    pub fn new(model: &Model, comparison: &Comparison<OCTAVES, BINS>, frame: &Frame) -> Self {
-        let octaves = comparison.octaves.iter();
-        let roots = |variance: &dyn Fn(&allanite::comparison::ComparedOctave) -> f64| {
-            let root = |variance: f64| variance.max(0.0).sqrt() as f32;
-            octaves
-                .clone()
-                .map(|octave| root(variance(octave)))
-                .collect()
+    pub fn new(view: &View, frame: &Frame) -> Self {
+        let rows = frame.quantity.rows(view.comparison);
+        let errors = match frame.quantity {
+            Quantity::Deviation => view.errors.to_vec(),
+            Quantity::Density => {
+                let bins = view.comparison.bins.iter();
+                let mut bins: Vec<&Bin> = bins.map(|compared| &compared.bin).collect();
+                bins.sort_by(|one, other| one.frequency_hz.total_cmp(&other.frequency_hz));
+                bins.into_iter().map(relative_error).collect()
+            }
         };
-        // The standard error of an octave that agrees to the last bit is NaN; it is drawn as zero.
-        let error = |octave: &allanite::comparison::ComparedOctave| match octave.standard_error() {
-            error if error.is_finite() => error,
-            _ => 0.0,
+        let weighted = Weighted {
+            model: view.model,
+            squares: &view.fit.squares(),
+            interval_s: view.interval_s,
         };
-        let share = |(at, term): (usize, &allanite::Term)| Share {
+        let octaves = &view.comparison.octaves;
+        let ends = octaves.first().zip(octaves.last());
+        let pieces = match frame.quantity {
+            Quantity::Deviation => ends
+                .map(|(first, last)| weighted.variances(first.m, last.m))
+                .into_iter()
+                .collect(),
+            Quantity::Density => weighted.densities(view.spectrum),
+        };
+        let terms = view.model.terms().iter().enumerate();
+        let shown = terms.filter(|(at, _)| {
+            let mut pieces = pieces.iter();
+            pieces.any(|piece| piece.shows(*at, LEAST_SHARE, frame.y.low))
+        });
+        let shares = shown.map(|(at, term)| Share {
             effect: term.effect.name(),
             colour: colour(term.effect),
-            sigma: roots(&|octave| octave.model * f64::from(octave.shares[at])),
-        };
-        let shows = |at: usize| {
-            octaves.clone().any(|octave| {
-                let share = octave.shares[at];
-                let sigma = (octave.model * f64::from(share)).sqrt();
-                share >= LEAST_SHARE && sigma >= frame.sigma.low
-            })
-        };
-        let terms = model.terms().iter().enumerate();
+            line: lines::effect(&pieces, at),
+        });
         Self {
-            tau_s: octaves.clone().map(|octave| octave.tau_s as f32).collect(),
-            measured: roots(&|octave| octave.measured),
-            lower: roots(&|octave| octave.measured - error(octave)),
-            upper: roots(&|octave| octave.measured + error(octave)),
-            model: roots(&|octave| octave.model),
-            z: octaves.clone().map(|octave| octave.z as f32).collect(),
-            shares: terms.filter(|(at, _)| shows(*at)).map(share).collect(),
+            measured: Measured::new(&rows, &errors),
+            z: rows.iter().map(|row| short(row.z)).collect(),
+            shares: shares.collect(),
+            model: lines::model(&pieces),
         }
     }
 
-    /// Index of the octave with the largest residual, or 0 if there are no octaves.
+    /// Index of the octave or the bin with the largest residual, or 0 if there are none.
     pub fn worst(&self) -> usize {
         let sizes = self.z.iter().map(|z| z.abs()).enumerate();
         let worst = sizes.max_by(|(_, a), (_, b)| a.total_cmp(b));
         worst.map_or(0, |(at, _)| at)
     }
+}
+
+impl Measured {
+    fn new(rows: &[Row], errors: &[f64]) -> Self {
+        let roots = |sign: f64| -> Vec<f32> {
+            // Without an error, a bar has no length.
+            let errors = errors.iter().copied().chain(std::iter::repeat(0.0));
+            let squares = rows.iter().zip(errors);
+            squares
+                .map(|(row, error)| {
+                    let error = if error.is_finite() { error } else { 0.0 };
+                    short((row.measured * (1.0 + sign * error)).max(0.0).sqrt())
+                })
+                .collect()
+        };
+        Self {
+            x: rows.iter().map(|row| short(row.x)).collect(),
+            measured: roots(0.0),
+            lower: roots(-1.0),
+            upper: roots(1.0),
+        }
+    }
+}
+
+/// The standard error of a density relative to the density, from the scatter of the segments' powers: their spectral
+/// kurtosis `SK` and their number `n` give the unbiased relative variance `SK n/(n+1)` of one segment. For Gaussian
+/// noise it is 1.
+pub fn relative_error(bin: &Bin) -> f64 {
+    let n = f64::from(bin.segments);
+    (bin.spectral_kurtosis * n / (n + 1.0) / bin.effective_segments()).sqrt()
+}
+
+/// A number with six digits.
+fn short(value: f64) -> f32 {
+    format!("{value:.5e}").parse().unwrap_or(f32::NAN)
 }
 
 /// Index of an effect's colour: its place among those effects of the catalogue that neither mirror nor

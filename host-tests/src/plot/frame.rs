@@ -1,9 +1,13 @@
 //! The spans of a plot's panels, and the positions of values in them. They are the same in a terminal,
 //! in a file and on a page.
 
-use super::ticks;
+use super::{quantity::Quantity, ticks};
 use crate::log::{BINS, OCTAVES};
-use allanite::{Comparison, comparison::ComparedOctave};
+use allanite::Comparison;
+
+/// Residuals up to about this many standard errors have a linear scale, and larger ones a logarithmic one, so that
+/// both a residual of thousands and what remains when it is gone can be seen on the same scale. Chosen by hand.
+const LINEAR: f64 = 3.0;
 
 /// The span of a logarithmic axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,66 +50,83 @@ impl Span {
     }
 }
 
-/// The spans of both panels.
+/// The spans of a panel of a curve and of the panel of its residuals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Averaging times, in seconds.
-    pub tau_s: Span,
-    /// Allan deviations, in rate units.
-    pub sigma: Span,
+    /// What is shown.
+    pub quantity: Quantity,
+    /// Averaging times in seconds, or frequencies in Hz.
+    pub x: Span,
+    /// Deviations in rate units, or roots of densities in rate units per √Hz.
+    pub y: Span,
     /// The panel of residuals reaches from −z to z standard errors.
     pub z: f64,
 }
 
 impl Frame {
-    /// A frame with room for all octaves of these comparisons.
+    /// A frame with room for all octaves, or all bins, of these comparisons.
     pub fn of<'a>(
-        comparisons: impl IntoIterator<Item = &'a Comparison<OCTAVES, BINS>> + Clone,
+        quantity: Quantity,
+        comparisons: impl IntoIterator<Item = &'a Comparison<OCTAVES, BINS>>,
     ) -> Self {
-        let octaves = || {
-            let comparisons = comparisons.clone().into_iter();
-            comparisons.flat_map(|comparison| &comparison.octaves)
-        };
-        let times = octaves().map(|octave| octave.tau_s);
-        let variances = |octave: &ComparedOctave| [octave.measured, octave.model];
-        let positive = octaves()
-            .flat_map(variances)
-            .filter(|variance| *variance > 0.0);
-        let (first, last) = ends(times).unwrap_or((1.0, 2.0));
+        let rows = comparisons
+            .into_iter()
+            .flat_map(|comparison| quantity.rows(comparison));
+        let rows: Vec<_> = rows.collect();
+        let squares = rows.iter().flat_map(|row| [row.measured, row.model]);
+        let positive = squares.filter(|square| *square > 0.0);
+        let (first, last) = ends(rows.iter().map(|row| row.x)).unwrap_or((1.0, 2.0));
         let (low, high) = ends(positive.map(f64::sqrt)).unwrap_or((1.0, 1.0));
         // The span is at least a factor of 2.25, with a margin of 5 % at each end.
         let middle = (low * high).sqrt();
         let half = (high / low).sqrt().max(1.5) * 1.05;
-        let sizes = octaves().map(|octave| octave.z.abs());
+        let sizes = rows.iter().map(|row| row.z.abs());
         Self {
-            tau_s: Span {
+            quantity,
+            x: Span {
                 low: first,
-                high: last.max(2.0 * first),
+                high: last.max(2.25 * first),
             },
-            sigma: Span {
+            y: Span {
                 low: middle / half,
                 high: middle * half,
             },
-            z: ticks::round_up(sizes.fold(3.0, f64::max)),
+            z: ticks::round_up(sizes.fold(LINEAR, f64::max)),
+        }
+    }
+
+    /// The ticks of the horizontal axis.
+    pub fn across(&self) -> Vec<(f64, String)> {
+        match self.quantity {
+            Quantity::Deviation => self.x.times(),
+            Quantity::Density => self.x.labelled(),
         }
     }
 
     /// The labelled ticks of the panel of residuals, from the top.
-    pub fn residuals(&self) -> [(f64, String); 3] {
-        [self.z, 0.0, -self.z].map(|z| match z > 0.0 {
+    pub fn residuals(&self) -> Vec<(f64, String)> {
+        // A power of ten next to the end would touch its label.
+        let powers = (1..).map(|exponent| 10_f64.powi(exponent));
+        let sizes = powers.take_while(|power| 3.0 * power <= self.z);
+        let mut sizes: Vec<f64> = sizes.chain([self.z]).collect();
+        let below: Vec<f64> = sizes.iter().map(|z| -z).collect();
+        sizes.reverse();
+        let all = sizes.into_iter().chain([0.0]).chain(below);
+        all.map(|z| match z > 0.0 {
             true => (z, format!("+{z}")),
             false => (z, format!("{z}").replace('-', "−")),
         })
+        .collect()
     }
 
     /// The position of a residual, from 0 at the bottom to 1 at the top of its panel.
     pub fn up(&self, z: f64) -> f64 {
-        0.5 * (z / self.z + 1.0)
+        0.5 * ((z / LINEAR).asinh() / (self.z / LINEAR).asinh() + 1.0)
     }
 }
 
 /// The smallest and the largest value, or `None` if there are none.
-fn ends(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+pub(super) fn ends(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.fold(None, |ends, value| {
         let (low, high) = ends.unwrap_or((value, value));
         Some((low.min(value), high.max(value)))

@@ -1,14 +1,22 @@
 //! A drawing of one curve beside those of several models, without residuals.
 
 use super::{
-    drawing::{CURVE, EFFECTS, MODEL, document, heading, legend, placed, upright},
     frame::Span,
-    panel::{INK, Stroke, text},
+    panel::{INK, Panel, Stroke, text},
+    sheet::{EFFECTS, MODEL, PANELS, document, heading, legend, placed, upright},
 };
 use svg::node::element::Group;
 
 /// The height of one overlay, including its axis of averaging times.
 const HEIGHT: f64 = 490.0;
+
+/// The only panel.
+const CURVE: Panel = Panel {
+    left: PANELS.0,
+    top: 84.0,
+    width: PANELS.1,
+    height: 340.0,
+};
 
 /// The line of the first model, which is drawn below the others. The last one has the line of a model in
 /// other figures.
@@ -42,7 +50,7 @@ pub struct Overlay {
 
 /// The drawing of overlays, one below the other, as the text of an SVG file.
 pub fn overlays(overlays: &[Overlay]) -> String {
-    document(overlays.iter().map(|one| one.draw()).collect(), HEIGHT)
+    document(overlays.iter().map(|one| (one.draw(), HEIGHT)).collect())
 }
 
 impl Overlay {
@@ -87,7 +95,7 @@ impl Overlay {
         let curves = self.curves.iter().enumerate();
         let lines =
             curves.map(|(number, (name, _))| (stroke(number, self.curves.len()), name.clone()));
-        group.add(legend(lines))
+        group.add(legend(CURVE.top + 12.0, lines))
     }
 }
 

@@ -7,8 +7,9 @@ pub(super) const INK: &str = "#1b1f24";
 /// Paler colour of frames, ticks and their labels.
 pub(super) const PALE: &str = "#57606a";
 const RULE: &str = "#d8dee4";
-/// Margin inside the frame, left of the first octave and right of the last.
-const INSET: f64 = 14.0;
+/// Margins inside the frame: left of the first octave and right of the last, below the lowest value and above the
+/// highest. No mark reaches over the frame.
+const INSET: (f64, f64) = (14.0, 9.0);
 const TICK: f64 = 5.0;
 
 /// A rectangle of the drawing. Positions in it are shares of its width and its height, from the lower
@@ -31,11 +32,11 @@ pub(super) struct Stroke {
 
 impl Panel {
     pub(super) fn x(&self, across: f64) -> f64 {
-        self.left + INSET + across * (self.width - 2.0 * INSET)
+        self.left + INSET.0 + across * (self.width - 2.0 * INSET.0)
     }
 
     pub(super) fn y(&self, up: f64) -> f64 {
-        self.top + (1.0 - up) * self.height
+        self.top + INSET.1 + (1.0 - up) * (self.height - 2.0 * INSET.1)
     }
 
     /// The frame, with labelled ticks on its left and horizontal rules.
@@ -59,7 +60,7 @@ impl Panel {
         group.add(outline)
     }
 
-    /// Vertical rules at averaging times, with labels below the panel if `labels` is set.
+    /// Vertical rules at ticks of the horizontal axis, with labels below the panel if `labels` is set.
     pub(super) fn times(&self, ticks: &[(f64, String)], labels: bool) -> Group {
         let bottom = self.top + self.height;
         let mut group = Group::new();
@@ -77,15 +78,34 @@ impl Panel {
 
     /// A line through points, clipped to the panel.
     pub(super) fn curve(&self, points: impl Iterator<Item = (f64, f64)>, stroke: Stroke) -> Path {
+        self.curves(std::iter::once(points), stroke)
+    }
+
+    /// A line in pieces, clipped to the panel.
+    pub(super) fn curves(
+        &self,
+        pieces: impl Iterator<Item = impl Iterator<Item = (f64, f64)>>,
+        stroke: Stroke,
+    ) -> Path {
         let mut data = Data::new();
-        let mut before: Option<(f64, f64)> = None;
-        for point in points {
-            let Some(from) = before.replace(point) else {
-                continue;
-            };
-            if let Some((from, to)) = inside(from, point) {
-                data = data.move_to((round(self.x(from.0)), round(self.y(from.1))));
-                data = data.line_to((round(self.x(to.0)), round(self.y(to.1))));
+        let place = |point: (f64, f64)| (round(self.x(point.0)), round(self.y(point.1)));
+        for points in pieces {
+            let mut before: Option<(f64, f64)> = None;
+            // The end of what has been drawn. Dashes continue where a line does.
+            let mut end = None;
+            for point in points {
+                let Some(from) = before.replace(point) else {
+                    continue;
+                };
+                let Some((from, to)) = inside(from, point) else {
+                    end = None;
+                    continue;
+                };
+                if end != Some(from) {
+                    data = data.move_to(place(from));
+                }
+                data = data.line_to(place(to));
+                end = Some(to);
             }
         }
         Path::new()
@@ -95,15 +115,19 @@ impl Panel {
             .set("stroke-width", stroke.width)
             .set("stroke-dasharray", stroke.dashes)
             .set("stroke-linecap", "round")
+            .set("stroke-linejoin", "round")
     }
 
     /// A vertical line, clipped to the panel.
     pub(super) fn stem(&self, across: f64, from: f64, to: f64, width: f64) -> Line {
-        let (x, [from, to]) = (self.x(across), [from, to].map(|up| up.clamp(0.0, 1.0)));
+        let clamp = |up: f64| if up.is_nan() { 0.0 } else { up.clamp(0.0, 1.0) };
+        let (x, [from, to]) = (self.x(across), [from, to].map(clamp));
         line((x, self.y(from)), (x, self.y(to)), INK).set("stroke-width", width)
     }
 
+    /// A dot. One that would lie outside of the panel, such as a deviation of zero, lies at its edge.
     pub(super) fn mark(&self, across: f64, up: f64) -> Circle {
+        let up = if up.is_nan() { 0.0 } else { up.clamp(0.0, 1.0) };
         Circle::new()
             .set("cx", round(self.x(across)))
             .set("cy", round(self.y(up)))

@@ -1,5 +1,5 @@
-// Draws a model beside a record: the Allan deviation over the averaging time, and below it the residual
-// over the same times. The data contain the spans and the ticks.
+// Draws a model beside a record: a curve, and below it the residual over the same axis. The data contain the
+// spans, the ticks and the positions of the residuals.
 "use strict";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -15,15 +15,101 @@ function make(namespace, name, attributes, children) {
 }
 
 const draw = (name, attributes, ...children) => make(SVG, name, attributes, children);
+const clamp = (share) => Math.min(1, Math.max(0, Number.isNaN(share) ? 0 : share));
 
-/// The layout of a drawing of this width: the positions and sizes of its panels, and the size of its text.
-function layout(width) {
-  const narrow = width < 560;
-  const left = narrow ? 62 : 84;
-  const curve = { top: 10, height: narrow ? 260 : 340 };
-  const residual = { top: curve.top + curve.height + 18, height: narrow ? 120 : 150 };
-  return { left, right: width - 8, inset: narrow ? 8 : 14, curve, residual,
-    height: residual.top + residual.height + 48, size: narrow ? 11.5 : 12.5 };
+/// A drawing of some width, with panels whose positions are shares of their width and height. The margins inside the
+/// frame are larger than a mark, so that none reaches over it.
+class Sheet {
+  constructor(name, label, width, height) {
+    const narrow = width < 560;
+    Object.assign(this, { width, height, narrow, left: narrow ? 62 : 84, right: width - 8, size: narrow ? 11.5 : 12.5 });
+    this.svg = draw("svg", { class: `figure ${name}`, viewBox: `0 0 ${width} ${height}`, role: "img",
+      "font-size": this.size, "aria-label": label });
+  }
+
+  x(across) {
+    const inset = this.narrow ? 10 : 14;
+    return this.left + inset + across * (this.right - this.left - 2 * inset);
+  }
+
+  y(panel, up) {
+    return panel.top + 9 + (1 - up) * (panel.height - 18);
+  }
+
+  add(name, attributes, ...children) {
+    this.svg.append(draw(name, attributes, ...children));
+  }
+
+  line(x1, y1, x2, y2, name) {
+    this.add("line", { x1, y1, x2, y2, class: name });
+  }
+
+  text([x, y], attributes, words) {
+    this.add("text", { x, y, ...attributes }, words);
+  }
+
+  dot(panel, across, up, name) {
+    const r = { worst: 8, dot: 3.5, small: 2.3 }[name];
+    this.add("circle", { cx: this.x(across), cy: this.y(panel, clamp(up)), r, class: name === "small" ? "dot" : name });
+  }
+
+  /// A vertical line, clipped to the panel.
+  stem(panel, across, from, to) {
+    const x = this.x(across);
+    this.line(x, this.y(panel, clamp(from)), x, this.y(panel, clamp(to)), "bar");
+  }
+
+  /// Vertical rules through panels, with the labels for which there is room below the last one.
+  ticks(panels, ticks, title) {
+    const last = panels[panels.length - 1];
+    const bottom = last.top + last.height;
+    let free = 0;
+    for (const [across, label] of ticks) {
+      const place = this.x(across);
+      for (const { top, height } of panels) this.line(place, top, place, top + height, "rule");
+      const half = 0.3 * this.size * label.length;
+      if (place - half < free || place + half > this.width) continue;
+      free = place + half + this.size;
+      this.line(place, bottom, place, bottom + 5, "tick");
+      this.text([place, bottom + 19], { "text-anchor": "middle", class: "pale across" }, label);
+    }
+    this.text([(this.left + this.right) / 2, bottom + 41], { "text-anchor": "middle" }, title);
+  }
+
+  /// The frame of a panel with labelled ticks on its left and an upright title.
+  frame(panel, ticks, title) {
+    let free = Infinity;
+    for (const [up, label] of [...ticks].sort((one, other) => one[0] - other[0])) {
+      const place = this.y(panel, up);
+      this.line(this.left, place, this.right, place, "rule");
+      if (place > free) continue;
+      free = place - 1.1 * this.size;
+      this.line(this.left - 5, place, this.left, place, "tick");
+      this.text([this.left - 9, place + 4], { "text-anchor": "end", class: "pale up" }, label);
+    }
+    this.add("rect", { x: this.left, y: panel.top, width: this.right - this.left, height: panel.height, class: "frame" });
+    const middle = panel.top + panel.height / 2;
+    this.text([0, 0], { transform: `translate(${this.size} ${middle}) rotate(-90)`, "text-anchor": "middle" }, title);
+  }
+
+  /// A line in pieces, clipped to the panel.
+  path(panel, pieces, place, name) {
+    let data = "";
+    for (const piece of pieces) {
+      let end = null;
+      for (let k = 1; k < piece.length; k += 1) {
+        const part = inside(place(piece[k - 1]), place(piece[k]));
+        if (!part) {
+          end = null;
+          continue;
+        }
+        const [from, to] = part.map(([a, b]) => `${this.x(a).toFixed(2)} ${this.y(panel, b).toFixed(2)}`);
+        data += from === end ? `L${to}` : `M${from}L${to}`;
+        end = to;
+      }
+    }
+    this.add("path", { d: data, class: name });
+  }
 }
 
 /// The part of a line that lies between the heights 0 and 1, or nothing.
@@ -37,93 +123,83 @@ function inside([x0, y0], [x1, y1]) {
   return [at(x0, y0), at(x1, y1)];
 }
 
-/// Draws a view of an axis. `unit` is one of the axis' units, and `width` is in pixels. The octave with the
-/// largest residual is marked if that exceeds two standard errors.
-function drawFigure(axis, view, unit, width) {
-  const { left, right, inset, curve, residual, height, size } = layout(width);
-  const { figure } = view;
+/// Draws a figure of a view in its frame. `unit` is one of the frame's units, and `width` is in pixels. The point with
+/// the largest residual is marked if that exceeds two standard errors.
+function drawFigure(frame, view, figure, unit, width) {
+  const narrow = width < 560;
+  const curve = { top: 10, height: narrow ? 260 : 340 };
+  const residual = { top: curve.top + curve.height + 18, height: narrow ? 140 : 160 };
+  const sheet = new Sheet(frame.quantity, `${frame.up} and residual, ${view.model}: ${view.words}`, width,
+    residual.top + residual.height + 48);
   const log = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
-  const x = (across) => left + inset + across * (right - left - 2 * inset);
-  const across = figure.tau_s.map((tau) => log(tau, axis.tau_s));
-  const up = (sigma) => log(sigma, axis.sigma);
-  const y = (panel, share) => panel.top + (1 - share) * panel.height;
-  const zUp = (z) => 0.5 * (z / view.z + 1);
-  const bottom = residual.top + residual.height;
+  const across = (x) => log(x, frame.x);
+  const up = (value) => log(value, frame.y);
+  const { x, measured, lower, upper } = figure.measured ?? frame.measured;
 
-  const svg = draw("svg", { class: "figure", viewBox: `0 0 ${width} ${height}`, role: "img",
-    "font-size": size, "aria-label": `Allan deviation and residual, ${view.model}: ${view.words}` });
-  const line = (x1, y1, x2, y2, name) => svg.append(draw("line", { x1, y1, x2, y2, class: name }));
-  const text = (at, attributes, words) =>
-    svg.append(draw("text", { x: at[0], y: at[1], ...attributes }, words));
-
-  const [low, high] = [zUp(-2), zUp(2)].map((share) => y(residual, share));
-  svg.append(draw("rect", { x: left, y: high, width: right - left, height: low - high, class: "band" }));
-  let free = 0;
-  for (const [tau, label] of axis.times) {
-    const place = x(log(tau, axis.tau_s));
-    for (const panel of [curve, residual]) {
-      line(place, panel.top, place, panel.top + panel.height, "rule");
-    }
-    const half = 0.3 * size * label.length;
-    if (place - half < free || place + half > width) continue;
-    free = place + half + size;
-    line(place, bottom, place, bottom + 5, "tick");
-    text([place, bottom + 19], { "text-anchor": "middle", class: "pale" }, label);
-  }
-  const level = (panel, share, label) => {
-    const place = y(panel, share);
-    line(left, place, right, place, "rule");
-    line(left - 5, place, left, place, "tick");
-    text([left - 9, place + 4], { "text-anchor": "end", class: "pale" }, label);
-  };
-  for (const [sigma, label] of unit.ticks) level(curve, up(sigma / unit.factor), label);
-  for (const [z, label] of view.residuals) level(residual, zUp(z), label);
-  line(left, y(residual, 0.5), right, y(residual, 0.5), "zero");
-  for (const { top, height: tall } of [curve, residual]) {
-    svg.append(draw("rect", { x: left, y: top, width: right - left, height: tall, class: "frame" }));
-  }
-  const upright = (panel, words) => {
-    const middle = panel.top + panel.height / 2;
-    text([0, 0], { transform: `translate(${size} ${middle}) rotate(-90)`, "text-anchor": "middle" }, words);
-  };
-  upright(curve, `Allan deviation σ, ${unit.name}`);
-  upright(residual, "residual, std. errors");
-  text([(left + right) / 2, bottom + 41], { "text-anchor": "middle" }, "averaging time τ");
-
-  const path = (sigma, name) => {
-    let data = "";
-    for (let k = 1; k < sigma.length; k += 1) {
-      const part = inside([across[k - 1], up(sigma[k - 1])], [across[k], up(sigma[k])]);
-      if (!part) continue;
-      const [from, to] = part.map(([a, b]) => `${x(a).toFixed(2)} ${y(curve, b).toFixed(2)}`);
-      data += `M${from}L${to}`;
-    }
-    svg.append(draw("path", { d: data, class: name }));
-  };
-  for (const share of figure.shares) path(share.sigma, `line effect-${share.colour}`);
-  path(figure.model, "line model");
-
-  const clamp = (share) => Math.min(1, Math.max(0, share));
-  const stem = (panel, k, from, to) =>
-    line(x(across[k]), y(panel, clamp(from)), x(across[k]), y(panel, clamp(to)), "bar");
-  const dot = (panel, k, share, name) => svg.append(
-    draw("circle", { cx: x(across[k]), cy: y(panel, share), r: name === "worst" ? 8 : 3.5, class: name }));
-  figure.measured.forEach((sigma, k) => {
-    stem(curve, k, up(figure.lower[k]), up(figure.upper[k]));
-    dot(curve, k, up(sigma), "dot");
-    stem(residual, k, 0.5, zUp(figure.z[k]));
-    dot(residual, k, zUp(figure.z[k]), "dot");
+  const [low, high] = frame.band.map((share) => sheet.y(residual, share));
+  sheet.add("rect", { x: sheet.left, y: high, width: sheet.right - sheet.left, height: low - high, class: "band" });
+  sheet.ticks([curve, residual], frame.ticks.map(([value, label]) => [across(value), label]), frame.across);
+  sheet.frame(curve, unit.ticks.map(([value, label]) => [up(value / unit.factor), label]), `${frame.up}, ${unit.name}`);
+  sheet.frame(residual, frame.residuals, "residual, std. errors");
+  sheet.line(sheet.left, sheet.y(residual, 0.5), sheet.right, sheet.y(residual, 0.5), "zero");
+  const place = ([at, value]) => [across(at), up(value)];
+  // More dots than there is room for are smaller.
+  const dot = 8 * x.length > sheet.right - sheet.left ? "small" : "dot";
+  for (const share of figure.shares) sheet.path(curve, share.line, place, `line effect-${share.colour}`);
+  sheet.path(curve, figure.model, place, "line model");
+  x.forEach((at, k) => {
+    sheet.stem(curve, across(at), up(lower[k]), up(upper[k]));
+    sheet.dot(curve, across(at), up(measured[k]), dot);
+    sheet.stem(residual, across(at), 0.5, figure.up[k]);
+    sheet.dot(residual, across(at), figure.up[k], dot);
   });
-  const z = figure.z[view.worst];
+  const z = figure.z[figure.worst];
   if (Math.abs(z) > 2) {
-    const k = view.worst;
-    dot(curve, k, up(figure.measured[k]), "worst");
-    dot(residual, k, zUp(z), "worst");
-    // The label is on the side of the ring that has more room.
-    const begin = across[k] < 0.6;
-    const place = [x(across[k]) + (begin ? 13 : -13), y(residual, zUp(z)) + 4];
-    text(place, { "text-anchor": begin ? "start" : "end", class: "worst-label" },
-      `worst: ${z > 0 ? "+" : "−"}${Math.abs(z).toFixed(0)} std. errors`);
+    const at = across(x[figure.worst]);
+    sheet.dot(curve, at, up(measured[figure.worst]), "worst");
+    sheet.dot(residual, at, figure.up[figure.worst], "worst");
+    const words = `worst ${frame.point}: ${z > 0 ? "+" : "−"}${Math.abs(z).toFixed(0)} std. errors`;
+    // The label is at the edge of the panel that is farther from the ring, where few dots are, and inside the frame.
+    const half = 0.31 * sheet.size * words.length;
+    const middle = Math.min(sheet.right - half - 4, Math.max(sheet.left + half + 4, sheet.x(at)));
+    const edge = figure.up[figure.worst] > 0.6 ? residual.top + residual.height - 7 : residual.top + 15;
+    sheet.text([middle, edge], { "text-anchor": "middle", class: "worst-label" }, words);
   }
-  return svg;
+  return sheet.svg;
+}
+
+/// Draws the record over time: the rate, the noise and the recorded columns, with numbered events.
+function drawCourse(course, width) {
+  const narrow = width < 560;
+  const panels = [];
+  let top = 24;
+  for (const _ of course.strips) {
+    const height = panels.length === 0 ? (narrow ? 160 : 200) : (narrow ? 110 : 120);
+    panels.push({ top, height });
+    top += height + 14;
+  }
+  const events = course.events.map((event) => event.words).join("; ") || "no events";
+  const sheet = new Sheet("rate", `Rate over time: ${events}`, width, top - 14 + 48);
+  const linear = (value, [low, high]) => (value - low) / (high - low);
+  sheet.ticks(panels, course.times.map(([at, label]) => [linear(at, course.span), label]), course.across);
+  course.strips.forEach((strip, number) => {
+    const panel = panels[number];
+    const up = (value) => linear(value, strip.span);
+    sheet.frame(panel, strip.ticks.map(([value, label]) => [up(value), label]), strip.title);
+    strip.values.forEach((value, k) => {
+      const at = linear(course.at_s[k], course.span);
+      if (strip.errors.length > 0) sheet.stem(panel, at, up(value - strip.errors[k]), up(value + strip.errors[k]));
+      sheet.dot(panel, at, up(value), "dot");
+    });
+  });
+  let free = 0;
+  course.events.forEach((event, number) => {
+    const place = sheet.x(linear(event.at_s, course.span));
+    sheet.line(place, panels[0].top, place, top - 14, "event");
+    // Two events at one time have their numbers beside each other.
+    const above = Math.max(place, free);
+    free = above + 14;
+    sheet.text([above, 17], { "text-anchor": "middle", class: "event-number" }, `${number + 1}`);
+  });
+  return sheet.svg;
 }

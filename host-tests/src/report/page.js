@@ -48,13 +48,18 @@ class Walk {
     this.heading = html("h3", { class: "model" });
     this.error = html("p", { class: "error", "aria-live": "polite" });
     this.found = html("div", { class: "finding" });
-    this.place = html("div", { class: "place" });
+    this.places = this.axis.frames.map(() => html("div", { class: "place" }));
+    this.place = html("div", { class: "places" }, ...this.places);
+    this.course = this.axis.course ? html("div", { class: "place" }) : null;
+    this.events = html("ol", { class: "events", "aria-label": "Events" },
+      ...(this.axis.course?.events ?? []).map((event) => html("li", {}, event.words)));
     this.legend = html("ul", { class: "legend", "aria-label": "Legend" });
     this.words = html("p", { class: "words" });
     this.candidates = html("div", { class: "candidates" });
     this.coefficients = html("div", { class: "coefficients" });
     const panel = html("div", { role: "tabpanel", id: id("panel"), class: "panel" },
-      this.heading, this.error, this.words, this.place, this.legend, this.found, this.candidates, this.coefficients);
+      this.heading, this.error, this.words, this.place, this.legend, this.found, this.candidates, this.coefficients,
+      this.course ? html("h3", {}, "The record over time") : null, this.course, this.course ? this.events : null);
     this.panel = panel;
     this.root.replaceChildren(
       html("div", { class: "control" },
@@ -131,21 +136,25 @@ class Walk {
   }
 
   draw() {
-    const width = Math.round(this.place.clientWidth);
-    if (width < 100) return;
+    if (this.place.clientWidth < 100) return;
     const { view } = this.shown();
-    this.place.replaceChildren(drawFigure(this.axis, view, this.unit(), width));
-  }
-
-  unit() {
-    return this.axis.units[Math.min(unitIndex, this.axis.units.length - 1)];
+    this.places.forEach((place, number) => {
+      const frame = this.axis.frames[number];
+      const unit = frame.units[Math.min(unitIndex, frame.units.length - 1)];
+      // Where the figures are below each other, the one in which this step changed most comes first.
+      place.classList.toggle("front", number === view.front);
+      place.replaceChildren(drawFigure(frame, view, view.figures[number], unit, Math.round(place.clientWidth)));
+    });
+    if (this.course) this.course.replaceChildren(drawCourse(this.axis.course, Math.round(this.course.clientWidth)));
   }
 
   showLegend(view) {
     const entry = (words, ...sample) => html("li", {},
       draw("svg", { width: 34, height: 14, "aria-hidden": "true" }, ...sample), words);
     const line = (name) => draw("line", { x1: 1, y1: 7, x2: 33, y2: 7, class: name });
-    const effects = view.figure.shares.map((share) =>
+    // An effect that shows in both figures has one entry.
+    const shares = new Map(view.figures.flatMap((figure) => figure.shares).map((share) => [share.effect, share]));
+    const effects = [...shares.values()].map((share) =>
       entry(plain(share.effect), line(`line effect-${share.colour}`)));
     this.legend.replaceChildren(
       entry("measured ± standard error", draw("line", { x1: 17, y1: 0, x2: 17, y2: 14, class: "bar" }),

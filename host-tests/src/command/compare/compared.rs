@@ -7,6 +7,7 @@ use crate::{
 use allanite::{
     Comparison, Error, Model, Observed,
     fit::{Fit, Options, fit},
+    spectrum::Spectrum,
 };
 
 /// One axis, the model that was fitted to it, and the comparison octave by octave.
@@ -16,6 +17,8 @@ pub(super) struct Compared {
     pub(super) fit: Fit,
     /// The comparison with the held-out part, or with the fitted record if nothing was held out.
     pub(super) comparison: Comparison<OCTAVES, BINS>,
+    /// The spectrum of what is compared.
+    pub(super) spectrum: Spectrum<BINS>,
     pub(super) held_out: Option<HeldOut>,
 }
 
@@ -37,8 +40,8 @@ impl Compared {
         let observed = Observed::new(&curve, &spectrum);
         let fit = fit(observed, model, options)?;
         let fitted = Comparison::new(observed, model, &fit)?;
-        let (comparison, held_out) = match held_out {
-            None => (fitted, None),
+        let (comparison, spectrum, held_out) = match held_out {
+            None => (fitted, spectrum, None),
             Some(axis) => {
                 let tolerance = options.tolerance;
                 let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
@@ -48,7 +51,7 @@ impl Compared {
                     axis,
                     fitted_rms_percent: fitted.rms_percent,
                 };
-                (comparison, Some(held_out))
+                (comparison, spectrum, Some(held_out))
             }
         };
         Ok(Self {
@@ -56,6 +59,7 @@ impl Compared {
             model: model.clone(),
             fit,
             comparison,
+            spectrum,
             held_out,
         })
     }

@@ -88,6 +88,7 @@ fn axis(compared: &Compared) -> Axis<'_> {
         fit,
         comparison,
         held_out,
+        ..
     } = compared;
     let held_out = held_out.as_ref().map(|held_out| HeldOut {
         samples: held_out.axis.samples,

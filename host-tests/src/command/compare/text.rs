@@ -9,7 +9,7 @@ use crate::{
             words,
         },
     },
-    plot::Plot,
+    plot::{Figure, Frame, Plot, Quantity, View},
 };
 use allanite::fit::State;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
@@ -35,6 +35,7 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
         model,
         fit,
         comparison,
+        spectrum,
         held_out,
     } = compared;
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
@@ -66,18 +67,31 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
     let against = held_out
         .as_ref()
         .map_or("the record", |_| "the held-out part");
-    let title = format!(
-        "{}: Allan deviation of {against} and of the model",
-        axis.axis
-    );
-    write!(output, "{}", Plot::new(&title, axis.unit, comparison))?;
+    let view = View {
+        model,
+        fit,
+        comparison,
+        spectrum,
+        errors: &[],
+        interval_s: 1.0 / axis.rate_hz,
+    };
+    for quantity in Quantity::ALL {
+        if quantity == Quantity::Density && comparison.bins.is_empty() {
+            continue;
+        }
+        let frame = Frame::of(quantity, [comparison]);
+        let figure = Figure::new(&view, &frame);
+        let name = quantity.name();
+        let title = format!("{}: {name} of {against} and of the model", axis.axis);
+        writeln!(output, "{}", Plot::new(&title, axis.unit, &figure, &frame))?;
+    }
     let p = match comparison.p_value {
         p if p.is_finite() => format!(", p {}", probability(p)),
         _ => String::new(),
     };
     writeln!(
         output,
-        "\n{}: χ² {:.1}, {} degrees of freedom{p}, misfit {:.1} % rms",
+        "{}: χ² {:.1}, {} degrees of freedom{p}, misfit {:.1} % rms",
         axis.axis, comparison.chi_squared, comparison.degrees_of_freedom, comparison.rms_percent
     )?;
     writeln!(output, "{}: {comparison}", axis.axis)

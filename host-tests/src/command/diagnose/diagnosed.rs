@@ -104,6 +104,10 @@ pub(crate) struct Diagnosed {
     /// The sinusoids of the last model, and those of them that are harmonics of one fundamental.
     pub(crate) lines: Vec<Line>,
     pub(crate) combs: Vec<Comb>,
+    /// The course of the record. A curve file has none.
+    pub(crate) course: Option<Course>,
+    /// The columns that were recorded beside the axis, with their means in the blocks of the course.
+    pub(crate) columns: Vec<(String, Vec<f64>)>,
     /// The options of the search for effects.
     pub(crate) options: Options,
     /// Names of the covariates.
@@ -124,7 +128,7 @@ impl Diagnosed {
             max_effects: max_effects.unwrap_or(default.max_effects),
             ..default
         };
-        let course = evidence.course;
+        let (course, columns) = (evidence.course, evidence.columns);
         let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
         let evidence = allanite::diagnosis::Evidence {
             kurtosis: Some(&evidence.kurtosis),
@@ -162,6 +166,8 @@ impl Diagnosed {
             events: Vec::new(),
             lines: Vec::new(),
             combs: Vec::new(),
+            course: None,
+            columns,
             options,
             covariates,
             cross,
@@ -171,6 +177,7 @@ impl Diagnosed {
         diagnosed.combs = lines::combs(&diagnosed.lines, diagnosed.axis.rate_hz);
         if let Some(course) = course {
             diagnosed.events = diagnosed.events_in(&course)?;
+            diagnosed.course = Some(course);
         }
         Ok(diagnosed)
     }
@@ -217,7 +224,7 @@ impl Diagnosed {
     }
 
     /// The curve on which a step was judged: without what follows a covariate.
-    fn curve_of(&self, step: &Step<OCTAVES, BINS>) -> Result<Curve<OCTAVES>, Error> {
+    pub(crate) fn curve_of(&self, step: &Step<OCTAVES, BINS>) -> Result<Curve<OCTAVES>, Error> {
         let mut curve = self.axis.curve()?;
         if let Some(followed) = &step.covariate {
             self.cross[followed.index].correct(&mut curve, &followed.slope);
@@ -228,6 +235,14 @@ impl Diagnosed {
     /// The first step, which has the five terms, and the last one.
     pub(crate) fn ends(&self) -> Option<(&Step<OCTAVES, BINS>, &Step<OCTAVES, BINS>)> {
         self.steps.first().zip(self.steps.last())
+    }
+
+    /// Why the record is not valid, if it is not.
+    pub(crate) fn invalid(&self) -> Option<String> {
+        match self.verdict {
+            Verdict::Invalid(reason) => Some(reason.to_string()),
+            _ => None,
+        }
     }
 
     /// The model of a step in words: `five terms + sinusoid`.

@@ -4,6 +4,7 @@ pub(super) mod diagnosed;
 mod given_filter;
 pub(super) mod json;
 pub(super) mod lines;
+pub(super) mod pictures;
 pub(super) mod text;
 pub(super) mod words;
 

@@ -2,6 +2,7 @@
 
 use super::{
     diagnosed::Diagnosed,
+    pictures::Pictures,
     words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
 };
 use crate::{
@@ -11,7 +12,7 @@ use crate::{
         output::{number::two_digits, words},
     },
     log::{BINS, OCTAVES},
-    plot::Plot,
+    plot::{Frame, Plot, Timeline},
 };
 use allanite::diagnosis::{Candidate, Step};
 use std::io::{self, Write};
@@ -36,6 +37,9 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     writeln!(output, "{}: {record}", axis.axis)?;
     if let Some(filter) = diagnosed.filter() {
         writeln!(output, "given: {}", described(filter))?;
+    }
+    if let Some(reason) = diagnosed.invalid() {
+        writeln!(output, "the curve is not valid: {reason}")?;
     }
     writeln!(
         output,
@@ -90,12 +94,7 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
         fit::table::table(&last.fit, axis.unit).trim_fmt()
     )?;
     writeln!(output)?;
-    let title = format!(
-        "{}: Allan deviation of the record and of the model",
-        axis.axis
-    );
-    write!(output, "{}", Plot::new(&title, axis.unit, &last.comparison))?;
-    writeln!(output)?;
+    print_plots(diagnosed, last, output)?;
     writeln!(output, "{}: {}", axis.axis, verdict(diagnosed))?;
     let limits = limits(diagnosed);
     if !limits.is_empty() {
@@ -103,6 +102,33 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     }
     for limit in limits {
         writeln!(output, "  {limit}")?;
+    }
+    Ok(())
+}
+
+/// Prints the record beside the model of a step, and the record over time.
+fn print_plots(
+    diagnosed: &Diagnosed,
+    step: &Step<OCTAVES, BINS>,
+    output: &mut impl Write,
+) -> io::Result<()> {
+    let axis = &diagnosed.axis;
+    let pictures = Pictures::of(diagnosed);
+    for frame in pictures.frames() {
+        // A single model needs no room for the residuals of others.
+        let frame = Frame::of(frame.quantity, [&step.comparison]);
+        let title = format!(
+            "{}: {} of the record and of the model",
+            axis.axis,
+            frame.quantity.name()
+        );
+        let figure = pictures.figure(step, &frame);
+        let plot = Plot::new(&title, axis.unit, &figure, &frame);
+        writeln!(output, "{plot}")?;
+    }
+    if let Some(course) = pictures.course() {
+        let title = format!("{}: the record over time", axis.axis);
+        writeln!(output, "{}", Timeline::new(&title, &course))?;
     }
     Ok(())
 }

@@ -171,6 +171,15 @@ pub(crate) fn unexplained(comparison: &Comparison<OCTAVES, BINS>) -> Vec<String>
     bands.iter().take(MOST_BANDS).map(band).collect()
 }
 
+/// Where a record and a model disagree, in octaves and in the spectrum.
+pub(crate) fn disagreement(comparison: &Comparison<OCTAVES, BINS>) -> String {
+    let bands = unexplained(comparison);
+    if bands.is_empty() {
+        return comparison.to_string();
+    }
+    format!("{comparison}; the spectrum is {}", bands.join(", "))
+}
+
 /// The effect that an addition also exchanges: `, sinusoid instead of resonance`, or nothing.
 fn instead(swap: Option<Swap>) -> String {
     swap.map_or(String::new(), |swap| {
@@ -294,11 +303,22 @@ pub(crate) fn lead(diagnosed: &Diagnosed) -> String {
     let Some((first, _)) = diagnosed.ends() else {
         return verdict;
     };
+    if let Some(reason) = diagnosed.invalid() {
+        return format!("the curve is not valid: {reason}; no effect was looked for.");
+    }
     if matches!(diagnosed.verdict, Verdict::Adequate) {
         return verdict;
     }
-    // The worst octave comes first, in `measured is 59 % above the model at τ = 20.0 ms (58 σ); …`.
-    let failure = first.comparison.to_string();
+    // The worst octave comes first, in `measured is 59 % above the model at τ = 20.0 ms (58 σ); …`. Where no octave
+    // shows what is missing, the spectrum may.
+    let bands = unexplained(&first.comparison);
+    let failure = match (first.comparison.stretches().next(), bands.first()) {
+        (None, Some(band)) => format!(
+            "the spectrum is {}",
+            band.replace(" σ ", " standard errors ")
+        ),
+        _ => first.comparison.to_string(),
+    };
     let worst = failure.split(';').next().unwrap_or_default();
     let worst = worst.replace("the model", "the five-term model");
     let worst = worst.replace(" σ)", " standard errors)");

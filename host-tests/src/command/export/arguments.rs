@@ -57,6 +57,7 @@ pub(super) enum Format {
     Matlab,
     /// A C header
     C,
-    /// A table of the curve with its limits and models
+    /// A table of the curve with its limits and models; --output FILE.csv also writes FILE.spectrum.csv and, of a
+    /// log, FILE.course.csv
     Csv,
 }

@@ -4,10 +4,17 @@ use super::given::Given;
 use crate::{
     command::{fit::fitted::Fitted, output::number::duration},
     confidence::{Limits, limits},
+    curve_file::AxisCurve,
     equivalent::Equivalent,
+    log::{BINS, OCTAVES},
     overbound::Overbound,
+    plot::relative_error,
 };
-use allanite::{Coefficient, fit::State};
+use allanite::{
+    Coefficient, Comparison, Curve, Model, Observed, Scale,
+    course::Course,
+    fit::{Fit, State},
+};
 
 /// The noise of one axis.
 pub(super) struct AxisNoise {
@@ -22,6 +29,30 @@ pub(super) struct AxisNoise {
     /// A Gauss–Markov process in place of the bias instability; `None` if that is not observable.
     pub(super) equivalent: Option<Equivalent>,
     pub(super) octaves: Vec<Octave>,
+    pub(super) bins: Vec<Bin>,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// One bin of the spectrum, with roots of one-sided densities in rad/s/√Hz.
+pub(super) struct Bin {
+    pub(super) frequency_hz: f64,
+    pub(super) block: u32,
+    pub(super) segments: u32,
+    pub(super) density: f64,
+    pub(super) standard_error: f64,
+    pub(super) expected: f64,
+    /// How far the measured density lies above the expected one, in standard errors.
+    pub(super) z: f64,
+}
+
+/// One block of the course of a log, with rates in rad/s.
+pub(super) struct Block {
+    pub(super) start_s: f64,
+    pub(super) duration_s: f64,
+    pub(super) samples: u32,
+    pub(super) mean: f64,
+    /// Root of half the mean square of the differences of neighbouring samples.
+    pub(super) noise: f64,
 }
 
 /// One octave, with deviations in rad/s.
@@ -36,9 +67,34 @@ pub(super) struct Octave {
     pub(super) overbound: f64,
 }
 
+/// The bins of an axis beside the fit of its five terms, in order of their frequencies.
+fn bins(axis: &AxisCurve, curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Option<Vec<Bin>> {
+    let spectrum = axis.spectrum().ok()?;
+    let observed = Observed::<OCTAVES, BINS>::new(curve, &spectrum);
+    let comparison = Comparison::new(observed, model, fit).ok()?;
+    let radians = axis.unit.in_si();
+    let bins = comparison.bins.iter().map(|compared| {
+        let density = radians * compared.bin.density.sqrt();
+        Bin {
+            frequency_hz: compared.bin.frequency_hz,
+            block: compared.bin.block,
+            segments: compared.bin.segments,
+            density,
+            // The relative error of a root is half that of its square.
+            standard_error: 0.5 * density * relative_error(&compared.bin),
+            expected: radians * compared.model.sqrt(),
+            z: compared.z,
+        }
+    });
+    let mut bins: Vec<Bin> = bins.collect();
+    bins.sort_by(|one, other| one.frequency_hz.total_cmp(&other.frequency_hz));
+    Some(bins)
+}
+
 impl AxisNoise {
     /// The noise of a fitted axis, or `None` if the limits of its curve are not finite.
-    pub(super) fn of(fitted: Fitted) -> Option<Self> {
+    /// The course is that of a log.
+    pub(super) fn of(fitted: Fitted, course: Option<Course>) -> Option<Self> {
         let Fitted {
             axis,
             curve,
@@ -47,6 +103,16 @@ impl AxisNoise {
             ..
         } = fitted;
         let radians = axis.unit.in_si();
+        let bins = bins(&axis, &curve, &model, &fit);
+        let scale = Scale::new(axis.rate_per_count, axis.rate_hz).ok()?;
+        let blocks = course.iter().flat_map(|course| course.blocks(scale));
+        let blocks = blocks.filter(|block| block.samples > 0).map(|block| Block {
+            start_s: block.start_s,
+            duration_s: block.duration_s,
+            samples: block.samples,
+            mean: radians * block.mean,
+            noise: radians * (0.5 * block.mean_square_difference).sqrt(),
+        });
         let limits = limits(&curve, &model, &fit);
         let overbound = Overbound::of(&curve, &limits)?;
         let with_process = Overbound::with_gauss_markov(&curve, &limits)?;
@@ -86,6 +152,8 @@ impl AxisNoise {
                 ..found
             }),
             octaves,
+            bins: bins.unwrap_or_default(),
+            blocks: blocks.collect(),
         })
     }
 

@@ -82,7 +82,7 @@ pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Fa
     let path = &arguments.input;
     let model = arguments.filter.model()?;
     let mut axes = Vec::new();
-    for axis in record::read(path, &arguments.about_log)? {
+    for (axis, evidence) in record::read_with_evidence(path, &arguments.about_log, &[])? {
         if axis.unit.sensor() != Sensor::Gyro {
             let what = format!(
                 "axis {} is from an accelerometer, in {}",
@@ -93,7 +93,7 @@ pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Fa
         }
         let fitted = Fitted::new(path, axis, &model, MethodName::Covariance)?;
         let name = fitted.axis.axis.clone();
-        let noise = AxisNoise::of(fitted).ok_or_else(|| {
+        let noise = AxisNoise::of(fitted, evidence.course).ok_or_else(|| {
             let what = format!("axis {name}: its curve has no finite confidence limits");
             Place::file(path).failure(what, "record longer")
         })?;

@@ -3,6 +3,7 @@
 mod arguments;
 mod autopilot;
 mod axis_noise;
+mod bins_csv;
 mod c_header;
 mod characterisation;
 mod curve_csv;
@@ -18,8 +19,8 @@ use crate::{
 };
 pub(super) use arguments::Arguments;
 use arguments::Format;
-use characterisation::characterise;
-use std::io::Write;
+use characterisation::{Characterisation, characterise};
+use std::{io::Write, path::Path};
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
@@ -57,6 +58,11 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
             curve_csv::table(&known).map_err(|error| Failure::standard_output(&error.into()))?
         }
     };
+    if arguments.format == Format::Csv
+        && let Some(path) = &arguments.output
+    {
+        write_beside(path, arguments, &known)?;
+    }
     let Some(mut file) = file else {
         let written = output.write_all(text.as_bytes());
         return written.map_err(|error| Failure::standard_output(&error));
@@ -68,4 +74,25 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     file.write_all(text.as_bytes())
         .map_err(|error| place.io(&error))?;
     file.commit()
+}
+
+/// Writes the tables of a record that have other columns than the curve, each into a file beside that of the curve.
+fn write_beside(
+    path: &Path,
+    arguments: &Arguments,
+    known: &Characterisation,
+) -> Result<(), Failure> {
+    for (name, table) in [
+        ("spectrum", bins_csv::spectrum(known)),
+        ("course", bins_csv::course(known)),
+    ] {
+        let table = table.map_err(|error| Failure::standard_output(&error.into()))?;
+        let Some(table) = table else { continue };
+        let beside = path.with_extension(format!("{name}.csv"));
+        let mut file = OutputFile::create(&beside, [&*arguments.input])?;
+        let written = file.write_all(table.as_bytes());
+        written.map_err(|error| Place::file(&beside).io(&error))?;
+        file.commit()?;
+    }
+    Ok(())
 }

@@ -45,6 +45,16 @@ pub(crate) fn customary(unit: Unit, half_seconds: i8) -> Option<(f64, &'static s
     Some((factor * unit.in_usual(), name))
 }
 
+/// The factor from the log's unit per √Hz to the customary unit of the root of a density, and the name of that unit. A
+/// gyro has `°/h/√Hz` and not the `°/√h` of angle random walk, because the density of white noise is one-sided: its root
+/// is √2 times the coefficient.
+pub(crate) fn customary_density(unit: Unit) -> Option<(f64, &'static str)> {
+    match unit.sensor() {
+        Sensor::Gyro => Some((SECONDS_PER_HOUR * unit.in_usual(), "°/h/√Hz")),
+        Sensor::Accelerometer => customary(unit, 1),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,6 +79,8 @@ mod tests {
         for ((factor, name), (expected, expected_name)) in factors.into_iter().zip(expected) {
             assert!((factor / expected - 1.0).abs() < 1e-12 && name == expected_name);
         }
+        let density = customary_density(Unit::DegreesPerSecond);
+        assert_eq!(density, Some((3600.0, "°/h/√Hz")));
         let (factor, _) = customary(Unit::RadiansPerSecond, 0).unwrap();
         assert!((factor - 206_264.806_247_096_36).abs() < 1e-6);
     }

@@ -331,6 +331,25 @@ pub(crate) fn event(event: &Event, unit: Unit) -> String {
     }
 }
 
+/// An event in a few words, for a place that shows when it happened.
+pub(crate) fn brief_event(event: &Event, unit: Unit) -> String {
+    let size = event.size;
+    match event.what {
+        What::NoiseChange => format!("noise × {size:.2}"),
+        What::Bursts { blocks: 1 } => format!("burst, noise × {size:.1}"),
+        What::Bursts { blocks } => format!("{blocks} bursts, noise × {size:.1}"),
+        What::Step => format!("step, {}{} {unit}", sign(size), two_digits(size.abs())),
+        What::WarmUp { .. } => {
+            format!("warm-up, {}{} {unit}", sign(size), two_digits(size.abs()))
+        }
+        _ => "event".into(),
+    }
+}
+
+fn sign(size: f64) -> &'static str {
+    if size < 0.0 { "−" } else { "+" }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

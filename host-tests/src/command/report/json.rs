@@ -6,13 +6,14 @@ use crate::{
         diagnose::{
             self,
             diagnosed::Diagnosed,
-            words::{Finding, candidate_name, shown_p},
+            pictures::Pictures,
+            words::{Finding, candidate_name, disagreement, shown_p},
         },
         fit,
         output::{model_json, units},
     },
     log::{BINS, OCTAVES},
-    plot::{Figure, Frame},
+    plot::{CourseFigure, Frame, Line, Measured, Quantity, Share},
     unit::Unit,
 };
 use allanite::diagnosis::{Addition, Candidate as Tried, Step};
@@ -28,20 +29,42 @@ pub(super) struct Document<'a> {
 
 #[derive(Serialize)]
 struct Axis {
-    /// Units of the deviation: first the log's unit, then the customary one.
-    units: Vec<DeviationUnit>,
+    /// The frames of the figures, which all steps share.
+    frames: Vec<AxisFrame>,
+    /// The record over time, if it is known.
+    course: Option<CourseFigure>,
     /// The customary unit of a coefficient, by the unit that follows from the log's.
     customary: BTreeMap<String, Customary>,
-    /// Ends of the axis of averaging times, in seconds.
-    tau_s: [f64; 2],
-    /// Ends of the axis of deviations, in the log's unit.
-    sigma: [f64; 2],
-    times: Vec<(f64, String)>,
     steps: Vec<View>,
 }
 
+/// The frame of a figure.
 #[derive(Serialize)]
-struct DeviationUnit {
+struct AxisFrame {
+    quantity: Quantity,
+    /// The titles of the axes, and what a point is called.
+    across: &'static str,
+    up: &'static str,
+    point: &'static str,
+    /// Units: first that of the log, then the customary one.
+    units: Vec<FigureUnit>,
+    /// Ends and ticks of the horizontal axis, in seconds or Hz.
+    x: [f64; 2],
+    ticks: Vec<(f64, String)>,
+    /// Ends of the vertical axis, in the log's unit.
+    y: [f64; 2],
+    /// The panel of residuals reaches from −z to z standard errors.
+    z: f64,
+    /// The positions of residuals and their labels, from 0 at the bottom of the panel to 1 at its top.
+    residuals: Vec<(f64, String)>,
+    /// The band of residuals that are not noticeable, in the same positions.
+    band: [f64; 2],
+    /// What the first step shows as measured.
+    measured: Option<Measured>,
+}
+
+#[derive(Serialize)]
+struct FigureUnit {
     name: String,
     /// The factor from the log's unit to this unit.
     factor: f64,
@@ -58,13 +81,10 @@ struct Customary {
 #[derive(Serialize)]
 struct View {
     model: String,
-    figure: Figure,
-    /// The panel of residuals reaches from −z to z standard errors.
-    z: f64,
-    /// The ticks of that panel.
-    residuals: [(f64, String); 3],
-    /// Index of the octave with the largest residual.
-    worst: usize,
+    /// A figure for each frame.
+    figures: Vec<StepFigure>,
+    /// Index of the figure in which the error fell most in this step, or is largest in the first step.
+    front: usize,
     /// The comparison of model and record in words.
     words: String,
     /// The p-value with its relation.
@@ -74,6 +94,25 @@ struct View {
     /// The addition of the step before, which led to this step.
     found: Option<Found>,
     candidates: Vec<Candidate>,
+}
+
+#[derive(Serialize)]
+struct StepFigure {
+    /// What is measured, if it differs from the first step.
+    measured: Option<Measured>,
+    z: Vec<f32>,
+    /// The positions of the residuals in their panel.
+    up: Vec<f32>,
+    /// Index of the largest residual.
+    worst: usize,
+    #[serde(flatten)]
+    lines: Lines,
+}
+
+#[derive(Serialize)]
+struct Lines {
+    model: Line,
+    shares: Vec<Share>,
 }
 
 #[derive(Serialize)]
@@ -115,27 +154,59 @@ pub(super) fn document(diagnosed: &[Diagnosed]) -> Document<'_> {
 
 fn axis(diagnosed: &Diagnosed) -> Axis {
     let unit = diagnosed.axis.unit;
-    let frame = Frame::of(diagnosed.steps.iter().map(|step| &step.comparison));
+    let pictures = Pictures::of(diagnosed);
+    let frames = pictures.frames();
+    let shared = Shared {
+        diagnosed,
+        pictures: &pictures,
+        first: frames
+            .iter()
+            .map(|frame| pictures.figure(&diagnosed.steps[0], frame).measured)
+            .collect(),
+        frames: &frames,
+    };
     let steps = 0..diagnosed.steps.len();
     Axis {
-        units: deviation_units(unit, &frame),
         customary: customary(unit),
-        tau_s: [frame.tau_s.low, frame.tau_s.high],
-        sigma: [frame.sigma.low, frame.sigma.high],
-        times: frame.tau_s.times(),
-        steps: steps.map(|at| step(diagnosed, at, &frame)).collect(),
+        steps: steps.map(|at| shared.step(at)).collect(),
+        course: pictures.course(),
+        frames: frames
+            .iter()
+            .zip(&shared.first)
+            .map(|(frame, measured)| axis_frame(unit, frame, measured))
+            .collect(),
     }
 }
 
-fn deviation_units(unit: Unit, frame: &Frame) -> Vec<DeviationUnit> {
-    let customary = units::customary(unit, 0).map(|(factor, name)| (factor, name.to_owned()));
-    let names = std::iter::once((1.0, units::unit(unit, 0))).chain(customary);
-    let unit = |(factor, name)| DeviationUnit {
-        name,
-        factor,
-        ticks: frame.sigma.scaled(factor).labelled(),
+fn axis_frame(unit: Unit, frame: &Frame, measured: &Measured) -> AxisFrame {
+    let quantity = frame.quantity;
+    let customary = match quantity {
+        Quantity::Deviation => units::customary(unit, 0),
+        Quantity::Density => units::customary_density(unit),
     };
-    names.map(unit).collect()
+    let customary = customary.map(|(factor, name)| (factor, name.to_owned()));
+    let names = std::iter::once((1.0, quantity.unit(unit))).chain(customary);
+    let residuals = frame.residuals().into_iter();
+    AxisFrame {
+        quantity,
+        across: quantity.across(),
+        up: quantity.up(),
+        point: quantity.point(),
+        units: names
+            .map(|(factor, name)| FigureUnit {
+                name,
+                factor,
+                ticks: frame.y.scaled(factor).labelled(),
+            })
+            .collect(),
+        x: [frame.x.low, frame.x.high],
+        ticks: frame.across(),
+        y: [frame.y.low, frame.y.high],
+        z: frame.z,
+        residuals: residuals.map(|(z, label)| (frame.up(z), label)).collect(),
+        band: [-2.0, 2.0].map(|z| frame.up(z)),
+        measured: Some(measured.clone()),
+    }
 }
 
 fn customary(unit: Unit) -> BTreeMap<String, Customary> {
@@ -153,73 +224,108 @@ fn customary(unit: Unit) -> BTreeMap<String, Customary> {
     (-2..=2).filter_map(one).collect()
 }
 
-fn step(diagnosed: &Diagnosed, at: usize, frame: &Frame) -> View {
-    let step = &diagnosed.steps[at];
-    let before = at.checked_sub(1).map(|before| &diagnosed.steps[before]);
-    let finding = before.and_then(|before| Finding::new(diagnosed, before, step));
-    let candidates = step.candidates.iter().enumerate();
-    let candidates = candidates.map(|(place, tried)| {
-        let added = place == 0 && matches!(step.added, Some(Addition::Effect(_)));
-        Candidate {
-            name: candidate_name(tried),
-            added,
-            fitted: (!added)
-                .then(|| fitted(diagnosed, at, tried, frame))
-                .flatten(),
+/// What all views of an axis share.
+struct Shared<'a> {
+    diagnosed: &'a Diagnosed,
+    pictures: &'a Pictures<'a>,
+    frames: &'a [Frame],
+    /// What the first step shows as measured, in each frame.
+    first: Vec<Measured>,
+}
+
+impl Shared<'_> {
+    fn step(&self, at: usize) -> View {
+        let diagnosed = self.diagnosed;
+        let step = &diagnosed.steps[at];
+        let before = at.checked_sub(1).map(|before| &diagnosed.steps[before]);
+        let finding = before.and_then(|before| Finding::new(diagnosed, before, step));
+        let candidates = step.candidates.iter().enumerate();
+        let candidates = candidates.map(|(place, tried)| {
+            let added = place == 0 && matches!(step.added, Some(Addition::Effect(_)));
+            Candidate {
+                name: candidate_name(tried),
+                added,
+                fitted: (!added).then(|| self.fitted(at, tried)).flatten(),
+            }
+        });
+        View {
+            found: finding.map(|finding| Found {
+                lines: finding
+                    .lines()
+                    .into_iter()
+                    .map(|(label, text)| (label, text.to_owned()))
+                    .collect(),
+                name: finding.name,
+                found: finding.found,
+                ambiguous: finding.ambiguous,
+            }),
+            candidates: candidates.collect(),
+            ..self.view(diagnosed.model_name(at), before, step)
         }
-    });
-    View {
-        found: finding.map(|finding| Found {
-            lines: finding
-                .lines()
-                .into_iter()
-                .map(|(label, text)| (label, text.to_owned()))
+    }
+
+    /// The complete fit of a candidate that was not added; `None` if it cannot be fitted in full.
+    fn fitted(&self, at: usize, tried: &Tried) -> Option<Fitted> {
+        let step = self.diagnosed.alternative(at, tried).ok()?;
+        let name = candidate_name(tried);
+        let model = format!("{} + {name}", self.diagnosed.model_name(at));
+        Some(Fitted {
+            chi2: step.fit.chi_squared,
+            dof: step.fit.degrees_of_freedom,
+            p_value: step.fit.p_value,
+            birge_ratio: step.fit.birge_ratio,
+            rms_percent: step.comparison.rms_percent,
+            coefficients: model_json::coefficients(&step.fit, self.diagnosed.axis.unit),
+            view: self.view(model, Some(&self.diagnosed.steps[at]), &step),
+        })
+    }
+
+    /// The view of a model that was fitted after that of the step before.
+    fn view(
+        &self,
+        model: String,
+        before: Option<&Step<OCTAVES, BINS>>,
+        step: &Step<OCTAVES, BINS>,
+    ) -> View {
+        let figures = self.frames.iter().zip(&self.first).map(|(frame, first)| {
+            let figure = self.pictures.figure(step, frame);
+            StepFigure {
+                worst: figure.worst(),
+                up: figure.z.iter().map(|z| place(frame, *z)).collect(),
+                measured: (figure.measured != *first).then_some(figure.measured),
+                z: figure.z,
+                lines: Lines {
+                    model: figure.model,
+                    shares: figure.shares,
+                },
+            }
+        });
+        let falls = self.frames.iter().map(|frame| {
+            let error = |step: &Step<OCTAVES, BINS>| frame.quantity.squared_error(&step.comparison);
+            before.map_or(0.0, error) - error(step)
+        });
+        let largest = falls.map(f64::abs).enumerate();
+        let largest = largest.max_by(|(_, one), (_, other)| one.total_cmp(other));
+        View {
+            model,
+            front: largest.map_or(0, |(at, _)| at),
+            figures: figures.collect(),
+            words: disagreement(&step.comparison),
+            p: shown_p(step.fit.p_value),
+            states: step
+                .fit
+                .coefficients
+                .iter()
+                .map(fit::table::state)
                 .collect(),
-            name: finding.name,
-            found: finding.found,
-            ambiguous: finding.ambiguous,
-        }),
-        candidates: candidates.collect(),
-        ..view(diagnosed.model_name(at), step, frame)
+            found: None,
+            candidates: Vec::new(),
+        }
     }
 }
 
-/// The complete fit of a candidate that was not added; `None` if it cannot be fitted in full.
-fn fitted(diagnosed: &Diagnosed, at: usize, tried: &Tried, frame: &Frame) -> Option<Fitted> {
-    let step = diagnosed.alternative(at, tried).ok()?;
-    let name = candidate_name(tried);
-    let model = format!("{} + {name}", diagnosed.model_name(at));
-    Some(Fitted {
-        chi2: step.fit.chi_squared,
-        dof: step.fit.degrees_of_freedom,
-        p_value: step.fit.p_value,
-        birge_ratio: step.fit.birge_ratio,
-        rms_percent: step.comparison.rms_percent,
-        coefficients: model_json::coefficients(&step.fit, diagnosed.axis.unit),
-        view: view(model, &step, frame),
-    })
-}
-
-/// The view of a step. All steps share the frame of the deviations, but each has its own for the
-/// residuals.
-fn view(model: String, step: &Step<OCTAVES, BINS>, frame: &Frame) -> View {
-    let own = Frame::of([&step.comparison]);
-    let figure = Figure::new(&step.model, &step.comparison, frame);
-    View {
-        model,
-        worst: figure.worst(),
-        figure,
-        z: own.z,
-        residuals: own.residuals(),
-        words: step.comparison.to_string(),
-        p: shown_p(step.fit.p_value),
-        states: step
-            .fit
-            .coefficients
-            .iter()
-            .map(fit::table::state)
-            .collect(),
-        found: None,
-        candidates: Vec::new(),
-    }
+/// The position of a residual in its panel, with three digits.
+fn place(frame: &Frame, z: f32) -> f32 {
+    let up = frame.up(f64::from(z)).clamp(0.0, 1.0);
+    ((1e4 * up).round() / 1e4) as f32
 }

@@ -112,12 +112,15 @@ fn introduction() -> Markup {
         section.introduction aria-label="How to read this page" {
             p {
                 "The Allan deviation σ(τ) is how much the rate, averaged over a time τ, typically "
-                "changes from one average to the next. In a simple record, the five noise terms of "
-                "IEEE 952 add up to the measured curve. Where the measured dots leave the model’s line, "
-                "the record has another effect. χ² is the squared distance of the dots from the line, "
-                "each octave weighted by its error: for an adequate model, χ² is about as large as the "
-                "number of degrees of freedom. The misfit is the rms difference of the variances in "
-                "percent. The longest octaves, whose scatter is largest, dominate it, so it can rise "
+                "changes from one average to the next. The spectrum is the root of the one-sided power "
+                "spectral density of the same record: a line is narrow there, a resonance is a hump, and "
+                "a filter is an edge. In a simple record, the five noise terms of IEEE 952 add up to both. "
+                "Where the measured dots leave the model’s line, the record has another effect. The bars "
+                "are standard errors of the measurement. χ² is the squared distance of the dots from the "
+                "line, each weighted by its error: for an adequate model, χ² is about as large as the "
+                "number of degrees of freedom. All steps share one scale of residuals, linear near zero "
+                "and logarithmic beyond, so that the error is seen to fall. The misfit is the rms "
+                "difference of the Allan variances in percent. The longest octaves, whose scatter is largest, dominate it, so it can rise "
                 "while χ² falls. Each step adds the effect that explains most."
             }
             fieldset #units hidden {

@@ -1,0 +1,71 @@
+//! A diagnosis as figures, which `diagnose` prints, `plot` draws and `report` shows.
+
+use super::diagnosed::Diagnosed;
+use crate::{
+    command::output::words,
+    confidence::relative_errors,
+    log::{BINS, OCTAVES},
+    plot::{CourseFigure, Figure, Frame, Mark, Quantity, View},
+};
+use allanite::{Scale, diagnosis::Step, spectrum::Spectrum};
+
+/// What the figures of all steps of a diagnosis have in common.
+pub(crate) struct Pictures<'a> {
+    diagnosed: &'a Diagnosed,
+    spectrum: Spectrum<BINS>,
+    /// The standard errors of the octaves, relative to their variances. They are those of the last model, which comes
+    /// closest to the record, so that the bars are the same in every step.
+    errors: Vec<f64>,
+}
+
+impl<'a> Pictures<'a> {
+    pub(crate) fn of(diagnosed: &'a Diagnosed) -> Self {
+        // The diagnosis has fitted this curve and this spectrum already, so that neither fails here.
+        let errors = diagnosed.steps.last().and_then(|last| {
+            let curve = diagnosed.curve_of(last).ok()?;
+            Some(relative_errors(&curve, &last.model, &last.fit))
+        });
+        Self {
+            diagnosed,
+            spectrum: diagnosed.axis.spectrum().unwrap_or(Spectrum::EMPTY),
+            errors: errors.unwrap_or_default(),
+        }
+    }
+
+    /// The frames of what the record has: with room for every step, so that the error is seen to fall.
+    pub(crate) fn frames(&self) -> Vec<Frame> {
+        let comparisons = self.diagnosed.steps.iter().map(|step| &step.comparison);
+        let bins = self.spectrum.bins();
+        Quantity::ALL
+            .into_iter()
+            .filter(|quantity| *quantity == Quantity::Deviation || !bins.is_empty())
+            .map(|quantity| Frame::of(quantity, comparisons.clone()))
+            .collect()
+    }
+
+    /// The figure of a step, or of a candidate.
+    pub(crate) fn figure(&self, step: &Step<OCTAVES, BINS>, frame: &Frame) -> Figure {
+        let view = View {
+            model: &step.model,
+            fit: &step.fit,
+            comparison: &step.comparison,
+            spectrum: &self.spectrum,
+            errors: &self.errors,
+            interval_s: 1.0 / self.diagnosed.axis.rate_hz,
+        };
+        Figure::new(&view, frame)
+    }
+
+    /// The record over time, if it is known.
+    pub(crate) fn course(&self) -> Option<CourseFigure> {
+        let axis = &self.diagnosed.axis;
+        let course = self.diagnosed.course.as_ref()?;
+        let scale = Scale::new(axis.rate_per_count, axis.rate_hz).ok()?;
+        let events = self.diagnosed.events.iter().map(|event| Mark {
+            at_s: event.at_s,
+            words: words::brief_event(event, axis.unit),
+        });
+        let columns = &self.diagnosed.columns;
+        CourseFigure::new(course, scale, axis.unit, columns, events.collect())
+    }
+}

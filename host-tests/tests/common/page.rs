@@ -1,0 +1,44 @@
+//! Pages of `report` for tests.
+
+use crate::browser::Browser;
+use host_tests::program::{json, output};
+use serde_json::Value;
+use std::path::Path;
+
+/// Writes the page of an input into a folder, and returns the diagnosis of the same input.
+pub(crate) fn reported(folder: &Path, arguments: &[&str]) -> Value {
+    let report = [&["report"], arguments, &["--output", "report.html"]].concat();
+    assert_eq!(output(folder, &report), "");
+    json(folder, &[&["diagnose"], arguments].concat())
+}
+
+/// Writes the log of a consumer gyro, 2^16 samples at 100 Hz, with hidden effects.
+pub(crate) fn simulate(folder: &Path, effects: &[&str]) {
+    let simulate = ["simulate", "mems", "--duration", "655.36", "--seed", "5"];
+    let effects = effects.iter().flat_map(|effect| ["--effect", *effect]);
+    let effects: Vec<&str> = effects.collect();
+    output(
+        folder,
+        &[&simulate[..], &effects, &["--output", "log.csv"]].concat(),
+    );
+}
+
+pub(crate) fn opened(folder: &Path) -> Browser {
+    let mut browser = Browser::start();
+    browser.open(&folder.join("report.html"));
+    browser
+}
+
+pub(crate) fn steps(axis: &Value) -> &[Value] {
+    axis["steps"].as_array().unwrap()
+}
+
+pub(crate) fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+/// The data in the page that the script reads.
+pub(crate) fn embedded(page: &str) -> Value {
+    let (_, rest) = page.split_once("id=\"data\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}

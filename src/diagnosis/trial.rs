@@ -342,12 +342,13 @@ impl Trial {
     }
 
     /// Whether a round with this score lags far behind the best one, and catches up too little.
-    /// A round that led too far tells nothing.
+    /// A round that led too far tells nothing, unless half the step led too far as well.
     fn is_hopeless(&self, now: Real, best: Option<Rival>) -> bool {
         let gain = self.before - now;
+        let tells = gain > -SETTLED || self.halvings > 0;
         best.is_some_and(|best| {
             let lag = now - best.score;
-            gain > -SETTLED && lag > HOPELESS && gain < CATCHING_UP * lag
+            tells && lag > HOPELESS && gain < CATCHING_UP * lag
         })
     }
 

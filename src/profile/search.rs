@@ -26,6 +26,10 @@ const APART: u32 = 2;
 /// of a level, 4 and 5, is nearer than that.
 const AROUND: Real = 1.4;
 
+/// The same for an effect that is wider than a line, and whose highest bin is a matter of chance. Chosen by hand, and
+/// more than enough: a resonance of quality 1 has fallen to a half there.
+const AROUND_WIDE: Real = 2.0;
+
 /// The step of shapes with the frequency of a peak, which lie apart from all others.
 const AT_PEAK: u32 = u32::MAX;
 
@@ -66,20 +70,24 @@ impl GridSearch {
         }
     }
 
-    /// Begins at a peak. It has no effect on a search that is not for a frequency. A line in the range of the bins
-    /// is at the peak, so that the grid is searched only around the peak and below that range.
+    /// Begins at a peak. It has no effect on a search that is not for the frequency of an effect that adds power. Such
+    /// an effect in the range of the bins is at the peak, so that the grid is searched only around the peak and below
+    /// that range.
     pub(crate) fn at_peak(mut self, peak: Option<Peak>) -> Self {
         let parameters = self.term.effect.parameters();
         let is_frequency = parameters.first().is_some_and(|first| first.unit == "Hz");
-        let Some(peak) = peak.filter(|_| is_frequency) else {
+        let adds_power = self.term.effect.replaces().is_none();
+        let Some(peak) = peak.filter(|_| is_frequency && adds_power) else {
             return self;
         };
         self.peak_hz = Some(peak.frequency_hz);
-        if let ([_], [first, ..]) = (parameters, self.grids) {
+        if let [first, ..] = self.grids {
+            let is_line = parameters.len() == 1;
+            let factor = if is_line { AROUND } else { AROUND_WIDE };
             let [below, around, above] = [
                 peak.lowest_hz,
-                peak.frequency_hz / AROUND,
-                peak.frequency_hz * AROUND,
+                peak.frequency_hz / factor,
+                peak.frequency_hz * factor,
             ]
             .map(|frequency_hz| first.steps_to(frequency_hz));
             self.skipped = (below, around.max(below));

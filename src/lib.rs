@@ -51,6 +51,8 @@
 //! ```text
 //! counts (i32) ─► octave accumulator ─► Allan curve ─► fit(model) ─► comparison ─► diagnosis
 //!  gap(), merge()    integers only       ≤ 30 points    covariance     z, χ², p      what is missing
+//!       │                                                   ▲
+//!       └────────► spectrum (optional) ─► densities ─────────┘
 //! ```
 //!
 //! | module | what it does |

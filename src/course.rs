@@ -259,15 +259,19 @@ impl<const COVARIATES: usize> Course<COVARIATES> {
         let unit = scale.rate_per_count();
         list::numbered(self.sums()).map(move |(b, (sums, time))| {
             let samples = sums.samples(time);
-            // The quotient is NaN without samples.
-            let mean = |sum: i64| sum as Real / real(samples);
-            let differences = real(sums.differences(time));
+            // Without samples, a quotient would be a NaN whose sign depends on the core.
+            let over = |sum: Real, number: u32| match number {
+                0 => Real::NAN,
+                _ => sum / real(number),
+            };
+            let mean = |sum: i64| over(sum as Real, samples);
+            let square = over(sums.squares_real(), sums.differences(time));
             Block {
                 start_s: real(b as u32) * duration_s,
                 duration_s: real(time) * interval_s,
                 samples,
                 mean: mean(sums.counts()) * unit,
-                mean_square_difference: sums.squares_real() / differences * unit * unit,
+                mean_square_difference: square * unit * unit,
                 covariates: sums.covariates().map(mean),
             }
         })

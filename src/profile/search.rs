@@ -81,18 +81,17 @@ impl GridSearch {
             return self;
         };
         self.peak_hz = Some(peak.frequency_hz);
-        if let [first, ..] = self.grids {
-            let is_line = parameters.len() == 1;
-            let factor = if is_line { AROUND } else { AROUND_WIDE };
-            let [below, around, above] = [
-                peak.lowest_hz,
-                peak.frequency_hz / factor,
-                peak.frequency_hz * factor,
-            ]
-            .map(|frequency_hz| first.steps_to(frequency_hz));
-            self.skipped = (below, around.max(below));
-            self.steps = above.max(below);
-        }
+        let [first, ..] = self.grids;
+        let is_line = parameters.len() == 1;
+        let factor = if is_line { AROUND } else { AROUND_WIDE };
+        let [below, around, above] = [
+            peak.lowest_hz,
+            peak.frequency_hz / factor,
+            peak.frequency_hz * factor,
+        ]
+        .map(|frequency_hz| first.steps_to(frequency_hz));
+        self.skipped = (below, around.max(below));
+        self.steps = above.max(below);
         self
     }
 

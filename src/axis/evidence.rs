@@ -40,6 +40,7 @@ impl<const OCTAVES: usize, const COVARIATES: usize> AxisEvidence<OCTAVES, COVARI
         Evidence {
             kurtosis: self.kurtosis.as_ref(),
             covariates: &self.covariates,
+            pairs: &[],
             invalid: self.invalid,
         }
     }

@@ -14,6 +14,7 @@ mod output;
 mod plot;
 mod report;
 mod simulate;
+mod tried;
 mod watch;
 
 use crate::failure::Failure;

@@ -1,29 +1,29 @@
 //! Reads a table into the curves of its axes.
 
 use super::{
-    Axis, CovariateChoice, Evidence, Log, MOST_AXES, Options,
+    Axis, CovariateChoice, Covariates, Evidence, Log, MOST_AXES, Motion, OCTAVES, Options,
     accumulate::{self, Passes},
     clock::Clock,
     columns::Taken,
-    quantum,
     scaling::{self, Origin, Scaling},
     table::Table,
     time_column::TimeColumn,
-    watched::{self, WatchedAxis},
+    tried::TriedColumns,
+    watched::{self, SharedSums, WatchedAxis},
     worker,
 };
 use crate::failure::{Failure, Place};
-use allanite::Scale;
+use allanite::{Scale, covariate::Pair, integrity::Reason};
 use indicatif::ProgressBar;
 use std::path::Path;
 
 /// Reads the first rows of a table, and the axes of the remaining rows if a number of first rows is
-/// given. If covariates are given, the axes are watched together with them.
+/// given. With covariates, the axes are watched together with them.
 pub(super) fn read_table(
     table: &impl Table,
     path: &Path,
     options: &Options,
-    (first, watch): (Option<u64>, Option<&[CovariateChoice]>),
+    (first, watch): (Option<u64>, Option<&Covariates>),
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let metadata = table.metadata();
@@ -53,28 +53,45 @@ pub(super) fn read_table(
         ));
     }
     let scaling = Scaling::settle(table, path, options, &axis_columns, taken.sensor)?;
-    let covariates = watch.unwrap_or_default();
+    let mut columns = axis_columns.clone();
+    let (covariates, found): (Vec<_>, Vec<_>) = match watch {
+        Some(Covariates::Found) => table.columns().temperatures(&axis_columns),
+        _ => Vec::new(),
+    }
+    .into_iter()
+    .unzip();
+    let covariates = match watch {
+        Some(Covariates::Chosen(choices)) => choices,
+        _ => &covariates,
+    };
     if covariates.len() > watched::MOST {
         return Err(Failure::option(
             format!("--covariates names {} columns", covariates.len()),
             format!("name at most {}", watched::MOST),
         ));
     }
-    let mut columns = axis_columns.clone();
-    columns.extend(
-        table
+    if found.is_empty() {
+        let chosen = table
             .columns()
-            .covariates(path, covariates, &axis_columns)?,
-    );
+            .covariates(path, covariates, &axis_columns)?;
+        columns.extend(chosen);
+    }
+    let heads = found.iter().map(|column| {
+        let head = table.columns().heads.get(column.column);
+        head.map_or(&[][..], Vec::as_slice)
+    });
+    let tried = TriedColumns::new(columns.len(), heads);
+    columns.extend(found.iter().cloned());
     let plan = worker::Plan {
         axes: axis_columns.len(),
         first: first.unwrap_or(u64::MAX),
-        watch: watch.map(<[_]>::to_vec),
+        watch: watch.map(|_| covariates.clone()),
     };
     let passes = Passes {
         table,
         path,
         columns: &columns,
+        tried,
         time: time.as_ref(),
         progress,
     };
@@ -90,6 +107,9 @@ pub(super) fn read_table(
     notes.retain(|note| !note.is_empty());
     notes.extend(measured.clock.as_ref().map(Clock::report));
     notes.extend(table.notes());
+    let (named, left_out) = named(covariates, &measured, rate_hz);
+    notes.extend(left_out);
+    let pairs = shared(path, &measured.pairs, &named, rate_hz)?;
     let mut axes = Vec::new();
     let mut rest = Vec::new();
     for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
@@ -111,10 +131,10 @@ pub(super) fn read_table(
         }
         check_axis(path, &axis)?;
         if let worker::Sums::Watched(watched, beside) = &sums {
-            let named = covariates.iter().zip(&measured.covariates);
-            let evidence = evidence(path, &axis, &**watched, named, rate_hz)?;
+            let evidence = evidence(path, &axis, &**watched, &named, rate_hz)?;
             axis.evidence = Some(Evidence {
                 course: Some(beside.course.clone()),
+                pairs: pairs.clone(),
                 ..evidence
             });
         }
@@ -127,6 +147,7 @@ pub(super) fn read_table(
         notes.extend(scaling.check(path, &axis)?);
         axes.push(axis);
     }
+    spread_motion(&mut axes);
     if scaling.origin == Origin::Assumed {
         notes.push(format!(
             "no unit given: {} assumed (change it with --unit)",
@@ -190,31 +211,112 @@ fn said(
     parts.join("; ")
 }
 
+/// A covariate that has been read: its name and the size of its counts, or `None` if it is left out.
+type Named = Option<(String, f64)>;
+
+/// The covariates, and a note on every column that is left out because of its values. A rate of change is counted in
+/// quanta per sample.
+fn named(
+    choices: &[CovariateChoice],
+    measured: &accumulate::Measured,
+    rate_hz: f64,
+) -> (Vec<Named>, Vec<String>) {
+    let columns = choices.iter().zip(&measured.covariates);
+    let named = columns.clone().map(|(choice, &(step, flawed))| {
+        let unit = step * if choice.rate { rate_hz } else { 1.0 };
+        (!flawed).then(|| (choice.to_string(), unit))
+    });
+    let left_out = columns.filter(|(choice, (_, flawed))| *flawed && !choice.rate);
+    let left_out = left_out.map(|(choice, _)| {
+        format!(
+            "{} is not tried as a covariate: not all of its values are numbers of its usual size",
+            choice.column
+        )
+    });
+    (named.collect(), left_out.collect())
+}
+
+/// What covariates share that may act together, in their units.
+fn shared(
+    path: &Path,
+    pairs: &[([usize; 2], SharedSums)],
+    named: &[Named],
+    rate_hz: f64,
+) -> Result<Vec<Pair<OCTAVES>>, Failure> {
+    let one = |(covariates, sums): &([usize; 2], SharedSums)| {
+        let [Some((name, unit)), Some((_, other_unit))] = covariates.map(|at| &named[at]) else {
+            return Ok(None);
+        };
+        let scale = Scale::new(*unit, rate_hz);
+        let told = scale.and_then(|scale| sums.evidence(0, scale, [*other_unit]));
+        let told = told.map_err(|error| {
+            let what = format!("covariate {name}: {error}");
+            Place::file(path).failure(what, "check the values of its column")
+        })?;
+        let shared = told.covariates.into_iter().next().unwrap_or_default();
+        // Places among the covariates that are not left out.
+        let place = |at: usize| named[..at].iter().flatten().count();
+        Ok(Some(Pair {
+            covariates: covariates.map(place),
+            shared,
+        }))
+    };
+    pairs
+        .iter()
+        .filter_map(|pair| one(pair).transpose())
+        .collect()
+}
+
+/// Motion of one axis makes the curves of all axes invalid, because a gyro that turns about one axis is not at rest
+/// about the others.
+fn spread_motion(axes: &mut [Axis]) {
+    let evidence = axes.iter().filter_map(|axis| axis.evidence.as_ref());
+    let moved = evidence.filter(|evidence| matches!(evidence.invalid, Some(Reason::Moved { .. })));
+    let first = moved.min_by(|one, other| {
+        let at = |evidence: &Evidence| evidence.motion.as_ref().map_or(0.0, |motion| motion.at_s);
+        at(one).total_cmp(&at(other))
+    });
+    let Some((reason, motion)) = first.map(|first| (first.invalid, first.motion.clone())) else {
+        return;
+    };
+    for evidence in axes.iter_mut().filter_map(|axis| axis.evidence.as_mut()) {
+        if evidence.invalid.is_none() {
+            evidence.invalid = reason;
+        }
+        if evidence.motion.is_none() {
+            evidence.motion.clone_from(&motion);
+        }
+    }
+}
+
 /// The evidence of an axis, in units.
-fn evidence<'a>(
+fn evidence(
     path: &Path,
     axis: &Axis,
     watched: &dyn WatchedAxis,
-    covariates: impl Iterator<Item = (&'a CovariateChoice, &'a quantum::Quantum)>,
+    covariates: &[Named],
     rate_hz: f64,
 ) -> Result<Evidence, Failure> {
     let fail = |error: allanite::Error| {
         Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
     };
     let scale = Scale::new(axis.rate_per_count, rate_hz).map_err(fail)?;
-    // A rate of change is counted in quanta per sample.
-    let (names, units): (Vec<String>, Vec<f64>) = covariates
-        .map(|(choice, quantum)| {
-            let unit = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
-            (choice.to_string(), unit)
-        })
-        .unzip();
+    let unit = |named: &Named| named.as_ref().map_or(1.0, |(_, unit)| *unit);
+    let units: Vec<f64> = covariates.iter().map(unit).collect();
     let told = watched.evidence(scale, &units).map_err(fail)?;
+    let moved = matches!(told.invalid, Some(Reason::Moved { .. }));
+    let named = covariates.iter().zip(told.covariates);
+    let named = named.filter_map(|(named, cross)| Some((named.as_ref()?.0.clone(), cross)));
     Ok(Evidence {
         kurtosis: told.kurtosis,
-        covariates: names.into_iter().zip(told.covariates).collect(),
+        covariates: named.collect(),
+        pairs: Vec::new(),
         invalid: told.invalid,
         course: None,
+        motion: told.moved_at.filter(|_| moved).map(|sample| Motion {
+            axis: axis.name.clone(),
+            at_s: sample as f64 / rate_hz,
+        }),
     })
 }
 

@@ -2,8 +2,8 @@
 
 use super::{
     CovariateChoice, OCTAVES, SpectrumSums,
-    covariate::Derived,
-    watched::{self, WatchedAxis},
+    covariate::{self, Derived},
+    watched::{self, SharedSums, WatchedAxis},
 };
 use allanite::{Accumulator, course::Course};
 use std::{
@@ -76,6 +76,14 @@ impl Sums {
     }
 }
 
+/// What is kept of all columns.
+pub(super) struct Worked {
+    /// The sums of every axis.
+    pub(super) sums: Vec<Sums>,
+    /// The places of the covariates that may act together, and what they share.
+    pub(super) pairs: Vec<([usize; 2], SharedSums)>,
+}
+
 /// How to use the columns: the first ones are axes, and the covariates follow them.
 #[derive(Clone)]
 pub(super) struct Plan {
@@ -130,7 +138,7 @@ pub(super) struct Batches {
     full: SyncSender<Work>,
     /// Batches that have been accumulated and can be filled again.
     empty: Receiver<Vec<i32>>,
-    thread: JoinHandle<Vec<Sums>>,
+    thread: JoinHandle<Worked>,
 }
 
 impl Batches {
@@ -150,7 +158,10 @@ impl Batches {
                     Work::Gap => worker.gap(),
                 }
             }
-            worker.sums
+            Worked {
+                sums: worker.sums,
+                pairs: worker.pairs,
+            }
         });
         Self {
             open: vec![Vec::with_capacity(BATCH); columns],
@@ -193,7 +204,7 @@ impl Batches {
         }
     }
 
-    pub(super) fn finish(mut self) -> Vec<Sums> {
+    pub(super) fn finish(mut self) -> Worked {
         self.send_all();
         drop(self.full);
         self.thread
@@ -205,6 +216,7 @@ impl Batches {
 struct Worker {
     plan: Plan,
     sums: Vec<Sums>,
+    pairs: Vec<([usize; 2], SharedSums)>,
     derived: Vec<Derived>,
     /// With covariates, a batch waits until the batches of the other columns with the same rows
     /// arrive.
@@ -215,6 +227,9 @@ impl Worker {
     fn new(plan: Plan) -> Self {
         Self {
             sums: (0..plan.axes).map(|_| plan.sums()).collect(),
+            pairs: covariate::pairs(plan.covariates())
+                .map(|pair| (pair, SharedSums::new()))
+                .collect(),
             derived: plan.covariates().iter().map(Derived::new).collect(),
             waiting: vec![VecDeque::new(); plan.columns()],
             plan,
@@ -242,6 +257,11 @@ impl Worker {
                 *count = derived.next(*count);
             }
         }
+        for ([one, other], shared) in &mut self.pairs {
+            for (&one, &other) in covariates[*one].iter().zip(&covariates[*other]) {
+                shared.push((one, [other]));
+            }
+        }
         for (axis, counts) in axes.iter().enumerate() {
             self.accumulate(axis, counts, covariates);
         }
@@ -251,6 +271,9 @@ impl Worker {
     fn gap(&mut self) {
         for derived in &mut self.derived {
             derived.gap();
+        }
+        for (_, shared) in &mut self.pairs {
+            shared.gap();
         }
         for sums in &mut self.sums {
             match sums {

@@ -2,7 +2,10 @@
 
 use super::fitted::Fitted;
 use crate::{
-    command::output::{rounding, units},
+    command::{
+        output::{rounding, units},
+        tried::{self, TriedCovariate},
+    },
     unit::Unit,
 };
 use allanite::{Coefficient, fit::State};
@@ -27,6 +30,10 @@ struct Axis<'a> {
     p_value: Option<f64>,
     /// The factor by which intervals and bounds are widened.
     birge_ratio: f64,
+    /// Why the curve is not valid; `null` if it is, or if the input is a curve file.
+    invalid: Option<&'a str>,
+    /// The covariates that were tried.
+    covariates: Vec<tried::Document>,
     notes: Vec<String>,
 }
 
@@ -90,7 +97,15 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
         p_value: finite(fit.p_value),
         birge_ratio: fit.birge_ratio,
-        notes: rounding::note(axis, fit).into_iter().collect(),
+        invalid: fitted.invalid.as_deref(),
+        covariates: fitted.tried.iter().map(TriedCovariate::document).collect(),
+        notes: fitted
+            .invalid
+            .iter()
+            .cloned()
+            .chain(rounding::note(axis, fit).filter(|_| fitted.invalid.is_none()))
+            .chain(fitted.covariate_notes())
+            .collect(),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::{
         examples,
         input::{
             many::{self, FilesArguments, Findings},
-            record::{self, LogArguments},
+            record::{self, CovariateArguments, LogArguments},
         },
     },
     failure::Failure,
@@ -31,6 +31,8 @@ pub(super) struct Arguments {
     /// Method that weights the octaves
     #[arg(long, default_value = "covariance")]
     method: MethodName,
+    #[command(flatten)]
+    covariates: CovariateArguments,
     #[command(flatten)]
     about_log: LogArguments,
 }
@@ -54,8 +56,9 @@ impl Findings for Vec<Fitted> {
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let work = |path: &Path| {
-        let axes = record::read(path, &arguments.about_log)?.into_iter();
-        axes.map(|axis| Fitted::new(path, axis, arguments.method))
+        let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
+        let axes = record::read_with_evidence(path, about_log, covariates)?.into_iter();
+        axes.map(|(axis, evidence)| Fitted::with_evidence(path, axis, arguments.method, evidence))
             .collect::<Result<Vec<_>, _>>()
     };
     many::run(&arguments.files, work, output)

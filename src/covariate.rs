@@ -25,11 +25,14 @@
 //! from the fitted model, and that of the covariate from its own Allan variances.
 
 mod cross_sums;
+mod pair;
 mod scatter;
 
 pub(crate) use cross_sums::CrossSums;
 #[cfg(feature = "storage")]
 pub(crate) use cross_sums::ProductSum;
+pub use pair::Pair;
+pub(crate) use pair::Slopes;
 
 use crate::{
     curve::{Curve, Point, Scale, clusters},
@@ -112,27 +115,10 @@ impl<const K: usize> CrossCurve<K> {
         &self.points
     }
 
-    /// Subtracts what follows the covariate from the gyro's curve, `σ²_g − 2α C_gx + α² σ²_x`. The
-    /// slope's own error ε takes some of the noise away as well, `ε² σ²_x` on average, which is added
-    /// back.
-    #[inline(never)]
-    pub fn correct(&self, curve: &mut Curve<K>, slope: &Slope) {
-        let Slope { value, error } = *slope;
-        curve.change_variances(|k, variance| match self.points.get(k) {
-            Some(cross) => {
-                let follows = value * (2.0 * cross.covariance - value * cross.variance);
-                // The rest is a mean square. Only rounding makes it negative.
-                let rest = (variance - follows).max(variance * Real::EPSILON);
-                rest + error * error * cross.variance
-            }
-            None => variance,
-        });
-    }
-
     /// The first octave in which the covariate exceeds its sensor's noise. This is octave 0 where the
     /// curve rises from the start. It is octave 0 as well where the curve never rises: then the rate
     /// might follow the noise.
-    fn first_octave(&self) -> usize {
+    pub(crate) fn first_octave(&self) -> usize {
         let by_variance = |(_, a): &(usize, &CrossPoint), (_, b): &(usize, &CrossPoint)| {
             a.variance.total_cmp(&b.variance)
         };
@@ -165,9 +151,9 @@ pub struct Slope {
 }
 
 impl Slope {
-    /// The slope, where the noise has the Allan variance `noise(k)` in octave `k`. `None` if the
-    /// covariate does not change.
-    pub(crate) fn of<const K: usize>(
+    /// The slope, where the noise has the Allan variance `noise(k)` in octave `k`, in rate units squared. `points` are
+    /// those of the gyro's curve. `None` if the covariate does not change.
+    pub fn of<const K: usize>(
         cross: &CrossCurve<K>,
         points: &[Point],
         noise: impl Fn(usize) -> Real,

@@ -52,17 +52,6 @@ impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
         self.curve
     }
 
-    /// The same spectrum beside another curve.
-    pub(crate) const fn with_curve<'b>(&self, curve: &'b Curve<K>) -> Observed<'b, K, B>
-    where
-        'a: 'b,
-    {
-        Observed {
-            curve,
-            spectrum: self.spectrum,
-        }
-    }
-
     /// The curve alone.
     pub(crate) const fn octaves(&self) -> Self {
         Self {

@@ -38,6 +38,11 @@ const MOST_SAMPLES: u64 = 1 << 50;
 /// numbers are written with all their digits, so that only rounding remains, some 1e-15.
 const TOLERANCE: f64 = 1e-9;
 
+/// The most power of a level, in Allan variances of one of its blocks. An octave's response to the frequencies of the
+/// level is 0.075 at least, so that a record without gaps has 14 at most. Chosen by hand: gaps leave out segments, so
+/// that a record with many of them may have more.
+const MOST_POWER: f64 = 1e6;
+
 /// The curves of a log's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -133,8 +138,13 @@ impl SpectrumLevels {
         Spectrum::new(rate_hz, self.segment, bins)
     }
 
-    /// Checks the numbers of the levels of a record with so many samples.
-    fn check(&self, rate_hz: f64, samples: u64) -> Result<(), String> {
+    /// Checks the numbers of the levels against each other and against the axis.
+    fn check(&self, axis: &AxisCurve) -> Result<(), String> {
+        let blocks = (0..10).map(|level| 1_u32 << (3 * level));
+        let right = self.levels.iter().zip(blocks);
+        if self.levels.len() > 10 || right.clone().any(|(level, block)| level.block != block) {
+            return Err("spectrum: the blocks of the levels are not 1, 8, 64, …".into());
+        }
         for level in &self.levels {
             let here = |what: &str| Err(format!("spectrum, block {}: {what}", level.block));
             let bins = (self.segment / 2 - self.segment / 16) as usize;
@@ -142,15 +152,33 @@ impl SpectrumLevels {
                 return here("the number of bins is impossible");
             }
             let half = u64::from(level.block) * u64::from(self.segment / 2);
-            let most = (samples / half.max(1)).saturating_sub(1);
+            let most = (axis.samples / half.max(1)).saturating_sub(1);
             if u64::from(level.segments) > most {
                 return here("there are more segments than samples for them");
             }
             if level.segments < Spectrum::<BINS>::MIN_SEGMENTS {
                 return here("there are too few segments");
             }
+            // By Cauchy and Schwarz, n ΣP² is at least (ΣP)² and at most n (ΣP)².
+            let most = f64::from(level.segments) + 1.0;
+            if level
+                .kurtosis
+                .iter()
+                .any(|&kurtosis| kurtosis > most * (1.0 + TOLERANCE))
+            {
+                return here("a spectral kurtosis is impossible");
+            }
+            let mut octaves = axis.octaves.iter();
+            let Some(octave) = octaves.find(|octave| octave.m == level.block) else {
+                return here("there is no octave of this length");
+            };
+            let bin_hz = axis.rate_hz / (f64::from(level.block) * f64::from(self.segment));
+            let power = bin_hz * level.density.iter().sum::<f64>();
+            if power > MOST_POWER * octave.variance {
+                return here("the densities contradict the octaves");
+            }
         }
-        let spectrum = self.spectrum(rate_hz);
+        let spectrum = self.spectrum(axis.rate_hz);
         spectrum
             .map(|_| ())
             .map_err(|error| format!("spectrum: {error}"))
@@ -386,7 +414,7 @@ impl AxisCurve {
             self.check_octave(octave).map_err(here)?;
         }
         if let Some(spectrum) = &self.spectrum {
-            spectrum.check(self.rate_hz, self.samples)?;
+            spectrum.check(self)?;
         }
         Ok(())
     }

@@ -2,8 +2,10 @@
 
 use allanite::{
     Axis, Error, Model, Scale,
-    diagnosis::{Addition, Diagnosis, Evidence, Options},
+    covariate::{Pair, Slope},
+    diagnosis::{Addition, Diagnosis, Evidence, FollowedCovariate, Options, Verdict},
     effect::CATALOGUE,
+    spectrum::{Spectrum, SpectrumAccumulator},
 };
 use host_tests::simulate::{Coefficients, Course, Simulator, Thermal};
 use proptest::prelude::*;
@@ -86,52 +88,84 @@ fn impossible_units_and_axes_are_refused() {
     assert_eq!(refused, Error::UnknownAxis { axis: 1, axes: 1 });
 }
 
-/// The slopes that diagnoses of records of a random walk claim, with their standard errors. The rate follows a
-/// temperature with `slope`.
+/// The sampling rate of the records, and the sizes of a count of the gyro and of the temperature.
+const RATE_HZ: f64 = 20.0;
+const COUNT: f64 = 1e-4;
+const KELVIN: f64 = 1e-3;
+
+/// What a diagnosis tries.
+#[derive(Clone, Copy)]
+enum Tried {
+    Temperature,
+    /// The temperature, its rate of change, and both together.
+    Both,
+}
+
+/// The covariates that diagnoses of records claim. The rate follows a temperature with the slope of `thermal`, and its
+/// rate of change with `rate_slope`.
 fn claimed(
     coefficients: Coefficients,
-    course: Course,
-    slope: f64,
+    thermal: Thermal,
+    rate_slope: f64,
+    tried: Tried,
     records: u64,
-) -> Vec<(f64, f64)> {
-    const RATE_HZ: f64 = 20.0;
-    const COUNT: f64 = 1e-4;
-    const KELVIN: f64 = 1e-3;
-    let thermal = Thermal {
-        slope,
-        kelvin: 10.0,
-        course,
-    };
+) -> Vec<FollowedCovariate> {
     let one = |seed: u64| {
         let mut simulator = Simulator::new(coefficients, RATE_HZ, seed);
-        let mut gyro = Gyro::new();
+        let mut gyro = Axis::<OCTAVES, 2, (), ()>::new();
+        let mut temperature = Gyro::new();
+        let counts = |n: i32| (thermal.celsius_at(f64::from(n) / RATE_HZ) / KELVIN).round() as i32;
+        let mut before = counts(0);
         for n in 0..1 << 13 {
             let time_s = f64::from(n) / RATE_HZ;
+            let celsius = |n: f64| thermal.celsius_at((n / RATE_HZ).max(0.0));
+            let change = (celsius(f64::from(n)) - celsius(f64::from(n) - 1.0)) * RATE_HZ;
             let rate = simulator.next().unwrap_or_default() + thermal.rate_at(time_s);
-            let celsius = thermal.celsius_at(time_s);
-            gyro.push((
-                (rate / COUNT).round() as i32,
-                [(celsius / KELVIN).round() as i32],
-            ));
+            let count = ((rate + rate_slope * change) / COUNT).round() as i32;
+            let celsius = counts(n);
+            gyro.push((count, [celsius, celsius - before]));
+            temperature.push((celsius, [celsius - before]));
+            before = celsius;
         }
         let scale = Scale::new(COUNT, RATE_HZ).expect("positive");
-        let record = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
+        let units = [KELVIN, KELVIN * RATE_HZ];
+        let record = gyro.evidence(0, scale, units).expect("one axis");
+        let own = Scale::new(KELVIN, RATE_HZ).expect("positive");
+        let shared = temperature.evidence(0, own, [units[1]]).expect("one axis");
+        let pair = Pair {
+            covariates: [0, 1],
+            shared: shared.covariates[0].clone(),
+        };
+        let (number, pairs) = match tried {
+            Tried::Temperature => (1, &[][..]),
+            Tried::Both => (2, std::slice::from_ref(&pair)),
+        };
         let evidence = Evidence {
-            covariates: &record.covariates,
+            covariates: &record.covariates[..number],
+            pairs,
             ..Evidence::NONE
         };
         let (model, options) = (Model::ieee_952(), Options::default());
         let mut diagnosis = Diagnosis::new(record.curve, evidence, &model, &CATALOGUE, options);
-        let mut slope = None;
+        let mut found = None;
         let report = diagnosis.run(|step| {
-            if let Some(Addition::Covariate(followed)) = &step.added {
-                slope = Some((followed.slope.value, followed.slope.error));
+            if let Some(Addition::Covariate(followed)) = step.added {
+                found = Some(followed);
             }
         });
         report.expect("a curve to diagnose");
-        slope
+        found
     };
     (0..records).into_par_iter().filter_map(one).collect()
+}
+
+/// A temperature that changes by 10 K, which the rate follows with `slope`.
+const fn thermal(slope: f64, course: Course) -> Thermal {
+    Thermal {
+        slope,
+        kelvin: 10.0,
+        course,
+    }
 }
 
 /// The coefficients of a gyro whose random walk dominates.
@@ -146,21 +180,169 @@ const WALK: Coefficients = Coefficients {
 /// The slope of an unrelated temperature exceeds 3.5 standard errors in 0.05 % of records: 1 of 2000.
 #[test]
 fn a_random_walk_is_not_blamed_on_an_unrelated_warm_up() {
-    for time_s in [20.0, 100.0, 400.0, 1e6] {
-        let blamed = claimed(WALK, Course::WarmUp { time_s }, 0.0, 2000);
-        assert!(blamed.len() <= 5, "{time_s} s: {} of 2000", blamed.len());
+    for tried in [Tried::Temperature, Tried::Both] {
+        let mut all = 0;
+        for time_s in [20.0, 100.0, 400.0, 1e6] {
+            let course = Course::WarmUp { time_s };
+            let blamed = claimed(WALK, thermal(0.0, course), 0.0, tried, 2000).len();
+            println!("blamed at {time_s} s: {blamed} of 2000");
+            assert!(blamed <= 5, "{time_s} s: {blamed} of 2000");
+            all += blamed;
+        }
+        assert!(all <= 8, "{all} of 8000");
     }
 }
 
 #[test]
 fn a_coupling_that_stands_out_of_a_random_walk_is_found() {
     let slope = 0.05;
-    let found = claimed(WALK, Course::WarmUp { time_s: 100.0 }, slope, 100);
+    let course = Course::WarmUp { time_s: 100.0 };
+    let found = claimed(WALK, thermal(slope, course), 0.0, Tried::Temperature, 100);
     assert!(found.len() >= 98, "{}", found.len());
-    let mean = found.iter().map(|one| one.0).sum::<f64>() / found.len() as f64;
-    assert!((mean / slope - 1.0).abs() < 0.05, "{mean}");
+    let found: Vec<Slope> = found.iter().map(|one| one.slope).collect();
+    assert_slopes(&found, slope);
+}
+
+/// Asserts that slopes are right on average, and inside their intervals as often as they should be.
+fn assert_slopes(found: &[Slope], slope: f64) {
+    let number = found.len() as f64;
+    let mean = found.iter().map(|one| one.value).sum::<f64>() / number;
     let inside = found
         .iter()
-        .filter(|(value, error)| (value - slope).abs() < 1.96 * error);
-    assert!(inside.count() >= 88, "of {}", found.len());
+        .filter(|one| (one.value - slope).abs() < 1.96 * one.error)
+        .count();
+    println!("slope {slope}: mean {mean}, {inside} of {number} inside");
+    assert!((mean / slope - 1.0).abs() < 0.05, "{mean}");
+    assert!(inside as f64 >= 0.88 * number, "{inside} of {number}");
+}
+
+/// The coefficients of a gyro with white and flicker noise.
+const FLICKER: Coefficients = Coefficients {
+    quantization: 0.0,
+    angle_random_walk: 5e-3,
+    bias_instability: 4e-3,
+    rate_random_walk: 0.0,
+    rate_ramp: 0.0,
+};
+
+/// Temperatures whose changes are not proportional to themselves. Those of an exponential are, so that no record could
+/// tell which of the two acts.
+const CYCLE: Course = Course::Cycle { period_s: 150.0 };
+
+#[test]
+fn a_temperature_and_its_rate_that_act_together_are_both_named_with_their_slopes() {
+    for (coefficients, slope, rate_slope) in [(FLICKER, 0.01, 0.25), (WALK, 0.03, -0.6)] {
+        let found = claimed(
+            coefficients,
+            thermal(slope, CYCLE),
+            rate_slope,
+            Tried::Both,
+            200,
+        );
+        assert!(found.len() >= 198, "{}", found.len());
+        let both = |one: &FollowedCovariate| one.beside.map(|beside| (one.slope, beside.slope));
+        let (slopes, rates): (Vec<_>, Vec<_>) = found.iter().filter_map(both).unzip();
+        println!("both named in {} of 200", slopes.len());
+        assert!(slopes.len() >= 190, "both in {}", slopes.len());
+        assert_slopes(&slopes, slope);
+        assert_slopes(&rates, rate_slope);
+    }
+}
+
+#[test]
+fn one_of_a_temperature_and_its_rate_that_acts_alone_is_named_alone() {
+    for coefficients in [FLICKER, WALK] {
+        for (slope, rate_slope, place) in [(0.03, 0.0, 0), (0.0, 0.6, 1)] {
+            let found = claimed(
+                coefficients,
+                thermal(slope, CYCLE),
+                rate_slope,
+                Tried::Both,
+                500,
+            );
+            let alone = found
+                .iter()
+                .filter(|one| one.index == place && one.beside.is_none());
+            let slopes: Vec<Slope> = alone.map(|one| one.slope).collect();
+            println!(
+                "{place} alone in {} of {} of 500",
+                slopes.len(),
+                found.len()
+            );
+            assert!(slopes.len() >= 495, "{place}: {} of 500", slopes.len());
+            assert_slopes(&slopes, slope + rate_slope);
+        }
+    }
+}
+
+/// A temperature is slow, so that it reaches the lowest bins of the spectrum only. The levels that it reaches are left
+/// out. What is left is as well explained as a record without a temperature.
+#[test]
+fn a_spectrum_is_explained_when_what_follows_a_strong_temperature_is_subtracted() {
+    const SAMPLES: i32 = 1 << 15;
+    let cases = [
+        (Course::WarmUp { time_s: 60.0 }, 1.0),
+        (Course::Cycle { period_s: 300.0 }, 0.3),
+        (Course::Cycle { period_s: 40.0 }, 0.1),
+    ];
+    for (course, slope) in cases {
+        let thermal = thermal(slope, course);
+        let one = |seed: u64| {
+            let mut simulator = Simulator::new(FLICKER, RATE_HZ, seed);
+            let mut gyro = Axis::<16, 1, (), ()>::new();
+            let mut spectrum = SpectrumAccumulator::<64, 7>::new();
+            for n in 0..SAMPLES {
+                let time_s = f64::from(n) / RATE_HZ;
+                let rate = simulator.next().unwrap_or_default() + thermal.rate_at(time_s);
+                let count = (rate / COUNT).round() as i32;
+                let celsius = (thermal.celsius_at(time_s) / KELVIN).round() as i32;
+                gyro.push((count, [celsius]));
+                spectrum.push_slice(&[count]);
+            }
+            let scale = Scale::new(COUNT, RATE_HZ).expect("positive");
+            let record = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
+            let evidence = Evidence {
+                covariates: &record.covariates,
+                ..Evidence::NONE
+            };
+            let (model, options) = (Model::ieee_952(), Options::default());
+            let bins: Spectrum<140> = spectrum.spectrum(scale);
+            let all = bins.bins().len();
+            let mut diagnosis =
+                Diagnosis::with_spectrum(record.curve, bins, evidence, &model, &CATALOGUE, options);
+            let mut last = None;
+            let verdict = diagnosis.run(|step| last = Some(step.clone()));
+            let last = last.expect("a step");
+            let followed = last.covariate.is_some();
+            let alone = last.model.terms().len() == model.terms().len();
+            let left = last.comparison.bins.len();
+            (
+                verdict.expect("a curve to diagnose"),
+                followed && alone,
+                last.fit.p_value,
+                (left, all),
+            )
+        };
+        let found: Vec<_> = (0..60_u64).into_par_iter().map(one).collect();
+        let right = found
+            .iter()
+            .filter(|one| one.0 == Verdict::Improved && one.1)
+            .count();
+        let low = found.iter().filter(|one| one.2 < 0.1).count();
+        println!(
+            "{course:?}: {right} of 60 right, p < 0.1 in {low}; bins {:?}",
+            found[0].3
+        );
+        assert!(right >= 57, "{course:?}: {right} of 60");
+        assert!(low <= 14, "{course:?}: p < 0.1 in {low} of 60");
+    }
+}
+
+#[test]
+fn an_exponential_warm_up_and_its_rate_are_not_claimed_together() {
+    let course = Course::WarmUp { time_s: 100.0 };
+    let found = claimed(FLICKER, thermal(0.05, course), 0.0, Tried::Both, 200);
+    assert!(found.len() >= 198, "{}", found.len());
+    let together = found.iter().filter(|one| one.beside.is_some()).count();
+    assert!(together <= 1, "{together} of 200");
 }

@@ -159,11 +159,208 @@ fn a_temperature_is_found_and_printed_with_its_slope() {
     assert!((slope / 0.03 - 1.0).abs() < 0.1, "{slope}");
     assert!(parameter("slope_lower") < 0.03 && 0.03 < parameter("slope_upper"));
     // Without the column of the temperature, the slow part of the curve gets another name or none.
-    let blind = json(folder.path(), &["diagnose", "log.csv"]);
+    let blind = json(folder.path(), &["diagnose", "log.csv", "--no-covariates"]);
     assert!(!list(&blind["axes"][0]["missing"]).contains(&"covariate"));
     let text = output(folder.path(), &diagnose);
     assert!(text.contains("1. + covariate temp_C: "), "{text}");
     assert!(text.contains("missing effect: covariate temp_C"), "{text}");
+}
+
+/// Rewrites the rates of a log with a temperature: `change(rate, temperature, change of temperature per second)`.
+fn change_with_temperature(folder: &Path, change: impl Fn(f64, f64, f64) -> f64) {
+    let path = folder.join("log.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let mut before = None;
+    let lines = text.lines().map(|line| {
+        let numbers = line
+            .split_once(',')
+            .map(|(rate, celsius)| (rate.parse(), celsius.parse()));
+        let Some((Ok(rate), Ok(celsius))) = numbers else {
+            return line.to_owned();
+        };
+        let per_second = 100.0 * (celsius - before.replace(celsius).unwrap_or(celsius));
+        format!("{},{celsius}", change(rate, celsius, per_second))
+    });
+    let changed = lines.collect::<Vec<_>>().join("\n");
+    fs::write(path, changed + "\n").unwrap();
+}
+
+#[test]
+fn a_temperature_and_its_rate_are_tried_without_being_asked_for() {
+    let folder = TempDir::new().unwrap();
+    let thermal = "thermal:slope=0.03,kelvin=10,period_s=300";
+    let channels = |document: &Value| {
+        let all = document["axes"][0]["covariates"]
+            .as_array()
+            .unwrap()
+            .clone();
+        let one = |tried: &Value| {
+            (
+                tried["channel"].as_str().unwrap().to_owned(),
+                tried["acts"] == true,
+            )
+        };
+        all.iter().map(one).collect::<Vec<_>>()
+    };
+    let both = |temperature, rate| {
+        let named = [("temp_C", temperature), ("rate(temp_C)", rate)];
+        named.map(|(name, acts)| (name.to_owned(), acts)).to_vec()
+    };
+    // Either acts alone, both, or none.
+    for (slope, rate_slope) in [(0.03, 0.0), (0.0, 1.0), (0.03, 1.0), (0.0, 0.0)] {
+        simulate(folder.path(), &[thermal]);
+        change_with_temperature(folder.path(), |rate, celsius, per_second| {
+            rate + (slope - 0.03) * (celsius - 25.0) + rate_slope * per_second
+        });
+        let expected = both(slope != 0.0, rate_slope != 0.0);
+        for command in ["fit", "diagnose"] {
+            let document = json(folder.path(), &[command, "log.csv"]);
+            assert_eq!(
+                channels(&document),
+                expected,
+                "{command}: {slope}, {rate_slope}"
+            );
+            let text = output(folder.path(), &[command, "log.csv"]);
+            let of_temperature = match slope {
+                0.0 => "tried temp_C: no dependence above 0.0",
+                _ => "tried temp_C: the rate follows it with 0.0",
+            };
+            assert!(
+                text.contains(of_temperature) && text.contains(" deg/s/K"),
+                "{text}"
+            );
+            assert!(
+                text.contains("tried rate(temp_C): ") && text.contains(" deg/s per K/s"),
+                "{text}"
+            );
+        }
+        let document = json(folder.path(), &["diagnose", "log.csv"]);
+        let axis = &document["axes"][0];
+        let acts = expected.iter().filter(|(_, acts)| *acts).count();
+        let effects = axis["steps"].as_array().unwrap().last().unwrap()["effects"]
+            .as_array()
+            .unwrap()
+            .clone();
+        let followed = effects
+            .iter()
+            .filter(|effect| effect["name"] == "covariate");
+        assert_eq!(followed.count(), acts, "{slope}, {rate_slope}");
+        assert_eq!(
+            list(&axis["missing"]).len(),
+            acts.min(1),
+            "{}",
+            axis["missing"]
+        );
+        for (tried, truth) in axis["covariates"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .zip([slope, rate_slope])
+        {
+            let ends = ["slope_lower", "slope_upper"].map(|end| tried[end].as_f64().unwrap());
+            let spare = ends[1] - ends[0];
+            assert!(
+                ends[0] - spare < truth && truth < ends[1] + spare,
+                "{tried}: {truth}"
+            );
+        }
+        let without = json(folder.path(), &["fit", "log.csv", "--no-covariates"]);
+        assert!(channels(&without).is_empty());
+    }
+}
+
+#[test]
+fn a_temperature_that_is_no_number_is_left_out_with_a_note() {
+    let folder = TempDir::new().unwrap();
+    simulate(
+        folder.path(),
+        &["thermal:slope=0.03,kelvin=10,period_s=300"],
+    );
+    let path = folder.path().join("log.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let line = text.lines().nth(500).unwrap().to_owned();
+    let rate = line.split(',').next().unwrap();
+    fs::write(&path, text.replacen(&line, &format!("{rate},nan"), 1)).unwrap();
+    let document = json(folder.path(), &["diagnose", "log.csv"]);
+    assert!(
+        document["axes"][0]["covariates"]
+            .as_array()
+            .unwrap()
+            .is_empty()
+    );
+    let refused = refusal(
+        folder.path(),
+        &["diagnose", "log.csv", "--covariates", "temp_C"],
+    );
+    assert!(refused.contains("not a finite number"), "{refused}");
+}
+
+#[test]
+fn motion_about_one_axis_is_told_of_all_axes_and_export_refuses_it() {
+    let folder = TempDir::new().unwrap();
+    let simulate = [
+        "simulate",
+        "mems",
+        "--duration",
+        "655.36",
+        "--seed",
+        "5",
+        "--axes",
+        "3",
+    ];
+    output(
+        folder.path(),
+        &[&simulate[..], &["--output", "log.csv"]].concat(),
+    );
+    let path = folder.path().join("log.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let mut row = 0;
+    let lines = text.lines().map(|line| {
+        let values: Option<Vec<f64>> = line.split(',').map(|value| value.parse().ok()).collect();
+        let Some(mut values) = values else {
+            return line.to_owned();
+        };
+        row += 1;
+        values[1] += if (30_000..30_400).contains(&row) {
+            20.0
+        } else {
+            0.0
+        };
+        let values: Vec<String> = values.iter().map(f64::to_string).collect();
+        values.join(",")
+    });
+    let moved = lines.collect::<Vec<_>>().join("\n") + "\n";
+    fs::write(&path, moved).unwrap();
+    let diagnosed = json(folder.path(), &["diagnose", "log.csv"]);
+    let fitted = json(folder.path(), &["fit", "log.csv"]);
+    for at in 0..3 {
+        let axis = &diagnosed["axes"][at];
+        assert_eq!(axis["verdict"], "invalid");
+        let event = &axis["events"][0];
+        assert_eq!(event["what"], "motion");
+        let at_s = event["at_s"].as_f64().unwrap();
+        assert!((at_s - 300.0).abs() < 2.0, "{at_s}");
+        let invalid = fitted["axes"][at]["invalid"].as_str().unwrap();
+        assert!(invalid.contains("the gyro was moved"), "{invalid}");
+        assert_eq!(invalid.contains("seen in axis gy"), at != 1, "{invalid}");
+        assert!(list(&axis["notes"]).contains(&invalid), "{}", axis["notes"]);
+    }
+    let text = output(folder.path(), &["fit", "log.csv"]);
+    assert_eq!(
+        text.matches("The curve is not valid: the gyro was moved")
+            .count(),
+        3,
+        "{text}"
+    );
+    assert!(!text.contains("adequate"), "{text}");
+    let export = ["export", "log.csv", "--format", "kalibr"];
+    let refused = refusal(folder.path(), &export);
+    assert!(
+        refused.contains("was moved") && refused.contains("--despite-invalid"),
+        "{refused}"
+    );
+    let told = [&export[..], &["--despite-invalid"]].concat();
+    assert!(output(folder.path(), &told).contains("gyroscope_noise_density"));
 }
 
 #[test]

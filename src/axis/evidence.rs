@@ -45,6 +45,7 @@ impl<const OCTAVES: usize, const COVARIATES: usize, D> AxisEvidence<OCTAVES, COV
         Evidence {
             kurtosis: self.kurtosis.as_ref(),
             covariates: &self.covariates,
+            pairs: &[],
             invalid: self.invalid,
         }
     }

@@ -1,16 +1,22 @@
-//! Covariate stage: whether the rate follows a covariate. This comes before the search for effects,
-//! because a covariate carries its own evidence.
+//! Covariate stage: whether the rate follows a covariate, or two that act together. This comes before the search for
+//! effects, because a covariate carries its own evidence.
 
-use super::{judged::Judged, step::FollowedCovariate};
+use super::{
+    evidence::Evidence,
+    judged::Judged,
+    step::{Beside, FollowedCovariate},
+};
 use crate::{
-    covariate::{CrossCurve, Slope},
+    covariate::{Slope, Slopes},
     curve::Curve,
     error::Error,
     fit::{Problem, Start, Tolerance, Work},
+    math,
     model::Model,
     nnls::Vector,
     observed::Observed,
-    real::Real,
+    real::{Real, real},
+    spectrum::Spectrum,
 };
 
 /// The number of rounds that alternate between the slope and the noise that remains when what follows
@@ -18,56 +24,65 @@ use crate::{
 /// `cargo xtask study thermal` runs with this value; it was raised from 3 when the study was made.
 const ROUNDS: u8 = 5;
 
-/// The search in progress for the covariate with the surest slope.
-pub(super) struct Following<const K: usize> {
-    /// The curve without what follows the covariate.
+/// The search in progress for the covariate with the surest slope, and for a pair of covariates.
+pub(super) struct Following<const K: usize, const B: usize> {
+    /// The curve and the spectrum without what follows the covariate.
     corrected: Curve<K>,
+    spectrum: Spectrum<B>,
     /// The squares of the step's model, and those of the fit to the corrected curve.
     first: Vector,
     squares: Vector,
-    slope: Option<Slope>,
-    covariate: usize,
+    found: Option<FollowedCovariate>,
+    /// The covariate that is tried; behind the last covariate, the pair.
+    place: usize,
     round: u8,
     solving: bool,
     best: Option<FollowedCovariate>,
 }
 
-impl<const K: usize> Following<K> {
+impl<const K: usize, const B: usize> Following<K, B> {
     /// Begins with a model that was fitted to the curve.
     pub(super) fn new(curve: &Curve<K>, squares: Vector) -> Self {
         Self {
             corrected: curve.clone(),
+            spectrum: Spectrum::EMPTY,
             first: squares,
             squares,
-            slope: None,
-            covariate: 0,
+            found: None,
+            place: 0,
             round: 0,
             solving: false,
             best: None,
         }
     }
 
-    /// Does one piece of work. When all covariates have been tried, returns the one with the surest
-    /// slope, if that is more than `least_z` standard errors.
+    /// Does one piece of work. When all covariates and pairs have been tried, returns what has the surest slopes, if
+    /// that is more than `least_z` standard errors.
     ///
     /// # Errors
     /// The same as those of a fit.
     #[inline(never)]
-    pub(super) fn advance<const B: usize>(
+    pub(super) fn advance(
         &mut self,
         observed: Observed<'_, K, B>,
-        covariates: &[CrossCurve<K>],
+        evidence: &Evidence<'_, K>,
         model: &Model,
         judged: &Judged,
         least_z: Real,
         work: &mut Work<K, B>,
     ) -> Result<Option<Option<FollowedCovariate>>, Error> {
-        let Some(cross) = covariates.get(self.covariate) else {
-            let sure = |followed: &FollowedCovariate| square(followed.slope.z()) > square(least_z);
+        let tried = evidence
+            .covariates
+            .len()
+            .saturating_add(evidence.pairs.len());
+        let tried_log = math::log(real(u32::try_from(tried).unwrap_or(u32::MAX).max(1)));
+        let least_square = least_z * least_z + 2.0 * tried_log;
+        if self.place >= tried {
+            let sure = |followed: &FollowedCovariate| followed.least_square() > least_square;
             return Ok(Some(self.best.filter(sure)));
-        };
+        }
         if self.solving {
-            let corrected = observed.with_curve(&self.corrected);
+            let corrected = Observed::new(&self.corrected, &self.spectrum);
             let problem = Problem::new(corrected, model, &work.columns);
             if !work.solver.advance(&problem)? {
                 return Ok(None);
@@ -75,46 +90,82 @@ impl<const K: usize> Following<K> {
             self.squares = work.solver.squares;
             self.solving = false;
         }
-        let curve = observed.curve();
+        self.found = self.estimate(observed.curve(), evidence, model);
+        self.round = self.round.saturating_add(1);
+        match self.found.filter(|_| self.round < ROUNDS) {
+            Some(found) => {
+                self.corrected.clone_from(observed.curve());
+                match observed.spectrum() {
+                    Some(spectrum) => self.spectrum.clone_from(spectrum),
+                    None => self.spectrum = Spectrum::EMPTY,
+                }
+                found.correct(evidence, &mut self.corrected, &mut self.spectrum);
+                let start = Start::From(self.squares);
+                let tolerance = Tolerance::Fixed(judged.tolerance);
+                let corrected = Observed::new(&self.corrected, &self.spectrum);
+                work.begin_at(corrected, model, start, tolerance)?;
+                self.solving = true;
+            }
+            None => self.next(least_square),
+        }
+        Ok(None)
+    }
+
+    /// The slopes beside the noise of the present fit. `None` if a covariate does not change, or if the covariates of
+    /// a pair take the same course.
+    fn estimate(
+        &self,
+        curve: &Curve<K>,
+        evidence: &Evidence<'_, K>,
+        model: &Model,
+    ) -> Option<FollowedCovariate> {
         let octaves = curve.points();
         let noise = |k: usize| {
             let m = octaves.get(k).map_or(1, |point| point.m);
             let squares = self.squares.as_slice();
             model.variance(squares, m, curve.interval_s()) * curve.variance_unit()
         };
-        self.slope = Slope::of(cross, curve.points(), noise);
-        self.round = self.round.saturating_add(1);
-        match self.slope.filter(|_| self.round < ROUNDS) {
-            Some(slope) => {
-                self.corrected.clone_from(curve);
-                cross.correct(&mut self.corrected, &slope);
-                let start = Start::From(self.squares);
-                let tolerance = Tolerance::Fixed(judged.tolerance);
-                let corrected = observed.with_curve(&self.corrected);
-                work.begin_at(corrected, model, start, tolerance)?;
-                self.solving = true;
-            }
-            None => self.next_covariate(),
+        if let Some(cross) = evidence.covariates.get(self.place) {
+            return Some(FollowedCovariate {
+                index: self.place,
+                slope: Slope::of(cross, octaves, noise)?,
+                beside: None,
+            });
         }
-        Ok(None)
+        let at = self.place.checked_sub(evidence.covariates.len())?;
+        let pair = evidence.pairs.get(at)?;
+        let [index, other] = pair.covariates;
+        let crosses = [
+            evidence.covariates.get(index)?,
+            evidence.covariates.get(other)?,
+        ];
+        let Slopes {
+            slopes: [slope, beside],
+            correlation,
+        } = Slopes::of(pair, crosses, octaves, noise)?;
+        Some(FollowedCovariate {
+            index,
+            slope,
+            beside: Some(Beside {
+                index: other,
+                slope: beside,
+                correlation,
+                pair: at,
+            }),
+        })
     }
 
-    fn next_covariate(&mut self) {
-        if let Some(slope) = self.slope.take() {
-            let surest = self.best.map_or(0.0, |best| square(best.slope.z()));
-            if square(slope.z()) > surest {
-                self.best = Some(FollowedCovariate {
-                    index: self.covariate,
-                    slope,
-                });
+    /// Keeps what was found if it is surer than what was found before. A pair needs both of its slopes.
+    fn next(&mut self, least_square: Real) {
+        if let Some(found) = self.found.take() {
+            let surest = self.best.map_or(0.0, |best| best.chi_squared());
+            let is_needed = found.beside.is_none() || found.least_square() > least_square;
+            if is_needed && found.chi_squared() > surest {
+                self.best = Some(found);
             }
         }
-        self.covariate = self.covariate.saturating_add(1);
+        self.place = self.place.saturating_add(1);
         self.round = 0;
         self.squares = self.first;
     }
-}
-
-fn square(x: Real) -> Real {
-    x * x
 }

@@ -9,6 +9,7 @@
 
 mod alternative;
 mod chosen;
+mod corrected;
 mod dropped;
 mod evidence;
 mod followed;
@@ -30,7 +31,9 @@ pub use alternative::alternative;
 pub use evidence::Evidence;
 pub use options::Options;
 pub use run::{Diagnosis, Progress};
-pub use step::{Addition, Candidate, FollowedCovariate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap};
+pub use step::{
+    Addition, Beside, Candidate, FollowedCovariate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap,
+};
 pub use verdict::Verdict;
 pub use width::line_width;
 

@@ -20,7 +20,9 @@ pub struct Options {
     /// data then favour the best one by less than e³ = 20 to 1. The ratio of 20 is chosen by hand.
     pub ambiguity: Real,
     /// The smallest slope of a covariate that is believed, in standard errors. Default 3.5, set by
-    /// `cargo xtask study thermal`: noise exceeds it in one of 2000 records.
+    /// `cargo xtask study thermal`: noise exceeds it in one of 2000 records. Where `n` covariates and pairs are
+    /// tried, it is raised to `√(z² + 2 ln n)`, so that noise exceeds it no more often. Both slopes of a pair have
+    /// to exceed it.
     pub covariate_z: Real,
     /// The largest number of effects to add, including a covariate. Default 3. It is chosen by hand; no
     /// study varies it.

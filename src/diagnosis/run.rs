@@ -100,7 +100,7 @@ enum Stage<const K: usize, const B: usize> {
     /// The model is tried without each of its earlier additions.
     Dropping(Dropping),
     /// The covariates are tested for whether the rate follows them.
-    Following(Following<K>),
+    Following(Following<K, B>),
     /// The step's model is solved again, because the solver has worked on other models or on
     /// covariates. The covariates come next, unless they have been tested.
     Resolving { followed: bool },
@@ -239,10 +239,9 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
                 Ok(dropping.advance(observed, &contest, &step.model, &judged.squares, work))
             }
             Stage::Following(following) => {
-                let covariates = evidence.covariates;
                 let (model, least_z) = (&step.model, options.covariate_z);
                 let complete =
-                    following.advance(observed, covariates, model, judged, least_z, work)?;
+                    following.advance(observed, evidence, model, judged, least_z, work)?;
                 if let Some(followed) = complete {
                     step.added = followed.map(Addition::Covariate);
                 }
@@ -441,9 +440,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         match self.step.added {
             Some(Addition::Covariate(followed)) => {
                 self.step.covariate = Some(followed);
-                if let Some(cross) = self.evidence.covariates.get(followed.index) {
-                    cross.correct(&mut self.curve, &followed.slope);
-                }
+                followed.correct(&self.evidence, &mut self.curve, &mut self.spectrum);
                 self.additions = self.additions.saturating_add(1);
                 let tolerance = if self.judged.tolerance > 0.0 {
                     Tolerance::Fixed(self.judged.tolerance)

@@ -105,7 +105,7 @@ impl core::fmt::Debug for Swap {
     }
 }
 
-/// A covariate that the rate follows.
+/// A covariate that the rate follows, or two that it follows together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FollowedCovariate {
@@ -113,6 +113,23 @@ pub struct FollowedCovariate {
     pub index: usize,
     /// The slope with which the rate follows the covariate.
     pub slope: Slope,
+    /// The covariate that acts beside it; `None` if it acts alone.
+    pub beside: Option<Beside>,
+}
+
+/// A covariate that acts beside another one, such as the rate of change of a temperature that the rate follows with a
+/// lag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Beside {
+    /// The covariate's place among [`Evidence::covariates`](super::Evidence::covariates).
+    pub index: usize,
+    /// The slope with which the rate follows it.
+    pub slope: Slope,
+    /// The correlation of the errors of the two slopes.
+    pub correlation: Real,
+    /// The pair's place among [`Evidence::pairs`](super::Evidence::pairs).
+    pub pair: usize,
 }
 
 /// The number of parameters that an effect adds to a model when its shape is fitted. The coefficient of the effect

@@ -142,6 +142,12 @@ impl<const B: usize> Spectrum<B> {
         })
     }
 
+    /// Leaves out the levels whose blocks have this number of samples or more.
+    pub(crate) fn leave_out_from(&mut self, block: u32) {
+        let kept = self.bins.partition_point(|bin| bin.block < block);
+        self.bins.truncate(kept);
+    }
+
     /// The densities that an effect with a coefficient of one is expected to have in the bins, in their order,
     /// in rate units squared per hertz and per coefficient squared. `parameters` are those of its shape.
     pub fn expected(

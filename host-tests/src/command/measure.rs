@@ -5,12 +5,13 @@ use crate::{
         examples,
         input::{
             many,
-            record::{self, LogArguments},
+            record::{self, CovariateArguments, LogArguments},
         },
-        output::{file::OutputFile, number::number},
+        output::{file::OutputFile, number::number, progress, words},
     },
     curve_file::{AxisCurve, CurveFile},
-    failure::{Failure, Place},
+    failure::{Failure, Place, one_line, report},
+    log::Evidence,
 };
 use clap::Args;
 use std::{
@@ -48,7 +49,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         // The file comes first, so that an output that cannot be written is refused before the
         // measurement.
         let mut file = OutputFile::create(place, arguments.logs.iter().map(PathBuf::as_path))?;
-        let mut curves = record::measure(log, &arguments.about_log)?;
+        let mut curves = measured(log, &arguments.about_log)?;
         for curve in &mut curves {
             curve.source.clone_from(&arguments.source);
             curve.licence.clone_from(&arguments.licence);
@@ -72,6 +73,20 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let flushed = output.flush();
     flushed.map_err(|error| Failure::standard_output(&error))?;
     many::failed(failures)
+}
+
+/// Measures the curves of a log. A note tells of curves that are not valid, which the curve file does not.
+fn measured(log: &Path, about_log: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
+    let axes = record::read_with_evidence(log, about_log, &CovariateArguments::NONE)?;
+    let curve = |(curve, evidence): (AxisCurve, Evidence)| {
+        if let Some(reason) = evidence.invalid.filter(|_| !progress::is_quiet()) {
+            let reason = words::invalid(&reason, evidence.motion.as_ref(), &curve.axis);
+            let note = format!("axis {}: the curve is not valid: {reason}", curve.axis);
+            report(format_args!("{}{}", Place::file(log), one_line(&note)));
+        }
+        curve
+    };
+    Ok(axes.into_iter().map(curve).collect())
 }
 
 /// The output path of each log.

@@ -15,6 +15,7 @@ mod output;
 mod plot;
 mod report;
 mod simulate;
+mod tried;
 mod watch;
 
 use crate::failure::Failure;

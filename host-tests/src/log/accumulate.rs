@@ -8,6 +8,8 @@ use super::{
     quantum::{Quantum, Range},
     table::{Ended, Stop, Table, Visitor},
     time_column::TimeColumn,
+    tried::TriedColumns,
+    watched::SharedSums,
     worker::{Batches, Plan, Sums, Totals},
 };
 use crate::failure::{Failure, Place};
@@ -19,10 +21,21 @@ use std::path::Path;
 pub(super) struct Measured {
     /// The sums of each axis, and the quantum that its counts are in.
     pub(super) axes: Vec<(Sums, Quantum)>,
-    /// The quantum of each covariate, and the course of its column in counts.
-    pub(super) covariates: Vec<(Quantum, Course)>,
+    /// The columns of the covariates.
+    pub(super) covariates: Vec<CovariateColumn>,
+    /// The places of the covariates that may act together, and what they share.
+    pub(super) pairs: Vec<([usize; 2], SharedSums)>,
     /// The time stamps that were followed, if the log has a time column.
     pub(super) clock: Option<Clock>,
+}
+
+/// The column of a covariate.
+pub(super) struct CovariateColumn {
+    pub(super) quantum: Quantum,
+    /// Whether some of its values are no counts, so that it is left out.
+    pub(super) flawed: bool,
+    /// The course of the column in counts.
+    pub(super) course: Course,
 }
 
 /// The table to read and the columns to read from it.
@@ -30,6 +43,8 @@ pub(super) struct Passes<'a, T> {
     pub(super) table: &'a T,
     pub(super) path: &'a Path,
     pub(super) columns: &'a [AxisColumn],
+    /// The columns that are tried without being asked for.
+    pub(super) tried: TriedColumns,
     pub(super) time: Option<&'a TimeColumn>,
     pub(super) progress: &'a ProgressBar,
 }
@@ -96,11 +111,15 @@ impl<V: Visitor> Visitor for Timed<'_, V> {
 /// count, reading starts again: one pass finds the range of each axis, and another accumulates the
 /// rounded values.
 pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
-    let Passes { path, columns, .. } = *passes;
-    let mut counts = Counts(Batches::new(plan.clone()));
+    let path = passes.path;
+    let columns = &passes.columns[..passes.tried.first.min(passes.columns.len())];
+    let mut counts = Counts {
+        batches: Batches::new(plan.clone()),
+        tried: passes.tried.clone(),
+    };
     if let (Ended::AtTheLastRow, clock) = passes.pass(&mut counts)? {
         let whole = vec![Quantum::WHOLE; columns.len()];
-        return finish(path, counts.0, &whole, clock);
+        return finish(path, counts.batches, &whole, &counts.tried, clock);
     }
 
     let mut ranges = Ranges(vec![Range::EMPTY; columns.len()]);
@@ -124,6 +143,7 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
     let mut rounded = Rounded {
         batches: Batches::new(plan.clone()),
         quanta,
+        tried: passes.tried.clone(),
         steps: vec![Steps::default(); columns.len()],
     };
     let (_, clock) = passes.pass(&mut rounded)?;
@@ -139,7 +159,13 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
             ));
         }
     }
-    let measured = finish(path, rounded.batches, &rounded.quanta, clock)?;
+    let measured = finish(
+        path,
+        rounded.batches,
+        &rounded.quanta,
+        &rounded.tried,
+        clock,
+    )?;
     for (column, (sums, quantum)) in columns.iter().zip(&measured.axes) {
         if !quantum.is_whole() && is_coarse(sums) {
             return Err(Place::file(path).failure(
@@ -170,35 +196,52 @@ fn finish(
     path: &Path,
     batches: Batches,
     quanta: &[Quantum],
+    tried: &TriedColumns,
     clock: Option<Clock>,
 ) -> Result<Measured, Failure> {
     let Totals {
         axes: sums,
         columns,
+        pairs,
     } = batches.finish();
     if sums.iter().any(|axis| axis.accumulator().samples() == 0) {
         return Err(Place::file(path).failure("no rows", "record some samples"));
     }
     let (axes, covariates) = quanta.split_at(sums.len());
+    let quanta = covariates.iter().map(|quantum| (*quantum, false));
+    let quanta = quanta.chain(tried.quanta());
+    let beside = |((quantum, flawed), course)| CovariateColumn {
+        quantum,
+        flawed,
+        course,
+    };
     Ok(Measured {
         axes: sums.into_iter().zip(axes.iter().copied()).collect(),
-        covariates: covariates.iter().copied().zip(columns).collect(),
+        covariates: quanta.zip(columns).map(beside).collect(),
+        pairs,
         clock,
     })
 }
 
 /// The visitor of the first pass. It stops at the first value that is not a count.
-struct Counts(Batches);
+struct Counts {
+    batches: Batches,
+    tried: TriedColumns,
+}
 
 impl Visitor for Counts {
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
-        self.0.push(axis, value.count().ok_or(Stop::NotCounts)?);
+        let count = match self.tried.count(axis, &value) {
+            Some(count) => count,
+            None => value.count().ok_or(Stop::NotCounts)?,
+        };
+        self.batches.push(axis, count);
         Ok(())
     }
 
     fn gap(&mut self) {
-        self.0.gap();
+        self.batches.gap();
     }
 }
 
@@ -208,7 +251,10 @@ struct Ranges(Vec<Range>);
 impl Visitor for Ranges {
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
-        self.0[axis].include(value.exact().map_err(Stop::Flaw)?);
+        // Columns that are tried without being asked for have no range.
+        if let Some(range) = self.0.get_mut(axis) {
+            range.include(value.exact().map_err(Stop::Flaw)?);
+        }
         Ok(())
     }
 }
@@ -217,6 +263,7 @@ impl Visitor for Ranges {
 struct Rounded {
     batches: Batches,
     quanta: Vec<Quantum>,
+    tried: TriedColumns,
     steps: Vec<Steps>,
 }
 
@@ -245,6 +292,10 @@ impl Steps {
 impl Visitor for Rounded {
     #[inline]
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
+        if let Some(count) = self.tried.count(axis, &value) {
+            self.batches.push(axis, count);
+            return Ok(());
+        }
         let number = self.quanta[axis].relative(value.exact().map_err(Stop::Flaw)?);
         let count = self.quanta[axis].count(number);
         self.steps[axis].step_to(number, count);

@@ -7,6 +7,10 @@ use crate::{
 };
 use std::path::Path;
 
+/// The most temperatures that are tried without being asked for. Every one of them raises the threshold of all. Chosen
+/// by hand: one of the sensor and one of its surroundings.
+const MOST_TEMPERATURES: usize = 2;
+
 /// An axis and the column that holds it, counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct AxisColumn {
@@ -127,6 +131,33 @@ impl Columns {
             })
         };
         choices.iter().enumerate().map(one).collect()
+    }
+
+    /// The temperatures by the names of their columns, and their rates of change, as covariates. Axes are not among
+    /// them.
+    pub(super) fn temperatures(&self, axes: &[AxisColumn]) -> Vec<(CovariateChoice, AxisColumn)> {
+        let is_temperature = |&column: &usize| {
+            self.looks[column] != Look::Text
+                && axes.iter().all(|axis| axis.column != column)
+                && self.name(column).is_some_and(names::is_temperature)
+        };
+        let mut found: Vec<(CovariateChoice, AxisColumn)> = Vec::new();
+        for column in (0..self.looks.len()).filter(is_temperature) {
+            let name = self.name(column).unwrap_or_default();
+            let is_twice = found.iter().any(|(choice, _)| choice.column == name);
+            if is_twice || found.len() >= 2 * MOST_TEMPERATURES {
+                continue;
+            }
+            found.extend([false, true].map(|rate| {
+                let choice = CovariateChoice {
+                    column: name.to_owned(),
+                    rate,
+                };
+                let axis = choice.to_string();
+                (choice, AxisColumn { axis, column })
+            }));
+        }
+        found
     }
 
     /// The sensor that the names of these columns agree on.

@@ -11,6 +11,15 @@ pub struct CovariateChoice {
     pub rate: bool,
 }
 
+/// The covariates that are tried.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Covariates {
+    /// The temperatures that the log has, by the names of its columns, and their rates of change.
+    Found,
+    /// These columns.
+    Chosen(Vec<CovariateChoice>),
+}
+
 impl FromStr for CovariateChoice {
     type Err = &'static str;
 
@@ -39,6 +48,18 @@ impl std::fmt::Display for CovariateChoice {
             f.write_str(&self.column)
         }
     }
+}
+
+/// The places of the covariates that may act together: a column and its rate of change.
+pub(super) fn pairs(choices: &[CovariateChoice]) -> impl Iterator<Item = [usize; 2]> {
+    let columns = choices
+        .iter()
+        .enumerate()
+        .filter(|(_, choice)| !choice.rate);
+    columns.filter_map(|(at, choice)| {
+        let is_rate = |other: &CovariateChoice| other.rate && other.column == choice.column;
+        Some([at, choices.iter().position(is_rate)?])
+    })
 }
 
 /// Turns the counts of a column into those of its covariate.

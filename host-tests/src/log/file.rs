@@ -2,9 +2,7 @@
 
 #[cfg(feature = "bags")]
 use super::bag;
-use super::{
-    Axis, CovariateChoice, Log, Options, csv, npy, reading::read_table, source::Format, ulog,
-};
+use super::{Axis, Covariates, Log, Options, csv, npy, reading::read_table, source::Format, ulog};
 use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;
 use std::path::Path;
@@ -26,7 +24,7 @@ pub fn read(path: &Path, options: &Options, progress: &ProgressBar) -> Result<Lo
 pub fn read_with_evidence(
     path: &Path,
     options: &Options,
-    covariates: &[CovariateChoice],
+    covariates: &Covariates,
     progress: &ProgressBar,
 ) -> Result<Log, Failure> {
     let (log, _) = read_parts(path, options, None, Some(covariates), progress)?;
@@ -61,7 +59,7 @@ fn read_parts(
     path: &Path,
     options: &Options,
     first: Option<u64>,
-    watch: Option<&[CovariateChoice]>,
+    watch: Option<&Covariates>,
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let parts = (first, watch);

@@ -41,6 +41,12 @@
 //! is left out. A note counts both. Stamps that go back are refused, and so are two rates in one
 //! log and stamps that jump or repeat in more than 5 % of the rows.
 //!
+//! # Temperatures
+//!
+//! [`read_with_evidence`] takes the first two columns that are named like a temperature (`temp_C`,
+//! `gyro.temperature`, `t [°C]`) as covariates, and their rates of change, unless it is given others. Their values
+//! never stop the reading: a column with a value that is no number is left out with a note.
+//!
 //! # Units
 //!
 //! The unit comes from [`Options::unit`], from the comments, or from the columns' names, in this
@@ -65,6 +71,7 @@ mod clock;
 mod columns;
 mod covariate;
 mod csv;
+mod evidence;
 mod field;
 mod file;
 #[cfg(feature = "bags")]
@@ -82,6 +89,7 @@ mod scaling;
 mod source;
 mod table;
 mod time_column;
+mod tried;
 mod ulog;
 mod ulog_format;
 mod ulog_messages;
@@ -90,12 +98,17 @@ mod worker;
 
 use crate::unit::{Sensor, Unit};
 use allanite::{
-    Accumulator, course::Course, covariate::CrossCurve, integrity::Reason, kurtosis::Kurtosis,
+    Accumulator,
+    course::Course,
+    covariate::{CrossCurve, Pair},
+    integrity::Reason,
+    kurtosis::Kurtosis,
     spectrum::SpectrumAccumulator,
 };
-pub use covariate::CovariateChoice;
+pub use covariate::{CovariateChoice, Covariates};
 pub use file::{read, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
+pub(crate) use names::is_degrees_column;
 
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
 /// records of years.
@@ -201,10 +214,23 @@ pub struct Evidence {
     pub kurtosis: Kurtosis<OCTAVES>,
     /// The names of the covariates, and the covariance of the axis with each.
     pub covariates: Vec<(String, CrossCurve<OCTAVES>)>,
+    /// The covariates that may act together.
+    pub pairs: Vec<Pair<OCTAVES>>,
     /// The reason why the curve is not valid, if there is one.
     pub invalid: Option<Reason>,
     /// The course of the axis over time.
     pub course: Option<Course>,
     /// The columns of the covariates, with their means in the blocks of the course.
     pub columns: Vec<(String, Vec<f64>)>,
+    /// The motion that makes the record not valid, if there is one.
+    pub motion: Option<Motion>,
+}
+
+/// Motion during a record. A gyro that turns about one axis is not at rest about the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// The axis that shows it.
+    pub axis: String,
+    /// When it began, in seconds from the start of the record without its gaps.
+    pub at_s: f64,
 }

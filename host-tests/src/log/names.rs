@@ -58,6 +58,31 @@ pub(super) fn is_other(name: &str) -> bool {
     words.iter().any(|word| name.contains(word)) || ["i", "n", "id"].contains(&first)
 }
 
+/// Whether a column is named like a temperature: `temp_C`, `gyro.temperature`, `IMUTemp`, `t [°C]`.
+pub(super) fn is_temperature(name: &str) -> bool {
+    let text = name.trim().to_lowercase();
+    let others = ["attempt", "template", "temporal", "tempo_"];
+    let is_other = others.iter().any(|other| text.contains(other));
+    let is_of_unit = in_brackets(name).is_some_and(|(_, unit)| is_degrees(unit));
+    (text.contains("temp") && !is_other) || is_of_unit || text.contains("celsius")
+}
+
+/// Whether a column's name tells that its values are degrees Celsius or kelvins: `temp_C`, `t [K]`.
+pub(crate) fn is_degrees_column(name: &str) -> bool {
+    let in_brackets = in_brackets(name).map(|(_, unit)| unit);
+    let last = tokens(name).last();
+    in_brackets.or(last).is_some_and(is_degrees)
+}
+
+/// Whether a text is a unit of temperature whose steps are kelvins.
+fn is_degrees(unit: &str) -> bool {
+    let unit = unit.trim().to_lowercase();
+    [
+        "c", "k", "°c", "degc", "deg c", "deg_c", "celsius", "kelvin",
+    ]
+    .contains(&unit.as_str())
+}
+
 fn tokens(name: &str) -> impl Iterator<Item = &str> {
     name.split(|c: char| !c.is_alphanumeric())
         .filter(|token| !token.is_empty())
@@ -371,6 +396,24 @@ mod tests {
             ("gyro_x_lsb", "lsb"),
         ] {
             assert_eq!(unit(name), Err(text.into()), "{name}");
+        }
+    }
+
+    #[test]
+    fn temperatures_are_known_by_name_or_unit() {
+        for name in [
+            "temp_C",
+            "temperature",
+            "gyro.temperature",
+            "IMUTemp",
+            "t1 [°C]",
+        ] {
+            assert!(is_temperature(name), "{name}");
+        }
+        assert!(is_degrees_column("temp_C") && is_degrees_column("t [°C]"));
+        assert!(!is_degrees_column("temperature") && !is_degrees_column("temp_F"));
+        for name in ["attempts", "t", "gx [deg/s]", "template_id", "t [s]"] {
+            assert!(!is_temperature(name), "{name}");
         }
     }
 

@@ -105,6 +105,14 @@ impl Quantum {
         origin.is_finite().then_some(Self { step, origin, base })
     }
 
+    /// The quantum of values that are counted from zero in steps of this size, which is a power of two.
+    pub(super) const fn with_step(step: f64) -> Self {
+        Self {
+            step,
+            ..Self::WHOLE
+        }
+    }
+
     /// The size of one count.
     pub(super) const fn step(&self) -> f64 {
         self.step

@@ -1,29 +1,28 @@
 //! Reads a table into the curves of its axes.
 
 use super::{
-    Axis, CovariateChoice, Evidence, Log, MOST_AXES, Options,
+    Axis, Covariates, Evidence, Log, MOST_AXES, Options,
     accumulate::{self, Passes},
     clock::Clock,
     columns::Taken,
-    quantum,
+    evidence::{self, Recorded, spread_motion},
     scaling::{self, Origin, Scaling},
     table::Table,
     time_column::TimeColumn,
-    watched::{self, WatchedAxis},
-    worker,
+    tried::TriedColumns,
+    watched, worker,
 };
 use crate::failure::{Failure, Place};
-use allanite::{Scale, course::Course};
 use indicatif::ProgressBar;
 use std::path::Path;
 
 /// Reads the first rows of a table, and the axes of the remaining rows if a number of first rows is
-/// given. If covariates are given, the axes are watched together with them.
+/// given. With covariates, the axes are watched together with them.
 pub(super) fn read_table(
     table: &impl Table,
     path: &Path,
     options: &Options,
-    (first, watch): (Option<u64>, Option<&[CovariateChoice]>),
+    (first, watch): (Option<u64>, Option<&Covariates>),
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let metadata = table.metadata();
@@ -53,28 +52,45 @@ pub(super) fn read_table(
         ));
     }
     let scaling = Scaling::settle(table, path, options, &axis_columns, taken.sensor)?;
-    let covariates = watch.unwrap_or_default();
+    let mut columns = axis_columns.clone();
+    let (covariates, found): (Vec<_>, Vec<_>) = match watch {
+        Some(Covariates::Found) => table.columns().temperatures(&axis_columns),
+        _ => Vec::new(),
+    }
+    .into_iter()
+    .unzip();
+    let covariates = match watch {
+        Some(Covariates::Chosen(choices)) => choices,
+        _ => &covariates,
+    };
     if covariates.len() > watched::MOST {
         return Err(Failure::option(
             format!("--covariates names {} columns", covariates.len()),
             format!("name at most {}", watched::MOST),
         ));
     }
-    let mut columns = axis_columns.clone();
-    columns.extend(
-        table
+    if found.is_empty() {
+        let chosen = table
             .columns()
-            .covariates(path, covariates, &axis_columns)?,
-    );
+            .covariates(path, covariates, &axis_columns)?;
+        columns.extend(chosen);
+    }
+    let heads = found.iter().map(|column| {
+        let head = table.columns().heads.get(column.column);
+        head.map_or(&[][..], Vec::as_slice)
+    });
+    let tried = TriedColumns::new(columns.len(), heads);
+    columns.extend(found.iter().cloned());
     let plan = worker::Plan {
         axes: axis_columns.len(),
         first: first.unwrap_or(u64::MAX),
-        watch: watch.map(<[_]>::to_vec),
+        watch: watch.map(|_| covariates.clone()),
     };
     let passes = Passes {
         table,
         path,
         columns: &columns,
+        tried,
         time: time.as_ref(),
         progress,
     };
@@ -90,7 +106,8 @@ pub(super) fn read_table(
     notes.retain(|note| !note.is_empty());
     notes.extend(measured.clock.as_ref().map(Clock::report));
     notes.extend(table.notes());
-    let columns = block_means(covariates, &measured.covariates);
+    notes.extend(evidence::left_out(covariates, &measured));
+    let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
     let mut axes = Vec::new();
     let mut rest = Vec::new();
     for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
@@ -112,12 +129,9 @@ pub(super) fn read_table(
         }
         check_axis(path, &axis)?;
         if let worker::Sums::Watched(watched, beside) = &sums {
-            let quanta = measured.covariates.iter().map(|(quantum, _)| quantum);
-            let named = covariates.iter().zip(quanta);
-            let evidence = evidence(path, &axis, &**watched, named, rate_hz)?;
+            let evidence = recorded.evidence(path, &axis, &**watched)?;
             axis.evidence = Some(Evidence {
                 course: Some(beside.course.clone()),
-                columns: columns.clone(),
                 ..evidence
             });
         }
@@ -130,6 +144,7 @@ pub(super) fn read_table(
         notes.extend(scaling.check(path, &axis)?);
         axes.push(axis);
     }
+    spread_motion(&mut axes);
     if scaling.origin == Origin::Assumed {
         notes.push(format!(
             "no unit given: {} assumed (change it with --unit)",
@@ -191,56 +206,6 @@ fn said(
         parts.push(format!("{rate} from the time stamps of {name}, in {unit}"));
     }
     parts.join("; ")
-}
-
-/// The columns of the covariates, with their means in the blocks of the course.
-fn block_means(
-    choices: &[CovariateChoice],
-    covariates: &[(quantum::Quantum, Course)],
-) -> Vec<(String, Vec<f64>)> {
-    // A scale of one leaves the means in counts; the times of the blocks are not used.
-    let Ok(counts) = Scale::new(1.0, 1.0) else {
-        return Vec::new();
-    };
-    let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
-    for (choice, (quantum, course)) in choices.iter().zip(covariates) {
-        // A column and its rate of change may both be covariates.
-        if columns.iter().all(|(name, _)| *name != choice.column) {
-            let blocks = course.blocks(counts);
-            let means = blocks.map(|block| quantum.value(block.mean)).collect();
-            columns.push((choice.column.clone(), means));
-        }
-    }
-    columns
-}
-
-/// The evidence of an axis, in units.
-fn evidence<'a>(
-    path: &Path,
-    axis: &Axis,
-    watched: &dyn WatchedAxis,
-    covariates: impl Iterator<Item = (&'a CovariateChoice, &'a quantum::Quantum)>,
-    rate_hz: f64,
-) -> Result<Evidence, Failure> {
-    let fail = |error: allanite::Error| {
-        Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
-    };
-    let scale = Scale::new(axis.rate_per_count, rate_hz).map_err(fail)?;
-    // A rate of change is counted in quanta per sample.
-    let (names, units): (Vec<String>, Vec<f64>) = covariates
-        .map(|(choice, quantum)| {
-            let unit = quantum.step() * if choice.rate { rate_hz } else { 1.0 };
-            (choice.to_string(), unit)
-        })
-        .unzip();
-    let told = watched.evidence(scale, &units).map_err(fail)?;
-    Ok(Evidence {
-        kurtosis: told.kurtosis,
-        covariates: names.into_iter().zip(told.covariates).collect(),
-        invalid: told.invalid,
-        course: None,
-        columns: Vec::new(),
-    })
 }
 
 /// Checks that an axis is long enough and that its values change.

@@ -13,6 +13,8 @@ pub(super) struct Told {
     pub(super) kurtosis: Kurtosis<OCTAVES>,
     pub(super) covariates: Vec<CrossCurve<OCTAVES>>,
     pub(super) invalid: Option<Reason>,
+    /// The sample near which motion first showed.
+    pub(super) moved_at: Option<u64>,
 }
 
 /// An axis of the library, whatever number of covariates its type has.
@@ -30,34 +32,68 @@ pub(super) trait WatchedAxis: Send {
 }
 
 /// An axis without a gate, because a log is judged as it is.
-type Watched<const COVARIATES: usize> = Axis<OCTAVES, COVARIATES, ()>;
+struct Watched<const COVARIATES: usize> {
+    axis: Axis<OCTAVES, COVARIATES, ()>,
+    moved_at: Option<u64>,
+}
+
+/// The number of samples after which motion is looked for: those of the shortest cluster whose mean shows it.
+const LOOK: usize = 64;
+
+impl<const COVARIATES: usize> Watched<COVARIATES> {
+    const fn new() -> Self {
+        Self {
+            axis: Axis::new(),
+            moved_at: None,
+        }
+    }
+
+    /// Remembers the first motion.
+    fn look(&mut self) {
+        if self.moved_at.is_none() {
+            let [integrity] = self.axis.integrity();
+            let tally = integrity.tally();
+            let moves = tally.motions > 0 || tally.steps > 0;
+            self.moved_at = moves.then(|| tally.samples.saturating_sub(LOOK as u64));
+        }
+    }
+}
 
 impl<const COVARIATES: usize> WatchedAxis for Watched<COVARIATES> {
     fn push(&mut self, counts: &[i32], covariates: &[Vec<i32>]) {
         for (row, &count) in counts.iter().enumerate() {
             let beside: [i32; COVARIATES] = std::array::from_fn(|i| covariates[i][row]);
-            self.push((count, beside));
+            self.axis.push((count, beside));
+            if row % LOOK == LOOK - 1 {
+                self.look();
+            }
         }
     }
 
     fn gap(&mut self) {
-        self.gap();
+        self.axis.gap();
     }
 
     fn accumulator(&self) -> &Accumulator<OCTAVES> {
-        let [accumulator] = self.accumulators();
+        let [accumulator] = self.axis.accumulators();
         accumulator
     }
 
     fn evidence(&self, scale: Scale, units: &[f64]) -> Result<Told, Error> {
-        let told = self.evidence(0, scale, std::array::from_fn(|i| units[i]))?;
+        let told = self
+            .axis
+            .evidence(0, scale, std::array::from_fn(|i| units[i]))?;
         Ok(Told {
             kurtosis: told.kurtosis.unwrap_or_default(),
             covariates: told.covariates.into_iter().collect(),
             invalid: told.invalid,
+            moved_at: self.moved_at,
         })
     }
 }
+
+/// The sums of a covariate and another one, which takes the place of the axis' covariate.
+pub(super) type SharedSums = Axis<OCTAVES, 1, (), ()>;
 
 /// An empty axis with the given number of covariates, at most [`MOST`].
 pub(super) fn axis(covariates: usize) -> Box<dyn WatchedAxis> {

@@ -2,8 +2,8 @@
 
 use super::{
     CovariateChoice, OCTAVES, SpectrumSums,
-    covariate::Derived,
-    watched::{self, WatchedAxis},
+    covariate::{self, Derived},
+    watched::{self, SharedSums, WatchedAxis},
 };
 use allanite::{Accumulator, course::Course};
 use std::{
@@ -140,6 +140,8 @@ pub(super) struct Totals {
     /// The course of the column of each covariate, in counts. The course of a column is the same whether its rate
     /// of change is the covariate or not.
     pub(super) columns: Vec<Course>,
+    /// The places of the covariates that may act together, and what they share.
+    pub(super) pairs: Vec<([usize; 2], SharedSums)>,
 }
 
 impl Batches {
@@ -162,6 +164,7 @@ impl Batches {
             Totals {
                 axes: worker.sums,
                 columns: worker.columns,
+                pairs: worker.pairs,
             }
         });
         Self {
@@ -217,6 +220,7 @@ impl Batches {
 struct Worker {
     plan: Plan,
     sums: Vec<Sums>,
+    pairs: Vec<([usize; 2], SharedSums)>,
     derived: Vec<Derived>,
     columns: Vec<Course>,
     /// With covariates, a batch waits until the batches of the other columns with the same rows
@@ -228,6 +232,9 @@ impl Worker {
     fn new(plan: Plan) -> Self {
         Self {
             sums: (0..plan.axes).map(|_| plan.sums()).collect(),
+            pairs: covariate::pairs(plan.covariates())
+                .map(|pair| (pair, SharedSums::new()))
+                .collect(),
             derived: plan.covariates().iter().map(Derived::new).collect(),
             columns: plan.covariates().iter().map(|_| Course::new()).collect(),
             waiting: vec![VecDeque::new(); plan.columns()],
@@ -259,6 +266,11 @@ impl Worker {
                 *count = derived.next(*count);
             }
         }
+        for ([one, other], shared) in &mut self.pairs {
+            for (&one, &other) in covariates[*one].iter().zip(&covariates[*other]) {
+                shared.push((one, [other]));
+            }
+        }
         for (axis, counts) in axes.iter().enumerate() {
             self.accumulate(axis, counts, covariates);
         }
@@ -271,6 +283,9 @@ impl Worker {
         }
         for course in &mut self.columns {
             course.gap();
+        }
+        for (_, shared) in &mut self.pairs {
+            shared.gap();
         }
         for sums in &mut self.sums {
             match sums {

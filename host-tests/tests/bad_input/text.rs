@@ -343,6 +343,7 @@ pub(crate) fn cases() -> Vec<Case> {
             refused("a.csv", text, &format!("{command} a.csv"), expected)
         })
         .collect();
+    cases.extend(invalid());
     let packed = gzip(good.as_bytes());
     let mut flipped = packed.clone();
     flipped[40] ^= 0x55;
@@ -380,4 +381,41 @@ pub(crate) fn cases() -> Vec<Case> {
         others.map(|(bytes, expected)| refused("a.csv", bytes, "fit a.csv --rate 9", expected));
     cases.extend(others);
     cases
+}
+
+/// Logs that are read but not valid, which `export` refuses unless it is told otherwise.
+fn invalid() -> Vec<Case> {
+    let log = |value: &dyn Fn(usize, i64) -> i64| {
+        let counts = noise().take(4000).enumerate();
+        counts.fold(String::from("gx\n"), |mut text, (at, count)| {
+            let _ = writeln!(text, "{}", value(at, count));
+            text
+        })
+    };
+    let held: Vec<i64> = noise().take(2000).collect();
+    let reasons = [
+        (
+            log(&|_, count| i64::from(count > 2000)),
+            "the noise is below half a count",
+        ),
+        (log(&|at, _| held[at / 2]), "every sample is there twice"),
+        (
+            log(&|at, count| {
+                count
+                    + if (2000..2400).contains(&at) {
+                        400_000
+                    } else {
+                        0
+                    }
+            }),
+            "the gyro was moved",
+        ),
+    ];
+    let export = "export -f kalibr --rate 100 --scale 0.01 --unit deg/s a.csv";
+    let both = |(text, reason): (String, &str)| {
+        let refusal = refused("a.csv", text.clone(), export, reason);
+        let told = format!("{export} --despite-invalid");
+        [refusal, refused("a.csv", text, &told, reason).status(0)]
+    };
+    reasons.into_iter().flat_map(both).collect()
 }

@@ -127,6 +127,12 @@ enum Study {
         /// Number of devices per case
         #[arg(long, default_value_t = 4000)]
         devices: u64,
+        /// Study only limits of this effect
+        #[arg(long)]
+        effect: Option<String>,
+        /// Study only gyros with this multiple of the preset's flicker noise
+        #[arg(long)]
+        flicker: Option<f64>,
     },
     /// Compare single with double precision on the same records
     Precision {
@@ -177,7 +183,11 @@ fn main() -> Result<()> {
             preset,
             clean,
         } => course::print(records, preset, clean),
-        Study::SelfTest { devices } => self_test::print(devices),
+        Study::SelfTest {
+            devices,
+            effect,
+            flicker,
+        } => self_test::print(devices, effect.as_deref(), flicker),
         Study::Precision { records } => precision::print(records)?,
         Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),
     }

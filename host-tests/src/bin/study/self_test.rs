@@ -5,7 +5,7 @@ use host_tests::study::self_test::{self, Looks};
 /// The factors between coefficient and limit that are studied.
 const FACTORS: [f64; 7] = [0.5, 1.0 / 1.3, 0.9, 1.0, 1.1, 1.3, 2.0];
 
-pub(crate) fn print(devices: u64) {
+pub(crate) fn print(devices: u64, effect: Option<&str>, flicker: Option<f64>) {
     println!(
         "{devices} devices per line; the plan allows {} % of false pass and as much of false fail",
         100.0 * self_test::PROBABILITY
@@ -14,7 +14,11 @@ pub(crate) fn print(devices: u64) {
         "false verdicts: share of passes above the limit, of fails below it, of either at it;"
     );
     println!("in brackets the upper end of its one-sided 95 % confidence interval");
-    for case in self_test::CASES {
+    let wanted = |case: &self_test::Case| {
+        effect.is_none_or(|effect| effect == case.effect)
+            && flicker.is_none_or(|flicker| flicker == case.flicker)
+    };
+    for case in self_test::CASES.into_iter().filter(wanted) {
         let (shortest, longest) = case.lengths_s;
         println!(
             "\n{}, {shortest} s to {longest} s, {} times the flicker noise",

@@ -7,25 +7,27 @@ use super::{
 use crate::{
     comb::Comb,
     command::{
-        input::record::{self, LogArguments},
+        input::record::{self, CovariateArguments, LogArguments},
         known_filter::{self, KnownFilter, known_filter},
         output::{rounding, words},
+        tried::{TriedCovariate, tried},
     },
     curve_file::AxisCurve,
     failure::Failure,
-    log::{BINS, CovariateChoice, Evidence, OCTAVES},
+    log::{BINS, Evidence, Motion, OCTAVES},
 };
 use allanite::{
     Curve, Error, Model, Observed, Scale, Term,
     course::{Course, Event, What, analyse},
     covariate,
-    covariate::CrossCurve,
+    covariate::{CrossCurve, Pair},
     detection::{Detection, Limit, Ranges},
     diagnosis::{
         Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
     },
     effect::CATALOGUE,
     fit,
+    spectrum::Spectrum,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -64,10 +66,8 @@ pub(crate) struct DiagnosisSettings {
     /// Largest number of effects to add [default: 3]
     #[arg(long, value_name = "N")]
     max_effects: Option<usize>,
-    /// Columns of the log, or their rates of change, that the gyro's rate may depend on, such as
-    /// `temp_C,rate(temp_C)`
-    #[arg(long, value_delimiter = ',', value_name = "COLUMN,…")]
-    covariates: Vec<CovariateChoice>,
+    #[command(flatten)]
+    covariates: CovariateArguments,
     #[command(flatten)]
     filter: KnownFilter,
     #[command(flatten)]
@@ -108,12 +108,17 @@ pub(crate) struct Diagnosed {
     pub(crate) course: Option<Course>,
     /// The columns that were recorded beside the axis, with their means in the blocks of the course.
     pub(crate) columns: Vec<(String, Vec<f64>)>,
+    /// The motion that makes the record not valid, if there is one.
+    pub(crate) motion: Option<Motion>,
+    /// The covariates that were tried, with what was found of each. Empty for a record that is not valid.
+    pub(crate) tried: Vec<TriedCovariate>,
     /// The options of the search for effects.
     pub(crate) options: Options,
     /// Names of the covariates.
     covariates: Vec<String>,
-    /// What the axis has in common with each covariate, octave by octave.
+    /// What the axis has in common with each covariate, octave by octave, and what the covariates share.
     cross: Vec<CrossCurve<OCTAVES>>,
+    pairs: Vec<Pair<OCTAVES>>,
 }
 
 impl Diagnosed {
@@ -128,11 +133,13 @@ impl Diagnosed {
             max_effects: max_effects.unwrap_or(default.max_effects),
             ..default
         };
-        let (course, columns) = (evidence.course, evidence.columns);
+        let (course, columns, motion) = (evidence.course, evidence.columns, evidence.motion);
         let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
+        let pairs = evidence.pairs;
         let evidence = allanite::diagnosis::Evidence {
             kurtosis: Some(&evidence.kurtosis),
             covariates: &cross,
+            pairs: &pairs,
             invalid: evidence.invalid,
         };
         let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
@@ -168,13 +175,17 @@ impl Diagnosed {
             combs: Vec::new(),
             course: None,
             columns,
+            motion,
+            tried: Vec::new(),
             options,
             covariates,
             cross,
+            pairs,
         };
         diagnosed.limits = diagnosed.detection_limits()?;
         diagnosed.lines = diagnosed.lines()?;
         diagnosed.combs = lines::combs(&diagnosed.lines, diagnosed.axis.rate_hz);
+        diagnosed.tried = diagnosed.tried_in_last()?;
         if let Some(course) = course {
             diagnosed.events = diagnosed.events_in(&course)?;
             diagnosed.course = Some(course);
@@ -189,9 +200,28 @@ impl Diagnosed {
             return Ok(Vec::new());
         };
         let scale = Scale::new(self.axis.rate_per_count, self.axis.rate_hz)?;
-        let curve = self.curve_of(last)?;
+        let (curve, _) = self.observed_in(last)?;
         let analysis = analyse(&curve, &last.model, course, scale, fit::Options::default())?;
         Ok(analysis.events.iter().copied().collect())
+    }
+
+    /// The evidence beside the curve that covariates give.
+    fn evidence(&self) -> allanite::diagnosis::Evidence<'_, OCTAVES> {
+        allanite::diagnosis::Evidence {
+            covariates: &self.cross,
+            pairs: &self.pairs,
+            ..allanite::diagnosis::Evidence::NONE
+        }
+    }
+
+    /// What the last step tells of every covariate.
+    fn tried_in_last(&self) -> Result<Vec<TriedCovariate>, Error> {
+        let valid = !matches!(self.verdict, Verdict::Invalid(_));
+        let Some(last) = self.steps.last().filter(|_| valid) else {
+            return Ok(Vec::new());
+        };
+        let curve = self.axis.curve()?;
+        Ok(tried(&curve, &self.evidence(), &self.covariates, last))
     }
 
     /// The sizes of effects that the record would have shown.
@@ -199,8 +229,7 @@ impl Diagnosed {
         let mut limits = Vec::new();
         let adequate = matches!(self.verdict, Verdict::Adequate | Verdict::Improved);
         if let Some(last) = self.steps.last().filter(|_| adequate) {
-            let curve = self.curve_of(last)?;
-            let spectrum = self.axis.spectrum()?;
+            let (curve, spectrum) = self.observed_in(last)?;
             Detection::with_spectrum(curve, spectrum, last, &CATALOGUE, self.options)
                 .run(|limit| limits.push(limit))?;
         }
@@ -212,7 +241,7 @@ impl Diagnosed {
         let Some(last) = self.steps.last() else {
             return Ok(Vec::new());
         };
-        let (curve, spectrum) = (self.curve_of(last)?, self.axis.spectrum()?);
+        let (curve, spectrum) = self.observed_in(last)?;
         lines::lines(Observed::new(&curve, &spectrum), last)
     }
 
@@ -223,13 +252,16 @@ impl Diagnosed {
         ranges
     }
 
-    /// The curve on which a step was judged: without what follows a covariate.
-    pub(crate) fn curve_of(&self, step: &Step<OCTAVES, BINS>) -> Result<Curve<OCTAVES>, Error> {
-        let mut curve = self.axis.curve()?;
+    /// The curve and the spectrum on which a step was judged: without what follows a covariate.
+    pub(crate) fn observed_in(
+        &self,
+        step: &Step<OCTAVES, BINS>,
+    ) -> Result<(Curve<OCTAVES>, Spectrum<BINS>), Error> {
+        let (mut curve, mut spectrum) = (self.axis.curve()?, self.axis.spectrum()?);
         if let Some(followed) = &step.covariate {
-            self.cross[followed.index].correct(&mut curve, &followed.slope);
+            followed.correct(&self.evidence(), &mut curve, &mut spectrum);
         }
-        Ok(curve)
+        Ok((curve, spectrum))
     }
 
     /// The first step, which has the five terms, and the last one.
@@ -240,7 +272,11 @@ impl Diagnosed {
     /// Why the record is not valid, if it is not.
     pub(crate) fn invalid(&self) -> Option<String> {
         match self.verdict {
-            Verdict::Invalid(reason) => Some(reason.to_string()),
+            Verdict::Invalid(reason) => Some(words::invalid(
+                &reason,
+                self.motion.as_ref(),
+                &self.axis.axis,
+            )),
             _ => None,
         }
     }
@@ -253,13 +289,13 @@ impl Diagnosed {
         let channel = step
             .covariate
             .as_ref()
-            .map(|followed| self.covariate(followed));
+            .map(|followed| self.covariate(followed).join(" + "));
         let added = self
             .added_in(step)
             .map(|term| words::plain(term.effect.name()));
         let asked = self.steps.first().map(|first| &first.model);
         let parts = asked.map(known_filter::terms).into_iter();
-        let parts = parts.chain(channel.map(str::to_owned)).chain(added);
+        let parts = parts.chain(channel).chain(added);
         parts.collect::<Vec<_>>().join(" + ")
     }
 
@@ -281,8 +317,7 @@ impl Diagnosed {
             .checked_sub(1)
             .and_then(|before| self.steps.get(before));
         let step = &self.steps[step];
-        let curve = self.curve_of(step)?;
-        let spectrum = self.axis.spectrum()?;
+        let (curve, spectrum) = self.observed_in(step)?;
         alternative(Observed::new(&curve, &spectrum), step, before, candidate)
     }
 
@@ -331,9 +366,11 @@ impl Diagnosed {
         })
     }
 
-    /// The name of the covariate that the rate depends on.
-    pub(crate) fn covariate(&self, followed: &FollowedCovariate) -> &str {
-        &self.covariates[followed.index]
+    /// The names of the covariates that the rate depends on.
+    pub(crate) fn covariate(&self, followed: &FollowedCovariate) -> Vec<&str> {
+        let beside = followed.beside.map(|beside| beside.index);
+        let all = std::iter::once(followed.index).chain(beside);
+        all.map(|at| self.covariates[at].as_str()).collect()
     }
 
     /// Notes on the result, one line each.
@@ -345,10 +382,9 @@ impl Diagnosed {
         if self.verdict == Verdict::TooShort {
             notes.push("there are too few octaves to judge the model: record longer".into());
         }
-        if let Verdict::Invalid(reason) = self.verdict {
-            notes.push(reason.to_string());
-        } else {
-            notes.extend(rounding::note(&self.axis, &last.fit));
+        match self.invalid() {
+            Some(reason) => notes.push(reason),
+            None => notes.extend(rounding::note(&self.axis, &last.fit)),
         }
         notes.extend(
             self.events
@@ -361,6 +397,8 @@ impl Diagnosed {
         if !self.events.iter().all(is_slight) {
             notes.push(NOT_STATIONARY.into());
         }
+        let tried = self.tried.iter();
+        notes.extend(tried.map(|tried| format!("tried {}", tried.words(self.axis.unit))));
         for (added, others) in self.ambiguous() {
             notes.push(format!(
                 "{} is ambiguous: {} would explain this curve as well",

@@ -3,14 +3,16 @@
 use super::{
     diagnosed::{Diagnosed, added_name},
     lines::{Line, comb_words},
+    words,
 };
 use crate::{
     comb::Comb,
     command::{
         fit,
         output::model_json::{self, Effect, Shape, Worst},
+        tried::{self, TriedCovariate},
     },
-    log::{BINS, OCTAVES},
+    log::{BINS, Motion, OCTAVES},
     unit::Unit,
 };
 use allanite::{
@@ -47,6 +49,8 @@ struct Axis<'a> {
     /// The sinusoids that are harmonics of one fundamental.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     combs: Vec<Harmonics>,
+    /// The covariates that were tried.
+    covariates: Vec<tried::Document>,
     verdict: &'static str,
     missing: Vec<&'static str>,
     ambiguous: Vec<&'static str>,
@@ -125,6 +129,19 @@ struct Event {
     time_constant_s: Option<f64>,
 }
 
+/// Motion has a time but no size: its squares are not noise, and their share is in the notes.
+fn motion(motion: &Motion) -> Event {
+    Event {
+        what: "motion",
+        at_s: motion.at_s,
+        size: f64::NAN,
+        lower: f64::NAN,
+        upper: f64::NAN,
+        z: f64::NAN,
+        time_constant_s: None,
+    }
+}
+
 /// A bin of the spectrum.
 #[derive(Serialize)]
 struct Bin {
@@ -182,9 +199,19 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             let bins = last.comparison.bins.iter();
             bins.map(bin).collect()
         }),
-        events: diagnosed.events.iter().map(event).collect(),
+        events: diagnosed
+            .motion
+            .iter()
+            .map(motion)
+            .chain(diagnosed.events.iter().map(event))
+            .collect(),
         lines: diagnosed.lines.iter().map(line).collect(),
         combs: diagnosed.combs.iter().map(harmonics).collect(),
+        covariates: diagnosed
+            .tried
+            .iter()
+            .map(TriedCovariate::document)
+            .collect(),
         verdict: diagnosed.verdict.name(),
         missing: diagnosed.missing().collect(),
         ambiguous: names,
@@ -240,12 +267,13 @@ fn limits(diagnosed: &Diagnosed) -> Vec<DetectionLimit> {
 }
 
 fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step {
-    let followed = step.covariate.as_ref();
-    let covariate =
-        followed.map(|followed| model_json::covariate(followed, diagnosed.covariate(followed)));
+    let covariates = step.covariate.iter().flat_map(|followed| {
+        let slopes = words::slopes(followed);
+        let named = slopes.into_iter().zip(diagnosed.covariate(followed));
+        named.map(|(slope, channel)| model_json::covariate(&slope, channel))
+    });
     Step {
-        effects: covariate
-            .into_iter()
+        effects: covariates
             .chain(model_json::effects(&step.model, &step.fit))
             .collect(),
         dropped: step.dropped.to_vec(),

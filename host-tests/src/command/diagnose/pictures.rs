@@ -22,7 +22,7 @@ impl<'a> Pictures<'a> {
     pub(crate) fn of(diagnosed: &'a Diagnosed) -> Self {
         // The diagnosis has fitted this curve and this spectrum already, so that neither fails here.
         let errors = diagnosed.steps.last().and_then(|last| {
-            let curve = diagnosed.curve_of(last).ok()?;
+            let (curve, _) = diagnosed.observed_in(last).ok()?;
             Some(relative_errors(&curve, &last.model, &last.fit))
         });
         Self {
@@ -61,10 +61,15 @@ impl<'a> Pictures<'a> {
         let axis = &self.diagnosed.axis;
         let course = self.diagnosed.course.as_ref()?;
         let scale = Scale::new(axis.rate_per_count, axis.rate_hz).ok()?;
-        let events = self.diagnosed.events.iter().map(|event| Mark {
+        // A record with motion is not valid, and has no other events.
+        let motion = self.diagnosed.motion.iter().map(|motion| Mark {
+            at_s: motion.at_s,
+            words: "motion".into(),
+        });
+        let events = motion.chain(self.diagnosed.events.iter().map(|event| Mark {
             at_s: event.at_s,
             words: words::brief_event(event, axis.unit),
-        });
+        }));
         let columns = &self.diagnosed.columns;
         CourseFigure::new(course, scale, axis.unit, columns, events.collect())
     }

@@ -14,7 +14,7 @@ use crate::{
 use allanite::{
     Comparison, Term,
     comparison::ComparedBin,
-    covariate,
+    covariate::{self, Slope},
     detection::Range,
     diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
     effect::{Explanation, explanation},
@@ -74,19 +74,24 @@ impl Finding {
     }
 
     fn covariate(diagnosed: &Diagnosed, followed: &FollowedCovariate) -> Self {
-        let channel = diagnosed.covariate(followed);
-        let (slope, (lower, upper)) = (followed.slope, followed.slope.interval());
-        let found = format!(
-            "slope {} {} per unit of {channel} ({} … {}), 95 % interval; {:.1} standard errors",
-            number::number(slope.value),
-            diagnosed.axis.unit,
-            number::number(lower),
-            number::number(upper),
-            slope.z()
-        );
-        let change = format!("the part that follows {channel} is subtracted from this step on");
+        let channels = diagnosed.covariate(followed);
+        let found = slopes(followed).into_iter().zip(&channels);
+        let found = found.map(|(slope, channel)| {
+            let (lower, upper) = slope.interval();
+            format!(
+                "slope {} {} per unit of {channel} ({} … {}), 95 % interval; {:.1} standard errors",
+                number::number(slope.value),
+                diagnosed.axis.unit,
+                number::number(lower),
+                number::number(upper),
+                slope.z()
+            )
+        });
+        let found = found.collect::<Vec<_>>().join("; ");
+        let channels = channels.join(" and ");
+        let change = format!("the part that follows {channels} is subtracted from this step on");
         Self {
-            name: format!("{} {channel}", words::plain(covariate::NAME)),
+            name: format!("{} {channels}", words::plain(covariate::NAME)),
             found: Some(found),
             explanation: Some(covariate::EXPLANATION),
             change: Some(("in the curve", change)),
@@ -108,6 +113,12 @@ impl Finding {
         let change = change.map(|(label, text)| (*label, text.as_str()));
         explanation.into_iter().flatten().chain(change).collect()
     }
+}
+
+/// The slopes of the covariates that the rate follows, in the order of their names.
+pub(crate) fn slopes(followed: &FollowedCovariate) -> Vec<Slope> {
+    let beside = followed.beside.map(|beside| beside.slope);
+    std::iter::once(followed.slope).chain(beside).collect()
 }
 
 /// The shape and the coefficient of an effect in a step, with their 95 % intervals. Of several effects of one name, it is
@@ -222,8 +233,10 @@ fn missing(diagnosed: &Diagnosed) -> Vec<String> {
         return Vec::new();
     };
     let followed = last.covariate.as_ref();
-    let covariate =
-        followed.map(|followed| format!("{} {}", covariate::NAME, diagnosed.covariate(followed)));
+    let covariate = followed.map(|followed| {
+        let channels = diagnosed.covariate(followed).join(" and ");
+        format!("{} {channels}", covariate::NAME)
+    });
     let in_a_comb = |term: &Term| {
         let members = diagnosed.combs.iter().flat_map(|comb| &comb.members);
         let mut places = members.map(|(line, _)| diagnosed.lines[*line].place);

@@ -1,6 +1,10 @@
 //! The options of `export`.
 
-use crate::command::{examples, input::record::LogArguments, known_filter::KnownFilter};
+use crate::command::{
+    examples,
+    input::record::{CovariateArguments, LogArguments},
+    known_filter::KnownFilter,
+};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -35,6 +39,11 @@ pub(in crate::command) struct Arguments {
     /// ArduPilot]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) prediction_interval: Option<f64>,
+    /// Export a record that is not valid, such as one in which the gyro was moved
+    #[arg(long)]
+    pub(super) despite_invalid: bool,
+    #[command(flatten)]
+    pub(super) covariates: CovariateArguments,
     #[command(flatten)]
     pub(super) filter: KnownFilter,
     #[command(flatten)]

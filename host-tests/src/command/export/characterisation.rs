@@ -5,8 +5,10 @@ use crate::{
     command::{
         fit::fitted::{Fitted, MethodName},
         input::record,
+        output::progress,
+        tried::TriedCovariate,
     },
-    failure::{Failure, Place},
+    failure::{Failure, Place, one_line, report},
     unit::Sensor,
 };
 
@@ -82,7 +84,8 @@ pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Fa
     let path = &arguments.input;
     let model = arguments.filter.model()?;
     let mut axes = Vec::new();
-    for (axis, evidence) in record::read_with_evidence(path, &arguments.about_log, &[])? {
+    let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
+    for (axis, mut evidence) in record::read_with_evidence(path, about_log, covariates)? {
         if axis.unit.sensor() != Sensor::Gyro {
             let what = format!(
                 "axis {} is from an accelerometer, in {}",
@@ -91,9 +94,24 @@ pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Fa
             let remedy = "export a gyro; `fit` prints the coefficients of an accelerometer";
             return Err(Place::file(path).failure(what, remedy));
         }
-        let fitted = Fitted::new(path, axis, &model, MethodName::Covariance)?;
+        let course = evidence.course.take();
+        let fitted = Fitted::with_evidence(path, axis, &model, MethodName::Covariance, evidence)?;
         let name = fitted.axis.axis.clone();
-        let noise = AxisNoise::of(fitted, evidence.course).ok_or_else(|| {
+        let what = |text: &str| format!("axis {name}: {text}");
+        let reason = fitted.invalid.as_deref().map(what);
+        if let Some(reason) = reason.as_ref().filter(|_| !arguments.despite_invalid) {
+            let remedy = "record again, or export all the same with --despite-invalid";
+            return Err(Place::file(path).failure(reason, remedy));
+        }
+        if !progress::is_quiet() {
+            let acts = fitted.tried.iter().any(TriedCovariate::acts);
+            let notes = fitted.covariate_notes();
+            let notes = notes.iter().filter(|_| acts).map(|note| what(note));
+            for note in reason.into_iter().chain(notes) {
+                report(format_args!("{}{}", Place::file(path), one_line(&note)));
+            }
+        }
+        let noise = AxisNoise::of(fitted, course).ok_or_else(|| {
             let what = format!("axis {name}: its curve has no finite confidence limits");
             Place::file(path).failure(what, "record longer")
         })?;

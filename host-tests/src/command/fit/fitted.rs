@@ -1,6 +1,15 @@
 //! The five terms fitted to an axis.
 
-use crate::{command::input::record, curve_file::AxisCurve, failure::Failure, log::OCTAVES};
+use crate::{
+    command::{
+        input::record,
+        output::words,
+        tried::{self, TriedCovariate},
+    },
+    curve_file::AxisCurve,
+    failure::Failure,
+    log::{Evidence, OCTAVES},
+};
 use allanite::{
     Curve, Model, Observed,
     fit::{Fit, Method, Options, fit},
@@ -53,6 +62,10 @@ pub(crate) struct Fitted {
     pub(crate) model: Model,
     pub(crate) method: MethodName,
     pub(crate) fit: Fit,
+    /// Why the curve is not valid, in words.
+    pub(crate) invalid: Option<String>,
+    /// The covariates that were tried.
+    pub(crate) tried: Vec<TriedCovariate>,
 }
 
 impl Fitted {
@@ -83,8 +96,56 @@ impl Fitted {
                 model: model.clone(),
                 method,
                 fit,
+                invalid: None,
+                tried: Vec::new(),
             }),
             Err(error) => Err(record::library_failure(path, &axis.axis, error)),
         }
+    }
+
+    /// Fits a model to an axis of a file as [`new`](Self::new) does, and tries the covariates of its evidence.
+    ///
+    /// # Errors
+    /// As of [`new`](Self::new).
+    pub(crate) fn with_evidence(
+        path: &Path,
+        axis: AxisCurve,
+        model: &Model,
+        method: MethodName,
+        evidence: Evidence,
+    ) -> Result<Self, Failure> {
+        let fitted = Self::new(path, axis, model, method)?;
+        let name = &fitted.axis.axis;
+        let reason = evidence.invalid;
+        let (names, covariates): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
+        let beside = allanite::diagnosis::Evidence {
+            covariates: &covariates,
+            pairs: &evidence.pairs,
+            invalid: reason,
+            ..allanite::diagnosis::Evidence::NONE
+        };
+        let spectrum = fitted.axis.spectrum();
+        let tried = spectrum.and_then(|spectrum| {
+            tried::beside_model(&fitted.curve, &spectrum, &beside, &names, model)
+        });
+        let motion = evidence.motion.as_ref();
+        Ok(Self {
+            invalid: reason.map(|reason| words::invalid(&reason, motion, name)),
+            tried: tried.map_err(|error| record::library_failure(path, name, error))?,
+            ..fitted
+        })
+    }
+
+    /// Notes on what was recorded alongside, a sentence each.
+    pub(crate) fn covariate_notes(&self) -> Vec<String> {
+        let note = |tried: &TriedCovariate| {
+            let remedy = if tried.acts() {
+                "; the coefficients include what follows it, and `diagnose` subtracts it"
+            } else {
+                ""
+            };
+            format!("tried {}{remedy}", tried.words(self.axis.unit))
+        };
+        self.tried.iter().map(note).collect()
     }
 }

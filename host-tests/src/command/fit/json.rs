@@ -8,6 +8,7 @@ use crate::{
             model_json::{self, Shape},
             rounding, units,
         },
+        tried::{self, TriedCovariate},
     },
     unit::Unit,
 };
@@ -36,6 +37,10 @@ struct Axis<'a> {
     p_value: Option<f64>,
     /// The factor by which intervals and bounds are widened.
     birge_ratio: f64,
+    /// Why the curve is not valid; `null` if it is, or if the input is a curve file.
+    invalid: Option<&'a str>,
+    /// The covariates that were tried.
+    covariates: Vec<tried::Document>,
     notes: Vec<String>,
 }
 
@@ -73,6 +78,8 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         model,
         method,
         fit,
+        invalid,
+        tried,
     } = fitted;
     let finite = |value: f64| value.is_finite().then_some(value);
     Axis {
@@ -100,7 +107,14 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
         p_value: finite(fit.p_value),
         birge_ratio: fit.birge_ratio,
-        notes: rounding::note(axis, fit).into_iter().collect(),
+        invalid: invalid.as_deref(),
+        covariates: tried.iter().map(TriedCovariate::document).collect(),
+        notes: invalid
+            .iter()
+            .cloned()
+            .chain(rounding::note(axis, fit).filter(|_| invalid.is_none()))
+            .chain(fitted.covariate_notes())
+            .collect(),
     }
 }
 

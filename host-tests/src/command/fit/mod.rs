@@ -10,7 +10,7 @@ use crate::{
         examples,
         input::{
             many::{self, FilesArguments, Findings},
-            record::{self, LogArguments},
+            record::{self, CovariateArguments, LogArguments},
         },
         known_filter::KnownFilter,
     },
@@ -35,6 +35,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     filter: KnownFilter,
     #[command(flatten)]
+    covariates: CovariateArguments,
+    #[command(flatten)]
     about_log: LogArguments,
 }
 
@@ -58,8 +60,10 @@ impl Findings for Vec<Fitted> {
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let model = arguments.filter.model()?;
     let work = |path: &Path| {
-        let axes = record::read(path, &arguments.about_log)?.into_iter();
-        axes.map(|axis| Fitted::new(path, axis, &model, arguments.method))
+        let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
+        let axes = record::read_with_evidence(path, about_log, covariates)?.into_iter();
+        let method = arguments.method;
+        axes.map(|(axis, evidence)| Fitted::with_evidence(path, axis, &model, method, evidence))
             .collect::<Result<Vec<_>, _>>()
     };
     many::run(&arguments.files, work, output)

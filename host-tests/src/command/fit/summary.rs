@@ -62,7 +62,11 @@ fn row(path: &Path, fitted: &Fitted) -> Vec<String> {
     } else {
         "–".into()
     });
-    row.push(adequate(fit).into());
+    row.push(if fitted.invalid.is_some() {
+        "not valid".into()
+    } else {
+        adequate(fit).into()
+    });
     row
 }
 

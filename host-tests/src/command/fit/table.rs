@@ -43,17 +43,19 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
         let note = rounding::note(axis, &fitted.fit);
         // Whether the model explains a curve that is not valid does not matter.
         let is_coarse = rounding::is_coarse(axis);
+        let is_invalid = is_coarse || fitted.invalid.is_some();
         let lines = verdict(fitted);
-        for line in lines.iter().take(if is_coarse { 1 } else { lines.len() }) {
+        for line in lines.iter().take(if is_invalid { 1 } else { lines.len() }) {
             writeln!(output, "{line}")?;
         }
-        let what = if is_coarse {
-            "The curve is not valid"
-        } else {
-            "Note"
-        };
-        if let Some(note) = note {
-            writeln!(output, "{what}: {note}.")?;
+        match (&fitted.invalid, note) {
+            (Some(reason), _) => writeln!(output, "The curve is not valid: {reason}.")?,
+            (None, Some(note)) if is_coarse => writeln!(output, "The curve is not valid: {note}.")?,
+            (None, Some(note)) => writeln!(output, "Note: {note}.")?,
+            (None, None) => {}
+        }
+        for note in fitted.covariate_notes() {
+            writeln!(output, "Note: {note}.")?;
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ use crate::{
     command::output::progress,
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place, one_line, report},
-    log::{self, ColumnChoice, CovariateChoice, Evidence, Log, TimeUnit},
+    log::{self, ColumnChoice, CovariateChoice, Covariates, Evidence, Log, TimeUnit},
     unit::{Sensor, Unit},
 };
 use clap::Args;
@@ -60,6 +60,34 @@ impl LogArguments {
     }
 }
 
+/// Options that tell which covariates to try.
+#[derive(Debug, Args)]
+pub(crate) struct CovariateArguments {
+    /// Columns of the log, or their rates of change, that the gyro's rate may depend on, such as
+    /// `supply_V,temp_C,rate(temp_C)` [default: the temperatures by their names, and their rates of change]
+    #[arg(long, value_delimiter = ',', value_name = "COLUMN,…")]
+    covariates: Vec<CovariateChoice>,
+    /// Do not try the temperatures that the log has
+    #[arg(long, conflicts_with = "covariates")]
+    no_covariates: bool,
+}
+
+impl CovariateArguments {
+    /// No covariates.
+    pub(crate) const NONE: Self = Self {
+        covariates: Vec::new(),
+        no_covariates: true,
+    };
+
+    fn tried(&self) -> Covariates {
+        if self.covariates.is_empty() && !self.no_covariates {
+            Covariates::Found
+        } else {
+            Covariates::Chosen(self.covariates.clone())
+        }
+    }
+}
+
 /// Measures the curves of a log.
 pub(crate) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
     let bar = progress::reading(path);
@@ -75,10 +103,10 @@ pub(crate) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisC
 pub(crate) fn read_with_evidence(
     path: &Path,
     arguments: &LogArguments,
-    covariates: &[CovariateChoice],
+    covariates: &CovariateArguments,
 ) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
     if is_curve(path) {
-        if !covariates.is_empty() {
+        if !covariates.covariates.is_empty() {
             return Err(Place::file(path).failure(
                 "a curve file has no covariates",
                 "give the log, or drop --covariates",
@@ -88,7 +116,8 @@ pub(crate) fn read_with_evidence(
         return Ok(axes.map(|axis| (axis, Evidence::default())).collect());
     }
     let bar = progress::reading(path);
-    let log = log::read_with_evidence(path, &arguments.options(), covariates, &bar);
+    let covariates = covariates.tried();
+    let log = log::read_with_evidence(path, &arguments.options(), &covariates, &bar);
     bar.finish_and_clear();
     let log = log?;
     note(path, &log);

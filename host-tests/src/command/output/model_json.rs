@@ -7,8 +7,11 @@ use crate::{
     unit::Unit,
 };
 use allanite::{
-    Comparison, Model, Term, comparison::ComparedOctave, covariate, detection::Range,
-    diagnosis::FollowedCovariate, fit::Fit,
+    Comparison, Model, Term,
+    comparison::ComparedOctave,
+    covariate::{self, Slope},
+    detection::Range,
+    fit::Fit,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -24,10 +27,10 @@ pub(crate) struct Effect {
 }
 
 /// A covariate that the rate depends on: its slope, and the slope's 95 % interval.
-pub(crate) fn covariate(followed: &FollowedCovariate, channel: &str) -> Effect {
-    let (lower, upper) = followed.slope.interval();
+pub(crate) fn covariate(slope: &Slope, channel: &str) -> Effect {
+    let (lower, upper) = slope.interval();
     let numbers = [
-        ("slope", followed.slope.value),
+        ("slope", slope.value),
         ("slope_lower", lower),
         ("slope_upper", upper),
     ];

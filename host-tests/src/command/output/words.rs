@@ -5,7 +5,7 @@ use super::{
     units,
 };
 use crate::{
-    log::{BINS, OCTAVES},
+    log::{BINS, Motion, OCTAVES},
     unit::{Sensor, Unit},
 };
 use allanite::{
@@ -15,7 +15,23 @@ use allanite::{
     diagnosis::Step,
     effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
     fit::{Fit, State},
+    integrity::Reason,
 };
+
+/// Why a record is not valid. Motion is said with its time, and with its axis where another one shows it.
+pub(crate) fn invalid(reason: &Reason, motion: Option<&Motion>, axis: &str) -> String {
+    match motion.filter(|_| matches!(reason, Reason::Moved { .. })) {
+        Some(motion) if motion.axis == axis => {
+            format!("{reason} (first at {} s)", number(motion.at_s))
+        }
+        Some(motion) => format!(
+            "{reason} (first at {} s, seen in axis {}: motion about one axis makes all axes invalid)",
+            number(motion.at_s),
+            motion.axis
+        ),
+        None => reason.to_string(),
+    }
+}
 
 /// A name as people write it.
 pub(crate) fn plain(name: &str) -> String {

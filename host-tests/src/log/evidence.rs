@@ -1,0 +1,170 @@
+//! What a log tells beside the curves of its axes, in units.
+
+use super::{
+    Axis, CovariateChoice, Evidence, Motion, OCTAVES,
+    accumulate::{CovariateColumn, Measured},
+    watched::{SharedSums, WatchedAxis},
+};
+use crate::failure::{Failure, Place};
+use allanite::{Scale, covariate::Pair, integrity::Reason};
+use std::path::Path;
+
+/// A covariate that has been read: its name and the size of its counts, or `None` if it is left out.
+type Named = Option<(String, f64)>;
+
+/// The covariates that were recorded beside the axes.
+pub(super) struct Recorded {
+    rate_hz: f64,
+    named: Vec<Named>,
+    pairs: Vec<Pair<OCTAVES>>,
+    /// The columns, with their means in the blocks of the course.
+    columns: Vec<(String, Vec<f64>)>,
+}
+
+impl Recorded {
+    /// The covariates of a log in their units.
+    pub(super) fn new(
+        path: &Path,
+        choices: &[CovariateChoice],
+        measured: &Measured,
+        rate_hz: f64,
+    ) -> Result<Self, Failure> {
+        let named = named(choices, &measured.covariates, rate_hz);
+        Ok(Self {
+            rate_hz,
+            pairs: shared(path, &measured.pairs, &named, rate_hz)?,
+            columns: block_means(choices, &measured.covariates),
+            named,
+        })
+    }
+
+    /// The evidence of an axis, without its course.
+    pub(super) fn evidence(
+        &self,
+        path: &Path,
+        axis: &Axis,
+        watched: &dyn WatchedAxis,
+    ) -> Result<Evidence, Failure> {
+        let fail = |error: allanite::Error| {
+            Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
+        };
+        let scale = Scale::new(axis.rate_per_count, self.rate_hz).map_err(fail)?;
+        let unit = |named: &Named| named.as_ref().map_or(1.0, |(_, unit)| *unit);
+        let units: Vec<f64> = self.named.iter().map(unit).collect();
+        let told = watched.evidence(scale, &units).map_err(fail)?;
+        let moved = matches!(told.invalid, Some(Reason::Moved { .. }));
+        let named = self.named.iter().zip(told.covariates);
+        let named = named.filter_map(|(named, cross)| Some((named.as_ref()?.0.clone(), cross)));
+        Ok(Evidence {
+            kurtosis: told.kurtosis,
+            covariates: named.collect(),
+            pairs: self.pairs.clone(),
+            invalid: told.invalid,
+            course: None,
+            columns: self.columns.clone(),
+            motion: told.moved_at.filter(|_| moved).map(|sample| Motion {
+                axis: axis.name.clone(),
+                at_s: sample as f64 / self.rate_hz,
+            }),
+        })
+    }
+}
+
+/// The covariates by their names. A rate of change is counted in quanta per sample.
+fn named(choices: &[CovariateChoice], columns: &[CovariateColumn], rate_hz: f64) -> Vec<Named> {
+    let named = choices.iter().zip(columns).map(|(choice, column)| {
+        let unit = column.quantum.step() * if choice.rate { rate_hz } else { 1.0 };
+        (!column.flawed).then(|| (choice.to_string(), unit))
+    });
+    named.collect()
+}
+
+/// A note on every column that is left out because of its values.
+pub(super) fn left_out(
+    choices: &[CovariateChoice],
+    measured: &Measured,
+) -> impl Iterator<Item = String> {
+    let columns = choices.iter().zip(&measured.covariates);
+    let left_out = columns.filter(|(choice, column)| column.flawed && !choice.rate);
+    left_out.map(|(choice, _)| {
+        format!(
+            "{} is not tried as a covariate: not all of its values are numbers of its usual size",
+            choice.column
+        )
+    })
+}
+
+/// What covariates share that may act together, in their units.
+fn shared(
+    path: &Path,
+    pairs: &[([usize; 2], SharedSums)],
+    named: &[Named],
+    rate_hz: f64,
+) -> Result<Vec<Pair<OCTAVES>>, Failure> {
+    let one = |(covariates, sums): &([usize; 2], SharedSums)| {
+        let [Some((name, unit)), Some((_, other_unit))] = covariates.map(|at| &named[at]) else {
+            return Ok(None);
+        };
+        let scale = Scale::new(*unit, rate_hz);
+        let told = scale.and_then(|scale| sums.evidence(0, scale, [*other_unit]));
+        let told = told.map_err(|error| {
+            let what = format!("covariate {name}: {error}");
+            Place::file(path).failure(what, "check the values of its column")
+        })?;
+        let shared = told.covariates.into_iter().next().unwrap_or_default();
+        // Places among the covariates that are not left out.
+        let place = |at: usize| named[..at].iter().flatten().count();
+        Ok(Some(Pair {
+            covariates: covariates.map(place),
+            shared,
+        }))
+    };
+    pairs
+        .iter()
+        .filter_map(|pair| one(pair).transpose())
+        .collect()
+}
+
+/// The columns of the covariates that are not left out, with their means in the blocks of the course.
+fn block_means(
+    choices: &[CovariateChoice],
+    covariates: &[CovariateColumn],
+) -> Vec<(String, Vec<f64>)> {
+    // A scale of one leaves the means in counts; the times of the blocks are not used.
+    let Ok(counts) = Scale::new(1.0, 1.0) else {
+        return Vec::new();
+    };
+    let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+    let sound = choices.iter().zip(covariates);
+    for (choice, column) in sound.filter(|(_, column)| !column.flawed) {
+        // A column and its rate of change may both be covariates.
+        if columns.iter().all(|(name, _)| *name != choice.column) {
+            let blocks = column.course.blocks(counts);
+            let means = blocks.map(|block| column.quantum.value(block.mean));
+            columns.push((choice.column.clone(), means.collect()));
+        }
+    }
+    columns
+}
+
+/// Motion of one axis makes the curves of all axes invalid, because a gyro that turns about one axis is not at rest
+/// about the others.
+pub(super) fn spread_motion(axes: &mut [Axis]) {
+    let evidence = axes.iter().filter_map(|axis| axis.evidence.as_ref());
+    let moved = evidence.filter(|evidence| matches!(evidence.invalid, Some(Reason::Moved { .. })));
+    let first = moved.min_by(|one, other| {
+        let at = |evidence: &Evidence| evidence.motion.as_ref().map_or(0.0, |motion| motion.at_s);
+        at(one).total_cmp(&at(other))
+    });
+    let Some((reason, motion)) = first.map(|first| (first.invalid, first.motion.clone())) else {
+        return;
+    };
+    for evidence in axes.iter_mut().filter_map(|axis| axis.evidence.as_mut()) {
+        if evidence.invalid.is_none() {
+            evidence.invalid = reason;
+        }
+        if evidence.motion.is_none() {
+            evidence.motion.clone_from(&motion);
+        }
+    }
+}

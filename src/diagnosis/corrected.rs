@@ -1,0 +1,105 @@
+//! A curve and a spectrum without what follows covariates.
+
+use super::{evidence::Evidence, step::FollowedCovariate};
+use crate::{
+    covariate::CrossCurve, curve::Curve, math, real::Real, real::real, spectrum::Spectrum,
+};
+
+/// The share of a bin's standard error by which a covariate may change what a level sees. Chosen by hand: where ten
+/// bins of a level have this error, χ² rises by 0.4.
+const UNNOTICED: Real = 0.2;
+
+impl FollowedCovariate {
+    /// Subtracts what follows the covariate from the gyro's curve, and leaves out the levels of the spectrum in which
+    /// it is noticeable.
+    ///
+    /// An octave becomes `σ²_g − 2α C_gx + α² σ²_x`. The slope's own error ε takes some of the noise away as well,
+    /// `ε² σ²_x` on average, which is added back. Octaves in which the covariate is its sensor's noise stay as they
+    /// are, because the rate does not follow that noise.
+    ///
+    /// No sums say what a bin has in common with the covariate. A covariate is slow, so that it reaches the levels
+    /// with the longest blocks only, and the octaves take the place of these levels. The level of blocks of `M`
+    /// samples is left out if what follows the covariate exceeds a fifth of a bin's standard error in an octave of
+    /// `2M`, `4M` or `8M` samples: those octaves respond most to the frequencies of the level's lowest bins, and more
+    /// than the bins to what is slower.
+    ///
+    /// `evidence` is that of the diagnosis that found the covariate.
+    #[inline(never)]
+    pub fn correct<const K: usize, const B: usize>(
+        &self,
+        evidence: &Evidence<'_, K>,
+        curve: &mut Curve<K>,
+        spectrum: &mut Spectrum<B>,
+    ) {
+        let Some(one) = evidence.covariates.get(self.index) else {
+            return;
+        };
+        let beside = self.beside.and_then(|beside| {
+            let other = evidence.covariates.get(beside.index)?;
+            Some((beside, other, evidence.pairs.get(beside.pair)?))
+        });
+        let others = beside.map_or(0, |(_, other, _)| other.first_octave());
+        let first = one.first_octave().max(others);
+        // What follows the covariates in an octave, and what their slopes' errors take away.
+        let shares = |k: usize| {
+            let at = |cross: &CrossCurve<K>| cross.points().get(k).copied();
+            let point = at(one)?;
+            let (slope, error) = (self.slope.value, self.slope.error);
+            let mut follows = slope * (2.0 * point.covariance - slope * point.variance);
+            let mut taken = error * error * point.variance;
+            if let Some((beside, other, pair)) = beside {
+                let (other, shared) = (at(other)?, at(&pair.shared)?.covariance);
+                let (beside_slope, beside_error) = (beside.slope.value, beside.slope.error);
+                follows += beside_slope * (2.0 * other.covariance - beside_slope * other.variance);
+                follows -= 2.0 * slope * beside_slope * shared;
+                taken += beside_error * beside_error * other.variance;
+                taken += 2.0 * beside.correlation * error * beside_error * shared;
+            }
+            (k >= first).then_some((follows, taken))
+        };
+        curve.change_variances(|k, variance| match shares(k) {
+            Some((follows, taken)) => {
+                // The rest is a mean square. Only rounding makes it negative.
+                (variance - follows).max(variance * Real::EPSILON) + taken
+            }
+            None => variance,
+        });
+        let touched = spectrum.levels().find_map(|level| {
+            let lowest = level.first()?;
+            let most = UNNOTICED / math::sqrt(real(lowest.segments));
+            let octaves = (0..K).zip(curve.points());
+            let mut near = octaves.filter(|(_, point)| {
+                point.m > lowest.block && point.m <= lowest.block.saturating_mul(8)
+            });
+            let is_touched = near.any(|(k, point)| {
+                shares(k).is_some_and(|(follows, _)| follows.abs() > most * point.variance)
+            });
+            is_touched.then_some(lowest.block)
+        });
+        if let Some(block) = touched {
+            spectrum.leave_out_from(block);
+        }
+    }
+
+    /// The least square of a slope, in standard errors.
+    pub(super) fn least_square(&self) -> Real {
+        let own = square(self.slope.z());
+        let beside = self.beside.map(|beside| square(beside.slope.z()));
+        beside.map_or(own, |beside| own.min(beside))
+    }
+
+    /// χ² of the slopes.
+    pub(super) fn chi_squared(&self) -> Real {
+        let z = self.slope.z();
+        let Some(beside) = self.beside else {
+            return square(z);
+        };
+        let (other, r) = (beside.slope.z(), beside.correlation);
+        // Rounding makes the correlation of two slopes one where their errors are large.
+        (square(z) - 2.0 * r * z * other + square(other)) / (1.0 - r * r).max(Real::EPSILON)
+    }
+}
+
+fn square(x: Real) -> Real {
+    x * x
+}

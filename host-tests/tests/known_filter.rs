@@ -180,7 +180,8 @@ fn what_is_no_filter_is_refused() {
 #[test]
 fn harmonics_are_said_as_one_comb() {
     let folder = TempDir::new().unwrap();
-    let sines = [6.1, 12.2, 18.3].map(|f| format!("sinusoid:frequency_hz={f},amplitude=0.03"));
+    let sines = [(6.1, 0.06), (12.2, 0.03), (18.3, 0.02)];
+    let sines = sines.map(|(f, a)| format!("sinusoid:frequency_hz={f},amplitude={a}"));
     let effects = sines.iter().flat_map(|sine| ["--effect", sine]);
     let simulate = [
         "simulate",

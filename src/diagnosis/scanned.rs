@@ -88,8 +88,8 @@ impl<const K: usize, const B: usize> Scanning<K, B> {
 
 /// The place that an effect would have in a model: that of the effect that it replaces, or the first
 /// one behind the others. `None` for an effect that would add nothing. Such an effect has a fixed shape
-/// and is in the model already, or replaces an effect that the model lacks, or shares its Allan
-/// variance with another effect of the catalogue.
+/// and is in the model already, or replaces an effect that the model lacks or of which a known effect has
+/// the place, or shares its Allan variance with another effect of the catalogue.
 pub(crate) fn place<const K: usize, const B: usize>(
     problem: &Problem<'_, K, B>,
     effect: &'static dyn Effect,
@@ -99,7 +99,15 @@ pub(crate) fn place<const K: usize, const B: usize>(
     if effect.mirror().is_some() || (present && effect.parameters().is_empty()) {
         return None;
     }
+    let has_known = |replaced: &dyn Effect| {
+        let mut known = model.terms().iter().filter(|term| !term.fitted);
+        known.any(|term| {
+            let other = term.effect.replaces();
+            other.is_some_and(|other| other.name() == replaced.name())
+        })
+    };
     match effect.replaces() {
+        Some(replaced) if has_known(replaced) => None,
         Some(replaced) => model.position(replaced.name()),
         None => Some(problem.count()),
     }

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     Curve, Model, Term,
-    effect::{CATALOGUE, Effect, GaussMarkov, SampledShape, Sinusoid},
+    effect::{CATALOGUE, Effect, GaussMarkov, LowPass, SampledShape, Sinusoid},
     fit::{Problem, Start, Tolerance, Work},
     real::{Real, double, real},
 };
@@ -281,4 +281,28 @@ fn an_addition_that_the_model_does_not_need_is_dropped() {
     assert_eq!(fitted.model.terms().len(), 6);
     // One that lowers the score by more than is asked for stays as well.
     assert!(dropping.dropped(-100.0).is_none());
+}
+
+#[test]
+fn a_known_filter_is_neither_missed_nor_dropped_nor_named_twice() {
+    let filter = [0.02, 2.0];
+    // The curve has white noise beside the filtered noise, as it would come from behind the filter.
+    let curve = curve(&LowPass, filter, 2.5e-5);
+    let mut model = Model::ieee_952();
+    let known = Term::known(&LowPass, filter);
+    model.put(known).unwrap();
+    let options = Options::default();
+    let mut diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &CATALOGUE, options);
+    let mut named = std::vec::Vec::new();
+    let verdict = diagnosis.run(|step| {
+        let same = |term: &Term| term.effect.name() == "low_pass";
+        let mut filters = step.model.terms().iter().filter(|term| same(term));
+        assert_eq!(filters.next().map(|term| term.parameters), Some(filter));
+        assert!(filters.next().is_none(), "{:?}", step.model);
+        if let Some(Addition::Effect(term)) = step.added {
+            named.push(term.effect.name());
+        }
+    });
+    assert_eq!(verdict, Ok(Verdict::Improved));
+    assert_eq!(named, ["angle_random_walk"]);
 }

@@ -145,3 +145,24 @@ fn the_variance_of_a_model_is_the_sum_over_its_effects() {
     let off = double(found) / expected - 1.0;
     assert!(off.abs() < double(by_precision(1e-12, 1e-5)), "{off:e}");
 }
+
+#[test]
+fn a_known_filter_takes_the_place_of_the_white_noise() {
+    let mut model = Model::ieee_952();
+    let filter = Term::known(&LowPass, [0.004, 2.0]);
+    assert_eq!(model.put(filter), Ok(()));
+    let expected = [FIVE[0], "low_pass", FIVE[2], FIVE[3], FIVE[4]];
+    assert_names(&model, &expected);
+    let known = model.terms()[1];
+    assert_eq!(
+        (known.parameters, known.fitted, known.held),
+        ([0.004, 2.0], false, false)
+    );
+    // A second filter has nothing to replace.
+    assert_eq!(
+        model.put(Term::known(&DecimationFilter, [0.02, 1.0])),
+        Ok(())
+    );
+    assert_eq!(model.position("decimation_filter"), Some(5));
+    assert_eq!(model.terms().len(), 6);
+}

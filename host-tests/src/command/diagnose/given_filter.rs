@@ -24,7 +24,8 @@ impl Better {
     /// the five terms without the filter; it may add one effect more, since the filter counts as one.
     ///
     /// The given filter is refuted if the other diagnosis ends with another shape of the filter, outside of its
-    /// interval, and with a score that is better by the threshold for an effect.
+    /// interval, and with a score that is better by the threshold for an effect. If it needs fewer effects beside its
+    /// filter, these imitate what is wrong with the given one, and a score that is as good is enough.
     ///
     /// # Errors
     /// As of a diagnosis.
@@ -49,8 +50,20 @@ impl Better {
         };
         let terms = best.model.terms().iter().enumerate();
         let found = terms.clone().find(|(_, term)| is_filter(term.effect));
+        let beside = |last: &Step<OCTAVES, BINS>| {
+            let filters = last
+                .model
+                .terms()
+                .iter()
+                .filter(|term| is_filter(term.effect));
+            last.model.terms().len() - filters.count()
+        };
+        let needed = match beside(best) < beside(last) {
+            true => 0.0,
+            false => options.threshold,
+        };
         let refuted = found.is_none_or(|(at, term)| is_other(term, &best.fit, at, given))
-            && improvement(&last.fit, &best.fit) >= options.threshold;
+            && improvement(&last.fit, &best.fit) >= needed;
         Ok(refuted.then_some(Self {
             filter: found.map(|(_, term)| *term),
             chi_squared: best.fit.chi_squared,

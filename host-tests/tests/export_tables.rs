@@ -58,10 +58,9 @@ fn csv_files_of_spectrum_and_course_stand_beside_that_of_the_curve() {
         assert!(close(number(2), radians * key(bin, "density").sqrt()));
         assert!(close(number(4), radians * key(bin, "expected").sqrt()));
         let off = number(5) - key(bin, "z");
-        assert!(
-            off.abs() < 1e-6 * (1.0 + number(5).abs()),
-            "{row:?}: {off:e}"
-        );
+        // A fit and a diagnosis stop at weights that differ by less than this.
+        let most = 1e-3 * (1.0 + number(5).abs());
+        assert!(off.abs() < most, "{row:?}: {off:e}");
         // Steady Gaussian noise: half of 1/√n, with an error of the kurtosis.
         let ratio = number(3) / number(2) * 2.0 * (18.0 / 19.0 * number(6)).sqrt();
         assert!((0.5..2.0).contains(&ratio), "{row:?}");

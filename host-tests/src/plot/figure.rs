@@ -170,3 +170,39 @@ fn colour(effect: &dyn Effect) -> usize {
     let mut effects = CATALOGUE.iter().filter(own);
     effects.position(|other| other.name() == name).unwrap_or(0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_of_a_density_is_that_of_the_mean_of_its_segments() {
+        // Powers of segments, most of them small and a few large, as in a record with bursts.
+        let powers: Vec<f64> = (0..40)
+            .map(|k| {
+                if k % 9 == 0 {
+                    7.0
+                } else {
+                    0.5 + 0.03 * f64::from(k)
+                }
+            })
+            .collect();
+        let n = powers.len() as f64;
+        let (sum, squares) = powers.iter().fold((0.0, 0.0), |(sum, squares), power| {
+            (sum + power, squares + power * power)
+        });
+        let bin = Bin {
+            block: 1,
+            index: 4,
+            frequency_hz: 6.25,
+            density: sum / n,
+            segments: 40,
+            spectral_kurtosis: (n + 1.0) / (n - 1.0) * (n * squares / (sum * sum) - 1.0),
+        };
+        let deviations = powers.iter().map(|power| (power - sum / n).powi(2));
+        let variance = deviations.sum::<f64>() / (n - 1.0);
+        // Segments that overlap by half count as 18/19 of as many that do not.
+        let error = (variance / (n * 18.0 / 19.0)).sqrt() / (sum / n);
+        assert!((relative_error(&bin) / error - 1.0).abs() < 1e-12);
+    }
+}

@@ -3,6 +3,7 @@
 use super::{
     given_filter::Better,
     lines::{self, Line, comb_notes},
+    stationarity::Stationarity,
 };
 use crate::{
     comb::Comb,
@@ -18,7 +19,7 @@ use crate::{
 };
 use allanite::{
     Curve, Error, Model, Observed, Scale, Term,
-    course::{Course, Event, What, analyse},
+    course::Course,
     covariate,
     covariate::{CrossCurve, Pair},
     detection::{Detection, Limit, Ranges},
@@ -26,7 +27,6 @@ use allanite::{
         Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
     },
     effect::CATALOGUE,
-    fit,
     spectrum::Spectrum,
 };
 use clap::Args;
@@ -34,12 +34,6 @@ use std::path::{Path, PathBuf};
 
 /// What a p-value is worth after an effect was chosen.
 const SELECTED: &str = "the last p-value takes the added effects for known: they were the best of many, so it is too high";
-
-/// A change of the noise by less than this share of it changes the coefficients by no more. Chosen by hand.
-const SLIGHT: f64 = 0.05;
-
-/// What events mean for the coefficients.
-const NOT_STATIONARY: &str = "the record is not stationary: its coefficients are those of a mixture, so leave out the disturbed part or record again";
 
 /// The input of a diagnosis and its settings.
 #[derive(Debug, Args)]
@@ -98,9 +92,8 @@ pub(crate) struct Diagnosed {
     pub(crate) better: Option<Better>,
     /// The sizes of effects that the record would have shown. Empty unless the last model is adequate.
     pub(crate) limits: Vec<Limit>,
-    /// What happened during the record. Empty for a curve file, which has no course, and for a record that is not
-    /// valid.
-    pub(crate) events: Vec<Event>,
+    /// What happened during the record.
+    pub(crate) stationarity: Stationarity,
     /// The sinusoids of the last model, and those of them that are harmonics of one fundamental.
     pub(crate) lines: Vec<Line>,
     pub(crate) combs: Vec<Comb>,
@@ -170,7 +163,7 @@ impl Diagnosed {
             verdict,
             better,
             limits: Vec::new(),
-            events: Vec::new(),
+            stationarity: Stationarity::default(),
             lines: Vec::new(),
             combs: Vec::new(),
             course: None,
@@ -187,22 +180,21 @@ impl Diagnosed {
         diagnosed.combs = lines::combs(&diagnosed.lines, diagnosed.axis.rate_hz);
         diagnosed.tried = diagnosed.tried_in_last()?;
         if let Some(course) = course {
-            diagnosed.events = diagnosed.events_in(&course)?;
+            diagnosed.stationarity = diagnosed.stationarity_in(&course)?;
             diagnosed.course = Some(course);
         }
         Ok(diagnosed)
     }
 
     /// What happened during the record, beside the noise of the last model.
-    fn events_in(&self, course: &Course) -> Result<Vec<Event>, Error> {
+    fn stationarity_in(&self, course: &Course) -> Result<Stationarity, Error> {
         let valid = !matches!(self.verdict, Verdict::Invalid(_) | Verdict::TooShort);
         let Some(last) = self.steps.last().filter(|_| valid) else {
-            return Ok(Vec::new());
+            return Ok(Stationarity::default());
         };
         let scale = Scale::new(self.axis.rate_per_count, self.axis.rate_hz)?;
         let (curve, _) = self.observed_in(last)?;
-        let analysis = analyse(&curve, &last.model, course, scale, fit::Options::default())?;
-        Ok(analysis.events.iter().copied().collect())
+        Stationarity::of(course, scale, &curve, &last.model)
     }
 
     /// The evidence beside the curve that covariates give.
@@ -262,6 +254,16 @@ impl Diagnosed {
             followed.correct(&self.evidence(), &mut curve, &mut spectrum);
         }
         Ok((curve, spectrum))
+    }
+
+    /// The verdict, as it is written in files. That of a record in which something happened is `not_stationary`,
+    /// whether its curve is explained or not.
+    pub(crate) fn verdict_name(&self) -> &'static str {
+        if self.stationarity.is_disturbed() {
+            "not_stationary"
+        } else {
+            self.verdict.name()
+        }
     }
 
     /// The first step, which has the five terms, and the last one.
@@ -386,17 +388,7 @@ impl Diagnosed {
             Some(reason) => notes.push(reason),
             None => notes.extend(rounding::note(&self.axis, &last.fit)),
         }
-        notes.extend(
-            self.events
-                .iter()
-                .map(|event| words::event(event, self.axis.unit)),
-        );
-        let is_slight = |event: &Event| {
-            matches!(event.what, What::NoiseChange) && (event.size - 1.0).abs() < SLIGHT
-        };
-        if !self.events.iter().all(is_slight) {
-            notes.push(NOT_STATIONARY.into());
-        }
+        notes.extend(self.stationarity.notes(self.axis.unit));
         let tried = self.tried.iter();
         notes.extend(tried.map(|tried| format!("tried {}", tried.words(self.axis.unit))));
         for (added, others) in self.ambiguous() {
@@ -412,7 +404,8 @@ impl Diagnosed {
         }
         notes.extend(words::widened(&last.fit));
         if self.missing().count() > 0 {
-            notes.extend(words::damage(first, last, self.axis.unit));
+            let [before, after] = [first, last].map(|step| (&step.model, &step.fit));
+            notes.extend(words::damage(before, after, self.axis.unit));
         }
         let aliases = self
             .added()

@@ -203,7 +203,7 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             .motion
             .iter()
             .map(motion)
-            .chain(diagnosed.events.iter().map(event))
+            .chain(diagnosed.stationarity.events.iter().map(event))
             .collect(),
         lines: diagnosed.lines.iter().map(line).collect(),
         combs: diagnosed.combs.iter().map(harmonics).collect(),
@@ -212,7 +212,7 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             .iter()
             .map(TriedCovariate::document)
             .collect(),
-        verdict: diagnosed.verdict.name(),
+        verdict: diagnosed.verdict_name(),
         missing: diagnosed.missing().collect(),
         ambiguous: names,
         detection_limits: limits(diagnosed),

@@ -66,7 +66,7 @@ impl<'a> Pictures<'a> {
             at_s: motion.at_s,
             words: "motion".into(),
         });
-        let events = motion.chain(self.diagnosed.events.iter().map(|event| Mark {
+        let events = motion.chain(self.diagnosed.stationarity.events.iter().map(|event| Mark {
             at_s: event.at_s,
             words: words::brief_event(event, axis.unit),
         }));

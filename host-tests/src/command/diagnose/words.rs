@@ -249,8 +249,19 @@ fn missing(diagnosed: &Diagnosed) -> Vec<String> {
     covariate.into_iter().chain(combs).chain(single).collect()
 }
 
-/// The result of the diagnosis in a sentence.
+/// The result of the diagnosis in a sentence. What happened during the record comes first.
 pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
+    let of_curve = verdict_on_curve(diagnosed);
+    let stationarity = &diagnosed.stationarity;
+    let strongest = stationarity.strongest(diagnosed.axis.unit);
+    match strongest.filter(|_| stationarity.is_disturbed()) {
+        Some(event) => format!("the record is not stationary ({event}); {of_curve}"),
+        None => of_curve,
+    }
+}
+
+/// What the diagnosis says of the curve and the spectrum.
+fn verdict_on_curve(diagnosed: &Diagnosed) -> String {
     let Some((first, last)) = diagnosed.ends() else {
         return String::new();
     };
@@ -259,6 +270,9 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
     match diagnosed.verdict {
         Verdict::Invalid(reason) => {
             format!("no effect was looked for, because the curve is not valid: {reason}.")
+        }
+        Verdict::Adequate if diagnosed.stationarity.is_disturbed() => {
+            format!("its curve looks like that of the {terms} (p {p}), which stand for a mixture.")
         }
         Verdict::Adequate => format!("the {terms} are adequate (p {p}): no effect is missing."),
         Verdict::TooShort => {

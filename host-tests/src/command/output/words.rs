@@ -5,14 +5,13 @@ use super::{
     units,
 };
 use crate::{
-    log::{BINS, Motion, OCTAVES},
+    log::Motion,
     unit::{Sensor, Unit},
 };
 use allanite::{
-    Coefficient, Term,
+    Coefficient, Model, Term,
     course::{Event, What},
     detection::Range,
-    diagnosis::Step,
     effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
     fit::{Fit, State},
     integrity::Reason,
@@ -263,22 +262,19 @@ pub(crate) fn widened(fit: &Fit) -> Option<String> {
     })
 }
 
-/// How the coefficients of the first step were wrong because effects were missing from its model.
-pub(crate) fn damage(
-    first: &Step<OCTAVES, BINS>,
-    last: &Step<OCTAVES, BINS>,
+/// How the coefficients of one model were wrong, and are right in another one.
+pub(crate) fn damage<'a>(
+    before: (&'a Model, &'a Fit),
+    after: (&'a Model, &'a Fit),
     unit: Unit,
 ) -> Vec<String> {
-    let before = first.model.terms().iter().zip(&first.fit.coefficients);
-    let same = |name: &str| {
-        let mut after = last.model.terms().iter().zip(&last.fit.coefficients);
-        after.find(|(term, _)| term.effect.coefficient() == name)
-    };
+    let terms = |(model, fit): (&'a Model, &'a Fit)| model.terms().iter().zip(&fit.coefficients);
     let sentence = |(term, was): (&Term, &Coefficient)| {
-        let (_, is) = same(term.effect.coefficient())?;
-        changed(&of_sensor(term.effect.coefficient(), unit), was, is, unit)
+        let name = term.effect.coefficient();
+        let (_, is) = terms(after).find(|(term, _)| term.effect.coefficient() == name)?;
+        changed(&of_sensor(name, unit), was, is, unit)
     };
-    before.filter_map(sentence).collect()
+    terms(before).filter_map(sentence).collect()
 }
 
 fn changed(name: &str, was: &Coefficient, is: &Coefficient, unit: Unit) -> Option<String> {

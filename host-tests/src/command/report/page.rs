@@ -97,6 +97,7 @@ fn summary(diagnosed: &[Diagnosed]) -> Markup {
 /// The class of the verdict in CSS, and the verdict in a few words.
 fn badge(diagnosed: &Diagnosed) -> (&'static str, &'static str) {
     match diagnosed.verdict {
+        _ if diagnosed.stationarity.is_disturbed() => ("open", "not stationary"),
         Verdict::Adequate => ("good", "five terms suffice"),
         Verdict::Improved => ("found", "effects found"),
         Verdict::Incomplete => ("open", "effects found, part unexplained"),

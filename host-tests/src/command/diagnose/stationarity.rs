@@ -1,0 +1,113 @@
+//! Whether the record is stationary: what happened during it, and what that did to the coefficients.
+
+use crate::{
+    command::output::words::{self, damage},
+    log::OCTAVES,
+    unit::Unit,
+};
+use allanite::{
+    Curve, Error, Model, Scale,
+    course::{Course, Event, What, analyse},
+    fit::{Fit, Options, fit},
+};
+
+/// A change of the noise by less than this share of it changes the coefficients by no more. Chosen by hand.
+const SLIGHT: f64 = 0.05;
+
+/// What events mean for the coefficients.
+const NOT_STATIONARY: &str = "the record is not stationary: its coefficients are those of a mixture, so leave out the disturbed part or record again";
+
+/// What happened during a record.
+#[derive(Default)]
+pub(crate) struct Stationarity {
+    /// The events, the earliest first. Empty for a curve file, which has no course, and for a record that is not
+    /// valid.
+    pub(crate) events: Vec<Event>,
+    /// The curve with and without what steps and a warm-up add to it, if there were any.
+    pub(crate) shifted: Option<Shifted>,
+}
+
+/// The fits of a model to the octaves of a record in which the mean rate changed.
+pub(crate) struct Shifted {
+    model: Model,
+    /// As the record is.
+    pub(crate) with: Fit,
+    /// Without what the steps and the warm-up add to the curve.
+    pub(crate) without: Fit,
+}
+
+impl Stationarity {
+    /// Looks for events beside the noise of a model.
+    ///
+    /// # Errors
+    /// When the curve cannot be fitted.
+    pub(super) fn of(
+        course: &Course,
+        scale: Scale,
+        curve: &Curve<OCTAVES>,
+        model: &Model,
+    ) -> Result<Self, Error> {
+        let options = Options::default();
+        let analysis = analyse(curve, model, course, scale, options)?;
+        let events: Vec<Event> = analysis.events.iter().copied().collect();
+        let is_shift = |event: &Event| matches!(event.what, What::Step | What::WarmUp { .. });
+        let shifted = if events.iter().any(is_shift) {
+            Some(Shifted {
+                model: model.clone(),
+                with: fit(curve, model, options)?,
+                without: analysis.fit,
+            })
+        } else {
+            None
+        };
+        Ok(Self { events, shifted })
+    }
+
+    /// Whether something happened that the coefficients do not stand for.
+    pub(crate) fn is_disturbed(&self) -> bool {
+        let is_slight = |event: &Event| {
+            matches!(event.what, What::NoiseChange) && (event.size - 1.0).abs() < SLIGHT
+        };
+        !self.events.iter().all(is_slight)
+    }
+
+    /// The strongest event, in a sentence.
+    pub(crate) fn strongest(&self, unit: Unit) -> Option<String> {
+        let size = |event: &&Event| event.z.abs();
+        let strongest = self
+            .events
+            .iter()
+            .max_by(|one, other| size(one).total_cmp(&size(other)));
+        strongest.map(|event| words::event(event, unit))
+    }
+
+    /// Notes on the events, one line each.
+    pub(super) fn notes(&self, unit: Unit) -> Vec<String> {
+        let mut notes: Vec<String> = self
+            .events
+            .iter()
+            .map(|event| words::event(event, unit))
+            .collect();
+        if self.is_disturbed() {
+            notes.push(NOT_STATIONARY.into());
+        }
+        if let Some(Shifted {
+            model,
+            with,
+            without,
+        }) = &self.shifted
+        {
+            notes.push(format!(
+                "without the change of the rate, the χ² of the octaves is {:.1} instead of {:.1}",
+                without.chi_squared, with.chi_squared
+            ));
+            let changed = damage((model, with), (model, without), unit);
+            notes.extend(
+                changed
+                    .into_iter()
+                    .map(|changed| format!("because of it, {changed}")),
+            );
+        }
+        notes
+    }
+}

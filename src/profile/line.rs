@@ -58,10 +58,13 @@ pub(crate) fn strongest_peak<const K: usize, const B: usize>(
     let bin_hz = |bin: &Bin| bin.frequency_hz / real(bin.index);
     let mut frequency_hz = middle(bins, at, &excess)? * bin_hz(first);
     let segment = real(problem.observed.spectrum()?.segment());
-    for level in bins.chunk_by(|one, next| one.block == next.block) {
-        let Some(lowest) = level.first().filter(|lowest| lowest.block > first.block) else {
+    // The lowest bin of every longer block.
+    let mut block = first.block;
+    for lowest in bins {
+        if lowest.block <= block {
             continue;
-        };
+        }
+        block = lowest.block;
         let place = frequency_hz / bin_hz(lowest);
         let wrapped = place - segment * math::floor(place / segment + 0.5);
         let alias = wrapped.abs();

@@ -281,9 +281,10 @@ fn one_of_a_temperature_and_its_rate_that_acts_alone_is_named_alone() {
 fn a_spectrum_is_explained_when_what_follows_a_strong_temperature_is_subtracted() {
     const SAMPLES: i32 = 1 << 15;
     let cases = [
-        (Course::WarmUp { time_s: 60.0 }, 1.0),
+        (Course::WarmUp { time_s: 60.0 }, 0.05),
+        (Course::Cycle { period_s: 300.0 }, 0.03),
         (Course::Cycle { period_s: 300.0 }, 0.3),
-        (Course::Cycle { period_s: 40.0 }, 0.1),
+        (Course::Cycle { period_s: 20.0 }, 0.03),
     ];
     for (course, slope) in cases {
         let thermal = thermal(slope, course);

@@ -33,13 +33,19 @@ fn change(folder: &Path, mut disturb: impl FnMut(usize, f64) -> f64) {
     fs::write(path, lines.join("\n")).unwrap();
 }
 
-/// The first column of a log.
-fn rates(folder: &Path) -> Vec<f64> {
+/// The numbers in a column of a log.
+fn column(folder: &Path, column: usize) -> Vec<f64> {
     let text = fs::read_to_string(folder.join("log.csv")).unwrap();
     let cells = text
         .lines()
-        .filter_map(|line| line.split(',').next()?.parse().ok());
+        .filter_map(|line| line.split(',').nth(column)?.parse().ok());
     cells.collect()
+}
+
+/// The mean of every block of a record of 2^16 samples.
+fn means(values: &[f64]) -> Vec<f64> {
+    let mean = |block: &[f64]| block.iter().sum::<f64>() / block.len() as f64;
+    values.chunks(1024).map(mean).collect()
 }
 
 #[test]
@@ -63,11 +69,7 @@ fn the_rate_over_time_has_block_means_a_temperature_and_events() {
     assert!(frames.iter().all(|frame| labels(part, *frame).len() >= 2));
     let dots = dots(part, frames[0]);
     assert_eq!(dots.len(), 64);
-    let rates = rates(folder.path());
-    let means: Vec<f64> = rates
-        .chunks(1024)
-        .map(|block| block.iter().sum::<f64>() / block.len() as f64)
-        .collect();
+    let means = means(&column(folder.path(), 0));
     let (from, to) = (0, 63);
     for (dot, mean) in dots.iter().zip(&means) {
         let share = (dot.1 - dots[from].1) / (dots[to].1 - dots[from].1);
@@ -100,6 +102,64 @@ fn the_rate_over_time_has_block_means_a_temperature_and_events() {
         let x = coordinate(line, "x1");
         assert!((x - expected).abs() < 0.1, "{x} {expected}");
     }
+}
+
+#[test]
+fn a_temperature_is_drawn_in_its_unit_whether_it_was_asked_for_or_not() {
+    let folder = TempDir::new().unwrap();
+    let effect = "thermal:slope=0.001,kelvin=10,period_s=300";
+    simulate(folder.path(), &[effect]);
+    let means = means(&column(folder.path(), 1));
+    let swing = means.iter().copied().fold(f64::MIN, f64::max) - means[0];
+    assert!(swing > 5.0, "{swing}");
+    let options: [&[&str]; 3] = [&[], &["--covariates", "temp_C"], &["--no-covariates"]];
+    for asked in options {
+        let text = drawn(
+            folder.path(),
+            &[&["log.csv", "--what", "rate"], asked].concat(),
+        );
+        let drawing = Document::parse(&text).unwrap();
+        let part = part(&drawing, "rate");
+        let frames = frames(part);
+        if asked == ["--no-covariates"] {
+            assert_eq!(frames.len(), 2, "rate and noise");
+            continue;
+        }
+        assert_eq!(frames.len(), 3, "rate, noise and temperature");
+        let labels = labels(part, frames[2]);
+        let [(low, from), (high, to)] = [labels.first(), labels.last()].map(|label| {
+            let (words, y) = label.unwrap();
+            (words.parse::<f64>().unwrap(), *y)
+        });
+        let dots = dots(part, frames[2]);
+        assert_eq!(dots.len(), 64);
+        for (dot, mean) in dots.iter().zip(&means) {
+            let value = low + (high - low) * (dot.1 - from) / (to - from);
+            assert!((value - mean).abs() < 0.01 * swing, "{value} {mean}");
+        }
+    }
+}
+
+#[test]
+fn motion_is_an_event_of_the_picture() {
+    let folder = TempDir::new().unwrap();
+    simulate(folder.path(), &[]);
+    // From 300 s on the gyro is turned to and fro for 20 s.
+    change(folder.path(), |at, rate| match at {
+        30_000..32_000 => rate + 20.0 * (0.01 * at as f64).sin(),
+        _ => rate,
+    });
+    let text = drawn(folder.path(), &["log.csv", "--what", "rate"]);
+    assert!(text.contains("The curve is not valid: "));
+    let drawing = Document::parse(&text).unwrap();
+    let part = part(&drawing, "rate");
+    let lines = elements(part, "line", "event");
+    assert_eq!(lines.len(), 1);
+    let dots = dots(part, frames(part)[0]);
+    let per_second = (dots[63].0 - dots[0].0) / (63.0 * 10.24);
+    let at_s = 5.12 + (coordinate(&lines[0], "x1") - dots[0].0) / per_second;
+    assert!((at_s - 300.0).abs() < 5.0, "{at_s}");
+    assert!(text.contains(">\nmotion\n<"));
 }
 
 #[test]

@@ -5,9 +5,17 @@ use crate::{
     covariate::CrossCurve, curve::Curve, math, real::Real, real::real, spectrum::Spectrum,
 };
 
-/// The share of a bin's standard error by which a covariate may change what a level sees. Chosen by hand: where ten
-/// bins of a level have this error, χ² rises by 0.4.
-const UNNOTICED: Real = 0.2;
+/// The share of a bin's standard error by which a covariate may change what a level sees. Chosen by hand: a line in
+/// the middle of a bin changes it 3.3 times as much as the octave that ends there, so by a third of its error.
+const UNNOTICED: Real = 0.1;
+
+/// The change of the lowest bin by a ramp of the rate, relative to that of the octave of `8M` samples. With segments of
+/// 64 blocks and Hann's window, `(16/3) (64M)³/(2π · 4 · 15)²` of a density of two, over `(8M)³/2`.
+const LEAKED: Real = 0.02;
+
+/// What an octave of half the averaging factor sees of a change that is slow enough to be seen by the longer octave,
+/// at most: the ratio of the responses `sin⁴u/u²` at `u = 1/2` and 1. It is a quarter for a ramp.
+const SEEN_BY_HALF: Real = 0.42;
 
 impl FollowedCovariate {
     /// Subtracts what follows the covariate from the gyro's curve, and leaves out the levels of the spectrum in which
@@ -18,15 +26,26 @@ impl FollowedCovariate {
     /// are, because the rate does not follow that noise.
     ///
     /// No sums say what a bin has in common with the covariate. A covariate is slow, so that it reaches the levels
-    /// with the longest blocks only, and the octaves take the place of these levels. The level of blocks of `M`
-    /// samples is left out if what follows the covariate exceeds a fifth of a bin's standard error in an octave of
-    /// `2M`, `4M` or `8M` samples: those octaves respond most to the frequencies of the level's lowest bins, and more
-    /// than the bins to what is slower.
+    /// with the longest blocks only, and the octaves take the place of these levels. The frequencies of the level of
+    /// blocks of `M` samples are those of the octaves of `2M`, `4M` and `8M` samples. The level is left out if what
+    /// follows the covariate there, and is not slower, exceeds a tenth of a bin's standard error in one of them, or
+    /// if what leaks into the bins from slower changes does.
     ///
     /// `evidence` is that of the diagnosis that found the covariate.
-    #[inline(never)]
     pub fn correct<const K: usize, const B: usize>(
         &self,
+        evidence: &Evidence<'_, K>,
+        curve: &mut Curve<K>,
+        spectrum: &mut Spectrum<B>,
+    ) {
+        self.correct_up_to(Real::INFINITY, evidence, curve, spectrum);
+    }
+
+    /// As [`correct`](Self::correct), where at most `most` times the rest of an octave is added back.
+    #[inline(never)]
+    pub(super) fn correct_up_to<const K: usize, const B: usize>(
+        &self,
+        most: Real,
         evidence: &Evidence<'_, K>,
         curve: &mut Curve<K>,
         spectrum: &mut Spectrum<B>,
@@ -40,13 +59,15 @@ impl FollowedCovariate {
         });
         let others = beside.map_or(0, |(_, other, _)| other.first_octave());
         let first = one.first_octave().max(others);
-        // What follows the covariates in an octave, and what their slopes' errors take away.
+        // What follows the covariates in an octave and is subtracted, what their slopes' errors take away, and the
+        // Allan variance of what follows.
         let shares = |k: usize| {
             let at = |cross: &CrossCurve<K>| cross.points().get(k).copied();
             let point = at(one)?;
             let (slope, error) = (self.slope.value, self.slope.error);
             let mut follows = slope * (2.0 * point.covariance - slope * point.variance);
             let mut taken = error * error * point.variance;
+            let mut power = slope * slope * point.variance;
             if let Some((beside, other, pair)) = beside {
                 let (other, shared) = (at(other)?, at(&pair.shared)?.covariance);
                 let (beside_slope, beside_error) = (beside.slope.value, beside.slope.error);
@@ -54,25 +75,31 @@ impl FollowedCovariate {
                 follows -= 2.0 * slope * beside_slope * shared;
                 taken += beside_error * beside_error * other.variance;
                 taken += 2.0 * beside.correlation * error * beside_error * shared;
+                power += beside_slope * beside_slope * other.variance;
+                power += 2.0 * slope * beside_slope * shared;
             }
-            (k >= first).then_some((follows, taken))
+            (k >= first).then_some((follows, taken, power))
         };
         curve.change_variances(|k, variance| match shares(k) {
-            Some((follows, taken)) => {
+            Some((follows, taken, _)) => {
                 // The rest is a mean square. Only rounding makes it negative.
-                (variance - follows).max(variance * Real::EPSILON) + taken
+                let rest = (variance - follows).max(variance * Real::EPSILON);
+                rest + taken.min(most * rest)
             }
             None => variance,
         });
         let touched = spectrum.levels().find_map(|level| {
             let lowest = level.first()?;
-            let most = UNNOTICED / math::sqrt(real(lowest.segments));
+            let unnoticed = UNNOTICED / math::sqrt(real(lowest.segments));
             let octaves = (0..K).zip(curve.points());
             let mut near = octaves.filter(|(_, point)| {
                 point.m > lowest.block && point.m <= lowest.block.saturating_mul(8)
             });
+            let power = |k: usize| shares(k).map_or(0.0, |(_, _, power)| power);
             let is_touched = near.any(|(k, point)| {
-                shares(k).is_some_and(|(follows, _)| follows.abs() > most * point.variance)
+                let (own, longer) = (power(k), power(k.saturating_add(1)));
+                let change = (own - SEEN_BY_HALF * longer).max(LEAKED * own);
+                change > unnoticed * point.variance
             });
             is_touched.then_some(lowest.block)
         });

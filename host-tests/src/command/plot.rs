@@ -167,6 +167,7 @@ fn drawing(diagnosed: &Diagnosed, arguments: &Arguments) -> Result<Drawing, Fail
         unit: axis.unit,
         figures: frames
             .map(|frame| (pictures.figure(step, &frame), frame))
+            .filter(|(figure, _)| !figure.measured.x.is_empty())
             .collect(),
         course: pictures.course().filter(|_| wanted(What::Rate)),
     };

@@ -105,9 +105,15 @@ impl Quantity {
         }
     }
 
-    /// The sum of the squared residuals of a comparison.
-    pub fn squared_error(self, comparison: &Comparison<OCTAVES, BINS>) -> f64 {
-        let rows = self.rows(comparison).into_iter();
+    /// The sum of the squared residuals of a comparison, in those octaves or bins that another one has as well.
+    pub fn squared_error(
+        self,
+        comparison: &Comparison<OCTAVES, BINS>,
+        other: &Comparison<OCTAVES, BINS>,
+    ) -> f64 {
+        let others = self.rows(other);
+        let is_in_both = |row: &Row| others.iter().any(|other| other.x == row.x);
+        let rows = self.rows(comparison).into_iter().filter(is_in_both);
         rows.map(|row| row.z * row.z).sum()
     }
 }

@@ -45,11 +45,14 @@ impl<'a> Pictures<'a> {
 
     /// The figure of a step, or of a candidate.
     pub(crate) fn figure(&self, step: &Step<OCTAVES, BINS>, frame: &Frame) -> Figure {
+        // The levels of the spectrum that a covariate reaches are left out of the step.
+        let observed = self.diagnosed.observed_in(step);
+        let spectrum = observed.map_or(Spectrum::EMPTY, |(_, spectrum)| spectrum);
         let view = View {
             model: &step.model,
             fit: &step.fit,
             comparison: &step.comparison,
-            spectrum: &self.spectrum,
+            spectrum: &spectrum,
             errors: &self.errors,
             interval_s: 1.0 / self.diagnosed.axis.rate_hz,
         };

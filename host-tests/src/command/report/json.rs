@@ -301,7 +301,10 @@ impl Shared<'_> {
             }
         });
         let falls = self.frames.iter().map(|frame| {
-            let error = |step: &Step<OCTAVES, BINS>| frame.quantity.squared_error(&step.comparison);
+            let error = |of: &Step<OCTAVES, BINS>| {
+                let quantity = frame.quantity;
+                quantity.squared_error(&of.comparison, &step.comparison)
+            };
             before.map_or(0.0, error) - error(step)
         });
         let largest = falls.map(f64::abs).enumerate();

@@ -183,7 +183,7 @@ fn shapes(name: &str) -> &'static [[f64; MAX_PARAMETERS]] {
             [0.008, 2.0],
             [0.02, 3.0],
             [0.012, 4.0],
-            [0.03, 4.0],
+            [0.006, 4.0],
         ],
         "notch" => &[[20.0, 2.0], [8.0, 4.0], [33.0, 1.5], [3.0, 3.0]],
         "decimation_filter" => &[[0.03, 1.0], [0.03, 2.0], [0.1, 2.0]],
@@ -205,7 +205,7 @@ fn shape(parameters: [f64; MAX_PARAMETERS]) -> SampledShape {
 /// seven digits of the largest terms. With the frequency of a sinusoid, its density changes by 5e-4.
 fn is_rounding(off: f64, density: f64, largest: f64, length: usize) -> bool {
     let (own, shared) = if length <= 64 {
-        (by_precision(1e-8, 6e-4), by_precision(1e-12, 2e-7))
+        (by_precision(1e-8, 6e-4), by_precision(1e-12, 4e-7))
     } else {
         (by_precision(1e-8, 1e-3), by_precision(1e-12, 1e-4))
     };

@@ -151,10 +151,10 @@ mod tests {
             let terms = pairs.map(|(k, l)| inverse[i][k] * m[k][l] * inverse[l][j]);
             terms.iter().sum::<Real>()
         };
-        for i in 0..2 {
+        for (i, (slope, true_slope)) in found.slopes.iter().zip(true_slopes).enumerate() {
             let error: Real = covariance(i, i).sqrt();
-            assert!((found.slopes[i].value - true_slopes[i]).abs() < 1e-5);
-            assert!((found.slopes[i].error / error - 1.0).abs() < 1e-5);
+            assert!((slope.value - true_slope).abs() < 1e-5);
+            assert!((slope.error / error - 1.0).abs() < 1e-5);
         }
         let correlation = covariance(0, 1) / (covariance(0, 0) * covariance(1, 1)).sqrt();
         assert!((found.correlation - correlation).abs() < 1e-5);

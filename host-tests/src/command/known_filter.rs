@@ -2,7 +2,7 @@
 
 use super::{
     effect_argument::EffectArgument,
-    output::words::{article, plain, shape},
+    output::words::{article, parameters, plain, shape},
 };
 use crate::failure::Failure;
 use allanite::{
@@ -10,6 +10,8 @@ use allanite::{
     effect::{AngleRandomWalk, CATALOGUE, Effect},
 };
 use clap::Args;
+use serde::Serialize;
+use serde_json::{Map, Value};
 
 /// The option for a filter that is known.
 #[derive(Clone, Debug, Default, Args)]
@@ -37,10 +39,10 @@ impl KnownFilter {
                 let remedy = format!("choose from {}", filters.join(", "));
                 return Err(argument.failure("is no filter on white noise", &remedy));
             }
-            let parameters = argument.shape(effect)?;
+            let known = Term::known(effect, argument.shape(effect)?);
             argument.finish()?;
             // A filter takes the place of a term, so that there is always room.
-            let _ = model.put(Term::known(effect, parameters));
+            let _ = model.put(known);
         }
         Ok(model)
     }
@@ -73,4 +75,24 @@ pub(crate) fn described(term: &Term) -> String {
         plain(term.effect.name()),
         shape(term, None)
     )
+}
+
+/// An effect and its shape, as JSON documents have it.
+#[derive(Serialize)]
+pub(crate) struct Shape {
+    effect: &'static str,
+    parameters: Map<String, Value>,
+}
+
+impl Shape {
+    /// The shape of a term.
+    pub(crate) fn of(term: &Term) -> Self {
+        let named = parameters(term, None).into_iter();
+        Self {
+            effect: term.effect.name(),
+            parameters: named
+                .map(|(name, value)| (name.to_owned(), Value::from(value)))
+                .collect(),
+        }
+    }
 }

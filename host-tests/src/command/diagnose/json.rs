@@ -9,7 +9,8 @@ use crate::{
     comb::Comb,
     command::{
         fit,
-        output::model_json::{self, Effect, Shape, Worst},
+        known_filter::Shape,
+        output::model_json::{self, Effect, Worst},
         tried::{self, TriedCovariate},
     },
     log::{BINS, Motion, OCTAVES},
@@ -244,11 +245,11 @@ fn harmonics(comb: &Comb) -> Harmonics {
 fn filter(given: &Term, diagnosed: &Diagnosed) -> Filter {
     let better = diagnosed.better.as_ref();
     Filter {
-        given: model_json::shape(given),
+        given: Shape::of(given),
         fits: better.is_none(),
         better: better
             .and_then(|better| better.filter.as_ref())
-            .map(model_json::shape),
+            .map(Shape::of),
     }
 }
 

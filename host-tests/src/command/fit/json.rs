@@ -3,11 +3,8 @@
 use super::fitted::Fitted;
 use crate::{
     command::{
-        known_filter::known_filter,
-        output::{
-            model_json::{self, Shape},
-            rounding, units,
-        },
+        known_filter::{Shape, known_filter},
+        output::{rounding, units},
         tried::{self, TriedCovariate},
     },
     unit::Unit,
@@ -97,7 +94,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
             })
             .collect(),
         method: method.name(),
-        filter: known_filter(model).map(model_json::shape),
+        filter: known_filter(model).map(Shape::of),
         coefficients: fit
             .coefficients
             .iter()

@@ -85,24 +85,6 @@ pub(crate) fn detection_range(range: &Range, unit: Unit) -> DetectionRange {
     }
 }
 
-/// An effect and its shape, without a coefficient.
-#[derive(Serialize)]
-pub(crate) struct Shape {
-    effect: &'static str,
-    parameters: Map<String, Value>,
-}
-
-/// The shape of a term.
-pub(crate) fn shape(term: &Term) -> Shape {
-    let parameters = words::parameters(term, None).into_iter();
-    Shape {
-        effect: term.effect.name(),
-        parameters: parameters
-            .map(|(name, value)| (name.to_owned(), Value::from(value)))
-            .collect(),
-    }
-}
-
 /// The shape and the coefficient of a term by name; numbers that are not finite are `null`.
 pub(crate) fn parameters(term: &Term, coefficient: f64) -> Map<String, Value> {
     words::parameters(term, Some(coefficient))

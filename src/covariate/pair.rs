@@ -152,11 +152,12 @@ mod tests {
             terms.iter().sum::<Real>()
         };
         for (i, (slope, true_slope)) in found.slopes.iter().zip(true_slopes).enumerate() {
-            let error: Real = covariance(i, i).sqrt();
+            let error = math::sqrt(covariance(i, i));
             assert!((slope.value - true_slope).abs() < 1e-5);
             assert!((slope.error / error - 1.0).abs() < 1e-5);
         }
-        let correlation = covariance(0, 1) / (covariance(0, 0) * covariance(1, 1)).sqrt();
+        let variances = covariance(0, 0) * covariance(1, 1);
+        let correlation = covariance(0, 1) / math::sqrt(variances);
         assert!((found.correlation - correlation).abs() < 1e-5);
         assert!(Slopes::solve(products, informations, 9.9999, factors).is_none());
     }

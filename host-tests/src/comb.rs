@@ -70,9 +70,13 @@ pub fn combs(lines: &[Line], rate_hz: f64) -> Vec<Comb> {
                 .map(move |fundamental_hz| (seed, fundamental_hz))
         });
         let found = all.filter_map(|(seed, f)| comb(lines, &rest, seed, f, rate_hz));
-        // Among combs of as many lines, the one with the lower harmonics is the simpler one.
+        // Among combs of as many lines, the one with the lower harmonics is the simpler one. A frequency and its alias
+        // have the same harmonics, and then that of the mains is the likelier one.
         let order = |comb: &Comb| comb.members.iter().map(|(_, order)| *order).max();
-        let best = found.min_by_key(|comb| (usize::MAX - comb.members.len(), order(comb)));
+        let best = found.min_by_key(|comb| {
+            let more = usize::MAX - comb.members.len();
+            (more, order(comb), comb.mains_hz.is_none())
+        });
         let Some(best) = best else {
             return combs;
         };

@@ -68,9 +68,9 @@ fn effect_takes_the_place_of_what_it_replaces() {
             .collect();
         let expected = [
             "quantization",
+            "decimation_filter",
             "bias_instability",
             "rate_random_walk",
-            "decimation_filter",
         ];
         assert_eq!(names, expected);
     }

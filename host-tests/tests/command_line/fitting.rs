@@ -19,6 +19,7 @@ fn fit_prints_the_documented_json() {
         assert_eq!((axis.rate_hz, axis.unit.as_str()), (100.0, "deg/s"));
         assert_eq!(axis.method, "covariance");
         assert!(axis.birge_ratio >= 1.0 && axis.notes.is_empty());
+        assert!(axis.invalid.is_none() && axis.covariates.is_empty());
         assert_eq!(axis.octaves[0].differences, 19_999);
         for (k, octave) in axis.octaves.iter().enumerate() {
             assert_eq!(

@@ -52,6 +52,8 @@ struct Axis {
     dof: Option<u32>,
     p_value: Option<f64>,
     birge_ratio: f64,
+    invalid: Option<String>,
+    covariates: Vec<serde_json::Value>,
     notes: Vec<String>,
 }
 

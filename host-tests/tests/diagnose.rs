@@ -225,7 +225,7 @@ fn json_has_the_documented_fields_and_no_others() {
     let axis = &document["axes"][2];
     assert_eq!(
         keys(axis),
-        "ambiguous axis detection_limits events missing notes spectrum steps verdict"
+        "ambiguous axis covariates detection_limits events missing notes spectrum steps verdict"
     );
     assert_eq!(
         keys(&axis["spectrum"][0]),

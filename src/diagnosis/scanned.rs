@@ -89,13 +89,17 @@ impl<const K: usize, const B: usize> Scanning<K, B> {
 /// The place that an effect would have in a model: that of the effect that it replaces, or the first
 /// one behind the others. `None` for an effect that would add nothing. Such an effect has a fixed shape
 /// and is in the model already, or replaces an effect that the model lacks or of which a known effect has
-/// the place, or shares its Allan variance with another effect of the catalogue.
+/// the place, or shares its Allan variance with another effect of the catalogue, or needs a spectrum that there is
+/// not.
 pub(crate) fn place<const K: usize, const B: usize>(
     problem: &Problem<'_, K, B>,
     effect: &'static dyn Effect,
 ) -> Option<usize> {
     let model = problem.model;
     let present = model.position(effect.name()).is_some();
+    if effect.needs_spectrum() && problem.observed.spectrum().is_none() {
+        return None;
+    }
     if effect.mirror().is_some() || (present && effect.parameters().is_empty()) {
         return None;
     }

@@ -147,6 +147,12 @@ pub trait Effect: Sync {
     /// Name, parameters, unit and relations of the effect.
     fn description(&self) -> &'static Description;
 
+    /// Whether only a spectrum shows the effect. The octaves of a record without one would take it for anything, so that
+    /// a diagnosis does not look for it there. The default is `false`.
+    fn needs_spectrum(&self) -> bool {
+        false
+    }
+
     /// The generalised covariance `G(n)` of the angle, for `lag = n ≥ 0` samples, in s² times the
     /// rate unit squared per coefficient squared. A constant and a multiple of `n²` are free.
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real;

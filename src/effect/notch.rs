@@ -137,6 +137,10 @@ impl Effect for Notch {
         &DESCRIPTION
     }
 
+    fn needs_spectrum(&self) -> bool {
+        true
+    }
+
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
         let filter = Filter::new(shape);
         filter.white * AngleRandomWalk.kernel(lag, shape)

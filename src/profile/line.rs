@@ -20,6 +20,8 @@ const NEARBY: Real = 1.5;
 pub(crate) struct Peak {
     /// The frequency of a line that makes such a peak, in Hz.
     pub(crate) frequency_hz: Real,
+    /// The same without the corrections by longer blocks, in which another line may be at the place of the alias.
+    pub(crate) uncorrected_hz: Real,
     /// The frequency of the lowest bin, in Hz.
     pub(crate) lowest_hz: Real,
 }
@@ -56,7 +58,8 @@ pub(crate) fn strongest_peak<const K: usize, const B: usize>(
     let first = bins.get(at)?;
     // Frequencies are counted in bins of the first level, which is a bin's frequency by its index.
     let bin_hz = |bin: &Bin| bin.frequency_hz / real(bin.index);
-    let mut frequency_hz = middle(bins, at, &excess)? * bin_hz(first);
+    let uncorrected_hz = middle(bins, at, &excess)? * bin_hz(first);
+    let mut frequency_hz = uncorrected_hz;
     let segment = real(problem.observed.spectrum()?.segment());
     // The lowest bin of every longer block.
     let mut block = first.block;
@@ -92,6 +95,7 @@ pub(crate) fn strongest_peak<const K: usize, const B: usize>(
     let frequencies = bins.iter().map(|bin| bin.frequency_hz);
     Some(Peak {
         frequency_hz,
+        uncorrected_hz,
         lowest_hz: frequencies.fold(Real::INFINITY, Real::min),
     })
 }

@@ -37,8 +37,8 @@ const AT_PEAK: u32 = u32::MAX;
 pub(crate) struct GridSearch {
     term: Term,
     grids: [Grid; MAX_PARAMETERS],
-    /// The frequency of a peak, at which the search begins.
-    peak_hz: Option<Real>,
+    /// A peak, at which the search begins.
+    peak: Option<Peak>,
     /// The number of steps of the first parameter that are searched, and the steps among them that are skipped: the
     /// first of them, and the one behind them.
     steps: u32,
@@ -62,7 +62,7 @@ impl GridSearch {
             steps: grids.first().map_or(0, |first| first.steps),
             skipped: (0, 0),
             grids,
-            peak_hz: None,
+            peak: None,
             at: [0; MAX_PARAMETERS],
             minima: Vec::new(),
             best: Found::none(term),
@@ -80,7 +80,7 @@ impl GridSearch {
         let Some(peak) = peak.filter(|_| is_frequency && adds_power) else {
             return self;
         };
-        self.peak_hz = Some(peak.frequency_hz);
+        self.peak = Some(peak);
         let [first, ..] = self.grids;
         let is_line = parameters.len() == 1;
         let factor = if is_line { AROUND } else { AROUND_WIDE };
@@ -120,11 +120,13 @@ impl GridSearch {
             }
         }
         let [first, second] = self.grids;
-        if let Some(peak_hz) = self.peak_hz.take() {
-            for step in 0..second.steps {
-                self.term.parameters = [first.clamp(peak_hz), second.at(step)];
-                let found = evaluation.found(self.term);
-                self.keep(found, AT_PEAK);
+        if let Some(peak) = self.peak.take() {
+            for frequency_hz in [peak.frequency_hz, peak.uncorrected_hz] {
+                for step in 0..second.steps {
+                    self.term.parameters = [first.clamp(frequency_hz), second.at(step)];
+                    let found = evaluation.found(self.term);
+                    self.keep(found, AT_PEAK);
+                }
             }
             return None;
         }

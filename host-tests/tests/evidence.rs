@@ -448,3 +448,44 @@ fn impossible_covariates_are_refused() {
     let of_a_curve = ["diagnose", "curve.json", "--covariates", "temp_C"];
     assert!(refusal(folder.path(), &of_a_curve).contains("a curve file has no covariates"));
 }
+
+#[test]
+fn a_record_in_which_something_happened_is_not_called_adequate() {
+    let folder = TempDir::new().unwrap();
+    simulate(folder.path(), &[]);
+    let steady = json(folder.path(), &["diagnose", "log.csv"]);
+    assert_eq!(steady["axes"][0]["verdict"], "adequate");
+    assert_eq!(steady["axes"][0]["events"].as_array().unwrap().len(), 0);
+
+    // The rate steps by 0.3 °/s at 300 s. A step of this size hardly moves χ², because the walk and the ramp take it up.
+    change(folder.path(), |n, rate| {
+        rate + if n < 30_000 { 0.0 } else { 0.3 }
+    });
+    let document = json(folder.path(), &["diagnose", "log.csv"]);
+    let axis = &document["axes"][0];
+    assert_eq!(axis["verdict"], "not_stationary");
+    let event = &axis["events"][0];
+    assert_eq!(event["what"], "step");
+    let [at_s, size] = ["at_s", "size"].map(|key| event[key].as_f64().unwrap());
+    // A block lasts 10.24 s.
+    assert!((at_s - 300.0).abs() < 10.24, "{at_s}");
+    assert!((size - 0.3).abs() < 0.02, "{size}");
+    let notes = list(&axis["notes"]);
+    let without = notes
+        .iter()
+        .find(|note| note.starts_with("without the change of the rate"));
+    assert!(without.is_some(), "{notes:?}");
+    let blamed = notes
+        .iter()
+        .find(|note| note.starts_with("because of it, "));
+    assert!(
+        blamed.is_some_and(|note| note.contains("rate random walk")),
+        "{notes:?}"
+    );
+    let text = output(folder.path(), &["diagnose", "log.csv"]);
+    assert!(
+        text.contains("gx: the record is not stationary: the rate stepped by 0.29"),
+        "{text}"
+    );
+    assert!(!text.contains("no effect is missing"), "{text}");
+}

@@ -255,7 +255,7 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
     let stationarity = &diagnosed.stationarity;
     let strongest = stationarity.strongest(diagnosed.axis.unit);
     match strongest.filter(|_| stationarity.is_disturbed()) {
-        Some(event) => format!("the record is not stationary ({event}); {of_curve}"),
+        Some(event) => format!("the record is not stationary: {event}; {of_curve}"),
         None => of_curve,
     }
 }

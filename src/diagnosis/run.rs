@@ -36,7 +36,7 @@ use crate::{
 ///
 /// [`run`](Self::run) does all of it. [`advance`](Self::advance) does one piece and returns, so that a
 /// main loop can feed its watchdog and take its samples in between. One piece takes at most 2 million
-/// instructions on a Cortex-M4F in single precision, of some 440 million for a whole diagnosis of 20
+/// instructions on a Cortex-M4F in single precision, of some 300 million for a whole diagnosis of 20
 /// octaves (`cargo xtask bench` measures both). To abort a diagnosis, drop it.
 ///
 /// # Example

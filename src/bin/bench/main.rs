@@ -147,8 +147,11 @@ mod image {
         let stack = stack::used_by(|| {
             black_box(work::diagnose_both(black_box(&curve), &spectrum, &model));
         });
-        defmt::info!("instructions_diagnosis_with_spectrum {=f64}", instructions);
-        defmt::info!("stack_bytes_diagnosis_with_spectrum {=usize}", stack);
+        defmt::info!(
+            "instructions_of_diagnosis_with_spectrum {=f64}",
+            instructions
+        );
+        defmt::info!("stack_of_diagnosis_with_spectrum {=usize}", stack);
         found
     }
 

@@ -42,9 +42,9 @@ use pair::Pair;
 use products::Products;
 use wave::{START, TABLES, Turn, Wave, coherent, middle};
 
-/// The number of effects of a model whose detail is summed. Any further one is taken at the lags of the lattice
-/// alone.
-const DETAILED: usize = 2;
+/// The number of parts of effects whose detail is summed. An effect for which no place is left is taken at the lags of
+/// the lattice alone.
+const DETAILED: usize = 3;
 
 /// The number of pairs of octaves that are computed in one go if an effect has detail. Chosen by hand, so that one
 /// piece of a diagnosis stays below 2 million instructions (`cargo xtask bench`).
@@ -115,21 +115,25 @@ pub(crate) fn covariance_row(
         if term.effect.response(m_j, &shape).is_some() {
             continue;
         }
-        match term.effect.tail(m_j, &shape) {
-            Some(tail) if tails.push((tail, term, square)).is_ok() => {
-                of_detailed += square * term.effect.variance(m_j, &shape);
+        let left = DETAILED.saturating_sub(tails.len());
+        let tail = term.effect.tail(m_j, &shape);
+        if let Some(tail) = tail.filter(|tail| tail.places() <= left) {
+            of_detailed += square * term.effect.variance(m_j, &shape);
+            for part in 0..tail.places() {
+                // There is a place.
+                let _ = tails.push((tail, part, term, square));
             }
-            _ => {
-                let effect = term.effect;
-                effect.add_second_differences(m_j, square, &shape, &mut random);
-            }
+        } else {
+            let effect = term.effect;
+            effect.add_second_differences(m_j, square, &shape, &mut random);
         }
     }
     let random = random.rounded(of_detailed * shorter.tau_s * shorter.tau_s);
     let per_unit = 1.0 / random.unit();
-    let detailed = tails.iter().filter_map(|(tail, term, square)| {
+    let detailed = tails.iter().filter_map(|(tail, part, term, square)| {
         let shape = term.sampled_shape(interval_s);
-        Detailed::of(tail, term.effect, &shape, shorter.m, square * per_unit)
+        let scale = square * per_unit;
+        Detailed::of(tail, *part, term.effect, &shape, shorter.m, scale)
     });
     let detailed: Vec<Detailed, DETAILED> = list::fill(detailed);
     let mut turns = Vec::<Turn, TABLES>::new();

@@ -62,9 +62,11 @@ struct Step {
 }
 
 impl Detailed {
-    /// The effect with this tail for clusters of `m` samples, times `scale`. `None` if it has no room here.
+    /// One part of an effect with this tail for clusters of `m` samples, times `scale`. `None` if there is no such part,
+    /// or no room for it here.
     pub(super) fn of(
         tail: &effect::Tail,
+        part: usize,
         effect: &dyn Effect,
         shape: &SampledShape,
         m: u32,
@@ -75,24 +77,26 @@ impl Detailed {
         let second_difference = |x: u32| {
             let x = real(x) * step;
             let value = effect.second_difference(x, real(m), shape);
-            single(scale * (value - tail.cosine))
+            let all = tail.decays.iter().flatten().map(|decay| decay.cosine);
+            single(scale * (value - all.sum::<Real>()))
         };
-        if tail.cosine == 0.0 && tail.sine == 0.0 {
+        let Some(decay) = tail.decays.get(part)? else {
             let mut near = [0.0; MOST];
             for (x, near) in (0..start).zip(&mut near) {
                 *near = second_difference(x);
             }
-            return (start as usize <= MOST).then_some(Self {
+            return (part == 0 && start as usize <= MOST).then_some(Self {
                 start,
                 speed: 0.0,
                 kind: Kind::Finite { near },
             });
-        }
+        };
+        // The first part has all that the effect gives up to the start.
         let mut near = [0.0; 4];
-        for (x, near) in (0..start).zip(&mut near) {
+        for (x, near) in (0..start).zip(&mut near).filter(|_| part == 0) {
             *near = second_difference(x);
         }
-        let mut level = Series::first(rest(tail.decay * step, tail.phase * step), ZERO);
+        let mut level = Series::first(rest(decay.decay * step, decay.phase * step), ZERO);
         let steps = core::array::from_fn(|_| {
             let last = ONE - level.rest;
             let late = level.moment / level.count + last * 0.5;
@@ -104,13 +108,13 @@ impl Detailed {
             level = level.then(&level);
             step
         });
-        let speed = math::sqrt(tail.decay * tail.decay + tail.phase * tail.phase);
+        let speed = math::sqrt(decay.decay * decay.decay + decay.phase * decay.phase);
         (start as usize <= near.len()).then_some(Self {
             start,
             speed: single(step * speed),
             kind: Kind::Decaying {
                 near,
-                amplitude: Complex::new(single(scale * tail.cosine), single(scale * tail.sine)),
+                amplitude: Complex::new(single(scale * decay.cosine), single(scale * decay.sine)),
                 steps,
             },
         })

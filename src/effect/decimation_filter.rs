@@ -207,13 +207,7 @@ impl Effect for DecimationFilter {
     fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
         let support = Filter::new(shape).support;
         // The autocovariance may end within the part of the lattice that is coarse.
-        (support > 2.0 * m).then_some(Tail {
-            start: m + support,
-            decay: 0.0,
-            phase: 0.0,
-            cosine: 0.0,
-            sine: 0.0,
-        })
+        (support > 2.0 * m).then(|| Tail::none(m + support))
     }
 
     fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {

@@ -107,13 +107,22 @@ pub struct Response {
     pub phase: Real,
 }
 
-/// The second differences of a random effect from the lag `start` on:
-/// `e^(−decay (x − start)) [cosine cos(phase (x − start)) − sine sin(phase (x − start))]`.
+/// The second differences of a random effect from the lag `start` on: the sum of up to two decays, and zero if there
+/// is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tail {
     /// The first lag `x` of the tail, in samples.
     pub start: Real,
+    /// The decays. The second one is there only beside a first one.
+    pub decays: [Option<Decay>; 2],
+}
+
+/// A part of a [`Tail`]:
+/// `e^(−decay (x − start)) [cosine cos(phase (x − start)) − sine sin(phase (x − start))]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Decay {
     /// Logarithmic decay from one sample to the next, above zero.
     pub decay: Real,
     /// Phase from one sample to the next, in radians, from −π to π.
@@ -125,14 +134,31 @@ pub struct Tail {
 }
 
 impl Tail {
+    /// Second differences that vanish from a lag on.
+    pub(super) const fn none(start: Real) -> Self {
+        Self {
+            start,
+            decays: [None; 2],
+        }
+    }
+
     /// The tail of second differences that are larger by a factor.
     #[must_use]
     pub(super) fn scaled(self, factor: Real) -> Self {
+        let scaled = |part: Decay| Decay {
+            cosine: factor * part.cosine,
+            sine: factor * part.sine,
+            ..part
+        };
         Self {
-            cosine: factor * self.cosine,
-            sine: factor * self.sine,
-            ..self
+            start: self.start,
+            decays: self.decays.map(|part| part.map(scaled)),
         }
+    }
+
+    /// The number of places that the tail takes among those of a model.
+    pub(crate) fn places(&self) -> usize {
+        self.decays.iter().flatten().count().max(1)
     }
 }
 

@@ -183,7 +183,7 @@ impl Effect for LowPass {
 
     fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
         let poles = Poles::new(shape);
-        if poles.second.is_some() {
+        if let Some(second) = &poles.second {
             let [of_three, of_four] = GONE;
             let gone = if shape.parameters[1] > 3.5 {
                 of_four
@@ -191,14 +191,14 @@ impl Effect for LowPass {
                 of_three
             };
             let gone = m + gone * shape.parameters[0] / shape.interval_s;
-            return Some(Tail {
-                start: gone,
-                decay: 0.0,
-                phase: 0.0,
-                cosine: 0.0,
-                sine: 0.0,
-            })
-            .filter(|_| gone <= 95.0 * (0.25 * m).max(1.0));
+            if gone <= 95.0 * (0.25 * m).max(1.0) {
+                return Some(Tail::none(gone));
+            }
+            let tail = Tail {
+                start: m,
+                decays: [&poles.first, second].map(|pole| Some(pole.decay_from(m))),
+            };
+            return Some(tail.scaled(poles.scale(shape)));
         }
         // The autocovariance of one pole has no detail.
         (shape.parameters[1] > 1.5).then(|| poles.first.tail(m).scaled(poles.scale(shape)))

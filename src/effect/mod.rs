@@ -19,7 +19,7 @@ mod search_range;
 
 pub use crate::{lattice::SecondDifferences, limits::MAX_PARAMETERS};
 pub use definition::{
-    Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Reciprocal, Response, Tail,
+    Decay, Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Reciprocal, Response, Tail,
 };
 pub use explanation::{Explain, Explanation};
 pub use sampled_shape::SampledShape;

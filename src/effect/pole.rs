@@ -1,6 +1,6 @@
 //! The kernel of one complex pole, which Gauss–Markov noise, resonances and low-passed noise share.
 
-use super::{SecondDifferences, Tail};
+use super::{Decay, SecondDifferences, Tail};
 use crate::{
     lattice, math,
     real::{Real, by_precision, consts::PI, real},
@@ -135,10 +135,17 @@ impl Pole {
 
     /// The second differences from `m` on, divided by τ₀².
     pub(super) fn tail(&self, m: Real) -> Tail {
-        let rest = self.power(m).rest();
-        let at_m = -(self.factor * rest * rest);
         Tail {
             start: m,
+            decays: [Some(self.decay_from(m)), None],
+        }
+    }
+
+    /// The part that the pole has in the second differences from `m` on, divided by τ₀².
+    pub(super) fn decay_from(&self, m: Real) -> Decay {
+        let rest = self.power(m).rest();
+        let at_m = -(self.factor * rest * rest);
+        Decay {
             decay: self.decay,
             phase: -self.exponent.im,
             cosine: at_m.re,

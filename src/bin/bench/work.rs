@@ -222,7 +222,7 @@ pub(crate) fn spectrum<const B: usize>(hidden: &[Hidden]) -> Option<Spectrum<B>>
             .map(|&byte| Real::from(byte) - 127.5)
             .sum::<Real>()
             / 147.8;
-        let error = libm::sqrt(1.0 / f64::from(bin.effective_segments())) as Real;
+        let error = libm::sqrt(1.0 / demonstration::double(bin.effective_segments())) as Real;
         let density = density * (1.0 + off * error);
         Bin { density, ..*bin }
     });

@@ -23,6 +23,6 @@ pub const AMPLITUDES: Amplitudes = Amplitudes {
 };
 
 /// A number in double precision, for either precision of the library.
-fn double(x: impl Into<f64>) -> f64 {
+pub fn double(x: impl Into<f64>) -> f64 {
     x.into()
 }

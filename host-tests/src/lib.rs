@@ -6,18 +6,14 @@ pub mod confidence;
 pub mod curve_file;
 pub mod equivalent;
 pub mod failure;
-#[cfg(feature = "firmware")]
-pub mod firmware;
 pub mod log;
 pub mod overbound;
 pub mod plot;
 pub mod program;
 pub mod regular_file;
 pub mod simulate;
-#[cfg(feature = "chores")]
+#[cfg(feature = "study")]
 pub mod study;
 pub mod unit;
-#[cfg(feature = "chores")]
-pub mod xtask;
 
 pub use demonstration;

@@ -10,7 +10,6 @@ use host_tests::{
         simulated::SimulatedGyro,
         stream::SEED,
     },
-    firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run},
     log::{Axis, SpectrumSums},
     program::command,
     study::precision,
@@ -22,6 +21,7 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
+use xtask::firmware::{CORES, CORTEX_M4F, Core, Image, Precision, RISCV, agreement, run};
 
 #[test]
 fn every_core_and_the_host_agree_to_the_bit() {

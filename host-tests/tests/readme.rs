@@ -1,12 +1,12 @@
 //! The READMEs and the crate's page show what their readers will see.
 
-use host_tests::firmware::{
+use host_tests::program::output;
+use std::{fs, path::Path};
+use xtask::firmware::{
     Precision, Way,
     budgets::{self, target},
     figures,
 };
-use host_tests::program::output;
-use std::{fs, path::Path};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 

@@ -1,11 +1,8 @@
 //! Compares fits and diagnoses of the same records in single and double precision.
 
-use crate::{
-    confidence::TWO_SIDED_95,
-    demonstration::diagnose::HIDDEN,
-    firmware::{Precision, agreement::told_here},
-};
+use crate::{confidence::TWO_SIDED_95, demonstration::diagnose::HIDDEN};
 use anyhow::{Context as _, Result};
+use xtask::firmware::{Precision, agreement::told_here};
 
 /// The differences between single and double precision over many records.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,6 @@
 //! Shows a page as a reader sees it: in a Chromium without a window, controlled by its DevTools
 //! protocol.
 
-use host_tests::xtask::CHROMIUM;
 use serde_json::{Value, json};
 use std::{
     fs,
@@ -13,6 +12,7 @@ use std::{
 };
 use tempfile::TempDir;
 use tungstenite::{Message, WebSocket};
+use xtask::CHROMIUM;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 

@@ -23,17 +23,17 @@ fn cycles(of: &Crate) -> Vec<String> {
     cycles.map(|files| files.join(" → ")).collect()
 }
 
-fn assert_no_cycles(root: &Path) {
+fn assert_no_cycles(root: &Path, files: usize) {
     let of = Crate::read(root);
     let graph = import::graph(&of);
     assert!(
-        graph.len() > 20,
+        graph.len() >= files,
         "{} files in {}",
         graph.len(),
         root.display()
     );
     let edges: usize = graph.values().map(|imported| imported.len()).sum();
-    assert!(edges > 2 * graph.len(), "{edges} imports");
+    assert!(edges >= graph.len(), "{edges} imports");
     let cycles = cycles(&of);
     assert!(
         cycles.is_empty(),
@@ -45,12 +45,13 @@ fn assert_no_cycles(root: &Path) {
 
 #[test]
 fn the_host_tools_have_no_import_cycles() {
-    assert_no_cycles(&Path::new(HOST).join("src"));
+    assert_no_cycles(&Path::new(HOST).join("src"), 100);
+    assert_no_cycles(&Path::new(HOST).join("xtask/src"), 14);
 }
 
 #[test]
 fn the_library_has_no_import_cycles() {
-    assert_no_cycles(&Path::new(HOST).join("../src"));
+    assert_no_cycles(&Path::new(HOST).join("../src"), 60);
 }
 
 /// The cycles of a crate that consists of these files.

@@ -1,15 +1,13 @@
 //! The sources of counts. Each of them gives bytes, which a thread of its own reads.
 
-use crate::{
-    failure::{Failure, one_line},
-    firmware::{self, Image},
-};
+use crate::failure::{Failure, one_line};
 use std::{
     io::{self, ErrorKind, Read},
     sync::mpsc::{Receiver, SyncSender, sync_channel},
     thread,
     time::Duration,
 };
+use xtask::firmware::{self, Image};
 
 /// Largest number of bytes read at a time. Chosen by hand.
 const CHUNK: usize = 1 << 16;

@@ -1,8 +1,8 @@
 //! The tasks of the project: see `cargo xtask --help`.
 
 use clap::Parser;
-use host_tests::xtask::CommandLine;
 use std::process::ExitCode;
+use xtask::CommandLine;
 
 fn main() -> ExitCode {
     match CommandLine::parse().run() {

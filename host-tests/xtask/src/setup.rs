@@ -1,8 +1,7 @@
 //! Installs what this machine lacks to build and run the images and to test pages in a browser. It
 //! prints what it does and asks no questions.
 
-use super::step::run as run_command;
-use crate::firmware::Way;
+use crate::{firmware::Way, step::run as run_command};
 use anyhow::{Context as _, Result, bail};
 use std::process::{Command, Stdio};
 
@@ -22,7 +21,7 @@ const PROGRAMS: [(&str, &str); 3] = [
 /// The browser that the tests open pages with.
 pub const CHROMIUM: &str = "chromium";
 
-pub(super) fn run() -> Result<()> {
+pub(crate) fn run() -> Result<()> {
     compiler()?;
     for (name, package) in PROGRAMS {
         program(name, package)?;

@@ -22,7 +22,7 @@ pub const REMEDY: &str = "`cargo xtask setup` installs what is missing";
 /// The folder of the workspace.
 pub fn workspace() -> &'static std::path::Path {
     let here = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.parent().unwrap_or(here)
+    here.ancestors().nth(2).unwrap_or(here)
 }
 
 /// The cargo that runs this program, or else the one on the path.

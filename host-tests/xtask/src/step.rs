@@ -18,14 +18,14 @@ const COLOURS: &str = "CARGO_TERM_COLOR";
 const MOMENT: Duration = Duration::from_millis(500);
 
 /// Prints a heading and runs a command.
-pub(super) fn step(heading: &str, command: &mut Command) -> Result<()> {
+pub(crate) fn step(heading: &str, command: &mut Command) -> Result<()> {
     println!("\n== {heading}");
     run(command)
 }
 
 /// Runs a command and passes on what it prints. If it is silent for long, a line says that it still
 /// runs. If it fails, the error names the whole command.
-pub(super) fn run(command: &mut Command) -> Result<()> {
+pub(crate) fn run(command: &mut Command) -> Result<()> {
     let shown = shown(command);
     if io::stderr().is_terminal() && std::env::var_os(COLOURS).is_none() {
         command.env(COLOURS, "always");
@@ -73,7 +73,7 @@ fn pass_on(from: Option<impl Read>, mut to: impl Write, sign: &Mutex<Instant>) {
 }
 
 /// The command as a user could type it, with the environment variables that are set for it.
-pub(super) fn shown(command: &Command) -> String {
+pub(crate) fn shown(command: &Command) -> String {
     let mut words = Vec::new();
     for (name, value) in command.get_envs() {
         if let Some(value) = value {

@@ -1,9 +1,9 @@
 //! Measures the cost of the library on the target and on this host.
 
-use super::{setup, step::shown};
 use crate::firmware::{
     Core, Heartbeat, Precision, Way, agreement, budgets, cargo, figures, measure,
 };
+use crate::{setup, step::shown};
 use anyhow::{Context as _, Result, bail};
 use comfy_table::{Table, presets};
 use serde_json::{Map, Value};
@@ -102,7 +102,7 @@ const FIGURES: [(&str, &str, &str); 20] = [
 
 const NOTE: &str = "QEMU counts instructions, not cycles";
 
-pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
+pub(crate) fn run(json: bool, update_budgets: bool) -> Result<()> {
     if !json {
         setup::run()?;
     }
@@ -156,7 +156,7 @@ pub(super) fn run(json: bool, update_budgets: bool) -> Result<()> {
 }
 
 /// Measures the costs again, and compares them with the budgets for the toolchain in use.
-pub(super) fn check_budgets() -> Result<()> {
+pub(crate) fn check_budgets() -> Result<()> {
     let way = Way::in_use()?;
     println!("\n== budgets of every core, by the toolchain {way}");
     budgets::check(&budgets::measured()?, &budgets::committed(way)?)

@@ -1,4 +1,6 @@
-//! The tasks of `cargo xtask`: set up, test and measure.
+//! The tasks of `cargo xtask`, set up, test and measure, and the images that they build and run.
+
+pub mod firmware;
 
 mod bench;
 mod setup;
@@ -7,9 +9,9 @@ mod test;
 
 pub use setup::CHROMIUM;
 
-use crate::firmware::cargo;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
+use firmware::cargo;
 
 /// Tasks of the project.
 #[derive(Debug, Parser)]
@@ -56,7 +58,7 @@ impl CommandLine {
             Task::Study { arguments } => {
                 let mut study = cargo();
                 study.args(["run", "--release", "--package", "host-tests"]);
-                study.args(["--no-default-features", "--features", "chores"]);
+                study.args(["--no-default-features", "--features", "study"]);
                 study.args(["--bin", "study", "--"]).args(arguments);
                 step::step("the study", &mut study)
             }

@@ -1,7 +1,11 @@
 //! Runs all checks that must pass before a change is merged.
 
-use super::{setup, step::step};
-use crate::firmware::{CORTEX_M4F, RISCV, Toolchain, cargo, workspace};
+use crate::{
+    bench,
+    firmware::{CORTEX_M4F, RISCV, Toolchain, cargo, workspace},
+    setup,
+    step::step,
+};
 use anyhow::{Context as _, Result};
 use std::path::PathBuf;
 
@@ -11,7 +15,7 @@ const PACKAGES: [&str; 4] = ["--package", "allanite", "--package", "images"];
 /// Every feature except double precision.
 const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash"];
 
-pub(super) fn run() -> Result<()> {
+pub(crate) fn run() -> Result<()> {
     println!("== set-up");
     setup::run()?;
     step(
@@ -66,7 +70,7 @@ pub(super) fn run() -> Result<()> {
         "the images on every core, in QEMU",
         cargo().args(["test", "--package", "host-tests", "--test", "firmware"]),
     )?;
-    super::bench::check_budgets()?;
+    bench::check_budgets()?;
     step(
         "tests on the host, examples in the documentation",
         cargo().args(["test", "--workspace"]),

@@ -30,9 +30,9 @@ use crate::{
     curve::{Curve, Point},
     lattice::{self, SecondDifferences},
     limits::MAX_EFFECTS,
-    list::{self, numbered},
+    list::numbered,
     math,
-    model::Model,
+    model::{Model, Term},
     real::{Real, consts::PI, real, single},
 };
 use detailed::Detailed;
@@ -109,33 +109,37 @@ pub(crate) fn covariance_row(
     let reach = (u64::from(ratio) * 32).min(u64::from(lattice::END)) as u32;
     let m_j = real(shorter.m);
     let mut random = SecondDifferences::zero(shorter.m, reach);
-    let (mut tails, mut of_detailed) = (Vec::<_, DETAILED>::new(), 0.0);
-    for (term, &square) in present() {
+    let is_random = |term: &Term| {
         let shape = term.sampled_shape(interval_s);
-        if term.effect.response(m_j, &shape).is_some() {
-            continue;
-        }
-        let left = DETAILED.saturating_sub(tails.len());
+        term.effect.response(m_j, &shape).is_none()
+    };
+    let variances = present()
+        .filter(|(term, _)| is_random(term))
+        .map(|(term, square)| {
+            let shape = term.sampled_shape(interval_s);
+            square * term.effect.variance(m_j, &shape)
+        });
+    let unit = variances.sum::<Real>() * shorter.tau_s * shorter.tau_s;
+    let unit = if unit > 0.0 { unit } else { 1.0 };
+    let per_unit = 1.0 / unit;
+    let mut detailed = Vec::<Detailed, DETAILED>::new();
+    for (term, &square) in present().filter(|(term, _)| is_random(term)) {
+        let shape = term.sampled_shape(interval_s);
+        let left = DETAILED.saturating_sub(detailed.len());
         let tail = term.effect.tail(m_j, &shape);
         if let Some(tail) = tail.filter(|tail| tail.places() <= left) {
-            of_detailed += square * term.effect.variance(m_j, &shape);
             for part in 0..tail.places() {
-                // There is a place.
-                let _ = tails.push((tail, part, term, square));
+                let scale = square * per_unit;
+                let part = Detailed::of(&tail, part, term.effect, &shape, shorter.m, scale);
+                // There is a place for every part.
+                detailed.extend(part);
             }
         } else {
             let effect = term.effect;
             effect.add_second_differences(m_j, square, &shape, &mut random);
         }
     }
-    let random = random.rounded(of_detailed * shorter.tau_s * shorter.tau_s);
-    let per_unit = 1.0 / random.unit();
-    let detailed = tails.iter().filter_map(|(tail, part, term, square)| {
-        let shape = term.sampled_shape(interval_s);
-        let scale = square * per_unit;
-        Detailed::of(tail, *part, term.effect, &shape, shorter.m, scale)
-    });
-    let detailed: Vec<Detailed, DETAILED> = list::fill(detailed);
+    let random = random.rounded(unit);
     let mut turns = Vec::<Turn, TABLES>::new();
     let mut waves = Vec::<Wave, MAX_EFFECTS>::new();
     for (term, &square) in present() {

@@ -155,11 +155,14 @@ impl SecondDifferences {
         }
     }
 
-    /// The same differences in single precision, in units of τ² times the Allan variance. `more` is what
-    /// effects that are not on the lattice add to the unit.
-    pub(crate) fn rounded(&self, more: Real) -> Rounded {
-        let unit = self.values[4] - self.values[0] + more;
-        let unit = if unit > 0.0 { unit } else { 1.0 };
+    /// τ² times the Allan variance of what is on the lattice.
+    #[cfg(test)]
+    pub(crate) fn unit(&self) -> Real {
+        self.values[4] - self.values[0]
+    }
+
+    /// The same differences in single precision, in this unit: τ² times the Allan variance of everything, above zero.
+    pub(crate) fn rounded(&self, unit: Real) -> Rounded {
         let reciprocal = 1.0 / unit;
         Rounded {
             values: self.values.map(|value| single(value * reciprocal)),

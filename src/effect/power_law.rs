@@ -318,7 +318,7 @@ mod tests {
             for m in [1_u32, 8, 4096, 1 << 20] {
                 let mut sum = SecondDifferences::zero(m, lattice::END);
                 PowerLaw.add_second_differences(real(m), 3.0, &shape(exponent), &mut sum);
-                let rounded = sum.rounded(0.0);
+                let rounded = sum.rounded(sum.unit());
                 let zero = f64::from(rounded.at(0));
                 for slot in 0..lattice::LEN {
                     let position = lattice::position(slot);

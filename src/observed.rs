@@ -14,7 +14,8 @@ const OCTAVES_FROM: u32 = 8;
 /// What is known of a record: its curve, and its spectrum if there is one.
 ///
 /// A fit to both uses all bins of the spectrum, and the octaves that reach below the lowest bin. The other octaves
-/// say nothing that the bins do not say, so that they are compared with the model but not fitted.
+/// say nothing that the bins do not say, so that they are compared with the model but not fitted. Only the coefficients
+/// of a model without shapes that explains the record come from all octaves, which tell them better than bins do.
 #[derive(Debug)]
 pub struct Observed<'a, const K: usize, const B: usize = 0> {
     curve: &'a Curve<K>,

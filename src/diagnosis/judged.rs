@@ -5,7 +5,7 @@ use crate::{
     comparison::Comparison,
     effect::Span,
     error::Error,
-    fit::{Estimator, Fit, Problem, Solver, Work},
+    fit::{Estimator, Fit, FromOctaves, Problem, Solver, Work},
     model::Term,
     nnls::Vector,
     observed::Observed,
@@ -55,6 +55,11 @@ pub(super) enum Judging<const K: usize, const B: usize> {
         interval: Option<JointInterval>,
         profile: Profile<K, B>,
     },
+    /// The model is judged, and its coefficients are estimated anew.
+    Refining {
+        judged: Judged,
+        refining: FromOctaves,
+    },
 }
 
 impl<const K: usize, const B: usize> Judging<K, B> {
@@ -89,15 +94,17 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                 if !estimator.advance(&problem, solver, &mut step.fit) {
                     return Ok(None);
                 }
-                if step.fit.shape.is_empty() {
-                    return Ok(Some(compare(
-                        &problem,
-                        solver,
-                        &step.fit,
-                        &mut step.comparison,
-                    )));
+                if !step.fit.shape.is_empty() {
+                    self.begin_bounding(&problem, solver);
+                    return Ok(None);
                 }
-                self.begin_bounding(&problem, solver);
+                let judged = compare(&problem, solver, &step.fit, &mut step.comparison);
+                if !FromOctaves::suffice(observed, &step.model, &step.fit) {
+                    return Ok(Some(judged));
+                }
+                // The model explains the record, so that no later stage needs the solver as it is.
+                let refining = FromOctaves::begin(observed, &step.model, &step.fit, work)?;
+                *self = Self::Refining { judged, refining };
                 Ok(None)
             }
             Self::Bounding {
@@ -134,6 +141,10 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                     *interval = None;
                 }
                 Ok(None)
+            }
+            Self::Refining { judged, refining } => {
+                let complete = refining.advance(observed, &step.model, work, &mut step.fit)?;
+                Ok(complete.then_some(*judged))
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use super::{
     estimate::Estimator,
+    from_octaves::FromOctaves,
     independent,
     method::{Method, Options},
     problem::{Columns, Problem, check},
@@ -185,6 +186,7 @@ enum Stage {
     Beginning,
     Solving,
     Estimating(Estimator),
+    Refining(FromOctaves),
     Complete,
 }
 
@@ -257,6 +259,17 @@ impl Stage {
             Self::Estimating(estimator) => {
                 let problem = Problem::new(observed, model, &work.columns);
                 if estimator.advance(&problem, &work.solver, fit) {
+                    *self = Self::Complete;
+                    if FromOctaves::suffice(observed, model, fit) {
+                        let refining = FromOctaves::begin(observed, model, fit, work)?;
+                        *self = Self::Refining(refining);
+                    }
+                }
+            }
+            Self::Refining(refining) => {
+                if refining.advance(observed, model, work, fit)? {
+                    // What follows a fit finds the columns of all rows.
+                    work.columns.set(observed, model);
                     *self = Self::Complete;
                 }
             }

@@ -10,6 +10,7 @@ mod correlation;
 mod estimate;
 mod factor;
 mod fitting;
+mod from_octaves;
 mod independent;
 mod likelihood_ratio;
 mod method;
@@ -33,6 +34,7 @@ pub use result::{Fit, ShapeEstimate};
 
 pub(crate) use estimate::Estimator;
 pub(crate) use fitting::Work;
+pub(crate) use from_octaves::FromOctaves;
 pub(crate) use likelihood_ratio::LikelihoodRatio;
 pub(crate) use problem::{Columns, Problem, check};
 pub(crate) use rows::Rows;

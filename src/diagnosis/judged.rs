@@ -5,7 +5,7 @@ use crate::{
     comparison::Comparison,
     effect::Span,
     error::Error,
-    fit::{Estimator, Fit, FromOctaves, Problem, Solver, Work},
+    fit::{Estimator, Fit, FromOctaves, Problem, Solver, Start, Tolerance, Work},
     model::Term,
     nnls::Vector,
     observed::Observed,
@@ -60,6 +60,8 @@ pub(super) enum Judging<const K: usize, const B: usize> {
         judged: Judged,
         refining: FromOctaves,
     },
+    /// The new coefficients, whose squares these are, are being compared with the record.
+    Comparing { judged: Judged, squares: Vector },
 }
 
 impl<const K: usize, const B: usize> Judging<K, B> {
@@ -143,8 +145,27 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                 Ok(None)
             }
             Self::Refining { judged, refining } => {
-                let complete = refining.advance(observed, &step.model, work, &mut step.fit)?;
-                Ok(complete.then_some(*judged))
+                if refining.advance(observed, &step.model, work, &mut step.fit)? {
+                    let problem = Problem::new(observed, &step.model, &work.columns);
+                    let squares = problem.squares_of(&step.fit);
+                    let (start, tolerance) = (Start::Once(squares), step.fit.tolerance);
+                    let judged = *judged;
+                    work.begin_at(observed, &step.model, start, Tolerance::Fixed(tolerance))?;
+                    *self = Self::Comparing { judged, squares };
+                }
+                Ok(None)
+            }
+            Self::Comparing { judged, squares } => {
+                if !solver.advance(&problem)? {
+                    return Ok(None);
+                }
+                let fit = &step.fit;
+                let unknowns = problem.row_count().saturating_sub(fit.degrees_of_freedom);
+                let comparison = &mut step.comparison;
+                comparison.set(&problem, &solver.weights, squares, unknowns);
+                // χ² is least at the coefficients of the joint fit, from which these differ by less than their errors.
+                (comparison.chi_squared, comparison.p_value) = (fit.chi_squared, fit.p_value);
+                Ok(Some(*judged))
             }
         }
     }
@@ -211,7 +232,7 @@ fn compare<const K: usize, const B: usize>(
     fit: &Fit,
     comparison: &mut Comparison<K, B>,
 ) -> Judged {
-    let unknowns = problem.points.len().saturating_sub(fit.degrees_of_freedom);
+    let unknowns = problem.row_count().saturating_sub(fit.degrees_of_freedom);
     comparison.set(problem, &solver.weights, &solver.squares, unknowns);
     Judged {
         squares: solver.squares,

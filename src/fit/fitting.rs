@@ -5,9 +5,10 @@ use super::{
     from_octaves::FromOctaves,
     independent,
     method::{Method, Options},
-    problem::{Columns, Problem, check},
+    problem::{Problem, check},
     result::Fit,
     solver::{Solver, Start, Tolerance},
+    work::Work,
 };
 use crate::{curve::Curve, error::Error, model::Model, observed::Observed, spectrum::Spectrum};
 
@@ -144,38 +145,6 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
     /// The model that is fitted.
     pub const fn model(&self) -> &Model {
         &self.model
-    }
-}
-
-/// The memory of a fit by the covariance: the columns of the model, and their solution.
-pub(crate) struct Work<const K: usize, const B: usize = 0> {
-    pub(crate) columns: Columns<K, B>,
-    pub(crate) solver: Solver<K, B>,
-}
-
-impl<const K: usize, const B: usize> Work<K, B> {
-    /// No fit yet.
-    // All zero, so that it is set where it stays and not moved there.
-    pub(crate) const NEW: Self = Self {
-        columns: Columns::EMPTY,
-        solver: Solver::NEW,
-    };
-
-    /// Begins to solve a model.
-    ///
-    /// # Errors
-    /// [`Error::Singular`].
-    #[inline(never)]
-    pub(crate) fn begin_at(
-        &mut self,
-        observed: Observed<'_, K, B>,
-        model: &Model,
-        start: Start,
-        tolerance: Tolerance,
-    ) -> Result<(), Error> {
-        self.columns.set(observed, model);
-        let problem = Problem::new(observed, model, &self.columns);
-        self.solver.begin(&problem, start, tolerance)
     }
 }
 

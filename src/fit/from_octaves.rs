@@ -7,10 +7,10 @@
 
 use super::{
     estimate::Estimator,
-    fitting::Work,
     problem::Problem,
     result::Fit,
     solver::{Start, Tolerance},
+    work::Work,
 };
 use crate::{
     error::Error,

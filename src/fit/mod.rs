@@ -21,6 +21,7 @@ mod rows;
 mod shape;
 mod solver;
 mod weights;
+mod work;
 
 pub use crate::{
     chi_squared::chi_squared_tail, coefficient::State, covariance::curve_covariance,
@@ -33,7 +34,6 @@ pub use peak::Peak;
 pub use result::{Fit, ShapeEstimate};
 
 pub(crate) use estimate::Estimator;
-pub(crate) use fitting::Work;
 pub(crate) use from_octaves::FromOctaves;
 pub(crate) use likelihood_ratio::LikelihoodRatio;
 pub(crate) use problem::{Columns, Problem, check};
@@ -41,3 +41,4 @@ pub(crate) use rows::Rows;
 pub(crate) use shape::{ShapeEquations, derivative};
 pub(crate) use solver::{Solver, Start, Tolerance};
 pub(crate) use weights::{Weights, Whitened};
+pub(crate) use work::Work;

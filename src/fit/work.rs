@@ -1,0 +1,39 @@
+//! The memory of a fit.
+
+use super::{
+    problem::{Columns, Problem},
+    solver::{Solver, Start, Tolerance},
+};
+use crate::{error::Error, model::Model, observed::Observed};
+
+/// The memory of a fit by the covariance: the columns of the model, and their solution.
+pub(crate) struct Work<const K: usize, const B: usize = 0> {
+    pub(crate) columns: Columns<K, B>,
+    pub(crate) solver: Solver<K, B>,
+}
+
+impl<const K: usize, const B: usize> Work<K, B> {
+    /// No fit yet.
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const NEW: Self = Self {
+        columns: Columns::EMPTY,
+        solver: Solver::NEW,
+    };
+
+    /// Begins to solve a model.
+    ///
+    /// # Errors
+    /// [`Error::Singular`].
+    #[inline(never)]
+    pub(crate) fn begin_at(
+        &mut self,
+        observed: Observed<'_, K, B>,
+        model: &Model,
+        start: Start,
+        tolerance: Tolerance,
+    ) -> Result<(), Error> {
+        self.columns.set(observed, model);
+        let problem = Problem::new(observed, model, &self.columns);
+        self.solver.begin(&problem, start, tolerance)
+    }
+}

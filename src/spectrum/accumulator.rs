@@ -176,8 +176,10 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         for level in &mut self.levels {
             level.push(block, sum);
             let blocks = block.wrapping_add(1);
-            if blocks.is_multiple_of(P as u64 / 2) && blocks >= P as u64 {
-                self.due |= level_bit;
+            // The rarer condition comes first.
+            if blocks.is_multiple_of(P as u64 / 2) {
+                let is_whole = blocks >= P as u64;
+                self.due |= if is_whole { level_bit } else { 0 };
             }
             if !blocks.is_multiple_of(RADIX as u64) {
                 return;

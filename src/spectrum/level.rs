@@ -41,12 +41,31 @@ impl<const P: usize> Level<P> {
     /// Keeps block `number`, counted from 0.
     #[inline]
     pub(super) fn push(&mut self, number: u64, sum: i64) {
-        let mut scaled = sum.wrapping_shr(self.exponent);
-        if !(-LIMIT..LIMIT).contains(&scaled) {
+        let keeps_all = self.exponent == 0 && (-LIMIT..LIMIT).contains(&sum);
+        let block = if keeps_all {
+            sum as i32
+        } else {
+            self.scaled(sum)
+        };
+        self.blocks[number as usize % P] = block;
+    }
+
+    /// The sum in the unit of the blocks, which becomes larger if needed.
+    // Apart, because a shift of 64 bits is a call on a core of 32, which a level that keeps all bits does not need.
+    #[cold]
+    #[inline(never)]
+    fn scaled(&mut self, sum: i64) -> i32 {
+        if !(-LIMIT..LIMIT).contains(&sum.wrapping_shr(self.exponent)) {
             self.make_room(sum);
-            scaled = sum.wrapping_shr(self.exponent);
         }
-        self.blocks[number as usize % P] = scaled as i32;
+        sum.wrapping_shr(self.exponent) as i32
+    }
+
+    /// A sum of blocks in counts.
+    #[cold]
+    #[inline(never)]
+    fn in_counts(&self, sum: i64) -> i64 {
+        sum.wrapping_shl(self.exponent)
     }
 
     /// Makes the unit of the blocks larger, so that this sum can be kept.
@@ -66,13 +85,16 @@ impl<const P: usize> Level<P> {
     /// The sum of the blocks up to block `number` that make a block of the next level.
     #[inline]
     pub(super) fn last(&self, number: u64) -> i64 {
-        let end = number as usize;
-        let mut sum = 0_i64;
-        for back in 0..RADIX {
-            let block = self.blocks[end.wrapping_sub(back) % P];
-            sum = sum.wrapping_add(i64::from(block));
+        // Such blocks lie side by side in the ring.
+        let (groups, _) = self.blocks.as_chunks::<RADIX>();
+        let group = groups.get(number as usize % P / RADIX);
+        let blocks = group.unwrap_or(&[0; RADIX]).iter();
+        let sum = blocks.fold(0, |sum: i64, &block| sum.wrapping_add(i64::from(block)));
+        if self.exponent == 0 {
+            sum
+        } else {
+            self.in_counts(sum)
         }
-        sum.wrapping_shl(self.exponent)
     }
 
     /// Adds the segment that ends before block `number`, for blocks of `2^block_bits` samples.

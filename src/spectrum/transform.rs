@@ -18,23 +18,30 @@ pub(super) struct Segment<const P: usize> {
 }
 
 impl<const P: usize> Segment<P> {
+    /// The block of each value: pairs of blocks in bit-reversed order. A byte is enough, because a segment has at most
+    /// 256 blocks.
+    const ORDER: [u8; P] = {
+        let mut order = [0; P];
+        let bits = (P / 2).trailing_zeros();
+        let mut pair = 0_u32;
+        while pair < P as u32 / 2 {
+            let block = 2 * (pair.reverse_bits() >> (u32::BITS - bits));
+            order[2 * pair as usize] = block as u8;
+            order[2 * pair as usize + 1] = block as u8 + 1;
+            pair += 1;
+        }
+        order
+    };
+
     /// The segment that begins in slot `start` of a ring. Its blocks are taken less the first one, which is
     /// subtracted before anything is rounded, and times `scale`.
     #[inline]
     pub(super) fn new(ring: &[i32; P], start: usize, scale: f32) -> Self {
         let first = ring[start % P];
-        let mut values = [0.0; P];
-        let (pairs, _) = values.as_chunks_mut::<2>();
-        // The number of bits by which a reversed number is too long for that of a pair.
-        let more = u32::BITS.wrapping_sub((P / 2).trailing_zeros());
-        for (pair, slot) in pairs.iter_mut().zip(0..u32::MAX) {
-            let even = slot.reverse_bits().wrapping_shr(more).wrapping_mul(2) as usize;
-            let even = start.wrapping_add(even);
-            *pair = [
-                ring[even % P].wrapping_sub(first) as f32 * scale,
-                ring[even.wrapping_add(1) % P].wrapping_sub(first) as f32 * scale,
-            ];
-        }
+        let values = Self::ORDER.map(|block| {
+            let block = start.wrapping_add(block as usize);
+            ring[block % P].wrapping_sub(first) as f32 * scale
+        });
         Self { values }
     }
 
@@ -50,14 +57,13 @@ impl<const P: usize> Segment<P> {
         };
         let (mut before, mut here) = (before, here);
         let mut sums = powers.iter_mut().zip(squares);
-        let bins = later.iter().chain([&highest]);
-        for after in bins {
-            if let Some((sum, square)) = sums.next() {
-                let power = windowed_power(before, here, after);
-                *sum += power;
-                *square += power * power;
-            }
+        for (after, (sum, square)) in later.iter().zip(&mut sums) {
+            add_power(windowed_power(before, here, after), sum, square);
             (before, here) = (here, after);
+        }
+        // The neighbour of the last bin lies elsewhere.
+        if let Some((sum, square)) = sums.next() {
+            add_power(windowed_power(before, here, &highest), sum, square);
         }
     }
 
@@ -105,7 +111,8 @@ impl<const P: usize> Segment<P> {
         if let Some([re, im]) = high.first_mut() {
             [*re, *im] = [2.0 * *re, -2.0 * *im];
         }
-        let both = low.iter_mut().skip(1).zip(high.iter_mut().rev());
+        let low = low.split_first_mut().map_or(&mut [][..], |(_, rest)| rest);
+        let both = low.iter_mut().zip(high.iter_mut().rev());
         for ((low, high), k) in both.zip(1..usize::MAX) {
             let ([ar, ai], [br, bi]) = (*low, *high);
             let [sum_re, sum_im] = [ar + br, ai - bi];
@@ -127,6 +134,13 @@ fn windowed_power(before: &Complex, here: &Complex, after: &Complex) -> f32 {
     let re = 2.0 * here[0] - (before[0] + after[0]);
     let im = 2.0 * here[1] - (before[1] + after[1]);
     re * re + im * im
+}
+
+/// Adds a power and its square to the sums of a bin.
+#[inline(always)]
+fn add_power(power: f32, sum: &mut f32, square: &mut f32) {
+    *sum += power;
+    *square += power * power;
 }
 
 /// Joins the transforms in the two halves of a group to the transform of `length` pairs.

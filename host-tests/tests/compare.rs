@@ -154,17 +154,29 @@ fn effects_without_parameters_are_fitted() {
     assert!((number(&fitted["chi2"]) - last).abs() < 0.5, "{last}");
     // Two lines, and a filter of which the poles are known.
     let both = compared(&["sinusoid", "sinusoid:frequency_hz=1", "low_pass:poles=2"]);
-    let names = both["effects"].as_array().unwrap().iter().map(|effect| &effect["name"]);
+    let names = both["effects"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|effect| &effect["name"]);
     let names: Vec<&str> = names.map(|name| name.as_str().unwrap()).collect();
     assert_eq!(names[1], "low_pass");
     assert_eq!(names[5..], ["sinusoid"; 2]);
     assert_eq!(both["effects"][1]["parameters"]["poles"], 2.0);
     for octave in both["octaves"].as_array().unwrap() {
-        let shares: f64 = octave["shares"].as_object().unwrap().values().map(number).sum();
+        let shares: f64 = octave["shares"]
+            .as_object()
+            .unwrap()
+            .values()
+            .map(number)
+            .sum();
         assert!((shares - 1.0).abs() < 1e-6);
     }
     let text = output(folder.path(), &["compare", "log.csv", "--with", "sinusoid"]);
-    assert!(text.contains("with sinusoid: frequency 7.7") && text.contains(" … "), "{text}");
+    assert!(
+        text.contains("with sinusoid: frequency 7.7") && text.contains(" … "),
+        "{text}"
+    );
 }
 
 #[test]

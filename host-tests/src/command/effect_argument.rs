@@ -166,8 +166,8 @@ impl<'a> EffectArgument<'a> {
         let begins = std::mem::take(&mut self.begins);
         let coefficient = effect.coefficient();
         let mut fixed = self.values.iter().map(|(name, _)| *name);
-        let fixed = fixed
-            .find(|name| !is_whole(name) && *name != coefficient && !begins.contains(name));
+        let fixed =
+            fixed.find(|name| !is_whole(name) && *name != coefficient && !begins.contains(name));
         if let Some((begin, fixed)) = begins.first().zip(fixed) {
             let what = format!("{begin} is to be fitted, and {fixed} is not");
             return Err(self.failure(what, "write ~ for both, or = for both"));

@@ -1,7 +1,10 @@
 //! The model of `compare`: the five terms, with the effects that options add or leave out.
 
 use crate::{
-    command::{effect_argument::{EffectArgument, Shape}, known_filter::KnownFilter},
+    command::{
+        effect_argument::{EffectArgument, Shape},
+        known_filter::KnownFilter,
+    },
     failure::{Failure, quoted},
 };
 use allanite::{Model, Term, model::MAX_EFFECTS};

@@ -71,6 +71,7 @@ struct Shown {
     state: &'static str,
     words: String,
     value: f64,
+    upper: f64,
     units: Vec<[String; 3]>,
 }
 
@@ -109,7 +110,10 @@ pub(super) fn answer(fitted: &Fitted, question: &Question, about_log: &[String])
         coefficients: coefficients(fitted, unit),
         widened: words::widened(fitted.fit()),
         judged: judged.collect(),
-        frames: frames.iter().map(|frame| figure::frame(unit, frame)).collect(),
+        frames: frames
+            .iter()
+            .map(|frame| figure::frame(unit, frame))
+            .collect(),
         records,
         models,
     }
@@ -117,7 +121,9 @@ pub(super) fn answer(fitted: &Fitted, question: &Question, about_log: &[String])
 
 fn drawn(figures: Vec<Figure>, frames: &[Frame]) -> Vec<(DrawnRecord, DrawnModel)> {
     let pairs = figures.into_iter().zip(frames);
-    pairs.map(|(figure, frame)| figure::drawn(figure, frame)).collect()
+    pairs
+        .map(|(figure, frame)| figure::drawn(figure, frame))
+        .collect()
 }
 
 fn verdict(comparison: &Comparison<OCTAVES, BINS>) -> Verdict {
@@ -147,7 +153,10 @@ fn added(fitted: &Fitted, question: &Question) -> Vec<Added> {
                 effect: term.effect.name(),
                 fitted: term.fitted,
                 intervals: parameters.clone().map(|one| interval(one.name)).collect(),
-                parameters: parameters.zip(term.parameters).map(|(_, value)| value).collect(),
+                parameters: parameters
+                    .zip(term.parameters)
+                    .map(|(_, value)| value)
+                    .collect(),
             }
         })
         .collect()
@@ -173,7 +182,10 @@ fn coefficients(fitted: &Fitted, unit: Unit) -> Vec<Shown> {
                 },
                 words: state(one),
                 value: one.value,
-                units: names.map(|(factor, name)| shown(one, factor, name)).collect(),
+                upper: one.upper,
+                units: names
+                    .map(|(factor, name)| shown(one, factor, name))
+                    .collect(),
             }
         })
         .collect()
@@ -181,7 +193,8 @@ fn coefficients(fitted: &Fitted, unit: Unit) -> Vec<Shown> {
 
 /// The value of a coefficient times a factor, its interval, and the name of its unit.
 fn shown(one: &Coefficient, factor: f64, name: String) -> [String; 3] {
-    let [value, lower, upper] = [one.value, one.lower, one.upper].map(|value| number(factor * value));
+    let [value, lower, upper] =
+        [one.value, one.lower, one.upper].map(|value| number(factor * value));
     match one.state {
         State::Measured => [value, format!("{lower} … {upper}"), name],
         State::UpperBound => [format!("< {upper}"), "interval includes 0".into(), name],

@@ -57,7 +57,10 @@ pub(super) fn catalogue(records: &[Record]) -> Vec<Listed> {
             what: explanation.what,
             origin: explanation.origin,
             check: explanation.check,
-            replaces: effect.description().replaces.map(|replaced| replaced.name()),
+            replaces: effect
+                .description()
+                .replaces
+                .map(|replaced| replaced.name()),
             is_term: IEEE_952.iter().any(|term| term.name() == name),
             parameters: parameters.collect(),
         }

@@ -48,7 +48,11 @@ fn think(record: &Record) -> Result<Value, String> {
     let pairs = diagnosed.steps.windows(2);
     let findings = pairs.filter_map(|pair| Finding::new(&diagnosed, &pair[0], &pair[1]));
     let found = |finding: Finding| Found {
-        lines: finding.lines().into_iter().map(|(label, text)| (label, text.to_owned())).collect(),
+        lines: finding
+            .lines()
+            .into_iter()
+            .map(|(label, text)| (label, text.to_owned()))
+            .collect(),
         name: finding.name,
         found: finding.found,
         ambiguous: finding.ambiguous,
@@ -62,7 +66,11 @@ fn think(record: &Record) -> Result<Value, String> {
         with_texts.extend(terms.filter(|term| is_new(term.effect.name())).map(with));
         let is_replaced = |name: &str| {
             let mut terms = last.model.terms().iter();
-            terms.any(|term| term.effect.replaces().is_some_and(|replaced| replaced.name() == name))
+            terms.any(|term| {
+                term.effect
+                    .replaces()
+                    .is_some_and(|replaced| replaced.name() == name)
+            })
         };
         let names = IEEE_952.iter().map(|effect| effect.name());
         let gone = names.filter(|name| last.model.position(name).is_none() && !is_replaced(name));

@@ -13,7 +13,10 @@ use std::io;
 /// A drawing of the record, and of each record that judges the model, in the form of `plot`.
 pub(super) fn drawing(fitted: &Fitted, question: &Question) -> String {
     let frames = fitted.frames();
-    let draw = |record: &Record, comparison: &Comparison<OCTAVES, BINS>, figures: Vec<Figure>, role: &str| {
+    let draw = |record: &Record,
+                comparison: &Comparison<OCTAVES, BINS>,
+                figures: Vec<Figure>,
+                role: &str| {
         let pairs: Vec<(Figure, Frame)> = figures.into_iter().zip(frames.iter().copied()).collect();
         Drawing {
             title: format!("{}: {}", record.axis.axis, model(fitted, question)),
@@ -27,15 +30,32 @@ pub(super) fn drawing(fitted: &Fitted, question: &Question) -> String {
             ),
             warning: None,
             unit: record.axis.unit,
-            figures: pairs.into_iter().filter(|(figure, _)| !figure.measured.x.is_empty()).collect(),
+            figures: pairs
+                .into_iter()
+                .filter(|(figure, _)| !figure.measured.x.is_empty())
+                .collect(),
             course: None,
         }
     };
-    let own = draw(fitted.record, &fitted.compared.comparison, fitted.figures(&frames), "");
-    let judged = fitted.judged.iter().enumerate().map(|(at, (_, record, comparison))| {
-        let role = format!("fitted to {}; ", fitted.record.name());
-        draw(record, comparison, fitted.judged_figures(at, &frames), &role)
-    });
+    let own = draw(
+        fitted.record,
+        &fitted.compared.comparison,
+        fitted.figures(&frames),
+        "",
+    );
+    let judged = fitted
+        .judged
+        .iter()
+        .enumerate()
+        .map(|(at, (_, record, comparison))| {
+            let role = format!("fitted to {}; ", fitted.record.name());
+            draw(
+                record,
+                comparison,
+                fitted.judged_figures(at, &frames),
+                &role,
+            )
+        });
     svg(&std::iter::once(own).chain(judged).collect::<Vec<_>>())
 }
 
@@ -63,18 +83,39 @@ pub(super) fn table(fitted: &Fitted, question: &Question) -> Result<Vec<u8>, csv
         fitted.record.name(),
     );
     let mut table = csv::Writer::from_writer(comment.into_bytes());
-    table.write_record(["record", "figure", "x", "measured", "lower", "upper", "model", "z"])?;
+    table.write_record([
+        "record", "figure", "x", "measured", "lower", "upper", "model", "z",
+    ])?;
     let own = (fitted.record, &fitted.compared.comparison);
-    let judged = fitted.judged.iter().map(|(_, record, comparison)| (*record, comparison));
+    let judged = fitted
+        .judged
+        .iter()
+        .map(|(_, record, comparison)| (*record, comparison));
     for (record, comparison) in std::iter::once(own).chain(judged) {
         let (model, fit) = (&fitted.compared.model, fitted.fit());
         let errors = relative_errors(&record.curve, model, fit);
         let octaves = comparison.octaves.iter().zip(errors);
-        let octaves = octaves.map(|(one, error)| ("deviation", one.tau_s, one.measured, error, one.model, one.z));
+        let octaves = octaves.map(|(one, error)| {
+            (
+                "deviation",
+                one.tau_s,
+                one.measured,
+                error,
+                one.model,
+                one.z,
+            )
+        });
         let bins = comparison.bins.iter();
         let bins = bins.map(|one| {
             let (bin, error) = (&one.bin, relative_error(&one.bin));
-            ("spectrum", bin.frequency_hz, bin.density, error, one.model, one.z)
+            (
+                "spectrum",
+                bin.frequency_hz,
+                bin.density,
+                error,
+                one.model,
+                one.z,
+            )
         });
         for (figure, x, measured, error, model, z) in octaves.chain(bins) {
             let root = |sign: f64| (measured * (1.0 + sign * error)).max(0.0).sqrt();
@@ -84,5 +125,7 @@ pub(super) fn table(fitted: &Fitted, question: &Question) -> Result<Vec<u8>, csv
             table.write_record(names.iter().chain(&numbers))?;
         }
     }
-    table.into_inner().map_err(|error| io::Error::from(error.into_error()).into())
+    table
+        .into_inner()
+        .map_err(|error| io::Error::from(error.into_error()).into())
 }

@@ -85,7 +85,10 @@ pub(super) fn frame(unit: Unit, frame: &Frame) -> DrawnFrame {
 
 /// A figure as a record with its residuals and as a model.
 pub(super) fn drawn(figure: Figure, frame: &Frame) -> (DrawnRecord, DrawnModel) {
-    let up = figure.z.iter().map(|z| frame.up(f64::from(*z)).clamp(0.0, 1.0));
+    let up = figure
+        .z
+        .iter()
+        .map(|z| frame.up(f64::from(*z)).clamp(0.0, 1.0));
     let record = DrawnRecord {
         up: up.collect(),
         measured: figure.measured,

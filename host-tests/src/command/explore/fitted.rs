@@ -39,7 +39,12 @@ impl<'a> Fitted<'a> {
         let judge = |number: &usize| {
             let other = &records[*number];
             if other.axis.unit != record.axis.unit {
-                let what = format!("{} is in {}, not in {}", other.name(), other.axis.unit, record.axis.unit);
+                let what = format!(
+                    "{} is in {}, not in {}",
+                    other.name(),
+                    other.axis.unit,
+                    record.axis.unit
+                );
                 return Err(Place::file(&other.path).failure(what, "compare records of one unit"));
             }
             let observed = Observed::new(&other.curve, &other.spectrum);
@@ -49,8 +54,16 @@ impl<'a> Fitted<'a> {
             let comparison = comparison.map_err(|error| fail(other, error))?;
             Ok((*number, other, comparison))
         };
-        let judged = question.judged.iter().map(judge).collect::<Result<_, _>>()?;
-        Ok(Self { record, compared, judged })
+        let judged = question
+            .judged
+            .iter()
+            .map(judge)
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            record,
+            compared,
+            judged,
+        })
     }
 
     /// The fit.
@@ -63,7 +76,9 @@ impl<'a> Fitted<'a> {
         let others = self.judged.iter().map(|(_, _, comparison)| comparison);
         let own = [&self.record.five, &self.compared.comparison];
         let comparisons: Vec<_> = own.into_iter().chain(others).collect();
-        let has_bins = comparisons.iter().any(|comparison| !comparison.bins.is_empty());
+        let has_bins = comparisons
+            .iter()
+            .any(|comparison| !comparison.bins.is_empty());
         let shown = Quantity::ALL.into_iter();
         shown
             .filter(|quantity| *quantity == Quantity::Deviation || has_bins)
@@ -73,7 +88,11 @@ impl<'a> Fitted<'a> {
 
     /// The record and the model in each of these frames.
     pub(super) fn figures(&self, frames: &[Frame]) -> Vec<Figure> {
-        let Compared { comparison, spectrum, .. } = &self.compared;
+        let Compared {
+            comparison,
+            spectrum,
+            ..
+        } = &self.compared;
         self.view(self.record, comparison, spectrum, frames)
     }
 
@@ -99,6 +118,9 @@ impl<'a> Fitted<'a> {
             errors: &relative_errors(&record.curve, model, fit),
             interval_s: record.curve.interval_s(),
         };
-        frames.iter().map(|frame| Figure::new(&view, frame)).collect()
+        frames
+            .iter()
+            .map(|frame| Figure::new(&view, frame))
+            .collect()
     }
 }

@@ -14,10 +14,12 @@ const STYLES: [&str; 2] = [
     include_str!("../../explore/page.css"),
 ];
 /// The scripts: the first one draws, the second one draws records over each other, the others are the page.
-const SCRIPTS: [&str; 4] = [
+const SCRIPTS: [&str; 6] = [
     include_str!("../../report/figure.js"),
     include_str!("../../explore/figure.js"),
     include_str!("../../explore/state.js"),
+    include_str!("../../explore/controls.js"),
+    include_str!("../../explore/answer.js"),
     include_str!("../../explore/page.js"),
 ];
 
@@ -51,7 +53,9 @@ pub(super) fn page(records: &[Record], nonce: &str) -> String {
             .collect(),
     };
     // Without `<`, no text in the data can end the script element.
-    let json = serde_json::to_string(&data).unwrap_or_default().replace('<', "\\u003c");
+    let json = serde_json::to_string(&data)
+        .unwrap_or_default()
+        .replace('<', "\\u003c");
     let page = html! {
         (DOCTYPE)
         html lang="en" {

@@ -76,7 +76,11 @@ impl Question {
 pub(super) fn with(term: &Term) -> String {
     let parameters = term.effect.parameters().iter().zip(term.parameters);
     let pairs = parameters.map(|(parameter, value)| {
-        let sign = if term.fitted && !parameter.is_whole { '~' } else { '=' };
+        let sign = if term.fitted && !parameter.is_whole {
+            '~'
+        } else {
+            '='
+        };
         format!("{}{sign}{value}", parameter.name)
     });
     let pairs: Vec<String> = pairs.collect();
@@ -102,13 +106,20 @@ mod tests {
         assert_eq!(places, [4, 1, 5]);
         let written: Vec<String> = added.iter().map(|(_, term)| with(term)).collect();
         assert_eq!(written[0], "sinusoid:frequency_hz~19.3");
-        assert!(written[1].starts_with("low_pass:time_constant_s=0.00795774"), "{}", written[1]);
+        assert!(
+            written[1].starts_with("low_pass:time_constant_s=0.00795774"),
+            "{}",
+            written[1]
+        );
         assert!(written[1].ends_with(",poles=2"));
         let again = ModelArguments::new(written, vec!["rate_ramp".into()]).model();
         let again = again.expect("the same model");
         for (one, other) in model.terms().iter().zip(again.terms()) {
             assert_eq!(one.effect.name(), other.effect.name());
-            assert_eq!((one.parameters, one.fitted), (other.parameters, other.fitted));
+            assert_eq!(
+                (one.parameters, one.fitted),
+                (other.parameters, other.fitted)
+            );
         }
     }
 }

@@ -4,8 +4,8 @@ use super::arguments::Arguments;
 use crate::{
     command::{
         compare::compared::Compared,
-        input::record::{self, is_curve, library_failure},
         input::many::shown,
+        input::record::{self, is_curve, library_failure},
         output::words,
     },
     curve_file::AxisCurve,

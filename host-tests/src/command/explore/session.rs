@@ -1,8 +1,8 @@
 //! What the server answers: the page, and questions about the records that were read.
 
 use super::{
-    answer::answer, arguments::Arguments, diagnosis::diagnosis, download, fitted::Fitted, page, question::Question,
-    record::Record, shell,
+    answer::answer, arguments::Arguments, diagnosis::diagnosis, download, fitted::Fitted, page,
+    question::Question, record::Record, shell,
 };
 use crate::failure::Failure;
 use serde::Serialize;
@@ -86,7 +86,11 @@ impl Session {
 }
 
 fn reply(kind: &'static str, body: Vec<u8>) -> Reply {
-    Reply { status: 200, kind, body }
+    Reply {
+        status: 200,
+        kind,
+        body,
+    }
 }
 
 /// A document as JSON. Numbers that are not finite are `null`.

@@ -135,10 +135,9 @@ fn effects_without_parameters_are_fitted() {
     let known = compared(&["sinusoid:frequency_hz=7.7"]);
     let fitted = compared(&["sinusoid"]);
     assert!((frequency_hz(&fitted) / 7.7 - 1.0).abs() < 1e-3);
-    // A shape that is fitted costs a degree of freedom and lowers χ².
+    // A shape that is fitted costs a degree of freedom. Its χ² is the least, up to what the search calls settled.
     assert_eq!(number(&fitted["dof"]), number(&known["dof"]) - 1.0);
-    assert!(number(&fitted["chi2"]) <= number(&known["chi2"]));
-    // No frequency near the fitted one is better, except by what the search calls settled.
+    assert!(number(&fitted["chi2"]) < number(&known["chi2"]) + 0.5);
     for factor in [0.999, 0.9997, 1.0003, 1.001] {
         let near = format!("sinusoid:frequency_hz={}", factor * frequency_hz(&fitted));
         let near = number(&compared(&[&near])["chi2"]);
@@ -147,11 +146,14 @@ fn effects_without_parameters_are_fitted() {
     // From a start nearby, the same minimum is found.
     let from = compared(&["sinusoid:frequency_hz~7.6"]);
     assert!((frequency_hz(&from) / frequency_hz(&fitted) - 1.0).abs() < 1e-4);
-    // The step of the diagnosis has the same model.
+    // The diagnosis finds the same line.
     let diagnosis = json(folder.path(), &["diagnose", "log.csv"]);
     let steps = diagnosis["axes"][0]["steps"].as_array().unwrap();
-    let last = number(&steps[steps.len() - 1]["chi2"]);
-    assert!((number(&fitted["chi2"]) - last).abs() < 0.5, "{last}");
+    let found = frequency_hz(&steps[steps.len() - 1]);
+    assert!(
+        (frequency_hz(&fitted) / found - 1.0).abs() < 5e-4,
+        "{found}"
+    );
     // Two lines, and a filter of which the poles are known.
     let both = compared(&["sinusoid", "sinusoid:frequency_hz=1", "low_pass:poles=2"]);
     let names = both["effects"]

@@ -72,13 +72,8 @@ impl Browser {
         browser
     }
 
-    /// Opens a file and waits until it is loaded.
-    pub(crate) fn open(&mut self, file: &Path) {
-        self.visit(&format!("file://{}", file.display()));
-    }
-
     /// Opens an address and waits until it is loaded.
-    pub(crate) fn visit(&mut self, url: &str) {
+    pub(crate) fn open(&mut self, url: &str) {
         self.loaded = false;
         let answer = self.call("Page.navigate", json!({ "url": url }));
         assert!(answer["errorText"].is_null(), "{answer}");

@@ -13,7 +13,6 @@ use std::path::PathBuf;
 /// but those that are named. Ctrl-C ends it.
 #[derive(Debug, Args)]
 #[command(after_help = examples::EXPLORE)]
-#[cfg_attr(not(feature = "explore"), expect(dead_code))]
 pub(in crate::command) struct Arguments {
     /// Logs (.csv, .csv.gz, .npy, .mcap, .ulg), or curve files (.json) that `measure` wrote
     #[arg(required = true, value_name = "INPUT")]

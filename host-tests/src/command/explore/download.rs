@@ -8,7 +8,6 @@ use crate::{
     plot::{Drawing, Figure, Frame, relative_error, svg},
 };
 use allanite::Comparison;
-use std::io;
 
 /// A drawing of the record, and of each record that judges the model, in the form of `plot`.
 pub(super) fn drawing(fitted: &Fitted, question: &Question) -> String {
@@ -127,5 +126,5 @@ pub(super) fn table(fitted: &Fitted, question: &Question) -> Result<Vec<u8>, csv
     }
     table
         .into_inner()
-        .map_err(|error| io::Error::from(error.into_error()).into())
+        .map_err(|error| error.into_error().into())
 }

@@ -124,6 +124,64 @@ fn text_and_json_agree() {
 }
 
 #[test]
+fn effects_without_parameters_are_fitted() {
+    let folder = folder();
+    let compared = |with: &[&str]| {
+        let with = with.iter().flat_map(|with| ["--with", *with]);
+        let arguments: Vec<&str> = ["compare", "log.csv"].into_iter().chain(with).collect();
+        json(folder.path(), &arguments)["axes"][0].clone()
+    };
+    let frequency_hz = |axis: &Value| number(&axis["effects"][5]["parameters"]["frequency_hz"]);
+    let known = compared(&["sinusoid:frequency_hz=7.7"]);
+    let fitted = compared(&["sinusoid"]);
+    assert!((frequency_hz(&fitted) / 7.7 - 1.0).abs() < 1e-3);
+    // A shape that is fitted costs a degree of freedom. Its χ² is the least, up to what the search calls settled.
+    assert_eq!(number(&fitted["dof"]), number(&known["dof"]) - 1.0);
+    assert!(number(&fitted["chi2"]) < number(&known["chi2"]) + 0.5);
+    for factor in [0.999, 0.9997, 1.0003, 1.001] {
+        let near = format!("sinusoid:frequency_hz={}", factor * frequency_hz(&fitted));
+        let near = number(&compared(&[&near])["chi2"]);
+        assert!(near > number(&fitted["chi2"]) - 0.5, "{factor}: {near}");
+    }
+    // From a start nearby, the same minimum is found.
+    let from = compared(&["sinusoid:frequency_hz~7.6"]);
+    assert!((frequency_hz(&from) / frequency_hz(&fitted) - 1.0).abs() < 1e-4);
+    // The diagnosis finds the same line.
+    let diagnosis = json(folder.path(), &["diagnose", "log.csv"]);
+    let steps = diagnosis["axes"][0]["steps"].as_array().unwrap();
+    let found = frequency_hz(&steps[steps.len() - 1]);
+    assert!(
+        (frequency_hz(&fitted) / found - 1.0).abs() < 5e-4,
+        "{found}"
+    );
+    // Two lines, and a filter of which the poles are known.
+    let both = compared(&["sinusoid", "sinusoid:frequency_hz=1", "low_pass:poles=2"]);
+    let names = both["effects"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|effect| &effect["name"]);
+    let names: Vec<&str> = names.map(|name| name.as_str().unwrap()).collect();
+    assert_eq!(names[1], "low_pass");
+    assert_eq!(names[5..], ["sinusoid"; 2]);
+    assert_eq!(both["effects"][1]["parameters"]["poles"], 2.0);
+    for octave in both["octaves"].as_array().unwrap() {
+        let shares: f64 = octave["shares"]
+            .as_object()
+            .unwrap()
+            .values()
+            .map(number)
+            .sum();
+        assert!((shares - 1.0).abs() < 1e-6);
+    }
+    let text = output(folder.path(), &["compare", "log.csv", "--with", "sinusoid"]);
+    assert!(
+        text.contains("with sinusoid: frequency 7.7") && text.contains(" … "),
+        "{text}"
+    );
+}
+
+#[test]
 fn impossible_questions_are_refused() {
     let folder = folder();
     for (arguments, message) in [
@@ -131,7 +189,22 @@ fn impossible_questions_are_refused() {
             &["--with", "sinusiod"][..],
             "no such effect; choose from quantization, ",
         ),
-        (&["--with", "sinusoid"], "frequency_hz is missing"),
+        (
+            &["--with", "sinusoid:frequency=1"],
+            "there is no parameter \"frequency\"; choose from frequency_hz",
+        ),
+        (
+            &["--with", "resonance:frequency_hz~1,quality=2"],
+            "frequency_hz is to be fitted, and quality is not",
+        ),
+        (
+            &["--with", "low_pass:cutoff_hz~20,poles~2"],
+            "poles is a whole number, which is not fitted",
+        ),
+        (
+            &["--filter", "low_pass:cutoff_hz~20"],
+            "cutoff_hz is not fitted here; write cutoff_hz=VALUE",
+        ),
         (
             &["--with", "sinusoid:frequency_hz=0"],
             "frequency_hz=0 is impossible",

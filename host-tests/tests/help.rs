@@ -51,8 +51,8 @@ fn completions_name_every_command_and_bash_reads_its_own() {
     let folder = TempDir::new().unwrap();
     let script = folder.path().join("allanite.bash");
     fs::write(&script, output(Path::new("."), &["completions", "bash"])).unwrap();
-    let words = "source allanite.bash; COMP_WORDS=(allanite exp); COMP_CWORD=1; \
-                 _allanite allanite exp allanite; echo ${COMPREPLY[@]}";
+    let words = "source allanite.bash; COMP_WORDS=(allanite expo); COMP_CWORD=1; \
+                 _allanite allanite expo allanite; echo ${COMPREPLY[@]}";
     let bash = Command::new("bash")
         .current_dir(folder.path())
         .args(["--norc", "-c", words])

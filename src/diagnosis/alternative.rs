@@ -50,7 +50,7 @@ pub fn alternative<'a, const K: usize, const B: usize>(
 }
 
 /// Fits the model and polishes its shapes.
-fn polished<const K: usize, const B: usize>(
+pub(super) fn polished<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     model: Model,
     tolerance: Real,

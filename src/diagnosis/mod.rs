@@ -18,6 +18,7 @@ mod mirrored;
 mod options;
 mod run;
 mod scanned;
+mod shaped;
 mod step;
 mod swapped;
 #[cfg(test)]
@@ -31,6 +32,7 @@ pub use alternative::alternative;
 pub use evidence::Evidence;
 pub use options::Options;
 pub use run::{Diagnosis, Progress};
+pub use shaped::fit_shapes;
 pub use step::{
     Addition, Beside, Candidate, FollowedCovariate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, Swap,
 };

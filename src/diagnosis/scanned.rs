@@ -3,9 +3,14 @@
 use super::step::MAX_CANDIDATES;
 use crate::{
     effect::{Effect, Span},
-    fit::{Problem, Solver},
+    error::Error,
+    fit::{Problem, Solver, Start, Tolerance, Work},
+    limits::MAX_PARAMETERS,
     list,
+    model::{Model, Term},
+    observed::Observed,
     profile::{Evaluation, Found, GridSearch, Peak, Profile, strongest_peak},
+    real::Real,
 };
 use heapless::Vec;
 
@@ -83,6 +88,48 @@ impl<const K: usize, const B: usize> Scanning<K, B> {
             self.search = Some((search, place));
         }
         false
+    }
+}
+
+/// The best shape of an effect beside a model, in the whole range of shapes. Whole numbers of `term` above zero are
+/// kept.
+///
+/// # Errors
+/// As of [`fit`](crate::fit::fit()), and [`Error::Singular`] if no shape can be fitted.
+pub(super) fn scan_for<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
+    model: &Model,
+    term: &Term,
+    tolerance: Real,
+) -> Result<[Real; MAX_PARAMETERS], Error> {
+    let mut work = Work::NEW;
+    let tolerance = Tolerance::IfNeeded(tolerance);
+    work.begin_at(observed, model, Start::Independent, tolerance)?;
+    let problem = Problem::new(observed, model, &work.columns);
+    while !work.solver.advance(&problem)? {}
+    let squares = work.solver.squares;
+    let peak = strongest_peak(&problem, &squares);
+    work.solver.weights.set_independent(&problem);
+    let mut profile = Profile::EMPTY;
+    profile.begin(&problem, &work.solver.weights);
+    let effect = term.effect;
+    let replaced = effect.replaces();
+    let place = replaced.and_then(|replaced| model.position(replaced.name()));
+    profile.choose(&problem, place.unwrap_or(problem.count()), &squares)?;
+    let span = observed.span();
+    let mut whole = (0..MAX_PARAMETERS).filter(|&j| effect.is_whole(j));
+    let mut search = match whole.find(|&j| term.parameter(j) > 0.0) {
+        Some(j) => GridSearch::with(effect, j, term.parameter(j), &span),
+        None => GridSearch::new(effect, &span),
+    }
+    .at_peak(peak);
+    let mut evaluation = Evaluation::new(&mut profile, &problem, &work.solver.weights);
+    loop {
+        match search.advance(&mut evaluation) {
+            None => {}
+            Some(found) if found.chi_squared.is_finite() => return Ok(found.term.parameters),
+            Some(_) => return Err(Error::Singular),
+        }
     }
 }
 

@@ -96,7 +96,7 @@ impl GridSearch {
     }
 
     /// Begins to search among the shapes with this value of a parameter.
-    pub(super) fn with(effect: &'static dyn Effect, j: usize, value: Real, span: &Span) -> Self {
+    pub(crate) fn with(effect: &'static dyn Effect, j: usize, value: Real, span: &Span) -> Self {
         let mut search = Self::new(effect, span);
         if let Some(grid) = search.grids.get_mut(j) {
             *grid = Grid::only(value);

@@ -9,8 +9,19 @@ pub(super) struct EffectArgument<'a> {
     option: &'static str,
     pub(super) name: &'a str,
     values: Vec<(&'a str, f64)>,
+    /// Names of the parameters that are written `parameter~value`: the fit of a shape begins there.
+    begins: Vec<&'a str>,
     /// Names of the parameters that the command has looked for.
     known: Vec<&'static str>,
+}
+
+/// The shape of an effect that a model is to have.
+pub(super) enum Shape {
+    /// It is known, and kept.
+    Known([f64; MAX_PARAMETERS]),
+    /// It is fitted from there on, and looked for in the whole range if its numbers are zero. Whole numbers above zero
+    /// are kept.
+    Fitted([f64; MAX_PARAMETERS]),
 }
 
 impl<'a> EffectArgument<'a> {
@@ -21,13 +32,15 @@ impl<'a> EffectArgument<'a> {
     pub(super) fn parse(option: &'static str, text: &'a str) -> Result<Self, Failure> {
         let (name, list) = text.split_once(':').unwrap_or((text, ""));
         let mut values: Vec<(&str, f64)> = Vec::new();
+        let mut begins = Vec::new();
         for pair in list.split(',').filter(|pair| !pair.trim().is_empty()) {
-            let (parameter, value) = pair.split_once('=').ok_or_else(|| {
+            let (parameter, value) = pair.split_once(['=', '~']).ok_or_else(|| {
                 Failure::option(
                     format!("{option} {name}: {} has no value", quoted(pair.as_bytes())),
                     "write EFFECT:parameter=value,…",
                 )
             })?;
+            let is_begin = pair.as_bytes().get(parameter.len()) == Some(&b'~');
             let (parameter, value) = (parameter.trim(), value.trim());
             let number = value.parse::<f64>().ok().filter(|value| value.is_finite());
             let Some(number) = number else {
@@ -46,13 +59,23 @@ impl<'a> EffectArgument<'a> {
                 ));
             }
             values.push((parameter, number));
+            if is_begin {
+                begins.push(parameter);
+            }
         }
         Ok(Self {
             option,
             name: name.trim(),
             values,
+            begins,
             known: Vec::new(),
         })
+    }
+
+    /// The name of the effect in the text of an option.
+    #[cfg(feature = "explore")]
+    pub(super) fn name_in(text: &str) -> &str {
+        text.split(':').next().unwrap_or_default().trim()
     }
 
     /// The failure of this option, with what is wrong and the remedy.
@@ -114,30 +137,112 @@ impl<'a> EffectArgument<'a> {
         })
     }
 
-    /// Takes the shape parameters of an effect. A parameter that is a whole number is 1 unless given.
+    /// Takes the shape of an effect of a model. It is fitted if no parameter is given but whole numbers, or if the
+    /// parameters are written with `~`.
     ///
     /// # Errors
-    /// When another parameter is missing, or a value is out of range.
-    pub(super) fn shape(
+    /// As of [`Self::shape`], and when the parameters are written in both ways.
+    pub(super) fn known_or_fitted(
         &mut self,
         effect: &'static dyn Effect,
-    ) -> Result<[f64; MAX_PARAMETERS], Failure> {
+    ) -> Result<Shape, Failure> {
+        self.check_names(effect)?;
+        let parameters = effect.parameters();
+        let is_whole = |name: &str| {
+            let mut whole = parameters.iter().filter(|parameter| parameter.is_whole);
+            whole.any(|parameter| parameter.name == name)
+        };
+        let given = |name: &str| self.values.iter().any(|(other, _)| *other == name);
+        let mut fractions = parameters.iter().filter(|parameter| !parameter.is_whole);
+        let is_open = fractions.all(|parameter| {
+            let reciprocal = parameter.reciprocal.map(|other| other.name);
+            !(given(parameter.name) || reciprocal.is_some_and(given))
+        });
+        if let Some(name) = self.begins.iter().find(|name| is_whole(name)) {
+            let what = format!("{name} is a whole number, which is not fitted");
+            let remedy = format!("write {name}=VALUE, or leave it out");
+            return Err(self.failure(what, &remedy));
+        }
+        let begins = std::mem::take(&mut self.begins);
+        let coefficient = effect.coefficient();
+        let mut fixed = self.values.iter().map(|(name, _)| *name);
+        let fixed =
+            fixed.find(|name| !is_whole(name) && *name != coefficient && !begins.contains(name));
+        if let Some((begin, fixed)) = begins.first().zip(fixed) {
+            let what = format!("{begin} is to be fitted, and {fixed} is not");
+            return Err(self.failure(what, "write ~ for both, or = for both"));
+        }
+        if parameters.iter().all(|parameter| parameter.is_whole) || !is_open {
+            let shape = self.shape(effect)?;
+            return Ok(match begins.is_empty() {
+                true => Shape::Known(shape),
+                false => Shape::Fitted(shape),
+            });
+        }
+        // Only whole numbers are given, if any.
+        let mut shape = [0.0; MAX_PARAMETERS];
+        for (value, parameter) in shape.iter_mut().zip(parameters) {
+            if self.values.iter().any(|(name, _)| *name == parameter.name) {
+                *value = self.whole(parameter)?;
+            }
+        }
+        Ok(Shape::Fitted(shape))
+    }
+
+    /// Refuses a name that is no parameter of the effect.
+    fn check_names(&self, effect: &'static dyn Effect) -> Result<(), Failure> {
+        let parameters = effect.parameters().iter();
+        let names = parameters.flat_map(|parameter| {
+            let reciprocal = parameter.reciprocal.map(|other| other.name);
+            reciprocal.into_iter().chain([parameter.name])
+        });
+        let names: Vec<&str> = names.collect();
+        let is_known = |name: &str| names.contains(&name) || name == effect.coefficient();
+        match self.values.iter().find(|(name, _)| !is_known(name)) {
+            Some((name, _)) => Err(self.no_parameter(name, &names)),
+            None => Ok(()),
+        }
+    }
+
+    fn no_parameter(&self, name: &str, known: &[&str]) -> Failure {
+        let what = format!("there is no parameter {}", quoted(name.as_bytes()));
+        let remedy = match known {
+            [] => "give no parameters".into(),
+            known => format!("choose from {}", known.join(", ")),
+        };
+        self.failure(what, &remedy)
+    }
+
+    /// Takes a shape parameter that is a whole number, which is 1 unless given.
+    fn whole(&mut self, parameter: &Parameter) -> Result<f64, Failure> {
         /// Any span will do: the range of a whole number does not depend on it.
         const ANY: Span = Span {
             interval_s: 1.0,
             longest_tau_s: 1.0,
         };
+        let value = self.take(parameter.name).unwrap_or(1.0);
+        let range = (parameter.search_range)(&ANY);
+        if value.fract() != 0.0 || !(range.low..=range.high).contains(&value) {
+            let remedy = format!("give a whole number, {} to {}", range.low, range.high);
+            let what = format!("{}={value} is impossible", parameter.name);
+            return Err(self.failure(what, &remedy));
+        }
+        Ok(value)
+    }
+
+    /// Takes the shape parameters of an effect. A parameter that is a whole number is 1 unless given.
+    ///
+    /// # Errors
+    /// When another parameter is missing, a value is out of range, or a name is no parameter.
+    pub(super) fn shape(
+        &mut self,
+        effect: &'static dyn Effect,
+    ) -> Result<[f64; MAX_PARAMETERS], Failure> {
+        self.check_names(effect)?;
         let mut shape = [0.0; MAX_PARAMETERS];
         for (i, parameter) in effect.parameters().iter().enumerate() {
             shape[i] = if parameter.is_whole {
-                let value = self.take(parameter.name).unwrap_or(1.0);
-                let range = (parameter.search_range)(&ANY);
-                if value.fract() != 0.0 || !(range.low..=range.high).contains(&value) {
-                    let remedy = format!("give a whole number, {} to {}", range.low, range.high);
-                    let what = format!("{}={value} is impossible", parameter.name);
-                    return Err(self.failure(what, &remedy));
-                }
-                value
+                self.whole(parameter)?
             } else {
                 self.value(parameter)?
             };
@@ -170,18 +275,18 @@ impl<'a> EffectArgument<'a> {
     /// Ends the reading of the option.
     ///
     /// # Errors
-    /// When a value is left that the effect has no parameter for.
+    /// When a value is left that the effect has no parameter for, or one is to be fitted that is not.
     pub(super) fn finish(self) -> Result<(), Failure> {
-        let Some((name, _)) = self.values.first() else {
-            return Ok(());
-        };
-        let what = format!("there is no parameter {}", quoted(name.as_bytes()));
-        let remedy = if self.known.is_empty() {
-            "give no parameters".into()
-        } else {
-            format!("choose from {}", self.known.join(", "))
-        };
-        Err(self.failure(what, &remedy))
+        if let Some((name, _)) = self.values.first() {
+            return Err(self.no_parameter(name, &self.known));
+        }
+        match self.begins.first() {
+            Some(name) => {
+                let remedy = format!("write {name}=VALUE");
+                Err(self.failure(format!("{name} is not fitted here"), &remedy))
+            }
+            None => Ok(()),
+        }
     }
 }
 

@@ -36,7 +36,13 @@ pub(super) const EXPORT: &str = examples! {
 pub(super) const COMPARE: &str = examples! {
     "allanite compare curve.json"
     "allanite compare log.csv --with sinusoid:frequency_hz=19.3 --without rate_ramp"
+    "allanite compare log.csv --with low_pass:poles=2"
     "allanite compare log.csv --hold-out 0.5"
+};
+
+pub(super) const EXPLORE: &str = examples! {
+    "allanite explore curve.json --open"
+    "allanite explore before.csv after.csv --rate 100 --scale 0.05 --unit deg/s"
 };
 
 pub(super) const DIAGNOSE: &str = examples! {

@@ -6,6 +6,7 @@ mod decode;
 mod diagnose;
 mod effect_argument;
 mod examples;
+mod explore;
 mod export;
 mod fit;
 mod input;
@@ -48,6 +49,7 @@ enum Command {
     Export(export::Arguments),
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
+    Explore(explore::Arguments),
     Watch(watch::Arguments),
     Report(report::Arguments),
     Plot(plot::Arguments),
@@ -76,6 +78,7 @@ impl CommandLine {
             Command::Export(arguments) => export::run(arguments, &mut output),
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
+            Command::Explore(arguments) => explore::run(arguments, &mut output),
             Command::Watch(arguments) => watch::run(arguments, &mut output),
             Command::Report(arguments) => report::run(arguments),
             Command::Plot(arguments) => plot::run(arguments),

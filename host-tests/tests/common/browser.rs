@@ -72,10 +72,9 @@ impl Browser {
         browser
     }
 
-    /// Opens a file and waits until it is loaded.
-    pub(crate) fn open(&mut self, file: &Path) {
+    /// Opens an address and waits until it is loaded.
+    pub(crate) fn open(&mut self, url: &str) {
         self.loaded = false;
-        let url = format!("file://{}", file.display());
         let answer = self.call("Page.navigate", json!({ "url": url }));
         assert!(answer["errorText"].is_null(), "{answer}");
         while !self.loaded {

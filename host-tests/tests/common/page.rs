@@ -25,7 +25,7 @@ pub(crate) fn simulate(folder: &Path, effects: &[&str]) {
 
 pub(crate) fn opened(folder: &Path) -> Browser {
     let mut browser = Browser::start();
-    browser.open(&folder.join("report.html"));
+    browser.open(&format!("file://{}/report.html", folder.display()));
     browser
 }
 

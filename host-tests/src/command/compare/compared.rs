@@ -6,31 +6,34 @@ use crate::{
 };
 use allanite::{
     Comparison, Error, Model, Observed,
+    diagnosis::fit_shapes,
     fit::{Fit, Options, fit},
     spectrum::Spectrum,
 };
 
 /// One axis, the model that was fitted to it, and the comparison octave by octave.
-pub(super) struct Compared {
-    pub(super) axis: AxisCurve,
-    pub(super) model: Model,
-    pub(super) fit: Fit,
+pub(in crate::command) struct Compared {
+    pub(in crate::command) axis: AxisCurve,
+    pub(in crate::command) model: Model,
+    pub(in crate::command) fit: Fit,
     /// The comparison with the held-out part, or with the fitted record if nothing was held out.
-    pub(super) comparison: Comparison<OCTAVES, BINS>,
+    pub(in crate::command) comparison: Comparison<OCTAVES, BINS>,
     /// The spectrum of what is compared.
-    pub(super) spectrum: Spectrum<BINS>,
-    pub(super) held_out: Option<HeldOut>,
+    pub(in crate::command) spectrum: Spectrum<BINS>,
+    pub(in crate::command) held_out: Option<HeldOut>,
 }
 
 /// The part of a record that no coefficient was fitted to.
-pub(super) struct HeldOut {
-    pub(super) axis: AxisCurve,
+pub(in crate::command) struct HeldOut {
+    pub(in crate::command) axis: AxisCurve,
     /// Rms misfit, in percent, in the part that was fitted.
-    pub(super) fitted_rms_percent: f64,
+    pub(in crate::command) fitted_rms_percent: f64,
 }
 
 impl Compared {
-    pub(super) fn new(
+    /// Fits a model to an axis, shapes included, and compares it with the same axis or with the part that was held
+    /// out.
+    pub(in crate::command) fn new(
         axis: AxisCurve,
         model: &Model,
         held_out: Option<AxisCurve>,
@@ -38,6 +41,7 @@ impl Compared {
         let options = Options::default();
         let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
         let observed = Observed::new(&curve, &spectrum);
+        let model = &fit_shapes(observed, model, options.tolerance)?;
         let fit = fit(observed, model, options)?;
         let fitted = Comparison::new(observed, model, &fit)?;
         let (comparison, spectrum, held_out) = match held_out {

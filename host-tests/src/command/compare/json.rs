@@ -17,7 +17,7 @@ use serde_json::{Map, Value};
 
 /// The document of one file.
 #[derive(Serialize)]
-pub(super) struct Document<'a> {
+pub(in crate::command) struct Document<'a> {
     axes: Vec<Axis<'a>>,
 }
 
@@ -122,6 +122,13 @@ fn axis(compared: &Compared) -> Axis<'_> {
     }
 }
 
+/// Adds a share by the name of its effect. Those of two effects with the same name are added up.
+fn add(mut shares: Map<String, Value>, (name, share): (&str, f32)) -> Map<String, Value> {
+    let before = shares.get(name).and_then(Value::as_f64).unwrap_or(0.0);
+    shares.insert(name.to_owned(), (before + f64::from(share)).into());
+    shares
+}
+
 fn octave(octave: &ComparedOctave, model: &Model) -> Octave {
     let names = model.terms().iter().map(|term| term.effect.name());
     Octave {
@@ -131,10 +138,7 @@ fn octave(octave: &ComparedOctave, model: &Model) -> Octave {
         model: octave.model.sqrt(),
         percent: octave.percent(),
         z: octave.z,
-        shares: names
-            .zip(octave.shares)
-            .map(|(name, share)| (name.to_owned(), Value::from(share)))
-            .collect(),
+        shares: names.zip(octave.shares).fold(Map::new(), add),
     }
 }
 

@@ -1,8 +1,8 @@
 //! `compare`: shows octave by octave where a model fails.
 
-mod compared;
+pub(super) mod compared;
 mod json;
-mod model;
+pub(super) mod model;
 mod text;
 
 use crate::{
@@ -101,8 +101,10 @@ const LEAST_VARIANCE: f64 = 1e-15;
 
 /// Refuses an effect that contributes to no octave, because it cannot be fitted. An example is an
 /// oscillation at a multiple of the sample rate.
-fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
-    for term in model.terms() {
+pub(super) fn check_visible(model: &Model, curve: &Curve<OCTAVES>) -> Result<(), Failure> {
+    // A shape that is looked for is found where it is visible.
+    let known = model.terms().iter();
+    for term in known.filter(|term| !term.fitted || term.parameters[0] > 0.0) {
         let shape = term.sampled_shape(curve.interval_s());
         let variance = |m: u32| term.effect.variance(f64::from(m), &shape);
         let mut octaves = curve.points().iter().map(|point| variance(point.m));

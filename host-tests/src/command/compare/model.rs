@@ -1,7 +1,10 @@
 //! The model of `compare`: the five terms, with the effects that options add or leave out.
 
 use crate::{
-    command::{effect_argument::EffectArgument, known_filter::KnownFilter},
+    command::{
+        effect_argument::{EffectArgument, Shape},
+        known_filter::KnownFilter,
+    },
     failure::{Failure, quoted},
 };
 use allanite::{Model, Term, model::MAX_EFFECTS};
@@ -9,10 +12,11 @@ use clap::Args;
 
 /// Effects to add and terms to leave out.
 #[derive(Debug, Args)]
-pub(super) struct ModelArguments {
-    /// Add an effect with its shape, such as `sinusoid:frequency_hz=0.3` or
-    /// `decimation_filter:width_s=0.014,stages=2`; its coefficient is fitted. If the effect
-    /// replaces a term, that term is removed
+pub(in crate::command) struct ModelArguments {
+    /// Add an effect; its coefficient is fitted. `sinusoid:frequency_hz=0.3` and
+    /// `decimation_filter:width_s=0.014,stages=2` have a known shape. The shape of `sinusoid` is fitted, wherever it
+    /// is in its range, and that of `sinusoid:frequency_hz~0.3` from 0.3 Hz on. If the effect replaces a term, that
+    /// term is removed
     #[arg(long, value_name = "EFFECT[:parameter=value,…]")]
     with: Vec<String>,
     /// Leave out a term, such as `rate_ramp`
@@ -23,12 +27,22 @@ pub(super) struct ModelArguments {
 }
 
 impl ModelArguments {
-    /// Builds the model.
+    /// The options with these values, for a caller without a command line.
+    #[cfg(feature = "explore")]
+    pub(in crate::command) fn new(with: Vec<String>, without: Vec<String>) -> Self {
+        Self {
+            with,
+            without,
+            filter: KnownFilter::default(),
+        }
+    }
+
+    /// Builds the model. A shape of zeros that is to be fitted is to be looked for in its whole range.
     ///
     /// # Errors
     /// When an effect is unknown, lacks a parameter, is in the model twice or not in it, or when the
     /// model gets too large or empty.
-    pub(super) fn model(&self) -> Result<Model, Failure> {
+    pub(in crate::command) fn model(&self) -> Result<Model, Failure> {
         let mut model = self.filter.model()?;
         for name in &self.without {
             if model.position(name).is_none() {
@@ -46,11 +60,18 @@ impl ModelArguments {
         for text in &self.with {
             let mut argument = EffectArgument::parse("--with", text)?;
             let effect = argument.effect()?;
-            if model.position(effect.name()).is_some() {
+            // There can be several lines or resonances, but one filter, and one effect without a shape.
+            let is_single = effect.parameters().is_empty() || effect.replaces().is_some();
+            if is_single && model.position(effect.name()).is_some() {
                 return Err(argument.failure("is in the model already", "drop this option"));
             }
-            let mut term = Term::new(effect);
-            term.parameters = argument.shape(effect)?;
+            let term = match argument.known_or_fitted(effect)? {
+                Shape::Known(parameters) => Term::known(effect, parameters),
+                Shape::Fitted(parameters) => Term {
+                    fitted: true,
+                    ..Term::known(effect, parameters)
+                },
+            };
             if argument.take(effect.coefficient()).is_some() {
                 let what = format!("{} is fitted, not given", effect.coefficient());
                 return Err(argument.failure(what, "give only the shape parameters"));

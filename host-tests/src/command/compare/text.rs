@@ -41,8 +41,8 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
     let part = held_out.as_ref().map_or("", |_| "fitted to the first ");
     writeln!(output, "{}: {part}{record}", axis.axis)?;
-    for (term, _) in model.terms().iter().zip(&fit.coefficients) {
-        let shape = words::shape(term, None);
+    for (place, term) in model.terms().iter().enumerate() {
+        let shape = words::shape(term, Some((fit, place)));
         if !shape.is_empty() {
             writeln!(output, "with {}: {shape}", words::plain(term.effect.name()))?;
         }

@@ -115,7 +115,8 @@ pub(crate) struct Diagnosed {
 }
 
 impl Diagnosed {
-    fn new(
+    /// Diagnoses an axis, from this model on.
+    pub(crate) fn new(
         axis: AxisCurve,
         evidence: Evidence,
         model: &Model,

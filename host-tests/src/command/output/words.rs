@@ -138,11 +138,16 @@ pub(crate) fn shape_words(parameter: &Parameter, values: &str) -> String {
     named(parameter.name, parameter.unit, values)
 }
 
+/// The name of a quantity as people write it, without its unit: `frequency` for `frequency_hz`.
+pub(crate) fn without_unit(name: &str, unit: &str) -> String {
+    let suffix = format!("_{}", unit.to_lowercase());
+    plain(name.strip_suffix(&suffix).unwrap_or(name))
+}
+
 /// Values of a quantity in words: `frequency 19 … 20 Hz` for `frequency_hz`.
 fn named(name: &str, unit: &str, values: &str) -> String {
-    // The unit is written after the value, so the name goes without its suffix.
-    let suffix = format!("_{}", unit.to_lowercase());
-    let name = plain(name.strip_suffix(&suffix).unwrap_or(name));
+    // The unit is written after the value.
+    let name = without_unit(name, unit);
     match unit {
         "" => format!("{name} {values}"),
         unit => format!("{name} {values} {unit}"),

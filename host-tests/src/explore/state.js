@@ -1,0 +1,118 @@
+// The state of the page: the records and the model, in the words of the command `compare`.
+"use strict";
+
+const html = (name, attributes, ...children) => make(null, name, attributes, children);
+const byId = (id) => document.getElementById(id);
+const tenth = (value) => (value === null ? "unknown" : value.toFixed(1));
+const plain = (name) => name.replaceAll("_", " ");
+/// Six digits, without trailing zeros.
+const rounded = (value) => Number(value.toPrecision(6));
+/// Four significant digits, as the program prints them.
+function number(value) {
+  if (value === null || !Number.isFinite(value)) return "∞";
+  if (value === 0) return "0";
+  const exponent = Math.floor(Math.log10(Math.abs(value)));
+  if (exponent >= -3 && exponent <= 4) return value.toFixed(Math.max(0, 3 - exponent));
+  return value.toExponential(3).replace("e+", "e");
+}
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const effectNamed = new Map(data.catalogue.map((effect) => [effect.name, effect]));
+
+/// The value of the option --with for an added effect. A shape that is fitted has `~`; one without values is looked for.
+function withText({ effect, values, fitted, text }) {
+  if (text !== undefined) return text;
+  const { parameters } = effectNamed.get(effect);
+  const pairs = parameters.map(({ name, is_whole: isWhole }, at) =>
+    ((values[at] ?? null) === null ? null : `${name}${fitted && !isWhole ? "~" : "="}${values[at]}`));
+  const given = pairs.filter((pair) => pair !== null);
+  return given.length > 0 ? `${effect}:${given.join(",")}` : effect;
+}
+
+/// What is asked of the server about a state.
+const question = (state) => ({ record: state.record, judged: state.judged, with: state.added.map(withText), without: state.without });
+
+const emptyState = (record = 0) => ({ record, judged: [], added: [], without: [] });
+
+/// The state as the fragment of the address.
+function fragment(state) {
+  const readable = (text) => encodeURIComponent(text).replace(/%(3A|2C|3D|7E|2F)/g, decodeURIComponent);
+  const parts = [`record=${state.record}`, ...state.judged.map((record) => `judged=${record}`),
+    ...state.added.map((added) => `with=${readable(withText(added))}`),
+    ...state.without.map((name) => `without=${readable(name)}`)];
+  return `#${parts.join("&")}`;
+}
+
+/// The state of a fragment. The server refuses what it does not know.
+function stateOf(hash) {
+  const state = emptyState();
+  const isRecord = (value) => /^\d+$/.test(value) && Number(value) < data.records.length;
+  for (const part of hash.replace(/^#/, "").split("&")) {
+    const at = part.indexOf("=");
+    const name = part.slice(0, at);
+    let value = part.slice(at + 1);
+    try {
+      value = decodeURIComponent(value);
+    } catch {
+      continue;
+    }
+    if (name === "record" && isRecord(value)) state.record = Number(value);
+    if (name === "judged" && isRecord(value)) state.judged.push(Number(value));
+    // The values follow from the answer of the server.
+    if (name === "with") state.added.push({ effect: value.split(":")[0].trim(), values: [], fitted: false, text: value });
+    if (name === "without") state.without.push(value);
+  }
+  state.judged = [...new Set(state.judged)].filter((record) => record !== state.record).sort((a, b) => a - b);
+  state.added = state.added.filter(({ effect }) => effectNamed.has(effect));
+  return state;
+}
+
+/// Asks the server, and gives the response or throws what it says.
+async function post(name, asked) {
+  let response;
+  try {
+    response = await fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(asked) });
+  } catch {
+    throw new Error("the program does not answer; start `allanite explore` again");
+  }
+  if (response.ok) return response;
+  const refused = await response.json().catch(() => ({}));
+  throw new Error(refused.error ?? `the program refused the question (${response.status})`);
+}
+
+/// Asks for fits, one after the other: while one is on its way, only the newest question waits.
+class Fits {
+  constructor(shown, failed) {
+    Object.assign(this, { shown, failed, waiting: null, busy: false, known: new Map() });
+  }
+
+  ask(state) {
+    this.waiting = structuredClone(state);
+    if (!this.busy) this.work();
+  }
+
+  async work() {
+    this.busy = true;
+    while (this.waiting) {
+      const state = this.waiting;
+      this.waiting = null;
+      try {
+        this.shown(state, await this.answer(question(state)));
+      } catch (error) {
+        this.failed(error.message);
+      }
+    }
+    this.busy = false;
+  }
+
+  /// The answer to a question, which is asked once only.
+  async answer(asked) {
+    const key = JSON.stringify(asked);
+    if (!this.known.has(key)) {
+      const answer = await (await post("fit", asked)).json();
+      if (this.known.size > 200) this.known.clear();
+      this.known.set(key, answer);
+    }
+    return this.known.get(key);
+  }
+}

@@ -1,4 +1,4 @@
-//! Reads what the comment lines at the top of a log say about it.
+//! Reads what the lines at the top of a log say about it.
 
 use super::Options;
 use crate::{
@@ -16,6 +16,8 @@ const SCALES: RangeInclusive<f64> = 1e-30..=1e30;
 #[derive(Debug, Default)]
 pub(super) struct Metadata {
     rate_hz: Option<(u64, String)>,
+    /// The rate in a line that is no `key=value` pair.
+    preamble_hz: Option<(u64, String)>,
     scale: Option<(u64, String)>,
     unit: Option<(u64, String)>,
 }
@@ -37,9 +39,48 @@ impl Metadata {
         }
     }
 
+    /// Reads a line above the rows that other programs write: `// Sample rate: 100.0Hz`, `OutputRate:,60`. The rate in
+    /// a comment `rate_hz=…` counts more.
+    pub(super) fn read_line(&mut self, row: u64, line: &str) {
+        const KEYS: [&str; 8] = [
+            "sample rate",
+            "sampling rate",
+            "samplerate",
+            "sample_rate",
+            "output rate",
+            "outputrate",
+            "update rate",
+            "sampling frequency",
+        ];
+        let line = line.to_lowercase();
+        let Some((_, rest)) = KEYS.iter().find_map(|key| line.split_once(key)) else {
+            return;
+        };
+        let rest = rest.trim_start_matches(|c: char| !c.is_ascii_digit());
+        let end = rest
+            .find(|c: char| !c.is_ascii_digit() && c != '.')
+            .unwrap_or(rest.len());
+        let (number, unit) = rest.split_at(end);
+        let is_rate = number
+            .parse::<f64>()
+            .is_ok_and(|rate_hz| RATES_HZ.contains(&rate_hz));
+        let is_other = unit.trim_start().starts_with(['k', 'm']);
+        if is_rate && !is_other {
+            self.preamble_hz
+                .get_or_insert_with(|| (row, number.to_owned()));
+        }
+    }
+
+    /// The rate that a line above the rows tells, if it is the one that is taken.
+    pub(super) fn rate_of_preamble(&self, options: &Options) -> Option<(u64, &str)> {
+        let (row, text) = self.preamble_hz.as_ref()?;
+        (options.rate_hz.is_none() && self.rate_hz.is_none()).then_some((*row, text.as_str()))
+    }
+
     /// The sampling rate in Hz, from the options or else from the comments.
     pub(super) fn rate_hz(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
-        Ok(match (options.rate_hz, &self.rate_hz) {
+        let told = self.rate_hz.as_ref().or(self.preamble_hz.as_ref());
+        Ok(match (options.rate_hz, told) {
             (Some(rate_hz), _) => {
                 let told = positive(rate_hz, "--rate", "samples per second", RATES_HZ)?;
                 Some(told)

@@ -65,15 +65,30 @@
 //! reading with an error that names its row.
 
 mod accumulate;
+mod axes;
 #[cfg(feature = "bags")]
 mod bag;
+#[cfg(feature = "bags")]
+mod bag_folder;
+#[cfg(feature = "bags")]
+mod bag_mcap;
+#[cfg(feature = "bags")]
+mod bag_ros1;
+#[cfg(feature = "bags")]
+mod bag_sqlite;
+#[cfg(feature = "bags")]
+mod channel;
 mod clock;
 mod columns;
+mod convention;
 mod covariate;
 mod csv;
+mod date_time;
+mod dialect;
 mod evidence;
 mod field;
 mod file;
+mod foreign;
 #[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
@@ -82,6 +97,7 @@ mod names;
 mod npy;
 pub mod npy_header;
 mod pace;
+mod preamble;
 mod quantum;
 mod reading;
 mod records;
@@ -93,6 +109,7 @@ mod tried;
 mod ulog;
 mod ulog_format;
 mod ulog_messages;
+mod unit_names;
 mod watched;
 mod worker;
 

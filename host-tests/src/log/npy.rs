@@ -74,6 +74,8 @@ impl Npy {
                 names: None,
                 looks: Vec::new(),
                 heads: Vec::new(),
+                defined: Vec::new(),
+                said: String::new(),
             },
         };
         array.columns.heads = array.heads(width)?;

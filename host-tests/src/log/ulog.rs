@@ -4,7 +4,7 @@ use super::{
     Options,
     columns::{AxisColumn, Columns, Look},
     metadata::Metadata,
-    names, scaling, source,
+    scaling, source,
     table::{Ended, Stop, Table, Visitor},
     ulog_format::{Field, Value},
     ulog_messages::{Error, Message, Messages, Subscription},
@@ -108,7 +108,9 @@ impl Ulog {
         for topic in RAW {
             if found.values().any(|one| one.subscription.topic == topic) {
                 let columns = expanded(topic)?;
-                let has = |sensor| columns.iter().any(|(name, _)| names::is_axis(name, sensor));
+                let names: Vec<String> = columns.into_iter().map(|(name, _)| name).collect();
+                let defined = defined(topic, &names);
+                let has = |sensor| defined.iter().any(|(_, of)| *of == sensor);
                 raw.insert(topic, (has(Sensor::Gyro), has(Sensor::Accelerometer)));
             }
         }
@@ -144,6 +146,8 @@ impl Ulog {
             columns: Columns {
                 looks: vec![Look::Number; names.len()],
                 heads: vec![Vec::new(); names.len()],
+                defined: defined(&chosen.subscription.topic, &names),
+                said: String::new(),
                 names: Some(names),
             },
             sources,
@@ -270,6 +274,12 @@ fn columns(topic: &str, fields: &[Field]) -> Vec<(String, Source)> {
     const XYZ: [&str; 3] = ["x", "y", "z"];
     const ARRAY: [&str; 3] = ["xyz[0]", "xyz[1]", "xyz[2]"];
     const ANGLE: [&str; 3] = ["delta_angle[0]", "delta_angle[1]", "delta_angle[2]"];
+    const RAD: [&str; 3] = ["gyro_rad[0]", "gyro_rad[1]", "gyro_rad[2]"];
+    const M_S2: [&str; 3] = [
+        "accelerometer_m_s2[0]",
+        "accelerometer_m_s2[1]",
+        "accelerometer_m_s2[2]",
+    ];
     const VELOCITY: [&str; 3] = [
         "delta_velocity[0]",
         "delta_velocity[1]",
@@ -278,6 +288,7 @@ fn columns(topic: &str, fields: &[Field]) -> Vec<(String, Source)> {
     let known: &[([&str; 3], [&str; 3], Option<&str>)] = match topic {
         "sensor_gyro" => &[(XYZ, GYRO, None)],
         "sensor_accel" => &[(XYZ, ACCEL, None)],
+        "sensor_combined" => &[(RAD, RAD, None), (M_S2, M_S2, None)],
         "vehicle_angular_velocity" => &[(ARRAY, GYRO, None)],
         "vehicle_acceleration" => &[(ARRAY, ACCEL, None)],
         "vehicle_imu" => &[
@@ -305,6 +316,38 @@ fn columns(topic: &str, fields: &[Field]) -> Vec<(String, Source)> {
         (name, Source { field, over })
     };
     fields.iter().map(column).collect()
+}
+
+/// The columns that are axes in the definition of a topic of PX4. A topic has other fields with similar names, such as
+/// `gyro_calibration_count`.
+fn defined(topic: &str, names: &[String]) -> Vec<(usize, Sensor)> {
+    const TOPICS: [&str; 6] = [
+        "sensor_gyro",
+        "sensor_accel",
+        "sensor_combined",
+        "vehicle_imu",
+        "vehicle_angular_velocity",
+        "vehicle_acceleration",
+    ];
+    if !TOPICS.contains(&topic) {
+        return Vec::new();
+    }
+    let sensor = |(column, name): (usize, &String)| {
+        let starts = |starts: [&str; 2]| starts.iter().any(|start| name.starts_with(start));
+        match (
+            starts(["gyro_rad[", "gyro_"]),
+            starts(["accelerometer_m_s2[", "accel_"]),
+        ) {
+            (true, _) if name.ends_with("[rad/s]") || name.starts_with("gyro_rad[") => {
+                Some((column, Sensor::Gyro))
+            }
+            (_, true) if name.ends_with("[m/s^2]") || name.starts_with("accelerometer_m_s2[") => {
+                Some((column, Sensor::Accelerometer))
+            }
+            _ => None,
+        }
+    };
+    names.iter().enumerate().filter_map(sensor).collect()
 }
 
 /// The topic that is asked for by its name or as `TOPIC:INSTANCE`. Without a request, it is the

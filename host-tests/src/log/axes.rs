@@ -119,6 +119,36 @@ impl Columns {
         by_name
     }
 
+    /// Checks that the rows are those of one sensor. ArduPilot numbers the instances of its sensors in the column `I`.
+    ///
+    /// # Errors
+    /// When the first rows are those of several instances.
+    pub(super) fn check_instances(&self, path: &Path) -> Result<(), Failure> {
+        let is_instance =
+            |&column: &usize| matches!(self.name(column), Some("I" | "instance" | "Instance"));
+        for column in (0..self.looks.len()).filter(is_instance) {
+            let mut instances = self.heads[column].clone();
+            instances.sort_by(f64::total_cmp);
+            instances.dedup();
+            let is_repeated = 2 * instances.len() <= self.heads[column].len();
+            if let [first, _, ..] = instances[..]
+                && is_repeated
+            {
+                let (name, number) = (self.called(column), column + 1);
+                return Err(Place::file(path).failure(
+                    format!(
+                        "the rows are those of {} sensors, by column {name}",
+                        instances.len()
+                    ),
+                    format!(
+                        "keep one of them, such as with `awk -F, 'NR == 1 || ${number} == {first}'`"
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// The convention that all these columns follow.
     pub(super) fn convention_of(&self, axes: &[AxisColumn]) -> Option<Convention> {
         let of = |axis: &AxisColumn| convention::of(self.name(axis.column)?, &self.said);

@@ -34,6 +34,8 @@ pub(super) fn is_bare_axis(name: &str) -> bool {
 /// * ArduPilot logs `GyrX` in rad/s and `AccX` in m/s² (its list of log messages, `IMU`).
 /// * Messages of ROS have rad/s and m/s² (REP 103).
 /// * Betaflight logs `gyroADC` in deg/s.
+/// * Kalibr extracts `omega_x` in rad/s and `alpha_x` in m/s².
+/// * PX4's `sensor_gyro` and `sensor_accel`, of which `ulog2csv` writes a file each, have rad/s and m/s².
 /// * VectorNav's rates are in rad/s and its accelerations in m/s² (its interface control document).
 /// * Xsens' MT Manager exports `Gyr_X` in rad/s and `Acc_X` in m/s²; Xsens DOT exports `Gyr_X` in deg/s.
 /// * Phones measure in rad/s and m/s² (Android's `SensorEvent`).
@@ -54,6 +56,10 @@ pub(super) fn of(name: &str, said: &str) -> Option<Convention> {
         (rad, "ArduPilot")
     } else if matches!(bare, "AccX" | "AccY" | "AccZ") {
         (metres, "ArduPilot")
+    } else if matches!(&*lower, "omega_x" | "omega_y" | "omega_z") {
+        (rad, "Kalibr")
+    } else if matches!(&*lower, "alpha_x" | "alpha_y" | "alpha_z") {
+        (metres, "Kalibr")
     } else if lower.contains("angular_velocity") {
         (rad, "ROS")
     } else if lower.contains("linear_acceleration") {
@@ -74,7 +80,12 @@ pub(super) fn of(name: &str, said: &str) -> Option<Convention> {
     } else if starts(&["uncompaccel"]) || (starts(&["accel"]) && said.contains("vectornav")) {
         (metres, "VectorNav")
     } else if is_bare_axis(name) {
-        (of_sensor(sensor_said(said)?), "phones")
+        let program = if said.contains("sensor_") {
+            "PX4"
+        } else {
+            "phones"
+        };
+        (of_sensor(sensor_said(said)?), program)
     } else {
         return None;
     };
@@ -105,6 +116,8 @@ mod tests {
             ("gyro_x", "", None),
             ("x", "gyroscope.csv", Some((rad, "phones"))),
             ("x", "accelerometer.csv", Some((metres, "phones"))),
+            ("omega_y", "", Some((rad, "Kalibr"))),
+            ("x", "log_sensor_gyro_0.csv", Some((rad, "PX4"))),
             ("x", "log.csv", None),
             ("x", "accelerometer and gyroscope", None),
         ] {

@@ -91,10 +91,16 @@ impl Dialect {
             (dialect, width, points.sum::<i64>())
         });
         let [first, others @ ..] = judged;
+        let is_better =
+            |one: &(Self, usize, i64), best: &(Self, usize, i64)| match best.2.max(one.2) {
+                // There are no numbers, so that only the number of fields tells what separates them.
+                ..=0 => one.0.separator != Separator::Blanks && one.1 > best.1,
+                _ => one.2 > best.2,
+            };
         let best = others.into_iter().fold(
             first,
-            |best, other| {
-                if other.2 > best.2 { other } else { best }
+            |best, one| {
+                if is_better(&one, &best) { one } else { best }
             },
         );
         (best.0, best.1)

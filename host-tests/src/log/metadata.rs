@@ -5,7 +5,10 @@ use crate::{
     failure::{Failure, Place, brief, quoted},
     unit::Unit,
 };
-use std::{ops::RangeInclusive, path::Path};
+use std::{
+    ops::RangeInclusive,
+    path::{Path, PathBuf},
+};
 
 /// The rates in Hz that a log can have, and the sizes of a count. Beyond them, something else was meant.
 const RATES_HZ: RangeInclusive<f64> = 1e-6..=1e9;
@@ -20,9 +23,25 @@ pub(super) struct Metadata {
     preamble_hz: Option<(u64, String)>,
     scale: Option<(u64, String)>,
     unit: Option<(u64, String)>,
+    /// The file with the comments, if it is another one than the log.
+    file: Option<PathBuf>,
 }
 
 impl Metadata {
+    /// The comments of a file beside the log.
+    pub(super) fn of_file(path: &Path) -> Self {
+        Self {
+            file: Some(path.to_owned()),
+            ..Self::default()
+        }
+    }
+
+    /// The file beside the log that tells something of it.
+    pub(super) fn told_in(&self) -> Option<&Path> {
+        let tells = self.rate_hz.is_some() || self.scale.is_some() || self.unit.is_some();
+        self.file.as_deref().filter(|_| tells)
+    }
+
     /// Reads a comment line without its `#`. The first value of a key counts.
     pub(super) fn read_comment(&mut self, row: u64, comment: &str) {
         for word in comment.split([' ', ',', ';', '\t']) {
@@ -79,6 +98,7 @@ impl Metadata {
 
     /// The sampling rate in Hz, from the options or else from the comments.
     pub(super) fn rate_hz(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
+        let path = self.file.as_deref().unwrap_or(path);
         let told = self.rate_hz.as_ref().or(self.preamble_hz.as_ref());
         Ok(match (options.rate_hz, told) {
             (Some(rate_hz), _) => {
@@ -98,6 +118,7 @@ impl Metadata {
 
     /// The scale in rate units per count, from the options or else from the comments.
     pub(super) fn scale(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
+        let path = self.file.as_deref().unwrap_or(path);
         Ok(match (options.scale, &self.scale) {
             (Some(scale), _) => {
                 let told = positive(scale, "--scale", "rate units per count", SCALES)?;
@@ -113,6 +134,7 @@ impl Metadata {
 
     /// The unit in the comments.
     pub(super) fn unit(&self, path: &Path) -> Result<Option<Unit>, Failure> {
+        let path = self.file.as_deref().unwrap_or(path);
         let Some((row, text)) = &self.unit else {
             return Ok(None);
         };

@@ -33,6 +33,7 @@ pub(super) fn read_table(
     {
         table.columns().check_rate(path, options, rate_hz)?;
     }
+    table.columns().check_instances(path)?;
     // If the rate is given, time stamps are read only if the options ask for them.
     let time = match table.by_rows() && (rate_hz.is_none() || options.time.is_some()) {
         true => table.columns().time(path, options)?,
@@ -219,7 +220,7 @@ fn said(
         Origin::Names => parts.push(format!("unit {} from the column names", scaling.unit)),
         Origin::Convention(program) => {
             parts.push(format!(
-                "unit {} assumed, which {program} always uses (change it with --unit)",
+                "unit {} by the convention of {program} (change it with --unit)",
                 scaling.unit
             ));
         }

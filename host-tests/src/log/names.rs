@@ -70,7 +70,9 @@ pub(super) fn is_time(name: &str) -> bool {
         return false;
     }
     let first = tokens(&name).next().unwrap_or_default();
-    ["time", "stamp"].iter().any(|word| name.contains(word))
+    ["time", "stamp", "zeit"]
+        .iter()
+        .any(|word| name.contains(word))
         || first == "t"
         || TimeUnit::of_token(first).is_some()
 }

@@ -163,6 +163,14 @@ pub(super) fn values(count: usize) -> String {
     }
 }
 
+/// A line without its end. A tab at its end may stand for an empty value.
+fn without_end(mut line: &[u8]) -> &[u8] {
+    while let [rest @ .., b'\n' | b'\r'] = line {
+        line = rest;
+    }
+    line
+}
+
 fn keep(said: &mut String, text: &str) {
     if said.len() + text.len() < LONGEST_SAID {
         said.push_str(&text.to_lowercase());
@@ -221,10 +229,10 @@ fn sample(
             let line = Line {
                 row,
                 offset,
-                bytes: part.trim_ascii_end().to_vec(),
+                bytes: without_end(part).to_vec(),
             };
             offset += part.len() as u64;
-            if line.bytes.is_empty() {
+            if line.bytes.trim_ascii().is_empty() {
                 continue;
             }
             match line.comment() {

@@ -54,7 +54,7 @@ impl Columns {
         // A message has several times. The one at which the sensor was sampled comes first.
         let is_sensors = |column: &usize| {
             let name = self.name(*column).unwrap_or_default();
-            name.contains("header.stamp") || name.contains("timestamp_sample")
+            name.contains("header.stamp") || name.contains("timestamp_sample") || name == "TimeUS"
         };
         by_name.sort_by_key(|column| !is_sensors(column));
         // Dates and times are often coarser than a number beside them.

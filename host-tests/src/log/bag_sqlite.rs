@@ -33,7 +33,7 @@ pub(super) fn each_message(
     let fail = |error: Error| failure(path, &error);
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let database = Connection::open_with_flags(path, flags).map_err(fail)?;
-    let longest = length.min(LONGEST_RECORD).max(1 << 16) as i32;
+    let longest = length.clamp(1 << 16, LONGEST_RECORD) as i32;
     database
         .set_limit(Limit::SQLITE_LIMIT_LENGTH, longest)
         .map_err(fail)?;

@@ -115,6 +115,7 @@ mod tried;
 mod ulog;
 mod ulog_format;
 mod ulog_messages;
+mod ulog_topics;
 mod unit_names;
 mod watched;
 mod worker;

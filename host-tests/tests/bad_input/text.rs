@@ -191,8 +191,8 @@ pub(crate) fn cases() -> Vec<Case> {
         ("fit", "a\0b,c\n".into(), "not text"),
         (
             "fit",
-            regular("roll_deg [deg],time_us", 5000),
-            "the sampling rate is not known",
+            regular("time_us,roll_deg", 5000),
+            "none of 2 columns looks like an axis",
         ),
         ("fit", named("a,b,b"), "two columns are named \"b\""),
         (

@@ -260,6 +260,8 @@ mod tests {
             names: names.map(|names| names.iter().map(|&name| name.into()).collect()),
             looks: looks.to_vec(),
             heads: Vec::new(),
+            defined: Vec::new(),
+            said: String::new(),
         };
         let Taken { axes, note, .. } = columns.guessed(Path::new("a.csv"), None, &[]).unwrap();
         (

@@ -24,7 +24,7 @@ use std::{
 #[derive(Debug, Args)]
 #[command(after_help = examples::MEASURE)]
 pub(super) struct Arguments {
-    /// Recorded logs: .csv, .csv.gz, .npy, .mcap or .ulg
+    /// Recorded logs: text, .npy, .ulg, or bags of ROS
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
     /// The curve file to write, .json, or an existing folder that gets one file for each log

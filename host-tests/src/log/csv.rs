@@ -1,25 +1,24 @@
-//! Logs as text: values are separated by commas, semicolons or tabs, and each row is a sample.
+//! Logs as text, in which each row is a sample.
 
 use super::{
     columns::{AxisColumn, Columns, Look},
-    field::{Field, Text},
-    lines::Lines,
+    dialect::Dialect,
+    field::{Field, Stamp, Text},
+    lines::{Cut, Lines},
     metadata::Metadata,
+    preamble::{Preamble, values},
     records::{LONGEST_ROW, Records},
-    source::{self, Format},
+    source,
     table::{Ended, Stop, Table, Visitor},
 };
 use crate::failure::{Failure, Place, quoted};
 use csv::ByteRecord;
 use indicatif::ProgressBar;
 use std::{
-    io::{self, BufRead, ErrorKind, Read},
+    cell::Cell,
+    io::{self, BufReader, ErrorKind, Read},
     path::{Path, PathBuf},
 };
-
-/// A line of this many bytes or more above the first row is refused, because the file is then not a
-/// log. Chosen by hand.
-const LONGEST_LINE: u64 = 1 << 16;
 
 /// A log with more columns is refused. It would take minutes to look at all of them.
 const MOST_COLUMNS: usize = 256;
@@ -31,113 +30,130 @@ const LOOKS: usize = 100;
 pub(super) struct Csv {
     path: PathBuf,
     gzip: bool,
-    delimiter: u8,
+    dialect: Dialect,
     metadata: Metadata,
     columns: Columns,
-    /// The offset of the first byte after the header, or 0 without a header.
-    data_start: u64,
+    /// The offset in the text of the first row.
+    start: u64,
     /// Whether the last row has a line end.
     is_whole: bool,
-}
-
-/// The comments above the first record, and the format of that record.
-struct Preamble {
-    delimiter: u8,
-    metadata: Metadata,
-    /// The comment line directly above the first record.
-    last_comment: Option<String>,
+    /// The number of comments among the rows that tell of lost samples, and the number of these samples.
+    lost: Cell<(u64, u64)>,
 }
 
 impl Csv {
-    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
-        let gzip = Format::of(path)? == Format::Csv { gzip: true };
-        let preamble = read_preamble(path, gzip)?;
+    pub(super) fn open(path: &Path, gzip: bool) -> Result<Self, Failure> {
+        let preamble = Preamble::read(path, gzip)?;
         let mut table = Self {
             path: path.to_owned(),
             gzip,
-            delimiter: preamble.delimiter,
+            dialect: preamble.dialect,
             metadata: preamble.metadata,
             columns: Columns {
-                names: None,
+                names: preamble.names,
                 looks: Vec::new(),
                 heads: Vec::new(),
+                defined: Vec::new(),
+                said: said(path, &preamble.said),
             },
-            data_start: 0,
+            start: preamble.start,
             is_whole: gzip || source::ends_with_line(path)?,
+            lost: Cell::new((0, 0)),
         };
-
-        let records = table.first_records()?;
-        let Some((first, end)) = records.first() else {
-            return Err(Place::file(path).failure("no rows", "record some samples"));
-        };
-        let kinds: Vec<Kind> = first.iter().map(Kind::of).collect();
-        if let Some(text) = kinds.iter().position(|&kind| kind == Kind::Text) {
-            if kinds.contains(&Kind::Number) {
-                return Err(table.row_at(0).failure(
-                    format!(
-                        "the first row mixes numbers and text such as {}",
-                        quoted(&first[text])
-                    ),
-                    "make it a header of names only, or correct it",
-                ));
-            }
-            table.data_start = *end;
-            table.columns.names = Some(names_of(first));
-        } else if let Some(comment) = preamble.last_comment {
-            table.columns.names = table.names_in_comment(&comment, first.len());
+        if preamble.width > MOST_COLUMNS {
+            return Err(table.row_at(table.start).failure(
+                format!("{} columns, more than {MOST_COLUMNS}", preamble.width),
+                "check the separators, or keep only the columns of the sensor",
+            ));
         }
-        let rows = &records[usize::from(table.data_start > 0)..];
-        table.columns.heads = (0..first.len()).map(|column| head(rows, column)).collect();
-        let looks = table.columns.heads.iter().enumerate();
-        table.columns.looks = looks
-            .map(|(column, head)| look(rows, column, head))
-            .collect();
+        let rows = table.first_records()?;
+        if rows.is_empty() {
+            return Err(Place::file(path).failure("no rows", "record some samples"));
+        }
+        let columns = 0..preamble.width;
+        let columns = columns.map(|column| look(&rows, column));
+        (table.columns.looks, table.columns.heads) = columns.unzip();
         Ok(table)
     }
 
-    /// The first records, each with the offset in the text at which it ends.
-    fn first_records(&self) -> Result<Vec<(ByteRecord, u64)>, Failure> {
-        let text = source::open_text(&self.path, self.gzip, &ProgressBar::hidden())?;
-        let mut reader = Records::new(text, 0, self.delimiter);
-        let mut records = Vec::new();
+    /// The text from the first row on, with one delimiter between values.
+    fn rows(&self, progress: &ProgressBar) -> Result<Box<dyn Read>, Failure> {
+        let mut text = source::open_text(&self.path, self.gzip, progress)?;
+        io::copy(&mut text.by_ref().take(self.start), &mut io::sink())
+            .map_err(|error| self.failure((0, error)))?;
+        Ok(self.dialect.tidied(text))
+    }
+
+    /// The first rows.
+    fn first_records(&self) -> Result<Vec<ByteRecord>, Failure> {
+        let text = self.rows(&ProgressBar::hidden())?;
+        let mut reader = Records::new(text, self.start, self.dialect.delimiter());
+        let mut records: Vec<ByteRecord> = Vec::new();
         while records.len() < LOOKS {
             if !reader.read().map_err(|error| self.failure(error))? {
                 break;
             }
             let row = reader.row();
-            let width = records
-                .first()
-                .map_or(row.len(), |(first, _): &(ByteRecord, u64)| first.len());
-            if row.len() > MOST_COLUMNS {
-                return Err(self.row_at(reader.row_offset()).failure(
-                    format!("{} columns, more than {MOST_COLUMNS}", row.len()),
-                    "check the separators, or keep only the columns of the sensor",
-                ));
+            if row.get(0).is_some_and(|field| field.starts_with(b"#")) {
+                continue;
             }
             // A row of another width is refused when all rows are read.
-            if row.len() != width {
+            if records
+                .first()
+                .is_some_and(|first| row.len() != first.len())
+            {
                 break;
             }
-            records.push((row.clone(), reader.rest_offset()));
+            records.push(row.clone());
         }
         Ok(records)
     }
 
-    /// The names in a comment such as `# time,gx,gy,gz`, if it stands directly above the first
-    /// record and has as many fields as that record.
-    fn names_in_comment(&self, comment: &str, width: usize) -> Option<Vec<String>> {
-        let mut reader = Records::new(comment.as_bytes(), 0, self.delimiter);
-        let names = reader.read().ok()?.then(|| reader.row())?;
-        let all_text = names.iter().all(|field| Kind::of(field) == Kind::Text);
-        (width > 1 && names.len() == width && all_text && !comment.contains('='))
-            .then(|| names_of(names))
-    }
-
+    /// The row that begins at a byte of the text that [`Csv::rows`] returns.
     fn row_at(&self, byte: u64) -> Place {
-        match source::row_at(&self.path, self.gzip, byte) {
+        match self.row(byte) {
             Ok(row) => Place::row(&self.path, row),
             Err(_) => Place::file(&self.path),
         }
+    }
+
+    fn row(&self, byte: u64) -> Result<u64, Failure> {
+        let raw = source::open_text(&self.path, self.gzip, &ProgressBar::hidden())?;
+        let above = source::lines_before(raw, self.start.min(byte));
+        let rows = BufReader::new(self.rows(&ProgressBar::hidden())?);
+        Ok(above + source::row_at(rows, byte.saturating_sub(self.start)))
+    }
+
+    /// Handles a comment among the rows: it tells of lost samples, or else it must be the last line.
+    fn comment<V: Visitor>(
+        &self,
+        comment: &[u8],
+        byte: u64,
+        visitor: &mut V,
+    ) -> Result<Option<Pending>, Failure> {
+        let Some(lost) = lost_samples(comment) else {
+            return Ok(Some(Pending {
+                comment: comment.to_vec(),
+                byte,
+            }));
+        };
+        if lost > 0 {
+            let (gaps, samples) = self.lost.get();
+            self.lost.set((gaps + 1, samples.saturating_add(lost)));
+            visitor.gap();
+        }
+        Ok(None)
+    }
+
+    /// The failure of a comment that is followed by rows.
+    fn unclear(&self, pending: &Pending) -> Failure {
+        self.row_at(pending.byte).failure(
+            format!(
+                "a comment among the rows: {}",
+                quoted(pending.comment.trim_ascii())
+            ),
+            "remove it, or write `# lost N samples` if samples are missing there",
+        )
     }
 
     /// The failure to read the row that begins at the given byte.
@@ -183,7 +199,19 @@ impl Table for Csv {
 
     fn notes(&self) -> Vec<String> {
         let note = "the last row has no line end: it may be cut off";
-        (!self.is_whole).then(|| note.into()).into_iter().collect()
+        let mut notes: Vec<String> = (!self.is_whole).then(|| note.into()).into_iter().collect();
+        let (gaps, samples) = self.lost.get();
+        if gaps > 0 {
+            let comments = if gaps == 1 {
+                "a comment tells".into()
+            } else {
+                format!("{gaps} comments tell")
+            };
+            notes.push(format!(
+                "{comments} of {samples} lost samples: no difference spans them"
+            ));
+        }
+        notes
     }
 
     fn pass<V: Visitor>(
@@ -193,32 +221,52 @@ impl Table for Csv {
         progress: &ProgressBar,
     ) -> Result<Ended, Failure> {
         let width = self.columns.looks.len();
-        let mut text = source::open_text(&self.path, self.gzip, progress)?;
-        io::copy(&mut text.by_ref().take(self.data_start), &mut io::sink())
-            .map_err(|error| self.failure((0, error)))?;
-
-        let mut lines = Lines::new(text, self.data_start, self.delimiter, width);
-        while lines
-            .cut()
-            .map_err(|error| self.failure((lines.rest_offset(), error)))?
-        {
-            let field = |column| lines.field(column);
-            if self.visit_row(axes, visitor, field, || lines.row_offset())? {
-                return Ok(Ended::NotCounts);
+        let delimiter = self.dialect.delimiter();
+        self.lost.set((0, 0));
+        let mut pending = None;
+        let text = self.rows(progress)?;
+        let mut lines = Lines::new(text, self.start, delimiter, width);
+        loop {
+            let cut = lines
+                .cut()
+                .map_err(|error| self.failure((lines.rest_offset(), error)))?;
+            let byte = lines.row_offset();
+            match (cut, &pending) {
+                (Cut::Rest, _) => break,
+                (Cut::Row, Some(pending)) => return Err(self.unclear(pending)),
+                (Cut::Comment, _) => {
+                    let found = self.comment(lines.line(), byte, visitor)?;
+                    pending = pending.or(found);
+                }
+                (Cut::Row, None) => {
+                    let field = |column| lines.field(column);
+                    if self.visit_row(axes, visitor, field, || byte)? {
+                        return Ok(Ended::NotCounts);
+                    }
+                }
             }
         }
 
         let start = lines.rest_offset();
-        let mut records = Records::new(lines.into_rest(), start, self.delimiter);
+        let mut records = Records::new(lines.into_rest(), start, delimiter);
         while records.read().map_err(|error| self.failure(error))? {
             let row = records.row();
+            let byte = || records.row_offset();
+            if row.get(0).is_some_and(|field| field.starts_with(b"#")) {
+                let comment: Vec<&[u8]> = row.iter().collect();
+                let found = self.comment(&comment.join(&b','), byte(), visitor)?;
+                pending = pending.or(found);
+                continue;
+            }
+            if let Some(pending) = &pending {
+                return Err(self.unclear(pending));
+            }
             if row.len() != width {
-                return Err(self.row_at(records.row_offset()).failure(
+                return Err(self.row_at(byte()).failure(
                     format!("{} where the first row has {width}", values(row.len())),
                     "correct the row or cut the record there",
                 ));
             }
-            let byte = || records.row_offset();
             if self.visit_row(axes, visitor, |column| &row[column], byte)? {
                 return Ok(Ended::NotCounts);
             }
@@ -227,104 +275,60 @@ impl Table for Csv {
     }
 }
 
-/// Reads the comments down to the first record.
-fn read_preamble(path: &Path, gzip: bool) -> Result<Preamble, Failure> {
-    let mut text = source::open_text(path, gzip, &ProgressBar::hidden())?;
-    let mut metadata = Metadata::default();
-    let mut last_comment = None;
-    let mut line = Vec::new();
-    for row in 1.. {
-        line.clear();
-        let read = text
-            .by_ref()
-            .take(LONGEST_LINE)
-            .read_until(b'\n', &mut line);
-        let length =
-            read.map_err(|error| source::text_failure(Place::row(path, row), gzip, &error))?;
-        if length == 0 {
-            let what = if row == 1 {
-                "the file is empty"
-            } else {
-                "no rows"
-            };
-            return Err(Place::file(path).failure(what, "record some samples"));
-        }
-        if length as u64 == LONGEST_LINE {
-            return Err(Place::row(path, row).failure(
-                format!("a line has {} KiB or more", LONGEST_LINE / 1024),
-                "check that the file is text",
-            ));
-        }
-        if let Some(comment) = line.strip_prefix(b"#") {
-            let comment = String::from_utf8_lossy(comment).trim().to_owned();
-            metadata.read_comment(row, &comment);
-            last_comment = Some(comment);
-        } else if !line.trim_ascii().is_empty() {
-            break;
-        }
-    }
-    let delimiter = [b';', b'\t']
-        .into_iter()
-        .find(|delimiter| line.contains(delimiter))
-        .unwrap_or(b',');
-    Ok(Preamble {
-        delimiter,
-        metadata,
-        last_comment,
-    })
+/// The file's name and what stands above the rows, in lower case.
+fn said(path: &Path, preamble: &str) -> String {
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_lowercase();
+    format!("{name}\n{preamble}")
 }
 
-/// The kind of a field of the first row.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Number,
-    Empty,
-    Text,
+/// A comment among the rows that tells of no lost samples, and its place.
+struct Pending {
+    comment: Vec<u8>,
+    byte: u64,
 }
 
-impl Kind {
-    fn of(field: &[u8]) -> Self {
-        let field = field.trim_ascii();
-        if field.is_empty() {
-            Self::Empty
-        } else if fast_float2::parse::<f64, _>(field).is_ok() {
-            Self::Number
-        } else {
-            Self::Text
-        }
-    }
-}
-
-fn names_of(record: &ByteRecord) -> Vec<String> {
-    record
-        .iter()
-        .map(|name| {
-            let name = String::from_utf8_lossy(name);
-            name.trim().replace(char::is_control, " ")
-        })
-        .collect()
+/// The number of samples that a comment such as `# lost 500 samples` says are missing.
+fn lost_samples(comment: &[u8]) -> Option<u64> {
+    let text = String::from_utf8_lossy(comment).to_lowercase();
+    let words = [
+        "lost", "lose", "missing", "missed", "dropped", "skipped", "gap",
+    ];
+    let mut numbers = text
+        .split(|c: char| !c.is_alphanumeric() && c != '.')
+        .filter_map(|word| word.parse().ok());
+    let number = numbers.next();
+    // Another number may be a time, so that it is not clear how many samples are lost.
+    let is_clear = numbers.next().is_none() && words.iter().any(|word| text.contains(word));
+    number.filter(|_| is_clear)
 }
 
 fn number(row: &ByteRecord, column: usize) -> Option<f64> {
     Text(row.get(column)?).number().ok()
 }
 
-fn head(rows: &[(ByteRecord, u64)], column: usize) -> Vec<f64> {
-    let numbers = rows.iter().filter_map(|(row, _)| number(row, column));
-    numbers.collect()
-}
-
-fn look(rows: &[(ByteRecord, u64)], column: usize, head: &[f64]) -> Look {
-    match rows.first() {
-        Some((row, _)) if number(row, column).is_none() => Look::Text,
-        _ => Look::of_numbers(head),
+/// What a column of these rows looks like, and its first values. Those of dates and times are nanoseconds since the
+/// first one.
+fn look(rows: &[ByteRecord], column: usize) -> (Look, Vec<f64>) {
+    let head: Vec<f64> = rows.iter().filter_map(|row| number(row, column)).collect();
+    let is_number = rows
+        .first()
+        .is_some_and(|row| number(row, column).is_some());
+    if is_number {
+        return (Look::of_numbers(&head), head);
     }
-}
-
-fn values(count: usize) -> String {
-    if count == 1 {
-        "1 value".into()
-    } else {
-        format!("{count} values")
+    let dates = rows
+        .iter()
+        .filter_map(|row| Text(row.get(column)?).date_or_time());
+    let dates: Vec<Stamp> = dates.collect();
+    match dates.first() {
+        Some(&first) if 2 * dates.len() > rows.len() => (
+            Look::Date,
+            dates.iter().map(|date| date.since(first)).collect(),
+        ),
+        _ => (Look::Text, head),
     }
 }

@@ -152,12 +152,26 @@ impl Field for Text<'_> {
     fn stamp(&self) -> Result<Stamp, Flaw> {
         match atoi_simd::parse::<i64, false, false>(self.0.trim_ascii()) {
             Ok(ticks) => Ok(Stamp::Whole(ticks)),
-            Err(_) => self.number().map(Stamp::Real),
+            Err(_) => match self.number() {
+                Ok(ticks) => Ok(Stamp::Real(ticks)),
+                Err(flaw) => self.date_or_time().ok_or(flaw),
+            },
         }
     }
 }
 
 impl Text<'_> {
+    /// The date and time of ISO 8601, or the time of day, that is written here, in nanoseconds since 1970 or since
+    /// midnight.
+    pub(super) fn date_or_time(&self) -> Option<Stamp> {
+        super::date_time::nanoseconds(self.0).map(Stamp::Whole)
+    }
+
+    /// Whether a date and time of ISO 8601, or a time of day, is written here.
+    pub(super) fn is_date_or_time(&self) -> bool {
+        self.date_or_time().is_some()
+    }
+
     /// The whole number that is written here, if it is one: `17`, `+17` or `17.0`.
     #[cold]
     fn whole(&self) -> Option<i128> {

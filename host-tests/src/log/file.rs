@@ -1,8 +1,8 @@
-//! Reads a log with the reader that its extension selects.
+//! Reads a log with the reader of its format.
 
-#[cfg(feature = "bags")]
-use super::bag;
 use super::{Axis, Covariates, Log, Options, csv, npy, reading::read_table, source::Format, ulog};
+#[cfg(feature = "bags")]
+use super::{bag, bag_folder};
 use crate::failure::{Failure, Place};
 use indicatif::ProgressBar;
 use std::path::Path;
@@ -68,18 +68,24 @@ fn read_parts(
         return Err(Place::file(path).failure("this kind of log has no topics", "omit --topic"));
     }
     match format {
-        Format::Csv { .. } => read_table(&csv::Csv::open(path)?, path, options, parts, progress),
-        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
-        #[cfg(not(feature = "bags"))]
-        Format::Mcap => Err(Failure::not_built_in("reading .mcap files")),
-        #[cfg(feature = "bags")]
-        Format::Mcap => {
-            let bag = bag::Bag::open(path, options, progress)?;
-            read_table(&bag, path, options, parts, progress)
+        Format::Text { gzip } => {
+            let text = csv::Csv::open(path, gzip)?;
+            read_table(&text, path, options, parts, progress)
         }
+        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
         Format::Ulog => {
             let log = ulog::Ulog::open(path, options, progress)?;
             read_table(&log, path, options, parts, progress)
+        }
+        #[cfg(not(feature = "bags"))]
+        Format::Mcap | Format::Ros1 | Format::Sqlite | Format::Folder => {
+            Err(Failure::not_built_in("reading bags"))
+        }
+        #[cfg(feature = "bags")]
+        Format::Mcap | Format::Ros1 | Format::Sqlite | Format::Folder => {
+            let files = bag_folder::files(path, format)?;
+            let bag = bag::Bag::open(path, files, options, progress)?;
+            read_table(&bag, path, options, parts, progress)
         }
     }
 }

@@ -14,8 +14,17 @@ const WORD: usize = size_of::<u64>();
 /// A word in which every byte is one.
 const ONES: u64 = u64::MAX / 255;
 
+/// What was cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cut {
+    Row,
+    Comment,
+    /// Nothing: the general rules have to go on, as they do at the end.
+    Rest,
+}
+
 /// Cuts text into rows with a known number of fields. It stops at the first row that needs the
-/// rules for quotes, and hands over what is left. Empty lines and comments are skipped.
+/// rules for quotes, and hands over what is left. Empty lines are skipped.
 pub(super) struct Lines<R> {
     text: R,
     delimiter: u8,
@@ -52,28 +61,29 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// Cuts the next row. Returns false if the general rules have to go on, as they do at the end.
-    pub(super) fn cut(&mut self) -> io::Result<bool> {
+    /// Cuts the next row or comment.
+    pub(super) fn cut(&mut self) -> io::Result<Cut> {
         loop {
             if self.uncut.start == self.whole && !self.refill()? {
-                return Ok(false);
+                return Ok(Cut::Rest);
             }
             let row = self.uncut.start;
             if self.buffer[row] == b'#' {
                 // A whole line follows, so its end is in the buffer.
                 let rest = &self.buffer[row..self.whole];
                 let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(0);
+                self.row = row;
                 self.uncut.start += length + 1;
-                continue;
+                return Ok(Cut::Comment);
             }
             match self.cut_fields(row) {
                 Some((0, end)) => self.uncut.start = end,
                 Some((fields, end)) if fields == self.fields.len() => {
                     self.row = row;
                     self.uncut.start = end;
-                    return Ok(true);
+                    return Ok(Cut::Row);
                 }
-                _ => return Ok(false),
+                _ => return Ok(Cut::Rest),
             }
         }
     }
@@ -155,6 +165,11 @@ impl<R: Read> Lines<R> {
         Ok(false)
     }
 
+    /// The current row or comment as a whole, with its end.
+    pub(super) fn line(&self) -> &[u8] {
+        &self.buffer[self.row..self.uncut.start]
+    }
+
     /// The field of the current row with this index.
     #[inline]
     pub(super) fn field(&self, column: usize) -> &[u8] {
@@ -185,7 +200,12 @@ mod tests {
     fn cut(text: &str) -> (Vec<Vec<String>>, String) {
         let mut lines = Lines::new(text.as_bytes(), 0, b',', 2);
         let mut rows = Vec::new();
-        while lines.cut().unwrap() {
+        loop {
+            match lines.cut().unwrap() {
+                Cut::Row => {}
+                Cut::Comment => continue,
+                Cut::Rest => break,
+            }
             let field = |column| String::from_utf8_lossy(lines.field(column)).into_owned();
             rows.push(vec![field(0), field(1)]);
             assert_eq!(

@@ -1,11 +1,14 @@
-//! Reads what the comment lines at the top of a log say about it.
+//! Reads what the lines at the top of a log say about it.
 
 use super::Options;
 use crate::{
     failure::{Failure, Place, brief, quoted},
     unit::Unit,
 };
-use std::{ops::RangeInclusive, path::Path};
+use std::{
+    ops::RangeInclusive,
+    path::{Path, PathBuf},
+};
 
 /// The rates in Hz that a log can have, and the sizes of a count. Beyond them, something else was meant.
 const RATES_HZ: RangeInclusive<f64> = 1e-6..=1e9;
@@ -16,11 +19,29 @@ const SCALES: RangeInclusive<f64> = 1e-30..=1e30;
 #[derive(Debug, Default)]
 pub(super) struct Metadata {
     rate_hz: Option<(u64, String)>,
+    /// The rate in a line that is no `key=value` pair.
+    preamble_hz: Option<(u64, String)>,
     scale: Option<(u64, String)>,
     unit: Option<(u64, String)>,
+    /// The file with the comments, if it is another one than the log.
+    file: Option<PathBuf>,
 }
 
 impl Metadata {
+    /// The comments of a file beside the log.
+    pub(super) fn of_file(path: &Path) -> Self {
+        Self {
+            file: Some(path.to_owned()),
+            ..Self::default()
+        }
+    }
+
+    /// The file beside the log that tells something of it.
+    pub(super) fn told_in(&self) -> Option<&Path> {
+        let tells = self.rate_hz.is_some() || self.scale.is_some() || self.unit.is_some();
+        self.file.as_deref().filter(|_| tells)
+    }
+
     /// Reads a comment line without its `#`. The first value of a key counts.
     pub(super) fn read_comment(&mut self, row: u64, comment: &str) {
         for word in comment.split([' ', ',', ';', '\t']) {
@@ -37,9 +58,49 @@ impl Metadata {
         }
     }
 
+    /// Reads a line above the rows that other programs write: `// Sample rate: 100.0Hz`, `OutputRate:,60`. The rate in
+    /// a comment `rate_hz=…` counts more.
+    pub(super) fn read_line(&mut self, row: u64, line: &str) {
+        const KEYS: [&str; 8] = [
+            "sample rate",
+            "sampling rate",
+            "samplerate",
+            "sample_rate",
+            "output rate",
+            "outputrate",
+            "update rate",
+            "sampling frequency",
+        ];
+        let line = line.to_lowercase();
+        let Some((_, rest)) = KEYS.iter().find_map(|key| line.split_once(key)) else {
+            return;
+        };
+        let rest = rest.trim_start_matches(|c: char| !c.is_ascii_digit());
+        let end = rest
+            .find(|c: char| !c.is_ascii_digit() && c != '.')
+            .unwrap_or(rest.len());
+        let (number, unit) = rest.split_at(end);
+        let is_rate = number
+            .parse::<f64>()
+            .is_ok_and(|rate_hz| RATES_HZ.contains(&rate_hz));
+        let is_other = unit.trim_start().starts_with(['k', 'm']);
+        if is_rate && !is_other {
+            self.preamble_hz
+                .get_or_insert_with(|| (row, number.to_owned()));
+        }
+    }
+
+    /// The rate that a line above the rows tells, if it is the one that is taken.
+    pub(super) fn rate_of_preamble(&self, options: &Options) -> Option<(u64, &str)> {
+        let (row, text) = self.preamble_hz.as_ref()?;
+        (options.rate_hz.is_none() && self.rate_hz.is_none()).then_some((*row, text.as_str()))
+    }
+
     /// The sampling rate in Hz, from the options or else from the comments.
     pub(super) fn rate_hz(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
-        Ok(match (options.rate_hz, &self.rate_hz) {
+        let path = self.file.as_deref().unwrap_or(path);
+        let told = self.rate_hz.as_ref().or(self.preamble_hz.as_ref());
+        Ok(match (options.rate_hz, told) {
             (Some(rate_hz), _) => {
                 let told = positive(rate_hz, "--rate", "samples per second", RATES_HZ)?;
                 Some(told)
@@ -57,6 +118,7 @@ impl Metadata {
 
     /// The scale in rate units per count, from the options or else from the comments.
     pub(super) fn scale(&self, path: &Path, options: &Options) -> Result<Option<f64>, Failure> {
+        let path = self.file.as_deref().unwrap_or(path);
         Ok(match (options.scale, &self.scale) {
             (Some(scale), _) => {
                 let told = positive(scale, "--scale", "rate units per count", SCALES)?;
@@ -72,6 +134,7 @@ impl Metadata {
 
     /// The unit in the comments.
     pub(super) fn unit(&self, path: &Path) -> Result<Option<Unit>, Failure> {
+        let path = self.file.as_deref().unwrap_or(path);
         let Some((row, text)) = &self.unit else {
             return Ok(None);
         };

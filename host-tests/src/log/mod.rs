@@ -1,14 +1,17 @@
 //! Reads recorded logs as a stream. A log of any length needs the same few megabytes of memory.
 //!
-//! A log is a table of numbers in which each row is a sample. Its extension selects the format:
+//! A log is a table of numbers in which each row is a sample. The first bytes of a file tell its format, or else its
+//! extension does:
 //!
-//! * `.csv`, `.csv.gz`: values are separated by commas, semicolons or tabs. A header of names is
-//!   optional. Comment lines begin with `#`; those at the top may contain `rate_hz=…`, `scale=…`
-//!   (rate units per count) and `unit=…` (`deg/s`, `rad/s`, `m/s^2` or `g`). Options win over
-//!   comments.
+//! * Text, also compressed with gzip: values are separated by commas, semicolons, tabs or blanks, and the decimals may
+//!   be written with commas. What stands above the rows is optional: names, a row of units below them, and a preamble
+//!   of other lines. Comment lines begin with `#`; those at the top may contain `rate_hz=…`, `scale=…` (rate units per
+//!   count) and `unit=…` (`deg/s`, `rad/s`, `m/s^2` or `g`). Options win over comments. A comment among the rows tells
+//!   how many samples are lost there, as in `# lost 500 samples`, or it is refused.
 //! * `.npy`: an array of one or two dimensions whose rows are samples. Its elements are integers of
-//!   1 to 8 bytes or floats of 4 or 8 bytes, in either byte order and either memory order.
-//! * `.mcap`: a bag of ROS 2, or a converted bag of ROS 1, with a topic of `sensor_msgs/msg/Imu`.
+//!   1 to 8 bytes or floats of 4 or 8 bytes, in either byte order and either memory order. A file beside it with
+//!   `.txt` behind its name may contain the same comments.
+//! * Bags of ROS 2 (MCAP, SQLite, or a folder of them) and of ROS 1, with a topic of `sensor_msgs/msg/Imu`.
 //!   The stamps are those of the messages' headers. One chunk is in memory at a time.
 //! * `.ulg`: a log of PX4 with `sensor_gyro`, `sensor_accel`, `sensor_combined` or `vehicle_imu`.
 //!
@@ -31,6 +34,8 @@
 //! and nanoseconds of ROS. Without such a name, they are in the only column without a name that
 //! rises by steps other than one.
 //!
+//! Dates and times of ISO 8601 and times of day are stamps too.
+//!
 //! The unit of the stamps is the one in the column's name. Without one, it is the unit in which the
 //! stamps are times since 1970, or else the only unit that gives a rate between 1 Hz (in seconds, 0.1
 //! Hz) and 33 kHz. If several do, the log is refused.
@@ -50,7 +55,8 @@
 //! # Units
 //!
 //! The unit comes from [`Options::unit`], from the comments, or from the columns' names, in this
-//! order. Without any, it is deg/s or m/s². A unit that the names tell and that is not known is
+//! order. Without any, it is the one that the program always uses whose names the columns have, which a note says, or
+//! else deg/s or m/s². A unit that the names tell and that is not known is
 //! refused, and so is one that contradicts the option or the comment, unless a scale is given too. If neighbouring samples scatter by more than 100 deg/s
 //! or 20 m/s², a note calls the scale and unit unlikely. If they scatter by more than 100 000 deg/s
 //! or m/s², the log is refused.
@@ -65,15 +71,30 @@
 //! reading with an error that names its row.
 
 mod accumulate;
+mod axes;
 #[cfg(feature = "bags")]
 mod bag;
+#[cfg(feature = "bags")]
+mod bag_folder;
+#[cfg(feature = "bags")]
+mod bag_mcap;
+#[cfg(feature = "bags")]
+mod bag_ros1;
+#[cfg(feature = "bags")]
+mod bag_sqlite;
+#[cfg(feature = "bags")]
+mod channel;
 mod clock;
 mod columns;
+mod convention;
 mod covariate;
 mod csv;
+mod date_time;
+mod dialect;
 mod evidence;
 mod field;
 mod file;
+mod foreign;
 #[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
@@ -82,6 +103,7 @@ mod names;
 mod npy;
 pub mod npy_header;
 mod pace;
+mod preamble;
 mod quantum;
 mod reading;
 mod records;
@@ -93,6 +115,8 @@ mod tried;
 mod ulog;
 mod ulog_format;
 mod ulog_messages;
+mod ulog_topics;
+mod unit_names;
 mod watched;
 mod worker;
 

@@ -1,13 +1,16 @@
-//! Recognises sensors, units and times by the names of columns.
+//! Recognises sensors, times and temperatures by the names of columns.
 
-use crate::unit::{Sensor, Unit};
+use crate::unit::Sensor;
 
 /// Whether a column is named like an axis of this sensor: `gx`, `gyro_y`, `imu.angular_velocity.z`,
 /// `w_RS_S_x [rad s^-1]`, or `ax`, `accel_y`, `linear_acceleration.z`, and the like.
 pub(super) fn is_axis(name: &str, sensor: Sensor) -> bool {
     let name = bare(name).to_lowercase();
-    let others = ["temp", "time", "cov", "bias", "clip", "accura", "_dt"];
-    if others.iter().any(|other| name.contains(other)) {
+    let others = [
+        "temp", "time", "cov", "bias", "clip", "accura", "_dt", "calib", "device", "count", "_id",
+        "error", "integral",
+    ];
+    if others.iter().any(|other| name.contains(other)) || is_angle(&name) {
         return false;
     }
     let (short, long): (&[&str], &[&str]) = match sensor {
@@ -18,6 +21,7 @@ pub(super) fn is_axis(name: &str, sensor: Sensor) -> bool {
                 "angular_velocity",
                 "angularvelocity",
                 "angular_rate",
+                "angularrate",
                 "ang_vel",
                 "omega",
             ],
@@ -34,6 +38,28 @@ pub(super) fn is_axis(name: &str, sensor: Sensor) -> bool {
     short.iter().any(is_short) || long.iter().any(|part| name.contains(part))
 }
 
+/// Whether a column is named like an angle or an orientation, which is no rate: `roll_deg`, `yaw`, `Heading [°]`,
+/// `orientation.x`, `q_w`. The rates `roll_rate`, `gyro_yaw` and `pitch [deg/s]` are none.
+pub(super) fn is_angle(name: &str) -> bool {
+    let name = name.trim().to_lowercase();
+    let angles = [
+        "roll", "pitch", "yaw", "heading", "angle", "attitude", "euler", "orient", "quat",
+    ];
+    let rates = [
+        "rate", "speed", "veloc", "gyr", "omega", "/s", "s^-1", "dps", "_vel", "_w", "per_s",
+        "delta", "rad_s", "deg_s",
+    ];
+    let is_quaternion = || {
+        let mut parts = tokens(&name);
+        let (first, second, end) = (parts.next(), parts.next(), parts.next());
+        let index = |text: &str| matches!(text, "w" | "x" | "y" | "z" | "0" | "1" | "2" | "3");
+        first == Some("q") && second.is_some_and(index) && end.is_none()
+    };
+    is_quaternion()
+        || (angles.iter().any(|angle| name.contains(angle))
+            && !rates.iter().any(|rate| name.contains(rate)))
+}
+
 /// Whether a column is named like a time: `t`, `time_us`, `timestamp [ns]`, `header.stamp`.
 pub(super) fn is_time(name: &str) -> bool {
     let name = name.trim().to_lowercase();
@@ -44,18 +70,42 @@ pub(super) fn is_time(name: &str) -> bool {
         return false;
     }
     let first = tokens(&name).next().unwrap_or_default();
-    ["time", "stamp"].iter().any(|word| name.contains(word))
+    ["time", "stamp", "zeit"]
+        .iter()
+        .any(|word| name.contains(word))
         || first == "t"
         || TimeUnit::of_token(first).is_some()
 }
 
-/// Whether a column is named like something that is neither a time nor an axis: an index, a date or
-/// a temperature.
+/// Whether a column is named like something that is neither a time nor an axis: an index, a date, an angle, a
+/// temperature, or another quantity of a navigation log.
 pub(super) fn is_other(name: &str) -> bool {
     let name = name.trim().to_lowercase();
-    let words = ["date", "index", "temp", "sample", "seq"];
+    let words = [
+        "date",
+        "index",
+        "temp",
+        "sample",
+        "seq",
+        "latitude",
+        "longitude",
+        "altitude",
+        "pressure",
+        "voltage",
+        "magn",
+        "baro",
+        "battery",
+        "satellite",
+        "packet",
+        "iteration",
+        "status",
+        "counter",
+        "device",
+    ];
     let first = tokens(&name).next().unwrap_or_default();
-    words.iter().any(|word| name.contains(word)) || ["i", "n", "id"].contains(&first)
+    words.iter().any(|word| name.contains(word))
+        || ["i", "n", "id", "mx", "my", "mz", "mag", "lat", "lon", "alt"].contains(&first)
+        || is_angle(&name)
 }
 
 /// Whether a column is named like a temperature: `temp_C`, `gyro.temperature`, `IMUTemp`, `t [°C]`.
@@ -75,7 +125,7 @@ pub(crate) fn is_degrees_column(name: &str) -> bool {
 }
 
 /// Whether a text is a unit of temperature whose steps are kelvins.
-fn is_degrees(unit: &str) -> bool {
+pub(super) fn is_degrees(unit: &str) -> bool {
     let unit = unit.trim().to_lowercase();
     [
         "c", "k", "°c", "degc", "deg c", "deg_c", "celsius", "kelvin",
@@ -83,7 +133,7 @@ fn is_degrees(unit: &str) -> bool {
     .contains(&unit.as_str())
 }
 
-fn tokens(name: &str) -> impl Iterator<Item = &str> {
+pub(super) fn tokens(name: &str) -> impl Iterator<Item = &str> {
     name.split(|c: char| !c.is_alphanumeric())
         .filter(|token| !token.is_empty())
 }
@@ -98,7 +148,7 @@ pub(super) fn bare(name: &str) -> &str {
 }
 
 /// The name and the text in brackets at its end, unless that text is an index.
-fn in_brackets(name: &str) -> Option<(&str, &str)> {
+pub(super) fn in_brackets(name: &str) -> Option<(&str, &str)> {
     let name = name.trim();
     let open = name.rfind(['[', '('])?;
     let inner = name[open + 1..].strip_suffix([']', ')'])?.trim();
@@ -155,7 +205,7 @@ impl TimeUnit {
     ///
     /// # Errors
     /// The text of a unit that is told but not known, such as `min` or `10us`.
-    pub(super) fn of_name(name: &str) -> Result<Option<Self>, UnknownUnit> {
+    pub(super) fn of_name(name: &str) -> Result<Option<Self>, String> {
         if let Some((_, unit)) = in_brackets(name) {
             let text = unit.to_lowercase();
             return match Self::of_token(&text) {
@@ -179,7 +229,7 @@ impl TimeUnit {
         }
     }
 
-    fn of_token(token: &str) -> Option<Self> {
+    pub(super) fn of_token(token: &str) -> Option<Self> {
         Some(match token {
             "s" | "sec" | "secs" | "second" | "seconds" => Self::S,
             "ms" | "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => Self::Ms,
@@ -192,88 +242,6 @@ impl TimeUnit {
             _ => return None,
         })
     }
-}
-
-/// A unit of another quantity, or an unusual one, in the name of a column: its text.
-pub(super) type UnknownUnit = String;
-
-/// The unit in an axis' name, and the factor from a value to that unit: `w_RS_S_x [rad s^-1]`, `gx
-/// (deg/s)`, `gyro_x_mdps`, `accelerometer_m_s2[0]`. A name without a unit gives `None`.
-///
-/// # Errors
-/// The text of a unit that is told but not known, such as `rpm`.
-pub(super) fn unit(name: &str) -> Result<Option<(Unit, f64)>, UnknownUnit> {
-    if let Some((_, text)) = in_brackets(name) {
-        let is_axis = ["x", "y", "z", "roll", "pitch", "yaw"].contains(&&*text.to_lowercase());
-        return match unit_of_text(text) {
-            None if !is_axis => Err(text.to_owned()),
-            unit => Ok(unit),
-        };
-    }
-    let name = name.to_lowercase();
-    let name = name.split('[').next().unwrap_or_default();
-    let tokens: Vec<&str> = tokens(name).collect();
-    // The letter of the axis may follow the unit, as in `gyro_rad_s_x`.
-    let tokens = match tokens.as_slice() {
-        [rest @ .., "x" | "y" | "z"] if rest.len() > 1 => rest,
-        all => all,
-    };
-    let at_end = |count: usize| {
-        let start = tokens.len().checked_sub(count).filter(|&start| start > 0)?;
-        Some(tokens[start..].join("/"))
-    };
-    let ends = [at_end(2), at_end(1)];
-    let known = ends.iter().flatten().find_map(|text| unit_of_text(text));
-    let foreign = |text: &&String| FOREIGN.contains(&text.as_str());
-    match ends.iter().flatten().find(foreign) {
-        Some(text) if known.is_none() => Err(text.clone()),
-        _ => Ok(known),
-    }
-}
-
-/// Units at the end of an axis' name that are neither those of a gyro nor those of an accelerometer
-/// in this program.
-const FOREIGN: [&str; 15] = [
-    "rpm", "rps", "hz", "counts", "count", "lsb", "adc", "digits", "mas", "as", "rad/h", "rad/hr",
-    "rad/min", "deg/min", "rev/s",
-];
-
-/// The unit that is written `rad s^-1`, `deg/sec`, `dps` or `m/s²`, and the factor from a value to
-/// it.
-fn unit_of_text(text: &str) -> Option<(Unit, f64)> {
-    let mut text = text.to_lowercase();
-    for (long, short) in [
-        ("degrees", "deg"),
-        ("degree", "deg"),
-        ("°", "deg"),
-        ("radians", "rad"),
-        ("radian", "rad"),
-        ("seconds", "s"),
-        ("second", "s"),
-        ("sec", "s"),
-        ("⁻", "-"),
-        ("¹", "1"),
-        ("²", "2"),
-        ("μ", "u"),
-        ("µ", "u"),
-    ] {
-        text = text.replace(long, short);
-    }
-    text.retain(|c| !c.is_whitespace() && !['^', '*', '·', '(', ')', '{', '}'].contains(&c));
-    let (deg, rad) = (Unit::DegreesPerSecond, Unit::RadiansPerSecond);
-    let (metres, g) = (Unit::MetresPerSecondSquared, Unit::StandardGravity);
-    Some(match text.as_str() {
-        "deg/s" | "degs-1" | "deg.s-1" | "dps" | "degps" => (deg, 1.0),
-        "mdps" | "mdeg/s" | "mdegs-1" => (deg, 1e-3),
-        "deg/h" | "deg/hr" | "dph" => (deg, 1.0 / 3600.0),
-        "rad/s" | "rads-1" | "rad.s-1" | "rads" | "radps" | "rad" => (rad, 1.0),
-        "mrad/s" | "mrads-1" => (rad, 1e-3),
-        "m/s2" | "ms-2" | "m.s-2" | "m/s/s" | "ms2" | "mps2" | "mss" => (metres, 1.0),
-        "g" | "gs" | "g0" | "gn" => (g, 1.0),
-        "mg" => (g, 1e-3),
-        "ug" => (g, 1e-6),
-        _ => return None,
-    })
 }
 
 #[cfg(test)]
@@ -312,6 +280,10 @@ mod tests {
             "azimuth",
             "gyro_integral_dt",
             "accelerometer_timestamp_relative",
+            "gyro_calibration_count",
+            "gyro_device_id",
+            "roll_deg",
+            "angular_velocity_covariance",
         ];
         for (names, expected) in [
             (&gyro[..], [true, false]),
@@ -363,39 +335,29 @@ mod tests {
     }
 
     #[test]
-    fn units_are_read_off_names() {
-        let (deg, rad) = (Unit::DegreesPerSecond, Unit::RadiansPerSecond);
-        let (metres, g) = (Unit::MetresPerSecondSquared, Unit::StandardGravity);
-        for (name, expected) in [
-            ("w_RS_S_x [rad s^-1]", Some((rad, 1.0))),
-            ("gx (deg/s)", Some((deg, 1.0))),
-            ("gx [°/s]", Some((deg, 1.0))),
-            ("gyro_x_dps", Some((deg, 1.0))),
-            ("gyro_mdps_x", Some((deg, 1e-3))),
-            ("gyro_rad[0]", Some((rad, 1.0))),
-            ("gyro_rad_s_z", Some((rad, 1.0))),
-            ("a_RS_S_x [m s^-2]", Some((metres, 1.0))),
-            ("accelerometer_m_s2[0]", Some((metres, 1.0))),
-            ("ax (m/s²)", Some((metres, 1.0))),
-            ("accel_x [mg]", Some((g, 1e-3))),
-            ("ax_g", Some((g, 1.0))),
-            ("gx", None),
-            ("gyro (x)", None),
-            ("gx_raw131", None),
-            ("g", None),
-            ("angular_velocity.x", None),
+    fn angles_are_no_rates() {
+        for name in [
+            "roll_deg",
+            "Yaw",
+            "Heading [°]",
+            "pitch (rad)",
+            "orientation.x",
+            "q_w",
+            "q[0]",
+            "Euler_Y",
         ] {
-            assert_eq!(unit(name), Ok(expected), "{name}");
+            assert!(is_angle(name) && is_other(name), "{name}");
         }
-        for (name, text) in [
-            ("gx [rpm]", "rpm"),
-            ("gx [rad/h]", "rad/h"),
-            ("gx [counts]", "counts"),
-            ("gyro_rpm_x", "rpm"),
-            ("gyro_x_rad_h", "rad/h"),
-            ("gyro_x_lsb", "lsb"),
+        for name in [
+            "roll_rate",
+            "rollspeed",
+            "gyro_yaw",
+            "pitch [deg/s]",
+            "gx",
+            "delta_angle[0]",
+            "q",
         ] {
-            assert_eq!(unit(name), Err(text.into()), "{name}");
+            assert!(!is_angle(name), "{name}");
         }
     }
 

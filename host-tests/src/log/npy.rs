@@ -4,11 +4,14 @@ use super::{
     columns::{AxisColumn, Columns, Look},
     field::Field,
     metadata::Metadata,
-    npy_header::{Header, Kind},
+    npy_header::{Header, Kind, sidecar},
     source,
     table::{Ended, Stop, Table, Visitor},
 };
-use crate::failure::{Failure, Place};
+use crate::{
+    failure::{Failure, Place},
+    regular_file,
+};
 use indicatif::ProgressBar;
 use std::{
     fs::File,
@@ -69,11 +72,13 @@ impl Npy {
             path: path.to_owned(),
             header,
             rows,
-            metadata: Metadata::default(),
+            metadata: read_sidecar(&sidecar(path))?,
             columns: Columns {
                 names: None,
                 looks: Vec::new(),
                 heads: Vec::new(),
+                defined: Vec::new(),
+                said: String::new(),
             },
         };
         array.columns.heads = array.heads(width)?;
@@ -150,6 +155,17 @@ impl Table for Npy {
         &self.columns
     }
 
+    fn notes(&self) -> Vec<String> {
+        let file = self.metadata.told_in().and_then(Path::file_name);
+        let note = |name: &std::ffi::OsStr| {
+            format!(
+                "rate, unit and scale as {} tells them",
+                name.to_string_lossy()
+            )
+        };
+        file.map(note).into_iter().collect()
+    }
+
     fn by_rows(&self) -> bool {
         !self.header.fortran_order
     }
@@ -205,6 +221,27 @@ impl Table for Npy {
             Err(error) => Err(self.failure(Some(self.rows), &error)),
         }
     }
+}
+
+/// The longest file beside an array that is read, in bytes. Chosen by hand.
+const LONGEST_SIDECAR: u64 = 1 << 14;
+
+/// The comments in the file beside an array, if there is one.
+fn read_sidecar(path: &Path) -> Result<Metadata, Failure> {
+    let mut metadata = Metadata::of_file(path);
+    if !path.is_file() {
+        return Ok(metadata);
+    }
+    let (file, _) = regular_file::open(path)?;
+    let mut bytes = Vec::new();
+    let read = file.take(LONGEST_SIDECAR).read_to_end(&mut bytes);
+    read.map_err(|error| Place::file(path).io(&error))?;
+    for (row, line) in (1..).zip(String::from_utf8_lossy(&bytes).lines()) {
+        if let Some(comment) = line.strip_prefix('#') {
+            metadata.read_comment(row, comment);
+        }
+    }
+    Ok(metadata)
 }
 
 fn read_header(path: &Path, reader: &mut impl Read) -> Result<Header, Failure> {

@@ -3,9 +3,20 @@
 //! No library is used, because the sizes and shapes in a hostile header must neither overflow nor
 //! cause large allocations.
 
-use std::io::{self, Read, Write};
+use std::{
+    io::{self, Read, Write},
+    path::{Path, PathBuf},
+};
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
+
+/// The file beside an array that tells its rate, unit and scale, in a comment like that at the top of a log of text:
+/// `log.npy.txt` for `log.npy`. The format of arrays has no place for them.
+pub fn sidecar(array: &Path) -> PathBuf {
+    let mut name = array.as_os_str().to_owned();
+    name.push(".txt");
+    name.into()
+}
 
 /// The longest header that is accepted, in bytes. The header of a plain array takes about a hundred.
 /// Chosen by hand.

@@ -1,10 +1,10 @@
 //! Reads a table into the curves of its axes.
 
 use super::{
-    Axis, Covariates, Evidence, Log, MOST_AXES, Options,
+    Axis, Covariates, Evidence, Log, MOST_AXES, OCTAVES, Options,
     accumulate::{self, Passes},
+    axes::Taken,
     clock::Clock,
-    columns::Taken,
     evidence::{self, Recorded, spread_motion},
     scaling::{self, Origin, Scaling},
     table::Table,
@@ -13,6 +13,7 @@ use super::{
     watched, worker,
 };
 use crate::failure::{Failure, Place};
+use allanite::Accumulator;
 use indicatif::ProgressBar;
 use std::path::Path;
 
@@ -32,14 +33,22 @@ pub(super) fn read_table(
     {
         table.columns().check_rate(path, options, rate_hz)?;
     }
+    table.columns().check_instances(path)?;
     // If the rate is given, time stamps are read only if the options ask for them.
     let time = match table.by_rows() && (rate_hz.is_none() || options.time.is_some()) {
         true => table.columns().time(path, options)?,
         false => None,
     };
     if rate_hz.is_none() && time.is_none() {
+        let why = match table.by_rows() {
+            true => table.columns().why_no_time(),
+            false => {
+                "the columns lie one behind the other, so that no stamps are read beside the axes"
+                    .into()
+            }
+        };
         return Err(Place::file(path).failure(
-            "the sampling rate is not known",
+            format!("the sampling rate is not known: {why}"),
             "give it with --rate HZ, or name a column of time stamps with --time",
         ));
     }
@@ -104,13 +113,26 @@ pub(super) fn read_table(
     };
     let mut notes = vec![said(taken.note, &scaling, time.as_ref(), rate_hz, is_told)];
     notes.retain(|note| !note.is_empty());
+    if let Some((row, rate)) = metadata.rate_of_preamble(options) {
+        notes.push(format!("{rate} Hz from row {row} above the header"));
+    }
     notes.extend(measured.clock.as_ref().map(Clock::report));
     notes.extend(table.notes());
     notes.extend(evidence::left_out(covariates, &measured));
     let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
     let mut axes = Vec::new();
     let mut rest = Vec::new();
+    let is_constant = |sums: &worker::Sums| {
+        is_constant(sums.accumulator())
+            || matches!(sums, worker::Sums::InTwo { rest, .. } if first.is_some() && is_constant(&rest.accumulator))
+    };
+    let some_change = measured.axes.iter().any(|(sums, _)| !is_constant(sums));
     for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
+        if some_change && is_constant(&sums) {
+            let name = column.axis;
+            notes.push(format!("axis {name} never changes its value: left out"));
+            continue;
+        }
         let mut axis = Axis {
             name: column.axis,
             rate_per_count: scaling.scale * quantum.step(),
@@ -194,18 +216,31 @@ fn said(
     is_told: bool,
 ) -> String {
     let mut parts: Vec<String> = columns.into_iter().collect();
-    if scaling.origin == Origin::Names {
-        parts.push(format!("unit {} from the column names", scaling.unit));
+    match scaling.origin {
+        Origin::Names => parts.push(format!("unit {} from the column names", scaling.unit)),
+        Origin::Convention(program) => {
+            parts.push(format!(
+                "unit {} by the convention of {program} (change it with --unit)",
+                scaling.unit
+            ));
+        }
+        Origin::Told | Origin::Assumed => {}
     }
     if let Some(time) = time {
         let rate = match is_told {
             false => format!("{rate_hz} Hz"),
             true => "gaps".into(),
         };
-        let (name, unit) = (time.name(), time.unit.name());
+        let (name, unit) = (time.name(), time.unit_name());
         parts.push(format!("{rate} from the time stamps of {name}, in {unit}"));
     }
     parts.join("; ")
+}
+
+/// Whether no value of an axis differs from the one before.
+fn is_constant(accumulator: &Accumulator<OCTAVES>) -> bool {
+    let octave = accumulator.octave(0);
+    octave.is_none_or(|octave| octave.sum.to_real() == 0.0)
 }
 
 /// Checks that an axis is long enough and that its values change.
@@ -228,10 +263,7 @@ fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
             "record longer",
         );
     }
-    if accumulator
-        .octave(0)
-        .is_none_or(|octave| octave.sum.to_real() == 0.0)
-    {
+    if is_constant(accumulator) {
         return fail(
             format!("axis {name} never changes its value"),
             "check the sensor, or choose other columns with --columns",

@@ -11,7 +11,8 @@ use std::{
 /// limit, a quote that is never closed would make one row of the rest of the file. Chosen by hand.
 pub(super) const LONGEST_ROW: usize = 1 << 20;
 
-/// Reads one row after the other. Empty lines and comments are skipped.
+/// Reads one row after the other. Empty lines are skipped, and a comment is a row that begins
+/// with `#`.
 pub(super) struct Records<R> {
     reader: Reader<Limited<R>>,
     /// The number of bytes that may still be read before the row ends.
@@ -32,7 +33,6 @@ impl<R: Read> Records<R> {
         let reader = ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
-            .comment(Some(b'#'))
             .delimiter(delimiter)
             .buffer_capacity(1 << 16)
             .from_reader(text);

@@ -26,6 +26,8 @@ pub(super) enum Origin {
     Told,
     /// The unit is in the names of the columns.
     Names,
+    /// The unit is the one that a program always uses.
+    Convention(&'static str),
     /// The unit is assumed.
     Assumed,
 }
@@ -74,15 +76,22 @@ impl Scaling {
                 "omit the unit, or give --scale too if the names are wrong",
             ));
         }
-        let (unit, origin) = match (told, by_names) {
-            (Some(unit), _) => (unit, Origin::Told),
-            (None, Some((unit, _))) => (unit, Origin::Names),
-            (None, None) => (Unit::usual(sensor.unwrap_or(Sensor::Gyro)), Origin::Assumed),
+        let usual = Unit::usual(sensor.unwrap_or(Sensor::Gyro));
+        let convention = table.columns().convention_of(axes);
+        let convention = convention.filter(|convention| fits(&convention.unit));
+        let (unit, origin) = match (told, by_names, convention) {
+            (Some(unit), ..) => (unit, Origin::Told),
+            (None, Some((unit, _)), _) => (unit, Origin::Names),
+            (None, None, Some(convention)) => {
+                (convention.unit, Origin::Convention(convention.program))
+            }
+            (None, None, None) => (usual, Origin::Assumed),
         };
+        let is_convention = matches!(origin, Origin::Convention(_));
         Ok(Self {
             scale: scale.unwrap_or(1.0) * by_names.map_or(1.0, |(_, part)| part),
             unit,
-            scale_is_told: scale.is_some() || by_names.is_some(),
+            scale_is_told: scale.is_some() || by_names.is_some() || is_convention,
             origin,
         })
     }

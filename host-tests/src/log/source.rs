@@ -1,5 +1,6 @@
-//! Opens a log by its extension.
+//! Tells the format of a log, and opens it.
 
+use super::foreign;
 use crate::{
     failure::{Failure, Place},
     regular_file,
@@ -20,11 +21,14 @@ const BUFFER: usize = 1 << 18;
 const MOST_UNPACKED: u64 = 1 << 24;
 const MOST_TIMES_UNPACKED: u64 = 100;
 
+/// The number of bytes that tell the format of a file.
+const START: u64 = 512;
+
 /// The format of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     /// A table of text.
-    Csv {
+    Text {
         /// Whether the text is compressed with gzip.
         gzip: bool,
     },
@@ -32,41 +36,75 @@ pub(super) enum Format {
     Npy,
     /// A bag of ROS 2, or of ROS 1 after conversion.
     Mcap,
+    /// A bag of ROS 1.
+    Ros1,
+    /// A bag of ROS 2 up to Humble.
+    Sqlite,
+    /// A folder with the files of a bag of ROS 2.
+    Folder,
     /// A log of PX4.
     Ulog,
 }
 
 impl Format {
-    /// The format that a file's extension selects.
+    /// The format of a file: the one that its first bytes tell, or else its extension, or else text.
+    ///
+    /// # Errors
+    /// When the file is another one than a log, which the message names together with the command that converts it.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+        if path.is_dir() {
+            return Ok(Self::Folder);
+        }
+        let (file, _) = regular_file::open(path)?;
+        let mut start = Vec::new();
+        let read = file.take(START).read_to_end(&mut start);
+        read.map_err(|error| Place::file(path).io(&error))?;
+        let begins = |magic: &[u8]| start.starts_with(magic);
+        let of_start = [
+            (&b"\x1f\x8b"[..], Self::Text { gzip: true }),
+            (b"\x93NUMPY", Self::Npy),
+            (b"\x89MCAP", Self::Mcap),
+            (b"#ROSBAG V", Self::Ros1),
+            (b"SQLite format 3\0", Self::Sqlite),
+            (b"ULog", Self::Ulog),
+        ];
+        if let Some((_, format)) = of_start.into_iter().find(|(magic, _)| begins(magic)) {
+            return Ok(format);
+        }
+        if let Some(failure) = foreign::refusal(path, &start) {
+            return Err(failure);
+        }
         let name = path
             .file_name()
             .unwrap_or_default()
             .to_string_lossy()
             .to_lowercase();
-        if name.ends_with(".csv") {
-            Ok(Self::Csv { gzip: false })
-        } else if name.ends_with(".csv.gz") {
-            Ok(Self::Csv { gzip: true })
-        } else if name.ends_with(".npy") {
-            Ok(Self::Npy)
-        } else if name.ends_with(".mcap") {
-            Ok(Self::Mcap)
-        } else if name.ends_with(".ulg") || name.ends_with(".ulog") {
-            Ok(Self::Ulog)
-        } else {
-            Err(Place::file(path).failure(
-                "the file's extension is not that of a log",
-                "give a .csv, .csv.gz, .npy, .mcap or .ulg file",
-            ))
+        let of_name = [
+            (".gz", Self::Text { gzip: true }),
+            (".npy", Self::Npy),
+            (".mcap", Self::Mcap),
+            (".bag", Self::Ros1),
+            (".db3", Self::Sqlite),
+            (".ulg", Self::Ulog),
+            (".ulog", Self::Ulog),
+        ];
+        let of_name = of_name
+            .into_iter()
+            .find(|(extension, _)| name.ends_with(extension));
+        match of_name {
+            Some((_, format)) => Ok(format),
+            None if start.contains(&0) => Err(foreign::failure(
+                path,
+                "not text, and no kind of log that is known",
+                "export it as CSV with the program that recorded it",
+            )),
+            None => Ok(Self::Text { gzip: false }),
         }
     }
-}
 
-impl Format {
     /// Whether a file of this format can hold several sensors, each with its own topic.
     pub(super) const fn has_topics(self) -> bool {
-        matches!(self, Self::Mcap | Self::Ulog)
+        !matches!(self, Self::Text { .. } | Self::Npy)
     }
 }
 
@@ -155,21 +193,24 @@ pub(super) fn text_failure(place: Place, gzip: bool, error: &std::io::Error) -> 
     }
 }
 
-/// The row, counted from 1, of the first record at or after a byte of the text. Rows that are empty
-/// or comments are skipped. If the text ends or breaks off before a record, this is the row where
-/// it does so.
-pub(super) fn row_at(path: &Path, gzip: bool, byte: u64) -> Result<u64, Failure> {
-    let mut text = open_text(path, gzip, &ProgressBar::hidden())?;
-    let mut row = 1;
+/// The number of lines that end before a byte of a text.
+pub(super) fn lines_before(mut text: impl BufRead, byte: u64) -> u64 {
+    let mut lines = 0;
     let mut before = text.by_ref().take(byte);
     while let Ok(chunk @ [_, ..]) = before.fill_buf() {
-        row += chunk.iter().filter(|&&byte| byte == b'\n').count() as u64;
+        lines += chunk.iter().filter(|&&byte| byte == b'\n').count() as u64;
         let length = chunk.len();
         before.consume(length);
     }
+    lines
+}
+
+/// The row, counted from 1, of the first record or comment at or after a byte of the text. Empty rows are skipped.
+/// If the text ends or breaks off before a record, this is the row where it does so.
+pub(super) fn row_at(mut text: impl BufRead, byte: u64) -> u64 {
+    let mut row = 1 + lines_before(&mut text, byte);
     while let Ok(Some(first)) = text.fill_buf().map(|chunk| chunk.first().copied()) {
         match first {
-            b'#' if text.skip_until(b'\n').is_ok() => row += 1,
             b'\r' => text.consume(1),
             b'\n' => {
                 text.consume(1);
@@ -178,5 +219,5 @@ pub(super) fn row_at(path: &Path, gzip: bool, byte: u64) -> Result<u64, Failure>
             _ => break,
         }
     }
-    Ok(row)
+    row
 }

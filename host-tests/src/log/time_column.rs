@@ -18,6 +18,8 @@ pub(super) struct TimeColumn {
     pub(super) columns: Vec<AxisColumn>,
     pub(super) pace: Pace,
     pub(super) unit: TimeUnit,
+    /// Whether the stamps are written as dates and times.
+    is_date: bool,
 }
 
 impl Columns {
@@ -52,9 +54,13 @@ impl Columns {
         // A message has several times. The one at which the sensor was sampled comes first.
         let is_sensors = |column: &usize| {
             let name = self.name(*column).unwrap_or_default();
-            name.contains("header.stamp") || name.contains("timestamp_sample")
+            name.contains("header.stamp") || name.contains("timestamp_sample") || name == "TimeUS"
         };
         by_name.sort_by_key(|column| !is_sensors(column));
+        // Dates and times are often coarser than a number beside them.
+        let dates = (0..count).filter(|&column| self.looks[column] == Look::Date);
+        by_name.retain(|&column| self.looks[column] != Look::Date);
+        by_name.extend(dates);
         for column in by_name {
             if let Some(found) = self.time_in(path, column, options)? {
                 return Ok(Some(found));
@@ -86,6 +92,14 @@ impl Columns {
             return Ok(None);
         }
         let head = &self.heads[column];
+        if self.looks[column] == Look::Date {
+            return Ok(Pace::of(head, TimeUnit::Ns).map(|pace| TimeColumn {
+                columns: vec![self.time_axis(column)],
+                pace,
+                unit: TimeUnit::Ns,
+                is_date: true,
+            }));
+        }
         let Some(possible) = possible_units(head) else {
             return Ok(None);
         };
@@ -101,6 +115,8 @@ impl Columns {
             })?,
             unit => unit,
         };
+        let of_blackbox = self.name(column) == Some("time") && self.said.contains("blackbox");
+        let told = told.or(of_blackbox.then_some(TimeUnit::Us));
         let unit = match (told, possible.as_slice()) {
             (Some(unit), _) | (None, &[unit]) => unit,
             (None, []) => {
@@ -122,6 +138,7 @@ impl Columns {
             columns: vec![self.time_axis(column)],
             pace,
             unit,
+            is_date: false,
         }))
     }
 
@@ -193,6 +210,7 @@ impl Columns {
                 columns: vec![self.time_axis(seconds), self.time_axis(behind)],
                 pace: Pace::of(&first, TimeUnit::Ns)?,
                 unit: TimeUnit::Ns,
+                is_date: false,
             })
         })
     }
@@ -203,6 +221,67 @@ impl TimeColumn {
     pub(super) fn name(&self) -> String {
         let names: Vec<&str> = self.columns.iter().map(|one| one.axis.as_str()).collect();
         names.join(" and ")
+    }
+
+    /// The unit of the stamps, or their form.
+    pub(super) fn unit_name(&self) -> &'static str {
+        match self.is_date {
+            true => "dates and times",
+            false => self.unit.name(),
+        }
+    }
+}
+
+impl Columns {
+    /// The reason why no column holds time stamps, for a log whose rate is not told.
+    pub(super) fn why_no_time(&self) -> String {
+        let all = 0..self.looks.len();
+        let list = |columns: &[usize]| {
+            let called: Vec<String> = columns.iter().map(|&column| self.called(column)).collect();
+            called.join(", ")
+        };
+        let named = |column: &usize| self.name(*column).is_some_and(names::is_time);
+        let named: Vec<usize> = all.clone().filter(named).collect();
+        let is_text = |column: &usize| self.looks[*column] == Look::Text;
+        let (texts, numbers): (Vec<usize>, Vec<usize>) = named.into_iter().partition(is_text);
+        if !numbers.is_empty() {
+            return format!("the values of {} do not advance", list(&numbers));
+        }
+        if !texts.is_empty() {
+            return format!(
+                "the values of {} are neither numbers nor dates of ISO 8601",
+                list(&texts)
+            );
+        }
+        let rising = |column: &usize| self.looks[*column] == Look::Rising;
+        let rising: Vec<usize> = all.filter(rising).collect();
+        let (rows, others): (Vec<usize>, Vec<usize>) = rising
+            .into_iter()
+            .partition(|&column| is_index(&self.heads[column]));
+        match (rows.as_slice(), others.as_slice(), &self.names) {
+            (_, [], None) if rows.is_empty() => {
+                "there is no header, and no column rises as a time does".into()
+            }
+            (_, [_, _, ..], None) => format!(
+                "there is no header, and {} all rise as times do",
+                list(&others)
+            ),
+            (_, [_, ..], Some(_)) => format!(
+                "no column is named like a time, though {} rises",
+                list(&others)
+            ),
+            ([_, ..], _, _) => format!("{} only counts rows, and no column is a time", list(&rows)),
+            _ => {
+                const FEW: usize = 8;
+                let names = self.names.as_deref().unwrap_or_default();
+                let more = if names.len() > FEW { ", …" } else { "" };
+                let few: Vec<&str> = names.iter().take(FEW).map(String::as_str).collect();
+                format!(
+                    "none of the columns {}{more} is named like a time",
+                    few.join(", ")
+                )
+            }
+        }
     }
 }
 

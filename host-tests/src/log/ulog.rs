@@ -4,10 +4,11 @@ use super::{
     Options,
     columns::{AxisColumn, Columns, Look},
     metadata::Metadata,
-    names, scaling, source,
+    scaling, source,
     table::{Ended, Stop, Table, Visitor},
-    ulog_format::{Field, Value},
+    ulog_format::Value,
     ulog_messages::{Error, Message, Messages, Subscription},
+    ulog_topics::{RAW, Source, columns, defined},
 };
 use crate::{
     failure::{Failure, Place, quoted},
@@ -22,14 +23,6 @@ use std::{
 /// The number of messages that decide what the columns look like. Chosen by hand.
 const LOOKS: usize = 100;
 
-/// The topics of raw samples, which are taken without being asked for.
-const RAW: [&str; 4] = [
-    "sensor_gyro",
-    "sensor_accel",
-    "sensor_combined",
-    "vehicle_imu",
-];
-
 /// A log, and the topic in it that is read.
 pub(super) struct Ulog {
     path: PathBuf,
@@ -38,14 +31,6 @@ pub(super) struct Ulog {
     metadata: Metadata,
     columns: Columns,
     notes: Vec<String>,
-}
-
-/// Where the values of a column come from.
-#[derive(Clone, Debug)]
-struct Source {
-    field: Field,
-    /// The field with the integration time in microseconds, by which the values are divided.
-    over: Option<Field>,
 }
 
 /// An instance of a topic in a log.
@@ -108,7 +93,9 @@ impl Ulog {
         for topic in RAW {
             if found.values().any(|one| one.subscription.topic == topic) {
                 let columns = expanded(topic)?;
-                let has = |sensor| columns.iter().any(|(name, _)| names::is_axis(name, sensor));
+                let names: Vec<String> = columns.into_iter().map(|(name, _)| name).collect();
+                let defined = defined(topic, &names);
+                let has = |sensor| defined.iter().any(|(_, of)| *of == sensor);
                 raw.insert(topic, (has(Sensor::Gyro), has(Sensor::Accelerometer)));
             }
         }
@@ -144,6 +131,8 @@ impl Ulog {
             columns: Columns {
                 looks: vec![Look::Number; names.len()],
                 heads: vec![Vec::new(); names.len()],
+                defined: defined(&chosen.subscription.topic, &names),
+                said: String::new(),
                 names: Some(names),
             },
             sources,
@@ -236,17 +225,6 @@ impl Table for Ulog {
     }
 }
 
-impl Source {
-    fn value(&self, message: &[u8]) -> Option<Value> {
-        let value = self.field.value(message)?;
-        let Some(over) = &self.over else {
-            return Some(value);
-        };
-        let seconds = 1e-6 * over.value(message)?.to_f64();
-        Some(Value::Float(value.to_f64() / seconds))
-    }
-}
-
 const COPY: &str = "copy or record the log again";
 
 /// The first names of a list, and how many others there are.
@@ -260,51 +238,6 @@ fn few(names: &[String]) -> String {
 
 fn is_raw(found: &Found) -> bool {
     RAW.contains(&found.subscription.topic.as_str())
-}
-
-/// The columns of a topic. They get names that indicate sensor and unit where those of PX4's fields
-/// do not.
-fn columns(topic: &str, fields: &[Field]) -> Vec<(String, Source)> {
-    const GYRO: [&str; 3] = ["gyro_x [rad/s]", "gyro_y [rad/s]", "gyro_z [rad/s]"];
-    const ACCEL: [&str; 3] = ["accel_x [m/s^2]", "accel_y [m/s^2]", "accel_z [m/s^2]"];
-    const XYZ: [&str; 3] = ["x", "y", "z"];
-    const ARRAY: [&str; 3] = ["xyz[0]", "xyz[1]", "xyz[2]"];
-    const ANGLE: [&str; 3] = ["delta_angle[0]", "delta_angle[1]", "delta_angle[2]"];
-    const VELOCITY: [&str; 3] = [
-        "delta_velocity[0]",
-        "delta_velocity[1]",
-        "delta_velocity[2]",
-    ];
-    let known: &[([&str; 3], [&str; 3], Option<&str>)] = match topic {
-        "sensor_gyro" => &[(XYZ, GYRO, None)],
-        "sensor_accel" => &[(XYZ, ACCEL, None)],
-        "vehicle_angular_velocity" => &[(ARRAY, GYRO, None)],
-        "vehicle_acceleration" => &[(ARRAY, ACCEL, None)],
-        "vehicle_imu" => &[
-            (ANGLE, GYRO, Some("delta_angle_dt")),
-            (VELOCITY, ACCEL, Some("delta_velocity_dt")),
-        ],
-        _ => &[],
-    };
-    let find = |name: &str| fields.iter().find(|field| field.name == name).cloned();
-    let named = |field: &Field| {
-        let name = field.name.as_str();
-        for (from, to, over) in known {
-            if let Some(axis) = from.iter().position(|one| *one == name) {
-                return (to[axis].to_owned(), over.and_then(find));
-            }
-        }
-        match name {
-            "timestamp" | "timestamp_sample" => (format!("{name} [us]"), None),
-            name => (name.to_owned(), None),
-        }
-    };
-    let column = |field: &Field| {
-        let (name, over) = named(field);
-        let field = field.clone();
-        (name, Source { field, over })
-    };
-    fields.iter().map(column).collect()
 }
 
 /// The topic that is asked for by its name or as `TOPIC:INSTANCE`. Without a request, it is the

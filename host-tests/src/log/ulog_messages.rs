@@ -80,6 +80,16 @@ impl<R: BufRead> Messages<R> {
     pub(super) fn next(&mut self) -> Result<Message<'_>, Error> {
         loop {
             let mut head = [0; 3];
+            // PX4 appends at the end of the file, wherever a crash has cut off the last message.
+            if let Some(&next) = self.appended.first()
+                && next < self.position + head.len() as u64
+            {
+                self.appended.remove(0);
+                if !self.skip_to(next)? {
+                    return Ok(Message::Cut);
+                }
+                continue;
+            }
             match self.fill(&mut head)? {
                 0 => return Ok(Message::End),
                 3 => {}
@@ -90,14 +100,8 @@ impl<R: BufRead> Messages<R> {
             let end = start + 3 + length as u64;
             if let Some(next) = self.appended.first().copied().filter(|&next| end > next) {
                 self.appended.remove(0);
-                let skip = next.checked_sub(start + 3);
-                let skip = skip.ok_or_else(|| {
-                    self.wrong("appended data begin within the head of a message".into())
-                })?;
-                let mut rest = self.reader.by_ref().take(skip);
-                let skipped = io::copy(&mut rest, &mut io::sink()).map_err(Error::Io)?;
-                self.position = next;
-                if skipped < skip {
+                self.position += head.len() as u64;
+                if !self.skip_to(next)? {
                     return Ok(Message::Cut);
                 }
                 continue;
@@ -120,6 +124,15 @@ impl<R: BufRead> Messages<R> {
             self.define(head[2]).map_err(|what| self.wrong(what))?;
             self.position = end;
         }
+    }
+
+    /// Skips what is left of a message that was cut off at an offset. Returns false if the file ends before it.
+    fn skip_to(&mut self, offset: u64) -> Result<bool, Error> {
+        let skip = offset.saturating_sub(self.position);
+        let mut rest = self.reader.by_ref().take(skip);
+        let skipped = io::copy(&mut rest, &mut io::sink()).map_err(Error::Io)?;
+        self.position += skipped;
+        Ok(skipped == skip)
     }
 
     fn define(&mut self, kind: u8) -> Result<(), String> {
@@ -216,12 +229,20 @@ mod tests {
                 &[&[0; 8][..], &[1, 0, 0, 0, 0, 0, 0, 0], &offset, &[0; 16]].concat(),
             )
         };
-        let cut = &message(b'D', &[1, 0, 99])[..4];
-        let first = file(&[flags(0), whole[0].clone()]);
-        let offset = (first.len() + cut.len()) as u64;
-        let first = file(&[flags(offset), whole[0].clone()]);
-        let bytes = [&first[..], cut, &whole[1]].concat();
-        assert_eq!(read(&bytes).unwrap(), (vec![vec![10], vec![11]], false));
+        let cut = message(b'D', &[1, 0, 99]);
+        // The crash may have cut the head of the message, or nothing at all.
+        for cut in (0..cut.len()).map(|length| &cut[..length]) {
+            let first = file(&[flags(0), whole[0].clone()]);
+            let offset = (first.len() + cut.len()) as u64;
+            let first = file(&[flags(offset), whole[0].clone()]);
+            let bytes = [&first[..], cut, &whole[1]].concat();
+            assert_eq!(
+                read(&bytes).unwrap(),
+                (vec![vec![10], vec![11]], false),
+                "{}",
+                cut.len()
+            );
+        }
     }
 
     #[test]

@@ -69,6 +69,174 @@ fn zeros(blocks: usize) -> Vec<u8> {
     frame
 }
 
+/// Fields of a header of ROS 1, each with its name.
+fn fields(fields: &[(&str, &[u8])]) -> Vec<u8> {
+    let field = |(name, value): &(&str, &[u8])| {
+        let bytes = [name.as_bytes(), b"=", value].concat();
+        [&(bytes.len() as u32).to_le_bytes()[..], &bytes].concat()
+    };
+    fields.iter().flat_map(field).collect()
+}
+
+/// A record of ROS 1 whose data claim a length.
+fn ros1(header: &[(&str, &[u8])], claimed: u32, data: &[u8]) -> Vec<u8> {
+    let header = fields(header);
+    [
+        &(header.len() as u32).to_le_bytes()[..],
+        &header,
+        &claimed.to_le_bytes(),
+        data,
+    ]
+    .concat()
+}
+
+/// A bag of ROS 1 with these records, whose header gives the offset of an index.
+fn ros1_bag(index: u64, records: &[Vec<u8>]) -> Vec<u8> {
+    let header = ros1(&[("op", &[3]), ("index_pos", &index.to_le_bytes())], 0, &[]);
+    [&b"#ROSBAG V2.0\n"[..], &header, &records.concat()].concat()
+}
+
+fn ros1_chunk(size: u32, compression: &str, packed: &[u8]) -> Vec<u8> {
+    let header = [
+        ("op", &[5][..]),
+        ("compression", compression.as_bytes()),
+        ("size", &size.to_le_bytes()),
+    ];
+    ros1(&header, packed.len() as u32, packed)
+}
+
+/// Bad bags of ROS 1.
+fn ros1_cases() -> Vec<(String, Vec<u8>, &'static str)> {
+    let mut bags: Vec<(String, Vec<u8>, &str)> = Vec::new();
+    let mut add = |bytes: Vec<u8>, expected| bags.push(("a.bag".into(), bytes, expected));
+    add(Vec::new(), "not a bag of ROS 1");
+    add(vec![7; 200], "not a bag of ROS 1");
+    add(b"#ROSBAG V2.0\n".to_vec(), "the bag ends in the middle");
+    add(ros1_bag(0, &[]), "the bag was not closed");
+    add(ros1_bag(1 << 40, &[]), "the bag was not closed");
+    add(
+        ros1_bag(13, &[]),
+        "no topic of sensor_msgs/msg/Imu: no topic at all",
+    );
+    add(
+        ros1_bag(13, &[ros1(&[("op", &[2])], 0, &[])]),
+        "a record names no connection",
+    );
+    add(
+        ros1_bag(13, &[ros1(&[("op", &[2]), ("conn", &[0; 4])], 0, &[])]),
+        "a message names no connection",
+    );
+    add(
+        ros1_bag(13, &[ros1(&[("op", &[2])], u32::MAX, &[0; 50])]),
+        "the bag ends in the middle",
+    );
+    add(
+        ros1_bag(13, &[ros1(&[("none", &[2])], 0, &[])]),
+        "a record has no kind",
+    );
+    add(
+        ros1_bag(13, &[ros1(&[("op", &[5])], 0, &[])]),
+        "a chunk has no size",
+    );
+    add(
+        ros1_bag(13, &[ros1_chunk(u32::MAX, "none", &[0; 50])]),
+        "to too many times their size",
+    );
+    add(
+        ros1_bag(13, &[ros1_chunk(50, "none", &[0xff; 50])]),
+        "a record in a chunk is too short",
+    );
+    add(
+        ros1_bag(13, &[ros1_chunk(50, "lz4", &[0xff; 50])]),
+        "a chunk cannot be unpacked",
+    );
+    add(
+        ros1_bag(13, &[ros1_chunk(50, "bz2", &[0xff; 50])]),
+        "a chunk cannot be unpacked",
+    );
+    add(
+        ros1_bag(13, &[ros1_chunk(50, "zip", &[0; 50])]),
+        "compressed with \"zip\"",
+    );
+    let connection = |i: u32| {
+        ros1(
+            &[("op", &[7]), ("conn", &i.to_le_bytes()), ("topic", b"/a")],
+            0,
+            &[],
+        )
+    };
+    add(
+        ros1_bag(13, &(0..9000).map(connection).collect::<Vec<_>>()),
+        "too many connections",
+    );
+    for name in ["ros1.bag", "ros1-lz4.bag", "ros1-bz2.bag"] {
+        let bytes = fixture(&format!("origins/{name}"));
+        for part in [9, 100, 4117, bytes.len() / 2, bytes.len() - 9] {
+            add(bytes[..part].to_vec(), "a.bag: ");
+        }
+    }
+    for name in ["ros1.bag", "ros1-lz4.bag", "ros1-bz2.bag"] {
+        let good = fixture(&format!("origins/{name}"));
+        for at in (30..good.len()).step_by(389) {
+            let mut bytes = good.clone();
+            bytes[at] ^= 0x41;
+            bags.push((format!("flip{at}-{name}"), bytes, ""));
+        }
+    }
+    bags
+}
+
+/// Bad bags of ROS 2 in SQLite.
+fn sqlite_cases() -> Vec<(String, Vec<u8>, &'static str)> {
+    let good = fixture("origins/humble.db3");
+    let database = |statements: &str| {
+        let folder = tempfile::TempDir::new().unwrap();
+        let path = folder.path().join("a.db3");
+        let database = rusqlite::Connection::open(&path).unwrap();
+        database.execute_batch(statements).unwrap();
+        drop(database);
+        fs::read(path).unwrap()
+    };
+    let topics = "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);";
+    let endless = "CREATE VIEW messages AS WITH RECURSIVE n(id) AS (SELECT 1 UNION ALL SELECT id + 1 FROM n) \
+                   SELECT id, 1 AS topic_id, x'00' AS data FROM n;";
+    let mut bags: Vec<(String, Vec<u8>, &str)> = vec![
+        ("a.db3".into(), Vec::new(), "without the tables of a bag"),
+        ("a.db3".into(), vec![7; 2000], "not a SQLite database"),
+        (
+            "a.db3".into(),
+            database("CREATE TABLE a(b);"),
+            "without the tables of a bag",
+        ),
+        (
+            "a.db3".into(),
+            database(&format!("{topics}{endless}")),
+            "without the tables of a bag",
+        ),
+        (
+            "a.db3".into(),
+            database(&format!("{topics}CREATE TABLE messages(a);")),
+            "damaged: ",
+        ),
+        (
+            "a.db3".into(),
+            database(&format!(
+                "{topics}CREATE TABLE messages(id, topic_id, data); INSERT INTO messages VALUES(1, 2, x'00');"
+            )),
+            "a message has no topic",
+        ),
+    ];
+    for part in [100, good.len() / 2, good.len() - 600] {
+        bags.push(("a.db3".into(), good[..part].to_vec(), "a.db3: "));
+    }
+    for at in (16..good.len()).step_by(389) {
+        let mut bytes = good.clone();
+        bytes[at] ^= 0x41;
+        bags.push((format!("flip{at}.db3"), bytes, ""));
+    }
+    bags
+}
+
 pub(crate) fn cases() -> Vec<Case> {
     let imu = || schema(&text("sensor_msgs/msg/Imu"));
     let ascii = b"eeee".to_vec();
@@ -172,6 +340,8 @@ pub(crate) fn cases() -> Vec<Case> {
         fixture("two-imus.mcap"),
         "there are 2 IMU topics",
     ));
+    bags.extend(ros1_cases());
+    bags.extend(sqlite_cases());
     let case = |(name, bytes, expected): (String, Vec<u8>, &str)| {
         let case = refused(&name, bytes, &format!("fit {name}"), expected);
         match name.starts_with("flip") {

@@ -149,9 +149,51 @@ pub(crate) fn cases() -> Vec<Case> {
         (
             "fit",
             "1;2,5\n2;3,5\n".repeat(30),
-            "mixes numbers and text such as \"2,5\"",
+            "the sampling rate is not known",
         ),
         ("fit", named("gx,7,gz"), "mixes numbers and text"),
+        (
+            "fit",
+            format!("7,8\n{good}"),
+            "2 values where the rows below have 3",
+        ),
+        (
+            "fit",
+            "only words\n".repeat(1 << 20),
+            "the sampling rate is not known",
+        ),
+        ("fit", "# words\n".repeat(1 << 20), "no rows"),
+        (
+            "fit",
+            "1 2;3,4\t5 ".repeat(5000) + "\n",
+            "columns, more than 256",
+        ),
+        (
+            "fit",
+            after("# door opened\n1,2,3"),
+            "a comment among the rows",
+        ),
+        (
+            "fit",
+            after("# lost 99999999999999999999999 samples\n1,2,3"),
+            "a comment among the rows",
+        ),
+        (
+            "fit",
+            after("# \u{1b}[2J\n1,2,3"),
+            "a comment among the rows",
+        ),
+        (
+            "fit",
+            "H Product:Blackbox\n".into(),
+            "convert it with `blackbox_decode a.csv`",
+        ),
+        ("fit", "a\0b,c\n".into(), "not text"),
+        (
+            "fit",
+            regular("time_us,roll_deg", 5000),
+            "none of 2 columns looks like an axis",
+        ),
         ("fit", named("a,b,b"), "two columns are named \"b\""),
         (
             "fit",

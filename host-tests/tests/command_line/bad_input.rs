@@ -25,7 +25,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
     );
     write("rate.csv", b"# rate_hz=0\ngx\n1\n2\n4\n");
     write("silent.csv", b"gx\n1\n2\n4\n");
-    write("log.txt", good.as_bytes());
+    write("LOG00001.BBL", b"H Product:Blackbox\n");
     write(
         "old.json",
         curve.replace("\"version\": 2", "\"version\": 0").as_bytes(),
@@ -70,16 +70,16 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
         (
             "silent.csv",
             &[],
-            "silent.csv: the sampling rate is not known; \
+            "silent.csv: the sampling rate is not known: none of the columns gx is named like a time; \
              give it with --rate HZ, or name a column of time stamps with --time",
         ),
         (
-            "log.txt",
+            "LOG00001.BBL",
             &[],
-            "log.txt: the file's extension is not that of a log; ",
+            "LOG00001.BBL: this is a flight log of Betaflight; convert it with `blackbox_decode LOG00001.BBL`",
         ),
         ("none.csv", &[], "none.csv: no such file; check the path"),
-        (".", &[], "the file's extension is not that of a log; "),
+        (".", &[], "is a directory; "),
         ("log.csv", &["--rate", "0"], "--rate 0 is impossible; "),
         ("log.csv", &["--rate", "-5"], "--rate -5 is impossible; "),
         ("log.csv", &["--rate", "nan"], "--rate NaN is impossible; "),

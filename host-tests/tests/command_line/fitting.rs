@@ -105,9 +105,8 @@ fn all_formats_of_a_simulated_log_give_the_same_fit() {
         for name in ["a.csv", "a.csv.gz", "a.npy"] {
             simulate(name, more);
         }
-        let scale: &[&str] = if more.is_empty() { &[] } else { more };
-        let array = [&["a.npy", "--rate", "100", "--unit", "deg/s"], scale].concat();
-        let [text, packed, array] = [&["a.csv"][..], &["a.csv.gz"], &array]
+        // A file beside the array tells its rate, unit and scale.
+        let [text, packed, array] = [&["a.csv"][..], &["a.csv.gz"], &["a.npy"]]
             .map(|arguments| output(folder.path(), &[&["fit", "--json"], arguments].concat()));
         assert_eq!(text, packed);
         assert_eq!(text, array);

@@ -1,7 +1,9 @@
 //! Logs that the formats' own libraries wrote are read exactly, and refused if they are broken.
 
 mod broken;
+mod origins;
 mod stamps;
+mod text;
 mod values;
 
 use allanite::Accumulator;

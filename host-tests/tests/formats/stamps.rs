@@ -153,7 +153,7 @@ fn unusable_stamps_are_refused_with_their_row() {
     let index = stamped(",gx", 0..200);
     let line = read_text(&index, &Options::default()).unwrap_err();
     assert!(
-        line.starts_with("a.csv: the sampling rate is not known; "),
+        line.starts_with("a.csv: the sampling rate is not known: column 1 only counts rows, "),
         "{line}"
     );
 }

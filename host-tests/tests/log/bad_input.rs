@@ -265,7 +265,7 @@ fn impossible_rates_and_scales_are_refused() {
     let line = refusal("a.csv", good.as_bytes(), &Options::default());
     assert_eq!(
         line,
-        "a.csv: the sampling rate is not known; \
+        "a.csv: the sampling rate is not known: there is no header, and no column rises as a time does; \
          give it with --rate HZ, or name a column of time stamps with --time"
     );
 }

@@ -38,7 +38,7 @@ const SELECTED: &str = "the last p-value takes the added effects for known: they
 /// The input of a diagnosis and its settings.
 #[derive(Debug, Args)]
 pub(crate) struct DiagnosisArguments {
-    /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
+    /// A log (text, .npy, .ulg, or a bag of ROS), or a curve file (.json) that `measure` wrote
     pub(crate) input: PathBuf,
     #[command(flatten)]
     settings: DiagnosisSettings,

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = examples::EXPORT)]
 pub(in crate::command) struct Arguments {
-    /// A log (.csv, .csv.gz, .npy, .mcap, .ulg), or a curve file (.json) that `measure` wrote
+    /// A log (text, .npy, .ulg, or a bag of ROS), or a curve file (.json) that `measure` wrote
     pub(super) input: PathBuf,
     /// Format of the file
     #[arg(long, short)]

@@ -21,7 +21,7 @@ const ON_THE_WAY: usize = 64;
 /// The input files, and the form of the output.
 #[derive(Debug, Args)]
 pub(crate) struct FilesArguments {
-    /// Logs (.csv, .csv.gz, .npy, .mcap, .ulg), or curve files (.json) that `measure` wrote
+    /// Logs (text, .npy, .ulg, or a bag of ROS), or curve files (.json) that `measure` wrote
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
     /// Print the result as JSON

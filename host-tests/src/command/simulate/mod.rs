@@ -8,7 +8,7 @@ use crate::{
         output::{file::OutputFile, progress},
     },
     failure::{Failure, Place, brief, quoted},
-    log::npy_header::{Header, Kind},
+    log::npy_header::{Header, Kind, sidecar},
     simulate::{Coefficients, Preset, Simulator},
     unit::{Sensor, Unit},
 };
@@ -17,7 +17,7 @@ use flate2::{Compression, write::GzEncoder};
 use hidden_effects::{HiddenArguments, HiddenEffects};
 use std::{
     io::{self, BufWriter, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 
 /// Number of axes of a sensor.
@@ -89,7 +89,8 @@ pub(super) struct Arguments {
     /// Write rounded counts instead of rates; one count is this many rate units
     #[arg(long, value_name = "RATE_PER_COUNT", allow_negative_numbers = true)]
     scale: Option<f64>,
-    /// The log to write: .csv, .csv.gz or .npy [default: CSV on standard output]
+    /// The log to write: .csv, .csv.gz, or .npy with its rate and unit in a file .npy.txt beside it [default: CSV on
+    /// standard output]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -136,9 +137,21 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let mut file = BufWriter::with_capacity(1 << 16, OutputFile::create(path, [])?);
     let failure = |error: &io::Error| record.failure(error, || Place::file(path).io(error));
     write(&record, &mut file).map_err(|error| failure(&error))?;
-    file.into_inner()
-        .map_err(|error| failure(error.error()))?
-        .commit()
+    let file = file.into_inner().map_err(|error| failure(error.error()))?;
+    if name.ends_with(".npy") && path_is_kept(path) {
+        // The rate of an array is in a file beside it. The array comes last, so that it is never without its rate.
+        let beside = sidecar(path);
+        let mut comment = OutputFile::create(&beside, [path.as_path()])?;
+        let written = record.write_comment(&mut comment);
+        written.map_err(|error| Place::file(&beside).io(&error))?;
+        comment.commit()?;
+    }
+    file.commit()
+}
+
+/// Whether an output is a file that can be read again, and not a device or a pipe.
+fn path_is_kept(path: &Path) -> bool {
+    path.metadata().map_or(true, |there| there.is_file())
 }
 
 /// A record to be simulated.

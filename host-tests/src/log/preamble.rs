@@ -50,6 +50,11 @@ struct Line {
 }
 
 impl Line {
+    /// Whether a quote is opened or closed in this line and not both.
+    fn is_open(&self) -> bool {
+        self.comment().is_none() && self.bytes.iter().filter(|&&byte| byte == b'"').count() % 2 == 1
+    }
+
     fn comment(&self) -> Option<String> {
         let comment = self.bytes.strip_prefix(b"#")?;
         Some(String::from_utf8_lossy(comment).trim().to_owned())
@@ -242,7 +247,14 @@ fn sample(
                     keep(said, &comment);
                     last_comment = Some(comment);
                 }
-                _ => lines.push(line),
+                _ => match lines.last_mut() {
+                    // A value in quotes may contain the end of a line.
+                    Some(last) if last.is_open() && line.is_open() => {
+                        last.bytes.push(b'\n');
+                        last.bytes.extend(line.bytes);
+                    }
+                    _ => lines.push(line),
+                },
             }
         }
         bytes += length;

@@ -44,7 +44,7 @@ fn bad_text_is_refused_with_its_row() {
              correct it or choose other columns with --columns",
         ),
         (
-            format!("{}1,two,3\r\n", good.replace('\n', "\r\n# and\r\n\r\n")),
+            format!("{}1,two,3\r\n", good.replace('\n', "\r\n\r\n\r\n")),
             "bad.csv:151: axis gy: \"two\" is not a number; \
              correct it or choose other columns with --columns",
         ),

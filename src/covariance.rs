@@ -132,7 +132,7 @@ pub(crate) fn covariance_row(
                 let scale = square * per_unit;
                 let part = Detailed::of(&tail, part, term.effect, &shape, shorter.m, scale);
                 // There is a place for every part.
-                detailed.extend(part);
+                let _ = part.map(|part| detailed.push(part));
             }
         } else {
             let effect = term.effect;

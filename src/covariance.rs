@@ -131,8 +131,10 @@ pub(crate) fn covariance_row(
             for part in 0..tail.places() {
                 let scale = square * per_unit;
                 let part = Detailed::of(&tail, part, term.effect, &shape, shorter.m, scale);
-                // There is a place for every part.
-                let _ = part.map(|part| detailed.push(part));
+                if let Some(part) = part {
+                    // There is a place for every part.
+                    let _ = detailed.push(part);
+                }
             }
         } else {
             let effect = term.effect;

@@ -29,6 +29,12 @@ fn settle(browser: &mut Browser) {
     }
 }
 
+/// Opens the page and waits for its first answer, which moves what can be clicked.
+fn open(browser: &mut Browser, url: &str) {
+    browser.open(url);
+    settle(browser);
+}
+
 /// The χ² that the page shows.
 fn chi2(browser: &mut Browser) -> f64 {
     settle(browser);
@@ -96,7 +102,7 @@ fn drag_to_the_minimum(browser: &mut Browser, slider: &str) {
 fn a_sinusoid_is_dragged_to_the_minimum_and_the_filter_lowers_chi_squared_as_compare_computes_it() {
     let served = Served::start(&[ADIS16405]);
     let mut browser = Browser::start();
-    browser.open(&served.url);
+    open(&mut browser, &served.url);
     browser.click("#records tbody tr:nth-child(3) input[type=radio]");
     let five = chi2(&mut browser);
     assert_eq!(
@@ -169,7 +175,7 @@ fn a_sinusoid_is_dragged_to_the_minimum_and_the_filter_lowers_chi_squared_as_com
 fn fast_changes_do_not_pile_up_and_keys_and_labels_do_what_the_mouse_does() {
     let served = Served::start(&[ADIS16405]);
     let mut browser = Browser::start();
-    browser.open(&served.url);
+    open(&mut browser, &served.url);
     chi2(&mut browser);
     browser.value("document.querySelector('[data-effect=resonance]').focus()");
     browser.value("document.activeElement.click()");
@@ -249,7 +255,7 @@ fn one_record_is_fitted_and_another_judges_and_the_diagnosis_is_asked() {
     let [before, after] = paths.each_ref().map(|path| path.to_str().unwrap());
     let served = Served::start(&[before, after]);
     let mut browser = Browser::start();
-    browser.open(&served.url);
+    open(&mut browser, &served.url);
     let five = chi2(&mut browser);
     browser.click("#records tbody tr:nth-child(2) input[type=checkbox]");
     chi2(&mut browser);

@@ -18,7 +18,7 @@ const POLISHES: u8 = 8;
 /// small beside the interval of any shape that a record of a million samples shows.
 const SETTLED: Real = 1e-4;
 
-/// Fits the shapes of those effects of a model whose [`fitted`](Term::fitted) is set, all together, and returns the model
+/// Fits the shapes of those effects of a model whose [`fitted`](field@Term::fitted) is set, all together, and returns the model
 /// with them. Whole numbers are kept, and so are the shapes of all other effects.
 ///
 /// The fit begins at the shapes that the model has, and ends in the minimum of `−2 ln L` near them. A shape of zeros

@@ -2,13 +2,22 @@
 
 use clap::Parser;
 use host_tests::{
-    command::CommandLine,
+    command::{CommandLine, usage},
     failure::{self, Failure},
 };
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match CommandLine::parse().run() {
+    let line = match CommandLine::try_parse() {
+        Ok(line) => line,
+        Err(error) if error.use_stderr() => {
+            failure::report(usage::failure(&error));
+            return ExitCode::from(2);
+        }
+        // This prints the help or the version.
+        Err(error) => error.exit(),
+    };
+    match line.run() {
         Ok(()) | Err(Failure::Closed) => ExitCode::SUCCESS,
         Err(failure) => {
             failure::report(failure);

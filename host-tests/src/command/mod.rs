@@ -17,11 +17,12 @@ mod plot;
 mod report;
 mod simulate;
 mod tried;
+pub mod usage;
 mod watch;
 
 use crate::failure::Failure;
 use clap::{CommandFactory, Parser, Subcommand};
-use output::{progress, temporary};
+use output::{progress, temporary, wrapped::Wrapped};
 use std::io::{self, BufWriter, Write};
 
 /// Noise coefficients of gyros and accelerometers, from recorded logs or from curves.
@@ -32,7 +33,7 @@ use std::io::{self, BufWriter, Write};
 ///
 /// The environment variable NO_COLOR turns colours off.
 #[derive(Debug, Parser)]
-#[command(name = "allanite", version)]
+#[command(name = "allanite", version, max_term_width = 100)]
 pub struct CommandLine {
     /// Print only results and failures, without progress and notes
     #[arg(long, short, global = true)]
@@ -70,7 +71,7 @@ impl CommandLine {
         if !matches!(self.command, Command::Watch(_)) {
             temporary::remove_when_interrupted();
         }
-        let mut output = BufWriter::new(io::stdout().lock());
+        let mut output = Wrapped::new(BufWriter::new(io::stdout().lock()));
         match &self.command {
             Command::Simulate(arguments) => simulate::run(arguments, &mut output),
             Command::Measure(arguments) => measure::run(arguments, &mut output),

@@ -4,21 +4,8 @@
 /// Draws a figure in its frame. `records` are the fitted one and those that judge the model, each as `drawn` and
 /// with the number of its colour; `before` is the line of an earlier model, or null.
 function drawRecords(frame, { model, before, records, words }, unit, width) {
-  const narrow = width < 560;
-  const curve = { top: 10, height: narrow ? 240 : 320 };
-  const residual = { top: curve.top + curve.height + 18, height: narrow ? 130 : 150 };
-  const sheet = new Sheet(frame.quantity, `${frame.up} and residual: ${words}`, width, residual.top + residual.height + 48);
-  const log = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
-  const across = (x) => log(x, frame.x);
-  const up = (value) => log(value, frame.y);
-  const place = ([at, value]) => [across(at), up(value)];
-
-  const [low, high] = frame.band.map((share) => sheet.y(residual, share));
-  sheet.add("rect", { x: sheet.left, y: high, width: sheet.right - sheet.left, height: low - high, class: "band" });
-  sheet.ticks([curve, residual], frame.ticks.map(([value, label]) => [across(value), label]), frame.across);
-  sheet.frame(curve, unit.ticks.map(([value, label]) => [up(value / unit.factor), label]), `${frame.up}, ${unit.name}`);
-  sheet.frame(residual, frame.residuals, "residual, std. errors");
-  sheet.line(sheet.left, sheet.y(residual, 0.5), sheet.right, sheet.y(residual, 0.5), "zero");
+  const heights = width < 560 ? [240, 130] : [320, 150];
+  const { sheet, curve, residual, across, up, place } = drawPanels(frame, unit, `${frame.up} and residual: ${words}`, heights, width);
   for (const share of model.shares) sheet.path(curve, share.line, place, `line effect-${share.colour}`);
   if (before) sheet.path(curve, before, place, "line before");
   sheet.path(curve, model.model, place, "line model");

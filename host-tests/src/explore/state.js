@@ -1,22 +1,10 @@
 // The state of the page: the records and the model, in the words of the command `compare`.
 "use strict";
 
-const html = (name, attributes, ...children) => make(null, name, attributes, children);
 const byId = (id) => document.getElementById(id);
-const tenth = (value) => (value === null ? "unknown" : value.toFixed(1));
-const plain = (name) => name.replaceAll("_", " ");
 /// Six digits, without trailing zeros.
 const rounded = (value) => Number(value.toPrecision(6));
-/// Four significant digits, as the program prints them.
-function number(value) {
-  if (value === null || !Number.isFinite(value)) return "∞";
-  if (value === 0) return "0";
-  const exponent = Math.floor(Math.log10(Math.abs(value)));
-  if (exponent >= -3 && exponent <= 4) return value.toFixed(Math.max(0, 3 - exponent));
-  return value.toExponential(3).replace("e+", "e");
-}
 
-const data = JSON.parse(document.getElementById("data").textContent);
 const effectNamed = new Map(data.catalogue.map((effect) => [effect.name, effect]));
 
 /// The value of the option --with for an added effect. A shape that is fitted has `~`; one without values is looked for.

@@ -123,18 +123,16 @@ function inside([x0, y0], [x1, y1]) {
   return [at(x0, y0), at(x1, y1)];
 }
 
-/// Draws a figure of a view in its frame. `unit` is one of the frame's units, and `width` is in pixels. The point with
-/// the largest residual is marked if that exceeds two standard errors.
-function drawFigure(frame, view, figure, unit, width) {
-  const narrow = width < 560;
-  const curve = { top: 10, height: narrow ? 260 : 340 };
-  const residual = { top: curve.top + curve.height + 18, height: narrow ? 140 : 160 };
-  const sheet = new Sheet(frame.quantity, `${frame.up} and residual, ${view.model}: ${view.words}`, width,
-    residual.top + residual.height + 48);
+/// Draws the empty panels of a figure, the curve and below it the residuals, with these heights. Returns them with the
+/// functions that place a value in them.
+function drawPanels(frame, unit, title, [curveHeight, residualHeight], width) {
+  const curve = { top: 10, height: curveHeight };
+  const residual = { top: curve.top + curve.height + 18, height: residualHeight };
+  const sheet = new Sheet(frame.quantity, title, width, residual.top + residual.height + 48);
   const log = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
   const across = (x) => log(x, frame.x);
   const up = (value) => log(value, frame.y);
-  const { x, measured, lower, upper } = figure.measured ?? frame.measured;
+  const place = ([at, value]) => [across(at), up(value)];
 
   const [low, high] = frame.band.map((share) => sheet.y(residual, share));
   sheet.add("rect", { x: sheet.left, y: high, width: sheet.right - sheet.left, height: low - high, class: "band" });
@@ -142,7 +140,16 @@ function drawFigure(frame, view, figure, unit, width) {
   sheet.frame(curve, unit.ticks.map(([value, label]) => [up(value / unit.factor), label]), `${frame.up}, ${unit.name}`);
   sheet.frame(residual, frame.residuals, "residual, std. errors");
   sheet.line(sheet.left, sheet.y(residual, 0.5), sheet.right, sheet.y(residual, 0.5), "zero");
-  const place = ([at, value]) => [across(at), up(value)];
+  return { sheet, curve, residual, across, up, place };
+}
+
+/// Draws a figure of a view in its frame. `unit` is one of the frame's units, and `width` is in pixels. The point with
+/// the largest residual is marked if that exceeds two standard errors.
+function drawFigure(frame, view, figure, unit, width) {
+  const heights = width < 560 ? [260, 140] : [340, 160];
+  const title = `${frame.up} and residual, ${view.model}: ${view.words}`;
+  const { sheet, curve, residual, across, up, place } = drawPanels(frame, unit, title, heights, width);
+  const { x, measured, lower, upper } = figure.measured ?? frame.measured;
   // More dots than there is room for are smaller.
   const dot = 8 * x.length > sheet.right - sheet.left ? "small" : "dot";
   for (const share of figure.shares) sheet.path(curve, share.line, place, `line effect-${share.colour}`);

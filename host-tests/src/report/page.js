@@ -1,21 +1,7 @@
 // Shows a diagnosis step by step, with its candidates, in either unit.
 "use strict";
 
-const data = JSON.parse(document.getElementById("data").textContent);
-const html = (name, attributes, ...children) => make(null, name, attributes, children);
-const plain = (name) => name.replaceAll("_", " ");
 let unitIndex = 0;
-
-/// Four significant digits, as the program prints them.
-function number(value) {
-  if (value === null || !Number.isFinite(value)) return "∞";
-  if (value === 0) return "0";
-  const exponent = Math.floor(Math.log10(Math.abs(value)));
-  if (exponent >= -3 && exponent <= 4) return value.toFixed(Math.max(0, 3 - exponent));
-  return value.toExponential(3).replace("e+", "e");
-}
-
-const tenth = (value) => (value === null ? "unknown" : value.toFixed(1));
 
 /// One axis: its diagnosis, its figures, and the step and candidate that are shown.
 class Walk {

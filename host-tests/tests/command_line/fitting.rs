@@ -161,7 +161,7 @@ fn logs_in_radians_and_in_degrees_give_the_same_coefficients() {
             .unwrap();
         line.split_whitespace()
             .rev()
-            .nth(2)
+            .nth(1)
             .unwrap()
             .parse::<f64>()
             .unwrap()

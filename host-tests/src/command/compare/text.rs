@@ -47,7 +47,7 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
             writeln!(output, "with {}: {shape}", words::plain(term.effect.name()))?;
         }
     }
-    writeln!(output, "{}", fit::table::table(fit, axis.unit).trim_fmt())?;
+    writeln!(output, "{}", fit::table::table(fit, axis.unit))?;
     if let Some(held_out) = held_out {
         writeln!(
             output,
@@ -109,14 +109,15 @@ fn octaves(compared: &Compared) -> Table {
         .collect();
     let mut table = Table::new();
     table.load_style(NOTHING);
-    let header = ["τ", "measured", "model", "difference", "z"].map(String::from);
+    let measured = format!("measured, {unit}");
+    let header = ["τ", &measured, "model", "difference", "z"].map(String::from);
     let shares = shown.iter().map(|(_, symbol)| format!("{symbol} %"));
     table.set_header(header.into_iter().chain(shares));
     for octave in &compared.comparison.octaves {
         let row = [
             duration(octave.tau_s),
-            format!("{} {unit}", number(octave.measured.sqrt())),
-            format!("{} {unit}", number(octave.model.sqrt())),
+            number(octave.measured.sqrt()),
+            number(octave.model.sqrt()),
             format!("{:+.1} %", octave.percent()),
             format!("{:+.1}", octave.z),
         ];

@@ -1,6 +1,7 @@
 //! `diagnose`: finds the effects of a curve that the five terms do not describe.
 
 pub(super) mod diagnosed;
+pub(super) mod found;
 mod given_filter;
 pub(super) mod json;
 pub(super) mod lines;

@@ -88,11 +88,7 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
             )?;
         }
     }
-    writeln!(
-        output,
-        "{}",
-        fit::table::table(&last.fit, axis.unit).trim_fmt()
-    )?;
+    writeln!(output, "{}", fit::table::table(&last.fit, axis.unit))?;
     writeln!(output)?;
     print_plots(diagnosed, last, output)?;
     writeln!(output, "{}: {}", axis.axis, verdict(diagnosed))?;

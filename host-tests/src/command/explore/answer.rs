@@ -1,7 +1,7 @@
 //! The answer to a question: a fit with its figures, in JSON.
 
 use super::{
-    figure::{self, DrawnFrame, DrawnModel, DrawnRecord},
+    figure::{self, DrawnModel, DrawnRecord},
     fitted::Fitted,
     question::{Question, with},
     shell,
@@ -10,7 +10,11 @@ use crate::{
     command::{
         diagnose::words::{disagreement, shown_p},
         fit::table::state,
-        output::{number::number, units, words},
+        output::{
+            drawn_frame::{self, DrawnFrame},
+            number::number,
+            units, words,
+        },
     },
     log::{BINS, OCTAVES},
     plot::{Figure, Frame},
@@ -112,7 +116,7 @@ pub(super) fn answer(fitted: &Fitted, question: &Question, about_log: &[String])
         judged: judged.collect(),
         frames: frames
             .iter()
-            .map(|frame| figure::frame(unit, frame))
+            .map(|frame| drawn_frame::frame(unit, frame))
             .collect(),
         records,
         models,

@@ -4,6 +4,7 @@ use super::{question::with, record::Record};
 use crate::command::{
     diagnose::{
         diagnosed::Diagnosed,
+        found::Found,
         words::{Finding, lead},
     },
     input::record::library_failure,
@@ -24,14 +25,6 @@ struct Thought {
     beyond: Option<String>,
 }
 
-#[derive(Serialize)]
-struct Found {
-    name: String,
-    found: Option<String>,
-    lines: Vec<(&'static str, String)>,
-    ambiguous: Option<String>,
-}
-
 /// Diagnoses a record, or tells again what was found.
 ///
 /// # Errors
@@ -47,16 +40,6 @@ fn think(record: &Record) -> Result<Value, String> {
         .map_err(|error| library_failure(&record.path, &record.axis.axis, error).to_string())?;
     let pairs = diagnosed.steps.windows(2);
     let findings = pairs.filter_map(|pair| Finding::new(&diagnosed, &pair[0], &pair[1]));
-    let found = |finding: Finding| Found {
-        lines: finding
-            .lines()
-            .into_iter()
-            .map(|(label, text)| (label, text.to_owned()))
-            .collect(),
-        name: finding.name,
-        found: finding.found,
-        ambiguous: finding.ambiguous,
-    };
     let last = diagnosed.steps.last();
     let five = Model::ieee_952();
     let (mut with_texts, mut without) = (Vec::new(), Vec::new());
@@ -82,7 +65,7 @@ fn think(record: &Record) -> Result<Value, String> {
     });
     let thought = Thought {
         lead: lead(&diagnosed),
-        findings: findings.map(found).collect(),
+        findings: findings.map(Found::from).collect(),
         notes: diagnosed.notes(),
         with: with_texts,
         without,

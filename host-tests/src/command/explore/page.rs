@@ -14,7 +14,8 @@ const STYLES: [&str; 2] = [
     include_str!("../../explore/page.css"),
 ];
 /// The scripts: the first one draws, the second one draws records over each other, the others are the page.
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 7] = [
+    include_str!("../../report/common.js"),
     include_str!("../../report/figure.js"),
     include_str!("../../explore/figure.js"),
     include_str!("../../explore/state.js"),

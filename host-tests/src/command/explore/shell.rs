@@ -1,5 +1,6 @@
 //! Command lines as text for a shell.
 
+use crate::command::output::shell::quoted;
 use std::{ffi::OsString, path::Path};
 
 /// The command line of `compare` with the same effects and the same options about the log.
@@ -68,24 +69,6 @@ pub(super) fn about_log(
     about
 }
 
-/// A word with the quotes that a shell needs.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+%@".contains(c);
-    // A tilde stands for a folder only at the beginning of a word or behind a colon or an equals sign.
-    let is_plain = |(at, c): (usize, char)| {
-        plain(c) || (c == '~' && !before(word, at).is_some_and(|c| "=:".contains(c)) && at > 0)
-    };
-    if !word.is_empty() && word.char_indices().all(is_plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
-}
-
-fn before(word: &str, at: usize) -> Option<char> {
-    word.get(..at)?.chars().next_back()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,7 +94,5 @@ mod tests {
             "allanite compare 'my log.csv' --rate 100 --unit=deg/s --columns gx,gy \
              --with sinusoid:frequency_hz~0.3 --without rate_ramp"
         );
-        assert_eq!(quoted("it's"), "'it'\\''s'");
-        assert_eq!(quoted("~a"), "'~a'");
     }
 }

@@ -39,7 +39,7 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
         if let Some(filter) = known_filter(&fitted.model) {
             writeln!(output, "behind {}", described(filter))?;
         }
-        writeln!(output, "{}", table(&fitted.fit, axis.unit).trim_fmt())?;
+        writeln!(output, "{}", table(&fitted.fit, axis.unit))?;
         let note = rounding::note(axis, &fitted.fit);
         // Whether the model explains a curve that is not valid does not matter.
         let is_coarse = rounding::is_coarse(axis);
@@ -61,30 +61,34 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
     Ok(())
 }
 
-/// The table of a fit: one row for each coefficient.
-pub(crate) fn table(fit: &Fit, unit: Unit) -> Table {
+/// The table of a fit, which fits into 80 columns: one row for each coefficient, and below them the lengths of records
+/// that would show those that this one does not show.
+pub(crate) fn table(fit: &Fit, unit: Unit) -> String {
     let mut table = Table::new();
     table.load_style(NOTHING);
-    table.set_header([
-        "effect",
-        "",
-        "value",
-        "95 % interval",
-        "unit",
-        "customary",
-        "",
-        "state",
-    ]);
+    table.set_header(["effect", "", "value", "95 % interval", "unit", "customary"]);
     for coefficient in &fit.coefficients {
         table.add_row(row(coefficient, unit));
     }
     for (i, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, 2));
-        if [2, 5].contains(&i) {
+        column.set_padding((0, if i == 0 { 1 } else { 2 }));
+        if i == 2 {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
-    table
+    let needed = fit.coefficients.iter().filter_map(|coefficient| {
+        let State::NotObservable { after_s } = coefficient.state else {
+            return None;
+        };
+        let name = words::of_sensor(coefficient.name, unit);
+        Some(format!("{name} in {}", duration(after_s?)))
+    });
+    let needed: Vec<String> = needed.collect();
+    let rows = table.trim_fmt();
+    match needed.is_empty() {
+        true => rows,
+        false => format!("{rows}\na longer record would show: {}", needed.join(", ")),
+    }
 }
 
 /// The value of a coefficient times a factor, its upper bound, or a dash.
@@ -118,22 +122,27 @@ fn scaled_interval(coefficient: &Coefficient, factor: f64) -> String {
             number(factor * coefficient.lower),
             number(factor * coefficient.upper)
         ),
-        State::UpperBound => "interval includes 0".into(),
-        State::NotObservable { .. } => "–".into(),
+        State::UpperBound => "upper bound".into(),
+        State::NotObservable { .. } => "not observable".into(),
     }
 }
 
-fn row(coefficient: &Coefficient, unit: Unit) -> [String; 8] {
+fn row(coefficient: &Coefficient, unit: Unit) -> [String; 6] {
     let (_, customary_unit) = customary_unit(coefficient, unit);
+    let customary = match coefficient.state {
+        State::NotObservable { .. } => String::new(),
+        _ => format!("{} {customary_unit}", customary(coefficient, unit)),
+    };
     [
         words::of_sensor(coefficient.name, unit),
         coefficient.symbol.into(),
         shown(coefficient, 1.0),
         scaled_interval(coefficient, 1.0),
         units::unit(unit, coefficient.half_seconds),
-        customary(coefficient, unit),
-        customary_unit.into(),
-        state(coefficient),
+        match customary_unit {
+            "" => String::new(),
+            _ => customary,
+        },
     ]
 }
 

@@ -1,11 +1,14 @@
 //! The output of commands: files, progress, and the words, numbers and units of tables and JSON
 //! documents.
 
+pub(super) mod drawn_frame;
 pub(super) mod file;
 pub(super) mod model_json;
 pub(super) mod number;
 pub(super) mod progress;
 pub(super) mod rounding;
+pub(super) mod shell;
 pub(super) mod temporary;
 pub(super) mod units;
 pub(super) mod words;
+pub(super) mod wrapped;

@@ -6,14 +6,18 @@ use crate::{
         diagnose::{
             self,
             diagnosed::Diagnosed,
+            found::Found,
             pictures::Pictures,
             words::{Finding, candidate_name, disagreement, shown_p},
         },
         fit,
-        output::{model_json, units},
+        output::{
+            drawn_frame::{self, DrawnFrame},
+            model_json, units,
+        },
     },
     log::{BINS, OCTAVES},
-    plot::{CourseFigure, Frame, Line, Measured, Quantity, Share},
+    plot::{CourseFigure, Frame, Line, Measured, Share},
     unit::Unit,
 };
 use allanite::diagnosis::{Addition, Candidate as Tried, Step};
@@ -41,34 +45,12 @@ struct Axis {
 /// The frame of a figure.
 #[derive(Serialize)]
 struct AxisFrame {
-    quantity: Quantity,
-    /// The titles of the axes, and what a point is called.
-    across: &'static str,
-    up: &'static str,
-    point: &'static str,
-    /// Units: first that of the log, then the customary one.
-    units: Vec<FigureUnit>,
-    /// Ends and ticks of the horizontal axis, in seconds or Hz.
-    x: [f64; 2],
-    ticks: Vec<(f64, String)>,
-    /// Ends of the vertical axis, in the log's unit.
-    y: [f64; 2],
+    #[serde(flatten)]
+    frame: DrawnFrame,
     /// The panel of residuals reaches from −z to z standard errors.
     z: f64,
-    /// The positions of residuals and their labels, from 0 at the bottom of the panel to 1 at its top.
-    residuals: Vec<(f64, String)>,
-    /// The band of residuals that are not noticeable, in the same positions.
-    band: [f64; 2],
     /// What the first step shows as measured.
     measured: Option<Measured>,
-}
-
-#[derive(Serialize)]
-struct FigureUnit {
-    name: String,
-    /// The factor from the log's unit to this unit.
-    factor: f64,
-    ticks: Vec<(f64, String)>,
 }
 
 #[derive(Serialize)]
@@ -113,14 +95,6 @@ struct StepFigure {
 struct Lines {
     model: Line,
     shares: Vec<Share>,
-}
-
-#[derive(Serialize)]
-struct Found {
-    name: String,
-    found: Option<String>,
-    lines: Vec<(&'static str, String)>,
-    ambiguous: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -179,32 +153,9 @@ fn axis(diagnosed: &Diagnosed) -> Axis {
 }
 
 fn axis_frame(unit: Unit, frame: &Frame, measured: &Measured) -> AxisFrame {
-    let quantity = frame.quantity;
-    let customary = match quantity {
-        Quantity::Deviation => units::customary(unit, 0),
-        Quantity::Density => units::customary_density(unit),
-    };
-    let customary = customary.map(|(factor, name)| (factor, name.to_owned()));
-    let names = std::iter::once((1.0, quantity.unit(unit))).chain(customary);
-    let residuals = frame.residuals().into_iter();
     AxisFrame {
-        quantity,
-        across: quantity.across(),
-        up: quantity.up(),
-        point: quantity.point(),
-        units: names
-            .map(|(factor, name)| FigureUnit {
-                name,
-                factor,
-                ticks: frame.y.scaled(factor).labelled(),
-            })
-            .collect(),
-        x: [frame.x.low, frame.x.high],
-        ticks: frame.across(),
-        y: [frame.y.low, frame.y.high],
+        frame: drawn_frame::frame(unit, frame),
         z: frame.z,
-        residuals: residuals.map(|(z, label)| (frame.up(z), label)).collect(),
-        band: [-2.0, 2.0].map(|z| frame.up(z)),
         measured: Some(measured.clone()),
     }
 }
@@ -249,16 +200,7 @@ impl Shared<'_> {
             }
         });
         View {
-            found: finding.map(|finding| Found {
-                lines: finding
-                    .lines()
-                    .into_iter()
-                    .map(|(label, text)| (label, text.to_owned()))
-                    .collect(),
-                name: finding.name,
-                found: finding.found,
-                ambiguous: finding.ambiguous,
-            }),
+            found: finding.map(Found::from),
             candidates: candidates.collect(),
             ..self.view(diagnosed.model_name(at), before, step)
         }

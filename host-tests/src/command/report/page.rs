@@ -6,7 +6,7 @@ use crate::{
             diagnosed::Diagnosed,
             words::{lead, limits},
         },
-        output::words,
+        output::{shell::quoted, words},
     },
     plot,
 };
@@ -18,8 +18,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::{collections::BTreeSet, path::Path};
 
 const STYLE: &str = include_str!("../../report/page.css");
-/// The scripts: the first one draws a figure, the second one walks through the steps.
-const SCRIPTS: [&str; 2] = [
+/// The scripts: the first two have what every page needs and draw a figure, the last one walks through the steps.
+const SCRIPTS: [&str; 3] = [
+    include_str!("../../report/common.js"),
     include_str!("../../report/figure.js"),
     include_str!("../../report/page.js"),
 ];
@@ -202,14 +203,4 @@ fn sources(diagnosed: &[Diagnosed]) -> BTreeSet<String> {
     let named = axes.map(|axis| axis.source.iter().chain(&axis.licence));
     let named = named.map(|words| words.cloned().collect::<Vec<_>>().join(", "));
     named.filter(|words| !words.is_empty()).collect()
-}
-
-/// A word with the quotes that a shell needs.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+%@".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
 }

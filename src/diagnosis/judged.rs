@@ -5,7 +5,7 @@ use crate::{
     comparison::Comparison,
     effect::Span,
     error::Error,
-    fit::{Estimator, Fit, FromOctaves, Problem, Solver, Start, Tolerance, Work},
+    fit::{Estimator, Fit, Problem, Refinement, Solver, Start, Tolerance, Work},
     model::Term,
     nnls::Vector,
     observed::Observed,
@@ -58,7 +58,7 @@ pub(super) enum Judging<const K: usize, const B: usize> {
     /// The model is judged, and its coefficients are estimated anew.
     Refining {
         judged: Judged,
-        refining: FromOctaves,
+        refining: Refinement,
     },
     /// The new coefficients, whose squares these are, are being compared with the record.
     Comparing { judged: Judged, squares: Vector },
@@ -100,13 +100,21 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                     self.begin_bounding(&problem, solver);
                     return Ok(None);
                 }
-                let judged = compare(&problem, solver, &step.fit, &mut step.comparison);
-                if !FromOctaves::suffice(observed, &step.model, &step.fit) {
+                let judged = judged(solver, &step.fit);
+                let refined = Refinement::applies(&step.model, &step.fit);
+                if !refined || observed.spectrum().is_none() {
+                    let (fit, comparison) = (&step.fit, &mut step.comparison);
+                    compare(&problem, solver, &solver.squares, fit, comparison);
+                }
+                if !refined {
                     return Ok(Some(judged));
                 }
                 // The model explains the record, so that no later stage needs the solver as it is.
-                let refining = FromOctaves::begin(observed, &step.model, &step.fit, work)?;
+                let refining = Refinement::NEW;
                 *self = Self::Refining { judged, refining };
+                if let Self::Refining { refining, .. } = self {
+                    refining.begin(observed, &step.model, &step.fit, work)?;
+                }
                 Ok(None)
             }
             Self::Bounding {
@@ -115,12 +123,9 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                 profile,
             } => {
                 let Some(estimate) = step.fit.shape.get_mut(*shape) else {
-                    return Ok(Some(compare(
-                        &problem,
-                        solver,
-                        &step.fit,
-                        &mut step.comparison,
-                    )));
+                    let (fit, comparison) = (&step.fit, &mut step.comparison);
+                    compare(&problem, solver, &solver.squares, fit, comparison);
+                    return Ok(Some(judged(solver, fit)));
                 };
                 if interval.is_none() {
                     let Some((term, j)) = only_shape(&problem, estimate.term) else {
@@ -146,6 +151,9 @@ impl<const K: usize, const B: usize> Judging<K, B> {
             }
             Self::Refining { judged, refining } => {
                 if refining.advance(observed, &step.model, work, &mut step.fit)? {
+                    if observed.spectrum().is_none() {
+                        return Ok(Some(*judged));
+                    }
                     let problem = Problem::new(observed, &step.model, &work.columns);
                     let squares = problem.squares_of(&step.fit);
                     let (start, tolerance) = (Start::Once(squares), step.fit.tolerance);
@@ -159,12 +167,8 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                 if !solver.advance(&problem)? {
                     return Ok(None);
                 }
-                let fit = &step.fit;
-                let unknowns = problem.row_count().saturating_sub(fit.degrees_of_freedom);
-                let comparison = &mut step.comparison;
-                comparison.set(&problem, &solver.weights, squares, unknowns);
-                // χ² is least at the coefficients of the joint fit, from which these differ by less than their errors.
-                (comparison.chi_squared, comparison.p_value) = (fit.chi_squared, fit.p_value);
+                let (fit, comparison) = (&step.fit, &mut step.comparison);
+                compare(&problem, solver, squares, fit, comparison);
                 Ok(Some(*judged))
             }
         }
@@ -224,16 +228,8 @@ fn only_shape<const K: usize, const B: usize>(
     parameters.next().is_none().then_some((*term, first))
 }
 
-/// Compares a fitted model with the curve.
-#[inline(never)]
-fn compare<const K: usize, const B: usize>(
-    problem: &Problem<'_, K, B>,
-    solver: &Solver<K, B>,
-    fit: &Fit,
-    comparison: &mut Comparison<K, B>,
-) -> Judged {
-    let unknowns = problem.row_count().saturating_sub(fit.degrees_of_freedom);
-    comparison.set(problem, &solver.weights, &solver.squares, unknowns);
+/// What the later stages need of a solution and its fit.
+fn judged<const K: usize, const B: usize>(solver: &Solver<K, B>, fit: &Fit) -> Judged {
     Judged {
         squares: solver.squares,
         assumed: solver.assumed,
@@ -241,4 +237,19 @@ fn compare<const K: usize, const B: usize>(
         adequate: fit.is_adequate(),
         tolerance: solver.weights.tolerance,
     }
+}
+
+/// Compares a model with the record, at these squared coefficients.
+#[inline(never)]
+fn compare<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    solver: &Solver<K, B>,
+    squares: &Vector,
+    fit: &Fit,
+    comparison: &mut Comparison<K, B>,
+) {
+    let unknowns = problem.row_count().saturating_sub(fit.degrees_of_freedom);
+    comparison.set(problem, &solver.weights, squares, unknowns);
+    // χ² is least at the coefficients of the joint fit. Those of the octaves differ from them by less than their errors.
+    (comparison.chi_squared, comparison.p_value) = (fit.chi_squared, fit.p_value);
 }

@@ -2,10 +2,10 @@
 
 use super::{
     estimate::Estimator,
-    from_octaves::FromOctaves,
     independent,
     method::{Method, Options},
     problem::{Problem, check},
+    refinement::Refinement,
     result::Fit,
     solver::{Solver, Start, Tolerance},
     work::Work,
@@ -155,7 +155,7 @@ enum Stage {
     Beginning,
     Solving,
     Estimating(Estimator),
-    Refining(FromOctaves),
+    Refining(Refinement),
     Complete,
 }
 
@@ -208,6 +208,21 @@ impl Stage {
         }
     }
 
+    #[inline(never)]
+    fn begin_refining<const K: usize, const B: usize>(
+        &mut self,
+        observed: Observed<'_, K, B>,
+        model: &Model,
+        work: &mut Work<K, B>,
+        fit: &Fit,
+    ) -> Result<(), Error> {
+        *self = Self::Refining(Refinement::NEW);
+        match self {
+            Self::Refining(refining) => refining.begin(observed, model, fit, work),
+            _ => Ok(()),
+        }
+    }
+
     /// Does one piece of work, and returns whether the fit is complete.
     fn advance<const K: usize, const B: usize>(
         &mut self,
@@ -229,9 +244,8 @@ impl Stage {
                 let problem = Problem::new(observed, model, &work.columns);
                 if estimator.advance(&problem, &work.solver, fit) {
                     *self = Self::Complete;
-                    if FromOctaves::suffice(observed, model, fit) {
-                        let refining = FromOctaves::begin(observed, model, fit, work)?;
-                        *self = Self::Refining(refining);
+                    if Refinement::applies(model, fit) {
+                        self.begin_refining(observed, model, work, fit)?;
                     }
                 }
             }

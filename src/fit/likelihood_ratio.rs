@@ -3,7 +3,7 @@
 use super::{
     problem::Problem,
     result::Fit,
-    solver::{Rounds, Solver},
+    solver::{CONVERGED, Rounds, Solver},
 };
 use crate::{error::Error, math, nnls::Vector, real::Real};
 
@@ -11,6 +11,10 @@ use crate::{error::Error, math, nnls::Vector, real::Real};
 /// the lowest limit for which this is so. The curve is as far below the one as below the other, and the
 /// ratio of column and model stays within the range of single precision. Chosen by hand.
 const BEYOND: Real = 1e3;
+
+/// The rounds of a test against zero end when the relative change of the model is smaller than this. It moves the
+/// statistic by about as little.
+const ROUGHLY: Real = 0.03;
 
 /// A test of the hypothesis that a coefficient is at a limit.
 ///
@@ -33,6 +37,8 @@ pub(crate) struct LikelihoodRatio {
     place: usize,
     /// The square of the limit, in the problem's variance unit.
     square: Real,
+    /// The rounds end when the relative change of the model is smaller than this.
+    converged: Real,
     /// χ² with the coefficient at the limit, once it is known.
     at_limit: Option<Real>,
 }
@@ -63,6 +69,30 @@ impl LikelihoodRatio {
         Ok(Self {
             place,
             square,
+            converged: CONVERGED,
+            at_limit: None,
+        })
+    }
+
+    /// Begins to test whether the coefficient at `place` may be zero. The rounds start with the best fit without the
+    /// coefficient by the solver's present weights.
+    ///
+    /// # Errors
+    /// [`Error::Singular`] if nothing else explains the curve.
+    #[inline(never)]
+    pub(crate) fn begin_at_zero<const K: usize, const B: usize>(
+        problem: &Problem<'_, K, B>,
+        solver: &mut Solver<K, B>,
+        fit: &Fit,
+        place: usize,
+    ) -> Result<Self, Error> {
+        let held = problem.held().with(place);
+        let (start, _) = solver.equations.solve_non_negative(&held);
+        solver.begin_rounds(problem, start, fit.tolerance, Rounds::All)?;
+        Ok(Self {
+            place,
+            square: 0.0,
+            converged: ROUGHLY,
             at_limit: None,
         })
     }
@@ -81,9 +111,20 @@ impl LikelihoodRatio {
         if let Some(at_limit) = self.at_limit {
             return self.compare(problem, solver, at_limit).map(Some);
         }
-        if !solver.weights.advance(problem, &solver.assumed)? {
-            return Ok(None);
+        if solver.weights.advance(problem, &solver.assumed)? {
+            self.end_round(problem, solver)?;
         }
+        Ok(None)
+    }
+
+    /// Solves the normal equations at the limit with the present weights.
+    // Apart from the computation of the weights: its temporaries do not lie on the stack below the deepest calls.
+    #[inline(never)]
+    fn end_round<const K: usize, const B: usize>(
+        &mut self,
+        problem: &Problem<'_, K, B>,
+        solver: &mut Solver<K, B>,
+    ) -> Result<(), Error> {
         let rest = |k: usize| problem.measured(k) - self.square * problem.unit(self.place, k);
         let (weights, equations) = (&solver.weights, &mut solver.equations);
         weights.equations(problem, &|_| 1.0, &[], &rest, equations)?;
@@ -91,13 +132,14 @@ impl LikelihoodRatio {
         let (mut squares, _) = solver.equations.solve_non_negative(&held);
         squares.put(self.place, self.square);
         solver.squares = squares;
-        if solver.has_ended(problem)? {
+        if solver.has_ended(problem, self.converged)? {
             self.at_limit = Some(solver.weights.chi_squared(problem, &squares));
         }
-        Ok(None)
+        Ok(())
     }
 
     /// Fits all coefficients with the covariance at the limit, and compares the two fits.
+    #[inline(never)]
     fn compare<const K: usize, const B: usize>(
         &self,
         problem: &Problem<'_, K, B>,

@@ -23,7 +23,7 @@ const ROUNDS: u8 = 8;
 const HOPELESS_P: Real = 1e-6;
 /// The rounds end when the relative change of the model is smaller than this. Chosen by hand, to save
 /// rounds; no study varies it.
-const CONVERGED: Real = 3e-3;
+pub(super) const CONVERGED: Real = 3e-3;
 /// The share of a square that is left at least where a step goes too far. It takes ten rounds to lose
 /// three decades, which is more than there are, so a square that is needed stays within reach.
 const LEAST_LEFT: Real = 0.5;
@@ -207,11 +207,15 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         Ok(false)
     }
 
-    /// Whether the rounds have ended at a solution that the caller has put into `squares`. If they have
-    /// not, the next round has begun.
-    pub(super) fn has_ended(&mut self, problem: &Problem<'_, K, B>) -> Result<bool, Error> {
+    /// Whether the rounds have ended at a solution that the caller has put into `squares`, because the model changed
+    /// by less than `converged`. If they have not, the next round has begun.
+    pub(super) fn has_ended(
+        &mut self,
+        problem: &Problem<'_, K, B>,
+        converged: Real,
+    ) -> Result<bool, Error> {
         let change = self.change(problem);
-        let has_ended = change.amax() < CONVERGED || self.round >= ROUNDS;
+        let has_ended = change.amax() < converged || self.round >= ROUNDS;
         if !has_ended {
             self.begin_next(problem, change)?;
         }

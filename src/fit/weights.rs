@@ -215,20 +215,33 @@ impl<const K: usize, const B: usize> Weights<K, B> {
             None => problem.unit(i, k),
             Some(at) => more.get(at).map_or(0.0, |column| real(column[k])),
         };
-        let per_error = |k: usize| 1.0 / (self.model[k] * scatter(k));
         equations.set(count.saturating_add(more.len()), &|i, row| {
-            // This is C⁻¹ times the column, in units of the squared errors.
-            let mut column = self.whiten(problem, scatter, &|k| unit(i, k));
-            let (octaves, bins) = (problem.points.len(), problem.bins.len());
-            self.factor.backward(octaves, bins, &mut column);
-            for k in problem.rows() {
-                column.put(k, column[k] * per_error(k));
-            }
+            let column = self.solve(problem, scatter, &|k| unit(i, k));
             for j in 0..=i {
                 row.put(j, problem.rows().map(|k| column[k] * unit(j, k)).sum());
             }
             problem.rows().map(|k| column[k] * right(k)).sum()
         })
+    }
+
+    /// The inverse of the covariance times a column of variances. The standard error of a row is enlarged by the
+    /// factor `scatter(row)`.
+    #[inline(never)]
+    pub(crate) fn solve(
+        &self,
+        problem: &Problem<'_, K, B>,
+        scatter: &dyn Fn(usize) -> Real,
+        variance: &dyn Fn(usize) -> Real,
+    ) -> Rows<K, B> {
+        // This is in units of the squared errors first.
+        let mut column = self.whiten(problem, scatter, variance);
+        let (octaves, bins) = (problem.points.len(), problem.bins.len());
+        self.factor.backward(octaves, bins, &mut column);
+        for k in problem.rows() {
+            let per_error = 1.0 / (self.model[k] * scatter(k));
+            column.put(k, column[k] * per_error);
+        }
+        column
     }
 
     /// Expresses the measurement and the columns in units in which all rows are independent and have a

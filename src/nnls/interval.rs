@@ -74,6 +74,15 @@ impl NormalEquations {
         })
     }
 
+    /// The covariances of unknown `i` with itself and the free others; `None` if it cannot be told from them.
+    pub(crate) fn covariances(&self, i: usize, free: &Free) -> Option<Vector> {
+        let mut covariances = self.direction(i, free)?;
+        for j in 0..self.count {
+            covariances.put(j, covariances[j] * self.scale[i] * self.scale[j]);
+        }
+        Some(covariances)
+    }
+
     /// The covariances of unknown `i` with itself and the free others, in scaled units.
     fn direction(&self, i: usize, others: &Free) -> Option<Vector> {
         let mut unit = Vector::zeros();

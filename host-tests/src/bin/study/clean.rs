@@ -7,18 +7,28 @@ use host_tests::{
 };
 use std::collections::BTreeMap;
 
-pub(crate) fn print(records: u64, only: Option<Preset>, walk: f64) {
+/// The gyros of a preset: each lacks one of the terms that it may lack, and the last one lacks none. No preset has a
+/// rate ramp, and every gyro has white noise.
+const GYROS: [Absent; 4] = [
+    Absent::Term(0),
+    Absent::Term(2),
+    Absent::Term(3),
+    Absent::None,
+];
+
+pub(crate) fn print(records: u64, only: Option<Preset>, symbol: Option<&str>, walk: f64) {
     let presets = Preset::TYPICAL.into_iter();
+    let is_chosen = |absent: &Absent| match (symbol, absent) {
+        (None, _) => true,
+        (Some(symbol), Absent::Term(i)) => SYMBOLS[*i] == symbol,
+        (Some(_), Absent::None) => false,
+    };
     for preset in presets.filter(|&preset| only.is_none_or(|only| only == preset)) {
-        for absent in [0, 2, 3, 4]
-            .map(Absent::Term)
-            .into_iter()
-            .chain([Absent::None])
-        {
+        for absent in GYROS.into_iter().filter(is_chosen) {
             let mut coefficients = clean::without(preset, absent);
             coefficients.rate_random_walk *= walk;
             let lacks = match absent {
-                Absent::None => "all five terms".to_owned(),
+                Absent::None => "no term absent but R".to_owned(),
                 Absent::Term(i) => format!("{} absent", SYMBOLS[i]),
             };
             println!(

@@ -100,6 +100,9 @@ enum Study {
         /// Study only this preset
         #[arg(long)]
         preset: Option<Preset>,
+        /// Study only gyros without the term of this symbol
+        #[arg(long)]
+        absent: Option<String>,
         /// Multiply the rate random walk
         #[arg(long, default_value_t = 1.0)]
         walk: f64,
@@ -175,8 +178,9 @@ fn main() -> Result<()> {
         Study::Clean {
             records,
             preset,
+            absent,
             walk,
-        } => clean::print(records, preset, walk),
+        } => clean::print(records, preset, absent.as_deref(), walk),
         Study::Thermal { records } => thermal::print(records),
         Study::Course {
             records,

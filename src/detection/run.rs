@@ -17,7 +17,7 @@ use crate::{
     nnls::Vector,
     observed::Observed,
     profile::Grid,
-    real::Real,
+    real::{Real, real},
     spectrum::Spectrum,
 };
 
@@ -338,7 +338,11 @@ fn has_limit(effect: &dyn Effect) -> bool {
     !(is_of_shape(effect) && first.is_some_and(|first| first.unit == "Hz"))
 }
 
-/// The least fall of the score for which a diagnosis adds an effect.
+/// The least fall of the score with which an effect of the right shape is added. A diagnosis asks for the threshold
+/// and the costs of the effect, and its search fits the shape to the noise of the record, too, which makes χ² fall by
+/// one more for each parameter.
 fn gain(options: &Options, effect: &'static dyn Effect) -> Real {
-    options.threshold + 2.0 * cost(effect)
+    let continuous = effect.parameters().iter().filter(|one| !one.is_whole);
+    let fitted = continuous.skip(usize::from(is_of_shape(effect))).count();
+    options.threshold + 2.0 * cost(effect) - real(fitted)
 }

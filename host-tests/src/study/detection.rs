@@ -1,12 +1,16 @@
 //! Studies whether an effect at its limit of detection shows with the probability that the limit promises.
 
-use super::{OCTAVES, RATE_HZ, hidden_effect::SAMPLES, record};
-use crate::simulate::{Coefficients, Hidden, Preset, Random, Simulator};
+use super::{OCTAVES, RATE_HZ, hidden_effect::SAMPLES, record, spectrum};
+use crate::{
+    log::{BINS, SpectrumSums},
+    simulate::{Coefficients, Hidden, Preset, Random, Simulator},
+};
 use allanite::{
     Curve, Model, Term,
     detection::{Detection, Limit},
     diagnosis::{Addition, Diagnosis, Evidence, Options, Progress, Step},
     effect::{CATALOGUE, Effect, SearchRange, Span},
+    spectrum::Spectrum,
 };
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -18,6 +22,15 @@ pub fn effects() -> impl Iterator<Item = &'static dyn Effect> {
         .into_iter()
         .filter(|effect| effect.mirror().is_none())
         .filter(shaped)
+}
+
+/// What limits are taken from, and what is diagnosed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Judged {
+    /// The curve alone.
+    Octaves,
+    /// The curve and the spectrum.
+    Spectrum,
 }
 
 /// What diagnoses said about records with an effect at its limit.
@@ -40,10 +53,16 @@ pub struct Tally {
 
 /// Draws shapes at random, takes their limits from one record, and looks for the effect at its limit in
 /// another record. Sizes are the limits times `factor`.
-pub fn study(preset: Preset, effect: &'static dyn Effect, records: u64, factor: f64) -> Tally {
+pub fn study(
+    preset: Preset,
+    effect: &'static dyn Effect,
+    judged: Judged,
+    records: u64,
+    factor: f64,
+) -> Tally {
     let outcomes: Vec<Outcome> = (0..records)
         .into_par_iter()
-        .map(|seed| outcome(preset.coefficients(), effect, seed, factor))
+        .map(|seed| outcome(preset.coefficients(), effect, judged, seed, factor))
         .collect();
     let count = |is: fn(&Outcome) -> bool| outcomes.iter().filter(|one| is(one)).count();
     Tally {
@@ -65,11 +84,17 @@ struct Outcome {
     is_ambiguous: bool,
 }
 
-fn outcome(base: Coefficients, effect: &'static dyn Effect, seed: u64, factor: f64) -> Outcome {
+fn outcome(
+    base: Coefficients,
+    effect: &'static dyn Effect,
+    judged: Judged,
+    seed: u64,
+    factor: f64,
+) -> Outcome {
     let mut random = Random::seed_from_u64(0x11_417 + seed);
     let mut simulator = Simulator::new(base, RATE_HZ, 2 * seed);
-    let curve = record(&mut simulator, base, SAMPLES, |_| ());
-    let Some(limit) = drawn_limit(&curve, effect, &mut random) else {
+    let measured = Measured::of(&mut simulator, base, judged);
+    let Some(limit) = drawn_limit(&measured, effect, &mut random) else {
         return Outcome::default();
     };
     let mut hidden = Hidden {
@@ -98,8 +123,8 @@ fn outcome(base: Coefficients, effect: &'static dyn Effect, seed: u64, factor: f
         hidden.coefficient *= factor;
     }
     let mut simulator = Simulator::with_hidden(beside, &[hidden], RATE_HZ, 2 * seed + 1);
-    let curve = record(&mut simulator, base, SAMPLES, |_| ());
-    let Some(step) = first_step(curve) else {
+    let measured = Measured::of(&mut simulator, base, judged);
+    let Some(step) = measured.first_step() else {
         return Outcome::default();
     };
     let added = match step.added {
@@ -120,19 +145,21 @@ fn outcome(base: Coefficients, effect: &'static dyn Effect, seed: u64, factor: f
 /// The limit of a shape that is drawn from the range that a search covers. Shapes that have no limit are
 /// drawn again.
 fn drawn_limit(
-    curve: &Curve<OCTAVES>,
+    measured: &Measured,
     effect: &'static dyn Effect,
     random: &mut Random,
 ) -> Option<Limit> {
-    let step = first_step(curve.clone())?;
-    let mut detection = Detection::new(curve.clone(), &step, &CATALOGUE, Options::default());
-    if step.fit.is_adequate() != Some(true) {
-        return None;
-    }
+    let step = measured.first_step()?;
+    let Measured { curve, spectrum } = measured.clone();
     let span = Span {
         interval_s: curve.interval_s(),
         longest_tau_s: curve.points().last()?.tau_s,
     };
+    let mut detection =
+        Detection::with_spectrum(curve, spectrum, &step, &CATALOGUE, Options::default());
+    if step.fit.is_adequate() != Some(true) {
+        return None;
+    }
     (0..20).find_map(|_| {
         let mut term = Term::new(effect);
         term.fitted = true;
@@ -152,16 +179,42 @@ fn drawn(range: &SearchRange, is_whole: bool, random: &mut Random) -> f64 {
     range.low * (range.high.max(range.low) / range.low).powf(share)
 }
 
-/// The first step of a diagnosis of the five terms. The others, which cost more, are not needed: an effect has
-/// shown once another model is preferred.
-fn first_step(curve: Curve<OCTAVES>) -> Option<Step<OCTAVES>> {
-    let (model, options) = (Model::ieee_952(), Options::default());
-    let mut diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &CATALOGUE, options);
-    loop {
-        match diagnosis.advance().ok()? {
-            Progress::Working => {}
-            Progress::Step(step) => return Some(step.clone()),
-            Progress::Finished(_) => return None,
+/// What is known of a record.
+#[derive(Clone)]
+struct Measured {
+    curve: Curve<OCTAVES>,
+    spectrum: Spectrum<BINS>,
+}
+
+impl Measured {
+    fn of(simulator: &mut Simulator, base: Coefficients, judged: Judged) -> Self {
+        let mut sums = SpectrumSums::new();
+        let curve = record(simulator, base, SAMPLES, |counts| {
+            if judged == Judged::Spectrum {
+                sums.push_slice(counts);
+            }
+        });
+        let spectrum = match judged {
+            Judged::Octaves => Spectrum::EMPTY,
+            Judged::Spectrum => spectrum(&sums, base),
+        };
+        Self { curve, spectrum }
+    }
+
+    /// The first step of a diagnosis of the five terms. The others, which cost more, are not needed: an effect has
+    /// shown once another model is preferred.
+    fn first_step(&self) -> Option<Step<OCTAVES, BINS>> {
+        let Self { curve, spectrum } = self.clone();
+        let (model, options) = (Model::ieee_952(), Options::default());
+        let evidence = Evidence::NONE;
+        let mut diagnosis =
+            Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options);
+        loop {
+            match diagnosis.advance().ok()? {
+                Progress::Working => {}
+                Progress::Step(step) => return Some(step.clone()),
+                Progress::Finished(_) => return None,
+            }
         }
     }
 }

@@ -16,7 +16,7 @@ mod thermal;
 use allanite::fit::Options;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use host_tests::simulate::Preset;
+use host_tests::{simulate::Preset, study::detection::Judged};
 use std::path::PathBuf;
 
 /// The symbols of the five terms, in the order of the model.
@@ -85,6 +85,9 @@ enum Study {
         /// Multiply the limits
         #[arg(long, default_value_t = 1.0)]
         factor: f64,
+        /// Take limits from octaves alone, and diagnose octaves alone
+        #[arg(long)]
+        octaves: bool,
     },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
@@ -173,7 +176,15 @@ fn main() -> Result<()> {
             records,
             effect,
             factor,
-        } => detection::print(records, effect.as_deref(), factor),
+            octaves,
+        } => {
+            let judged = if octaves {
+                Judged::Octaves
+            } else {
+                Judged::Spectrum
+            };
+            detection::print(records, effect.as_deref(), judged, factor);
+        }
         Study::Lines { records } => lines::print(records),
         Study::Clean {
             records,

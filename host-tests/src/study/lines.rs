@@ -76,22 +76,23 @@ pub struct Tally {
     pub others: usize,
     /// Records in which no effect helps.
     pub unexplained: usize,
-    /// The lines of the last three kinds.
-    pub wrong: Vec<Line>,
+    /// The lines of the last three kinds, with the effects that were named.
+    pub wrong: Vec<(Line, Vec<Term>)>,
 }
 
 /// Diagnoses records of a gyro, each with a line of random frequency and amplitude, both uniform in their
 /// logarithm.
 pub fn study(preset: Preset, records: u64) -> Tally {
-    let outcomes: Vec<(Line, Said)> = (0..records)
+    let outcomes: Vec<(Line, Said, Vec<Term>)> = (0..records)
         .into_par_iter()
         .map(|seed| {
             let line = draw(preset, seed);
-            (line, diagnose(preset, line, seed))
+            let (said, named) = diagnose(preset, line, seed);
+            (line, said, named)
         })
         .collect();
     let mut tally = Tally::default();
-    for (line, said) in outcomes {
+    for (line, said, named) in outcomes {
         tally.records += 1;
         match said {
             Said::Aborted => tally.aborted += 1,
@@ -109,7 +110,7 @@ pub fn study(preset: Preset, records: u64) -> Tally {
             Said::Unexplained => tally.unexplained += 1,
         }
         if matches!(said, Said::LineAndMore | Said::Others | Said::Unexplained) {
-            tally.wrong.push(line);
+            tally.wrong.push((line, named));
         }
     }
     tally
@@ -126,8 +127,8 @@ pub fn draw(preset: Preset, seed: u64) -> Line {
     }
 }
 
-/// Diagnoses a record with a line.
-pub fn diagnose(preset: Preset, line: Line, seed: u64) -> Said {
+/// Diagnoses a record with a line, and returns the effects that are named, too.
+pub fn diagnose(preset: Preset, line: Line, seed: u64) -> (Said, Vec<Term>) {
     let base = preset.coefficients();
     let hidden = Hidden {
         effect: &Sinusoid,
@@ -142,35 +143,30 @@ pub fn diagnose(preset: Preset, line: Line, seed: u64) -> Said {
     let spectrum = super::spectrum(&sums, base);
     let (model, options) = (Model::ieee_952(), Options::default());
     if fit(&curve, &model, allanite::fit::Options::default()).is_err() {
-        return Said::Aborted;
+        return (Said::Aborted, Vec::new());
     }
     let mut steps: Vec<Step<OCTAVES, BINS>> = Vec::new();
     let verdict =
         Diagnosis::with_spectrum(curve, spectrum, Evidence::NONE, &model, &CATALOGUE, options)
             .run(|step| steps.push(step.clone()));
     let (Ok(_), Some(last)) = (verdict, steps.last()) else {
-        return Said::Aborted;
+        return (Said::Aborted, Vec::new());
     };
     let terms = last.model.terms().iter();
-    let mut added = terms.filter(|term| !IEEE_952.iter().any(|five| same(*five, term)));
+    let is_own = |term: &Term| IEEE_952.iter().any(|five| same(*five, term));
+    let added: Vec<Term> = terms.filter(|term| !is_own(term)).copied().collect();
     let is_line = |term: &Term| same(&Sinusoid, term);
-    let (first, more) = (added.next(), added.next());
-    match (first, more) {
-        (None, _) if last.fit.is_adequate() == Some(false) => Said::Unexplained,
-        (None, _) => Said::Nothing,
-        (Some(only), None) if is_line(only) => Said::Line {
+    let said = match added.as_slice() {
+        [] if last.fit.is_adequate() == Some(false) => Said::Unexplained,
+        [] => Said::Nothing,
+        [only] if is_line(only) => Said::Line {
             is_exact: (only.parameters[0] / line.frequency_hz - 1.0).abs() < 0.01,
             is_ambiguous: steps.iter().any(|step| !step.ambiguous.is_empty()),
         },
-        (Some(first), more) => {
-            let mut all = std::iter::once(first).chain(more).chain(added);
-            if all.any(is_line) {
-                Said::LineAndMore
-            } else {
-                Said::Others
-            }
-        }
-    }
+        all if all.iter().any(is_line) => Said::LineAndMore,
+        _ => Said::Others,
+    };
+    (said, added)
 }
 
 fn same(effect: &dyn Effect, term: &Term) -> bool {

@@ -35,10 +35,16 @@ pub(crate) fn print(records: u64) {
             t.others,
             t.unexplained
         );
-        for line in t.wrong {
+        for (line, named) in t.wrong {
+            let named: Vec<String> = named
+                .iter()
+                .map(|term| format!("{} {:.4?}", term.effect.name(), term.parameters))
+                .collect();
             println!(
-                "         {:.4} Hz, amplitude {:.4}",
-                line.frequency_hz, line.amplitude
+                "         {:.4} Hz, amplitude {:.4}: {}",
+                line.frequency_hz,
+                line.amplitude,
+                named.join(", ")
             );
         }
     }

@@ -48,9 +48,11 @@ class Sheet {
     this.add("text", { x, y, ...attributes }, words);
   }
 
-  dot(panel, across, up, name) {
+  /// A dot, which shows these words while the pointer is on it.
+  dot(panel, across, up, name, words = null) {
     const r = { worst: 8, dot: 3.5, small: 2.3 }[name];
-    this.add("circle", { cx: this.x(across), cy: this.y(panel, clamp(up)), r, class: name === "small" ? "dot" : name });
+    const tooltip = words === null ? null : draw("title", {}, words);
+    this.add("circle", { cx: this.x(across), cy: this.y(panel, clamp(up)), r, class: name === "small" ? "dot" : name }, tooltip);
   }
 
   /// A vertical line, clipped to the panel.
@@ -143,6 +145,11 @@ function drawPanels(frame, unit, title, [curveHeight, residualHeight], width) {
   return { sheet, curve, residual, across, up, place };
 }
 
+/// A residual in words: `+5.3 std. errors`.
+function standardErrors(z, digits) {
+  return `${z < 0 ? "−" : "+"}${Math.abs(z).toFixed(digits)} std. errors`;
+}
+
 /// Draws a figure of a view in its frame. `unit` is one of the frame's units, and `width` is in pixels. The point with
 /// the largest residual is marked if that exceeds two standard errors.
 function drawFigure(frame, view, figure, unit, width) {
@@ -155,17 +162,20 @@ function drawFigure(frame, view, figure, unit, width) {
   for (const share of figure.shares) sheet.path(curve, share.line, place, `line effect-${share.colour}`);
   sheet.path(curve, figure.model, place, "line model");
   x.forEach((at, k) => {
+    const [value, low, high] = [measured, lower, upper].map((values) => number(unit.factor * values[k]));
+    const words = `${frame.across}: ${number(at)}\n${frame.up}: ${value} ${unit.name} (${low} … ${high})\n` +
+      `residual: ${standardErrors(figure.z[k], 1)}`;
     sheet.stem(curve, across(at), up(lower[k]), up(upper[k]));
-    sheet.dot(curve, across(at), up(measured[k]), dot);
+    sheet.dot(curve, across(at), up(measured[k]), dot, words);
     sheet.stem(residual, across(at), 0.5, figure.up[k]);
-    sheet.dot(residual, across(at), figure.up[k], dot);
+    sheet.dot(residual, across(at), figure.up[k], dot, words);
   });
   const z = figure.z[figure.worst];
   if (Math.abs(z) > 2) {
     const at = across(x[figure.worst]);
     sheet.dot(curve, at, up(measured[figure.worst]), "worst");
     sheet.dot(residual, at, figure.up[figure.worst], "worst");
-    const words = `worst ${frame.point}: ${z > 0 ? "+" : "−"}${Math.abs(z).toFixed(0)} std. errors`;
+    const words = `worst ${frame.point}: ${standardErrors(z, 0)}`;
     // The label is at the edge of the panel that is farther from the ring, where few dots are, and inside the frame.
     const half = 0.31 * sheet.size * words.length;
     const middle = Math.min(sheet.right - half - 4, Math.max(sheet.left + half + 4, sheet.x(at)));

@@ -260,6 +260,29 @@ pub(crate) fn verdict(diagnosed: &Diagnosed) -> String {
     }
 }
 
+/// The result of the diagnosis in a few words.
+#[cfg(feature = "watch")]
+pub(crate) fn brief(diagnosed: &Diagnosed) -> String {
+    match diagnosed.verdict {
+        Verdict::Invalid(reason) => format!("not valid: {reason}"),
+        Verdict::Adequate => "no effect is missing".into(),
+        Verdict::TooShort => "too short to judge".into(),
+        Verdict::Unexplained => "no known effect explains the difference".into(),
+        _ => {
+            let added = diagnosed.added().map(|term| {
+                let shape = words::shape(term, None);
+                format!("{} ({shape})", words::plain(term.effect.name()))
+            });
+            let missing = words::list_of(added.collect());
+            if diagnosed.verdict == Verdict::Improved {
+                format!("missing: {missing}")
+            } else {
+                format!("missing: {missing}, and more")
+            }
+        }
+    }
+}
+
 /// What the diagnosis says of the curve and the spectrum.
 fn verdict_on_curve(diagnosed: &Diagnosed) -> String {
     let Some((first, last)) = diagnosed.ends() else {

@@ -1,4 +1,4 @@
-//! The coefficients of many files in one table, with one row for each axis.
+//! The coefficients of many files in one table of 80 columns, with one row for each axis below its file's name.
 
 use super::{fitted::Fitted, table::customary};
 use crate::command::{input::many::shown, output::number::probability};
@@ -10,15 +10,13 @@ use std::{
 };
 
 /// The columns; coefficients are in customary units, in the order of the fit.
-const HEADER: [&str; 10] = [
-    "file",
+const HEADER: [&str; 8] = [
     "axis",
     "Q arcsec",
     "N °/√h",
     "B °/h",
     "K °/h^1.5",
     "R °/h²",
-    "χ²/dof",
     "p",
     "adequate",
 ];
@@ -31,32 +29,32 @@ pub(super) fn print(found: &[(&Path, Vec<Fitted>)], output: &mut impl Write) -> 
     let mut table = Table::new();
     table.load_style(NOTHING);
     table.set_header(HEADER);
-    for (path, axes) in found {
-        for fitted in axes {
-            table.add_row(row(path, fitted));
-        }
+    for fitted in found.iter().flat_map(|(_, axes)| axes) {
+        table.add_row(row(fitted));
     }
     for (i, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, 2));
-        if (2..8).contains(&i) {
+        column.set_padding((0, 1));
+        if (1..7).contains(&i) {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
-    writeln!(output, "{}", table.trim_fmt())?;
+    let rows = table.trim_fmt();
+    let mut rows = rows.lines();
+    writeln!(output, "{}", rows.next().unwrap_or_default())?;
+    for (path, axes) in found {
+        writeln!(output, "{}", shown(path))?;
+        for row in rows.by_ref().take(axes.len()) {
+            writeln!(output, "{row}")?;
+        }
+    }
     writeln!(output, "<: upper bound; –: not observable in that record")
 }
 
-fn row(path: &Path, fitted: &Fitted) -> Vec<String> {
+fn row(fitted: &Fitted) -> Vec<String> {
     let Fitted { axis, fit, .. } = fitted;
-    let mut row = vec![shown(path), axis.axis.clone()];
+    let mut row = vec![axis.axis.clone()];
     let coefficients = fit.coefficients.iter();
     row.extend(coefficients.map(|one| customary(one, axis.unit)));
-    let per_freedom = fit.chi_squared / fit.degrees_of_freedom as f64;
-    row.push(if per_freedom.is_finite() {
-        format!("{per_freedom:.2}")
-    } else {
-        "–".into()
-    });
     row.push(if fit.p_value.is_finite() {
         probability(fit.p_value).trim_start_matches("= ").to_owned()
     } else {

@@ -4,26 +4,24 @@ use crate::{command::examples, unit::Unit};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Watch a gyro: curve, coefficients and verdict while counts arrive
+/// Watch a gyro: curve, coefficients, verdict and missing effects while counts arrive
 ///
-/// Each line is one sample: one whole number for each axis, separated by commas, semicolons, tabs or
-/// blanks. Lines that begin with # are comments. Any other line is counted as invalid and leaves a gap,
-/// which no difference spans.
+/// Each line is one sample: one whole number for each axis, or with --decimals one rate, separated by commas,
+/// semicolons, tabs or blanks. Lines that begin with # are comments. Any other line is counted as invalid
+/// and leaves a gap, which no difference spans.
 #[derive(Debug, Args)]
 #[command(after_help = examples::WATCH)]
 pub(in crate::command) struct Arguments {
     /// Samples per second
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub(super) rate: f64,
-    /// Rate units per count
-    #[arg(
-        long,
-        value_name = "RATE_PER_COUNT",
-        default_value_t = 1.0,
-        allow_negative_numbers = true
-    )]
-    pub(super) scale: f64,
-    /// Unit of the scaled counts
+    /// Rate units per count [default: 1]
+    #[arg(long, value_name = "RATE_PER_COUNT", allow_negative_numbers = true)]
+    pub(super) scale: Option<f64>,
+    /// The numbers are rates, which may have decimals, and are rounded to the rate of one count
+    #[arg(long, requires = "scale")]
+    pub(super) decimals: bool,
+    /// Unit of the rates
     #[arg(long, default_value = "deg/s")]
     pub(super) unit: Unit,
     /// Names of the axes, one for each number in a line [default: x,y,z, as many as the first line has
@@ -45,6 +43,9 @@ pub(in crate::command) struct Arguments {
     /// Seconds from one saving of the curve to the next
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
     pub(super) save_every: f64,
+    /// Seconds from one diagnosis to the next
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    pub(super) diagnose_every: f64,
     /// Seconds from one line to the next, if standard output is not a terminal
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0)]
     pub(super) print_every: f64,

@@ -2,6 +2,8 @@
 
 mod arguments;
 #[cfg(feature = "watch")]
+mod diagnosis;
+#[cfg(feature = "watch")]
 mod recording;
 #[cfg(feature = "watch")]
 mod screen;

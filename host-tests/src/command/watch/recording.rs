@@ -18,6 +18,7 @@ type Gyro = Record<OCTAVES, 0, (), ()>;
 pub(super) struct Recording {
     rate_hz: f64,
     rate_per_count: f64,
+    numbers: Numbers,
     unit: Unit,
     names: Option<Vec<String>>,
     /// The axes; their number is known from the first sample on.
@@ -28,11 +29,22 @@ pub(super) struct Recording {
     line: Vec<u8>,
     counts: Vec<i32>,
     garbled: u64,
+    /// The invalid lines that would be valid if rates were read.
+    with_decimals: u64,
     /// The first lines, as long as they do not show how many numbers a line has. `None` stands for an
     /// invalid line.
     first: Vec<Option<Vec<i32>>>,
     /// Whether the last line that was taken had no line end.
     unfinished: bool,
+}
+
+/// What the numbers of a line are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Numbers {
+    /// Counts, which are whole numbers.
+    Counts,
+    /// Rates, which are rounded to counts.
+    Rates,
 }
 
 /// So many lines of one width show the number of axes. A partial line or a banner before them does not.
@@ -53,6 +65,7 @@ impl Recording {
     pub(super) fn new(
         rate_hz: f64,
         rate_per_count: f64,
+        numbers: Numbers,
         unit: Unit,
         names: Option<Vec<String>>,
     ) -> Result<Self, Failure> {
@@ -76,6 +89,7 @@ impl Recording {
         Ok(Self {
             rate_hz,
             rate_per_count,
+            numbers,
             unit,
             names,
             axes: Vec::new(),
@@ -83,6 +97,7 @@ impl Recording {
             line: Vec::new(),
             counts: Vec::new(),
             garbled: 0,
+            with_decimals: 0,
             first: Vec::new(),
             unfinished: false,
         })
@@ -116,14 +131,23 @@ impl Recording {
         let mut fields = line
             .split(|byte| b",; \t".contains(byte))
             .filter(|field| !field.is_empty());
+        let unit = match self.numbers {
+            Numbers::Counts => None,
+            Numbers::Rates => Some(self.rate_per_count),
+        };
+        let counts = &mut self.counts;
         let read = line_is_short
-            && fields.all(|field| match atoi_simd::parse::<i32, false, false>(field) {
-                Ok(count) => {
-                    self.counts.push(count);
+            && fields.all(|field| {
+                count(field, unit).is_some_and(|count| {
+                    counts.push(count);
                     true
-                }
-                Err(_) => false,
+                })
             });
+        if !read && line_is_short && unit.is_none() {
+            let mut fields = line.split(|byte| b",; \t".contains(byte));
+            let is_rate = |field: &[u8]| field.is_empty() || count(field, Some(1.0)).is_some();
+            self.with_decimals += u64::from(fields.all(is_rate));
+        }
         let number = self.names.as_ref().map_or(self.axes.len(), Vec::len);
         let is_row = read && !self.counts.is_empty() && self.counts.len() <= MOST_AXES;
         if number > 0 {
@@ -205,6 +229,16 @@ impl Recording {
         self.garbled
     }
 
+    /// What could be done about the invalid lines, if that is known.
+    pub(super) fn remedy(&self) -> Option<String> {
+        (self.with_decimals > 0).then(|| {
+            format!(
+                "{} of the invalid lines have decimals: give --decimals, and the resolution as --scale",
+                self.with_decimals
+            )
+        })
+    }
+
     /// Samples per second.
     pub(super) const fn rate_hz(&self) -> f64 {
         self.rate_hz
@@ -239,12 +273,56 @@ impl Recording {
     }
 }
 
+/// The count that a field says: a whole number, or a rate in counts of this size.
+fn count(field: &[u8], rate_per_count: Option<f64>) -> Option<i32> {
+    let Some(rate_per_count) = rate_per_count else {
+        return atoi_simd::parse::<i32, false, false>(field).ok();
+    };
+    let rate: f64 = std::str::from_utf8(field).ok()?.parse().ok()?;
+    let count = (rate / rate_per_count).round();
+    let fits = (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&count);
+    fits.then_some(count as i32)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn recording() -> Recording {
-        Recording::new(100.0, 1.0, Unit::DegreesPerSecond, None).unwrap()
+        recording_of(Numbers::Counts, 1.0)
+    }
+
+    fn recording_of(numbers: Numbers, rate_per_count: f64) -> Recording {
+        Recording::new(100.0, rate_per_count, numbers, Unit::DegreesPerSecond, None).unwrap()
+    }
+
+    #[test]
+    fn rates_with_decimals_make_the_curve_of_their_counts() {
+        let (mut counts, mut rates) = (recording(), recording_of(Numbers::Rates, 0.004));
+        let mut unread = recording();
+        for i in 0..300 {
+            let count = i * i % 17 - 8;
+            counts.take(format!("{count},{i}\n").as_bytes());
+            let rate = f64::from(count) * 0.004;
+            // A rate that is rounded to its own decimals lies beside its count.
+            let line = format!("{rate:.4},{:e}\n", 0.004 * f64::from(i) + 0.001);
+            rates.take(line.as_bytes());
+            unread.take(line.as_bytes());
+        }
+        for line in ["nan,1\n", "inf,1\n", "1e300,1\n", "0x1,1\n"] {
+            rates.take(line.as_bytes());
+            counts.take(b"none\n");
+        }
+        assert!(rates.axes == counts.axes);
+        assert_eq!((rates.samples(), rates.garbled()), (300, 4));
+        assert_eq!(counts.remedy(), None);
+        unread.end();
+        assert_eq!((unread.samples(), unread.garbled()), (0, 300));
+        let remedy = unread.remedy().unwrap();
+        assert!(
+            remedy.starts_with("300 of the invalid lines have decimals"),
+            "{remedy}"
+        );
     }
 
     #[test]

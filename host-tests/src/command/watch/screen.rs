@@ -1,4 +1,4 @@
-//! The screen of a recording: the curves above, the coefficients below.
+//! The screen of a recording: the curves with their models above, the coefficients below, and what is missing.
 
 use super::status::{AxisStatus, Status, verdict, waiting};
 use crate::command::{
@@ -8,6 +8,7 @@ use crate::command::{
         units,
     },
 };
+use allanite::Comparison;
 use crossterm::{
     cursor::{Hide, Show},
     execute,
@@ -66,8 +67,12 @@ impl Drop for Screen {
     }
 }
 
-/// Lines of an axis' table: a border with the title, a header, five coefficients and a border.
-const TABLE_ROWS: u16 = 8;
+/// Lines of an axis' table: a border with the title, a header, five coefficients, where the model fails, and a border
+/// with what is missing.
+const TABLE_ROWS: u16 = 9;
+
+/// The least width of a table, in columns, that has the names of the terms.
+const WIDE: u16 = 86;
 
 fn draw(frame: &mut Frame<'_>, status: &Status) {
     let tables = TABLE_ROWS * status.axes.len() as u16;
@@ -92,10 +97,10 @@ fn draw(frame: &mut Frame<'_>, status: &Status) {
             *area,
             axis,
             COLOURS[i % COLOURS.len()],
-            status.length_s(),
+            (status.length_s(), status.rate_hz),
         );
     }
-    let foot_line = format!("{}   Ctrl-C saves and ends", status.saving);
+    let foot_line = format!("Ctrl-C saves and ends   {}", status.saving);
     frame.render_widget(Paragraph::new(foot_line).style(dim()), foot);
 }
 
@@ -128,39 +133,74 @@ fn curves(frame: &mut Frame<'_>, area: Rect, status: &Status) {
         .clone()
         .next()
         .map_or("", |fitted| fitted.axis.unit.name());
-    let points: Vec<(String, Vec<(f64, f64)>)> = fitted
-        .map(|fitted| {
-            let points = fitted.curve.points().iter();
-            let points = points.map(|point| (point.tau_s.log10(), point.deviation().log10()));
-            (
-                fitted.axis.axis.clone(),
-                points.filter(|(_, y)| y.is_finite()).collect(),
-            )
+    let drawn: Vec<Drawn<'_>> = status
+        .axes
+        .iter()
+        .filter_map(|axis| {
+            let points = axis.fitted.as_ref()?.curve.points().iter();
+            Some(Drawn {
+                name: &axis.name,
+                measured: logarithms(points.map(|point| (point.tau_s, point.deviation()))),
+                model: logarithms(model(axis)),
+            })
         })
         .collect();
-    let block = Block::bordered().title(format!("Allan deviation, {unit}, over τ, s"));
-    let all = points.iter().flat_map(|(_, points)| points);
+    let block = Block::bordered().title(format!("Allan deviation, {unit}, over τ, s; line: model"));
+    let all = drawn
+        .iter()
+        .flat_map(|axis| axis.measured.iter().chain(&axis.model));
     let Some((x, y)) = bounds(all) else {
         let wait = Paragraph::new("waiting for two octaves of samples").block(block);
         frame.render_widget(wait, area);
         return;
     };
-    let datasets = points.iter().enumerate().map(|(i, (name, points))| {
-        Dataset::default()
-            .name(name.as_str())
+    let mut datasets = Vec::new();
+    for (i, axis) in drawn.iter().enumerate() {
+        let line = Dataset::default()
+            .style(Style::new().fg(COLOURS[i % COLOURS.len()]))
             .marker(Marker::Braille)
             .graph_type(GraphType::Line)
-            .style(Style::new().fg(COLOURS[i % COLOURS.len()]))
-            .data(points)
-    });
+            .data(&axis.model);
+        let dots = line
+            .clone()
+            .name(axis.name)
+            .marker(Marker::Dot)
+            .graph_type(GraphType::Scatter)
+            .data(&axis.measured);
+        datasets.extend([line, dots]);
+    }
     let labels = |[low, high]: [f64; 2]| {
         [low, 0.5 * (low + high), high].map(|exponent| number(10f64.powf(exponent)))
     };
-    let chart = Chart::new(datasets.collect())
+    let chart = Chart::new(datasets)
         .block(block)
         .x_axis(Axis::default().bounds(x).labels(labels(x)).style(dim()))
         .y_axis(Axis::default().bounds(y).labels(labels(y)).style(dim()));
     frame.render_widget(chart, area);
+}
+
+/// The logarithms of averaging times and Allan deviations of an axis that is drawn.
+struct Drawn<'a> {
+    name: &'a str,
+    measured: Vec<(f64, f64)>,
+    model: Vec<(f64, f64)>,
+}
+
+fn logarithms(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    let logarithms = points.map(|(tau_s, deviation)| (tau_s.log10(), deviation.log10()));
+    logarithms.filter(|(_, y)| y.is_finite()).collect()
+}
+
+/// The averaging times and Allan deviations of a model: of that of the last diagnosis, or of the five terms before there
+/// is one.
+fn model(axis: &AxisStatus) -> impl Iterator<Item = (f64, f64)> + '_ {
+    let found = axis
+        .found
+        .iter()
+        .flat_map(|found| found.model.iter().copied());
+    let five = axis.comparison.iter().filter(|_| axis.found.is_none());
+    let five = five.flat_map(|comparison| &comparison.octaves);
+    found.chain(five.map(|octave| (octave.tau_s, octave.model.sqrt())))
 }
 
 /// The ranges of both coordinates, in powers of ten. The vertical one has a margin. `None` without
@@ -178,37 +218,60 @@ fn bounds<'a>(points: impl Iterator<Item = &'a (f64, f64)>) -> Option<([f64; 2],
 }
 
 /// Draws the table of an axis: its coefficients, and how much longer to record for those not yet
-/// measured.
-fn table(frame: &mut Frame<'_>, area: Rect, axis: &AxisStatus, colour: Color, length_s: f64) {
+/// measured; where the model fails, and what is missing. `record` is the length of the record, in seconds, and
+/// its rate.
+fn table(
+    frame: &mut Frame<'_>,
+    area: Rect,
+    axis: &AxisStatus,
+    colour: Color,
+    (length_s, rate_hz): (f64, f64),
+) {
     let title = match &axis.fitted {
         Some(fitted) => format!("{}: {}", axis.name, verdict(&fitted.fit)),
         None => format!("{}: nothing to fit yet", axis.name),
     };
+    let missing = axis.found.as_ref().map(|found| {
+        let length = duration(found.samples as f64 / rate_hz);
+        format!("{} (after {length})", found.brief)
+    });
     let block = Block::bordered()
         .title(title)
+        .title_bottom(missing.unwrap_or_default())
         .border_style(Style::new().fg(colour));
+    let [rows, failure] =
+        Layout::vertical([Constraint::Min(0), Constraint::Length(1)]).areas(block.inner(area));
+    frame.render_widget(block, area);
+    if let Some(worst) = axis.comparison.as_ref().and_then(Comparison::worst) {
+        let words = format!(
+            "largest difference: {:+.0} % at τ = {} ({:+.1} σ)",
+            worst.percent(),
+            duration(worst.tau_s),
+            worst.z
+        );
+        frame.render_widget(Paragraph::new(words), failure);
+    }
+    let is_wide = area.width >= WIDE;
+    let columns = if is_wide { 0.. } else { 1.. };
     let coefficients = axis.fitted.iter().flat_map(|fitted| {
         let unit = fitted.axis.unit;
+        let columns = columns.clone();
         fitted.fit.coefficients.iter().map(move |one| {
             let (_, customary_unit) = units::customary(unit, one.half_seconds).unwrap_or((1.0, ""));
-            Row::new([
+            let cells = [
                 one.name.replace('_', " "),
                 one.symbol.to_owned(),
                 fit::table::customary(one, unit),
                 customary_unit.to_owned(),
                 fit::table::interval(one, unit),
                 waiting(one, length_s),
-            ])
+            ];
+            Row::new(cells[columns.clone()].to_vec())
         })
     });
-    let widths = [
-        Constraint::Length(17),
-        Constraint::Length(1),
-        Constraint::Length(11),
-        Constraint::Length(7),
-        Constraint::Length(23),
-        Constraint::Min(12),
-    ];
+    let widths = [17, 1, 11, 7, 19].map(Constraint::Length);
+    let last = Constraint::Min(12);
+    let widths = widths.into_iter().chain([last]).skip(columns.start);
     let header = [
         "effect",
         "",
@@ -218,10 +281,9 @@ fn table(frame: &mut Frame<'_>, area: Rect, axis: &AxisStatus, colour: Color, le
         "how much longer",
     ];
     let table = Table::new(coefficients, widths)
-        .header(Row::new(header).style(dim()))
-        .column_spacing(2)
-        .block(block);
-    frame.render_widget(table, area);
+        .header(Row::new(header[columns.clone()].to_vec()).style(dim()))
+        .column_spacing(if is_wide { 2 } else { 1 });
+    frame.render_widget(table, rows);
 }
 
 #[cfg(test)]
@@ -249,17 +311,17 @@ mod tests {
             rows[0].starts_with("30.000 s: 3000 samples at 100 Hz   invalid lines: 1, gaps: 1")
         );
         assert!(
-            rows[1].contains("Allan deviation, deg/s, over τ, s"),
+            rows[1].contains("Allan deviation, deg/s, over τ, s; line: model"),
             "{text}"
         );
-        assert!(rows[39].starts_with("curve.json was saved 3 s ago   Ctrl-C saves and ends"));
+        assert!(rows[39].starts_with("Ctrl-C saves and ends   curve.json was saved 3 s ago"));
         // The dots of the curves cover rows over the height of the chart.
         let braille = |row: &String| row.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c));
         assert!(
-            rows[2..22].iter().filter(|row| braille(row)).count() >= 8,
+            rows[2..20].iter().filter(|row| braille(row)).count() >= 8,
             "{text}"
         );
-        for (name, first) in [("left", 23), ("right", 31)] {
+        for (name, first) in [("left", 21), ("right", 30)] {
             assert!(
                 rows[first].contains(&format!("┌{name}: adequate, p = 0.")),
                 "{text}"
@@ -276,12 +338,35 @@ mod tests {
                 walk.contains("angle random walk  N  2.") && walk.contains("°/√h"),
                 "{text}"
             );
-            let waits = [" more", " without gaps", "no record would show it"];
+            let waits = [" more", " without gaps", "never"];
             assert!(
                 waits.iter().any(|wait| rows[first + 6].contains(wait)),
                 "{text}"
             );
+            assert!(rows[first + 7].contains("largest difference: "), "{text}");
+            assert!(
+                rows[first + 8].contains("no effect is missing (after 30.000 s)"),
+                "{text}"
+            );
         }
+    }
+
+    /// A terminal of 60 columns leaves the names of the terms out, and cuts no number.
+    #[test]
+    fn sixty_columns_have_the_coefficients() {
+        let rows = drawn(60, 40, &status());
+        let text = rows.join("\n");
+        assert!(rows[22].contains("how much longer"), "{text}");
+        let walk = &rows[24];
+        for part in ["│N 2.", " °/√h ", " … "] {
+            assert!(walk.contains(part), "{text}");
+        }
+        assert!(
+            rows[29].contains("no effect is missing (after 30.000 s)"),
+            "{text}"
+        );
+        assert!(rows[28].contains("σ)"), "{text}");
+        assert!(rows[39].trim_end().ends_with("saved 3 s ago"), "{text}");
     }
 
     #[test]

@@ -7,7 +7,8 @@
 
 use super::{
     arguments::Arguments,
-    recording::Recording,
+    diagnosis::{Diagnoser, Found},
+    recording::{Numbers, Recording},
     screen::Screen,
     source::{Received, Source},
     status::Status,
@@ -52,6 +53,7 @@ pub(in crate::command) fn run(
 ) -> Result<(), Failure> {
     let save_every = seconds("--save-every", arguments.save_every)?;
     let print_every = seconds("--print-every", arguments.print_every)?;
+    let diagnose_every = seconds("--diagnose-every", arguments.diagnose_every)?;
     if let Some(path) = &arguments.output {
         if !record::is_curve(path) {
             return Err(
@@ -62,10 +64,14 @@ pub(in crate::command) fn run(
         // recording.
         drop(OutputFile::create(path, [])?);
     }
-    let Arguments {
-        rate, scale, unit, ..
-    } = *arguments;
-    let recording = Recording::new(rate, scale, unit, arguments.axes.clone())?;
+    let Arguments { rate, unit, .. } = *arguments;
+    let scale = arguments.scale.unwrap_or(1.0);
+    let numbers = if arguments.decimals {
+        Numbers::Rates
+    } else {
+        Numbers::Counts
+    };
+    let recording = Recording::new(rate, scale, numbers, unit, arguments.axes.clone())?;
     let source = match &arguments.port {
         Some(port) => Source::SerialPort {
             port: port.clone(),
@@ -95,6 +101,7 @@ pub(in crate::command) fn run(
         path: arguments.output.as_deref(),
         saved: None,
         trouble: None,
+        diagnoser: Diagnoser::new(diagnose_every),
         screen,
     };
     let every = if watch.screen.is_some() {
@@ -148,6 +155,7 @@ struct Watch<'a> {
     saved: Option<Instant>,
     /// The message of the last saving, if it failed.
     trouble: Option<String>,
+    diagnoser: Diagnoser,
     screen: Option<Screen>,
 }
 
@@ -174,6 +182,8 @@ impl Watch<'_> {
                 self.announce(trouble);
                 saved = Instant::now();
             }
+            let recording = &self.recording;
+            self.diagnoser.advance(|| recording.curves().ok().flatten());
             if shown.elapsed() >= show_every {
                 self.show(output)?;
                 shown = Instant::now();
@@ -237,7 +247,7 @@ impl Watch<'_> {
                 )
             }
         };
-        Status::of(&self.recording, one_line(&saving))
+        Status::of(&self.recording, &self.diagnoser, one_line(&saving))
     }
 
     /// Saves the curve as a complete file, if there is an output and the record is long enough.
@@ -259,7 +269,7 @@ impl Watch<'_> {
         Ok(())
     }
 
-    /// Prints the last fit in the form of `fit`.
+    /// Prints the last fit in the form of `fit`, and what a diagnosis says of the whole recording.
     fn finish(&self, output: &mut impl Write) -> Result<(), Failure> {
         if self.recording.curves()?.is_none() {
             return Err(Failure::option(
@@ -268,12 +278,18 @@ impl Watch<'_> {
                     self.recording.samples(),
                     self.recording.garbled()
                 ),
-                "record longer, and check that each line has one whole number for each axis",
+                self.recording.remedy().unwrap_or_else(|| {
+                    "record longer, and check that each line has one whole number for each axis"
+                        .into()
+                }),
             ));
         }
         let status = self.status();
         if self.recording.garbled() > 0 && !progress::is_quiet() {
             report(status.losses());
+            if let Some(remedy) = self.recording.remedy() {
+                report(remedy);
+            }
         }
         if self.recording.is_unfinished() && !progress::is_quiet() {
             report("the last line has no line end: it may be cut off");
@@ -288,7 +304,17 @@ impl Watch<'_> {
             .into_iter()
             .filter_map(|axis| axis.fitted)
             .collect();
+        let found: Vec<Found> = fitted
+            .iter()
+            .filter_map(|fitted| Found::of(fitted.axis.clone()))
+            .collect();
         fit::table::print(&fitted, output)
+            .and_then(|()| writeln!(output))
+            .and_then(|()| {
+                found
+                    .iter()
+                    .try_for_each(|found| writeln!(output, "{}: {}", found.axis, found.sentence))
+            })
             .and_then(|()| output.flush())
             .map_err(|error| Failure::standard_output(&error))?;
         // An axis whose values never change has no fit.

@@ -1,6 +1,9 @@
 //! The status of a recording: its length, losses, fits and verdicts at a moment.
 
-use super::recording::Recording;
+use super::{
+    diagnosis::{Diagnoser, Found},
+    recording::Recording,
+};
 use crate::{
     command::{
         fit::{
@@ -10,9 +13,10 @@ use crate::{
         output::number::{duration, probability},
     },
     confidence::TWO_SIDED_95,
+    log::{BINS, OCTAVES},
 };
 use allanite::{
-    Coefficient, Model,
+    Coefficient, Comparison, Model, Observed,
     fit::{Fit, State},
 };
 use std::path::Path;
@@ -35,11 +39,15 @@ pub(super) struct AxisStatus {
     pub(super) fitted: Option<Fitted>,
     /// Why there is no fit.
     pub(super) why: Option<String>,
+    /// Where the fit and the measurement disagree.
+    pub(super) comparison: Option<Comparison<OCTAVES, BINS>>,
+    /// What the last diagnosis found.
+    pub(super) found: Option<Found>,
 }
 
 impl Status {
-    /// Fits the samples that every axis has so far.
-    pub(super) fn of(recording: &Recording, saving: String) -> Self {
+    /// Fits the samples that every axis has so far. What is missing is what the last diagnosis found.
+    pub(super) fn of(recording: &Recording, diagnoser: &Diagnoser, saving: String) -> Self {
         let model = Model::ieee_952();
         let curves = recording.curves().ok().flatten().unwrap_or_default();
         let axes = curves.into_iter().map(|curve| {
@@ -52,7 +60,19 @@ impl Status {
                     Err(_) if is_constant => (None, Some("its values never change".into())),
                     Err(_) => (None, Some("the fit failed".into())),
                 };
-            AxisStatus { name, fitted, why }
+            let comparison = fitted.as_ref().and_then(|fitted| {
+                let spectrum = fitted.axis.spectrum().ok()?;
+                let observed = Observed::new(&fitted.curve, &spectrum);
+                Comparison::new(observed, &fitted.model, &fitted.fit).ok()
+            });
+            let found = diagnoser.found(&name).cloned();
+            AxisStatus {
+                name,
+                fitted,
+                why,
+                comparison,
+                found,
+            }
         });
         Self {
             rate_hz: recording.rate_hz(),
@@ -93,8 +113,11 @@ impl Status {
                         format!("{} {value}", one.symbol)
                     });
                     let coefficients: Vec<String> = coefficients.collect();
+                    let missing = axis.found.as_ref();
+                    let missing =
+                        missing.map_or(String::new(), |found| format!(", {}", found.brief));
                     format!(
-                        "{}: {}, {}",
+                        "{}: {}, {}{missing}",
                         axis.name,
                         coefficients.join(" "),
                         verdict(&fitted.fit)
@@ -127,7 +150,7 @@ pub(super) fn verdict(fit: &Fit) -> String {
 pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
     let needed_s = match coefficient.state {
         State::Measured => return String::new(),
-        State::NotObservable { after_s: None } => return "no record would show it".into(),
+        State::NotObservable { after_s: None } => return "never".into(),
         State::NotObservable {
             after_s: Some(after_s),
         } => after_s,
@@ -146,14 +169,16 @@ pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::*;
+    use super::{super::recording::Numbers, *};
     use crate::unit::Unit;
+    use std::time::Duration;
 
     /// The status of half a minute of white noise with one invalid line.
     pub(in super::super) fn status() -> Status {
         let mut recording = Recording::new(
             100.0,
             0.01,
+            Numbers::Counts,
             Unit::DegreesPerSecond,
             Some(vec!["left".into(), "right".into()]),
         )
@@ -169,7 +194,14 @@ pub(super) mod tests {
                 recording.take(b"oops\n");
             }
         }
-        Status::of(&recording, "curve.json was saved 3 s ago".into())
+        let curves = recording.curves().unwrap().unwrap();
+        let mut diagnoser = Diagnoser::new(Duration::from_secs(60));
+        while diagnoser.found("right").is_none() {
+            diagnoser.advance(|| Some(curves.clone()));
+            std::thread::yield_now();
+        }
+        let saving = "curve.json was saved 3 s ago";
+        Status::of(&recording, &diagnoser, saving.into())
     }
 
     #[test]
@@ -177,6 +209,7 @@ pub(super) mod tests {
         let line = status().line();
         assert!(line.starts_with("30.000 s (3000 samples); invalid lines: 1, gaps: 1; left: Q "));
         assert_eq!(line.matches("adequate, p = 0.").count(), 2, "{line}");
+        assert_eq!(line.matches(", no effect is missing").count(), 2, "{line}");
         assert!(
             line.contains("; right: Q ") && line.contains(" N 2."),
             "{line}"
@@ -192,7 +225,7 @@ pub(super) mod tests {
             match coefficient.state {
                 State::Measured => assert_eq!(waiting, ""),
                 State::NotObservable { after_s: None } => {
-                    assert_eq!(waiting, "no record would show it");
+                    assert_eq!(waiting, "never");
                 }
                 State::UpperBound => assert!(waiting.ends_with(" more"), "{waiting}"),
                 State::NotObservable { .. } => {

@@ -184,7 +184,7 @@ class Walk {
     this.candidates.replaceChildren(
       html("h3", {}, "What was tried next"),
       html("p", { class: "hint" },
-        "Best first. The table has the χ² at which the search stopped; choose a candidate to see its complete fit."),
+        "Best first. χ² is a quick estimate; select a candidate to refit it in full."),
       html("table", {},
         html("thead", {}, html("tr", {}, html("th", {}, "candidate"), html("th", { class: "number" }, "χ²"),
           html("th", { class: "number" }, "improvement"))),

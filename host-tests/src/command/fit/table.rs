@@ -201,7 +201,7 @@ fn verdict(fitted: &Fitted) -> Vec<String> {
     } else {
         format!(
             "The five-term model{behind} is not adequate: the record has another effect, which \
-             distorts the coefficients."
+             distorts the coefficients. `diagnose` looks for it."
         )
     };
     [first, judgement]

@@ -93,6 +93,27 @@ fn each_axis_begins_with_its_misfit_the_missing_effect_and_the_decrease_of_the_e
         ));
         let size = format!("{:.0} std. errors", number(&worst["z"]).abs());
         assert!(label.as_str().unwrap().contains(&size), "{label}");
+        // Every dot tells its numbers: each octave has one in either panel.
+        let tooltips = browser.value(&format!(
+            "[...document.querySelectorAll('{figure} .dot > title')].map((one) => one.textContent)"
+        ));
+        let tooltips = tooltips.as_array().unwrap();
+        assert_eq!(
+            tooltips.len(),
+            2 * axis["octaves"].as_u64().unwrap_or(19) as usize
+        );
+        let z = number(&worst["z"]);
+        let sign = if z < 0.0 { '−' } else { '+' };
+        let parts = [
+            format!("averaging time τ: {:.5} s", number(&worst["tau_s"])),
+            format!("residual: {sign}{:.1} std. errors", z.abs()),
+        ];
+        let is_worst = |words: &Value| {
+            parts
+                .iter()
+                .all(|part| words.as_str().unwrap().contains(part))
+        };
+        assert!(tooltips.iter().any(is_worst), "{parts:?}: {tooltips:?}");
     }
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }

@@ -54,6 +54,14 @@ impl Quantity {
         }
     }
 
+    /// The name of the horizontal coordinate, and its unit.
+    pub const fn coordinate(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Deviation => ("averaging time τ", "s"),
+            Self::Density => ("frequency", "Hz"),
+        }
+    }
+
     /// The title of the vertical axis, without the unit.
     pub const fn up(self) -> &'static str {
         match self {

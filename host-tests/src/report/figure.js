@@ -163,7 +163,8 @@ function drawFigure(frame, view, figure, unit, width) {
   sheet.path(curve, figure.model, place, "line model");
   x.forEach((at, k) => {
     const [value, low, high] = [measured, lower, upper].map((values) => number(unit.factor * values[k]));
-    const words = `${frame.across}: ${number(at)}\n${frame.up}: ${value} ${unit.name} (${low} … ${high})\n` +
+    const [name, of] = frame.coordinate;
+    const words = `${name}: ${number(at)} ${of}\n${frame.up}: ${value} ${unit.name} (${low} … ${high})\n` +
       `residual: ${standardErrors(figure.z[k], 1)}`;
     sheet.stem(curve, across(at), up(lower[k]), up(upper[k]));
     sheet.dot(curve, across(at), up(measured[k]), dot, words);

@@ -12,8 +12,9 @@ use serde::Serialize;
 pub(crate) struct DrawnFrame {
     quantity: Quantity,
     name: &'static str,
-    /// The titles of the axes, and what a point is called.
+    /// The titles of the axes, the name and unit of the horizontal coordinate, and what a point is called.
     across: &'static str,
+    coordinate: (&'static str, &'static str),
     up: &'static str,
     point: &'static str,
     units: Vec<DrawnUnit>,
@@ -50,6 +51,7 @@ pub(crate) fn frame(unit: Unit, frame: &Frame) -> DrawnFrame {
         quantity,
         name: quantity.name(),
         across: quantity.across(),
+        coordinate: quantity.coordinate(),
         up: quantity.up(),
         point: quantity.point(),
         units: units

@@ -5,7 +5,7 @@ use allanite::{
     Curve, Model,
     fit::{Fit, curve_covariance},
 };
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{Beta, ChiSquared, ContinuousCDF};
 
 /// Half-width of the two-sided 95 % interval of a normal variable, in standard errors (Abramowitz & Stegun
 /// 1964, table 26.5). The library's own constant is not public.
@@ -86,6 +86,16 @@ fn interval(variance: f64, freedom: f64) -> Limits {
             upper: f64::INFINITY,
         },
     }
+}
+
+/// The value that a probability is at most, with this confidence, if its event was a share of `trials` (Clopper &
+/// Pearson, Biometrika 26, 404, 1934).
+pub fn share_is_at_most(share: f64, trials: u64, confidence: f64) -> f64 {
+    let count = (share * trials as f64).round();
+    let others = trials as f64 - count;
+    let beta = Beta::new(count + 1.0, others).ok();
+    // Without others, the probability may be one.
+    beta.map_or(1.0, |beta| beta.inverse_cdf(confidence))
 }
 
 #[cfg(test)]

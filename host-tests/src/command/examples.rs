@@ -66,6 +66,11 @@ pub(super) const DECODE: &str = examples! {
     "allanite decode --json snapshot.bin"
 };
 
+pub(super) const LOT: &str = examples! {
+    "allanite lot --limit N=0.005 --limit B=0.002 device1.bin device2.bin"
+    "allanite lot --limit N=0.005 device1.bin --earlier before1.bin before2.bin --json"
+};
+
 pub(super) const WATCH: &str = examples! {
     "allanite watch --rate 100 --scale 0.00763 --axes gx,gy,gz --port /dev/ttyACM0 --output curve.json"
     "allanite watch --rate 100 --unit rad/s --print-every 60"

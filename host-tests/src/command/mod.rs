@@ -11,6 +11,7 @@ mod export;
 mod fit;
 mod input;
 mod known_filter;
+mod lot;
 mod measure;
 mod output;
 mod plot;
@@ -55,6 +56,7 @@ enum Command {
     Report(report::Arguments),
     Plot(plot::Arguments),
     Decode(decode::Arguments),
+    Lot(lot::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -84,6 +86,7 @@ impl CommandLine {
             Command::Report(arguments) => report::run(arguments),
             Command::Plot(arguments) => plot::run(arguments),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
+            Command::Lot(arguments) => lot::run(arguments, &mut output),
             Command::Completions(arguments) => {
                 completions::run(arguments, Self::command(), &mut output)
             }

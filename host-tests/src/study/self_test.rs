@@ -1,13 +1,15 @@
 //! Studies how often a self-test errs, and how much sooner it ends than a test of fixed length.
 
 use super::{OCTAVES, RATE_HZ, quantile, quantum};
-use crate::simulate::{Coefficients, Preset, Simulator};
+use crate::{
+    confidence::share_is_at_most,
+    simulate::{Coefficients, Preset, Simulator},
+};
 use allanite::{
     Axis, Scale,
     self_test::{Limit, Plan, SelfTest, Status},
 };
 use rayon::prelude::*;
-use statrs::distribution::{Beta, ContinuousCDF as _};
 
 /// The probabilities of false pass and false fail that the tests are planned for.
 pub const PROBABILITY: f64 = 0.01;
@@ -101,14 +103,9 @@ fn tally(verdicts: &[Verdict]) -> Tally {
     }
 }
 
-/// The upper end of the one-sided 95 % confidence interval of a probability, from a share of `devices`
-/// (Clopper & Pearson 1934).
+/// The upper end of the one-sided 95 % confidence interval of a probability, from a share of `devices`.
 pub fn at_most(share: f64, devices: u64) -> f64 {
-    let count = (share * devices as f64).round();
-    let others = devices as f64 - count;
-    let beta = Beta::new(count + 1.0, others).ok();
-    // Without others, the share is one.
-    beta.map_or(1.0, |beta| beta.inverse_cdf(0.95))
+    share_is_at_most(share, devices, 0.95)
 }
 
 /// When a test looks at its record.

@@ -23,7 +23,7 @@ pub(super) struct StoredSnapshot {
 }
 
 /// A device's identity as text, or in hexadecimal digits if it is not printable text.
-pub(super) fn device(record: &Certificate) -> String {
+pub(crate) fn device(record: &Certificate) -> String {
     match std::str::from_utf8(&record.device) {
         Ok(text) if !text.is_empty() && !text.contains(char::is_control) => text.to_owned(),
         _ => hex(record),
@@ -42,6 +42,6 @@ pub(super) fn firmware(record: &Certificate) -> String {
 }
 
 /// The name of an axis by its position: a record stores the order of the axes but no names.
-pub(super) fn axis_name(i: usize) -> String {
+pub(crate) fn axis_name(i: usize) -> String {
     ["x", "y", "z"].get(i).copied().unwrap_or("?").into()
 }

@@ -12,6 +12,7 @@ use crate::{
 use allanite::storage::{self, Certificate, Snapshot};
 use clap::Args;
 use decoded::{Decoded, Stored, StoredSnapshot};
+pub(super) use decoded::{axis_name, device};
 use std::{
     io::{Read, Write},
     path::{Path, PathBuf},
@@ -54,6 +55,20 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         printed.map_err(|error| Failure::standard_output(&error))?;
     }
     many::failed(failures)
+}
+
+/// Decodes a file that must have a certificate.
+///
+/// # Errors
+/// When the file cannot be read, or has no certificate.
+pub(super) fn certificate(path: &Path) -> Result<Certificate, Failure> {
+    match decode(path)? {
+        Stored::Certificate(certificate) => Ok(*certificate),
+        Stored::Snapshot(_) => Err(Place::file(path).failure(
+            "this is a snapshot of a record in progress",
+            "give the certificate of a finished record",
+        )),
+    }
 }
 
 fn decode(path: &Path) -> Result<Stored, Failure> {

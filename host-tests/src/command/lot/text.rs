@@ -1,0 +1,133 @@
+//! The judgement of a lot as text.
+
+use super::judgement::Lot;
+use crate::command::output::{number::number, words::plain};
+use comfy_table::{CellAlignment, Table, presets::NOTHING};
+use std::io::{self, Write};
+
+/// So many devices of a list are printed. The JSON document has all.
+const SHOWN: usize = 20;
+
+/// Prints the judgement.
+pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let [low, high] = lot.yield_interval.map(percent);
+    writeln!(
+        output,
+        "{} device{}: {} pass, {} in a guard band, {} fail",
+        lot.devices,
+        if lot.devices == 1 { "" } else { "s" },
+        lot.passed,
+        lot.guarded,
+        lot.failed
+    )?;
+    writeln!(
+        output,
+        "yield {} ({low} … {high})\n",
+        percent(lot.yield_share)
+    )?;
+    writeln!(output, "{}", limits(lot).trim_fmt())?;
+    list(output, "fail", &lot.failures, |one| {
+        let [low, high] = one.interval.map(number);
+        let place = place(&one.device, &one.axis, one.effect);
+        format!(
+            "{place} {} ({low} … {high}) {}",
+            number(one.value),
+            one.unit
+        )
+    })?;
+    list(output, "outliers", &lot.outliers, |one| {
+        let place = place(&one.device, &one.axis, one.effect);
+        let (value, median) = (number(one.value), number(one.median));
+        format!("{place} {value} {}, where the median is {median}", one.unit)
+    })?;
+    if lot.compared > 0 {
+        writeln!(
+            output,
+            "\n{} devices have earlier certificates; a change counts from {:.1} σ on",
+            lot.compared, lot.significant
+        )?;
+    }
+    list(output, "drifted", &lot.drifted, |one| {
+        let place = place(&one.device, &one.axis, one.effect);
+        let (before, now) = (number(one.before), number(one.now));
+        format!("{place} {before} → {now} {} ({:+.1} σ)", one.unit, one.z)
+    })?;
+    let found = lot.found.iter();
+    let found: Vec<String> = found
+        .map(|(name, count)| format!("{} in {count}", plain(name)))
+        .collect();
+    if !found.is_empty() {
+        writeln!(
+            output,
+            "\neffects that the five terms lack: {}",
+            found.join(", ")
+        )?;
+    }
+    Ok(())
+}
+
+fn place(device: &str, axis: &str, effect: &str) -> String {
+    format!("{device} {axis}: {}", plain(effect))
+}
+
+/// One row for each limit of each axis.
+fn limits(lot: &Lot) -> Table {
+    let mut table = Table::new();
+    table.load_style(NOTHING);
+    table.set_header([
+        "limited",
+        "",
+        "≤",
+        "pass",
+        "guard",
+        "fail",
+        "Cpk",
+        "median",
+        "95 % of devices",
+    ]);
+    for one in &lot.limits {
+        let [low, median, high] = match one.percentiles {
+            Some(values) => values.map(number),
+            None => ["–"; 3].map(str::to_owned),
+        };
+        table.add_row([
+            plain(one.effect),
+            one.axis.clone(),
+            number(one.limit),
+            one.passed.to_string(),
+            one.guarded.to_string(),
+            one.failed.to_string(),
+            one.cpk.map_or("–".into(), |cpk| format!("{cpk:.2}")),
+            median,
+            format!("{low} … {high}"),
+        ]);
+    }
+    for (i, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, 1));
+        if (2..8).contains(&i) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+/// A list with its title, if it is not empty.
+fn list<T>(
+    output: &mut impl Write,
+    title: &str,
+    all: &[T],
+    line: impl Fn(&T) -> String,
+) -> io::Result<()> {
+    if all.is_empty() {
+        return Ok(());
+    }
+    writeln!(output, "\n{title}:")?;
+    for one in all.iter().take(SHOWN) {
+        writeln!(output, "  {}", line(one))?;
+    }
+    match all.len().saturating_sub(SHOWN) {
+        0 => Ok(()),
+        more => writeln!(output, "  and {more} more, which --json lists"),
+    }
+}

@@ -172,6 +172,33 @@ fn a_curve_that_the_five_terms_do_not_explain_fails_if_the_plan_demands_a_fit() 
     );
 }
 
+/// A vibration raises the coefficients that stand for it. It is not one of them that fails.
+#[test]
+fn a_line_is_no_coefficient_above_its_limit() {
+    let wave = |at: u64, count: i32| {
+        let phase = std::f64::consts::TAU * 7.7 * at as f64 / RATE_HZ;
+        count + (0.1 / UNIT * phase.sin()) as i32
+    };
+    let still = |_: u64, count: i32| count;
+    let status = |limit, change: &dyn Fn(u64, i32) -> i32| {
+        let plan = plan("bias_instability", limit);
+        assert_eq!(plan.least_p, 0.0);
+        let mut test = SelfTest::new(plan, scale()).unwrap();
+        verdict(&mut test, &mut Gyro::new(), change)
+    };
+    let with_line = status(1e-4, &wave);
+    assert!(
+        matches!(with_line, Status::Failed(Failure::Misfit { p_value }) if p_value < 1e-6),
+        "{with_line:?}"
+    );
+    // Without a line, the coefficient is named.
+    let too_high = status(1e-4, &still);
+    assert!(
+        matches!(too_high, Status::Failed(Failure::Limit { limit, .. }) if limit.effect == "bias_instability"),
+        "{too_high:?}"
+    );
+}
+
 #[test]
 fn plans_that_contradict_themselves_are_refused() {
     let good = plan("angle_random_walk", 0.02);

@@ -25,7 +25,7 @@ use heapless::Vec;
 ///
 /// let plan = Plan {
 ///     limits: [Limit { effect: "angle_random_walk", most: 0.02 }].into_iter().collect(),
-///     least_p: 0.0,
+///     least_p: 1e-3,
 ///     false_pass: 0.01,
 ///     false_fail: 0.01,
 ///     shortest_s: 1.0,

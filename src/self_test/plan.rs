@@ -25,7 +25,8 @@ pub struct Plan {
     /// The limits of coefficients, at most one for each coefficient.
     pub limits: Vec<Limit, MAX_EFFECTS>,
     /// The smallest p-value of the five-term fit, 0 ≤ `least_p` < 1. It is divided among the looks, and a
-    /// gyro with a smaller p-value fails. 0 requires nothing.
+    /// gyro with a smaller p-value fails. 0 requires nothing: a gyro with a vibration passes as long as no coefficient
+    /// that stands for it is above its limit.
     pub least_p: Real,
     /// The largest probability that a gyro at one of its limits passes; above 0 and below 0.5.
     pub false_pass: Real,

@@ -10,6 +10,7 @@ pub mod log;
 pub mod overbound;
 pub mod plot;
 pub mod program;
+pub mod quantile;
 pub mod regular_file;
 pub mod simulate;
 #[cfg(feature = "study")]

@@ -3,9 +3,11 @@
 use super::{
     RATE_HZ,
     hidden_effect::{Outcome, diagnose},
-    quantile,
 };
-use crate::simulate::{Hidden, Preset};
+use crate::{
+    quantile::quantile,
+    simulate::{Hidden, Preset},
+};
 use allanite::effect::MAX_PARAMETERS;
 use rayon::prelude::*;
 use std::collections::BTreeMap;

@@ -1,8 +1,9 @@
 //! Studies whether a hidden effect is found and named.
 
-use super::{OCTAVES, RATE_HZ, quantile, record, theory::squares};
+use super::{OCTAVES, RATE_HZ, record, theory::squares};
 use crate::{
     log::{BINS, SpectrumSums},
+    quantile::quantile,
     simulate::{Coefficients, Hidden, Preset, Simulator},
 };
 use allanite::{

@@ -85,11 +85,3 @@ fn quantum(c: Coefficients, rate_hz: f64) -> f64 {
         + (c.rate_ramp * interval_s).powi(2);
     variance.sqrt() / 4096.0
 }
-
-/// The value below which the given share of the sorted numbers lies.
-pub fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let at = share * (sorted.len() - 1) as f64;
-    let (low, rest) = (at.floor() as usize, at.fract());
-    let high = (low + 1).min(sorted.len() - 1);
-    sorted[low] * (1.0 - rest) + sorted[high] * rest
-}

@@ -1,8 +1,9 @@
 //! Studies how often a self-test errs, and how much sooner it ends than a test of fixed length.
 
-use super::{OCTAVES, RATE_HZ, quantile, quantum};
+use super::{OCTAVES, RATE_HZ, quantum};
 use crate::{
     confidence::share_is_at_most,
+    quantile::quantile,
     simulate::{Coefficients, Preset, Simulator},
 };
 use allanite::{

@@ -1,7 +1,7 @@
 //! Compares the theoretical covariance of the curve and the χ² of the fit with simulated records.
 
-use super::{OCTAVES, curve, quantile};
-use crate::simulate::Coefficients;
+use super::{OCTAVES, curve};
+use crate::{quantile::quantile, simulate::Coefficients};
 use allanite::{
     Model,
     fit::{Options, curve_covariance, fit},

@@ -12,6 +12,10 @@ use std::path::PathBuf;
 /// The packages that run on a microcontroller.
 const PACKAGES: [&str; 4] = ["--package", "allanite", "--package", "images"];
 
+/// The optional parts of the program, each to be built alone, after none of them. `cargo allanite` builds none, so that
+/// code which needs one by mistake would show in the first command of the README only.
+const OPTIONAL_PARTS: [&str; 6] = ["", "bags", "explore", "pictures", "study", "watch"];
+
 /// Every feature except double precision.
 const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash"];
 
@@ -30,6 +34,17 @@ pub(crate) fn run() -> Result<()> {
             .args(["clippy", "--workspace", "--all-targets", "--all-features"])
             .args(["--", "-D", "warnings"]),
     )?;
+    for part in OPTIONAL_PARTS {
+        step(
+            &match part {
+                "" => "lints, of the program without its optional parts".to_string(),
+                part => format!("lints, of the program with {part} alone"),
+            },
+            cargo()
+                .args(["clippy", "--package", "host-tests", "--no-default-features"])
+                .args(["--features", part, "--", "-D", "warnings"]),
+        )?;
+    }
     step(
         "lints, in single precision",
         cargo()

@@ -1,11 +1,9 @@
 //! What the course of a record tells.
 
 use host_tests::{
+    quantile::quantile,
     simulate::Preset,
-    study::{
-        course::{CASES, Case, SAMPLES, Tally, study},
-        quantile,
-    },
+    study::course::{CASES, Case, SAMPLES, Tally, study},
 };
 
 pub(crate) fn print(records: u64, only: Option<Preset>, only_clean: bool) {

@@ -1,7 +1,7 @@
 //! What single precision changes.
 
 use anyhow::Result;
-use host_tests::study::{precision, quantile};
+use host_tests::{quantile::quantile, study::precision};
 
 pub(crate) fn print(records: u64) -> Result<()> {
     let fits = precision::fits(records)?;

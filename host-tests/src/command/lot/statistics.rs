@@ -1,6 +1,6 @@
 //! Statistics of a lot.
 
-use crate::study::quantile;
+use crate::quantile::quantile;
 use statrs::{
     distribution::{ContinuousCDF as _, Normal},
     statistics::Statistics as _,

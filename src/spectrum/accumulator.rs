@@ -130,11 +130,9 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
     /// Adds counts, and does all the work of them and of those that wait. None is lost.
     pub fn push_slice(&mut self, counts: &[i32]) {
         self.finish();
-        for &count in counts {
-            self.take(count);
-            while self.due > 0 {
-                self.transform();
-            }
+        for counts in counts.chunks(P) {
+            counts.iter().for_each(|&count| self.push(count));
+            self.finish();
         }
     }
 
@@ -142,10 +140,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
     /// segment.
     pub fn advance(&mut self) -> bool {
         while self.due == 0 && self.waiting > 0 {
-            let count = self.counts[self.taken as usize % P];
-            self.taken = self.taken.wrapping_add(1) % P as u32;
-            self.waiting = self.waiting.wrapping_sub(1);
-            self.take(count);
+            self.take();
         }
         if self.waiting == 0 && self.is_late && self.due == 0 {
             self.is_late = false;
@@ -163,30 +158,52 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         while self.advance() {}
     }
 
-    /// Adds one count to the blocks of every level that it completes. No segment may wait.
+    /// Takes counts that wait, up to the end of a block of the second level, into the blocks of every level. At least
+    /// one count waits, and no segment.
+    // Several counts at once, because what has to be decided for each of them costs more than to keep it.
     #[inline]
-    fn take(&mut self, count: i32) {
+    fn take(&mut self) {
+        let from = self.taken;
         if self.number == 0 {
-            self.reference = count;
+            self.reference = self.counts[from as usize % P];
         }
-        let mut block = self.number;
-        self.number = block.wrapping_add(1);
-        let mut sum = i64::from(count).wrapping_sub(i64::from(self.reference));
-        let mut level_bit = 1_u16;
-        for level in &mut self.levels {
-            level.push(block, sum);
-            let blocks = block.wrapping_add(1);
-            // The rarer condition comes first.
-            if blocks.is_multiple_of(P as u64 / 2) {
-                let is_whole = blocks >= P as u64;
-                self.due |= if is_whole { level_bit } else { 0 };
+        let (reference, number) = (self.reference, self.number as u32);
+        let room = (RADIX as u32).wrapping_sub(number % RADIX as u32);
+        let taken = self.waiting.min(room);
+        if let Some(lowest) = self.levels.first_mut() {
+            for i in 0..taken {
+                let count = self.counts[from.wrapping_add(i) as usize % P];
+                lowest.push_count(number.wrapping_add(i), count, reference);
             }
+        }
+        self.taken = from.wrapping_add(taken) % P as u32;
+        self.waiting = self.waiting.wrapping_sub(taken);
+        self.number = self.number.wrapping_add(u64::from(taken));
+        if taken == room {
+            self.complete();
+        }
+    }
+
+    /// Makes the blocks of the higher levels that end with the last count, and notes the segments that do.
+    #[inline]
+    fn complete(&mut self) {
+        let Some((mut level, higher)) = self.levels.split_first_mut() else {
+            return;
+        };
+        let ends_segment = |blocks: u64| blocks.is_multiple_of(P as u64 / 2) && blocks >= P as u64;
+        let mut blocks = self.number;
+        let mut level_bit = 1_u16;
+        self.due |= if ends_segment(blocks) { level_bit } else { 0 };
+        for next in higher {
             if !blocks.is_multiple_of(RADIX as u64) {
                 return;
             }
-            sum = level.last(block);
-            block >>= RADIX_BITS;
+            let sum = level.last((blocks as u32).wrapping_sub(1));
+            blocks >>= RADIX_BITS;
             level_bit = level_bit.wrapping_shl(1);
+            next.push((blocks as u32).wrapping_sub(1), sum);
+            self.due |= if ends_segment(blocks) { level_bit } else { 0 };
+            level = next;
         }
     }
 
@@ -197,7 +214,8 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         self.due &= self.due.wrapping_sub(1);
         if let Some(level) = self.levels.get_mut(i as usize) {
             let block_bits = RADIX_BITS.wrapping_mul(i);
-            level.add_segment(self.number.wrapping_shr(block_bits), block_bits);
+            let end = self.number.wrapping_shr(block_bits) as u32;
+            level.add_segment(end, block_bits);
         }
     }
 

@@ -38,9 +38,9 @@ impl<const P: usize> Level<P> {
         segments: 0,
     };
 
-    /// Keeps block `number`, counted from 0.
+    /// Keeps block `number`, counted from 0. Only the place in the ring matters.
     #[inline]
-    pub(super) fn push(&mut self, number: u64, sum: i64) {
+    pub(super) fn push(&mut self, number: u32, sum: i64) {
         let keeps_all = self.exponent == 0 && (-LIMIT..LIMIT).contains(&sum);
         let block = if keeps_all {
             sum as i32
@@ -48,6 +48,25 @@ impl<const P: usize> Level<P> {
             self.scaled(sum)
         };
         self.blocks[number as usize % P] = block;
+    }
+
+    /// Keeps block `number` of a single count, less the reference.
+    // Nearly every count needs 32 bits only, which saves a third of the work of a sample.
+    #[inline(always)]
+    pub(super) fn push_count(&mut self, number: u32, count: i32, reference: i32) {
+        let near = -LIMIT as i32..LIMIT as i32;
+        match count.checked_sub(reference) {
+            Some(difference) if self.exponent == 0 && near.contains(&difference) => {
+                self.blocks[number as usize % P] = difference;
+            }
+            _ => self.push_far_count(number, count, reference),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn push_far_count(&mut self, number: u32, count: i32, reference: i32) {
+        self.push(number, i64::from(count).wrapping_sub(i64::from(reference)));
     }
 
     /// The sum in the unit of the blocks, which becomes larger if needed.
@@ -84,7 +103,7 @@ impl<const P: usize> Level<P> {
 
     /// The sum of the blocks up to block `number` that make a block of the next level.
     #[inline]
-    pub(super) fn last(&self, number: u64) -> i64 {
+    pub(super) fn last(&self, number: u32) -> i64 {
         // Such blocks lie side by side in the ring.
         let (groups, _) = self.blocks.as_chunks::<RADIX>();
         let group = groups.get(number as usize % P / RADIX);
@@ -99,7 +118,7 @@ impl<const P: usize> Level<P> {
 
     /// Adds the segment that ends before block `number`, for blocks of `2^block_bits` samples.
     #[inline(never)]
-    pub(super) fn add_segment(&mut self, number: u64, block_bits: u32) {
+    pub(super) fn add_segment(&mut self, number: u32, block_bits: u32) {
         let start = number as usize;
         // The transform multiplies by 8.
         let scale = power_of_two(self.exponent, block_bits.wrapping_add(UNIT_BITS + 3));

@@ -1,6 +1,6 @@
 //! The expected densities of deterministic effects.
 
-use super::window::sum_of_squares;
+use super::window::{half_cosine_and_sine, sum_of_squares};
 use crate::{
     effect::Response,
     math,
@@ -9,6 +9,7 @@ use crate::{
 
 /// A ramp or a sinusoid as means over blocks see it, in segments of `length` blocks.
 pub(super) struct Line {
+    segment: usize,
     length: Real,
     /// `sin²(π/P)`.
     bin: Real,
@@ -24,14 +25,18 @@ enum Kind {
         periods: Real,
         /// `sin(π periods)`, which is that of any bin's distance but for its sign.
         sine: Real,
+        /// Sine and cosine of `π periods/P`.
+        place: (Real, Real),
+        /// The square of the sine of `πx/P` at the border of the main lobe.
+        lobe: Real,
     },
 }
 
 impl Line {
     /// The signal whose differences of adjacent samples have the given response, as means over `block`
     /// samples.
-    pub(super) fn new(response: Response, interval_s: Real, length: usize, block: u32) -> Self {
-        let (length, m) = (real(length), real(block));
+    pub(super) fn new(response: Response, interval_s: Real, segment: usize, block: u32) -> Self {
+        let (length, m) = (real(segment), real(block));
         let difference = response.amplitude / interval_s;
         let kind = if response.phase == 0.0 {
             Kind::Ramp {
@@ -46,14 +51,18 @@ impl Line {
             let amplitude = difference * block_sine / (m * sine * sine);
             let turns = turns * m;
             let periods = length * (turns - math::floor(turns));
+            let (lobe, _) = math::sincos_of_turns(0.5 * MAIN_LOBE / length);
             Kind::Sinusoid {
                 mean_square: 0.25 * amplitude * amplitude,
                 periods,
                 sine: math::sincos_of_turns(0.5 * periods).0,
+                place: math::sincos_of_turns(0.5 * periods / length),
+                lobe: lobe * lobe,
             }
         };
         let (bin, _) = math::sincos_of_turns(0.5 / length);
         Self {
+            segment,
             length,
             bin: bin * bin,
             kind,
@@ -62,44 +71,53 @@ impl Line {
 
     /// The expected density of bin `k`, times the sampling rate of the block means.
     pub(super) fn density(&self, k: usize) -> Real {
-        let k = real(k);
+        let (bin_cosine, bin_sine) = half_cosine_and_sine(k, self.segment);
         let power = match self.kind {
             Kind::Ramp { step } => {
                 // Σ_j j e^(−2πijk/P) is ½P (i cot(πk/P) − 1), which the window mixes.
-                let amplitude = 0.5 * self.length * step * self.mixed_cotangent(k);
+                let mixed = self.mixed_cotangent(bin_sine, bin_cosine);
+                let amplitude = 0.5 * self.length * step * mixed;
                 amplitude * amplitude
             }
             Kind::Sinusoid {
                 mean_square,
                 periods,
                 sine,
+                place: (place_sine, place_cosine),
+                lobe,
             } => {
+                // The sines and cosines of π(k − periods)/P and π(k + periods)/P follow from those of the two angles.
+                let (near, far) = (bin_sine * place_cosine, bin_cosine * place_sine);
+                let (both, turned) = (bin_cosine * place_cosine, bin_sine * place_sine);
+                let leakage = |distance: Real, sine_of, cosine_of| {
+                    let amplitude = if sine_of * sine_of < lobe {
+                        self.main_lobe(distance)
+                    } else {
+                        sine * self.mixed_cotangent(sine_of, cosine_of)
+                    };
+                    amplitude * amplitude
+                };
                 // A sinusoid of random phase is two lines of half its mean square each.
-                let both = self.leakage(k - periods, sine) + self.leakage(k + periods, sine);
-                0.5 * mean_square * both
+                let k = real(k);
+                let lines = leakage(k - periods, near - far, both + turned)
+                    + leakage(k + periods, near + far, both - turned);
+                0.5 * mean_square * lines
             }
         };
         2.0 * power / sum_of_squares(self.length)
     }
 
-    /// `½ cot a − ¼ cot(a + h) − ¼ cot(a − h)` without its sign, where `a = πx/P` and `h = π/P`. It is
-    /// `½ cot a sin²h/(sin²a − sin²h)`, which does not cancel.
-    fn mixed_cotangent(&self, x: Real) -> Real {
-        let (sine, cosine) = math::sincos_of_turns(0.5 * x / self.length);
+    /// `½ cot a − ¼ cot(a + h) − ¼ cot(a − h)` without its sign, where `h = π/P`, from the sine and the cosine of `a`. It
+    /// is `½ cot a sin²h/(sin²a − sin²h)`, which does not cancel.
+    fn mixed_cotangent(&self, sine: Real, cosine: Real) -> Real {
         0.5 * cosine * self.bin / (sine * (sine * sine - self.bin))
     }
 
-    /// The square of the window's transform at a distance of `x` bins, given `sin(πx)` but for its sign.
-    fn leakage(&self, x: Real, sine: Real) -> Real {
-        // The nearest of the aliases, at a positive distance.
+    /// The window's transform at a distance of `x` bins, in its main lobe or that of an alias, without its sign.
+    fn main_lobe(&self, x: Real) -> Real {
+        // The nearest of the aliases.
         let x = x - self.length * math::floor(x / self.length + 0.5);
-        let x = if x < 0.0 { -x } else { x };
-        let amplitude = if x < MAIN_LOBE {
-            0.5 * self.lobe(x) + 0.25 * (self.lobe(x + 1.0) + self.lobe(x - 1.0))
-        } else {
-            sine * self.mixed_cotangent(x)
-        };
-        amplitude * amplitude
+        0.5 * self.lobe(x) + 0.25 * (self.lobe(x + 1.0) + self.lobe(x - 1.0))
     }
 
     /// `sin(πx) cot(πx/P)`, an even function.

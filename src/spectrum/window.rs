@@ -61,6 +61,19 @@ pub(super) fn cosine_and_sine(place: usize) -> (Real, Real) {
     (cosine(place), SINES[place % TURN])
 }
 
+/// The cosine and the sine of the angle `πk/P`, which is half an angle of a segment of `length` blocks.
+#[inline(always)]
+pub(super) fn half_cosine_and_sine(k: usize, length: usize) -> (Real, Real) {
+    match places(length.wrapping_mul(2)) {
+        // The table has no halves of the angles of the longest segment.
+        0 => {
+            let (sine, cosine) = math::sincos_of_turns(0.5 * real(k) / real(length));
+            (cosine, sine)
+        }
+        places => cosine_and_sine(k.wrapping_mul(places)),
+    }
+}
+
 /// The first bin of a level with segments of this length.
 pub(super) const fn first_bin(length: usize) -> usize {
     length / 16

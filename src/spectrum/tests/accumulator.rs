@@ -189,7 +189,7 @@ fn full_scale_input_overflows_nothing() {
 fn the_highest_level_takes_full_scale_input() {
     let mut level = crate::spectrum::level::Level::<64>::EMPTY;
     let largest = (1_i64 << 59) - 1;
-    for block in 0..640_u64 {
+    for block in 0..640_u32 {
         level.push(block, if block % 2 == 0 { largest } else { -largest });
         if block % 32 == 31 && block > 32 {
             level.add_segment(block + 1, 27);
@@ -237,7 +237,7 @@ fn an_offset_cancels_exactly() {
 fn sums_of_many_segments_are_halved_and_stay_right() {
     let mut level = crate::spectrum::level::Level::<64>::EMPTY;
     let counts = counts(64 * 33);
-    for (block, &count) in (0_u64..).zip(&counts) {
+    for (block, &count) in (0_u32..).zip(&counts) {
         level.push(block, i64::from(count));
         if block % 32 == 31 && block > 32 {
             level.add_segment(block + 1, 0);

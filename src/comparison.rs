@@ -1,5 +1,9 @@
 //! Where a model and a measurement disagree.
 
+mod band;
+
+pub use band::{Band, MAX_BANDS};
+
 use crate::{
     chi_squared::chi_squared_tail,
     covariance::covariance_row,

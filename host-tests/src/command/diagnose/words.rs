@@ -13,7 +13,6 @@ use crate::{
 };
 use allanite::{
     Comparison, Term,
-    comparison::ComparedBin,
     covariate::{self, Slope},
     detection::Range,
     diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
@@ -140,46 +139,9 @@ pub(crate) fn found(
     Some(found + ", 95 % intervals")
 }
 
-/// The fewest standard errors of a band of the spectrum that is said to differ from the model.
-const NOTICEABLE_BAND: f64 = 5.0;
-
-/// The most bands that are said to differ.
-const MOST_BANDS: usize = 3;
-
-/// Bands of frequencies in which the spectrum lies on one side of the model, those that differ most first: `12 σ above
-/// the model at 14.1–26.6 Hz`. A band ends where a bin differs by less than two standard errors.
+/// Bands of frequencies in which the spectrum lies on one side of the model, those that differ most first.
 pub(crate) fn unexplained(comparison: &Comparison<OCTAVES, BINS>) -> Vec<String> {
-    // The bins of the longest blocks have the lowest frequencies.
-    let mut bins: Vec<&ComparedBin> = comparison.bins.iter().collect();
-    bins.sort_by(|one, other| one.bin.frequency_hz.total_cmp(&other.bin.frequency_hz));
-    let side = |bin: &ComparedBin| match bin.z {
-        z if z > 2.0 => 1,
-        z if z < -2.0 => -1,
-        _ => 0,
-    };
-    let runs = bins.chunk_by(|one, other| side(one) == side(other) && side(one) != 0);
-    let mut bands: Vec<(f64, &[&ComparedBin])> = runs
-        .map(|run| {
-            let sum: f64 = run.iter().map(|bin| bin.z).sum();
-            (sum / (run.len() as f64).sqrt(), run)
-        })
-        .filter(|(z, _)| z.abs() >= NOTICEABLE_BAND)
-        .collect();
-    bands.sort_by(|one, other| other.0.abs().total_cmp(&one.0.abs()));
-    let band = |(z, run): &(f64, &[&ComparedBin])| {
-        let ends = [run.first(), run.last()].map(|bin| {
-            let frequency = bin.map_or(f64::NAN, |bin| bin.bin.frequency_hz);
-            number::number(frequency)
-        });
-        let place = if run.len() == 1 {
-            ends[0].clone()
-        } else {
-            ends.join("–")
-        };
-        let side = if *z > 0.0 { "above" } else { "below" };
-        format!("{:.0} σ {side} the model at {place} Hz", z.abs())
-    };
-    bands.iter().take(MOST_BANDS).map(band).collect()
+    comparison.bands().iter().map(words::band).collect()
 }
 
 /// Where a record and a model disagree, in octaves and in the spectrum.

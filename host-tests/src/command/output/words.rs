@@ -10,6 +10,7 @@ use crate::{
 };
 use allanite::{
     Coefficient, Model, Term,
+    comparison::Band,
     course::{Event, What},
     detection::Range,
     effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
@@ -34,7 +35,11 @@ pub(crate) fn invalid(reason: &Reason, motion: Option<&Motion>, axis: &str) -> S
 
 /// A name as people write it.
 pub(crate) fn plain(name: &str) -> String {
-    name.replace('_', " ")
+    match name {
+        // Named after two people.
+        "gauss_markov" => "Gauss–Markov".into(),
+        _ => name.replace('_', " "),
+    }
 }
 
 /// A coefficient's name as people write it. An accelerometer has velocity and acceleration where a gyro
@@ -320,6 +325,18 @@ fn changed(name: &str, was: &Coefficient, is: &Coefficient, unit: Unit) -> Optio
 pub(crate) fn record(samples: u64, rate_hz: f64, octaves: usize) -> String {
     let length = duration(samples as f64 / rate_hz);
     format!("{samples} samples at {rate_hz} Hz ({length}), {octaves} octaves")
+}
+
+/// A band of a spectrum that lies on one side of the model: `12 σ above the model at 14.1–26.6 Hz`.
+pub(crate) fn band(band: &Band) -> String {
+    let ends = [band.from_hz, band.to_hz].map(number);
+    let place = if band.from_hz == band.to_hz {
+        ends[0].clone()
+    } else {
+        ends.join("–")
+    };
+    let side = if band.z > 0.0 { "above" } else { "below" };
+    format!("{:.0} σ {side} the model at {place} Hz", band.z.abs())
 }
 
 /// What happened during a record, in a sentence: `the noise rose 1.50-fold at 11 min 20 s (40 σ)`.

@@ -8,13 +8,17 @@ mod sealed;
 
 use allanite::{
     Curve, Model,
+    course::What,
     diagnosis::Verdict,
     effect::{AngleRandomWalk, BiasInstability, CATALOGUE, DecimationFilter, RateRandomWalk},
     fit::{Options, State, curve_covariance, fit},
     integrity::Reason,
-    storage::{Certificate, CertifiedLimit, CertifiedState, EffectCode, Error, RateUnit},
+    storage::{
+        Certificate, CertifiedBand, CertifiedEvent, CertifiedLimit, CertifiedSlope, CertifiedState,
+        CertifiedWhat, Doubt, EffectCode, Error, Findings, RateUnit,
+    },
 };
-use factory::{SINUSOID, axis, encoded, record};
+use factory::{SINUSOID, axis, encoded, followed, record};
 use sealed::sealed;
 
 fn three_axes() -> Certificate {
@@ -28,7 +32,7 @@ fn record_keeps_the_results_of_fit_and_diagnosis() {
     let bytes = encoded(&written);
     let read = Certificate::decode(&bytes).unwrap();
     assert_eq!(encoded(&read), bytes);
-    assert_eq!((bytes.len(), Certificate::MAX_BYTES), (610, 2431));
+    assert_eq!((bytes.len(), Certificate::MAX_BYTES), (610, 3280));
     assert_eq!(read.device, b"SN-0042");
     assert_eq!(read.firmware, [1, 2, 300]);
     assert_eq!(read.conditions, written.conditions);
@@ -364,6 +368,139 @@ fn limits_of_detection_are_kept_and_a_record_without_them_has_the_first_version(
 }
 
 #[test]
+fn a_gyro_that_follows_its_temperature_and_has_a_line_says_both_after_reading_back() {
+    let mut written = record("SN-1", RateUnit::DegreesPerSecond, &[followed()]);
+    let bytes = encoded(&written);
+    assert_eq!(bytes[5], 3, "the version with findings");
+    let read = Certificate::decode(&bytes).unwrap();
+    // NaN is not equal to itself, and stands for correlations that are not known.
+    assert_eq!(encoded(&read), bytes);
+    let axis = &read.axes[0];
+    assert_eq!(axis.findings, written.axes[0].findings);
+    let [slope] = axis.findings.covariates[..] else {
+        panic!("{:?}", axis.findings)
+    };
+    // 20 counts of 1/131 deg/s.
+    let off = f64::from(slope.value) - 20.0 / 131.0;
+    assert!(off.abs() < 4.0 * f64::from(slope.error), "{slope:?}");
+    assert!(
+        f64::from(slope.error) < 0.05 * f64::from(slope.value),
+        "{slope:?}"
+    );
+    let found: Vec<_> = axis.found().map(|term| term.effect.name()).collect();
+    assert_eq!(found, ["sinusoid"]);
+    assert_eq!(axis.verdict, Some(Verdict::Improved));
+
+    for (what, spoil) in FINDINGS {
+        let good = written.axes[0].findings.clone();
+        spoil(&mut written.axes[0].findings);
+        let decoded = Certificate::decode(&encoded(&written));
+        assert_eq!(decoded, Err(Error::Impossible), "{what}");
+        written.axes[0].findings = good;
+    }
+}
+
+/// A change that makes findings impossible, with its name.
+type SpoilFindings = (&'static str, fn(&mut Findings));
+
+const FINDINGS: &[SpoilFindings] = &[
+    ("a slope without an error", |found| {
+        found.covariates[0].error = 0.0;
+    }),
+    ("an endless slope", |found| {
+        found.covariates[0].value = f32::INFINITY;
+    }),
+    ("one covariate twice", |found| {
+        found.covariates.push(found.covariates[0]).unwrap();
+    }),
+    (
+        "a doubt about an effect that is not in the model",
+        |found| {
+            let effect = EffectCode::of(&DecimationFilter);
+            found
+                .doubts
+                .push(Doubt {
+                    effect,
+                    other: effect,
+                })
+                .unwrap();
+        },
+    ),
+    ("a band that ends before it begins", |found| {
+        let band = CertifiedBand {
+            from_hz: 2.0,
+            to_hz: 1.0,
+            z: 6.0,
+        };
+        found.bands.clear();
+        found.bands.push(band).unwrap();
+    }),
+    ("an event at no time", |found| {
+        found.events = Some(
+            [CertifiedEvent {
+                at_s: f32::NAN,
+                ..STEP
+            }]
+            .into_iter()
+            .collect(),
+        );
+    }),
+    ("an event outside its interval", |found| {
+        found.events = Some([CertifiedEvent { size: 0.4, ..STEP }].into_iter().collect());
+    }),
+    ("bursts in more parts than there are", |found| {
+        let what = CertifiedWhat::Bursts { blocks: 65 };
+        found.events = Some([CertifiedEvent { what, ..STEP }].into_iter().collect());
+    }),
+    ("a warm-up without a time constant", |found| {
+        let what = CertifiedWhat::WarmUp {
+            time_constant_s: 0.0,
+        };
+        found.events = Some([CertifiedEvent { what, ..STEP }].into_iter().collect());
+    }),
+];
+
+const STEP: CertifiedEvent = CertifiedEvent {
+    what: CertifiedWhat::Step,
+    at_s: 60.0,
+    size: 0.1,
+    lower: 0.08,
+    upper: 0.12,
+    z: 9.0,
+};
+
+#[test]
+fn events_and_doubts_are_kept_and_a_stationary_record_says_so() {
+    let mut record = three_axes();
+    let sinusoid = record.axes[1].terms.last().unwrap().effect;
+    let kinds = [
+        CertifiedWhat::NoiseChange,
+        CertifiedWhat::Bursts { blocks: 8 },
+        CertifiedWhat::Step,
+        CertifiedWhat::WarmUp {
+            time_constant_s: 60.0,
+        },
+    ];
+    let events = kinds.map(|what| CertifiedEvent { what, ..STEP });
+    let found = &mut record.axes[1].findings;
+    found.events = Some(events.into_iter().collect());
+    let doubt = Doubt {
+        effect: sinusoid,
+        other: EffectCode::of(&DecimationFilter),
+    };
+    found.doubts.push(doubt).unwrap();
+    record.axes[2].findings.events = Some(Default::default());
+    let read = Certificate::decode(&encoded(&record)).unwrap();
+    for (read, written) in read.axes.iter().zip(&record.axes) {
+        assert_eq!(read.findings, written.findings);
+    }
+    let stationary = [0, 1, 2].map(|i: usize| read.axes[i].findings.is_stationary());
+    assert_eq!(stationary, [None, Some(false), Some(true)]);
+    let event = read.axes[1].findings.events.as_ref().unwrap()[3].event();
+    assert!(matches!(event.what, What::WarmUp { time_constant_s } if time_constant_s == 60.0));
+}
+
+#[test]
 fn largest_record_fits_and_a_larger_one_is_refused() {
     let mut largest = three_axes();
     let axes = largest.axes;
@@ -395,6 +532,31 @@ fn largest_record_fits_and_a_larger_one_is_refused() {
             high: 2.0,
         };
         while axis.limits.push(limit).is_ok() {}
+        let found = &mut axis.findings;
+        for covariate in [0, 1] {
+            let slope = CertifiedSlope {
+                covariate,
+                value: 1.0,
+                error: 0.1,
+            };
+            found.covariates.push(slope).unwrap();
+        }
+        let doubt = Doubt {
+            effect: EffectCode::OTHER,
+            other: EffectCode::OTHER,
+        };
+        while found.doubts.push(doubt).is_ok() {}
+        let band = CertifiedBand {
+            from_hz: 1.0,
+            to_hz: 2.0,
+            z: 6.0,
+        };
+        while found.bands.push(band).is_ok() {}
+        let what = CertifiedWhat::WarmUp {
+            time_constant_s: 60.0,
+        };
+        let events = std::iter::repeat_n(CertifiedEvent { what, ..STEP }, 8);
+        found.events = Some(events.collect());
         axis.degrees_of_freedom = u16::MAX;
         axis.verdict = Some(Verdict::Invalid(Reason::Stuck {
             longest_run: u32::MAX,

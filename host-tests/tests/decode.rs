@@ -3,8 +3,11 @@
 #[path = "common/factory.rs"]
 mod factory;
 
-use allanite::storage::{AxisCertificate, RateUnit};
-use factory::{SINUSOID, axis, encoded, record};
+use allanite::{
+    effect::{CATALOGUE, Effect, GaussMarkov, LowPass},
+    storage::{AxisCertificate, CertifiedBand, Doubt, EffectCode, RateUnit},
+};
+use factory::{SINUSOID, axis, encoded, followed, record};
 use host_tests::program::{json, output, refusal, run};
 use std::{fs, sync::LazyLock};
 use tempfile::TempDir;
@@ -102,6 +105,42 @@ fn json_has_every_number() {
         let sum = expected.sum.to_u128().unwrap();
         assert_eq!(octave["sum"].to_string(), sum.to_string());
     }
+}
+
+#[test]
+fn all_that_a_diagnosis_found_is_printed() {
+    let folder = TempDir::new().unwrap();
+    let mut axis = followed();
+    let effect = axis.found().next().unwrap().effect;
+    for other in [GaussMarkov.description(), LowPass.description()] {
+        let other = CATALOGUE.iter().find(|one| one.name() == other.name);
+        let other = EffectCode::of(*other.unwrap());
+        axis.findings.doubts.push(Doubt { effect, other }).unwrap();
+    }
+    let band = CertifiedBand {
+        from_hz: 14.1,
+        to_hz: 26.6,
+        z: 12.2,
+    };
+    axis.findings.bands.push(band).unwrap();
+    let certificate = record("SN-1", RateUnit::DegreesPerSecond, &[axis]);
+    fs::write(folder.path().join("a.bin"), encoded(&certificate)).unwrap();
+    let text = output(folder.path(), &["decode", "a.bin"]);
+    for line in [
+        "follows covariate 0 with 0.1521 ± 0.005257 deg/s per unit of it; the curve is that without it",
+        "sinusoid: ambiguous, Gauss–Markov noise or a low pass would explain the record about as well",
+        "unexplained in the spectrum: 12 σ above the model at 14.10–26.60 Hz",
+    ] {
+        assert!(text.lines().any(|one| one == line), "{line}:\n{text}");
+    }
+    let axis = json(folder.path(), &["decode", "a.bin"])["records"][0]["axes"][0].clone();
+    assert_eq!(axis["found"][0], "sinusoid");
+    assert_eq!(axis["ambiguous"][1]["other"], "low_pass");
+    let slope = axis["covariates"][0]["slope"].as_f64().unwrap();
+    assert!((slope / (20.0 / 131.0) - 1.0).abs() < 0.1, "{axis}");
+    assert!(axis["bands"][0]["z"].as_f64().unwrap() > 12.0);
+    let events = axis["events"].as_array().unwrap();
+    assert_eq!(axis["stationary"].as_bool().unwrap(), events.is_empty());
 }
 
 #[test]

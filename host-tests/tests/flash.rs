@@ -5,7 +5,10 @@ mod ram_flash;
 
 use allanite::{
     Accumulator,
-    storage::{Error, SnapshotStore, StoreError},
+    diagnosis::Verdict,
+    storage::{
+        AxisCertificate, Certificate, Conditions, Error, RateUnit, SnapshotStore, StoreError,
+    },
 };
 use pollster::block_on;
 use ram_flash::{PAGE, PowerCut, RamFlash, WORD};
@@ -133,6 +136,39 @@ fn power_cut_at_any_operation_leaves_the_old_or_the_new_snapshot() {
 fn torn(length: usize) -> impl Iterator<Item = usize> {
     let step = if length < PAGE { 1 } else { 31 };
     (0..=length).step_by(step).chain([length])
+}
+
+/// A certificate has a number of its own in the same store, where snapshots are written around it.
+#[test]
+fn certificate_stays_beside_snapshots_that_come_and_go() {
+    const NUMBER: u8 = AXES;
+    let conditions = Conditions {
+        temperature_c: None,
+        duration_s: 100.0,
+        rate_hz: 100.0,
+        samples: 10_000,
+        gaps: 0,
+    };
+    let unit = RateUnit::DegreesPerSecond;
+    let mut certificate = Certificate::new(b"SN-7", [1, 0, 0], conditions, unit).unwrap();
+    let mut axis = AxisCertificate::empty();
+    axis.verdict = Some(Verdict::TooShort);
+    axis.findings.events = Some(Default::default());
+    certificate.axes.push(axis).unwrap();
+    let mut buffer = vec![0; PAGE];
+    let mut encoded = vec![0; Certificate::MAX_BYTES];
+    let written = certificate.encode(&mut encoded).unwrap();
+
+    let mut store = store(RamFlash::new(PAGES));
+    let saved = store.save_with(NUMBER, |buffer| certificate.encode(buffer), &mut buffer);
+    block_on(saved).unwrap();
+    let (saved, flash) = run(store.into_flash(), &states());
+    assert_eq!(saved, SNAPSHOTS * usize::from(AXES));
+    let mut store = self::store(flash);
+    let read = block_on(store.load_bytes(NUMBER, &mut buffer)).unwrap();
+    assert_eq!(read, Some(written));
+    let read = Certificate::decode(read.unwrap()).unwrap();
+    assert_eq!(read.axes[0].findings.is_stationary(), Some(true));
 }
 
 #[test]

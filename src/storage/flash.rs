@@ -113,7 +113,8 @@ impl<F: NorFlash> SnapshotStore<F> {
     /// Stores the snapshot that `write` puts into a buffer under a number. For [`Axes`](crate::Axes), write
     /// `store.save_with(0, |buffer| axes.snapshot(&tests, buffer), &mut buffer)`. The buffer must be one
     /// byte longer than the snapshot, rounded up to the write size of the flash. The snapshot must fit into
-    /// a page of the flash.
+    /// a page of the flash. A [`Certificate`](super::Certificate) is stored in the same way, under a number of its own:
+    /// `store.save_with(9, |buffer| certificate.encode(buffer), &mut buffer)`.
     ///
     /// # Errors
     /// [`StoreError::Flash`]; the snapshot stored before is then still there.
@@ -127,7 +128,8 @@ impl<F: NorFlash> SnapshotStore<F> {
         stored.map_err(StoreError::Flash)
     }
 
-    /// Reads the newest snapshot under a number, for [`Axes::restore`](crate::Axes::restore); `None` if no
+    /// Reads the newest snapshot under a number, for [`Axes::restore`](crate::Axes::restore), or the certificate, for
+    /// [`Certificate::decode`](super::Certificate::decode); `None` if no
     /// snapshot was stored. The buffer must be as large as for [`save_with`](Self::save_with).
     ///
     /// # Errors

@@ -10,8 +10,9 @@ mod interval;
 pub mod snapshot;
 
 pub use certificate::{
-    AxisCertificate, Certificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm,
-    Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit,
+    AxisCertificate, Certificate, CertifiedBand, CertifiedEvent, CertifiedLimit, CertifiedShape,
+    CertifiedSlope, CertifiedState, CertifiedTerm, CertifiedWhat, Conditions, Doubt, EffectCode,
+    Findings, MAX_AXES, MAX_COVARIATES, MAX_DEVICE_BYTES, MAX_DOUBTS, RateUnit,
 };
 pub use error::Error;
 #[cfg(feature = "flash")]

@@ -1,7 +1,9 @@
 //! Records of simulated gyros, like those that a factory would write.
 
 use allanite::{
-    Accumulator, Model, Scale,
+    Accumulator, Axis, Model, Observed, Scale,
+    axis::{Gated, Moments, Spectral, Tracked},
+    course::events,
     diagnosis::{Diagnosis, Evidence, Options},
     effect::CATALOGUE,
     storage::{AxisCertificate, Certificate, Conditions, RateUnit},
@@ -39,6 +41,41 @@ pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisCertifica
     let (model, fit) = last.unwrap();
     let mut axis = AxisCertificate::new(&curve, &model, &fit).unwrap();
     axis.verdict = Some(verdict);
+    axis
+}
+
+/// An axis of a gyro that follows its temperature and has a line, with all that its diagnosis found.
+pub(crate) fn followed() -> AxisCertificate {
+    type Gyro = Axis<17, 1, Gated, Moments, Spectral<64, 4, 112>, Tracked>;
+    let scale = Scale::new(1.0 / 131.0, 100.0).unwrap();
+    let mut gyro = Box::new(Gyro::new());
+    let counts = SimulatedGyro::disturbed(AMPLITUDES, Some(SINUSOID), 6).take(SAMPLES);
+    for (n, count) in (0..).zip(counts) {
+        // A triangle of ±10 K with a period of 328 s, which the rate follows with 20 counts per kelvin.
+        let temperature = ((n & 0x7fff) - 0x4000_i32).abs() / 8 - 1024;
+        gyro.push(([count + temperature / 5], [temperature]));
+        while gyro.advance() {}
+    }
+    gyro.release();
+    let evidence = gyro.evidence(0, scale, [0.01]).unwrap();
+    let model = Model::ieee_952();
+    let observed = Observed::new(&evidence.curve, &evidence.spectrum);
+    let mut diagnosis = Diagnosis::with_spectrum(
+        evidence.curve.clone(),
+        evidence.spectrum.clone(),
+        evidence.evidence(),
+        &model,
+        &CATALOGUE,
+        Options::default(),
+    );
+    let mut axis = AxisCertificate::empty();
+    let mut taken = Ok(());
+    let verdict = diagnosis.run(|step| taken = axis.take(observed, step));
+    taken.unwrap();
+    axis.verdict = Some(verdict.unwrap());
+    let course = gyro.courses()[0].unwrap();
+    axis.findings
+        .set_events(&events(course, scale, &model, &[0.0; 5]));
     axis
 }
 

@@ -1,13 +1,14 @@
 //! The part of a certificate that describes one axis.
 
-use super::EffectCode;
+use super::{EffectCode, Findings};
 use crate::{
-    Curve, Error, Model,
+    Error, Model, Observed,
     detection::{MAX_RANGES, Range, is_of_shape},
-    diagnosis::Verdict,
+    diagnosis::{Step, Verdict},
     effect::IEEE_952,
     fit::{Correlations, Fit, State},
     limits::MAX_PARAMETERS,
+    list,
     model::MAX_EFFECTS,
     real::{double, real, single},
 };
@@ -33,6 +34,8 @@ pub struct AxisCertificate {
     pub verdict: Option<Verdict>,
     /// The sizes of effects that the record would have shown. Empty until they are pushed.
     pub limits: Vec<CertifiedLimit, MAX_RANGES>,
+    /// What a diagnosis found besides the terms of the model.
+    pub findings: Findings,
 }
 
 /// A term of a model: an effect with its coefficient and its shape.
@@ -124,27 +127,92 @@ impl CertifiedLimit {
 }
 
 impl AxisCertificate {
-    /// The certificate of a fit of this model to this curve, which is either a single fit or the last
-    /// [`Step`](crate::diagnosis::Step) of a diagnosis. Its verdict is `None` until it is set, and it has no limits of
-    /// detection until they are pushed.
+    /// The certificate of an axis of which nothing is known yet.
+    pub fn empty() -> Self {
+        Self {
+            terms: Vec::new(),
+            correlations: Correlations::UNKNOWN,
+            chi_squared: f64::NAN,
+            degrees_of_freedom: 0,
+            p_value: f64::NAN,
+            tolerance: 0.0,
+            verdict: None,
+            limits: Vec::new(),
+            findings: Findings::default(),
+        }
+    }
+
+    /// The certificate of a fit of this model to this curve, or to a curve and its spectrum. Its verdict is `None` until
+    /// it is set, it has no limits of detection until they are pushed, and no findings.
     ///
     /// This weighs the octaves once more for the correlations, at a few per cent of the cost of a fit.
     ///
     /// # Errors
     /// The errors of [`Fit::correlations`].
-    pub fn new<const K: usize>(curve: &Curve<K>, model: &Model, fit: &Fit) -> Result<Self, Error> {
-        Ok(Self {
-            terms: (0..fit.coefficients.len())
-                .filter_map(|i| term(model, fit, i))
-                .collect(),
-            correlations: fit.correlations(curve, model)?,
-            chi_squared: double(fit.chi_squared),
-            degrees_of_freedom: fit.degrees_of_freedom.min(usize::from(u16::MAX)) as u16,
-            p_value: double(fit.p_value),
-            tolerance: single(fit.tolerance),
-            verdict: None,
-            limits: Vec::new(),
-        })
+    pub fn new<'a, const K: usize, const B: usize>(
+        observed: impl Into<Observed<'a, K, B>>,
+        model: &Model,
+        fit: &Fit,
+    ) -> Result<Self, Error> {
+        let mut axis = Self::empty();
+        axis.set(observed.into(), model, fit)?;
+        Ok(axis)
+    }
+
+    /// Takes over a step of a diagnosis of this curve, or of this curve and its spectrum: the model and its fit, the
+    /// covariates that the rate follows, the effects that are in doubt, and where the spectrum differs. Called for every
+    /// step, it leaves the certificate of the last one, with the doubts of the steps before. The verdict, the limits of
+    /// detection and the [events](Findings::set_events) stay as they are.
+    ///
+    /// This costs as much as [`new`](Self::new).
+    ///
+    /// # Errors
+    /// The errors of [`Fit::correlations`].
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use allanite::{Curve, Model, Real, diagnosis::{Diagnosis, Evidence, Options}, effect::CATALOGUE, storage::AxisCertificate};
+    ///
+    /// // White noise behind a filter that is shorter than two samples.
+    /// let octaves = (0..12).map(|k| (1 << k, (160_000 >> k) - 7, (1.0 - 0.4 / (1 << k) as Real) / (1 << k) as Real));
+    /// let curve = Curve::<12>::new(100.0, octaves)?;
+    /// let (model, evidence, options) = (Model::ieee_952(), Evidence::NONE, Options::default());
+    /// let mut diagnosis = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options);
+    /// let mut axis = AxisCertificate::empty();
+    /// let mut taken = Ok(());
+    /// let verdict = diagnosis.run(|step| taken = axis.take(&curve, step))?;
+    /// taken?;
+    /// axis.verdict = Some(verdict);
+    /// assert!(axis.found().count() > 0 && !axis.findings.doubts.is_empty());
+    /// # Ok::<(), allanite::Error>(())
+    /// ```
+    pub fn take<'a, const K: usize, const B: usize>(
+        &mut self,
+        observed: impl Into<Observed<'a, K, B>>,
+        step: &Step<K, B>,
+    ) -> Result<(), Error> {
+        self.set(observed.into(), &step.model, &step.fit)?;
+        let terms = &self.terms;
+        let holds = |code: EffectCode| terms.iter().any(|term| term.effect == code);
+        self.findings.take(step, holds);
+        Ok(())
+    }
+
+    fn set<const K: usize, const B: usize>(
+        &mut self,
+        observed: Observed<'_, K, B>,
+        model: &Model,
+        fit: &Fit,
+    ) -> Result<(), Error> {
+        self.correlations = fit.correlations(observed, model)?;
+        let terms = (0..fit.coefficients.len()).filter_map(|i| term(model, fit, i));
+        self.terms = list::fill(terms);
+        self.chi_squared = double(fit.chi_squared);
+        self.degrees_of_freedom = fit.degrees_of_freedom.min(usize::from(u16::MAX)) as u16;
+        self.p_value = double(fit.p_value);
+        self.tolerance = single(fit.tolerance);
+        Ok(())
     }
 
     /// The covariance of the squared coefficients of terms `i` and `j`; NaN if it is not known.

@@ -1,7 +1,7 @@
 //! Certificates of a gyro's calibration: the identity of the gyro, the conditions of the measurement,
 //! and its results.
 //!
-//! This table describes version 2 of the payload of the [envelope](crate::storage::envelope). The payload is
+//! This table describes version 3 of the payload of the [envelope](crate::storage::envelope). The payload is
 //! in postcard's encoding: f32 and f64 are little endian, integers longer than one byte are varints, and an
 //! option is a byte 0, or a byte 1 followed by its content. NaN stands for an unknown number.
 //!
@@ -27,9 +27,17 @@
 //! | – number of limits of detection up to 18; for each of them: | u8 |
 //! | – – code of the effect | u8 |
 //! | – – limit, lowest and highest value of the first shape parameter | 3 × f32 |
+//! | – number of covariates that the rate follows up to 2; for each of them: | u8 |
+//! | – – place among those of the diagnosis | u8 |
+//! | – – slope, its standard error | 2 × f32 |
+//! | – number of doubts up to 12; for each: code of an effect of the model, and of one that explains as much | u8, 2 × u8 |
+//! | – number of bands of the spectrum up to 3; for each: lowest and highest frequency in Hz, standard errors | u8, 3 × f32 |
+//! | – 0 without a course; else 1, and the number of events up to 8; for each of them: | u8, u8 |
+//! | – – kind: 0 noise change, 1 bursts and blocks (u8), 2 step, 3 warm-up and time constant in s (f32) | u8, and as told |
+//! | – – time in s, size, lower, upper, standard errors | 5 × f32 |
 //!
-//! Version 1 is the same without limits of detection. A certificate without limits is written as version 1, so
-//! that earlier readers read it.
+//! Version 2 ends an axis with the limits of detection, and version 1 with the correlations. A certificate is written
+//! as the lowest version that has room for what it says, so that earlier readers read it.
 //!
 //! A reason is 0 stuck (longest run u32, changes u64, samples u64), 1 railed (hits u64, samples u64),
 //! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8), 4 missing (missing u64,
@@ -37,12 +45,17 @@
 
 mod axis;
 mod effect_code;
+mod findings;
 mod possible;
 mod verdict;
 mod wire;
 
 pub use axis::{AxisCertificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm};
 pub use effect_code::EffectCode;
+pub use findings::{
+    CertifiedBand, CertifiedEvent, CertifiedSlope, CertifiedWhat, Doubt, Findings, MAX_COVARIATES,
+    MAX_DOUBTS,
+};
 pub(crate) use verdict::WireReason;
 
 use super::Error;

@@ -1,8 +1,8 @@
 //! Whether the contents of a certificate are possible: every number has a range, and numbers agree.
 
 use super::{
-    AxisCertificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm, Conditions,
-    EffectCode,
+    AxisCertificate, CertifiedBand, CertifiedEvent, CertifiedLimit, CertifiedShape, CertifiedSlope,
+    CertifiedState, CertifiedTerm, CertifiedWhat, Conditions, Doubt, EffectCode, Findings,
 };
 use crate::{
     diagnosis::Verdict,
@@ -54,6 +54,7 @@ impl AxisCertificate {
             })
             && self.limits.iter().all(CertifiedLimit::is_possible)
             && self.verdict.is_none_or(is_possible_verdict)
+            && self.findings.are_possible(&self.terms)
     }
 }
 
@@ -102,6 +103,56 @@ impl CertifiedLimit {
         // A comparison with NaN is false.
         let size = self.size > 0.0 && self.size.is_finite();
         size && 0.0 <= self.low && self.low <= self.high && self.high.is_finite()
+    }
+}
+
+impl Findings {
+    /// Whether a diagnosis that ends with these terms can find this.
+    fn are_possible(&self, terms: &[CertifiedTerm]) -> bool {
+        let one = self.covariates.first().map(|slope| slope.covariate);
+        let twice = self
+            .covariates
+            .get(1)
+            .is_some_and(|other| one == Some(other.covariate));
+        let mut events = self.events.iter().flatten();
+        // Two effects may be in doubt with the same other one, and one effect that is there twice with two.
+        let in_model = |doubt: &Doubt| terms.iter().any(|term| term.effect == doubt.effect);
+        !twice
+            && self.covariates.iter().all(CertifiedSlope::is_possible)
+            && self.doubts.iter().all(in_model)
+            && self.bands.iter().all(CertifiedBand::is_possible)
+            && events.all(CertifiedEvent::is_possible)
+    }
+}
+
+impl CertifiedSlope {
+    fn is_possible(&self) -> bool {
+        self.value.is_finite() && self.error > 0.0 && self.error.is_finite()
+    }
+}
+
+impl CertifiedBand {
+    fn is_possible(&self) -> bool {
+        // A comparison with NaN is false.
+        let ends = 0.0 < self.from_hz && self.from_hz <= self.to_hz && self.to_hz.is_finite();
+        ends && self.z.is_finite() && self.z != 0.0
+    }
+}
+
+impl CertifiedEvent {
+    fn is_possible(&self) -> bool {
+        let interval = self.lower <= self.size && self.size <= self.upper;
+        let ends = self.lower.is_finite() && self.upper.is_finite();
+        let is_time = |seconds: f32| seconds >= 0.0 && seconds.is_finite();
+        let kind = match self.what {
+            CertifiedWhat::NoiseChange => self.size > 0.0,
+            CertifiedWhat::Bursts { blocks } => self.size > 0.0 && (1..=64).contains(&blocks),
+            CertifiedWhat::Step => true,
+            CertifiedWhat::WarmUp { time_constant_s } => {
+                time_constant_s > 0.0 && is_time(time_constant_s)
+            }
+        };
+        interval && ends && is_time(self.at_s) && self.z.is_finite() && kind
     }
 }
 

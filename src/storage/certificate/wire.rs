@@ -1,10 +1,14 @@
 //! The encoding of certificates as bytes.
 
 use super::{
-    AxisCertificate, Certificate, CertifiedLimit, CertifiedShape, CertifiedState, CertifiedTerm,
-    Conditions, EffectCode, MAX_AXES, MAX_DEVICE_BYTES, RateUnit, verdict::WireVerdict,
+    AxisCertificate, Certificate, CertifiedBand, CertifiedEvent, CertifiedLimit, CertifiedShape,
+    CertifiedSlope, CertifiedState, CertifiedTerm, CertifiedWhat, Conditions, Doubt, EffectCode,
+    Findings, MAX_AXES, MAX_COVARIATES, MAX_DEVICE_BYTES, MAX_DOUBTS, RateUnit,
+    verdict::WireVerdict,
 };
 use crate::{
+    comparison::MAX_BANDS,
+    course::MAX_EVENTS,
     detection::MAX_RANGES,
     fit::Correlations,
     limits::{MAX_EFFECTS, MAX_PARAMETERS, PAIRS},
@@ -14,8 +18,9 @@ use crate::{
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// The version with limits of detection, and the one without.
-const VERSION: u8 = 2;
+/// The version with findings, the one with limits of detection only, and the one without both.
+const VERSION: u8 = 3;
+const WITHOUT_FINDINGS: u8 = 2;
 const WITHOUT_LIMITS: u8 = 1;
 
 #[derive(Serialize, Deserialize)]
@@ -65,17 +70,45 @@ type WireShape = (f32, f32, f32);
 /// The effect, the limit, and the lowest and highest value of the first shape parameter.
 type WireLimit = (u8, f32, f32, f32);
 
+/// The place of a covariate, its slope, and the standard error of the slope.
+type WireSlope = (u8, f32, f32);
+
+/// The lowest and the highest frequency of a band, and its standard errors.
+type WireBand = (f32, f32, f32);
+
+#[derive(Serialize, Deserialize)]
+struct WireEvent {
+    what: WireWhat,
+    at_s: f32,
+    size: f32,
+    lower: f32,
+    upper: f32,
+    z: f32,
+}
+
+#[derive(Serialize, Deserialize)]
+enum WireWhat {
+    NoiseChange,
+    Bursts(u8),
+    Step,
+    WarmUp(f32),
+}
+
 // The sizes are in bytes, with every varint at its longest.
 const HEAD_BYTES: usize = 1 + MAX_DEVICE_BYTES + 9 + 9 + 16 + 20 + 2;
 const AXIS_BYTES: usize = 16 + 3 + 4 + 27 + 1 + 4 * PAIRS;
 const TERM_BYTES: usize = 1 + 16 + 6 + 1 + 12 * MAX_PARAMETERS;
 const LIMIT_BYTES: usize = 13;
-const PAYLOAD_BYTES: usize =
-    HEAD_BYTES + MAX_AXES * (AXIS_BYTES + MAX_EFFECTS * TERM_BYTES + 1 + MAX_RANGES * LIMIT_BYTES);
+const EVENT_BYTES: usize = 5 + 20;
+const FINDINGS_BYTES: usize =
+    1 + MAX_COVARIATES * 9 + 1 + MAX_DOUBTS * 2 + 1 + MAX_BANDS * 12 + 2 + MAX_EVENTS * EVENT_BYTES;
+const PAYLOAD_BYTES: usize = HEAD_BYTES
+    + MAX_AXES
+        * (AXIS_BYTES + MAX_EFFECTS * TERM_BYTES + 1 + MAX_RANGES * LIMIT_BYTES + FINDINGS_BYTES);
 
 impl Certificate {
-    /// The size in bytes of a buffer that holds any certificate; three axes of five terms take 600, and each
-    /// limit of detection takes 13 more.
+    /// The size in bytes of a buffer that holds any certificate; three axes of five terms take 600, each limit of
+    /// detection takes 13 more, and what else was found some tens.
     pub const MAX_BYTES: usize = PAYLOAD_BYTES + OVERHEAD;
 
     /// Writes the certificate to a buffer and returns the part of it that was used.
@@ -88,8 +121,10 @@ impl Certificate {
         if !conditions.are_possible() {
             return Err(Error::Impossible);
         }
-        let version = if self.axes.iter().any(|axis| !axis.limits.is_empty()) {
+        let version = if self.axes.iter().any(|axis| !axis.findings.is_empty()) {
             VERSION
+        } else if self.axes.iter().any(|axis| !axis.limits.is_empty()) {
+            WITHOUT_FINDINGS
         } else {
             WITHOUT_LIMITS
         };
@@ -110,8 +145,11 @@ impl Certificate {
         })?;
         for axis in &self.axes {
             encode_axis(axis, &mut writer)?;
-            if version == VERSION {
+            if version >= WITHOUT_FINDINGS {
                 encode_limits(axis, &mut writer)?;
+            }
+            if version == VERSION {
+                encode_findings(&axis.findings, &mut writer)?;
             }
         }
         writer.finish()
@@ -176,6 +214,41 @@ fn encode_limits(axis: &AxisCertificate, writer: &mut Writer<'_>) -> Result<(), 
     Ok(())
 }
 
+fn encode_findings(findings: &Findings, writer: &mut Writer<'_>) -> Result<(), Error> {
+    writer.push(&(findings.covariates.len() as u8))?;
+    for slope in &findings.covariates {
+        writer.push(&(slope.covariate, slope.value, slope.error))?;
+    }
+    writer.push(&(findings.doubts.len() as u8))?;
+    for doubt in &findings.doubts {
+        writer.push(&(doubt.effect.number(), doubt.other.number()))?;
+    }
+    writer.push(&(findings.bands.len() as u8))?;
+    for band in &findings.bands {
+        writer.push(&(band.from_hz, band.to_hz, band.z))?;
+    }
+    let Some(events) = &findings.events else {
+        return writer.push(&0_u8);
+    };
+    writer.push(&(1_u8, events.len() as u8))?;
+    for event in events {
+        writer.push(&WireEvent {
+            what: match event.what {
+                CertifiedWhat::NoiseChange => WireWhat::NoiseChange,
+                CertifiedWhat::Bursts { blocks } => WireWhat::Bursts(blocks),
+                CertifiedWhat::Step => WireWhat::Step,
+                CertifiedWhat::WarmUp { time_constant_s } => WireWhat::WarmUp(time_constant_s),
+            },
+            at_s: event.at_s,
+            size: event.size,
+            lower: event.lower,
+            upper: event.upper,
+            z: event.z,
+        })?;
+    }
+    Ok(())
+}
+
 fn decode_payload(rest: &mut &[u8], version: u8) -> Option<Certificate> {
     let head: WireHead = take(rest)?;
     let conditions = Conditions {
@@ -217,11 +290,15 @@ fn decode_axis(rest: &mut &[u8], version: u8) -> Option<AxisCertificate> {
         *slot = take(rest)?;
     }
     let mut limits = Vec::new();
-    if version == VERSION {
+    if version >= WITHOUT_FINDINGS {
         for _ in 0..take::<u8>(rest)? {
             limits.push(decode_limit(rest)?).ok()?;
         }
     }
+    let findings = match version {
+        VERSION => decode_findings(rest)?,
+        _ => Findings::default(),
+    };
     let axis = AxisCertificate {
         terms,
         correlations: Correlations::from_triangle(below),
@@ -231,6 +308,7 @@ fn decode_axis(rest: &mut &[u8], version: u8) -> Option<AxisCertificate> {
         tolerance: axis.tolerance,
         verdict: axis.verdict.into(),
         limits,
+        findings,
     };
     axis.is_possible().then_some(axis)
 }
@@ -242,6 +320,61 @@ fn decode_limit(rest: &mut &[u8]) -> Option<CertifiedLimit> {
         size,
         low,
         high,
+    })
+}
+
+fn decode_findings(rest: &mut &[u8]) -> Option<Findings> {
+    let mut findings = Findings::default();
+    for _ in 0..take::<u8>(rest)? {
+        let (covariate, value, error): WireSlope = take(rest)?;
+        let slope = CertifiedSlope {
+            covariate,
+            value,
+            error,
+        };
+        findings.covariates.push(slope).ok()?;
+    }
+    for _ in 0..take::<u8>(rest)? {
+        let (effect, other): (u8, u8) = take(rest)?;
+        let doubt = Doubt {
+            effect: EffectCode::from_number(effect)?,
+            other: EffectCode::from_number(other)?,
+        };
+        findings.doubts.push(doubt).ok()?;
+    }
+    for _ in 0..take::<u8>(rest)? {
+        let (from_hz, to_hz, z): WireBand = take(rest)?;
+        let band = CertifiedBand { from_hz, to_hz, z };
+        findings.bands.push(band).ok()?;
+    }
+    findings.events = match take::<u8>(rest)? {
+        0 => None,
+        1 => {
+            let mut events = Vec::new();
+            for _ in 0..take::<u8>(rest)? {
+                events.push(decode_event(rest)?).ok()?;
+            }
+            Some(events)
+        }
+        _ => return None,
+    };
+    Some(findings)
+}
+
+fn decode_event(rest: &mut &[u8]) -> Option<CertifiedEvent> {
+    let event: WireEvent = take(rest)?;
+    Some(CertifiedEvent {
+        what: match event.what {
+            WireWhat::NoiseChange => CertifiedWhat::NoiseChange,
+            WireWhat::Bursts(blocks) => CertifiedWhat::Bursts { blocks },
+            WireWhat::Step => CertifiedWhat::Step,
+            WireWhat::WarmUp(time_constant_s) => CertifiedWhat::WarmUp { time_constant_s },
+        },
+        at_s: event.at_s,
+        size: event.size,
+        lower: event.lower,
+        upper: event.upper,
+        z: event.z,
     })
 }
 

@@ -21,7 +21,7 @@ pub(crate) fn print(records: u64, only: Option<Preset>, symbol: Option<&str>, wa
     let is_chosen = |absent: &Absent| match (symbol, absent) {
         (None, _) => true,
         (Some(symbol), Absent::Term(i)) => SYMBOLS[*i] == symbol,
-        (Some(_), Absent::None) => false,
+        (Some(symbol), Absent::None) => symbol == "nothing",
     };
     for preset in presets.filter(|&preset| only.is_none_or(|only| only == preset)) {
         for absent in GYROS.into_iter().filter(is_chosen) {

@@ -103,8 +103,8 @@ enum Study {
         /// Study only this preset
         #[arg(long)]
         preset: Option<Preset>,
-        /// Study only gyros without the term of this symbol
-        #[arg(long)]
+        /// Study only gyros without the term of this symbol, or those that lack the rate ramp alone
+        #[arg(long, value_parser = ["Q", "B", "K", "nothing"])]
         absent: Option<String>,
         /// Multiply the rate random walk
         #[arg(long, default_value_t = 1.0)]

@@ -2,12 +2,15 @@
 
 use super::decoded::{self, Decoded, Stored, StoredSnapshot};
 use crate::{
-    command::output::{model_json, units},
+    command::output::{event_json, model_json, units},
     unit::Unit,
 };
 use allanite::{
     diagnosis::Verdict,
-    storage::{AxisCertificate, Certificate, CertifiedLimit, CertifiedState, CertifiedTerm},
+    storage::{
+        self, AxisCertificate, Certificate, CertifiedBand, CertifiedLimit, CertifiedSlope,
+        CertifiedState, CertifiedTerm,
+    },
 };
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -53,6 +56,35 @@ struct Axis {
     tolerance: f32,
     /// The sizes of effects that the record would have shown with a probability of 95 %.
     detection_limits: Vec<model_json::DetectionRange>,
+    /// The covariates that the rate follows.
+    covariates: Vec<Slope>,
+    /// Effects that explain the record about as well as those of the model.
+    ambiguous: Vec<Doubt>,
+    /// The bands in which the spectrum differs from the model.
+    bands: Vec<Band>,
+    /// Whether nothing happened during the record; `null` if its course was not kept.
+    stationary: Option<bool>,
+    events: Vec<event_json::Event>,
+}
+
+#[derive(Serialize)]
+struct Slope {
+    covariate: u8,
+    slope: f32,
+    error: f32,
+}
+
+#[derive(Serialize)]
+struct Doubt {
+    effect: &'static str,
+    other: &'static str,
+}
+
+#[derive(Serialize)]
+struct Band {
+    from_hz: f32,
+    to_hz: f32,
+    z: f32,
 }
 
 #[derive(Serialize)]
@@ -122,7 +154,7 @@ fn device(file: &Path, record: &Certificate) -> Device {
 }
 
 fn axis(name: String, axis: &AxisCertificate, unit: Unit) -> Axis {
-    let count = axis.terms.len();
+    let (count, findings) = (axis.terms.len(), &axis.findings);
     let row = |i: usize| (0..=i).map(|j| axis.covariance(i, j)).collect();
     Axis {
         axis: name,
@@ -144,6 +176,39 @@ fn axis(name: String, axis: &AxisCertificate, unit: Unit) -> Axis {
             .filter_map(CertifiedLimit::range)
             .map(|range| model_json::detection_range(&range, unit))
             .collect(),
+        covariates: findings.covariates.iter().map(slope).collect(),
+        ambiguous: findings.doubts.iter().map(doubt).collect(),
+        bands: findings.bands.iter().map(band).collect(),
+        stationary: findings.is_stationary(),
+        events: findings
+            .events
+            .iter()
+            .flatten()
+            .map(|event| event_json::event(&event.event()))
+            .collect(),
+    }
+}
+
+fn slope(slope: &CertifiedSlope) -> Slope {
+    Slope {
+        covariate: slope.covariate,
+        slope: slope.value,
+        error: slope.error,
+    }
+}
+
+fn doubt(doubt: &storage::Doubt) -> Doubt {
+    Doubt {
+        effect: doubt.effect.name(),
+        other: doubt.other.name(),
+    }
+}
+
+fn band(band: &CertifiedBand) -> Band {
+    Band {
+        from_hz: band.from_hz,
+        to_hz: band.to_hz,
+        z: band.z,
     }
 }
 

@@ -67,6 +67,9 @@ fn print_record(record: &Certificate, output: &mut impl Write) -> io::Result<()>
             axis.degrees_of_freedom,
             p_value(axis, ", p ")
         )?;
+        for finding in findings(axis, record.unit.into()) {
+            writeln!(output, "{finding}")?;
+        }
         if !axis.limits.is_empty() {
             writeln!(output, "{}", words::LIMITS)?;
         }
@@ -116,6 +119,43 @@ fn judgement(axis: &AxisCertificate) -> String {
         Some(Verdict::Invalid(reason)) => format!("invalid, {reason}"),
         Some(verdict) => verdict.name().into(),
     }
+}
+
+/// What a diagnosis found besides the terms, one line each.
+fn findings(axis: &AxisCertificate, unit: Unit) -> Vec<String> {
+    let found = &axis.findings;
+    let mut lines = Vec::new();
+    for slope in &found.covariates {
+        lines.push(format!(
+            "follows covariate {} with {} ± {} {unit} per unit of it; the curve is that without it",
+            slope.covariate,
+            number(slope.value.into()),
+            number(slope.error.into()),
+        ));
+    }
+    for group in found.doubts.chunk_by(|a, b| a.effect == b.effect) {
+        let others = group.iter().map(|doubt| doubt.other.name());
+        lines.push(format!(
+            "{}: ambiguous, {} would explain the record about as well",
+            words::plain(group[0].effect.name()),
+            words::alternatives(others),
+        ));
+    }
+    for band in &found.bands {
+        let band = words::band(&band.band());
+        lines.push(format!("unexplained in the spectrum: {band}"));
+    }
+    match &found.events {
+        None => {}
+        Some(events) if events.is_empty() => lines.push("the record is stationary".into()),
+        Some(events) => {
+            let told = events
+                .iter()
+                .map(|event| words::event(&event.event(), unit));
+            lines.extend(told);
+        }
+    }
+    lines
 }
 
 fn columns(header: impl IntoIterator<Item = String>) -> Table {

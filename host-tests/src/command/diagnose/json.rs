@@ -10,16 +10,18 @@ use crate::{
     command::{
         fit,
         known_filter::Shape,
-        output::model_json::{self, Effect, Worst},
+        output::{
+            event_json::{Event, event, motion},
+            model_json::{self, Effect, Worst},
+        },
         tried::{self, TriedCovariate},
     },
-    log::{BINS, Motion, OCTAVES},
+    log::{BINS, OCTAVES},
     unit::Unit,
 };
 use allanite::{
     Term,
     comparison::ComparedBin,
-    course::{Event as Told, What},
     detection::Range,
     diagnosis::{Candidate as Tried, Step as Taken},
 };
@@ -114,33 +116,6 @@ struct Step {
     worst: Option<Worst>,
     candidates: Vec<Candidate>,
     added: Option<&'static str>,
-}
-
-/// Something that happened during the record.
-#[derive(Serialize)]
-struct Event {
-    what: &'static str,
-    at_s: f64,
-    /// A ratio of standard deviations for noise and bursts, in rate units for a step and a warm-up.
-    size: f64,
-    lower: f64,
-    upper: f64,
-    z: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    time_constant_s: Option<f64>,
-}
-
-/// Motion has a time but no size: its squares are not noise, and their share is in the notes.
-fn motion(motion: &Motion) -> Event {
-    Event {
-        what: "motion",
-        at_s: motion.at_s,
-        size: f64::NAN,
-        lower: f64::NAN,
-        upper: f64::NAN,
-        z: f64::NAN,
-        time_constant_s: None,
-    }
 }
 
 /// A bin of the spectrum.
@@ -287,25 +262,6 @@ fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step 
         worst: model_json::worst(&step.comparison),
         candidates: step.candidates.iter().map(candidate).collect(),
         added: step.added.as_ref().map(added_name),
-    }
-}
-
-fn event(event: &Told) -> Event {
-    let (what, time_constant_s) = match event.what {
-        What::NoiseChange => ("noise_change", None),
-        What::Bursts { .. } => ("burst", None),
-        What::Step => ("step", None),
-        What::WarmUp { time_constant_s } => ("warm_up", Some(time_constant_s)),
-        _ => ("other", None),
-    };
-    Event {
-        what,
-        at_s: event.at_s,
-        size: event.size,
-        lower: event.lower,
-        upper: event.upper,
-        z: event.z,
-        time_constant_s,
     }
 }
 

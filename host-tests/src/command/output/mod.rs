@@ -2,6 +2,7 @@
 //! documents.
 
 pub(super) mod drawn_frame;
+pub(super) mod event_json;
 pub(super) mod file;
 pub(super) mod model_json;
 pub(super) mod number;

@@ -3,24 +3,27 @@
 //! The format is JSON. It is exact, because the sums of squares are integers, from which the variances
 //! follow. The whole file is checked before any number of it is used.
 
+mod levels;
+mod merge;
+
+pub use levels::{SpectrumLevel, SpectrumLevels};
+
 use crate::{
     failure::{Failure, Place, brief, one_line, quoted},
     log::{self, BINS, OCTAVES},
     regular_file,
     unit::Unit,
 };
-use allanite::{
-    Curve, Scale,
-    spectrum::{Bin, Spectrum},
-};
+use allanite::{Curve, Scale, spectrum::Spectrum};
 use serde::{Deserialize, Serialize};
-use std::{io::Read, path::Path};
+use std::{io::Read, ops::Range, path::Path};
 
 /// The name of the format, as it is written in the file.
 pub const FORMAT: &str = "allanite-curve";
 
-/// The version of the format that is written. Versions from 1 on are read; version 1 has no spectrum.
-pub const VERSION: u32 = 2;
+/// The version of the format that is written. Versions from 1 on are read; version 1 has no spectrum, and version 2 no
+/// short octaves.
+pub const VERSION: u32 = 3;
 
 /// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
 const LARGEST: u64 = 1 << 24;
@@ -37,11 +40,6 @@ const MOST_SAMPLES: u64 = 1 << 50;
 /// Largest relative error of a number that follows from other numbers of the file. Chosen by hand:
 /// numbers are written with all their digits, so that only rounding remains, some 1e-15.
 const TOLERANCE: f64 = 1e-9;
-
-/// The most power of a level, in Allan variances of one of its blocks. An octave's response to the frequencies of the
-/// level is 0.075 at least, so that a record without gaps has 14 at most. Chosen by hand: gaps leave out segments, so
-/// that a record with many of them may have more.
-const MOST_POWER: f64 = 1e6;
 
 /// The curves of a log's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,112 +75,12 @@ pub struct AxisCurve {
     pub licence: Option<String>,
     /// The octaves, shortest averaging time first.
     pub octaves: Vec<Octave>,
+    /// The octaves behind them, which have too few differences for a variance. Files that are merged need them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub short: Vec<ShortOctave>,
     /// The spectrum. Files of version 1 and records that are too short have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spectrum: Option<SpectrumLevels>,
-}
-
-/// The spectrum of one axis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SpectrumLevels {
-    /// Number of blocks in a segment.
-    pub segment: u32,
-    /// The levels, shortest blocks first.
-    pub levels: Vec<SpectrumLevel>,
-}
-
-/// One level of a spectrum.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SpectrumLevel {
-    /// Number of samples in a block, a power of 8.
-    pub block: u32,
-    /// Number of segments that overlap by half.
-    pub segments: u32,
-    /// One-sided densities in rate units squared per hertz, from the bin `segment/16` to the bin before `segment/2`.
-    pub density: Vec<f64>,
-    /// Spectral kurtosis of each bin.
-    pub kurtosis: Vec<f64>,
-}
-
-impl SpectrumLevels {
-    fn of(spectrum: &Spectrum<BINS>) -> Self {
-        let levels = spectrum.levels().map(|level| SpectrumLevel {
-            block: level.first().map_or(0, |bin| bin.block),
-            segments: level.first().map_or(0, |bin| bin.segments),
-            density: level.iter().map(|bin| bin.density).collect(),
-            kurtosis: level.iter().map(|bin| bin.spectral_kurtosis).collect(),
-        });
-        Self {
-            segment: spectrum.segment(),
-            levels: levels.collect(),
-        }
-    }
-
-    fn spectrum(&self, rate_hz: f64) -> Result<Spectrum<BINS>, allanite::Error> {
-        let bins = self.levels.iter().flat_map(|level| {
-            let measured = level.density.iter().zip(&level.kurtosis);
-            let indices = self.segment / 16..;
-            measured
-                .zip(indices)
-                .map(|((density, kurtosis), index)| Bin {
-                    block: level.block,
-                    index,
-                    frequency_hz: 0.0,
-                    density: *density,
-                    segments: level.segments,
-                    spectral_kurtosis: *kurtosis,
-                })
-        });
-        Spectrum::new(rate_hz, self.segment, bins)
-    }
-
-    /// Checks the numbers of the levels against each other and against the axis.
-    fn check(&self, axis: &AxisCurve) -> Result<(), String> {
-        let blocks = (0..10).map(|level| 1_u32 << (3 * level));
-        let right = self.levels.iter().zip(blocks);
-        if self.levels.len() > 10 || right.clone().any(|(level, block)| level.block != block) {
-            return Err("spectrum: the blocks of the levels are not 1, 8, 64, …".into());
-        }
-        for level in &self.levels {
-            let here = |what: &str| Err(format!("spectrum, block {}: {what}", level.block));
-            let bins = (self.segment / 2 - self.segment / 16) as usize;
-            if level.density.len() != bins || level.kurtosis.len() != bins {
-                return here("the number of bins is impossible");
-            }
-            let half = u64::from(level.block) * u64::from(self.segment / 2);
-            let most = (axis.samples / half.max(1)).saturating_sub(1);
-            if u64::from(level.segments) > most {
-                return here("there are more segments than samples for them");
-            }
-            if level.segments < Spectrum::<BINS>::MIN_SEGMENTS {
-                return here("there are too few segments");
-            }
-            // By Cauchy and Schwarz, n ΣP² is at least (ΣP)² and at most n (ΣP)².
-            let most = f64::from(level.segments) + 1.0;
-            if level
-                .kurtosis
-                .iter()
-                .any(|&kurtosis| kurtosis > most * (1.0 + TOLERANCE))
-            {
-                return here("a spectral kurtosis is impossible");
-            }
-            let mut octaves = axis.octaves.iter();
-            let Some(octave) = octaves.find(|octave| octave.m == level.block) else {
-                return here("there is no octave of this length");
-            };
-            let bin_hz = axis.rate_hz / (f64::from(level.block) * f64::from(self.segment));
-            let power = bin_hz * level.density.iter().sum::<f64>();
-            if power > MOST_POWER * octave.variance {
-                return here("the densities contradict the octaves");
-            }
-        }
-        let spectrum = self.spectrum(axis.rate_hz);
-        spectrum
-            .map(|_| ())
-            .map_err(|error| format!("spectrum: {error}"))
-    }
 }
 
 /// One octave of a curve.
@@ -199,6 +97,18 @@ pub struct Octave {
     pub sum: u128,
     /// Allan variance, in rate units squared.
     pub variance: f64,
+}
+
+/// An octave with fewer than [`Curve::MIN_DIFFERENCES`] differences.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShortOctave {
+    /// Averaging factor, a power of two.
+    pub m: u32,
+    /// Number of quarter-overlapping differences of adjacent clusters.
+    pub differences: u64,
+    /// The exact sum of their squares, in counts².
+    pub sum: u128,
 }
 
 impl CurveFile {
@@ -321,26 +231,29 @@ impl AxisCurve {
         };
         let scale =
             Scale::new(axis.rate_per_count, rate_hz).map_err(|error| fail(error.to_string()))?;
-        let curve = axis.accumulator.curve(scale);
         // The curve has the first octaves of the accumulator, because the number of differences falls
         // from octave to octave.
-        let octaves =
-            curve
-                .points()
-                .iter()
-                .zip(axis.accumulator.octaves())
-                .map(|(point, octave)| {
-                    let sum = octave.sum.to_u128();
-                    Ok(Octave {
-                        m: point.m,
-                        tau_s: point.tau_s,
-                        differences: point.differences,
-                        sum: sum.ok_or_else(|| {
-                            fail(format!("octave m = {}: the sum exceeds 128 bits", point.m))
-                        })?,
-                        variance: point.variance,
-                    })
-                });
+        let curve = axis.accumulator.curve(scale);
+        let sums = axis.accumulator.octaves();
+        let sums = sums.take_while(|octave| octave.differences > 0);
+        let sums = sums.map(|octave| {
+            let too_large = || fail(format!("octave m = {}: the sum exceeds 128 bits", octave.m));
+            Ok(ShortOctave {
+                m: octave.m,
+                differences: octave.differences,
+                sum: octave.sum.to_u128().ok_or_else(too_large)?,
+            })
+        });
+        let mut sums: Vec<ShortOctave> = sums.collect::<Result<_, Failure>>()?;
+        let short = sums.split_off(curve.points().len());
+        let octaves = sums.iter().zip(curve.points());
+        let octaves = octaves.map(|(sum, point)| Octave {
+            m: sum.m,
+            tau_s: point.tau_s,
+            differences: sum.differences,
+            sum: sum.sum,
+            variance: point.variance,
+        });
         Ok(Self {
             axis: axis.name.clone(),
             rate_hz,
@@ -350,7 +263,8 @@ impl AxisCurve {
             gaps: axis.accumulator.gaps(),
             source: None,
             licence: None,
-            octaves: octaves.collect::<Result<_, Failure>>()?,
+            octaves: octaves.collect(),
+            short,
             spectrum: Some(SpectrumLevels::of(&axis.spectrum.spectrum(scale)))
                 .filter(|spectrum| !spectrum.levels.is_empty()),
         })
@@ -413,6 +327,16 @@ impl AxisCurve {
             last = octave.m;
             self.check_octave(octave).map_err(here)?;
         }
+        for short in &self.short {
+            let here = |what: String| format!("short octave m = {}: {what}", short.m);
+            if short.m <= last {
+                return Err(here("averaging factors must ascend".into()));
+            }
+            last = short.m;
+            let few = 1..Curve::<OCTAVES>::MIN_DIFFERENCES;
+            self.check_sum(short.m, short.differences, short.sum, few)
+                .map_err(here)?;
+        }
         if let Some(spectrum) = &self.spectrum {
             spectrum.check(self)?;
         }
@@ -420,35 +344,17 @@ impl AxisCurve {
     }
 
     fn check_octave(&self, octave: &Octave) -> Result<(), String> {
-        let m = f64::from(octave.m);
-        if !octave.m.is_power_of_two() || octave.m.ilog2() >= OCTAVES as u32 {
-            return Err("the averaging factor is not a power of two up to 2^29".into());
-        }
-        if !close(octave.tau_s, m / self.rate_hz) {
+        let least = Curve::<OCTAVES>::MIN_DIFFERENCES;
+        self.check_sum(octave.m, octave.differences, octave.sum, least..u64::MAX)?;
+        if !close(octave.tau_s, f64::from(octave.m) / self.rate_hz) {
             return Err(format!("tau_s {} is not m / rate_hz", brief(octave.tau_s)));
         }
-        let possible = differences(self.samples, octave.m);
-        let least = Curve::<OCTAVES>::MIN_DIFFERENCES;
-        let right = match self.gaps {
-            0 => octave.differences == possible,
-            _ => octave.differences <= possible,
-        };
-        if !right || octave.differences < least {
-            return Err(format!(
-                "{} differences of {} samples are impossible",
-                octave.differences, self.samples
-            ));
-        }
-        let count = octave.differences as f64;
-        let sum = octave.sum as f64;
-        // The sums of two clusters of m counts differ by less than 2^32 m.
-        if sum > count * (m * 2f64.powi(32)).powi(2) {
-            return Err(format!(
-                "a sum of {} is too large for 32-bit counts",
-                octave.sum
-            ));
-        }
-        let variance = 0.5 * sum / count * (self.rate_per_count / m).powi(2);
+        let variance = variance(
+            octave.m,
+            octave.differences,
+            octave.sum,
+            self.rate_per_count,
+        );
         if !close(octave.variance, variance) {
             return Err(format!(
                 "variance {} does not follow from the sum",
@@ -457,10 +363,44 @@ impl AxisCurve {
         }
         Ok(())
     }
+
+    fn check_sum(
+        &self,
+        m: u32,
+        differences: u64,
+        sum: u128,
+        allowed: Range<u64>,
+    ) -> Result<(), String> {
+        if !m.is_power_of_two() || m.ilog2() >= OCTAVES as u32 {
+            return Err("the averaging factor is not a power of two up to 2^29".into());
+        }
+        let possible = possible_differences(self.samples, m);
+        let right = match self.gaps {
+            0 => differences == possible,
+            _ => differences <= possible,
+        };
+        if !right || !allowed.contains(&differences) {
+            return Err(format!(
+                "{differences} differences of {} samples are impossible",
+                self.samples
+            ));
+        }
+        // The sums of two clusters of m counts differ by less than 2^32 m.
+        if sum as f64 > differences as f64 * (f64::from(m) * 2f64.powi(32)).powi(2) {
+            return Err(format!("a sum of {sum} is too large for 32-bit counts"));
+        }
+        Ok(())
+    }
+}
+
+/// The Allan variance, in rate units squared, computed as [`Curve`] does.
+fn variance(m: u32, differences: u64, sum: u128, rate_per_count: f64) -> f64 {
+    let cluster_scale = rate_per_count / f64::from(m);
+    0.5 * (sum as f64 / differences as f64) * cluster_scale * cluster_scale
 }
 
 /// Number of quarter-overlapping differences in a record without gaps.
-fn differences(samples: u64, m: u32) -> u64 {
+fn possible_differences(samples: u64, m: u32) -> u64 {
     let (blocks, first) = match m {
         1 => (samples, 1),
         2 => (samples, 3),

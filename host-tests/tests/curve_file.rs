@@ -216,8 +216,8 @@ fn text_that_is_not_a_curve_file_is_refused_with_its_line() {
         ),
         ("[1, 2]".into(), "c.json:1: not a curve file"),
         (
-            good.replace("\"version\": 2", "\"version\": 3"),
-            "c.json: the format has version 3",
+            good.replace("\"version\": 3", "\"version\": 4"),
+            "c.json: the format has version 4",
         ),
         (
             good.replace(FORMAT, "another"),

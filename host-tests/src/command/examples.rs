@@ -21,6 +21,11 @@ pub(super) const MEASURE: &str = examples! {
     "allanite measure log1.csv log2.csv.gz --rate 100 --scale 0.05 --output curves"
 };
 
+pub(super) const MERGE: &str = examples! {
+    "allanite merge monday.json tuesday.json --output week.json"
+    "allanite merge january.json february.json march.json --output year.json"
+};
+
 pub(super) const FIT: &str = examples! {
     "allanite fit log.csv --rate 100 --scale 0.05 --unit deg/s --columns gx,gy,gz"
     "allanite fit log1.csv log2.csv curve.json"

@@ -102,11 +102,7 @@ fn places(logs: &[PathBuf], output: &Path) -> Result<HashMap<PathBuf, PathBuf>, 
                 "create the folder first",
             ));
         }
-        if !record::is_curve(output) {
-            return Err(
-                Place::file(output).failure("a curve file must end in .json", "rename the output")
-            );
-        }
+        check_name(output)?;
     }
     let mut places: HashMap<PathBuf, PathBuf> = HashMap::new();
     for log in logs {
@@ -134,14 +130,31 @@ fn places(logs: &[PathBuf], output: &Path) -> Result<HashMap<PathBuf, PathBuf>, 
     Ok(places)
 }
 
-fn write(file: &mut OutputFile, place: &Path, curves: &CurveFile) -> Result<(), Failure> {
+/// Refuses the path of a curve file that the other commands would take for a log.
+pub(super) fn check_name(output: &Path) -> Result<(), Failure> {
+    if record::is_curve(output) {
+        return Ok(());
+    }
+    Err(Place::file(output).failure("a curve file must end in .json", "rename the output"))
+}
+
+/// Writes a curve file.
+pub(super) fn write(
+    file: &mut OutputFile,
+    place: &Path,
+    curves: &CurveFile,
+) -> Result<(), Failure> {
     let fail = |error: io::Error| Place::file(place).io(&error);
     let json = curves.to_json().map_err(|error| fail(error.into()))?;
     file.write_all(json.as_bytes()).map_err(fail)
 }
 
 /// Prints one line for each axis; the name of the log comes first if there are several logs.
-fn summarize(log: Option<&str>, curves: &[AxisCurve], output: &mut impl Write) -> io::Result<()> {
+pub(super) fn summarize(
+    log: Option<&str>,
+    curves: &[AxisCurve],
+    output: &mut impl Write,
+) -> io::Result<()> {
     for curve in curves {
         if let Some(log) = log {
             write!(output, "{log}: ")?;

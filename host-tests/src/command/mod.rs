@@ -13,6 +13,7 @@ mod input;
 mod known_filter;
 mod lot;
 mod measure;
+mod merge;
 mod output;
 mod plot;
 mod report;
@@ -47,6 +48,7 @@ pub struct CommandLine {
 enum Command {
     Simulate(simulate::Arguments),
     Measure(measure::Arguments),
+    Merge(merge::Arguments),
     Fit(fit::Arguments),
     Export(export::Arguments),
     Compare(compare::Arguments),
@@ -77,6 +79,7 @@ impl CommandLine {
         match &self.command {
             Command::Simulate(arguments) => simulate::run(arguments, &mut output),
             Command::Measure(arguments) => measure::run(arguments, &mut output),
+            Command::Merge(arguments) => merge::run(arguments, &mut output),
             Command::Fit(arguments) => fit::run(arguments, &mut output),
             Command::Export(arguments) => export::run(arguments, &mut output),
             Command::Compare(arguments) => compare::run(arguments, &mut output),

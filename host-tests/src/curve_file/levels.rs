@@ -1,0 +1,114 @@
+//! The spectrum in a curve file.
+
+use super::{AxisCurve, TOLERANCE};
+use crate::log::BINS;
+use allanite::spectrum::{Bin, Spectrum};
+use serde::{Deserialize, Serialize};
+
+/// The most power of a level, in Allan variances of one of its blocks. An octave's response to the frequencies of the
+/// level is 0.075 at least, so that a record without gaps has 14 at most. Chosen by hand: gaps leave out segments, so
+/// that a record with many of them may have more.
+const MOST_POWER: f64 = 1e6;
+
+/// The spectrum of one axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpectrumLevels {
+    /// Number of blocks in a segment.
+    pub segment: u32,
+    /// The levels, shortest blocks first.
+    pub levels: Vec<SpectrumLevel>,
+}
+
+/// One level of a spectrum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpectrumLevel {
+    /// Number of samples in a block, a power of 8.
+    pub block: u32,
+    /// Number of segments that overlap by half.
+    pub segments: u32,
+    /// One-sided densities in rate units squared per hertz, from the bin `segment/16` to the bin before `segment/2`.
+    pub density: Vec<f64>,
+    /// Spectral kurtosis of each bin.
+    pub kurtosis: Vec<f64>,
+}
+
+impl SpectrumLevels {
+    pub(super) fn of(spectrum: &Spectrum<BINS>) -> Self {
+        let levels = spectrum.levels().map(|level| SpectrumLevel {
+            block: level.first().map_or(0, |bin| bin.block),
+            segments: level.first().map_or(0, |bin| bin.segments),
+            density: level.iter().map(|bin| bin.density).collect(),
+            kurtosis: level.iter().map(|bin| bin.spectral_kurtosis).collect(),
+        });
+        Self {
+            segment: spectrum.segment(),
+            levels: levels.collect(),
+        }
+    }
+
+    pub(super) fn spectrum(&self, rate_hz: f64) -> Result<Spectrum<BINS>, allanite::Error> {
+        let bins = self.levels.iter().flat_map(|level| {
+            let measured = level.density.iter().zip(&level.kurtosis);
+            let indices = self.segment / 16..;
+            measured
+                .zip(indices)
+                .map(|((density, kurtosis), index)| Bin {
+                    block: level.block,
+                    index,
+                    frequency_hz: 0.0,
+                    density: *density,
+                    segments: level.segments,
+                    spectral_kurtosis: *kurtosis,
+                })
+        });
+        Spectrum::new(rate_hz, self.segment, bins)
+    }
+
+    /// Checks the numbers of the levels against each other and against the axis.
+    pub(super) fn check(&self, axis: &AxisCurve) -> Result<(), String> {
+        let blocks = (0..10).map(|level| 1_u32 << (3 * level));
+        let right = self.levels.iter().zip(blocks);
+        if self.levels.len() > 10 || right.clone().any(|(level, block)| level.block != block) {
+            return Err("spectrum: the blocks of the levels are not 1, 8, 64, …".into());
+        }
+        for level in &self.levels {
+            let here = |what: &str| Err(format!("spectrum, block {}: {what}", level.block));
+            let bins = (self.segment / 2 - self.segment / 16) as usize;
+            if level.density.len() != bins || level.kurtosis.len() != bins {
+                return here("the number of bins is impossible");
+            }
+            let half = u64::from(level.block) * u64::from(self.segment / 2);
+            let most = (axis.samples / half.max(1)).saturating_sub(1);
+            if u64::from(level.segments) > most {
+                return here("there are more segments than samples for them");
+            }
+            if level.segments < Spectrum::<BINS>::MIN_SEGMENTS {
+                return here("there are too few segments");
+            }
+            // By Cauchy and Schwarz, n ΣP² is at least (ΣP)² and at most n (ΣP)².
+            let most = f64::from(level.segments) + 1.0;
+            if level
+                .kurtosis
+                .iter()
+                .any(|&kurtosis| kurtosis > most * (1.0 + TOLERANCE))
+            {
+                return here("a spectral kurtosis is impossible");
+            }
+            let mut octaves = axis.octaves.iter();
+            let Some(octave) = octaves.find(|octave| octave.m == level.block) else {
+                return here("there is no octave of this length");
+            };
+            let bin_hz = axis.rate_hz / (f64::from(level.block) * f64::from(self.segment));
+            let power = bin_hz * level.density.iter().sum::<f64>();
+            if power > MOST_POWER * octave.variance {
+                return here("the densities contradict the octaves");
+            }
+        }
+        let spectrum = self.spectrum(axis.rate_hz);
+        spectrum
+            .map(|_| ())
+            .map_err(|error| format!("spectrum: {error}"))
+    }
+}

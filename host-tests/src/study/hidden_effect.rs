@@ -141,6 +141,18 @@ pub struct Outcome {
 
 /// Diagnoses a simulated record, and judges the result on a second record of the same gyro.
 pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64) -> Outcome {
+    let options = allanite::diagnosis::Options::default();
+    diagnose_with(base, hidden, samples, seed, options)
+}
+
+/// As [`diagnose`], with these options.
+pub fn diagnose_with(
+    base: Coefficients,
+    hidden: &[Hidden],
+    samples: usize,
+    seed: u64,
+    options: allanite::diagnosis::Options,
+) -> Outcome {
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
     let mut gyro = Axis::<OCTAVES, 0, ()>::new();
     let [mut sums, mut other_sums] = [SpectrumSums::new(), SpectrumSums::new()];
@@ -159,7 +171,7 @@ pub fn diagnose(base: Coefficients, hidden: &[Hidden], samples: usize, seed: u64
         kurtosis: kurtosis.as_ref(),
         ..Evidence::NONE
     };
-    let (model, options) = (Model::ieee_952(), allanite::diagnosis::Options::default());
+    let model = Model::ieee_952();
     let verdict = Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options)
         .run(|step| steps.push(step.clone()))
         .ok();

@@ -1,6 +1,7 @@
 //! Statistics over thousands of simulated records. They take too long for tests, and the figures in
 //! the README rest on them.
 
+pub mod calibration;
 pub mod clean;
 pub mod coefficients;
 pub mod confusion;

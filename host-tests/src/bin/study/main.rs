@@ -1,5 +1,6 @@
 //! The studies that the README's figures rest on: `cargo xtask study NAME`.
 
+mod calibration;
 mod clean;
 mod coefficients;
 mod confusion;
@@ -140,6 +141,21 @@ enum Study {
         #[arg(long)]
         flicker: Option<f64>,
     },
+    /// Measure whether p-values are uniform and intervals contain the truth, with and without a hidden effect
+    Calibration {
+        /// Number of records per case
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+        /// Study only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
+        /// Relative tolerance of the model, instead of that of a diagnosis
+        #[arg(long)]
+        tolerance: Option<f64>,
+        /// Print JSON instead of a table
+        #[arg(long)]
+        json: bool,
+    },
     /// Compare single with double precision on the same records
     Precision {
         /// Number of records per table
@@ -203,6 +219,12 @@ fn main() -> Result<()> {
             effect,
             flicker,
         } => self_test::print(devices, effect.as_deref(), flicker),
+        Study::Calibration {
+            records,
+            preset,
+            tolerance,
+            json,
+        } => calibration::print(records, preset, tolerance, json)?,
         Study::Precision { records } => precision::print(records)?,
         Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),
     }

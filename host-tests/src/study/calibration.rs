@@ -1,0 +1,132 @@
+//! Studies whether p-values are uniform and intervals contain the truth, with and without a hidden effect.
+
+use super::{
+    RATE_HZ,
+    hidden_effect::{Outcome, diagnose_with},
+    theory::squares,
+};
+use crate::simulate::{Hidden, Preset};
+use allanite::{diagnosis::Options, effect::MAX_PARAMETERS};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// The number of samples of a record, which is 22 minutes long.
+pub const SAMPLES: usize = 1 << 17;
+
+/// The symbols of the four terms that the presets have.
+pub const TERMS: [&str; 4] = ["Q", "N", "B", "K"];
+
+/// The effects that are hidden, each with its shape and its size in standard deviations of the white noise of a sample.
+/// An effect that replaces white noise keeps its coefficient.
+pub const CASES: [Option<(&str, [f64; MAX_PARAMETERS], f64)>; 8] = [
+    None,
+    Some(("sinusoid", [7.7, 0.0], 0.4)),
+    Some(("resonance", [5.0, 3.0], 1.0)),
+    Some(("resonance", [20.0, 20.0], 0.5)),
+    Some(("low_pass", [0.02, 2.0], 1.0)),
+    Some(("decimation_filter", [0.03, 1.0], 1.0)),
+    Some(("gauss_markov", [1.0, 0.0], 0.3)),
+    Some(("notch", [30.0, 2.0], 1.0)),
+];
+
+/// The results of one case: shares of the records of which the diagnosis names the hidden effect and nothing else.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The preset.
+    pub preset: String,
+    /// The hidden effect; `None` where nothing is hidden.
+    pub effect: Option<&'static str>,
+    /// Its shape.
+    pub shape: [f64; MAX_PARAMETERS],
+    /// The number of records in which it is named alone.
+    pub records: usize,
+    /// The share of p-values below 5 % and below 1 %.
+    pub p_below: [f64; 2],
+    /// The largest distance of the distribution of p from the uniform one (Kolmogorov 1933).
+    pub distance: f64,
+    /// The share of intervals and bounds that contain the truth, for each of [`TERMS`].
+    pub covered: [f64; 4],
+    /// The same for the coefficient of the hidden effect and its shape; NaN for what it does not have, and for the
+    /// coefficient of a filter, which is N.
+    pub covered_effect: [f64; 1 + MAX_PARAMETERS],
+}
+
+/// Diagnoses records of a gyro that hides one of [`CASES`].
+pub fn study(preset: Preset, case: usize, records: u64, options: Options) -> Row {
+    let base = preset.coefficients();
+    let white = base.angle_random_walk * RATE_HZ.sqrt();
+    let hidden = CASES[case].and_then(|(name, parameters, size)| {
+        let mut hidden = Hidden::new(name, parameters, base.angle_random_walk)?;
+        if !hidden.replaces_white_noise() {
+            hidden.coefficient = size * white;
+        }
+        Some(hidden)
+    });
+    let outcomes: Vec<Outcome> = (0..records)
+        .into_par_iter()
+        .map(|seed| diagnose_with(base, hidden.as_slice(), SAMPLES, seed, options))
+        .filter(|outcome| {
+            let named = outcome.added.iter().map(|(term, _)| term.effect.name());
+            named.eq(hidden.iter().map(|one| one.effect.name()))
+        })
+        .collect();
+    let share = |is: &dyn Fn(&Outcome) -> Option<bool>| {
+        let known: Vec<bool> = outcomes.iter().filter_map(is).collect();
+        known.iter().filter(|&&is| is).count() as f64 / known.len() as f64
+    };
+    // The coefficient of an effect in a fit contains the truth.
+    let contains = |outcome: &Outcome, name: &str, truth: f64| {
+        let mut terms = outcome.model.terms().iter();
+        let at = terms.position(|term| term.effect.name() == name)?;
+        let found = outcome.fit.coefficients.get(at)?;
+        Some((found.lower..=found.upper).contains(&truth))
+    };
+    let names = [
+        "quantization",
+        "angle_random_walk",
+        "bias_instability",
+        "rate_random_walk",
+    ];
+    let truth = squares(base).map(f64::sqrt);
+    let covered = std::array::from_fn(|i| {
+        share(&|outcome| {
+            // A filter takes the place of the white noise, and keeps its coefficient.
+            let filter = hidden.filter(|one| i == 1 && one.replaces_white_noise());
+            let name = filter.map_or(names[i], |filter| filter.effect.name());
+            contains(outcome, name, truth[i])
+        })
+    });
+    let covered_effect = std::array::from_fn(|i| {
+        let Some(hidden) = hidden else {
+            return f64::NAN;
+        };
+        let name = hidden.effect.name();
+        match i.checked_sub(1) {
+            None if hidden.replaces_white_noise() => f64::NAN,
+            None => share(&|outcome| contains(outcome, name, hidden.coefficient)),
+            Some(parameter) => share(&|outcome| {
+                let named = hidden.effect.parameters().get(parameter)?.name;
+                let mut shapes = outcome.fit.shape.iter();
+                let found = shapes.find(|shape| shape.name == named)?;
+                Some((found.lower..=found.upper).contains(&hidden.parameters[parameter]))
+            }),
+        }
+    });
+    let mut p: Vec<f64> = outcomes.iter().map(|one| one.fit.p_value).collect();
+    p.sort_by(f64::total_cmp);
+    let n = p.len() as f64;
+    let distances = p.iter().zip(0..).map(|(p, i)| {
+        let i = f64::from(i);
+        (p - i / n).abs().max(((i + 1.0) / n - p).abs())
+    });
+    Row {
+        preset: format!("{preset:?}").to_lowercase(),
+        effect: hidden.map(|hidden| hidden.effect.name()),
+        shape: hidden.map_or([0.0; MAX_PARAMETERS], |hidden| hidden.parameters),
+        records: outcomes.len(),
+        p_below: [0.05, 0.01].map(|limit| share(&|outcome| Some(outcome.fit.p_value < limit))),
+        distance: distances.fold(0.0, f64::max),
+        covered,
+        covered_effect,
+    }
+}

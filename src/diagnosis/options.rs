@@ -8,9 +8,9 @@ use crate::real::Real;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Options {
     /// Tolerance of the model, relative to its variance, as in
-    /// [`fit::Options::tolerance`](crate::fit::Options::tolerance). Whether it is granted is decided
-    /// once, for the model that is asked about. The decision holds for all models that are compared
-    /// with it. Default 0.01.
+    /// [`fit::Options::tolerance`](crate::fit::Options::tolerance). It is granted to a model
+    /// that does not explain the record without it, and then to all models that are compared with that one. Default
+    /// 0.01.
     pub tolerance: Real,
     /// The smallest improvement for which an effect is accepted. The improvement is the decrease of
     /// `−2 ln L`, less 2 for each of the effect's own parameters. Default 8, set by

@@ -366,7 +366,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
                 let _ = self.step.dropped.push(term.effect.name());
                 self.step.model.clone_from(&fitted.model);
                 let start = Start::Once(fitted.squares);
-                self.judge(start, Tolerance::Fixed(self.judged.tolerance))
+                self.judge(start, Tolerance::IfNeeded(self.options.tolerance))
             }
             None => {
                 self.step.begin_report();
@@ -442,12 +442,8 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
                 self.step.covariate = Some(followed);
                 followed.correct(&self.evidence, &mut self.curve, &mut self.spectrum);
                 self.additions = self.additions.saturating_add(1);
-                let tolerance = if self.judged.tolerance > 0.0 {
-                    Tolerance::Fixed(self.judged.tolerance)
-                } else {
-                    // The curve is another one now, so the tolerance is decided anew.
-                    Tolerance::IfNeeded(self.options.tolerance)
-                };
+                // The curve is another one now, so the tolerance is decided anew.
+                let tolerance = Tolerance::IfNeeded(self.options.tolerance);
                 self.judge(Start::From(self.judged.squares), tolerance)
             }
             Some(Addition::Effect(_)) => {
@@ -456,7 +452,8 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
                 self.step.dropped.clear();
                 self.step.model.clone_from(&self.best.model);
                 self.additions = self.additions.saturating_add(1);
-                let tolerance = Tolerance::Fixed(self.judged.tolerance);
+                // The model may explain the record without the tolerance that the one before needed.
+                let tolerance = Tolerance::IfNeeded(self.judged.tolerance);
                 self.judge(Start::Once(self.best.squares), tolerance)
             }
             None => {

@@ -173,7 +173,11 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         }
         match self.if_needed.take() {
             Some(tolerance) if self.p_value() < ADEQUATE_P => {
-                self.begin_rounds(problem, self.squares, tolerance, Rounds::All)?;
+                let (start, rounds) = match self.rounds {
+                    Rounds::One => (self.assumed, Rounds::One),
+                    Rounds::Promising | Rounds::All => (self.squares, Rounds::All),
+                };
+                self.begin_rounds(problem, start, tolerance, rounds)?;
                 Ok(false)
             }
             _ => Ok(true),

@@ -1,6 +1,11 @@
 use crate::{
-    Error, Scale,
-    real::{Real, real},
+    Error, Scale, Term,
+    effect::LowPass,
+    real::{
+        Real, by_precision,
+        consts::{FRAC_PI_2, PI},
+        real,
+    },
 };
 
 /// The largest number of registers that are read in one transaction.
@@ -157,6 +162,38 @@ pub struct Filter {
     pub noise_bandwidth_hz: Real,
     /// The order of the low pass, which is the number of its poles.
     pub poles: u8,
+}
+
+/// The noise bandwidth of a Butterworth low pass of one to four poles, relative to its cut-off: `(π/2n)/sin(π/2n)`.
+const NOISE_BANDWIDTHS: [Real; 4] = [
+    FRAC_PI_2,
+    by_precision(1.110_720_734_539_591_6, 1.110_720_8),
+    by_precision(1.047_197_551_196_597_7, 1.047_197_6),
+    by_precision(1.026_172_152_977_031, 1.026_172_2),
+];
+
+impl Filter {
+    /// The low pass as an effect of known shape: the Butterworth filter of the same order and noise bandwidth, of one to
+    /// four poles. Put into a model, it belongs to it from the start, and a diagnosis does not discover it.
+    ///
+    /// A shape that is wrong makes a model inadequate. So this is for a filter whose order is documented, such as that of
+    /// the [`ICM_42688_P`](super::ICM_42688_P).
+    ///
+    /// ```
+    /// use allanite::{Model, sensor::ICM_42688_P};
+    ///
+    /// let mut model = Model::ieee_952();
+    /// model.put(ICM_42688_P.filter.term())?;
+    /// assert_eq!(model.position("low_pass"), Some(1));
+    /// # Ok::<(), allanite::Error>(())
+    /// ```
+    pub fn term(&self) -> Term {
+        let poles = self.poles.clamp(1, 4);
+        let ratio = NOISE_BANDWIDTHS.get(usize::from(poles).wrapping_sub(1));
+        let ratio = ratio.copied().unwrap_or(1.0);
+        let time_constant_s = ratio / (2.0 * PI * self.noise_bandwidth_hz);
+        Term::known(&LowPass, [time_constant_s, Real::from(poles)])
+    }
 }
 
 /// Everything that [`Imu`](super::Imu) needs to know about a sensor. A new sensor needs only a new value.

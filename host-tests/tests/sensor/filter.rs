@@ -1,9 +1,15 @@
 //! Tests that every sensor's low pass keeps its noise below half the output rate.
 
-use allanite::sensor::{
-    BMI160, CATALOGUE, Description, ICM_42688_P, L3GD20, LSM6DSO, MPU_6050, MPU_6500,
+use allanite::{
+    Accumulator, Curve, Model, Scale,
+    diagnosis::{Diagnosis, Evidence, Options, Verdict},
+    effect::CATALOGUE as EFFECTS,
+    sensor::{BMI160, CATALOGUE, Description, ICM_42688_P, L3GD20, LSM6DSO, MPU_6050, MPU_6500},
 };
+use host_tests::simulate::{Hidden, Preset, Simulator};
 use std::f64::consts::PI;
+
+const OCTAVES: usize = 20;
 
 /// The rate and the low pass that a data sheet gives for the values of the start-up writes.
 struct LowPass {
@@ -141,4 +147,56 @@ fn a_low_pass_that_is_too_wide_is_noticed() {
     let wide: fn(f64) -> f64 = |f| one_pole(f, 42.0);
     assert!(noise_bandwidth_hz(wide) > 50.0);
     assert!(folding(wide, 100.0) > 1.2);
+}
+
+/// Counts of a gyro behind a sensor's low pass, and what a diagnosis finds missing in a model of it.
+fn missing(model: &Model, curve: &Curve<OCTAVES>) -> Vec<&'static str> {
+    let mut found = Vec::new();
+    let (evidence, options) = (Evidence::NONE, Options::default());
+    let mut diagnosis = Diagnosis::new(curve.clone(), evidence, model, &EFFECTS, options);
+    let verdict = diagnosis.run(|step| {
+        let terms = step.model.terms().iter();
+        let known = |name: &str| model.position(name).is_some();
+        let names = terms.map(|term| term.effect.name());
+        found = names.filter(|name| !known(name)).collect();
+    });
+    assert!(matches!(verdict, Ok(Verdict::Adequate | Verdict::Improved)));
+    found
+}
+
+/// The filter's shape follows from its noise bandwidth. A model that has it explains the record, and one that lacks it
+/// names a filter.
+#[test]
+fn a_known_filter_is_part_of_the_model_and_not_found() {
+    for (description, cutoff_hz) in [(&MPU_6500, 20.0), (&ICM_42688_P, 45.93), (&LSM6DSO, 31.24)] {
+        let term = description.filter.term();
+        let [time_constant_s, poles] = term.parameters;
+        let found_hz = 1.0 / (2.0 * PI * time_constant_s);
+        assert!((found_hz / cutoff_hz - 1.0).abs() < 1e-3, "{found_hz}");
+        assert_eq!(poles, f64::from(description.filter.poles));
+
+        let coefficients = Preset::Mems.coefficients();
+        let hidden = Hidden::new("low_pass", term.parameters, coefficients.angle_random_walk);
+        let rate_hz = description.rate_hz;
+        let simulator = Simulator::with_hidden(coefficients, hidden.as_slice(), rate_hz, 3);
+        let scale = Scale::new(1e-4, rate_hz).unwrap();
+        let mut accumulator = Accumulator::<OCTAVES>::new();
+        for rate in simulator.take(1 << 17) {
+            accumulator.push((rate / 1e-4).round() as i32);
+        }
+        let curve = accumulator.curve(scale);
+        let (unaware, mut aware) = (Model::ieee_952(), Model::ieee_952());
+        aware.put(term).unwrap();
+        assert!(missing(&aware, &curve).is_empty(), "{}", description.name);
+        let named = missing(&unaware, &curve);
+        let is_filter = |name: &&str| ["low_pass", "decimation_filter", "notch"].contains(name);
+        assert!(
+            named.iter().all(is_filter),
+            "{}: {named:?}",
+            description.name
+        );
+        // So near half the rate, the ICM-42688-P's filter changes the octaves by less than their scatter.
+        let is_seen = cutoff_hz < 0.4 * rate_hz;
+        assert_eq!(!named.is_empty(), is_seen, "{}", description.name);
+    }
 }

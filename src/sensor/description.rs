@@ -3,7 +3,7 @@ use crate::{
     effect::LowPass,
     real::{
         Real, by_precision,
-        consts::{FRAC_PI_2, PI},
+        consts::{FRAC_PI_2, FRAC_PI_3, PI},
         real,
     },
 };
@@ -168,7 +168,7 @@ pub struct Filter {
 const NOISE_BANDWIDTHS: [Real; 4] = [
     FRAC_PI_2,
     by_precision(1.110_720_734_539_591_6, 1.110_720_8),
-    by_precision(1.047_197_551_196_597_7, 1.047_197_6),
+    FRAC_PI_3,
     by_precision(1.026_172_152_977_031, 1.026_172_2),
 ];
 

@@ -6,6 +6,7 @@
 mod levels;
 mod merge;
 
+use levels::TOLERANCE;
 pub use levels::{SpectrumLevel, SpectrumLevels};
 
 use crate::{
@@ -36,10 +37,6 @@ const LONGEST_NAME: usize = 1 << 12;
 
 /// Largest number of samples: a thousand years at 33 kHz.
 const MOST_SAMPLES: u64 = 1 << 50;
-
-/// Largest relative error of a number that follows from other numbers of the file. Chosen by hand:
-/// numbers are written with all their digits, so that only rounding remains, some 1e-15.
-const TOLERANCE: f64 = 1e-9;
 
 /// The curves of a log's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -338,7 +335,13 @@ impl AxisCurve {
                 .map_err(here)?;
         }
         if let Some(spectrum) = &self.spectrum {
-            spectrum.check(self)?;
+            let variance = |m| {
+                let mut octaves = self.octaves.iter();
+                octaves
+                    .find(|octave| octave.m == m)
+                    .map(|octave| octave.variance)
+            };
+            spectrum.check(self.samples, self.rate_hz, variance)?;
         }
         Ok(())
     }

@@ -201,7 +201,10 @@ fn every_candidate_shows_its_own_fit() {
                 assert_eq!(shown, error(&steps[at + 1]));
                 continue;
             }
-            let name = candidate["effect"].as_str().unwrap().replace('_', " ");
+            let name = match candidate["effect"].as_str().unwrap() {
+                "gauss_markov" => "Gauss–Markov".to_owned(),
+                name => name.replace('_', " "),
+            };
             assert!(
                 heading.starts_with("With this candidate") && heading.contains(&name),
                 "{heading}"

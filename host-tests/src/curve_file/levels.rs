@@ -1,9 +1,12 @@
 //! The spectrum in a curve file.
 
-use super::{AxisCurve, TOLERANCE};
 use crate::log::BINS;
 use allanite::spectrum::{Bin, Spectrum};
 use serde::{Deserialize, Serialize};
+
+/// Largest relative error of a number that follows from other numbers of the file. Chosen by hand:
+/// numbers are written with all their digits, so that only rounding remains, some 1e-15.
+pub(super) const TOLERANCE: f64 = 1e-9;
 
 /// The most power of a level, in Allan variances of one of its blocks. An octave's response to the frequencies of the
 /// level is 0.075 at least, so that a record without gaps has 14 at most. Chosen by hand: gaps leave out segments, so
@@ -66,8 +69,14 @@ impl SpectrumLevels {
         Spectrum::new(rate_hz, self.segment, bins)
     }
 
-    /// Checks the numbers of the levels against each other and against the axis.
-    pub(super) fn check(&self, axis: &AxisCurve) -> Result<(), String> {
+    /// Checks the numbers of the levels against each other and against their axis: its samples and rate, and the Allan
+    /// variance of an averaging factor.
+    pub(super) fn check(
+        &self,
+        samples: u64,
+        rate_hz: f64,
+        variance: impl Fn(u32) -> Option<f64>,
+    ) -> Result<(), String> {
         let blocks = (0..10).map(|level| 1_u32 << (3 * level));
         let right = self.levels.iter().zip(blocks);
         if self.levels.len() > 10 || right.clone().any(|(level, block)| level.block != block) {
@@ -80,7 +89,7 @@ impl SpectrumLevels {
                 return here("the number of bins is impossible");
             }
             let half = u64::from(level.block) * u64::from(self.segment / 2);
-            let most = (axis.samples / half.max(1)).saturating_sub(1);
+            let most = (samples / half.max(1)).saturating_sub(1);
             if u64::from(level.segments) > most {
                 return here("there are more segments than samples for them");
             }
@@ -96,17 +105,16 @@ impl SpectrumLevels {
             {
                 return here("a spectral kurtosis is impossible");
             }
-            let mut octaves = axis.octaves.iter();
-            let Some(octave) = octaves.find(|octave| octave.m == level.block) else {
+            let Some(variance) = variance(level.block) else {
                 return here("there is no octave of this length");
             };
-            let bin_hz = axis.rate_hz / (f64::from(level.block) * f64::from(self.segment));
+            let bin_hz = rate_hz / (f64::from(level.block) * f64::from(self.segment));
             let power = bin_hz * level.density.iter().sum::<f64>();
-            if power > MOST_POWER * octave.variance {
+            if power > MOST_POWER * variance {
                 return here("the densities contradict the octaves");
             }
         }
-        let spectrum = self.spectrum(axis.rate_hz);
+        let spectrum = self.spectrum(rate_hz);
         spectrum
             .map(|_| ())
             .map_err(|error| format!("spectrum: {error}"))

@@ -20,7 +20,7 @@ pub const SAMPLES: usize = 1 << 17;
 type Case = &'static [(&'static str, [f64; MAX_PARAMETERS], f64)];
 
 /// The effects that are hidden.
-pub const CASES: [Case; 17] = [
+pub const CASES: [Case; 21] = [
     &[],
     &[("sinusoid", [0.3, 0.0], 0.2)],
     &[("sinusoid", [7.7, 0.0], 0.2)],
@@ -32,12 +32,16 @@ pub const CASES: [Case; 17] = [
     &[("low_pass", [0.02, 1.0], 1.0)],
     &[("low_pass", [0.02, 2.0], 1.0)],
     &[("low_pass", [0.02, 3.0], 1.0)],
+    &[("low_pass", [0.02, 4.0], 1.0)],
+    &[("notch", [30.0, 2.0], 1.0)],
     &[("decimation_filter", [0.03, 1.0], 1.0)],
     // Two boxcars of three samples: the width counts the single boxcar that spreads a pulse as far.
     &[("decimation_filter", [0.042_426, 2.0], 1.0)],
     &[("gauss_markov", [0.1, 0.0], 0.3)],
+    &[("gauss_markov", [1.0, 0.0], 0.3)],
     &[("random_telegraph", [0.1, 0.0], 0.5)],
     &[("random_telegraph", [1.0, 0.0], 0.5)],
+    &[("power_law", [1.5, 0.0], 0.1)],
     &[
         ("resonance", [20.0, 14.0], 0.8),
         ("decimation_filter", [0.0165, 2.0], 1.0),

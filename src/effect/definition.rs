@@ -179,6 +179,12 @@ pub trait Effect: Sync {
         false
     }
 
+    /// The shape from which a search goes on, in the place of one at which the effect no longer changes with a parameter:
+    /// the nearest one with the same effect at which it does. The default is the shape itself.
+    fn distinct(&self, shape: &SampledShape) -> [Real; super::MAX_PARAMETERS] {
+        shape.parameters
+    }
+
     /// The generalised covariance `G(n)` of the angle, for `lag = n ≥ 0` samples, in s² times the
     /// rate unit squared per coefficient squared. A constant and a multiple of `n²` are free.
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real;

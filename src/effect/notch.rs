@@ -89,6 +89,12 @@ fn angle(wanted: Real, start: Real) -> Real {
     turns
 }
 
+/// The angle in turns from which Newton's method reaches any angle below an eighth of a turn.
+const BELOW_A_QUARTER: Real = 0.2;
+
+/// How far a distinct quality lies above the lowest one. Chosen by hand: a derivative needs room.
+const ABOVE: Real = 1.02;
+
 /// The number of steps of Newton's method. Chosen by hand: the slowest case, the widest notch at the lowest frequency,
 /// has the precision of the type after seven.
 const STEPS: usize = 7;
@@ -139,6 +145,17 @@ impl Effect for Notch {
 
     fn needs_spectrum(&self) -> bool {
         true
+    }
+
+    fn distinct(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+        let [frequency_hz, quality] = shape.parameters;
+        let turns = frequency_hz * shape.interval_s;
+        let (sine, _) = math::sincos_of_turns(turns);
+        // Below the quality at which tan(Ω/2Q) is as large as it can be, every notch is the same.
+        let tangent = WIDEST * sine;
+        let half = angle(1.0 / math::sqrt(1.0 + tangent * tangent), BELOW_A_QUARTER);
+        let lowest = ABOVE * 0.5 * turns / half;
+        [frequency_hz, quality.max(lowest)]
     }
 
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
@@ -208,5 +225,40 @@ impl Explain for Notch {
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
         &[[20.0, 2.0], [8.0, 4.0]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Below the lowest quality, a search would find no way uphill or downhill.
+    #[test]
+    fn a_notch_that_is_as_wide_as_can_be_is_told_by_a_quality_at_which_it_changes() {
+        let shape = |parameters| SampledShape {
+            interval_s: 0.01,
+            parameters,
+        };
+        let of = |frequency_hz, quality| Notch.kernel(1.0, &shape([frequency_hz, quality]));
+        for (frequency_hz, quality, is_wide) in [
+            (32.0, 1.0, true),
+            (32.0, 1.3, true),
+            (32.0, 2.0, false),
+            (5.0, 1.0, false),
+            (41.0, 2.0, true),
+        ] {
+            let [same_hz, distinct] = Notch.distinct(&shape([frequency_hz, quality]));
+            assert_eq!(same_hz, frequency_hz);
+            let found = of(frequency_hz, distinct);
+            assert!((found / of(frequency_hz, quality) - 1.0).abs() < 0.05);
+            assert_eq!(
+                distinct > quality,
+                is_wide,
+                "{frequency_hz} {quality}: {distinct}"
+            );
+            // It changes from there on.
+            let changed = (of(frequency_hz, 1.01 * distinct) / found - 1.0).abs();
+            assert!(changed > 1e-4, "{frequency_hz} {quality}: {changed}");
+        }
     }
 }

@@ -105,7 +105,8 @@ impl<'a, const K: usize, const B: usize> Evaluation<'a, K, B> {
         }
     }
 
-    /// The best fit with the effect in this shape. Its χ² is infinite if there is no fit.
+    /// The best fit with the effect in this shape, or in the [distinct](crate::effect::Effect::distinct) one that is as
+    /// good. Its χ² is infinite if there is no fit.
     #[inline(never)]
     pub(crate) fn found(&mut self, term: Term) -> Found {
         let Self {
@@ -113,6 +114,10 @@ impl<'a, const K: usize, const B: usize> Evaluation<'a, K, B> {
             problem,
             weights,
         } = self;
+        let mut term = term;
+        term.parameters = term
+            .effect
+            .distinct(&term.sampled_shape(problem.interval_s));
         let unit = problem.column(&term);
         let (column, size) = weights.whiten_trial(problem, &|k| unit[k]);
         let column = column.map(|x| real(x) * size);

@@ -118,6 +118,7 @@
 //! |---|---|
 //! | `storage` | snapshots of a record and factory certificates, as checked bytes |
 //! | `flash` | snapshots in any flash that implements `embedded-storage-async`; includes `storage` |
+//! | `overlap` | intervals that count the samples which levels of a spectrum and octaves share; see [`fit`] |
 //! | `defmt` | `defmt::Format` on public values; the library itself never logs |
 //! | `double` | double precision instead of single, for final programs on a workstation only |
 //!

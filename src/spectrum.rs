@@ -23,6 +23,7 @@ mod density;
 mod expected;
 mod level;
 mod line;
+mod overlap;
 #[cfg(feature = "storage")]
 mod stored;
 mod transform;
@@ -33,6 +34,8 @@ pub use accumulator::SpectrumAccumulator;
 pub use covariance::{BAND, covariance_rows, relative_covariance};
 pub use density::{Bin, Spectrum};
 pub use expected::expected_densities;
+
+pub(crate) use overlap::{Lags, octave_lag};
 
 #[cfg(test)]
 mod tests;

@@ -48,7 +48,9 @@ impl Estimator {
     ) {
         // A model without shapes does not pay for their equations.
         self.is_valid = problem.model.terms().iter().any(|term| term.fitted)
-            && self.shape.set(problem, &solver.weights, &solver.squares);
+            && self
+                .shape
+                .set_with_overlap(problem, &solver.weights, &solver.squares, &solver.free);
         fit.method = Method::Covariance;
         fit.coefficients.clear();
         fit.shape.clear();
@@ -205,10 +207,11 @@ fn interval<const K: usize, const B: usize>(
     shape: Option<&ShapeEquations>,
     widened: Real,
 ) -> Option<Interval> {
-    let rise = real(CHI_SQUARED_95) * widened * widened;
+    let overlap = shape.map_or(1.0, |shape| shape.widening(i));
+    let rise = real(CHI_SQUARED_95) * widened * widened * overlap;
     let (squares, free, held) = (&solver.squares, &solver.free, problem.held());
     let mut interval = solver.equations.interval(i, squares, free, &held, rise)?;
-    interval.variance *= widened * widened;
+    interval.variance *= widened * widened * overlap;
     let with_shapes = shape.and_then(|shape| shape.variance(i, &free.with(i)));
     if let Some(variance) = with_shapes {
         let normal = Interval::normal(squares[i], variance, widened);

@@ -1,6 +1,12 @@
 //! The uncertainty of fitted shapes, and what it adds to the uncertainty of the coefficients.
 
-use super::{problem::Problem, result::ShapeEstimate, rows::Rows, weights::Weights};
+use super::{
+    overlap::{Sum, random_parts},
+    problem::Problem,
+    result::ShapeEstimate,
+    rows::Rows,
+    weights::Weights,
+};
 use crate::{
     limits::{MAX_SHAPE, TWO_SIDED_95},
     list::{self, numbered},
@@ -14,6 +20,9 @@ use heapless::Vec;
 /// The relative step of the numerical derivatives. It is near the cube root of the rounding of single
 /// precision, 0.005, where the error of a central difference is smallest.
 const STEP: Real = 0.01;
+
+/// The variance of an unknown is never taken for less than half of the one that follows from the weights. Chosen by hand.
+const MOST_LESS: Real = -0.5;
 
 /// The change of a term's variances with the logarithm of its parameter `j`, for a squared coefficient of
 /// `square`.
@@ -42,6 +51,8 @@ pub(crate) fn derivative<const K: usize, const B: usize>(
 pub(crate) struct ShapeEquations {
     equations: NormalEquations,
     parameters: Vec<(usize, usize, Term), MAX_SHAPE>,
+    /// The variance of each unknown beyond the one that follows from the weights, relative to that one.
+    excess: Vector,
 }
 
 impl ShapeEquations {
@@ -50,6 +61,7 @@ impl ShapeEquations {
     pub(crate) const EMPTY: Self = Self {
         equations: NormalEquations::EMPTY,
         parameters: Vec::new(),
+        excess: Vector::ZEROS,
     };
 
     /// Sets the equations at a solution. Returns `false` if the model has no fitted shapes, or if they
@@ -61,7 +73,38 @@ impl ShapeEquations {
         weights: &Weights<K, B>,
         squares: &Vector,
     ) -> bool {
+        let mut derivatives = Vec::new();
+        self.set_with(problem, weights, squares, &mut derivatives)
+    }
+
+    /// Does the same. With the feature `overlap`, it adds to the variances of all unknowns what the weights leave out,
+    /// because bins of different levels and octaves look at the same samples.
+    #[inline(never)]
+    pub(crate) fn set_with_overlap<const K: usize, const B: usize>(
+        &mut self,
+        problem: &Problem<'_, K, B>,
+        weights: &Weights<K, B>,
+        squares: &Vector,
+        free: &Free,
+    ) -> bool {
+        let mut derivatives = Vec::new();
+        let is_valid = self.set_with(problem, weights, squares, &mut derivatives);
+        if cfg!(feature = "overlap") && B > 0 && is_valid {
+            self.add_overlap(problem, weights, squares, free, &derivatives);
+        }
+        is_valid
+    }
+
+    #[inline(never)]
+    fn set_with<const K: usize, const B: usize>(
+        &mut self,
+        problem: &Problem<'_, K, B>,
+        weights: &Weights<K, B>,
+        squares: &Vector,
+        derivatives: &mut Vec<Rows<K, B, f32>, MAX_SHAPE>,
+    ) -> bool {
         self.parameters.clear();
+        self.excess = Vector::ZEROS;
         for (i, term) in numbered(problem.model.terms().iter()) {
             for j in term.fitted_parameters().filter(|_| squares[i] > 0.0) {
                 if self.parameters.push((i, j, *term)).is_err() {
@@ -73,15 +116,55 @@ impl ShapeEquations {
             return false;
         }
         // The coefficients come first, the shapes follow.
-        let mut derivatives: Vec<Rows<K, B, f32>, MAX_SHAPE> = Vec::new();
         for &(i, j, term) in &self.parameters {
             // There is a place for every parameter.
             let _ = derivatives.push(derivative(problem, term, j, squares[i]));
         }
         let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
         let equations = &mut self.equations;
-        let set = weights.equations(problem, &|_| 1.0, &derivatives, &residual, equations);
+        let set = weights.equations(problem, &|_| 1.0, derivatives, &residual, equations);
         set.is_ok()
+    }
+
+    #[inline(never)]
+    fn add_overlap<const K: usize, const B: usize>(
+        &mut self,
+        problem: &Problem<'_, K, B>,
+        weights: &Weights<K, B>,
+        squares: &Vector,
+        free: &Free,
+        derivatives: &[Rows<K, B, f32>],
+    ) {
+        let (count, unknowns) = (self.count(), self.equations.count());
+        let free = self.with_shapes(free, count);
+        let random = random_parts(problem, squares, &weights.model);
+        for i in 0..unknowns {
+            let Some(covariances) = self.equations.covariances(i, &free.with(i)) else {
+                continue;
+            };
+            let change = |row: usize| -> Real {
+                let of = |j: usize| match j.checked_sub(count) {
+                    None => problem.unit(j, row),
+                    Some(at) => derivatives.get(at).map_or(0.0, |column| real(column[row])),
+                };
+                (0..unknowns).map(|j| covariances[j] * of(j)).sum()
+            };
+            // The unknown changes by these factors with the rows.
+            let factors = weights.solve(problem, &|_| 1.0, &change);
+            let sum = Sum {
+                problem,
+                squares,
+                random: &random,
+                factors: &factors,
+            };
+            let excess = sum.excess() / covariances[i];
+            self.excess.put(i, excess.max(MOST_LESS));
+        }
+    }
+
+    /// The variance of an unknown relative to the one that follows from the weights.
+    pub(crate) fn widening(&self, i: usize) -> Real {
+        1.0 + self.excess[i]
     }
 
     fn with_shapes(&self, free: &Free, count: usize) -> Free {
@@ -108,7 +191,8 @@ impl ShapeEquations {
     /// The variance of a squared coefficient with the shapes free.
     pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<Real> {
         let free = self.with_shapes(free, self.count());
-        self.equations.variance(i, &free)
+        let variance = self.equations.variance(i, &free)?;
+        Some(variance * self.widening(i))
     }
 
     /// The covariances of a squared coefficient with all coefficients, with the shapes free.
@@ -136,7 +220,9 @@ impl ShapeEquations {
         let parameters = numbered(self.parameters.iter());
         list::fill(parameters.map(|(at, &(term, j, shape))| {
             let value = shape.parameter(j);
-            let variance = self.equations.variance(count.saturating_add(at), &free);
+            let unknown = count.saturating_add(at);
+            let variance = self.equations.variance(unknown, &free);
+            let widened = widened * math::sqrt(self.widening(unknown));
             let error = variance.map_or(Real::INFINITY, math::sqrt);
             let factor = math::exp(real(TWO_SIDED_95) * error * widened);
             ShapeEstimate {

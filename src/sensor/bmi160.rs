@@ -1,4 +1,4 @@
-use super::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write};
+use super::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write, Writes};
 
 /// Bosch BMI160, ±250 °/s at 200 Hz with fourfold oversampling, behind a low pass of 20 Hz.
 ///
@@ -24,7 +24,7 @@ pub static BMI160: Description = Description {
     identities: &[0xD1],
     // There is no soft reset, because it would return the interface to I²C. It is not needed: every register
     // that matters is written, and the offsets that a reset clears are constants, which cancel.
-    start_up: &[
+    start_up: Writes::of([
         // Register (0x7E) CMD: gyr_set_pmu_mode normal; the pause is longer than a start from suspend takes.
         Write::new(0x7E, 0x15).wait_us(100_000),
         // Register (0x43) GYR_RANGE: 0b011, ±250 °/s. 450 µs between writes is enough in any mode
@@ -33,7 +33,7 @@ pub static BMI160: Description = Description {
         // Register (0x42) GYR_CONF: gyr_bwp 0b00 (OSR4), gyr_odr 0b1001 (200 Hz); the gyro settles. In normal
         // mode the cut-off is 0.4 of the rate, and the noise is not certain to stay below Nyquist.
         Write::new(0x42, 0x09).wait_us(100_000),
-    ],
+    ]),
     interface: Interface {
         // Chapter 3: the first bit of an SPI access is 1 for a read; the data follow without dummy bytes.
         spi_read: 0x80,
@@ -50,6 +50,7 @@ pub static BMI160: Description = Description {
         ready: 1 << 6,
         overrun: 0,
     },
+    signal: None,
     // Register (0x04-0x17) DATA: GYR_X<7:0>.
     gyro: 0x0C,
     // Register (0x20-0x21) TEMPERATURE: a count of 0 is 23 °C, and one count is 2⁻⁹ K.
@@ -67,4 +68,5 @@ pub static BMI160: Description = Description {
         noise_bandwidth_hz: 31.8,
         poles: 1,
     },
+    fifo: None,
 };

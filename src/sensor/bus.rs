@@ -15,13 +15,7 @@ pub trait Registers {
     /// Whether the bus is SPI. It selects the writes that are sent: see [`Write::bus`](super::Write::bus).
     const IS_SPI: bool;
 
-    /// Makes the sensor listen to this bus.
-    ///
-    /// # Errors
-    /// The error of the bus.
-    fn wake(&mut self, interface: &Interface) -> Result<(), Self::Error>;
-
-    /// Reads consecutive registers in one transaction, beginning with `register`.
+    /// Reads in one transaction, beginning with `register`: consecutive registers, or a FIFO behind the register.
     ///
     /// # Errors
     /// The error of the bus.
@@ -39,11 +33,32 @@ pub trait Registers {
     fn write(&mut self, interface: &Interface, register: u8, value: u8) -> Result<(), Self::Error>;
 }
 
+/// The address of a read over SPI, and the dummy bytes that follow it.
+pub(super) struct SpiHeader {
+    bytes: [u8; 1 + MAX_DUMMIES],
+    dummies: usize,
+}
+
+impl SpiHeader {
+    /// The bytes to send.
+    pub(super) fn bytes(&self) -> &[u8] {
+        self.bytes.get(..=self.dummies).unwrap_or(&self.bytes)
+    }
+}
+
+/// The header of a read over SPI.
+pub(super) fn spi_header(interface: &Interface, register: u8) -> SpiHeader {
+    let mut bytes = [0; 1 + MAX_DUMMIES];
+    bytes[0] = register | interface.spi_read;
+    let dummies = usize::from(interface.spi_dummies).min(MAX_DUMMIES);
+    SpiHeader { bytes, dummies }
+}
+
 /// A sensor on an SPI bus. `SPI` also drives the chip select. A `&mut` of a device is a device as well.
 #[derive(Clone, Debug)]
-pub struct SpiBus<SPI>(SPI);
+pub struct SpiBus<SPI>(pub(super) SPI);
 
-impl<SPI: SpiDevice> SpiBus<SPI> {
+impl<SPI> SpiBus<SPI> {
     /// A bus that owns the device.
     pub const fn new(spi: SPI) -> Self {
         Self(spi)
@@ -60,24 +75,15 @@ impl<SPI: SpiDevice> Registers for SpiBus<SPI> {
 
     const IS_SPI: bool = true;
 
-    fn wake(&mut self, interface: &Interface) -> Result<(), Self::Error> {
-        match interface.spi_wake {
-            Some(register) => self.read(interface, register, &mut [0]),
-            None => Ok(()),
-        }
-    }
-
     fn read(
         &mut self,
         interface: &Interface,
         register: u8,
         bytes: &mut [u8],
     ) -> Result<(), Self::Error> {
-        let header = [register | interface.spi_read, 0, 0, 0];
-        let dummies = usize::from(interface.spi_dummies).min(MAX_DUMMIES);
-        let header = header.get(..=dummies).unwrap_or(&header);
-        self.0
-            .transaction(&mut [Operation::Write(header), Operation::Read(bytes)])
+        let header = spi_header(interface, register);
+        let mut operations = [Operation::Write(header.bytes()), Operation::Read(bytes)];
+        self.0.transaction(&mut operations)
     }
 
     fn write(&mut self, _: &Interface, register: u8, value: u8) -> Result<(), Self::Error> {
@@ -88,11 +94,11 @@ impl<SPI: SpiDevice> Registers for SpiBus<SPI> {
 /// A sensor on an I²C bus.
 #[derive(Clone, Debug)]
 pub struct I2cBus<I2C> {
-    i2c: I2C,
+    pub(super) i2c: I2C,
     address: Option<u8>,
 }
 
-impl<I2C: I2c> I2cBus<I2C> {
+impl<I2C> I2cBus<I2C> {
     /// A bus whose sensor is at the address in its description.
     pub const fn new(i2c: I2C) -> Self {
         Self { i2c, address: None }
@@ -111,7 +117,7 @@ impl<I2C: I2c> I2cBus<I2C> {
         self.i2c
     }
 
-    fn address(&self, interface: &Interface) -> u8 {
+    pub(super) fn address(&self, interface: &Interface) -> u8 {
         self.address.unwrap_or(interface.i2c_address)
     }
 }
@@ -120,10 +126,6 @@ impl<I2C: I2c> Registers for I2cBus<I2C> {
     type Error = I2C::Error;
 
     const IS_SPI: bool = false;
-
-    fn wake(&mut self, _: &Interface) -> Result<(), Self::Error> {
-        Ok(())
-    }
 
     fn read(
         &mut self,

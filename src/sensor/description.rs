@@ -1,3 +1,4 @@
+use super::{Fifo, Writes};
 use crate::{
     Error, Scale, Term,
     effect::LowPass,
@@ -10,6 +11,9 @@ use crate::{
 
 /// The largest number of registers that are read in one transaction.
 pub(super) const MAX_BLOCK: usize = 24;
+
+/// The largest number of writes of a start-up sequence.
+pub(super) const MAX_START_UP: usize = 20;
 
 /// The number of bytes of a gyro reading: three counts of 16 bits.
 const GYRO_BYTES: u8 = 6;
@@ -25,74 +29,6 @@ pub enum ByteOrder {
     LittleEndian,
     /// The high byte is in the lower register.
     BigEndian,
-}
-
-/// The buses over which a write is sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Bus {
-    /// Both buses.
-    Any,
-    /// SPI only.
-    Spi,
-    /// I²C only.
-    I2c,
-}
-
-/// One write of a start-up sequence.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Write {
-    /// The address of the register.
-    pub register: u8,
-    /// The value to write.
-    pub value: u8,
-    /// The pause after the write, in µs, before the next access.
-    pub wait_us: u32,
-    /// The buses over which the write is sent. Over another bus it is left out.
-    pub bus: Bus,
-}
-
-impl Write {
-    /// Writes `value` over either bus, without a pause.
-    pub const fn new(register: u8, value: u8) -> Self {
-        Self {
-            register,
-            value,
-            wait_us: 0,
-            bus: Bus::Any,
-        }
-    }
-
-    /// Adds a pause of `wait_us` µs after the write.
-    pub const fn wait_us(self, wait_us: u32) -> Self {
-        Self { wait_us, ..self }
-    }
-
-    /// Restricts the write to SPI.
-    pub const fn spi_only(self) -> Self {
-        Self {
-            bus: Bus::Spi,
-            ..self
-        }
-    }
-
-    /// Restricts the write to I²C.
-    pub const fn i2c_only(self) -> Self {
-        Self {
-            bus: Bus::I2c,
-            ..self
-        }
-    }
-
-    /// Whether the write is sent over SPI, or over I²C.
-    pub(super) const fn is_sent(&self, over_spi: bool) -> bool {
-        match self.bus {
-            Bus::Any => true,
-            Bus::Spi => over_spi,
-            Bus::I2c => !over_spi,
-        }
-    }
 }
 
 /// How register addresses are sent over the bus.
@@ -125,6 +61,18 @@ pub struct Status {
     /// The bits of which one is set when a sample was overwritten before it was read; 0 if the sensor has
     /// no such bit.
     pub overrun: u8,
+}
+
+/// What an interrupt pin does when data are ready.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Signal {
+    /// The pin is high until the data have been read.
+    High,
+    /// A pulse begins with a rising edge.
+    Rising,
+    /// A pulse begins with a falling edge. The pin is an open drain and needs a pull-up.
+    Falling,
 }
 
 /// The registers and the scale of a sensor's temperature.
@@ -206,12 +154,15 @@ pub struct Description {
     pub identity: u8,
     /// The values that the identity register may have.
     pub identities: &'static [u8],
-    /// The writes before the first sample, in this order.
-    pub start_up: &'static [Write],
+    /// The writes before the first sample, in this order. The last one turns the gyro on and waits until it has
+    /// settled.
+    pub start_up: Writes<MAX_START_UP>,
     /// The addresses and how they are sent.
     pub interface: Interface,
     /// The status register, which tells whether a sample is ready.
     pub status: Status,
+    /// How the interrupt pin announces a sample; `None` if the start-up writes do not use the pin.
+    pub signal: Option<Signal>,
     /// The first of the six consecutive registers of the gyro: x, y and z, in two's complement.
     pub gyro: u8,
     /// The temperature; `None` if the sensor has no temperature of 16 bits.
@@ -225,6 +176,9 @@ pub struct Description {
     pub rate_hz: Real,
     /// The low pass at that rate.
     pub filter: Filter,
+    /// The FIFO; `None` if the description has none. [`Imu`](super::Imu) leaves it off, and
+    /// [`FifoImu`](super::FifoImu) reads it.
+    pub fifo: Option<Fifo>,
 }
 
 impl Description {

@@ -31,6 +31,26 @@ pub enum Error<E> {
         /// The number of registers from the first to the last.
         registers: usize,
     },
+    /// The description of the sensor has no FIFO.
+    NoFifo {
+        /// The name of the sensor.
+        sensor: &'static str,
+    },
+    /// The buffer for a burst does not hold one packet or word of the FIFO.
+    BufferTooSmall {
+        /// The number of bytes of a packet or word.
+        needed: usize,
+    },
+    /// The description of the sensor does not say how the interrupt pin announces a sample.
+    NoSignal {
+        /// The name of the sensor.
+        sensor: &'static str,
+    },
+    /// The interrupt pin failed. `E` is the error of the pin.
+    Pin {
+        /// The error of the pin.
+        error: E,
+    },
 }
 
 impl<E: fmt::Debug> fmt::Display for Error<E> {
@@ -66,6 +86,19 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 "gyro and temperature of {sensor} span {registers} registers, but only {MAX_BLOCK} can be \
                  read at once: leave the temperature out of the description"
             ),
+            Self::NoFifo { sensor } => write!(
+                f,
+                "the description of {sensor} has no FIFO: read single samples with `Imu`"
+            ),
+            Self::BufferTooSmall { needed } => write!(
+                f,
+                "the buffer for a burst is too small: give at least {needed} bytes"
+            ),
+            Self::NoSignal { sensor } => write!(
+                f,
+                "the description of {sensor} does not use the interrupt pin: poll instead"
+            ),
+            Self::Pin { error } => write!(f, "the interrupt pin failed ({error:?})"),
         }
     }
 }

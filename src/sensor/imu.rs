@@ -1,30 +1,35 @@
-use super::{Description, Error, Registers, description::MAX_BLOCK};
+#[cfg(feature = "async")]
+use super::{AsyncRegisters, signal::wait, transfer::run_async};
+use super::{
+    Description, Error, Reading, Registers,
+    sample::Sample,
+    start::Start,
+    transfer::{NoDelay, run},
+};
 use embedded_hal::delay::DelayNs;
 
-/// One sample, in the sensor's counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Reading {
-    /// The rates about x, y and z, as [`Accumulator::push`](crate::Accumulator::push) takes them.
-    /// One count is [`Description::scale_dps`] °/s.
-    pub gyro: [i32; 3],
-    /// The temperature count, which [`Temperature::celsius`](super::Temperature::celsius) converts;
-    /// `None` if the sensor has no temperature.
-    pub temperature: Option<i16>,
-    /// Whether samples were lost before this one. Few sensors report this, so a caller that knows better
-    /// may set it: see [`Pace`](super::Pace).
-    pub overrun: bool,
-}
-
-/// A described sensor on its bus, as a source of samples.
+/// A described sensor on its bus, as a source of samples, one at a time.
 ///
 /// It reads the sample's flag and, if the flag is set, the sample; it never waits for a sample. Most sensors
 /// do not report a sample that was overwritten before it was read. Poll several times per sample, or
-/// read when the data-ready pin signals, and let [`Pace`](super::Pace) check the timestamps.
+/// read when the data-ready pin signals, and let [`Pace`](super::Pace) check the timestamps. A
+/// [`FifoImu`](super::FifoImu) reads many samples at once, each with the sensor's own time.
 #[derive(Clone, Debug)]
 pub struct Imu<B> {
     bus: B,
     description: &'static Description,
+}
+
+impl<B> Imu<B> {
+    /// The description that the sensor was started with.
+    pub const fn description(&self) -> &'static Description {
+        self.description
+    }
+
+    /// Returns the bus. The sensor continues to sample.
+    pub fn release(self) -> B {
+        self.bus
+    }
 }
 
 impl<B: Registers> Imu<B> {
@@ -36,54 +41,13 @@ impl<B: Registers> Imu<B> {
     /// # Errors
     /// [`Error::WrongIdentity`], [`Error::Bus`], or [`Error::TooWide`] for an unsuitable description.
     pub fn start(
-        bus: B,
+        mut bus: B,
         description: &'static Description,
         delay: &mut impl DelayNs,
     ) -> Result<Self, Error<B::Error>> {
-        let mut imu = Self { bus, description };
-        imu.identify()?;
-        for write in description.start_up {
-            if !write.is_sent(B::IS_SPI) {
-                continue;
-            }
-            imu.bus
-                .write(&description.interface, write.register, write.value)
-                .map_err(|error| Error::Bus {
-                    register: write.register,
-                    error,
-                })?;
-            if write.wait_us > 0 {
-                delay.delay_us(write.wait_us);
-            }
-        }
-        imu.register(description.status.register)?;
-        imu.sample(false)?;
-        Ok(imu)
-    }
-
-    fn identify(&mut self) -> Result<(), Error<B::Error>> {
-        let Description {
-            name,
-            identity,
-            identities,
-            interface,
-            ..
-        } = self.description;
-        self.bus.wake(interface).map_err(|error| Error::Bus {
-            register: interface.spi_wake.unwrap_or(*identity),
-            error,
-        })?;
-        let found = self.register(*identity)?;
-        if identities.contains(&found) {
-            Ok(())
-        } else {
-            Err(Error::WrongIdentity {
-                sensor: name,
-                register: *identity,
-                found,
-                expected: identities,
-            })
-        }
+        let mut start = Start::new(description, B::IS_SPI, false);
+        run(&mut bus, &description.interface, delay, &mut start)?;
+        Ok(Self { bus, description })
     }
 
     /// Reads the sample that is ready; `None` if no sample is ready.
@@ -92,59 +56,48 @@ impl<B: Registers> Imu<B> {
     /// [`Error::Bus`]. The sensor stays usable: the caller only has to continue reading, and
     /// [`Axes::record`](crate::Axes::record) turns the error into a gap.
     pub fn read(&mut self) -> Result<Option<Reading>, Error<B::Error>> {
-        let status = self.description.status;
-        let flags = self.register(status.register)?;
-        if flags & status.ready == 0 {
-            return Ok(None);
-        }
-        self.sample(flags & status.overrun != 0).map(Some)
+        let mut sample = Sample::new(self.description);
+        let interface = &self.description.interface;
+        run(&mut self.bus, interface, &mut NoDelay, &mut sample)?;
+        sample.reading()
+    }
+}
+
+#[cfg(feature = "async")]
+impl<B: AsyncRegisters> Imu<B> {
+    /// Does what [`Imu::start`] does, without blocking.
+    ///
+    /// # Errors
+    /// Those of [`Imu::start`].
+    pub async fn start_async(
+        mut bus: B,
+        description: &'static Description,
+        delay: &mut impl embedded_hal_async::delay::DelayNs,
+    ) -> Result<Self, Error<B::Error>> {
+        let mut start = Start::new(description, B::IS_SPI, false);
+        run_async(&mut bus, &description.interface, delay, &mut start).await?;
+        Ok(Self { bus, description })
     }
 
-    /// The description that the sensor was started with.
-    pub const fn description(&self) -> &'static Description {
-        self.description
+    /// Does what [`Imu::read`] does, without blocking.
+    ///
+    /// # Errors
+    /// Those of [`Imu::read`].
+    pub async fn read_async(&mut self) -> Result<Option<Reading>, Error<B::Error>> {
+        let mut sample = Sample::new(self.description);
+        let interface = &self.description.interface;
+        run_async(&mut self.bus, interface, &mut NoDelay, &mut sample).await?;
+        sample.reading()
     }
 
-    /// Returns the bus. The sensor continues to sample.
-    pub fn release(self) -> B {
-        self.bus
-    }
-
-    fn register(&mut self, register: u8) -> Result<u8, Error<B::Error>> {
-        let mut byte = [0];
-        self.read_block(register, &mut byte)?;
-        let [byte] = byte;
-        Ok(byte)
-    }
-
-    /// Reads gyro and temperature, whether they are new or not.
-    fn sample(&mut self, overrun: bool) -> Result<Reading, Error<B::Error>> {
-        let description = self.description;
-        let (first, registers) = description.block();
-        let too_wide = Error::TooWide {
-            sensor: description.name,
-            registers,
-        };
-        let mut bytes = [0; MAX_BLOCK];
-        let Some(block) = bytes.get_mut(..registers) else {
-            return Err(too_wide);
-        };
-        self.read_block(first, block)?;
-        let count = |register: u8| description.count(block, first, register);
-        let axis = |k: u8| Some(i32::from(count(description.gyro.checked_add(2 * k)?)?));
-        let (Some(x), Some(y), Some(z)) = (axis(0), axis(1), axis(2)) else {
-            return Err(too_wide);
-        };
-        Ok(Reading {
-            gyro: [x, y, z],
-            temperature: description.temperature.and_then(|t| count(t.register)),
-            overrun,
-        })
-    }
-
-    fn read_block(&mut self, register: u8, bytes: &mut [u8]) -> Result<(), Error<B::Error>> {
-        self.bus
-            .read(&self.description.interface, register, bytes)
-            .map_err(|error| Error::Bus { register, error })
+    /// Waits until the sensor's interrupt pin says that a sample is ready.
+    ///
+    /// # Errors
+    /// [`Error::NoSignal`] if the start-up writes do not use the pin; [`Error::Pin`].
+    pub async fn wait<P: embedded_hal_async::digital::Wait>(
+        &self,
+        pin: &mut P,
+    ) -> Result<(), Error<P::Error>> {
+        wait(pin, self.description.name, self.description.signal).await
     }
 }

@@ -1,4 +1,4 @@
-use super::{ByteOrder, Description, Filter, Interface, Status, Write};
+use super::{ByteOrder, Description, Filter, Interface, Status, Write, Writes};
 
 /// ST L3GD20, a gyro without accelerometer, ±250 °/s at 95 Hz, behind the low passes LPF1 at 32 Hz and LPF2
 /// at 25 Hz. It reports overwritten samples.
@@ -25,7 +25,7 @@ pub static L3GD20: Description = Description {
     // WHO_AM_I.
     identity: 0x0F,
     identities: &[0xD4],
-    start_up: &[
+    start_up: Writes::of([
         // There is no reset: only a power cycle clears these registers.
         // CTRL_REG2: no high-pass.
         Write::new(0x21, 0x00),
@@ -37,7 +37,7 @@ pub static L3GD20: Description = Description {
         Write::new(0x23, 0x80),
         // CTRL_REG1: DR 0b00 (95 Hz), BW 0b01 (LPF2 at 25 Hz), PD and all axes on; the gyro settles.
         Write::new(0x20, 0x1F).wait_us(300_000),
-    ],
+    ]),
     interface: Interface {
         // "SPI bus interface": bit 0 (RW), and bit 1 (M/S), which makes addresses ascend.
         spi_read: 0xC0,
@@ -54,6 +54,7 @@ pub static L3GD20: Description = Description {
         ready: 1 << 3,
         overrun: 1 << 7,
     },
+    signal: None,
     // OUT_X_L.
     gyro: 0x28,
     // OUT_TEMP has only 8 bits.
@@ -67,4 +68,5 @@ pub static L3GD20: Description = Description {
         noise_bandwidth_hz: 22.1,
         poles: 2,
     },
+    fifo: None,
 };

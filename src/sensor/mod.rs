@@ -7,7 +7,7 @@
 //! that the sensor does not report, and a configured rate that differs from the true one.
 //!
 //! ```
-//! use allanite::{Axes, sensor::{Error, ICM_42688_P, Imu, Pace, SpiBus}};
+//! use allanite::{Axes, sensor::{Error, ICM_42688_P, Imu, Loss, Pace, SpiBus}};
 //! use embedded_hal::{delay::DelayNs, spi::SpiDevice};
 //!
 //! fn characterise<SPI: SpiDevice>(
@@ -21,7 +21,7 @@
 //!     for _ in 0..1_000_000 {
 //!         let mut outcome = imu.read();
 //!         if let Ok(Some(reading)) = &mut outcome {
-//!             reading.overrun |= pace.stamp(micros()) > 1;
+//!             reading.loss = reading.loss.or(Loss::of_intervals(pace.stamp(micros())));
 //!         }
 //!         axes.record(&outcome, |_| []); // a sample, or a gap if the bus failed
 //!         if pace.check().is_err() {
@@ -51,37 +51,71 @@
 //! This module is not a driver for all functions of a sensor. The samples of any other driver can be given
 //! to [`Axes::push`](crate::Axes::push).
 
+#[cfg(feature = "async")]
+mod async_bus;
 mod bmi160;
+mod burst;
 mod bus;
+mod clock;
+mod configuration;
+mod decoder;
 mod description;
 mod error;
+mod fetch;
+mod fifo;
+mod fifo_imu;
 mod icm_42688_p;
+mod icm_45686;
 mod imu;
 mod l3gd20;
 mod lsm6dso;
+mod lsm6dsv16x;
+mod malformed;
 mod mpu_6050;
 mod mpu_6500;
 mod pace;
+mod reading;
 mod record;
+mod sample;
+#[cfg(feature = "async")]
+mod signal;
+mod stamps;
+mod start;
+mod transfer;
+mod write;
 
+#[cfg(feature = "async")]
+pub use async_bus::AsyncRegisters;
 pub use bmi160::BMI160;
+pub use burst::Burst;
 pub use bus::{I2cBus, Registers, SpiBus};
-pub use description::{Bus, ByteOrder, Description, Filter, Interface, Status, Temperature, Write};
+pub use clock::Clock;
+pub use configuration::{Configuration, ConfigurationError};
+pub use description::{ByteOrder, Description, Filter, Interface, Signal, Status, Temperature};
 pub use error::Error;
-pub use icm_42688_p::ICM_42688_P;
-pub use imu::{Imu, Reading};
+pub use fifo::{Fifo, Format};
+pub use fifo_imu::FifoImu;
+pub use icm_42688_p::{ICM_42688_P, icm_42688_p};
+pub use icm_45686::{ICM_45686, icm_45686};
+pub use imu::Imu;
 pub use l3gd20::L3GD20;
-pub use lsm6dso::LSM6DSO;
+pub use lsm6dso::{LSM6DSO, lsm6dso};
+pub use lsm6dsv16x::{LSM6DSV16X, lsm6dsv16x};
+pub use malformed::Malformed;
 pub use mpu_6050::MPU_6050;
 pub use mpu_6500::MPU_6500;
 pub use pace::Pace;
+pub use reading::{Loss, Reading};
+pub use write::{Bus, Write, Writes};
 
 /// All descriptions of this module.
-pub static CATALOGUE: [&Description; 6] = [
+pub static CATALOGUE: [&Description; 8] = [
     &BMI160,
     &ICM_42688_P,
+    &ICM_45686,
     &L3GD20,
     &LSM6DSO,
+    &LSM6DSV16X,
     &MPU_6050,
     &MPU_6500,
 ];

@@ -1,4 +1,6 @@
-use super::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write};
+use super::{
+    ByteOrder, Description, Filter, Interface, Signal, Status, Temperature, Write, Writes,
+};
 
 /// InvenSense MPU-6050, and MPU-6000, which is the same with SPI: ±250 °/s at 200 Hz behind a low
 /// pass of 20 Hz.
@@ -25,7 +27,7 @@ pub static MPU_6050: Description = Description {
     // Register 117, WHO_AM_I.
     identity: 0x75,
     identities: &[0x68],
-    start_up: &[
+    start_up: Writes::of([
         // Register 107, PWR_MGMT_1: DEVICE_RESET.
         Write::new(0x6B, 0x80).wait_us(100_000),
         // Register 104, SIGNAL_PATH_RESET: gyro, accelerometer and temperature, as SPI needs.
@@ -45,7 +47,7 @@ pub static MPU_6050: Description = Description {
         Write::new(0x37, 0x10),
         // Register 56, INT_ENABLE: DATA_RDY_EN; the gyro settles.
         Write::new(0x38, 0x01).wait_us(100_000),
-    ],
+    ]),
     interface: Interface {
         spi_read: 0x80,
         spi_dummies: 0,
@@ -60,6 +62,8 @@ pub static MPU_6050: Description = Description {
         ready: 1,
         overrun: 0,
     },
+    // INT is high for 50 µs, push-pull, as INT_PIN_CFG has it.
+    signal: Some(Signal::Rising),
     // Section 4.19, registers 67 to 72: GYRO_XOUT_H.
     gyro: 0x43,
     // Section 4.18, registers 65 and 66, TEMP_OUT: °C = TEMP_OUT / 340 + 36.53.
@@ -77,4 +81,5 @@ pub static MPU_6050: Description = Description {
         noise_bandwidth_hz: 31.4,
         poles: 1,
     },
+    fifo: None,
 };

@@ -1,4 +1,6 @@
-use super::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write};
+use super::{
+    ByteOrder, Description, Filter, Interface, Signal, Status, Temperature, Write, Writes,
+};
 
 /// InvenSense MPU-6500, and MPU-9250, whose gyro has the same registers: ±250 °/s at 200 Hz behind
 /// a low pass of 20 Hz.
@@ -28,7 +30,7 @@ pub static MPU_6500: Description = Description {
     // Register 117, WHO_AM_I; 0x71 is the MPU-9250's (RM-MPU-9250A-00).
     identity: 0x75,
     identities: &[0x70, 0x71],
-    start_up: &[
+    start_up: Writes::of([
         // Register 107, PWR_MGMT_1: DEVICE_RESET.
         Write::new(0x6B, 0x80).wait_us(100_000),
         // Register 104, SIGNAL_PATH_RESET: gyro, accelerometer and temperature, as SPI needs.
@@ -48,7 +50,7 @@ pub static MPU_6500: Description = Description {
         Write::new(0x37, 0x10),
         // Register 56, INT_ENABLE: RAW_RDY_EN; the gyro settles.
         Write::new(0x38, 0x01).wait_us(100_000),
-    ],
+    ]),
     interface: Interface {
         spi_read: 0x80,
         spi_dummies: 0,
@@ -63,6 +65,8 @@ pub static MPU_6500: Description = Description {
         ready: 1,
         overrun: 0,
     },
+    // INT is high for 50 µs, push-pull, as INT_PIN_CFG has it.
+    signal: Some(Signal::Rising),
     // Registers 67 to 72: GYRO_XOUT_H.
     gyro: 0x43,
     // Registers 65 and 66, TEMP_OUT, and the product specification's sensitivity: zero at 21 °C,
@@ -81,4 +85,5 @@ pub static MPU_6500: Description = Description {
         noise_bandwidth_hz: 31.4,
         poles: 1,
     },
+    fifo: None,
 };

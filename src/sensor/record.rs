@@ -1,6 +1,6 @@
 //! Records what a sensor's driver returns.
 
-use super::{Error, Reading};
+use super::{Burst, Error, Loss, Malformed, Reading};
 use crate::axis::{Axes, GatePart, MomentPart, SpectrumPart, TrackPart};
 
 impl<const OCTAVES: usize, const COVARIATES: usize, G, M, S, T>
@@ -16,11 +16,12 @@ where
     /// counts of the covariates at that sample. The result says whether there was a sample.
     ///
     /// ```
-    /// use allanite::{Axes, sensor::{Error, Reading}};
+    /// use allanite::{Axes, sensor::{Error, Loss, Reading}};
     ///
     /// let mut axes = Axes::<8, 1, (), ()>::new();
     /// let temperature = |reading: &Reading| [reading.temperature.unwrap_or(0).into()];
-    /// let reading = Reading { gyro: [3, -1, 0], temperature: Some(25), overrun: false };
+    /// let (gyro, loss) = ([3, -1, 0], Loss::Nothing);
+    /// let reading = Reading { gyro, temperature: Some(25), loss, ticks: None };
     /// axes.record::<()>(&Ok(Some(reading)), temperature);
     /// axes.record::<()>(&Ok(None), temperature); // no sample was ready: nothing happens
     /// let failed = Err(Error::Bus { register: 0x43, error: "no acknowledge" });
@@ -36,10 +37,7 @@ where
     ) -> bool {
         match outcome {
             Ok(Some(reading)) => {
-                if reading.overrun {
-                    self.gap();
-                }
-                self.push((reading.gyro, covariates(reading)));
+                self.record_reading(reading, covariates);
                 true
             }
             Ok(None) => false,
@@ -48,5 +46,38 @@ where
                 false
             }
         }
+    }
+
+    /// Records a burst of [`FifoImu::read`](super::FifoImu::read) and returns the number of its samples. Samples that
+    /// were lost before one become a gap of as many samples, or one of unknown length.
+    ///
+    /// An error of `read` need not be recorded: the next burst says what was lost.
+    ///
+    /// # Errors
+    /// [`Malformed`] if a part of the burst made no sense. The samples before that part are recorded.
+    pub fn record_burst(
+        &mut self,
+        burst: Burst<'_>,
+        mut covariates: impl FnMut(&Reading) -> [i32; COVARIATES],
+    ) -> Result<u32, Malformed> {
+        let mut samples = 0;
+        for reading in burst {
+            self.record_reading(&reading?, &mut covariates);
+            samples += 1;
+        }
+        Ok(samples)
+    }
+
+    fn record_reading(
+        &mut self,
+        reading: &Reading,
+        covariates: impl FnOnce(&Reading) -> [i32; COVARIATES],
+    ) {
+        match reading.loss {
+            Loss::Nothing => {}
+            Loss::Samples(samples) => self.missing(samples.into()),
+            Loss::Unknown => self.gap(),
+        }
+        self.push((reading.gyro, covariates(reading)));
     }
 }

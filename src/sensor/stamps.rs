@@ -1,0 +1,139 @@
+use super::{Fifo, Loss};
+
+/// The number of intervals over which the number of ticks of an interval is learned.
+const WINDOW: u16 = 256;
+
+/// The fixed point of an interval: 1/256 tick. It equals the window, so that the ticks of a window are the
+/// interval.
+const FRACTION: u64 = WINDOW as u64;
+
+const PS_PER_US: u64 = 1_000_000;
+
+/// The largest disagreement of the clocks of sensor and host that is expected, as a fraction: 1/32, or 3 %.
+const CLOCKS_DISAGREE: u64 = 32;
+
+/// Turns a sensor's wrapping stamps into its time, and into the number of lost samples.
+///
+/// The stamps alone tell how many samples were lost, up to whole rounds of the counter. The host's time is used
+/// only to count those rounds.
+#[derive(Clone, Debug)]
+pub(super) struct Stamps {
+    mask: u64,
+    tick_ps: u64,
+    nominal: u64,
+    /// The learned interval, in 1/256 ticks.
+    interval: u64,
+    /// The ticks and intervals of the window, without losses.
+    window: (u64, u16),
+    /// The time of the sample before.
+    last: Option<u64>,
+    /// A time of the host in µs, and the sensor's time then.
+    host: Option<(u32, u64)>,
+    /// About the time of the next sample, and the uncertainty of this.
+    expected: Option<(u64, u64)>,
+}
+
+impl Stamps {
+    pub(super) fn new(fifo: &Fifo) -> Self {
+        let bits = u32::from(fifo.time_bits).clamp(8, 32);
+        let nominal = u64::from(fifo.interval).max(1);
+        Self {
+            mask: u64::MAX >> (64 - bits),
+            tick_ps: u64::from(fifo.tick_ps).max(1),
+            nominal,
+            interval: nominal,
+            window: (0, 0),
+            last: None,
+            host: None,
+            expected: None,
+        }
+    }
+
+    /// The sample interval in 1/256 ticks: the nominal one, or what the last window says.
+    pub(super) const fn interval(&self) -> u64 {
+        self.interval
+    }
+
+    /// Tells the host's time when the FIFO held `samples` samples, of which the next stamp is the oldest.
+    pub(super) fn expect(&mut self, now_us: u32, samples: usize) {
+        self.expected = self.host.map(|(then_us, ticks)| {
+            let elapsed = u64::from(now_us.wrapping_sub(then_us));
+            let elapsed = elapsed * PS_PER_US / self.tick_ps;
+            let age = samples as u64 * self.interval / FRACTION;
+            let uncertainty = elapsed / CLOCKS_DISAGREE + 2 * self.interval / FRACTION;
+            (
+                ticks.saturating_add(elapsed).saturating_sub(age),
+                uncertainty,
+            )
+        });
+    }
+
+    /// Takes the stamp of the next sample. It returns its time, and what was lost before it; `None` if the stamp
+    /// cannot be that of a later sample.
+    pub(super) fn take(&mut self, stamp: u32) -> Option<(u64, Loss)> {
+        let expected = self.expected.take();
+        let Some(last) = self.last else {
+            let ticks = u64::from(stamp);
+            self.last = Some(ticks);
+            return Some((ticks, Loss::Nothing));
+        };
+        let round = self.mask + 1;
+        let forward = u64::from(stamp).wrapping_sub(last) & self.mask;
+        let mut ticks = last.saturating_add(forward);
+        let mut certain = true;
+        match expected {
+            Some((expected, uncertainty)) => {
+                let rounds = (expected.saturating_add(round / 2)).saturating_sub(ticks) / round;
+                ticks = ticks.saturating_add(rounds.saturating_mul(round));
+                certain = uncertainty < round / 4;
+                if certain && ticks > expected.saturating_add(round / 2) {
+                    return None;
+                }
+            }
+            None if forward > round / 2 => return None,
+            None => {}
+        }
+        let loss = self.loss(ticks - last, certain)?;
+        self.last = Some(ticks);
+        Some((ticks, loss))
+    }
+
+    /// What was lost if `ticks` ticks have passed since the sample before; `None` if this is no interval.
+    fn loss(&mut self, ticks: u64, certain: bool) -> Option<Loss> {
+        let scaled = ticks.saturating_mul(FRACTION);
+        let intervals = scaled.saturating_add(self.interval / 2) / self.interval;
+        if intervals == 0 {
+            return None;
+        }
+        let off = scaled.abs_diff(intervals.saturating_mul(self.interval));
+        if !certain || off > self.interval / 4 {
+            self.window = (0, 0);
+            return Some(Loss::Unknown);
+        }
+        if intervals > 1 {
+            self.window = (0, 0);
+            return Some(Loss::Samples(
+                u32::try_from(intervals - 1).unwrap_or(u32::MAX),
+            ));
+        }
+        let (sum, number) = &mut self.window;
+        *sum += ticks;
+        *number += 1;
+        if *number == WINDOW {
+            if sum.abs_diff(self.nominal) <= self.nominal / 8 {
+                self.interval = *sum;
+            }
+            self.window = (0, 0);
+        }
+        Some(Loss::Nothing)
+    }
+
+    /// Tells the host's time when the sample of the last stamp was followed by `remaining` further ones. It
+    /// returns the sensor's time then.
+    pub(super) fn settle(&mut self, now_us: u32, remaining: usize) -> Option<u64> {
+        let younger = remaining as u64 * self.interval / FRACTION;
+        let ticks = self.last?.saturating_add(younger);
+        self.host = Some((now_us, ticks));
+        Some(ticks)
+    }
+}

@@ -36,7 +36,7 @@ pub struct Configuration {
 }
 
 impl Configuration {
-    /// A configuration with the widest low pass that keeps noise from folding back, and a watermark of 8 samples.
+    /// A configuration with the widest low pass that is certain to keep noise from folding back, and a watermark of 8 samples.
     /// `rate_hz` is the rate in samples per second, and `range_dps` the range in °/s to either side, both as the data
     /// sheet names them; of a range with a fraction, the integer part.
     pub const fn new(rate_hz: u16, range_dps: u16) -> Self {
@@ -160,6 +160,8 @@ pub(super) struct LowPass {
     /// The nominal cut-off.
     pub(super) bandwidth_hz: u16,
     pub(super) filter: Filter,
+    /// Whether folded noise is certain to raise N by less than 2 %. If not, it has to be asked for.
+    pub(super) is_tight: bool,
 }
 
 /// The codes that a data sheet gives for a configuration.
@@ -235,6 +237,7 @@ impl<const RATES: usize, const RANGES: usize> Offer<RATES, RANGES> {
             let nominal = low_pass.bandwidth_hz;
             match bandwidth_hz {
                 Some(bandwidth_hz) if bandwidth_hz != nominal => continue,
+                None if !low_pass.is_tight => continue,
                 _ => {}
             }
             if 2.0 * low_pass.filter.noise_bandwidth_hz < rate_hz as Real {

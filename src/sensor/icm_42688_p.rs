@@ -48,6 +48,7 @@ const fn low_pass(rate_hz: u16, code: u8, divisor: u16) -> LowPass {
             noise_bandwidth_hz: ratio * base_hz as Real / divisor as Real,
             poles: 3,
         },
+        is_tight: true,
     }
 }
 

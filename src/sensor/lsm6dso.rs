@@ -41,6 +41,7 @@ pub const fn lsm6dso(wanted: Configuration) -> Result<Description, Configuration
             noise_bandwidth_hz: wanted.rate_hz() as Real / 3.0,
             poles: 2,
         },
+        is_tight: true,
     };
     let chosen = match OFFER.choose(wanted, &[low_pass]) {
         Ok(chosen) => chosen,

@@ -4,7 +4,10 @@ use allanite::{
     Accumulator, Curve, Model, Scale,
     diagnosis::{Diagnosis, Evidence, Options, Verdict},
     effect::CATALOGUE as EFFECTS,
-    sensor::{BMI160, CATALOGUE, Description, ICM_42688_P, L3GD20, LSM6DSO, MPU_6050, MPU_6500},
+    sensor::{
+        BMI160, CATALOGUE, Description, ICM_42688_P, ICM_45686, L3GD20, LSM6DSO, LSM6DSV16X,
+        MPU_6050, MPU_6500,
+    },
 };
 use host_tests::simulate::{Hidden, Preset, Simulator};
 use std::f64::consts::PI;
@@ -40,7 +43,7 @@ fn sinc_squared(f: f64, rate_hz: f64) -> f64 {
     (x.sin() / x).powi(4)
 }
 
-const LOW_PASSES: [LowPass; 6] = [
+const LOW_PASSES: [LowPass; 8] = [
     LowPass {
         description: &BMI160,
         rate_hz: 200.0,
@@ -55,6 +58,12 @@ const LOW_PASSES: [LowPass; 6] = [
         response: |f| butterworth(f, 47.6, 3),
     },
     LowPass {
+        description: &ICM_45686,
+        rate_hz: 100.0,
+        poles: 1,
+        response: |f| one_pole(f, 100.0 / 16.0),
+    },
+    LowPass {
         description: &L3GD20,
         rate_hz: 95.0,
         poles: 2,
@@ -65,6 +74,12 @@ const LOW_PASSES: [LowPass; 6] = [
         rate_hz: 104.0,
         poles: 2,
         response: |f| sinc_squared(f, 104.0),
+    },
+    LowPass {
+        description: &LSM6DSV16X,
+        rate_hz: 120.0,
+        poles: 2,
+        response: |f| sinc_squared(f, 120.0),
     },
     LowPass {
         description: &MPU_6050,

@@ -3,7 +3,7 @@
 use crate::sheet::{Sheet, start};
 use allanite::Axes;
 use allanite::Error;
-use allanite::sensor::{ICM_42688_P, Pace};
+use allanite::sensor::{ICM_42688_P, Loss, Pace};
 
 /// The number of samples before there is a verdict. It is one more than the number of intervals.
 const WINDOW: u32 = 257;
@@ -130,7 +130,7 @@ fn samples_that_were_read_too_late_become_a_gap() {
     for n in 0..40 {
         let mut outcome = imu.read();
         if let Ok(Some(reading)) = &mut outcome {
-            reading.overrun |= pace.stamp(late(n) * 10_000) > 1;
+            reading.loss = Loss::of_intervals(pace.stamp(late(n) * 10_000));
         }
         axes.record(&outcome, |_| []);
     }

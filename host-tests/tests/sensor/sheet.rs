@@ -3,7 +3,8 @@
 use allanite::sensor::{
     BMI160,
     Bus::{self, Any, I2c, Spi},
-    Description, I2cBus, ICM_42688_P, Imu, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Reading,
+    Description, I2cBus, ICM_42688_P, ICM_45686, Imu, L3GD20, LSM6DSO, LSM6DSV16X, Loss, MPU_6050,
+    MPU_6500, Reading,
 };
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock as I2cMock, Transaction as I2cTurn};
@@ -18,6 +19,8 @@ pub(crate) struct Sheet {
     pub(crate) identity: (u8, u8),
     /// The register, the value, and the buses over which it is written.
     pub(crate) writes: &'static [(u8, u8, Bus)],
+    /// Registers that are read before the write of this index, and what they hold.
+    pub(crate) reads: &'static [(usize, u8, u8)],
     pub(crate) status: u8,
     /// The first register and the number of bytes that are read at once, and the offsets of gyro
     /// and temperature in them.
@@ -38,12 +41,13 @@ const MPU_WRITES: &[(u8, u8, Bus)] = &[
     (0x38, 0x01, Any),
 ];
 
-pub(crate) const SHEETS: [Sheet; 6] = [
+pub(crate) const SHEETS: [Sheet; 8] = [
     Sheet {
         description: &BMI160,
         bus: (0x68, 0x80, 0),
         identity: (0x00, 0xD1),
         writes: &[(0x7E, 0x15, Any), (0x43, 0x03, Any), (0x42, 0x09, Any)],
+        reads: &[],
         status: 0x1B,
         block: (0x0C, 22, 0, Some(20)),
         big_endian: false,
@@ -69,10 +73,39 @@ pub(crate) const SHEETS: [Sheet; 6] = [
             (0x65, 0x08, Any),
             (0x4E, 0x0C, Any),
         ],
+        reads: &[],
         status: 0x2D,
         block: (0x1D, 14, 8, Some(0)),
         big_endian: true,
         ready: 0x08,
+    },
+    Sheet {
+        description: &ICM_45686,
+        bus: (0x68, 0x80, 0),
+        identity: (0x72, 0xE9),
+        writes: &[
+            (0x7F, 0x02, Any),
+            (0x18, 0x01, Any),
+            (0x16, 0x04, Any),
+            // Two indirect registers, whose other bits stay.
+            (0x7C, 0xA4, Any),
+            (0x7D, 0xA6, Any),
+            (0x7C, 0xA4, Any),
+            (0x7D, 0xA6, Any),
+            (0x7E, 0xD9, Any),
+            (0x7C, 0xA4, Any),
+            (0x7D, 0xAC, Any),
+            (0x7C, 0xA4, Any),
+            (0x7D, 0xAC, Any),
+            (0x7E, 0x83, Any),
+            (0x1C, 0x49, Any),
+            (0x10, 0x0C, Any),
+        ],
+        reads: &[(5, 0x7E, 0xB9), (10, 0x7E, 0x85)],
+        status: 0x19,
+        block: (0x06, 8, 0, Some(6)),
+        big_endian: false,
+        ready: 0x04,
     },
     Sheet {
         description: &L3GD20,
@@ -85,6 +118,7 @@ pub(crate) const SHEETS: [Sheet; 6] = [
             (0x23, 0x80, Any),
             (0x20, 0x1F, Any),
         ],
+        reads: &[],
         status: 0x27,
         block: (0x28, 6, 0, None),
         big_endian: false,
@@ -99,8 +133,28 @@ pub(crate) const SHEETS: [Sheet; 6] = [
             (0x18, 0xE2, Any),
             (0x13, 0x04, Spi),
             (0x12, 0x44, Any),
+            (0x0D, 0x02, Any),
             (0x11, 0x40, Any),
         ],
+        reads: &[],
+        status: 0x1E,
+        block: (0x20, 8, 2, Some(0)),
+        big_endian: false,
+        ready: 0x02,
+    },
+    Sheet {
+        description: &LSM6DSV16X,
+        bus: (0x6A, 0x80, 0),
+        identity: (0x0F, 0x70),
+        writes: &[
+            (0x12, 0x01, Any),
+            (0x03, 0x01, Spi),
+            (0x12, 0x44, Any),
+            (0x15, 0x01, Any),
+            (0x0D, 0x02, Any),
+            (0x11, 0x06, Any),
+        ],
+        reads: &[],
         status: 0x1E,
         block: (0x20, 8, 2, Some(0)),
         big_endian: false,
@@ -111,6 +165,7 @@ pub(crate) const SHEETS: [Sheet; 6] = [
         bus: (0x68, 0x80, 0),
         identity: (0x75, 0x68),
         writes: MPU_WRITES,
+        reads: &[],
         status: 0x3A,
         block: (0x41, 8, 2, Some(0)),
         big_endian: true,
@@ -121,6 +176,7 @@ pub(crate) const SHEETS: [Sheet; 6] = [
         bus: (0x68, 0x80, 0),
         identity: (0x75, 0x70),
         writes: MPU_WRITES,
+        reads: &[],
         status: 0x3A,
         block: (0x41, 8, 2, Some(0)),
         big_endian: true,
@@ -173,8 +229,13 @@ impl Sheet {
 
     pub(crate) fn i2c_start(&self) -> Vec<I2cTurn> {
         let mut turns = vec![self.i2c_read(self.identity.0, vec![self.identity.1])];
-        for &(register, value, _) in self.writes.iter().filter(|write| write.2 != Spi) {
-            turns.push(I2cTurn::write(self.bus.0, vec![register, value]));
+        for (index, &(register, value, bus)) in self.writes.iter().enumerate() {
+            for &(_, register, value) in self.reads.iter().filter(|read| read.0 == index) {
+                turns.push(self.i2c_read(register, vec![value]));
+            }
+            if bus != Spi {
+                turns.push(I2cTurn::write(self.bus.0, vec![register, value]));
+            }
         }
         turns.extend(self.i2c_sample(0, [1, 1, 1]));
         turns
@@ -201,7 +262,13 @@ impl Sheet {
             turns.extend(self.spi_read(0x7F, vec![0]));
         }
         turns.extend(self.spi_read(self.identity.0, vec![self.identity.1]));
-        for &(register, value, _) in self.writes.iter().filter(|write| write.2 != I2c) {
+        for (index, &(register, value, bus)) in self.writes.iter().enumerate() {
+            for &(_, register, value) in self.reads.iter().filter(|read| read.0 == index) {
+                turns.extend(self.spi_read(register, vec![value]));
+            }
+            if bus == I2c {
+                continue;
+            }
             turns.extend([
                 SpiTurn::transaction_start(),
                 SpiTurn::write_vec(vec![register, value]),
@@ -216,7 +283,12 @@ impl Sheet {
         Reading {
             gyro: gyro.map(i32::from),
             temperature: self.block.3.map(|_| TEMPERATURE),
-            overrun,
+            loss: if overrun {
+                Loss::Unknown
+            } else {
+                Loss::Nothing
+            },
+            ticks: None,
         }
     }
 }

@@ -4,7 +4,7 @@
 use crate::sheet::{SHEETS, Sheet, start};
 use allanite::sensor::{
     BMI160, ByteOrder, CATALOGUE, Description, Error, Filter, I2cBus, ICM_42688_P, Imu, Interface,
-    LSM6DSO, SpiBus, Status, Temperature,
+    LSM6DSO, MPU_6500, SpiBus, Status, Temperature, Writes,
 };
 use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::delay::NoopDelay;
@@ -80,7 +80,7 @@ fn start_up_waits_after_the_writes_that_need_it() {
 fn another_address_is_used_throughout() {
     let sheet = Sheet {
         bus: (0x69, 0x80, 0),
-        ..SHEETS[1]
+        ..*Sheet::of(&ICM_42688_P)
     };
     let mut mock = I2cMock::new(&sheet.i2c_start());
     Imu::start(I2cBus::at(mock.clone(), 0x69), &ICM_42688_P, &mut NoopDelay).unwrap();
@@ -113,7 +113,7 @@ fn an_unknown_identity_ends_the_start() {
 fn a_sibling_is_accepted_by_any_of_its_identities() {
     let sheet = Sheet {
         identity: (0x75, 0x71),
-        ..SHEETS[5]
+        ..*Sheet::of(&MPU_6500)
     };
     start(&sheet, []).1.done();
 }
@@ -122,7 +122,7 @@ fn a_sibling_is_accepted_by_any_of_its_identities() {
 fn a_failed_write_names_its_register_and_keeps_the_bus_error() {
     let sheet = Sheet::of(&LSM6DSO);
     let mut turns = sheet.i2c_start();
-    turns.truncate(5);
+    turns.truncate(6);
     let last = turns.pop().unwrap();
     turns.push(last.with_error(ErrorKind::ArbitrationLoss));
     let mut mock = I2cMock::new(&turns);
@@ -149,7 +149,7 @@ fn a_description_too_wide_for_one_read_is_refused() {
         name: "wide",
         identity: 0,
         identities: &[0xD1],
-        start_up: &[],
+        start_up: Writes::NONE,
         interface: Interface {
             spi_read: 0x80,
             spi_dummies: 1,
@@ -162,6 +162,7 @@ fn a_description_too_wide_for_one_read_is_refused() {
             ready: 1,
             overrun: 0,
         },
+        signal: None,
         gyro: 0,
         temperature: Some(Temperature {
             register: 0x20,
@@ -175,6 +176,7 @@ fn a_description_too_wide_for_one_read_is_refused() {
             noise_bandwidth_hz: 0.4,
             poles: 1,
         },
+        fifo: None,
     };
     // A dummy byte follows the address.
     let read = |register: u8, answer| {

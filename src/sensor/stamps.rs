@@ -9,8 +9,20 @@ const FRACTION: u64 = WINDOW as u64;
 
 const PS_PER_US: u64 = 1_000_000;
 
-/// The largest disagreement of the clocks of sensor and host that is expected, as a fraction: 1/32, or 3 %.
-const CLOCKS_DISAGREE: u64 = 32;
+/// The largest disagreement of the clocks of sensor and host that is expected, as the denominator of a fraction: 3 %
+/// for a time of less than 32 bits, whose rounds have to be told apart, and else 12 %.
+const fn disagreement(bits: u32) -> u64 {
+    if bits < 32 { 32 } else { 8 }
+}
+
+/// By how many intervals a time may differ from what is expected, besides that.
+const SLACK: u64 = 4;
+
+/// The largest number of intervals between neighbours in a burst. Only packets without a sample can be between them.
+const NEIGHBOURS: u64 = 8;
+
+/// After so many implausible times in a row, the next one is believed.
+const REFUSALS: u8 = 2;
 
 /// Turns a sensor's wrapping stamps into its time, and into the number of lost samples.
 ///
@@ -29,8 +41,13 @@ pub(super) struct Stamps {
     last: Option<u64>,
     /// A time of the host in µs, and the sensor's time then.
     host: Option<(u32, u64)>,
-    /// About the time of the next sample, and the uncertainty of this.
+    /// Whether the next stamp is the first of a burst.
+    is_first: bool,
+    /// About the time of that stamp, and the uncertainty of this.
     expected: Option<(u64, u64)>,
+    /// The number of implausible times in a row.
+    refused: u8,
+    disagreement: u64,
 }
 
 impl Stamps {
@@ -45,7 +62,10 @@ impl Stamps {
             window: (0, 0),
             last: None,
             host: None,
+            is_first: true,
             expected: None,
+            refused: 0,
+            disagreement: disagreement(bits),
         }
     }
 
@@ -56,11 +76,12 @@ impl Stamps {
 
     /// Tells the host's time when the FIFO held `samples` samples, of which the next stamp is the oldest.
     pub(super) fn expect(&mut self, now_us: u32, samples: usize) {
+        self.is_first = true;
         self.expected = self.host.map(|(then_us, ticks)| {
             let elapsed = u64::from(now_us.wrapping_sub(then_us));
             let elapsed = elapsed * PS_PER_US / self.tick_ps;
             let age = samples as u64 * self.interval / FRACTION;
-            let uncertainty = elapsed / CLOCKS_DISAGREE + 2 * self.interval / FRACTION;
+            let uncertainty = elapsed / self.disagreement + SLACK * self.interval / FRACTION;
             (
                 ticks.saturating_add(elapsed).saturating_sub(age),
                 uncertainty,
@@ -70,7 +91,11 @@ impl Stamps {
 
     /// Takes the stamp of the next sample. It returns its time, and what was lost before it; `None` if the stamp
     /// cannot be that of a later sample.
+    ///
+    /// A damaged stamp must not be believed, because all later samples would seem to come before it. So a time is
+    /// refused if it is not near that of its neighbour or, at the beginning of a burst, near the host's.
     pub(super) fn take(&mut self, stamp: u32) -> Option<(u64, Loss)> {
+        let is_first = core::mem::take(&mut self.is_first);
         let expected = self.expected.take();
         let Some(last) = self.last else {
             let ticks = u64::from(stamp);
@@ -80,20 +105,25 @@ impl Stamps {
         let round = self.mask + 1;
         let forward = u64::from(stamp).wrapping_sub(last) & self.mask;
         let mut ticks = last.saturating_add(forward);
-        let mut certain = true;
-        match expected {
-            Some((expected, uncertainty)) => {
-                let rounds = (expected.saturating_add(round / 2)).saturating_sub(ticks) / round;
-                ticks = ticks.saturating_add(rounds.saturating_mul(round));
-                certain = uncertainty < round / 4;
-                if certain && ticks > expected.saturating_add(round / 2) {
-                    return None;
-                }
-            }
-            None if forward > round / 2 => return None,
-            None => {}
+        let (mut certain, plausible);
+        if let Some((expected, uncertainty)) = expected {
+            let rounds = (expected.saturating_add(round / 2)).saturating_sub(ticks) / round;
+            ticks = ticks.saturating_add(rounds.saturating_mul(round));
+            certain = uncertainty < round / 4;
+            plausible = !certain || ticks.abs_diff(expected) <= uncertainty;
+        } else if is_first {
+            (certain, plausible) = (true, forward <= round / 2);
+        } else {
+            (certain, plausible) = (true, forward <= NEIGHBOURS * self.interval / FRACTION);
+        }
+        if !plausible && self.refused >= REFUSALS {
+            certain = false;
+        } else if !plausible {
+            self.refused += 1;
+            return None;
         }
         let loss = self.loss(ticks - last, certain)?;
+        self.refused = 0;
         self.last = Some(ticks);
         Some((ticks, loss))
     }

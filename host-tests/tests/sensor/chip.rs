@@ -123,6 +123,11 @@ impl Chip {
         }
     }
 
+    /// Sets a register, as the sensor itself does.
+    pub(crate) fn set(&mut self, register: u8, value: u8) {
+        self.registers[usize::from(register)] = value;
+    }
+
     fn is_set(&self, register: u8, mask: u8, value: u8) -> bool {
         self.registers[usize::from(register)] & mask == value
     }
@@ -255,7 +260,8 @@ impl Chip {
         let units = self.fifo.len() as u16;
         match (self.kind, register) {
             (Kind::Icm42688P, 0x2D) => {
-                let status = u8::from(std::mem::take(&mut self.full)) << 1;
+                let full = u8::from(std::mem::take(&mut self.full)) << 1;
+                let status = self.registers[0x2D] | full;
                 let [high, low] = (units * 16).to_be_bytes();
                 fill(bytes, &[status, high, low]);
             }
@@ -329,6 +335,10 @@ pub(crate) struct World {
     pub(crate) log: Vec<(u8, usize)>,
     /// A byte of the next content that is replaced, and by what it is combined with an exclusive or.
     pub(crate) damage: Option<(usize, u8)>,
+    /// The number of contents before that.
+    pub(crate) skip: usize,
+    /// The asynchronous transfer that never ends.
+    stall: Option<usize>,
 }
 
 impl World {
@@ -343,10 +353,12 @@ impl World {
             (&[register, value], []) => self.chip.write(register, value),
             (&[register], bytes) => {
                 self.chip.read(register, bytes);
-                if bytes.len() > 3
-                    && let Some((at, with)) = self.damage.take()
-                {
-                    bytes[at] ^= with;
+                if bytes.len() > 3 && self.damage.is_some() {
+                    if self.skip > 0 {
+                        self.skip -= 1;
+                    } else if let Some((at, with)) = self.damage.take() {
+                        bytes[at] ^= with;
+                    }
                 }
             }
             _ => panic!("an odd transfer: {written:02x?}"),
@@ -373,6 +385,8 @@ impl Wire {
             fault: None,
             log: Vec::new(),
             damage: None,
+            skip: 0,
+            stall: None,
         })))
     }
 
@@ -396,6 +410,21 @@ impl Wire {
     pub(crate) fn fail(&self, transfers: usize, fault: Fault) {
         let world = &mut *self.0.borrow_mut();
         world.fault = Some((world.transfers + transfers, fault));
+    }
+
+    /// Lets the transfer after `transfers` further ones stay unfinished, if it is asynchronous.
+    pub(crate) fn stall(&self, transfers: usize) {
+        let world = &mut *self.0.borrow_mut();
+        world.stall = Some(world.transfers + transfers);
+    }
+
+    /// Does not return while a transfer stays unfinished. What it reads is lost to the sensor.
+    async fn stalled(&self) {
+        let stall = self.0.borrow().stall;
+        if stall == Some(self.transfers() - 1) {
+            self.0.borrow_mut().stall = None;
+            std::future::pending::<()>().await;
+        }
     }
 
     pub(crate) fn transfers(&self) -> usize {
@@ -441,7 +470,9 @@ impl embedded_hal_async::spi::SpiDevice for Wire {
         &mut self,
         operations: &mut [spi::Operation<'_, u8>],
     ) -> Result<(), Fault> {
-        self.spi_transfer(operations)
+        let done = self.spi_transfer(operations);
+        self.stalled().await;
+        done
     }
 }
 

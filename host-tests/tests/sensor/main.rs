@@ -2,10 +2,16 @@
 //! samples that come at the wrong time.
 
 mod chip;
+mod configuration;
+mod driver;
+mod fault;
 mod fifo;
 mod filter;
+mod hostile;
 mod pace;
 mod record;
+mod replay;
 mod sheet;
+mod signal;
 mod start;
 mod units;

@@ -99,7 +99,7 @@ impl Procedure for Fetch<'_> {
             if reads < fifo.format.count_reads() {
                 // Reading the flag of an overrun clears it, even if the answer is lost.
                 self.decoder.is_count_lost = true;
-                self.stage = Stage::Count(reads + 1);
+                self.stage = Stage::Count(reads.saturating_add(1));
                 let bytes = self.head.get_mut(..fifo.format.head()).unwrap_or_default();
                 return Ok(Step::Read {
                     register: fifo.count,
@@ -122,7 +122,7 @@ impl Procedure for Fetch<'_> {
             self.decoder.must_flush = true;
             self.decoder.forget_slot();
             if let Some(write) = fifo.flush.as_slice().get(writes) {
-                self.stage = Stage::Flush(writes + 1);
+                self.stage = Stage::Flush(writes.saturating_add(1));
                 return Ok(Step::Write {
                     register: write.register,
                     value: write.value,

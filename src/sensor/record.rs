@@ -60,10 +60,10 @@ where
         burst: Burst<'_>,
         mut covariates: impl FnMut(&Reading) -> [i32; COVARIATES],
     ) -> Result<u32, Malformed> {
-        let mut samples = 0;
+        let mut samples = 0_u32;
         for reading in burst {
             self.record_reading(&reading?, &mut covariates);
-            samples += 1;
+            samples = samples.saturating_add(1);
         }
         Ok(samples)
     }

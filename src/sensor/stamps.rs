@@ -1,4 +1,5 @@
 use super::{Fifo, Loss};
+use core::num::NonZeroU64;
 
 /// The number of intervals over which the number of ticks of an interval is learned.
 const WINDOW: u16 = 256;
@@ -9,10 +10,10 @@ const FRACTION: u64 = WINDOW as u64;
 
 const PS_PER_US: u64 = 1_000_000;
 
-/// The largest disagreement of the clocks of sensor and host that is expected, as the denominator of a fraction: 3 %
+/// The largest disagreement of the clocks of sensor and host that is expected, as the exponent of a fraction 1/2ⁿ: 3 %
 /// for a time of less than 32 bits, whose rounds have to be told apart, and else 12 %.
-const fn disagreement(bits: u32) -> u64 {
-    if bits < 32 { 32 } else { 8 }
+const fn disagreement(bits: u32) -> u32 {
+    if bits < 32 { 5 } else { 3 }
 }
 
 /// By how many intervals a time may differ from what is expected, besides that.
@@ -30,11 +31,12 @@ const REFUSALS: u8 = 2;
 /// only to count those rounds.
 #[derive(Clone, Debug)]
 pub(super) struct Stamps {
-    mask: u64,
-    tick_ps: u64,
-    nominal: u64,
+    /// The number of bits of a stamp, at most 32.
+    bits: u32,
+    tick_ps: NonZeroU64,
+    nominal: NonZeroU64,
     /// The learned interval, in 1/256 ticks.
-    interval: u64,
+    interval: NonZeroU64,
     /// The ticks and intervals of the window, without losses.
     window: (u64, u16),
     /// The time of the sample before.
@@ -47,16 +49,17 @@ pub(super) struct Stamps {
     expected: Option<(u64, u64)>,
     /// The number of implausible times in a row.
     refused: u8,
-    disagreement: u64,
 }
 
 impl Stamps {
     pub(super) fn new(fifo: &Fifo) -> Self {
         let bits = u32::from(fifo.time_bits).clamp(8, 32);
-        let nominal = u64::from(fifo.interval).max(1);
+        let positive =
+            |number: u32| NonZeroU64::MIN.saturating_add(u64::from(number).saturating_sub(1));
+        let nominal = positive(fifo.interval);
         Self {
-            mask: u64::MAX >> (64 - bits),
-            tick_ps: u64::from(fifo.tick_ps).max(1),
+            bits,
+            tick_ps: positive(fifo.tick_ps),
             nominal,
             interval: nominal,
             window: (0, 0),
@@ -65,13 +68,17 @@ impl Stamps {
             is_first: true,
             expected: None,
             refused: 0,
-            disagreement: disagreement(bits),
         }
     }
 
     /// The sample interval in 1/256 ticks: the nominal one, or what the last window says.
     pub(super) const fn interval(&self) -> u64 {
-        self.interval
+        self.interval.get()
+    }
+
+    /// The ticks of a number of intervals.
+    const fn ticks(&self, intervals: u64) -> u64 {
+        intervals.saturating_mul(self.interval.get()) / FRACTION
     }
 
     /// Tells the host's time when the FIFO held `samples` samples, of which the next stamp is the oldest.
@@ -80,8 +87,9 @@ impl Stamps {
         self.expected = self.host.map(|(then_us, ticks)| {
             let elapsed = u64::from(now_us.wrapping_sub(then_us));
             let elapsed = elapsed * PS_PER_US / self.tick_ps;
-            let age = samples as u64 * self.interval / FRACTION;
-            let uncertainty = elapsed / self.disagreement + SLACK * self.interval / FRACTION;
+            let age = self.ticks(samples as u64);
+            let disagreement = elapsed >> disagreement(self.bits);
+            let uncertainty = disagreement.saturating_add(self.ticks(SLACK));
             (
                 ticks.saturating_add(elapsed).saturating_sub(age),
                 uncertainty,
@@ -102,27 +110,29 @@ impl Stamps {
             self.last = Some(ticks);
             return Some((ticks, Loss::Nothing));
         };
-        let round = self.mask + 1;
-        let forward = u64::from(stamp).wrapping_sub(last) & self.mask;
+        let round = 1_u64.wrapping_shl(self.bits);
+        let forward = u64::from(stamp).wrapping_sub(last) & round.wrapping_sub(1);
         let mut ticks = last.saturating_add(forward);
         let (mut certain, plausible);
         if let Some((expected, uncertainty)) = expected {
-            let rounds = (expected.saturating_add(round / 2)).saturating_sub(ticks) / round;
+            let rounds = (expected.saturating_add(round / 2))
+                .saturating_sub(ticks)
+                .wrapping_shr(self.bits);
             ticks = ticks.saturating_add(rounds.saturating_mul(round));
             certain = uncertainty < round / 4;
             plausible = !certain || ticks.abs_diff(expected) <= uncertainty;
         } else if is_first {
             (certain, plausible) = (true, forward <= round / 2);
         } else {
-            (certain, plausible) = (true, forward <= NEIGHBOURS * self.interval / FRACTION);
+            (certain, plausible) = (true, forward <= self.ticks(NEIGHBOURS));
         }
         if !plausible && self.refused >= REFUSALS {
             certain = false;
         } else if !plausible {
-            self.refused += 1;
+            self.refused = self.refused.saturating_add(1);
             return None;
         }
-        let loss = self.loss(ticks - last, certain)?;
+        let loss = self.loss(ticks.saturating_sub(last), certain)?;
         self.refused = 0;
         self.last = Some(ticks);
         Some((ticks, loss))
@@ -131,12 +141,13 @@ impl Stamps {
     /// What was lost if `ticks` ticks have passed since the sample before; `None` if this is no interval.
     fn loss(&mut self, ticks: u64, certain: bool) -> Option<Loss> {
         let scaled = ticks.saturating_mul(FRACTION);
-        let intervals = scaled.saturating_add(self.interval / 2) / self.interval;
+        let interval = self.interval.get();
+        let intervals = scaled.saturating_add(interval / 2) / self.interval;
         if intervals == 0 {
             return None;
         }
-        let off = scaled.abs_diff(intervals.saturating_mul(self.interval));
-        if !certain || off > self.interval / 4 {
+        let off = scaled.abs_diff(intervals.saturating_mul(interval));
+        if !certain || off > interval / 4 {
             self.window = (0, 0);
             return Some(Loss::Unknown);
         }
@@ -147,12 +158,12 @@ impl Stamps {
             ));
         }
         let (sum, number) = &mut self.window;
-        *sum += ticks;
-        *number += 1;
+        *sum = sum.saturating_add(ticks);
+        *number = number.saturating_add(1);
         if *number == WINDOW {
-            if sum.abs_diff(self.nominal) <= self.nominal / 8 {
-                self.interval = *sum;
-            }
+            let nominal = self.nominal.get();
+            let learned = NonZeroU64::new(*sum).filter(|_| sum.abs_diff(nominal) <= nominal / 8);
+            self.interval = learned.unwrap_or(self.interval);
             self.window = (0, 0);
         }
         Some(Loss::Nothing)
@@ -161,7 +172,7 @@ impl Stamps {
     /// Tells the host's time when the sample of the last stamp was followed by `remaining` further ones. It
     /// returns the sensor's time then.
     pub(super) fn settle(&mut self, now_us: u32, remaining: usize) -> Option<u64> {
-        let younger = remaining as u64 * self.interval / FRACTION;
+        let younger = self.ticks(remaining as u64);
         let ticks = self.last?.saturating_add(younger);
         self.host = Some((now_us, ticks));
         Some(ticks)

@@ -143,11 +143,10 @@ fn a_fault_at_any_transfer_of_a_start_is_told_and_the_next_start_succeeds() {
         let transfers = transfers - counts;
         assert!(transfers > 8, "{kind:?}: {transfers}");
         for fault in FAULTS {
-            for at in 0..transfers {
+            for (at, &(register, _)) in log.iter().enumerate().take(transfers) {
                 let wire = Wire::new(kind);
                 wire.fail(at, fault);
                 let error = run(way, kind, over_spi, &wire, |_| {}).unwrap_err();
-                let (register, _) = log[at];
                 let expected = Error::Bus {
                     register,
                     error: fault,

@@ -23,9 +23,11 @@ struct Log {
     set_up: &'static [Turn],
     /// The transfers after the last start-up write.
     turn_on: &'static [Turn],
-    /// Bursts: the host's time, the transfers, and the readings.
-    bursts: &'static [(u32, &'static [Turn], &'static [Result<Reading, Malformed>])],
+    bursts: &'static [Burst],
 }
+
+/// The host's time, the transfers, and the readings.
+type Burst = (u32, &'static [Turn], &'static [Result<Reading, Malformed>]);
 
 const fn reading(
     gyro: [i32; 3],

@@ -57,7 +57,7 @@
 //!
 //! | module | what it does |
 //! |---|---|
-//! | [`sensor`] | reads an IMU on SPI or I²C through embedded-hal 1.0: a sensor is a description, and six are there |
+//! | [`sensor`] | reads an IMU on SPI or I²C through embedded-hal 1.0: a sensor is a description, and eight are there, four with FIFO |
 //! | [`queue`] | hands samples from an interrupt to the main loop, and loses none silently |
 //! | [`axis`] | leaves out samples that are stuck, at a rail, spikes or motion, and keeps everything else |
 //! | [`octave`] | is the accumulator: quarter-overlapping differences of adjacent clusters, exact in 192 bits |
@@ -116,6 +116,7 @@
 //!
 //! | feature | what it adds |
 //! |---|---|
+//! | `async` | reads sensors through `embedded-hal-async` as well |
 //! | `storage` | snapshots of a record and factory certificates, as checked bytes |
 //! | `flash` | snapshots in any flash that implements `embedded-storage-async`; includes `storage` |
 //! | `overlap` | intervals that count the samples which levels of a spectrum and octaves share; see [`fit`] |

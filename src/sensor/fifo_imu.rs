@@ -23,8 +23,9 @@ use embedded_hal::delay::DelayNs;
 /// | the FIFO overflows | what it overwrote; the ICM's FIFO is emptied, too |
 /// | the transaction that empties the FIFO | as before; the next read tries again |
 ///
-/// In all cases the next reading says how many samples are missing. No sample comes twice, because a time that
-/// is not later than the last one is refused.
+/// In all cases the next reading says how many samples are missing. The stamps of the ICMs have 16 bits and come
+/// round after 1.1 s. The host's time tells how often, after a silence of up to 8 s; after a longer one the number is
+/// unknown. No sample comes twice, because a time that is not later than the last one is refused.
 ///
 /// ```
 /// use allanite::{Axes, sensor::{Error, FifoImu, LSM6DSO, SpiBus}};

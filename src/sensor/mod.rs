@@ -1,10 +1,15 @@
-//! Samples from an IMU on an SPI or I²C bus, through embedded-hal 1.0.
+//! Samples from an IMU on an SPI or I²C bus, through embedded-hal 1.0 or embedded-hal-async 1.0.
 //!
 //! Most IMUs look alike: an identity register, a flag that says when a sample is ready, three
 //! consecutive counts of 16 bits, and a temperature. Therefore a sensor is described by a value, a
-//! [`Description`]. [`CATALOGUE`] holds some descriptions, and a program can add its own. An [`Imu`] reads
-//! the sensor, and [`Axes`](crate::Axes) turns every lost sample into a gap. [`Pace`] detects lost samples
-//! that the sensor does not report, and a configured rate that differs from the true one.
+//! [`Description`]. [`CATALOGUE`] holds some descriptions, and a program can add its own.
+//!
+//! * An [`Imu`] reads one sample at a time. [`Pace`] detects lost samples that the sensor does not report, and a
+//!   configured rate that differs from the true one, from the times at which the host reads.
+//! * A [`FifoImu`] reads bursts from the sensor's FIFO. Every sample has the sensor's own time, so that lost samples
+//!   are known in number, and a [`Clock`] measures the sensor's rate.
+//!
+//! [`Axes`](crate::Axes) turns what was lost into gaps.
 //!
 //! ```
 //! use allanite::{Axes, sensor::{Error, ICM_42688_P, Imu, Loss, Pace, SpiBus}};
@@ -32,21 +37,67 @@
 //! }
 //! ```
 //!
+//! # Sensors
+//!
 //! The start-up writes choose a range of ±250 °/s and a low pass whose noise bandwidth is below half the rate,
 //! so that noise does not fold back and raise N:
 //!
-//! | sensor | rate, Hz | cut-off, Hz | noise bandwidth, Hz | poles | source of the order |
-//! |---|---|---|---|---|---|
-//! | [`BMI160`] | 200 | 20.2 | ≤ 31.8 | ≥ 1 | not documented |
-//! | [`ICM_42688_P`] | 100 | 47.6 | 48.1 | 3 | data sheet |
-//! | [`L3GD20`] | 95 | 32 and 25 | ≤ 22.1 | ≥ 2 | not documented |
-//! | [`LSM6DSO`] | 104 | 33.0 | 34.7 | 2 | inferred from the data sheet's cut-offs |
-//! | [`MPU_6050`] | 200 | 20 | ≤ 31.4 | ≥ 1 | not documented |
-//! | [`MPU_6500`] | 200 | 20 | 31.4 | 1 | inferred from the data sheet's delays |
+//! | sensor | rate, Hz | cut-off, Hz | noise bandwidth, Hz | poles | source of the order | FIFO |
+//! |---|---|---|---|---|---|---|
+//! | [`BMI160`] | 200 | 20.2 | ≤ 31.8 | ≥ 1 | not documented | no |
+//! | [`ICM_42688_P`] | 100 | 47.6 | 48.1 | 3 | data sheet | 128 samples |
+//! | [`ICM_45686`] | 100 | 6.25 | ≤ 9.8 | ≥ 1 | not documented | 128 samples |
+//! | [`L3GD20`] | 95 | 32 and 25 | ≤ 22.1 | ≥ 2 | not documented | no |
+//! | [`LSM6DSO`] | 104 | 33.0 | 34.7 | 2 | inferred from the data sheet's cut-offs | 256 samples |
+//! | [`LSM6DSV16X`] | 120 | 38 | 40 | 2 | inferred from the LSM6DSO | 128 samples |
+//! | [`MPU_6050`] | 200 | 20 | ≤ 31.4 | ≥ 1 | not documented | no |
+//! | [`MPU_6500`] | 200 | 20 | 31.4 | 1 | inferred from the data sheet's delays | no |
 //!
 //! The low pass shows in the first octaves of a curve, where the variance is below that of white noise. The
 //! documentation of each sensor lists its registers, with the data sheet's sections, the public drivers that
 //! they were compared with, and what could not be verified. None of it was measured on a sensor.
+//!
+//! The sensors without a FIFO here have one in silicon. The FIFOs of the MPU-6050, the MPU-6500 and the L3GD20 hold no
+//! time, and that of the BMI160 holds one only at the end of its content, so that they would not tell what was lost.
+//! These four are read one sample at a time, in the one configuration of the table.
+//!
+//! # Another configuration
+//!
+//! The functions [`icm_42688_p`], [`icm_45686`], [`lsm6dso`] and [`lsm6dsv16x`] make a description for another rate,
+//! range, low pass and watermark of the FIFO. They refuse what the sensor does not offer, in constants at compile time:
+//! see [`Configuration`].
+//!
+//! # Waiting
+//!
+//! Both sources can be polled: without a new sample they return none. With the feature `async`, [`Imu`] and
+//! [`FifoImu`] have a second set of methods for `embedded-hal-async`, such as `read_async`, and `wait`, which waits
+//! for the sensor's interrupt pin. Both sets make the same transfers, because the decisions are made apart from
+//! the bus.
+//!
+//! ```
+//! # #[cfg(feature = "async")]
+//! # mod example {
+//! use allanite::{Axes, sensor::{Error, FifoImu, I2cBus, LSM6DSV16X}};
+//! use embedded_hal_async::{delay::DelayNs, digital::Wait, i2c::I2c};
+//!
+//! async fn characterise<I2C: I2c>(
+//!     i2c: I2C,
+//!     pin: &mut impl Wait, // INT1
+//!     delay: &mut impl DelayNs,
+//!     micros: impl Fn() -> u32,
+//!     axes: &mut Axes<20>,
+//! ) -> Result<(), Error<I2C::Error>> {
+//!     let mut imu = FifoImu::start_async(I2cBus::new(i2c), &LSM6DSV16X, delay).await?;
+//!     let mut buffer = [0; 48 * 7];
+//!     while imu.wait(pin).await.is_ok() && imu.clock().check().is_ok() {
+//!         if let Ok(burst) = imu.read_async(micros(), &mut buffer).await {
+//!             axes.record_burst(burst, |_| []).ok(); // if it was malformed, the rest is a gap
+//!         }
+//!     }
+//!     Ok(())
+//! }
+//! # }
+//! ```
 //!
 //! This module is not a driver for all functions of a sensor. The samples of any other driver can be given
 //! to [`Axes::push`](crate::Axes::push).

@@ -17,7 +17,7 @@ const PACKAGES: [&str; 4] = ["--package", "allanite", "--package", "images"];
 const OPTIONAL_PARTS: [&str; 6] = ["", "bags", "explore", "pictures", "study", "watch"];
 
 /// Every feature except double precision.
-const SINGLE: [&str; 2] = ["--features", "defmt,storage,flash,overlap"];
+const SINGLE: [&str; 2] = ["--features", "async,defmt,storage,flash,overlap"];
 
 pub(crate) fn run() -> Result<()> {
     println!("== set-up");

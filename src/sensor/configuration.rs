@@ -36,8 +36,8 @@ pub struct Configuration {
 }
 
 impl Configuration {
-    /// A configuration with the widest low pass that is certain to keep noise from folding back, and a watermark of 8 samples.
-    /// `rate_hz` is the rate in samples per second, and `range_dps` the range in °/s to either side, both as the data
+    /// A configuration with the widest low pass that is certain to keep noise from folding back, and a watermark of 8
+    /// samples. `rate_hz` is the rate in samples per second, and `range_dps` the range in °/s to either side, both as the data
     /// sheet names them; of a range with a fraction, the integer part.
     pub const fn new(rate_hz: u16, range_dps: u16) -> Self {
         Self {

@@ -1,9 +1,10 @@
 use super::{Clock, Description, Fifo, Format, Loss, Malformed, Reading, stamps::Stamps};
 
-/// The tags of the words that are asked for.
+/// The tags of the words that are asked for, and that of a note about a changed configuration, which is left out.
 const TAG_GYRO: u8 = 0x01;
 const TAG_TEMPERATURE: u8 = 0x03;
 const TAG_TIME: u8 = 0x04;
+const TAG_CONFIGURATION: u8 = 0x05;
 
 /// The header of a packet with accelerometer, gyro and time, apart from two bits.
 const PACKET_HEADER: u8 = 0x68;
@@ -149,6 +150,7 @@ impl Decoder {
             TAG_GYRO => slot.gyro = Some([[a, b], [c, d], [e, f]].map(i16::from_le_bytes)),
             TAG_TIME => slot.time = Some(u32::from_le_bytes([a, b, c, d])),
             TAG_TEMPERATURE => self.temperature = Some(i16::from_le_bytes([a, b])),
+            TAG_CONFIGURATION => {}
             _ => return Err(Malformed::Header { found }),
         }
         let (Some(gyro), Some(time)) = (slot.gyro, slot.time) else {

@@ -207,7 +207,7 @@ pub const fn icm_45686(wanted: Configuration) -> Result<Description, Configurati
 /// read twice, and its newest packet is left, as the errata demand.
 ///
 /// Not verified: data sheet and errata were not at hand. The order of the low pass is not known; the largest noise
-/// bandwidth, that of a first order, is stated, and the default low pass is narrow enough for a first order. The sensitivities are those of the ICM-42688-P for the same
-/// range. Whether the adaptive full-scale range is off after reset (IPREG_SYS1_REG_166, bits 4 and 3) is not
+/// bandwidth, that of a first order, is stated, and the default low pass is narrow enough for it. The sensitivities
+/// are those of the ICM-42688-P for the same range. Whether the adaptive full-scale range is off after reset (IPREG_SYS1_REG_166, bits 4 and 3) is not
 /// known. The tick of 16 µs · 32/30 is PX4's; if it is another one, it is learned from the stamps.
 pub static ICM_45686: Description = checked(icm_45686(Configuration::new(100, 250)));

@@ -158,15 +158,15 @@ pub const fn lsm6dso(wanted: Configuration) -> Result<Description, Configuration
 /// | FIFO_CTRL4 0x0A | 0x60, then 0x66 | 9.6 | the same codes: ST's lsm6dso-pid |
 /// | INT1_CTRL 0x0D | 0x08 | 9.9 | the same bit: Linux, ST's lsm6dso-pid |
 ///
-/// A word has a tag of sensor (bits 7 to 3), time slot and parity, as in ST's lsm6dso-pid: 1 is the gyro, 3 the
-/// temperature and 4 the time, whose 32 bits are the first four bytes, as in Linux.
+/// A word has a tag of sensor (bits 7 to 3), time slot (bits 2 and 1) and even parity, as in ST's lsm6dso-pid and
+/// `st_fifo.c`: 1 is the gyro, 3 the temperature and 4 the time, whose 32 bits are the first four bytes, as in Linux.
 ///
 /// These registers keep their reset values: LPF1 is off (CTRL4_C, 9.15), the high-pass filter is off and
 /// the high-performance mode on (CTRL7_G, 9.18; ArduPilot writes the same).
 ///
-/// Not verified: that the words of a time slot have the same number in their tags, and that the parity is even. The
-/// sections of the FIFO's registers follow from the order of the registers. Only some pages of DS12140 were at hand. The registers and the filter's cut-offs were read
+/// Not verified: only some pages of DS12140 were at hand. The registers and the filter's cut-offs were read
 /// in the data sheet of the sibling LSM6DSO32 (DocID032891, revision 1), whose section numbers agree where
-/// both could be compared. Neither gives the order of LPF2. A driver that runs after one which stayed in
-/// another register bank finds a wrong identity; a power cycle mends that.
+/// both could be compared; the sections of the FIFO's registers follow from the order of the registers. Neither gives
+/// the order of LPF2. A driver that runs after one which stayed in another register bank finds a wrong identity; a
+/// power cycle mends that.
 pub static LSM6DSO: Description = checked(lsm6dso(Configuration::new(104, 250)));

@@ -1,6 +1,7 @@
 //! Configurations: what follows from them, and what is refused.
 
-use crate::chip::{KINDS, Kind, NoDelay, Wire};
+use crate::chip::{KINDS, Kind};
+use crate::wire::{NoDelay, Wire};
 use allanite::sensor::{
     Configuration, ConfigurationError, Description, FifoImu, icm_42688_p, icm_45686, lsm6dso,
     lsm6dsv16x,

@@ -1,9 +1,10 @@
 //! A fault at every transfer of a start and of bursts, on either bus, blocking and asynchronous: the source stays
 //! usable, the loss is told in number, and no sample comes twice.
 
-use crate::chip::{Fault, KINDS, Kind, NoDelay, Wire, gyro, number};
+use crate::chip::{KINDS, Kind, gyro, number};
+use crate::wire::{Fault, NoDelay, Wire};
 use allanite::Axes;
-use allanite::sensor::{AsyncRegisters, Error, FifoImu, Imu, Loss, Malformed, Registers};
+use allanite::sensor::{AsyncRegisters, Error, FifoImu, Loss, Malformed, Registers};
 use pollster::block_on;
 use std::{collections::BTreeSet, future::Future, pin::pin, task};
 
@@ -356,51 +357,6 @@ fn both_ways_make_the_same_transfers() {
             });
             assert_eq!(logs[0], logs[1], "{kind:?}");
             assert!(logs[0].1.len() > 30);
-        }
-    }
-}
-
-/// The path of single samples, too, has a fault at every transfer.
-#[test]
-fn a_fault_at_any_transfer_of_single_samples_is_told_and_reading_goes_on() {
-    for kind in KINDS {
-        for way in WAYS {
-            for at in 0..20 {
-                let wire = Wire::new(kind);
-                let mut imu = match way {
-                    Way::Blocking => Imu::start(wire.spi(), kind.description(), &mut NoDelay),
-                    Way::Asynchronous => block_on(Imu::start_async(
-                        wire.spi(),
-                        kind.description(),
-                        &mut NoDelay,
-                    )),
-                }
-                .unwrap();
-                wire.fail(at, Fault::Before);
-                let status = kind.description().status;
-                let (mut samples, mut errors) = (0, 0);
-                for _ in 0..20 {
-                    wire.0.borrow_mut().chip.set(status.register, status.ready);
-                    let outcome = match way {
-                        Way::Blocking => imu.read(),
-                        Way::Asynchronous => block_on(imu.read_async()),
-                    };
-                    match outcome {
-                        Ok(reading) => samples += usize::from(reading.is_some()),
-                        Err(error) => {
-                            let (register, _) = *wire.0.borrow().log.last().unwrap();
-                            let error_before = Fault::Before;
-                            let expected = Error::Bus {
-                                register,
-                                error: error_before,
-                            };
-                            assert_eq!(error, expected);
-                            errors += 1;
-                        }
-                    }
-                }
-                assert_eq!((samples, errors), (19, 1), "{kind:?} {way:?} {at}");
-            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Bursts from the FIFOs of simulated sensors: every sample once, losses known in number, and clocks that disagree.
 
-use crate::chip::{Fault, KINDS, Kind, NoDelay, Wire, gyro, number};
+use crate::chip::{KINDS, Kind, gyro, number};
+use crate::wire::{Fault, NoDelay, Wire};
 use allanite::sensor::{FifoImu, Loss, SpiBus};
 use allanite::{Accumulator, Axes, Error};
 use std::collections::BTreeSet;

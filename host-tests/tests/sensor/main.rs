@@ -1,5 +1,5 @@
-//! Tests sensors on mocked buses: the transfers, the decoded samples, the handling of errors, and
-//! samples that come at the wrong time.
+//! Tests sensors on mocked and simulated buses: the transfers, the decoded samples, FIFOs, configurations, the handling
+//! of errors, and samples that come at the wrong time.
 
 mod chip;
 mod configuration;
@@ -13,5 +13,7 @@ mod record;
 mod replay;
 mod sheet;
 mod signal;
+mod single;
 mod start;
 mod units;
+mod wire;

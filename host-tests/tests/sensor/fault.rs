@@ -253,6 +253,11 @@ fn a_flipped_bit_is_noticed_or_changes_one_sample() {
                         let n = number(reading.gyro);
                         if reading.gyro == gyro(u64::from(n)) {
                             assert!(last.is_none_or(|last| n > last), "{kind:?} {at} {bit}");
+                            // A damaged time is only believed if it is wrong by a few intervals.
+                            if let (Loss::Samples(told), Some(last)) = (reading.loss, last) {
+                                let lost = u32::from(n - last - 1);
+                                assert!(told.abs_diff(lost) <= 8, "{kind:?} {at} {bit}: {told}");
+                            }
                             last = Some(n);
                         } else {
                             wrong += 1;

@@ -6,6 +6,7 @@ use allanite::sensor::{
     Description, FifoImu, I2cBus, ICM_42688_P, ICM_45686, LSM6DSO, LSM6DSV16X, Loss, Malformed,
     Reading, SpiBus,
 };
+use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::i2c::{Mock as I2cMock, Transaction as I2cTurn};
 use embedded_hal_mock::eh1::spi::{Mock as SpiMock, Transaction as SpiTurn};
 
@@ -382,6 +383,54 @@ fn conversations_are_those_of_the_data_sheets_over_spi() {
         }
         let mut mock = SpiMock::new(&turns);
         replay!(log, SpiBus::new(&mut mock));
+        mock.done();
+    }
+}
+
+/// The gyro of one time slot, and the time of another one with the same number, four slots later. Between them,
+/// words were overwritten. The flag of this may be lost with a failed transfer.
+#[test]
+fn a_time_slot_is_not_completed_by_the_words_of_another_one() {
+    const GYRO: &[u8] = &[0x0C, 9, 0, 9, 0, 9, 0];
+    const REST: &[u8] = &[
+        0x24, 0x80, 0x0C, 0x00, 0x00, 0x00, 0x00, //
+        0x0F, 0x01, 0x00, 0x02, 0x00, 0x03, 0x00, //
+        0x27, 0x00, 0x0E, 0x00, 0x00, 0x00, 0x00, //
+    ];
+    let log = &LOGS[2];
+    let address = Sheet::of(log.description).bus.0;
+    let read =
+        |register, bytes: &[u8]| I2cTurn::write_read(address, vec![register], bytes.to_vec());
+    for flag_is_lost in [false, true] {
+        let mut turns = vec![];
+        for turn in log.start(false) {
+            turns.push(match turn {
+                Write(register, value) => I2cTurn::write(address, vec![register, value]),
+                Read(register, bytes) => read(register, bytes),
+            });
+        }
+        turns.extend([read(0x3A, &[1, 0]), read(0x78, GYRO)]);
+        if flag_is_lost {
+            turns.push(read(0x3A, &[0, 0x08]).with_error(ErrorKind::Bus));
+            turns.push(read(0x3A, &[3, 0x00]));
+        } else {
+            turns.push(read(0x3A, &[3, 0x08]));
+        }
+        turns.push(read(0x78, REST));
+        let mut mock = I2cMock::new(&turns);
+        let bus = I2cBus::new(mock.clone());
+        let mut imu = FifoImu::start(bus, log.description, &mut NoDelay).unwrap();
+        let mut buffer = [0; 64];
+        assert_eq!(imu.read(0, &mut buffer).unwrap().count(), 0);
+        if flag_is_lost {
+            assert!(imu.read(30_000, &mut buffer).is_err());
+        }
+        let readings: Vec<_> = imu.read(40_000, &mut buffer).unwrap().collect();
+        assert_eq!(
+            readings,
+            [reading([1, 2, 3], None, Loss::Nothing, 0x0E00)],
+            "{flag_is_lost}"
+        );
         mock.done();
     }
 }

@@ -1,4 +1,4 @@
-use super::{Fifo, Writes};
+use super::{Fifo, Signal, Writes};
 use crate::{
     Error, Scale, Term,
     effect::LowPass,
@@ -61,18 +61,6 @@ pub struct Status {
     /// The bits of which one is set when a sample was overwritten before it was read; 0 if the sensor has
     /// no such bit.
     pub overrun: u8,
-}
-
-/// What an interrupt pin does when data are ready.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Signal {
-    /// The pin is high until the data have been read.
-    High,
-    /// A pulse begins with a rising edge.
-    Rising,
-    /// A pulse begins with a falling edge. The pin is an open drain and needs a pull-up.
-    Falling,
 }
 
 /// The registers and the scale of a sensor's temperature.

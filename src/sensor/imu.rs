@@ -1,5 +1,5 @@
 #[cfg(feature = "async")]
-use super::{AsyncRegisters, signal::wait, transfer::run_async};
+use super::{AsyncRegisters, transfer::run_async, wait::wait};
 use super::{
     Description, Error, Reading, Registers,
     sample::Sample,

@@ -128,11 +128,12 @@ mod pace;
 mod reading;
 mod record;
 mod sample;
-#[cfg(feature = "async")]
 mod signal;
 mod stamps;
 mod start;
 mod transfer;
+#[cfg(feature = "async")]
+mod wait;
 mod write;
 
 #[cfg(feature = "async")]
@@ -142,7 +143,7 @@ pub use burst::Burst;
 pub use bus::{I2cBus, Registers, SpiBus};
 pub use clock::Clock;
 pub use configuration::{Configuration, ConfigurationError};
-pub use description::{ByteOrder, Description, Filter, Interface, Signal, Status, Temperature};
+pub use description::{ByteOrder, Description, Filter, Interface, Status, Temperature};
 pub use error::Error;
 pub use fifo::{Fifo, Format};
 pub use fifo_imu::FifoImu;
@@ -157,6 +158,7 @@ pub use mpu_6050::MPU_6050;
 pub use mpu_6500::MPU_6500;
 pub use pace::Pace;
 pub use reading::{Loss, Reading};
+pub use signal::Signal;
 pub use write::{Bus, Write, Writes};
 
 /// All descriptions of this module.

@@ -59,13 +59,14 @@
 //!
 //! The sensors without a FIFO here have one in silicon. The FIFOs of the MPU-6050, the MPU-6500 and the L3GD20 hold no
 //! time, and that of the BMI160 holds one only at the end of its content, so that they would not tell what was lost.
-//! These four are read one sample at a time, in the one configuration of the table.
+//! These four are read one sample at a time.
 //!
 //! # Another configuration
 //!
-//! The functions [`icm_42688_p`], [`icm_45686`], [`lsm6dso`] and [`lsm6dsv16x`] make a description for another rate,
-//! range, low pass and watermark of the FIFO. They refuse what the sensor does not offer, in constants at compile time:
-//! see [`Configuration`].
+//! The functions [`icm_42688_p`], [`icm_45686`], [`lsm6dso`], [`lsm6dsv16x`], [`mpu_6050`] and [`mpu_6500`] make a
+//! description for another rate, range, low pass and watermark of the FIFO. They refuse what the sensor does not offer,
+//! in constants at compile time: see [`Configuration`]. The BMI160 and the L3GD20 have the one configuration of the
+//! table, because the bandwidths of their low passes are not documented for others.
 //!
 //! # Waiting
 //!
@@ -122,6 +123,7 @@ mod l3gd20;
 mod lsm6dso;
 mod lsm6dsv16x;
 mod malformed;
+mod mpu;
 mod mpu_6050;
 mod mpu_6500;
 mod pace;
@@ -154,8 +156,8 @@ pub use l3gd20::L3GD20;
 pub use lsm6dso::{LSM6DSO, lsm6dso};
 pub use lsm6dsv16x::{LSM6DSV16X, lsm6dsv16x};
 pub use malformed::Malformed;
-pub use mpu_6050::MPU_6050;
-pub use mpu_6500::MPU_6500;
+pub use mpu_6050::{MPU_6050, mpu_6050};
+pub use mpu_6500::{MPU_6500, mpu_6500};
 pub use pace::Pace;
 pub use reading::{Loss, Reading};
 pub use signal::Signal;

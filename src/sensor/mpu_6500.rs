@@ -1,6 +1,85 @@
 use super::{
-    ByteOrder, Description, Filter, Interface, Signal, Status, Temperature, Write, Writes,
+    ByteOrder, Configuration, ConfigurationError, Description, Interface, Signal, Status,
+    Temperature, Write, Writes, configuration::checked, mpu,
 };
+use crate::real::Real;
+
+/// The description of an MPU-6500 with another configuration than that of [`MPU_6500`], whose documentation lists the
+/// registers. The FIFO is not used, so that the watermark is of no consequence.
+///
+/// * Rates: 25, 40, 50, 100, 125, 200, 250, 500 and 1000 Hz.
+/// * Ranges: 250, 500, 1000 and 2000 °/s.
+/// * Low passes: 184, 92, 41, 20, 10 and 5 Hz. Those above a ninth of the rate have to be asked for, because
+///   a filter of first order there would let folded noise raise N by 2 % or more.
+///
+/// # Errors
+/// [`ConfigurationError`] for all else, and for a low pass whose noise would fold back.
+pub const fn mpu_6500(wanted: Configuration) -> Result<Description, ConfigurationError> {
+    // Register 26, DLPF_CFG 1 to 6.
+    let chosen = match mpu::choose("MPU-6500", [184, 92, 41, 20, 10, 5], wanted) {
+        Ok(chosen) => chosen,
+        Err(refusal) => return Err(refusal),
+    };
+    Ok(Description {
+        name: "MPU-6500",
+        // Register 117, WHO_AM_I; 0x71 is the MPU-9250's (RM-MPU-9250A-00).
+        identity: 0x75,
+        identities: &[0x70, 0x71],
+        start_up: Writes::of([
+            // Register 107, PWR_MGMT_1: DEVICE_RESET.
+            Write::new(0x6B, 0x80).wait_us(100_000),
+            // Register 104, SIGNAL_PATH_RESET: gyro, accelerometer and temperature, as SPI needs.
+            Write::new(0x68, 0x07).wait_us(100_000).spi_only(),
+            // Register 106, USER_CTRL: I2C_IF_DIS.
+            Write::new(0x6A, 0x10).spi_only(),
+            // Register 107, PWR_MGMT_1: awake, with the best clock available.
+            Write::new(0x6B, 0x01),
+            // Register 26, CONFIG: DLPF_CFG, gyro at 1 kHz. The divider after it only leaves samples out, so that at
+            // 100 Hz, the filter of 42 Hz could pass noise beyond Nyquist and raise N by 20 %.
+            Write::new(0x1A, chosen.low_pass.code),
+            // Register 25, SMPLRT_DIV: 1 kHz / (1 + SMPLRT_DIV).
+            Write::new(0x19, chosen.rate),
+            // Register 27, GYRO_CONFIG: GYRO_FS_SEL, FCHOICE_B 0 (low pass on).
+            Write::new(0x1B, chosen.range << 3),
+            // Register 55, INT_PIN_CFG: INT_ANYRD_2CLEAR, any read clears the flags.
+            Write::new(0x37, 0x10),
+            // Register 56, INT_ENABLE: RAW_RDY_EN; the gyro settles.
+            Write::new(0x38, 0x01).wait_us(100_000),
+        ]),
+        interface: Interface {
+            spi_read: 0x80,
+            spi_dummies: 0,
+            spi_wake: None,
+            // The address with the AD0 pin at ground.
+            i2c_address: 0x68,
+            i2c_read: 0,
+        },
+        // Register 58, INT_STATUS: RAW_DATA_RDY_INT.
+        status: Status {
+            register: 0x3A,
+            ready: 1,
+            overrun: 0,
+        },
+        // INT is high for 50 µs, push-pull, as INT_PIN_CFG has it.
+        signal: Some(Signal::Rising),
+        // Registers 67 to 72: GYRO_XOUT_H.
+        gyro: 0x43,
+        // Registers 65 and 66, TEMP_OUT, and the product specification's sensitivity: zero at 21 °C,
+        // 333.87 LSB/°C.
+        temperature: Some(Temperature {
+            register: 0x41,
+            at_zero_c: 21.0,
+            counts_per_k: 333.87,
+        }),
+        byte_order: ByteOrder::BigEndian,
+        // Product specification, table "Gyroscope specifications": 131 LSB/(°/s) for FS_SEL 0, and half as
+        // many for each further code.
+        scale_dps: chosen.scale_dps,
+        rate_hz: chosen.rate_hz as Real,
+        filter: chosen.low_pass.filter,
+        fifo: None,
+    })
+}
 
 /// InvenSense MPU-6500, and MPU-9250, whose gyro has the same registers: ±250 °/s at 200 Hz behind
 /// a low pass of 20 Hz.
@@ -25,65 +104,4 @@ use super::{
 /// Not verified: only the documents of the MPU-9250 were at hand. Its register map gives the bandwidth and
 /// the delay of the low pass, not its order: the six delays are those of a first order, 1/(2π·bandwidth),
 /// and 1.7 to 2.2 ms. With a first order, folded noise raises N by at most 1.6 %.
-pub static MPU_6500: Description = Description {
-    name: "MPU-6500",
-    // Register 117, WHO_AM_I; 0x71 is the MPU-9250's (RM-MPU-9250A-00).
-    identity: 0x75,
-    identities: &[0x70, 0x71],
-    start_up: Writes::of([
-        // Register 107, PWR_MGMT_1: DEVICE_RESET.
-        Write::new(0x6B, 0x80).wait_us(100_000),
-        // Register 104, SIGNAL_PATH_RESET: gyro, accelerometer and temperature, as SPI needs.
-        Write::new(0x68, 0x07).wait_us(100_000).spi_only(),
-        // Register 106, USER_CTRL: I2C_IF_DIS.
-        Write::new(0x6A, 0x10).spi_only(),
-        // Register 107, PWR_MGMT_1: awake, with the best clock available.
-        Write::new(0x6B, 0x01),
-        // Register 26, CONFIG: DLPF_CFG 4 (20 Hz), gyro at 1 kHz. The divider after it only leaves samples out,
-        // so that the next wider filter, at 100 Hz, could pass noise beyond Nyquist and raise N by 20 %.
-        Write::new(0x1A, 0x04),
-        // Register 25, SMPLRT_DIV: 1 kHz / (1 + 4).
-        Write::new(0x19, 0x04),
-        // Register 27, GYRO_CONFIG: GYRO_FS_SEL 0 (±250 °/s), FCHOICE_B 0 (low pass on).
-        Write::new(0x1B, 0x00),
-        // Register 55, INT_PIN_CFG: INT_ANYRD_2CLEAR, any read clears the flags.
-        Write::new(0x37, 0x10),
-        // Register 56, INT_ENABLE: RAW_RDY_EN; the gyro settles.
-        Write::new(0x38, 0x01).wait_us(100_000),
-    ]),
-    interface: Interface {
-        spi_read: 0x80,
-        spi_dummies: 0,
-        spi_wake: None,
-        // The address with the AD0 pin at ground.
-        i2c_address: 0x68,
-        i2c_read: 0,
-    },
-    // Register 58, INT_STATUS: RAW_DATA_RDY_INT.
-    status: Status {
-        register: 0x3A,
-        ready: 1,
-        overrun: 0,
-    },
-    // INT is high for 50 µs, push-pull, as INT_PIN_CFG has it.
-    signal: Some(Signal::Rising),
-    // Registers 67 to 72: GYRO_XOUT_H.
-    gyro: 0x43,
-    // Registers 65 and 66, TEMP_OUT, and the product specification's sensitivity: zero at 21 °C,
-    // 333.87 LSB/°C.
-    temperature: Some(Temperature {
-        register: 0x41,
-        at_zero_c: 21.0,
-        counts_per_k: 333.87,
-    }),
-    byte_order: ByteOrder::BigEndian,
-    // Product specification, table "Gyroscope specifications": 131 LSB/(°/s) for FS_SEL 0.
-    scale_dps: 1.0 / 131.0,
-    rate_hz: 200.0,
-    // Register 26: 20 Hz, with one pole π/2 · 20 Hz.
-    filter: Filter {
-        noise_bandwidth_hz: 31.4,
-        poles: 1,
-    },
-    fifo: None,
-};
+pub static MPU_6500: Description = checked(mpu_6500(Configuration::new(200, 250)));

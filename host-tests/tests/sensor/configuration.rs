@@ -4,7 +4,7 @@ use crate::chip::{KINDS, Kind};
 use crate::wire::{NoDelay, Wire};
 use allanite::sensor::{
     Configuration, ConfigurationError, Description, FifoImu, icm_42688_p, icm_45686, lsm6dso,
-    lsm6dsv16x,
+    lsm6dsv16x, mpu_6050, mpu_6500,
 };
 
 fn describe(kind: Kind, wanted: Configuration) -> Result<Description, ConfigurationError> {
@@ -222,5 +222,57 @@ fn the_sample_interval_follows_from_the_rate() {
             let is_rounded = kind == Kind::Lsm6dso;
             assert!(is_rounded || off.abs() < 1e-6, "{kind:?} {rate_hz}: {off}");
         }
+    }
+}
+
+/// Both MPUs, whose gyro runs at 1 kHz before the divider.
+#[test]
+fn the_mpus_divide_their_rate_and_keep_the_low_pass_below_it() {
+    type Function = fn(Configuration) -> Result<Description, ConfigurationError>;
+    let cases: [(Function, [u16; 6]); 2] = [
+        (mpu_6050, [188, 98, 42, 20, 10, 5]),
+        (mpu_6500, [184, 92, 41, 20, 10, 5]),
+    ];
+    let value = |description: &Description, register| {
+        let writes = description.start_up.as_slice();
+        let last = writes.iter().rfind(|write| write.register == register);
+        last.unwrap().value
+    };
+    for (describe, bandwidths_hz) in cases {
+        let mut accepted = 0;
+        for rate_hz in 0..2000 {
+            for (code, range_dps) in [250, 500, 1000, 2000].into_iter().enumerate() {
+                let Ok(description) = describe(Configuration::new(rate_hz, range_dps)) else {
+                    continue;
+                };
+                accepted += 1;
+                let divider = u16::from(value(&description, 0x19)) + 1;
+                assert_eq!(rate_hz * divider, 1000);
+                assert_eq!(usize::from(value(&description, 0x1B) >> 3), code);
+                let full = description.scale_dps * 32768.0;
+                assert!((full / f64::from(range_dps) - 1.0).abs() < 2e-3);
+            }
+            for (code, bandwidth_hz) in (1..).zip(bandwidths_hz) {
+                let wanted = Configuration::new(rate_hz, 250);
+                match describe(wanted.bandwidth_hz(bandwidth_hz)) {
+                    Ok(description) => {
+                        assert_eq!(value(&description, 0x1A), code);
+                        assert!(3.14 * f64::from(bandwidth_hz) < f64::from(rate_hz));
+                        // Without a wish, the widest one that is below a ninth of the rate.
+                        let is_tight = rate_hz >= 9 * bandwidth_hz;
+                        let by_default = describe(wanted).map(|it| value(&it, 0x1A));
+                        assert!(!is_tight || by_default.unwrap() <= code);
+                    }
+                    Err(ConfigurationError::Folding { .. }) => {
+                        assert!(3.15 * f64::from(bandwidth_hz) > f64::from(rate_hz));
+                    }
+                    Err(error) => assert!(matches!(error, ConfigurationError::Rate { .. })),
+                }
+            }
+        }
+        // 25 and 40 Hz have no low pass below a ninth, so that one has to be asked for.
+        assert_eq!(accepted, 7 * 4);
+        let asked = describe(Configuration::new(25, 250).bandwidth_hz(5)).unwrap();
+        assert_eq!(asked.filter.poles, 1);
     }
 }

@@ -6,6 +6,7 @@ use allanite::sensor::{
     Configuration, ConfigurationError, Description, FifoImu, icm_42688_p, icm_45686, lsm6dso,
     lsm6dsv16x, mpu_6050, mpu_6500,
 };
+use std::f64::consts::FRAC_PI_2;
 
 fn describe(kind: Kind, wanted: Configuration) -> Result<Description, ConfigurationError> {
     match kind {
@@ -257,14 +258,14 @@ fn the_mpus_divide_their_rate_and_keep_the_low_pass_below_it() {
                 match describe(wanted.bandwidth_hz(bandwidth_hz)) {
                     Ok(description) => {
                         assert_eq!(value(&description, 0x1A), code);
-                        assert!(3.14 * f64::from(bandwidth_hz) < f64::from(rate_hz));
+                        assert!(2.0 * FRAC_PI_2 * f64::from(bandwidth_hz) < f64::from(rate_hz));
                         // Without a wish, the widest one that is below a ninth of the rate.
                         let is_tight = rate_hz >= 9 * bandwidth_hz;
                         let by_default = describe(wanted).map(|it| value(&it, 0x1A));
                         assert!(!is_tight || by_default.unwrap() <= code);
                     }
                     Err(ConfigurationError::Folding { .. }) => {
-                        assert!(3.15 * f64::from(bandwidth_hz) > f64::from(rate_hz));
+                        assert!(2.0 * FRAC_PI_2 * f64::from(bandwidth_hz) > f64::from(rate_hz));
                     }
                     Err(error) => assert!(matches!(error, ConfigurationError::Rate { .. })),
                 }

@@ -47,6 +47,8 @@ impl Judged {
 pub(super) enum Judging<const K: usize, const B: usize> {
     /// The model is being solved.
     Solving,
+    /// It is solved.
+    Solved,
     /// Its coefficients are being estimated.
     Estimating(Estimator),
     /// The interval of the shape at this place in the fit is being computed.
@@ -88,8 +90,12 @@ impl<const K: usize, const B: usize> Judging<K, B> {
         match self {
             Self::Solving => {
                 if solver.advance(&problem)? {
-                    self.begin_estimating(&problem, solver, &mut step.fit);
+                    *self = Self::Solved;
                 }
+                Ok(None)
+            }
+            Self::Solved => {
+                self.begin_estimating(&problem, solver, &mut step.fit);
                 Ok(None)
             }
             Self::Estimating(estimator) => {

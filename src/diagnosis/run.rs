@@ -36,8 +36,8 @@ use crate::{
 ///
 /// [`run`](Self::run) does all of it. [`advance`](Self::advance) does one piece and returns, so that a
 /// main loop can feed its watchdog and take its samples in between. One piece takes at most 2 million
-/// instructions on a Cortex-M4F in single precision, of some 300 million for a whole diagnosis of 20
-/// octaves (`cargo xtask bench` measures both). To abort a diagnosis, drop it.
+/// instructions on a Cortex-M4F in single precision, with a spectrum or without, of some 300 million for a
+/// whole diagnosis of 20 octaves (`cargo xtask bench` measures both). To abort a diagnosis, drop it.
 ///
 /// # Example
 ///

@@ -153,9 +153,17 @@ pub(super) struct Trial {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
+    /// A round begins.
     Begin,
+    /// The coefficients of a round are fitted.
     Round,
+    /// The shapes are changed.
+    Polishing,
+    /// The neighbourhood is searched.
     Looking,
+    /// The last fit begins.
+    BeginLast,
+    /// The best round is fitted again, with fixed shapes.
     Last,
 }
 
@@ -207,37 +215,84 @@ impl Trial {
         work: &mut Work<K, B>,
         candidate: &mut Candidate,
     ) -> Result<Option<Completed>, Error> {
-        if self.stage == Stage::Begin {
-            self.begin(Stage::Round, observed, tolerance, work)?;
-            return Ok(None);
+        match self.stage {
+            Stage::Begin => {
+                let squares = self.present.squares;
+                self.begin(
+                    Stage::Round,
+                    Start::Once(squares),
+                    observed,
+                    tolerance,
+                    work,
+                )?;
+                return Ok(None);
+            }
+            Stage::BeginLast => {
+                let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
+                self.present = fitted;
+                let squares = self.present.squares;
+                self.begin(Stage::Last, Start::From(squares), observed, tolerance, work)?;
+                return Ok(None);
+            }
+            _ => {}
         }
         let problem = Problem::new(observed, &self.present.model, &work.columns);
-        if self.stage == Stage::Looking {
-            let looking = self.neighbourhood.as_mut();
-            let seen = looking.and_then(|looking| looking.advance(&problem, &work.solver, span));
-            match seen {
-                None => {}
-                Some(seen) if seen.chi_squared < MUCH_BETTER * work.solver.chi_squared => {
-                    self.begin_again(&seen);
-                    self.begin(Stage::Round, observed, tolerance, work)?;
+        match self.stage {
+            Stage::Looking => {
+                let looking = self.neighbourhood.as_mut();
+                let seen =
+                    looking.and_then(|looking| looking.advance(&problem, &work.solver, span));
+                match seen {
+                    None => {}
+                    Some(seen) if seen.chi_squared < MUCH_BETTER * work.solver.chi_squared => {
+                        self.begin_again(&seen);
+                        self.stage = Stage::Begin;
+                    }
+                    Some(_) => self.stage = Stage::BeginLast,
                 }
-                Some(_) => self.begin_last(observed, tolerance, work)?,
             }
-            return Ok(None);
+            Stage::Polishing => {
+                let squares = &work.solver.squares;
+                if !work.derivatives.advance(&problem, squares) {
+                    return Ok(None);
+                }
+                if self.end_round(observed, span, best, work) {
+                    let problem = Problem::new(observed, &self.present.model, &work.columns);
+                    return Ok(Some(self.complete(&problem, work, candidate)));
+                }
+            }
+            _ => {
+                if !work.solver.advance(&problem)? {
+                    return Ok(None);
+                }
+                if self.stage == Stage::Last {
+                    return Ok(Some(self.complete(&problem, work, candidate)));
+                }
+                work.derivatives.clear();
+                self.stage = Stage::Polishing;
+            }
         }
-        if !work.solver.advance(&problem)? {
-            return Ok(None);
-        }
-        if self.stage == Stage::Last {
-            return Ok(Some(self.complete(&problem, work, candidate)));
-        }
+        Ok(None)
+    }
+
+    /// Ends a round whose coefficients are fitted: changes the shapes and decides what comes next. Returns whether the
+    /// trial is over.
+    #[inline(never)]
+    fn end_round<const K: usize, const B: usize>(
+        &mut self,
+        observed: Observed<'_, K, B>,
+        span: &Span,
+        best: Option<Rival>,
+        work: &Work<K, B>,
+    ) -> bool {
+        let problem = Problem::new(observed, &self.present.model, &work.columns);
         let mut next = Steps::new();
         let confused = polish(&problem, work, &mut next);
         self.present.squares = work.solver.squares;
         let now = work.solver.minus_two_log_likelihood();
         let adequate = best.filter(|best| best.explains);
         if confused.is_none() && self.is_hopeless(now, adequate) {
-            return Ok(Some(self.complete(&problem, work, candidate)));
+            return true;
         }
         let goes_on = match confused {
             Some(confused) => {
@@ -252,33 +307,16 @@ impl Trial {
             None => self.step(now, best, next, span),
         };
         self.round = self.round.saturating_add(1);
-        if goes_on && self.round < ROUNDS {
-            self.begin(Stage::Round, observed, tolerance, work)?;
-        } else {
-            let last = self.present.model.terms().last().copied();
-            if self.neighbourhood.is_none()
-                && work.solver.p_value() < ADEQUATE_P
-                && let Some(term) = last
-            {
+        let last = self.present.model.terms().last().copied();
+        self.stage = match last {
+            _ if goes_on && self.round < ROUNDS => Stage::Begin,
+            Some(term) if self.neighbourhood.is_none() && work.solver.p_value() < ADEQUATE_P => {
                 self.neighbourhood = Some(Neighbourhood::new(term));
-                self.stage = Stage::Looking;
-                return Ok(None);
+                Stage::Looking
             }
-            self.begin_last(observed, tolerance, work)?;
-        }
-        Ok(None)
-    }
-
-    /// Begins the last fit. The rounds are over. The best one is fitted again, with fixed shapes.
-    fn begin_last<const K: usize, const B: usize>(
-        &mut self,
-        observed: Observed<'_, K, B>,
-        tolerance: Real,
-        work: &mut Work<K, B>,
-    ) -> Result<(), Error> {
-        let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
-        self.present = fitted;
-        self.begin(Stage::Last, observed, tolerance, work)
+            _ => Stage::BeginLast,
+        };
+        false
     }
 
     /// Begins the rounds again, from a shape of the neighbourhood.
@@ -296,15 +334,12 @@ impl Trial {
     fn begin<const K: usize, const B: usize>(
         &mut self,
         stage: Stage,
+        start: Start,
         observed: Observed<'_, K, B>,
         tolerance: Real,
         work: &mut Work<K, B>,
     ) -> Result<(), Error> {
         self.stage = stage;
-        let start = match stage {
-            Stage::Last => Start::From(self.present.squares),
-            _ => Start::Once(self.present.squares),
-        };
         let tolerance = Tolerance::Fixed(tolerance);
         work.begin_at(observed, &self.present.model, start, tolerance)
     }
@@ -387,7 +422,7 @@ fn polish<const K: usize, const B: usize>(
 ) -> Option<usize> {
     let solver = &work.solver;
     let mut shape = ShapeEquations::EMPTY;
-    if !shape.set(problem, &solver.weights, &solver.squares) {
+    if !shape.set(problem, &solver.weights, &solver.squares, &work.derivatives) {
         return None;
     }
     let confused = solver.confused(problem, &shape);

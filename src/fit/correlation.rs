@@ -4,7 +4,7 @@ use super::{
     method::Method,
     problem::{Columns, Problem},
     result::Fit,
-    shape::ShapeEquations,
+    shape::{Derivatives, ShapeEquations},
     weights::Weights,
 };
 use crate::{
@@ -99,7 +99,9 @@ impl Fit {
         let mut weights = Weights::EMPTY;
         weights.set(&problem, &squares, self.tolerance)?;
         let mut shape = ShapeEquations::EMPTY;
-        if shape.set(&problem, &weights, &squares) {
+        let mut derivatives = Derivatives::NONE;
+        derivatives.set(&problem, &squares);
+        if shape.set(&problem, &weights, &squares, &derivatives) {
             correlations.take(count, &free, |i| shape.column(i, &free));
         } else {
             let mut equations = NormalEquations::EMPTY;

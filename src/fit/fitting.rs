@@ -154,6 +154,7 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
 enum Stage {
     Beginning,
     Solving,
+    Solved,
     Estimating(Estimator),
     Refining(Refinement),
     Complete,
@@ -237,8 +238,12 @@ impl Stage {
             Self::Solving => {
                 let problem = Problem::new(observed, model, &work.columns);
                 if work.solver.advance(&problem)? {
-                    self.begin_estimating(&problem, &work.solver, fit);
+                    *self = Self::Solved;
                 }
+            }
+            Self::Solved => {
+                let problem = Problem::new(observed, model, &work.columns);
+                self.begin_estimating(&problem, &work.solver, fit);
             }
             Self::Estimating(estimator) => {
                 let problem = Problem::new(observed, model, &work.columns);

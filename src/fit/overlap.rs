@@ -34,8 +34,9 @@ pub(super) fn random_parts<const K: usize, const B: usize>(
     squares: &Vector,
     model: &Rows<K, B>,
 ) -> Rows<K, B> {
+    let deterministic = problem.deterministic();
     Rows::of(problem.rows(), |row| {
-        let share = problem.deterministic_share(row, squares);
+        let share = problem.share_of(&deterministic, row, squares);
         model[row] * (1.0 - share).max(0.0)
     })
 }

@@ -173,14 +173,19 @@ impl<'a, const K: usize, const B: usize> Problem<'a, K, B> {
         self.model.terms().len()
     }
 
-    /// The share of deterministic effects in the model's value of a row, from 0 to 1.
-    pub(crate) fn deterministic_share(&self, row: usize, squares: &Vector) -> Real {
-        let terms = list::numbered(self.model.terms().iter());
-        let steady = terms.filter(|(_, term)| {
+    /// The deterministic effects.
+    pub(crate) fn deterministic(&self) -> Free {
+        let is_deterministic = |term: &Term| {
             let shape = term.sampled_shape(self.interval_s);
             term.effect.response(1.0, &shape).is_some()
-        });
-        steady.map(|(i, _)| self.share(row, i, squares)).sum()
+        };
+        Free::of(|i| self.model.terms().get(i).is_some_and(is_deterministic))
+    }
+
+    /// The share of these effects in the model's value of a row, from 0 to 1.
+    pub(crate) fn share_of(&self, effects: &Free, row: usize, squares: &Vector) -> Real {
+        let places = (0..self.count()).filter(|&i| effects.has(i));
+        places.map(|i| self.share(row, i, squares)).sum()
     }
 
     /// The model's variance or density of a row.

@@ -46,6 +46,59 @@ pub(crate) fn derivative<const K: usize, const B: usize>(
     derivative
 }
 
+/// The derivatives by the fitted shape parameters of the effects above zero, computed one per call.
+pub(crate) struct Derivatives<const K: usize, const B: usize> {
+    columns: Vec<Rows<K, B, f32>, MAX_SHAPE>,
+}
+
+/// The fitted shape parameters of the effects above zero: the place of the effect, that of the parameter, and the effect.
+/// `None` if there are too many.
+fn fitted_shapes<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    squares: &Vector,
+) -> Option<Vec<(usize, usize, Term), MAX_SHAPE>> {
+    let mut shapes = Vec::new();
+    for (i, term) in numbered(problem.model.terms().iter()) {
+        for j in term.fitted_parameters().filter(|_| squares[i] > 0.0) {
+            shapes.push((i, j, *term)).ok()?;
+        }
+    }
+    Some(shapes)
+}
+
+impl<const K: usize, const B: usize> Derivatives<K, B> {
+    /// No derivatives yet.
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const NONE: Self = Self {
+        columns: Vec::new(),
+    };
+
+    /// Computes all of them.
+    #[inline(never)]
+    pub(crate) fn set(&mut self, problem: &Problem<'_, K, B>, squares: &Vector) {
+        self.columns.clear();
+        while !self.advance(problem, squares) {}
+    }
+
+    /// Computes one more derivative, and returns whether there was none left.
+    #[inline(never)]
+    pub(crate) fn advance(&mut self, problem: &Problem<'_, K, B>, squares: &Vector) -> bool {
+        let shapes = fitted_shapes(problem, squares);
+        let next = shapes.and_then(|shapes| shapes.get(self.columns.len()).copied());
+        let Some((i, j, term)) = next else {
+            return true;
+        };
+        let column = derivative(problem, term, j, squares[i]);
+        // There is a place for every parameter.
+        self.columns.push(column).is_err()
+    }
+
+    /// Forgets them.
+    pub(crate) fn clear(&mut self) {
+        self.columns.clear();
+    }
+}
+
 /// The normal equations of the coefficients and of the logarithms of the fitted shape parameters,
 /// linearised around the solution.
 pub(crate) struct ShapeEquations {
@@ -72,9 +125,21 @@ impl ShapeEquations {
         problem: &Problem<'_, K, B>,
         weights: &Weights<K, B>,
         squares: &Vector,
+        derivatives: &Derivatives<K, B>,
     ) -> bool {
-        let mut derivatives = Vec::new();
-        self.set_with(problem, weights, squares, &mut derivatives)
+        self.excess = Vector::ZEROS;
+        // The coefficients come first, the shapes follow.
+        let shapes = fitted_shapes(problem, squares);
+        let is_complete = |shapes: &Vec<_, MAX_SHAPE>| derivatives.columns.len() == shapes.len();
+        let shapes = shapes.filter(is_complete);
+        self.parameters = shapes.unwrap_or_default();
+        if self.parameters.is_empty() {
+            return false;
+        }
+        let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
+        let (equations, columns) = (&mut self.equations, &derivatives.columns);
+        let set = weights.equations(problem, &|_| 1.0, columns, &residual, equations);
+        set.is_ok()
     }
 
     /// Does the same. With the feature `overlap`, it adds to the variances of all unknowns what the weights leave out,
@@ -87,43 +152,13 @@ impl ShapeEquations {
         squares: &Vector,
         free: &Free,
     ) -> bool {
-        let mut derivatives = Vec::new();
-        let is_valid = self.set_with(problem, weights, squares, &mut derivatives);
+        let mut derivatives = Derivatives::NONE;
+        derivatives.set(problem, squares);
+        let is_valid = self.set(problem, weights, squares, &derivatives);
         if cfg!(feature = "overlap") && B > 0 && is_valid {
-            self.add_overlap(problem, weights, squares, free, &derivatives);
+            self.add_overlap(problem, weights, squares, free, &derivatives.columns);
         }
         is_valid
-    }
-
-    #[inline(never)]
-    fn set_with<const K: usize, const B: usize>(
-        &mut self,
-        problem: &Problem<'_, K, B>,
-        weights: &Weights<K, B>,
-        squares: &Vector,
-        derivatives: &mut Vec<Rows<K, B, f32>, MAX_SHAPE>,
-    ) -> bool {
-        self.parameters.clear();
-        self.excess = Vector::ZEROS;
-        for (i, term) in numbered(problem.model.terms().iter()) {
-            for j in term.fitted_parameters().filter(|_| squares[i] > 0.0) {
-                if self.parameters.push((i, j, *term)).is_err() {
-                    return false;
-                }
-            }
-        }
-        if self.parameters.is_empty() {
-            return false;
-        }
-        // The coefficients come first, the shapes follow.
-        for &(i, j, term) in &self.parameters {
-            // There is a place for every parameter.
-            let _ = derivatives.push(derivative(problem, term, j, squares[i]));
-        }
-        let residual = |k: usize| problem.measured(k) - problem.variance(k, squares);
-        let equations = &mut self.equations;
-        let set = weights.equations(problem, &|_| 1.0, derivatives, &residual, equations);
-        set.is_ok()
     }
 
     #[inline(never)]

@@ -70,8 +70,8 @@ pub(super) enum Rounds {
 }
 
 /// Squared coefficients, and the covariance with which they were found. One call of
-/// [`advance`](Self::advance) computes a row of the covariance or solves the normal equations, so that
-/// a caller can do something else in between.
+/// [`advance`](Self::advance) computes a row of the covariance, factors it, or solves the normal equations, so
+/// that a caller can do something else in between.
 pub(crate) struct Solver<const K: usize, const B: usize = 0> {
     pub(crate) weights: Weights<K, B>,
     pub(crate) equations: NormalEquations,
@@ -85,6 +85,8 @@ pub(crate) struct Solver<const K: usize, const B: usize = 0> {
     last: Option<Rows<K, B>>,
     stride: Real,
     round: u8,
+    /// Whether the weights of the round are complete, so that its equations come next.
+    is_weighed: bool,
     rounds: Rounds,
     /// The tolerance that a model is granted if it turns out not to be adequate.
     if_needed: Option<Real>,
@@ -104,6 +106,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         last: None,
         stride: 0.0,
         round: 0,
+        is_weighed: false,
         rounds: Rounds::One,
         if_needed: None,
     };
@@ -153,6 +156,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         self.last = None;
         self.stride = 1.0;
         self.round = 1;
+        self.is_weighed = false;
         self.rounds = rounds;
         self.weights.begin(problem, &self.assumed, tolerance)
     }
@@ -165,9 +169,11 @@ impl<const K: usize, const B: usize> Solver<K, B> {
     /// not finite, or if the model has no variance in an octave.
     #[inline(never)]
     pub(crate) fn advance(&mut self, problem: &Problem<'_, K, B>) -> Result<bool, Error> {
-        if !self.weights.advance(problem, &self.assumed)? {
+        if !self.is_weighed {
+            self.is_weighed = self.weights.advance(problem, &self.assumed)?;
             return Ok(false);
         }
+        self.is_weighed = false;
         if !self.end_round(problem)? {
             return Ok(false);
         }

@@ -140,18 +140,20 @@ impl<const K: usize, const B: usize> Weights<K, B> {
     /// Sets the covariance of the bins relative to the model. Bins of different block lengths are independent.
     /// The correlations are multiplied by `keep`.
     fn set_bins(&mut self, problem: &Problem<'_, K, B>, squares: &Vector, keep: Real) {
+        let deterministic = problem.deterministic();
+        // The shares of deterministic effects in this bin and in the ones before it.
+        let mut shares = [0.0; BAND];
         for (b, bin) in numbered(problem.bins.iter()).take(B) {
-            for d in 0..BAND {
-                let other = b
-                    .checked_sub(d)
-                    .and_then(|at| Some((at, problem.bins.get(at)?)));
-                let relative = match other.filter(|(_, other)| other.block == bin.block) {
+            shares.rotate_right(1);
+            let own = problem.share_of(&deterministic, K.saturating_add(b), squares);
+            if let Some(first) = shares.first_mut() {
+                *first = own;
+            }
+            for (d, share) in numbered(shares.iter()) {
+                let other = b.checked_sub(d).and_then(|at| problem.bins.get(at));
+                let relative = match other.filter(|other| other.block == bin.block) {
                     None => 0.0,
-                    Some((at, _)) => {
-                        let shares = [b, at]
-                            .map(|b| problem.deterministic_share(K.saturating_add(b), squares));
-                        relative_covariance(d, bin.effective_segments(), shares)
-                    }
+                    Some(_) => relative_covariance(d, bin.effective_segments(), [own, *share]),
                 };
                 let kept = if d == 0 {
                     relative + self.tolerance * self.tolerance

@@ -2,14 +2,16 @@
 
 use super::{
     problem::{Columns, Problem},
+    shape::Derivatives,
     solver::{Solver, Start, Tolerance},
 };
 use crate::{error::Error, model::Model, observed::Observed};
 
-/// The memory of a fit by the covariance: the columns of the model, and their solution.
+/// The memory of a fit by the covariance: the columns of the model, their solution, and their derivatives by the shapes.
 pub(crate) struct Work<const K: usize, const B: usize = 0> {
     pub(crate) columns: Columns<K, B>,
     pub(crate) solver: Solver<K, B>,
+    pub(crate) derivatives: Derivatives<K, B>,
 }
 
 impl<const K: usize, const B: usize> Work<K, B> {
@@ -18,6 +20,7 @@ impl<const K: usize, const B: usize> Work<K, B> {
     pub(crate) const NEW: Self = Self {
         columns: Columns::EMPTY,
         solver: Solver::NEW,
+        derivatives: Derivatives::NONE,
     };
 
     /// Begins to solve a model.

@@ -1,7 +1,7 @@
 //! The values of a shape parameter that explain a curve nearly as well as the best one.
 
 use super::{
-    EVALUATIONS_A_CALL,
+    evaluations_a_call,
     grid::Grid,
     likelihood::{Evaluation, Found},
     search::GridSearch,
@@ -161,7 +161,7 @@ impl JointInterval {
         evaluation: &mut Evaluation<'_, K, B>,
         span: &Span,
     ) -> Option<(Real, Real)> {
-        for _ in 0..EVALUATIONS_A_CALL {
+        for _ in 0..evaluations_a_call(B) {
             match &mut self.stage {
                 Stage::Bounding { upper } => {
                     let [lower_end, upper_end] = &mut self.ends;

@@ -1,7 +1,7 @@
 //! The search for a lower minimum beside a known one.
 
 use super::{
-    EVALUATIONS_A_CALL,
+    evaluations_a_call,
     likelihood::{Evaluation, Found, Profile},
 };
 use crate::real::Real;
@@ -63,7 +63,7 @@ impl Neighbourhood {
             return Some(self.best);
         }
         let mut evaluation = Evaluation::new(&mut profile, problem, &solver.weights);
-        for _ in 0..EVALUATIONS_A_CALL {
+        for _ in 0..evaluations_a_call(B) {
             let distance = WIDEST * math::exp(-CLOSER * real(self.tried / 2));
             let sign = if self.tried.is_multiple_of(2) {
                 1.0

@@ -1,7 +1,7 @@
 //! The search for the best shape near a known one.
 
 use super::{
-    EVALUATIONS_A_CALL,
+    evaluations_a_call,
     grid::Grid,
     likelihood::{Evaluation, Found},
 };
@@ -42,7 +42,7 @@ impl Refinement {
         evaluation: &mut Evaluation<'_, K, B>,
     ) -> Option<Found> {
         let mut evaluations = 0;
-        while evaluations < EVALUATIONS_A_CALL {
+        while evaluations < evaluations_a_call(B) {
             if self.round >= HALVINGS {
                 return Some(self.best);
             }

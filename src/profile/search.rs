@@ -1,7 +1,7 @@
 //! The search for the best shape of an effect over the whole range of shapes.
 
 use super::{
-    EVALUATIONS_A_CALL,
+    evaluations_a_call,
     grid::Grid,
     likelihood::{Evaluation, Found},
     line::Peak,
@@ -130,7 +130,7 @@ impl GridSearch {
             }
             return None;
         }
-        for _ in 0..EVALUATIONS_A_CALL {
+        for _ in 0..evaluations_a_call(B) {
             if self.at[0] >= self.steps {
                 let Some((best, _)) = self.minima.pop() else {
                     return Some(self.best);

@@ -66,7 +66,8 @@ fn known(
             sum += factors[k] * factors[j] * covariance;
         }
     }
-    let share = |row| problem.deterministic_share(row, squares);
+    let deterministic = problem.deterministic();
+    let share = |row| problem.share_of(&deterministic, row, squares);
     let shares: std::vec::Vec<Real> = (OCTAVES..).map(share).take(problem.bins.len()).collect();
     let part = |b: usize| factors[OCTAVES + b] * problem.variance(OCTAVES + b, squares);
     for (b, row) in covariance_rows(problem.bins, &shares).enumerate() {

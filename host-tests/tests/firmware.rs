@@ -100,13 +100,14 @@ fn single_and_double_precision_reach_the_same_result() {
 }
 
 /// Images without any panic, so that the linker finds no path to one.
-const PANIC_FREE: [&str; 6] = [
+const PANIC_FREE: [&str; 7] = [
     "footprint_nothing",
     "footprint_accumulator",
     "footprint_fit",
     "footprint_diagnosis",
     "footprint_spectrum",
     "footprint_everything",
+    "footprint_words",
 ];
 
 #[test]

@@ -3,6 +3,7 @@
 pub mod firmware;
 
 mod bench;
+pub mod cost;
 mod setup;
 mod step;
 mod test;
@@ -27,8 +28,8 @@ enum Task {
     Setup,
     /// Set up, then check and test everything.
     Test,
-    /// Run a study behind the README's figures: theory, coefficients, paper, hidden-effect, confusion,
-    /// detection, lines, clean, course, thermal, self-test or precision.
+    /// Run a study behind the README's figures: theory, coefficients, calibration, paper, hidden-effect,
+    /// confusion, detection, lines, clean, course, thermal, self-test or precision.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]
@@ -44,6 +45,8 @@ enum Task {
         #[arg(long, conflicts_with = "json")]
         update_budgets: bool,
     },
+    /// Add up what a product costs on a core, by the figures of `bench`, and say whether it fits.
+    Cost(cost::Product),
 }
 
 impl CommandLine {
@@ -66,6 +69,7 @@ impl CommandLine {
                 json,
                 update_budgets,
             } => bench::run(json, update_budgets),
+            Task::Cost(product) => cost::run(&product),
         }
     }
 }

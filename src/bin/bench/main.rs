@@ -10,6 +10,8 @@ fn main() {}
 #[cfg(target_os = "none")]
 mod clock;
 #[cfg(target_os = "none")]
+mod parts;
+#[cfg(target_os = "none")]
 mod stack;
 #[cfg(target_os = "none")]
 mod work;
@@ -17,12 +19,12 @@ mod work;
 #[cfg(target_os = "none")]
 mod image {
     use crate::clock::Clock;
-    use crate::{stack, work};
+    use crate::{parts, stack, work};
     use allanite::{
         Accumulator, Axes, Curve, Model,
         axis::{Gated, Moments, Spectral, Tracked},
         course::Course,
-        spectrum::SpectrumAccumulator,
+        spectrum::{Spectrum, SpectrumAccumulator},
     };
     use core::hint::black_box;
     #[cfg(target_arch = "arm")]
@@ -54,6 +56,7 @@ mod image {
                 samples(&clock);
                 slices(&clock);
                 axes(&clock);
+                parts::measure(&clock);
                 spectrum(&clock);
                 worst::<12>(&clock, LATE);
                 worst::<24>(&clock, LATE);
@@ -61,10 +64,12 @@ mod image {
                 fit::<USUAL>(&clock)
                     && diagnosis(&clock)
                     && diagnosis_with_spectrum(&clock)
+                    && deep_diagnosis()
                     && stretches(&clock)
             }
             _ => {
                 samples(&clock);
+                parts::measure(&clock);
                 worst::<24>(&clock, SOON);
                 fit::<USUAL>(&clock) && diagnosis(&clock)
             }
@@ -92,16 +97,18 @@ mod image {
     /// Measures three axes with every part of the library and one covariate.
     #[inline(never)]
     fn axes(clock: &Clock) {
-        let mean = work::mean_of_axes::<1, Gated, Moments, (), ()>(clock);
+        let mean = work::mean_of_axes::<1, Gated, Moments, 3, (), ()>(clock, work::ROUNDS);
         defmt::info!("instructions_per_sample_three_axes {=f64}", mean);
         let axis = size_of::<Axes<USUAL, 1>>() / 3;
         defmt::info!("ram_bytes_per_axis_20_with_all_parts {=usize}", axis);
-        let with_spectrum = work::mean_of_axes::<1, Gated, Moments, Spectral, ()>(clock);
+        let with_spectrum =
+            work::mean_of_axes::<1, Gated, Moments, 3, Spectral, ()>(clock, work::ROUNDS);
         defmt::info!(
             "instructions_per_sample_three_axes_with_spectrum {=f64}",
             with_spectrum
         );
-        let with_course = work::mean_of_axes::<1, Gated, Moments, Spectral, Tracked>(clock);
+        let with_course =
+            work::mean_of_axes::<1, Gated, Moments, 3, Spectral, Tracked>(clock, work::ROUNDS);
         defmt::info!(
             "instructions_per_sample_three_axes_with_spectrum_and_course {=f64}",
             with_course
@@ -153,6 +160,20 @@ mod image {
         );
         defmt::info!("stack_of_diagnosis_with_spectrum {=usize}", stack);
         found
+    }
+
+    /// Measures the stack of a diagnosis of the largest number of octaves.
+    #[inline(never)]
+    fn deep_diagnosis() -> bool {
+        let model = Model::ieee_952();
+        let Some(curve) = work::curve::<30>(&[work::SINUSOID]) else {
+            return false;
+        };
+        let stack = stack::used_by(|| {
+            black_box(work::diagnose(black_box(&curve), &model));
+        });
+        defmt::info!("stack_of_diagnosis_30 {=usize}", stack);
+        true
     }
 
     #[inline(never)]
@@ -219,7 +240,7 @@ mod image {
     #[inline(never)]
     fn stretches(clock: &Clock) -> bool {
         let model = Model::ieee_952();
-        let (mut of_fit, mut of_diagnosis) = (0.0_f64, 0.0_f64);
+        let (mut of_fit, mut of_diagnosis, mut of_both) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (name, hidden) in work::HIDDEN {
             let Some(curve) = work::curve::<USUAL>(hidden) else {
                 return false;
@@ -227,15 +248,31 @@ mod image {
             let Some(fit) = work::longest_stretch_of_fit(clock, &curve, &model) else {
                 return false;
             };
-            let Some(diagnosis) = work::longest_stretch_of_diagnosis(clock, &curve, &model) else {
+            let Some(spectrum) = work::spectrum::<BINS>(hidden) else {
+                return false;
+            };
+            let diagnosis =
+                work::longest_stretch_of_diagnosis(clock, &curve, Spectrum::<0>::EMPTY, &model);
+            let both = work::longest_stretch_of_diagnosis(clock, &curve, spectrum, &model);
+            let (Some(diagnosis), Some(both)) = (diagnosis, both) else {
                 return false;
             };
             defmt::info!("instructions_stretch_{=str} {=f64}", name, diagnosis);
             of_fit = of_fit.max(fit);
+            defmt::info!(
+                "instructions_stretch_with_spectrum_{=str} {=f64}",
+                name,
+                both
+            );
             of_diagnosis = of_diagnosis.max(diagnosis);
+            of_both = of_both.max(both);
         }
         defmt::info!("instructions_stretch_fit_20 {=f64}", of_fit);
         defmt::info!("instructions_stretch_diagnosis_20 {=f64}", of_diagnosis);
+        defmt::info!(
+            "instructions_stretch_diagnosis_with_spectrum {=f64}",
+            of_both
+        );
         true
     }
 

@@ -32,7 +32,7 @@ pub(crate) fn nothing<const OCTAVES: usize>(accumulator: &mut Accumulator<OCTAVE
 /// The number of counts in memory, small enough to fit into 16 KiB.
 const LENGTH: usize = 1024;
 /// How often these counts are repeated for a mean.
-const ROUNDS: u32 = 64;
+pub(crate) const ROUNDS: i32 = 64;
 const SAMPLES: f64 = ROUNDS as f64 * LENGTH as f64;
 
 /// The counts of a gyro at rest.
@@ -56,8 +56,11 @@ pub(crate) fn mean(clock: &Clock, work: fn(&mut Accumulator<24>, i32)) -> f64 {
     total / SAMPLES
 }
 
-/// The mean number of instructions of a sample of three axes with the given parts, including the loop.
-pub(crate) fn mean_of_axes<const COVARIATES: usize, G, M, S, T>(clock: &Clock) -> f64
+/// The mean number of instructions of a sample of all axes with the given parts, including the loop.
+pub(crate) fn mean_of_axes<const COVARIATES: usize, G, M, const AXES: usize, S, T>(
+    clock: &Clock,
+    rounds: i32,
+) -> f64
 where
     G: GatePart,
     M: MomentPart,
@@ -65,17 +68,18 @@ where
     T: TrackPart,
 {
     let counts = counts();
-    let mut axes = Axes::<20, COVARIATES, G, M, 3, S, T>::new();
+    let mut axes = Axes::<20, COVARIATES, G, M, AXES, S, T>::new();
     let mut round = |n: i32| {
-        for (i, &count) in (0..).zip(&counts) {
-            let at = |behind: usize| counts[(i + behind) % LENGTH];
-            axes.push(([count, at(1), at(2)], [n + i as i32 / 64; COVARIATES]));
+        for i in 0..LENGTH {
+            let count = |axis| counts[(i + axis) % LENGTH];
+            let temperature = n + i as i32 / 64;
+            axes.push((core::array::from_fn(count), [temperature; COVARIATES]));
         }
     };
     round(0);
-    let total = clock.instructions(|| (1..=ROUNDS as i32).for_each(&mut round));
+    let total = clock.instructions(|| (1..=rounds).for_each(&mut round));
     black_box(&axes);
-    total / SAMPLES
+    total / (f64::from(rounds) * LENGTH as f64)
 }
 
 /// The mean numbers of instructions of one count in the interrupt and in the main loop, for a spectrum.
@@ -269,7 +273,9 @@ pub(crate) fn characterise<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Resu
 /// Diagnoses the curve, and returns whether the diagnosis found an effect.
 #[inline(never)]
 pub(crate) fn diagnose<const OCTAVES: usize>(curve: &Curve<OCTAVES>, model: &Model) -> bool {
-    let mut diagnosis = begin(curve, model);
+    let options = diagnosis::Options::default();
+    let (curve, none) = (curve.clone(), Evidence::NONE);
+    let mut diagnosis = Diagnosis::new(curve, none, model, &CATALOGUE, options);
     let verdict = diagnosis.run(|step| {
         black_box(step);
     });
@@ -293,24 +299,18 @@ pub(crate) fn diagnose_both<const OCTAVES: usize, const B: usize>(
     verdict == Ok(Verdict::Improved)
 }
 
-#[inline(always)]
-fn begin<'a, const OCTAVES: usize>(
-    curve: &Curve<OCTAVES>,
-    model: &Model,
-) -> Diagnosis<'a, OCTAVES> {
-    let options = diagnosis::Options::default();
-    Diagnosis::new(curve.clone(), Evidence::NONE, model, &CATALOGUE, options)
-}
-
 /// The largest number of instructions between two returns of a diagnosis, including its start; `None` if
 /// it fails.
 #[inline(never)]
-pub(crate) fn longest_stretch_of_diagnosis<const OCTAVES: usize>(
+pub(crate) fn longest_stretch_of_diagnosis<const OCTAVES: usize, const B: usize>(
     clock: &Clock,
     curve: &Curve<OCTAVES>,
+    spectrum: Spectrum<B>,
     model: &Model,
 ) -> Option<f64> {
-    let mut diagnosis = begin(curve, model);
+    let options = diagnosis::Options::default();
+    let (curve, none) = (curve.clone(), Evidence::NONE);
+    let mut diagnosis = Diagnosis::with_spectrum(curve, spectrum, none, model, &CATALOGUE, options);
     let mut longest = 0.0_f64;
     let mut going_on = true;
     while going_on {

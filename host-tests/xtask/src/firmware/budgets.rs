@@ -32,6 +32,8 @@ pub fn measured() -> Result<Value> {
     for (core, mut figures) in cores.iter().zip(figures) {
         entries.push(measure::entry(core, &figures)?);
         if core.name == CORTEX_M4F.name {
+            // They stand in the list of cores.
+            figures.retain(|name, _| !name.starts_with("part_"));
             figures.append(&mut measure::flash_by_part(core)?);
             measured[target(core.precision)] = figures.into();
         }

@@ -6,11 +6,13 @@ use serde_json::{Map, Number, Value, json};
 
 /// The part of the library that each image contains besides the start-up code, and the name of the
 /// figure for it.
-const PARTS: [(&str, &str); 4] = [
+const PARTS: [(&str, &str); 6] = [
     ("footprint_accumulator", "flash_bytes_accumulator"),
     ("footprint_fit", "flash_bytes_with_fit"),
     ("footprint_diagnosis", "flash_bytes_with_diagnosis"),
     ("footprint_spectrum", "flash_bytes_with_spectrum"),
+    ("footprint_everything", "flash_bytes_with_everything"),
+    ("footprint_words", "flash_bytes_with_explanations"),
 ];
 
 /// The figures that the image `bench` measures on a core. The image measures many more on a
@@ -58,9 +60,27 @@ pub fn entry(core: &Core, figures: &Map<String, Value>) -> Result<Value> {
         "instructions_fit": fit,
         "instructions_diagnosis": largest(figures, "instructions_diagnosis_"),
         "flash_bytes": whole("flash_bytes")?,
+        "parts": parts(figures),
         "ram_bytes": whole("ram_bytes_axis_and_curve")? + stack,
         "stack_bytes": stack,
     }))
+}
+
+/// What axes with one part each take: figures by the name of the part. A small core has none.
+fn parts(figures: &Map<String, Value>) -> Map<String, Value> {
+    let mut parts = Map::new();
+    for (name, value) in figures {
+        let Some(rest) = name.strip_prefix("part_") else {
+            continue;
+        };
+        let ends = ["_bytes_", "_instructions_"].map(|kind| rest.find(kind));
+        if let Some(end) = ends.into_iter().flatten().next() {
+            let (part, figure) = rest.split_at(end);
+            let entry = parts.entry(part).or_insert_with(|| json!({}));
+            entry[&figure[1..]] = value.clone();
+        }
+    }
+    parts
 }
 
 /// The largest of the figures whose names begin with `start`.

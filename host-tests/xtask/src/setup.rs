@@ -103,6 +103,29 @@ fn program(program: &str, package: &str) -> Result<()> {
     }
 }
 
+/// Whether rustup has this toolchain, or can get it.
+pub(crate) fn has_toolchain(version: &str) -> bool {
+    let rustup = |arguments: &[&str]| {
+        let mut command = Command::new("rustup");
+        command.args(arguments).stdin(Stdio::null());
+        command
+    };
+    let mut there = rustup(&["run", version, "rustc", "--version"]);
+    there.stdout(Stdio::null()).stderr(Stdio::null());
+    if there.status().is_ok_and(|status| status.success()) {
+        return true;
+    }
+    let install = [
+        "toolchain",
+        "install",
+        version,
+        "--profile",
+        "minimal",
+        "--no-self-update",
+    ];
+    run_command(&mut rustup(&install)).is_ok()
+}
+
 fn starts(program: &str) -> bool {
     let mut command = Command::new(program);
     command

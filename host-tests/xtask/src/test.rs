@@ -2,12 +2,12 @@
 
 use crate::{
     bench,
-    firmware::{CORTEX_M4F, RISCV, Toolchain, cargo, workspace},
+    firmware::{CORTEX_M4F, RISCV, Toolchain, cargo, target_directory, workspace},
     setup,
     step::step,
 };
 use anyhow::{Context as _, Result};
-use std::path::PathBuf;
+use std::{path::PathBuf, process::Command};
 
 /// The packages that run on a microcontroller.
 const PACKAGES: [&str; 4] = ["--package", "allanite", "--package", "images"];
@@ -81,6 +81,7 @@ pub(crate) fn run() -> Result<()> {
                 .args(features),
         )?;
     }
+    publishing()?;
     step(
         "the images on every core, in QEMU",
         cargo().args(["test", "--package", "host-tests", "--test", "firmware"]),
@@ -92,6 +93,51 @@ pub(crate) fn run() -> Result<()> {
     )?;
     println!("\nall passed");
     Ok(())
+}
+
+/// Every feature of the library. A user may combine them at will.
+const FEATURES: [&str; 6] = ["async", "defmt", "double", "flash", "overlap", "storage"];
+
+/// Checks what somebody gets who depends on the published library: each feature builds alone, the package has every
+/// file that it needs, and the oldest supported compiler builds it.
+fn publishing() -> Result<()> {
+    for feature in FEATURES {
+        step(
+            &format!("the library with the feature {feature} alone"),
+            cargo().args(["check", "--package", "allanite", "--features", feature]),
+        )?;
+    }
+    step(
+        "the library as a package",
+        cargo().args([
+            "package",
+            "--package",
+            "allanite",
+            "--allow-dirty",
+            "--quiet",
+        ]),
+    )?;
+    let manifest = std::fs::read_to_string(workspace().join("Cargo.toml"))?;
+    let oldest = manifest
+        .lines()
+        .find_map(|line| line.strip_prefix("rust-version = "));
+    let oldest = oldest
+        .context("Cargo.toml names no rust-version")?
+        .trim_matches('"');
+    let heading = format!("the library by Rust {oldest}, the oldest that it supports");
+    if !setup::has_toolchain(oldest) {
+        println!("\n== {heading}\nskipped: rustup cannot get Rust {oldest} here");
+        return Ok(());
+    }
+    step(
+        &heading,
+        Command::new("rustup")
+            .args(["run", oldest, "cargo", "check", "--package", "allanite"])
+            .args(["--features", "async,defmt,flash,overlap"])
+            .args(["--target-dir"])
+            .arg(target_directory().join("oldest"))
+            .current_dir(workspace()),
+    )
 }
 
 /// The source files of the effects. A macro declares these modules, so the formatter does not find

@@ -10,8 +10,6 @@ fn main() {}
 #[cfg(target_os = "none")]
 mod clock;
 #[cfg(target_os = "none")]
-mod parts;
-#[cfg(target_os = "none")]
 mod stack;
 #[cfg(target_os = "none")]
 mod work;
@@ -19,7 +17,7 @@ mod work;
 #[cfg(target_os = "none")]
 mod image {
     use crate::clock::Clock;
-    use crate::{parts, stack, work};
+    use crate::{stack, work};
     use allanite::{
         Accumulator, Axes, Curve, Model,
         axis::{Gated, Moments, Spectral, Tracked},
@@ -56,7 +54,6 @@ mod image {
                 samples(&clock);
                 slices(&clock);
                 axes(&clock);
-                parts::measure(&clock);
                 spectrum(&clock);
                 worst::<12>(&clock, LATE);
                 worst::<24>(&clock, LATE);
@@ -64,12 +61,10 @@ mod image {
                 fit::<USUAL>(&clock)
                     && diagnosis(&clock)
                     && diagnosis_with_spectrum(&clock)
-                    && deep_diagnosis()
                     && stretches(&clock)
             }
             _ => {
                 samples(&clock);
-                parts::measure(&clock);
                 worst::<24>(&clock, SOON);
                 fit::<USUAL>(&clock) && diagnosis(&clock)
             }
@@ -160,20 +155,6 @@ mod image {
         );
         defmt::info!("stack_of_diagnosis_with_spectrum {=usize}", stack);
         found
-    }
-
-    /// Measures the stack of a diagnosis of the largest number of octaves.
-    #[inline(never)]
-    fn deep_diagnosis() -> bool {
-        let model = Model::ieee_952();
-        let Some(curve) = work::curve::<30>(&[work::SINUSOID]) else {
-            return false;
-        };
-        let stack = stack::used_by(|| {
-            black_box(work::diagnose(black_box(&curve), &model));
-        });
-        defmt::info!("stack_of_diagnosis_30 {=usize}", stack);
-        true
     }
 
     #[inline(never)]

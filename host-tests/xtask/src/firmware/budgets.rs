@@ -33,7 +33,7 @@ pub fn measured() -> Result<Value> {
         entries.push(measure::entry(core, &figures)?);
         if core.name == CORTEX_M4F.name {
             // They stand in the list of cores.
-            figures.retain(|name, _| !name.starts_with("part_"));
+            figures.remove("parts");
             figures.append(&mut measure::flash_by_part(core)?);
             measured[target(core.precision)] = figures.into();
         }

@@ -15,7 +15,10 @@ const PARTS: [(&str, &str); 6] = [
     ("footprint_words", "flash_bytes_with_explanations"),
 ];
 
-/// The figures that the image `bench` measures on a core. The image measures many more on a
+/// The stack of a diagnosis of the largest number of octaves.
+const DEEP: &str = "stack_of_diagnosis_30";
+
+/// The figures that the images `bench` and `bench_parts` measure on a core. The image measures many more on a
 /// Cortex-M4F than on the others.
 ///
 /// # Errors
@@ -26,18 +29,29 @@ pub fn figures(core: &Core) -> Result<Map<String, Value>> {
         Core { small: true, .. } => "small",
         _ => "usual",
     };
-    let run = run_with(&Image::build_for("bench", core)?, &[extent])?;
-    let (status, lines) = (run.status, run.lines);
-    if !status.success() {
-        bail!("bench on {} ended with {status}: {lines:?}", core.name);
+    let mut figures = logged("bench", core, extent)?;
+    if !core.small {
+        let mut parts = logged("bench_parts", core, extent)?;
+        if let Some(stack) = parts.remove(DEEP) {
+            figures.insert(DEEP.into(), stack);
+        }
+        figures.insert("parts".into(), by_part(&parts).into());
     }
-    let lines = lines.iter().filter_map(|line| line.strip_prefix("info "));
-    let mut figures = named_numbers(lines)?;
     let worst = largest(&figures, "instructions_worst_sample_");
     figures.insert("instructions_worst_sample".into(), worst.into());
     let flash = Image::build_for("footprint_fit", core)?.flash_bytes()?;
     figures.insert("flash_bytes".into(), flash.into());
     Ok(figures)
+}
+
+/// The numbers that an image logs on a core.
+fn logged(image: &str, core: &Core, extent: &str) -> Result<Map<String, Value>> {
+    let run = run_with(&Image::build_for(image, core)?, &[extent])?;
+    let (status, lines) = (run.status, run.lines);
+    if !status.success() {
+        bail!("{image} on {} ended with {status}: {lines:?}", core.name);
+    }
+    named_numbers(lines.iter().filter_map(|line| line.strip_prefix("info ")))
 }
 
 /// The entry of a core in the list of cores. The diagnosis is null if the core has no room for it.
@@ -60,22 +74,19 @@ pub fn entry(core: &Core, figures: &Map<String, Value>) -> Result<Value> {
         "instructions_fit": fit,
         "instructions_diagnosis": largest(figures, "instructions_diagnosis_"),
         "flash_bytes": whole("flash_bytes")?,
-        "parts": parts(figures),
+        "parts": figures.get("parts"),
         "ram_bytes": whole("ram_bytes_axis_and_curve")? + stack,
         "stack_bytes": stack,
     }))
 }
 
-/// What axes with one part each take: figures by the name of the part. A small core has none.
-fn parts(figures: &Map<String, Value>) -> Map<String, Value> {
+/// What axes with one part each take: figures by the name of the part.
+fn by_part(figures: &Map<String, Value>) -> Map<String, Value> {
     let mut parts = Map::new();
     for (name, value) in figures {
-        let Some(rest) = name.strip_prefix("part_") else {
-            continue;
-        };
-        let ends = ["_bytes_", "_instructions_"].map(|kind| rest.find(kind));
+        let ends = ["_bytes_", "_instructions_"].map(|kind| name.find(kind));
         if let Some(end) = ends.into_iter().flatten().next() {
-            let (part, figure) = rest.split_at(end);
+            let (part, figure) = name.split_at(end);
             let entry = parts.entry(part).or_insert_with(|| json!({}));
             entry[&figure[1..]] = value.clone();
         }

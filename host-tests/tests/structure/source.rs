@@ -140,7 +140,8 @@ fn collect(root: &Path, folder: &Path, files: &mut Vec<(String, String)>) {
         let name = path.strip_prefix(root).expect("below the root");
         let name = name.to_str().expect("UTF-8").to_owned();
         if path.is_dir() {
-            if name != "bin" {
+            // A folder with a manifest is a package of its own.
+            if name != "bin" && !path.join("Cargo.toml").exists() {
                 collect(root, &path, files);
             }
         } else if name.ends_with(".rs") {

@@ -3,6 +3,7 @@
 pub mod firmware;
 
 mod bench;
+mod c;
 pub mod cost;
 mod setup;
 mod step;
@@ -45,6 +46,15 @@ enum Task {
         #[arg(long, conflicts_with = "json")]
         update_budgets: bool,
     },
+    /// Build the static library for C for every core, and put it beside its header.
+    C {
+        /// Octaves of averaging time of a record.
+        #[arg(long, default_value = "20", value_parser = ["14", "20", "26"])]
+        octaves: String,
+        /// Folder to write to, with a folder for every target in it.
+        #[arg(long, value_name = "FOLDER", default_value = "target/c")]
+        output: std::path::PathBuf,
+    },
     /// Add up what a product costs on a core, by the figures of `bench`, and say whether it fits.
     Cost(cost::Product),
 }
@@ -69,6 +79,7 @@ impl CommandLine {
                 json,
                 update_budgets,
             } => bench::run(json, update_budgets),
+            Task::C { octaves, output } => c::run(octaves.parse().unwrap_or(20), &output),
             Task::Cost(product) => cost::run(&product),
         }
     }

@@ -1,7 +1,10 @@
 //! Installs what this machine lacks to build and run the images and to test pages in a browser. It
 //! prints what it does and asks no questions.
 
-use crate::{firmware::Way, step::run as run_command};
+use crate::{
+    firmware::{Way, c_library::ARM_GCC},
+    step::run as run_command,
+};
 use anyhow::{Context as _, Result, bail};
 use std::process::{Command, Stdio};
 
@@ -13,9 +16,10 @@ const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clipp
 /// Debian's linker, for machines where rustup brings none.
 const DEBIAN_LINKER: &str = "lld";
 /// Programs that the tests run, and the Debian packages that contain them.
-const PROGRAMS: [(&str, &str); 3] = [
+const PROGRAMS: [(&str, &str); 4] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("qemu-system-riscv32", "qemu-system-misc"),
+    (ARM_GCC, "gcc-arm-none-eabi"),
     (CHROMIUM, "chromium"),
 ];
 /// The browser that the tests open pages with.

@@ -10,7 +10,14 @@ use anyhow::{Context as _, Result};
 use std::{path::PathBuf, process::Command};
 
 /// The packages that run on a microcontroller.
-const PACKAGES: [&str; 4] = ["--package", "allanite", "--package", "images"];
+const PACKAGES: [&str; 6] = [
+    "--package",
+    "allanite",
+    "--package",
+    "allanite-c",
+    "--package",
+    "images",
+];
 
 /// The optional parts of the program, each to be built alone, after none of them. `cargo allanite` builds none, so that
 /// code which needs one by mistake would show in the first command of the README only.

@@ -2,7 +2,8 @@
 
 pub mod agreement;
 pub mod budgets;
-pub mod core;
+pub mod c_library;
+mod core;
 pub mod emulator;
 pub mod figures;
 mod heartbeat;

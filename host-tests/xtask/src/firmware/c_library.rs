@@ -1,0 +1,181 @@
+//! Builds the static library for C and programs that are linked with it.
+
+use super::{
+    Core, Heartbeat, REMEDY, Toolchain, cargo,
+    toolchain::{exclusive, target_directory},
+    workspace,
+};
+use crate::step::shown;
+use anyhow::{Context as _, Result, bail, ensure};
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// The compiler for C on a Cortex-M.
+pub const ARM_GCC: &str = "arm-none-eabi-gcc";
+
+/// The folder with the package, the header and the example.
+pub fn folder() -> PathBuf {
+    workspace().join("src/c")
+}
+
+/// The feature for a number of octaves; none for the usual 20.
+pub fn feature(octaves: u32) -> Option<String> {
+    (octaves != 20).then(|| format!("octaves-{octaves}"))
+}
+
+/// Builds the library for a core, in single precision, for 14, 20 or 26 octaves.
+///
+/// # Errors
+/// Fails if the build fails.
+pub fn library(core: &Core, octaves: u32) -> Result<PathBuf> {
+    let mut command = Toolchain::find(core)?.cargo("build")?;
+    command.args(["--package", "allanite-c", "--lib", "--profile", "firmware"]);
+    if let Some(feature) = feature(octaves) {
+        command.args(["--features", &feature]);
+    }
+    let _lock = exclusive()?;
+    let _heartbeat = Heartbeat::new(format!("the library for C for {}", core.name));
+    succeed(&mut command)?;
+    let built = target_directory().join(core.target);
+    Ok(built.join("firmware/liballanite_c.a"))
+}
+
+/// Builds the library for this host, in single precision.
+///
+/// # Errors
+/// Fails if the build fails.
+pub fn host_library() -> Result<PathBuf> {
+    let mut command = cargo();
+    command
+        .args(["build", "--package", "allanite-c", "--lib", "--release"])
+        .arg("--target-dir")
+        .arg(target_directory());
+    let _lock = exclusive()?;
+    let _heartbeat = Heartbeat::new("the library for C for this host".into());
+    succeed(&mut command)?;
+    Ok(target_directory().join("release/liballanite_c.a"))
+}
+
+/// The lines that the example in Rust prints on this host, in single precision.
+///
+/// # Errors
+/// Fails if it cannot be built or run.
+pub fn rust_example() -> Result<Vec<String>> {
+    let mut command = cargo();
+    command
+        .args(["run", "--package", "allanite-c", "--example", "product"])
+        .args(["--release", "--target-dir"])
+        .arg(target_directory());
+    let _lock = exclusive()?;
+    let _heartbeat = Heartbeat::new("the product in Rust on this host".into());
+    lines(&mut command)
+}
+
+/// Compiles a program of the example's folder for this host, with checks of memory and of undefined behaviour, and returns
+/// the lines that it prints.
+///
+/// # Errors
+/// Fails if it cannot be built, or if it ends with a failure.
+pub fn host_program(sources: &[&str], into: &Path) -> Result<Vec<String>> {
+    let library = host_library()?;
+    let program = into.join("program");
+    let mut gcc = Command::new("gcc");
+    gcc.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-g", "-O1"])
+        .args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"])
+        .arg("-I")
+        .arg(folder().join("include"))
+        .args(
+            sources
+                .iter()
+                .map(|name| folder().join("example").join(name)),
+        )
+        .arg(library)
+        .args(["-lm", "-lpthread", "-ldl", "-o"])
+        .arg(&program);
+    succeed(&mut gcc)?;
+    lines(&mut Command::new(&program))
+}
+
+/// Compiles the example for a Cortex-M4F, and returns the lines that it prints in QEMU.
+///
+/// # Errors
+/// Fails if it cannot be built, or if it ends with a failure.
+pub fn target_program(core: &Core, into: &Path) -> Result<Vec<String>> {
+    let library = library(core, 20)?;
+    let program = into.join("program.elf");
+    let example = folder().join("example");
+    let mut gcc = Command::new(ARM_GCC);
+    gcc.args([
+        "-std=c11",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-Os",
+        "-ffreestanding",
+    ])
+    .args([
+        "-mcpu=cortex-m4",
+        "-mthumb",
+        "-mfloat-abi=hard",
+        "-mfpu=fpv4-sp-d16",
+    ])
+    .args([
+        "-ffunction-sections",
+        "-fdata-sections",
+        "-nostdlib",
+        "-Wl,--gc-sections",
+    ])
+    .arg("-T")
+    .arg(example.join("cortex_m.ld"))
+    .arg("-I")
+    .arg(folder().join("include"))
+    .args(["product.c", "cortex_m.c"].map(|name| example.join(name)))
+    .arg(library)
+    .args(["-lgcc", "-o"])
+    .arg(&program);
+    succeed(&mut gcc)?;
+    let _heartbeat = Heartbeat::new(format!("the product in C on {core} in QEMU"));
+    lines(
+        Command::new(core.qemu)
+            .args(["-machine", core.machine, "-cpu", core.cpu])
+            .args(["-nographic", "-monitor", "none", "-serial", "null"])
+            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+            .arg(&program),
+    )
+}
+
+fn succeed(command: &mut Command) -> Result<()> {
+    let line = shown(command);
+    let output = command.output();
+    let output = output.with_context(|| format!("`{line}` did not start: {REMEDY}"))?;
+    if !output.status.success() {
+        let complaint = String::from_utf8_lossy(&output.stderr);
+        bail!("`{line}` failed ({}):\n{complaint}", output.status);
+    }
+    Ok(())
+}
+
+fn lines(command: &mut Command) -> Result<Vec<String>> {
+    let line = shown(command);
+    let output = command.output();
+    let output = output.with_context(|| format!("`{line}` did not start: {REMEDY}"))?;
+    // QEMU writes what an image prints to one or the other.
+    let printed = [&output.stdout[..], &output.stderr[..]].concat();
+    let status = output.status;
+    ensure!(
+        status.success(),
+        "`{line}` ended with {status}:\n{}",
+        String::from_utf8_lossy(&printed)
+    );
+    let printed = if output.stdout.is_empty() {
+        output.stderr
+    } else {
+        output.stdout
+    };
+    Ok(String::from_utf8(printed)?
+        .lines()
+        .map(str::to_owned)
+        .collect())
+}

@@ -1,0 +1,617 @@
+/* allanite for C: a gyro's record, its fit, diagnosis, self-test, snapshots and certificates.
+ *
+ * Made by cbindgen from src/c/src. `cargo xtask c` builds the library that this header declares. All memory belongs to
+ * the caller; every function returns a status. Define ALLANITE_OCTAVES_14 or ALLANITE_OCTAVES_26 if the library was built
+ * with the feature octaves-14 or octaves-26. */
+
+#ifndef ALLANITE_H
+#define ALLANITE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+// The largest number of effects in a model.
+#define ALLANITE_MAX_COEFFICIENTS 8
+
+// The largest number of fitted shape parameters in a model.
+#define ALLANITE_MAX_SHAPES 4
+
+// The number of axes of a record.
+#define ALLANITE_AXES 3
+
+#if defined(ALLANITE_OCTAVES_14)
+// The number of octaves of a record. Code for another number is compiled with `ALLANITE_OCTAVES_14` or
+// `ALLANITE_OCTAVES_26`, as this library is with a feature.
+#define ALLANITE_OCTAVES 14
+#endif
+
+#if (defined(ALLANITE_OCTAVES_26) && !defined(ALLANITE_OCTAVES_14))
+// The number of octaves of a record. Code for another number is compiled with `ALLANITE_OCTAVES_14` or
+// `ALLANITE_OCTAVES_26`, as this library is with a feature.
+#define ALLANITE_OCTAVES 26
+#endif
+
+#if !(defined(ALLANITE_OCTAVES_14) || defined(ALLANITE_OCTAVES_26))
+// The number of octaves of a record. Code for another number is compiled with `ALLANITE_OCTAVES_14` or
+// `ALLANITE_OCTAVES_26`, as this library is with a feature.
+#define ALLANITE_OCTAVES 20
+#endif
+
+// Words of an `AllaniteGyro`.
+#define ALLANITE_GYRO_WORDS (2160 + (66 * ALLANITE_OCTAVES))
+
+// Words of an `AllaniteEvidence`.
+#define ALLANITE_EVIDENCE_WORDS (440 + (7 * ALLANITE_OCTAVES))
+
+// Words of an `AllaniteSelfTest`.
+#define ALLANITE_SELF_TEST_WORDS 44
+
+// Words of an `AllaniteLook`.
+#define ALLANITE_LOOK_WORDS (180 + (30 * ALLANITE_OCTAVES))
+
+// Words of an `AllaniteDiagnosis`.
+#define ALLANITE_DIAGNOSIS_WORDS (3500 + (42 * ALLANITE_OCTAVES))
+
+// Words of an `AllaniteCertificate`.
+#define ALLANITE_CERTIFICATE_WORDS 560
+
+// Bytes of a buffer for any snapshot of a record and a self-test.
+#define ALLANITE_SNAPSHOT_BYTES (8400 + (310 * ALLANITE_OCTAVES))
+
+// Bytes of a buffer for any certificate.
+#define ALLANITE_CERTIFICATE_BYTES 3400
+
+// What a function returns. A code never changes its meaning.
+enum AllaniteStatus
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // All is well.
+  ALLANITE_STATUS_OK = 0,
+  // A pointer is null.
+  ALLANITE_STATUS_NULL_POINTER = 1,
+  // A pointer is not aligned as its type wants.
+  ALLANITE_STATUS_MISALIGNED = 2,
+  // The size that was passed is not that of this library: compile with its header and with the same octaves.
+  ALLANITE_STATUS_WRONG_SIZE = 3,
+  // The memory holds no such value: call the function that makes it.
+  ALLANITE_STATUS_NOT_INITIALISED = 4,
+  // An argument is outside of its range.
+  ALLANITE_STATUS_INVALID_ARGUMENT = 5,
+  // There is no such axis.
+  ALLANITE_STATUS_UNKNOWN_AXIS = 6,
+  // The record is too short for a fit.
+  ALLANITE_STATUS_TOO_SHORT = 7,
+  // An octave has no noise: the counts do not change.
+  ALLANITE_STATUS_NO_NOISE = 8,
+  // The effects of a model cannot be told apart.
+  ALLANITE_STATUS_SINGULAR = 9,
+  // A buffer is too small.
+  ALLANITE_STATUS_BUFFER_TOO_SMALL = 10,
+  // The stored bytes are not of this library, or damaged, or of something else.
+  ALLANITE_STATUS_CORRUPT = 11,
+  // The stored bytes have an unknown version.
+  ALLANITE_STATUS_UNKNOWN_VERSION = 12,
+  // The snapshot is of a record with other octaves, axes or parts, or of a self-test with another plan.
+  ALLANITE_STATUS_OTHER_PARTS = 13,
+  // The plan of a self-test cannot be carried out.
+  ALLANITE_STATUS_INVALID_PLAN = 14,
+  // Any other error, of a later version.
+  ALLANITE_STATUS_OTHER = 15,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AllaniteStatus AllaniteStatus;
+#else
+typedef int32_t AllaniteStatus;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What one piece of a diagnosis has led to.
+enum AllaniteProgress
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // There is more to do.
+  ALLANITE_PROGRESS_WORKING = 0,
+  // A model is judged: `allanite_diagnosis_fit` gives it. There is more to do.
+  ALLANITE_PROGRESS_STEP = 1,
+  // The five terms explain the record.
+  ALLANITE_PROGRESS_ADEQUATE = 2,
+  // The last model, with effects that were missing, explains the record.
+  ALLANITE_PROGRESS_IMPROVED = 3,
+  // The effects that were found improve the model, but it does not explain the record.
+  ALLANITE_PROGRESS_INCOMPLETE = 4,
+  // The five terms do not explain the record, and no effect helps.
+  ALLANITE_PROGRESS_UNEXPLAINED = 5,
+  // The record is too short to judge the five terms.
+  ALLANITE_PROGRESS_TOO_SHORT = 6,
+  // The record is not that of a gyro at rest.
+  ALLANITE_PROGRESS_INVALID = 7,
+  // Another verdict, of a later version.
+  ALLANITE_PROGRESS_OTHER = 8,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AllaniteProgress AllaniteProgress;
+#else
+typedef int32_t AllaniteProgress;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What a record says about a coefficient.
+enum AllaniteState
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // The 95 % interval excludes zero.
+  ALLANITE_STATE_MEASURED = 0,
+  // The interval includes zero, and `upper` is a one-sided 95 % bound.
+  ALLANITE_STATE_UPPER_BOUND = 1,
+  // The record says nothing about it.
+  ALLANITE_STATE_NOT_OBSERVABLE = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AllaniteState AllaniteState;
+#else
+typedef int32_t AllaniteState;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Whether a model explains a record.
+enum AllaniteAdequacy
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // It does not.
+  ALLANITE_ADEQUACY_INADEQUATE = 0,
+  // It does.
+  ALLANITE_ADEQUACY_ADEQUATE = 1,
+  // The record is too short to tell.
+  ALLANITE_ADEQUACY_UNKNOWN = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AllaniteAdequacy AllaniteAdequacy;
+#else
+typedef int32_t AllaniteAdequacy;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Why a record is not that of a gyro at rest.
+enum AllaniteReason
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // The record is valid.
+  ALLANITE_REASON_VALID = 0,
+  // The values change too seldom.
+  ALLANITE_REASON_STUCK = 1,
+  // Every sample is there several times.
+  ALLANITE_REASON_REPEATED = 2,
+  // The noise is below half a count.
+  ALLANITE_REASON_COARSE = 3,
+  // Too many values are at a rail of the converter.
+  ALLANITE_REASON_RAILED = 4,
+  // Spikes contribute too much.
+  ALLANITE_REASON_SPIKED = 5,
+  // The gyro was moved.
+  ALLANITE_REASON_MOVED = 6,
+  // Too many samples were lost.
+  ALLANITE_REASON_MISSING = 7,
+  // The gate left out too many samples.
+  ALLANITE_REASON_LEFT_OUT = 8,
+  // Any other reason, of a later version.
+  ALLANITE_REASON_OTHER = 9,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AllaniteReason AllaniteReason;
+#else
+typedef int32_t AllaniteReason;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// How a self-test stands.
+enum AllaniteVerdict
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // It needs more samples.
+  ALLANITE_VERDICT_RUNNING = 0,
+  // The gyro keeps every limit.
+  ALLANITE_VERDICT_PASSED = 1,
+  // A coefficient is above its limit.
+  ALLANITE_VERDICT_FAILED_LIMIT = 2,
+  // The five terms do not explain the record.
+  ALLANITE_VERDICT_FAILED_MISFIT = 3,
+  // The longest record did not decide.
+  ALLANITE_VERDICT_UNDECIDED = 4,
+  // The record is not that of a gyro at rest.
+  ALLANITE_VERDICT_INVALID = 5,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AllaniteVerdict AllaniteVerdict;
+#else
+typedef int32_t AllaniteVerdict;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// A certificate.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_CERTIFICATE_WORDS];
+} AllaniteCertificate;
+
+// The conditions of a measurement. The rates are in deg/s.
+typedef struct {
+  // The duration in seconds.
+  double duration_s;
+  // The number of samples per second.
+  double rate_hz;
+  // The number of samples.
+  uint64_t samples;
+  // The number of gaps among them.
+  uint64_t gaps;
+  // The lowest temperature in °C, or NaN if it was not measured.
+  float lowest_c;
+  // The highest temperature in °C, or NaN if it was not measured.
+  float highest_c;
+  // The version of the firmware: major, minor, patch.
+  uint16_t firmware[3];
+} AllaniteConditions;
+
+// A diagnosis of one axis. It must stay where it is.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_DIAGNOSIS_WORDS];
+} AllaniteDiagnosis;
+
+// What a record says about one axis at a moment. It must stay where it is, unchanged, while a look or a diagnosis uses
+// it.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_EVIDENCE_WORDS];
+} AllaniteEvidence;
+
+// A coefficient, in the unit rate · s^(half_seconds/2).
+typedef struct {
+  // The code of the effect, for `allanite_effect_name`. A code never changes its meaning.
+  int32_t effect;
+  // What the record says about it.
+  AllaniteState state;
+  // Twice the exponent of the second in the unit.
+  int32_t half_seconds;
+  // The best value.
+  float value;
+  // The lower end of the 95 % interval; 0 unless the coefficient is measured.
+  float lower;
+  // The upper end of the interval, or a one-sided 95 % bound.
+  float upper;
+} AllaniteCoefficient;
+
+// A fitted shape parameter of an effect.
+typedef struct {
+  // The place of the effect among the coefficients.
+  int32_t coefficient;
+  // The place of the parameter among those of the effect, for `allanite_parameter_name`.
+  int32_t parameter;
+  // The best value.
+  float value;
+  // The lower end of the 95 % interval.
+  float lower;
+  // The upper end of the interval.
+  float upper;
+} AllaniteShape;
+
+// A fitted model.
+typedef struct {
+  // The coefficients, of which `coefficient_count` are valid.
+  AllaniteCoefficient coefficients[ALLANITE_MAX_COEFFICIENTS];
+  // The fitted shape parameters, of which `shape_count` are valid.
+  AllaniteShape shapes[ALLANITE_MAX_SHAPES];
+  // The number of coefficients.
+  int32_t coefficient_count;
+  // The number of fitted shape parameters.
+  int32_t shape_count;
+  // Whether the model explains the record.
+  AllaniteAdequacy adequacy;
+  // The degrees of freedom of `chi_squared`.
+  int32_t degrees_of_freedom;
+  // The squared residuals in units of their covariance.
+  float chi_squared;
+  // The probability of a larger χ² if the model is true; NaN without degrees of freedom.
+  float p_value;
+} AllaniteFit;
+
+// The record of a gyro. It may be copied and moved while no function works on it.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_GYRO_WORDS];
+} AllaniteGyro;
+
+// A self-test of one axis.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_SELF_TEST_WORDS];
+} AllaniteSelfTest;
+
+// The plan of a self-test, as `allanite::self_test::Plan` explains it.
+typedef struct {
+  // The smallest p-value of the fit of five terms; 0 requires nothing.
+  float least_p;
+  // The largest probability that a gyro at one of its limits passes.
+  float false_pass;
+  // The largest probability that a gyro at all of its limits fails.
+  float false_fail;
+  // The length of the record at the first look, in seconds.
+  float shortest_s;
+  // The length of the record at the last look, in seconds.
+  float longest_s;
+} AllanitePlan;
+
+// The largest value that a coefficient may have.
+typedef struct {
+  // The code of one of the five terms of IEEE Std 952.
+  int32_t effect;
+  // The largest value, in the coefficient's unit.
+  float most;
+} AllaniteLimit;
+
+// How a self-test stands, with numbers.
+typedef struct {
+  // How it stands.
+  AllaniteVerdict verdict;
+  // The code of the effect whose limit is not kept or undecided; 0 otherwise.
+  int32_t effect;
+  // The value above its limit, or the p-value of a misfit, or the progress from 0 to 1; 0 otherwise.
+  float value;
+  // The time in seconds until a verdict is expected, or the length that would decide; 0 if it is not known.
+  float expected_s;
+  // Why the record is not valid.
+  AllaniteReason reason;
+} AllaniteTestStatus;
+
+// A look of a self-test at a record, in progress.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_LOOK_WORDS];
+} AllaniteLook;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// Makes a certificate without axes, for a device with an identity of up to 16 bytes. `bytes` is
+// `sizeof(AllaniteCertificate)`.
+//
+// # Safety
+// `certificate` is null, or points to an `AllaniteCertificate` that nothing else uses; `device` is null, or points to
+// `length` bytes; `conditions` is null, or points to what it says.
+AllaniteStatus allanite_certificate_init(AllaniteCertificate *certificate,
+                                         size_t bytes,
+                                         const uint8_t *device,
+                                         size_t length,
+                                         const AllaniteConditions *conditions);
+
+// Adds the next axis, as a diagnosis that has ended describes it.
+//
+// # Safety
+// `certificate` is null, or points to an `AllaniteCertificate`; `diagnosis` is null, or points to an `AllaniteDiagnosis`.
+AllaniteStatus allanite_certificate_add(AllaniteCertificate *certificate,
+                                        const AllaniteDiagnosis *diagnosis);
+
+// Writes a certificate to a buffer of [`ALLANITE_CERTIFICATE_BYTES`](crate::ALLANITE_CERTIFICATE_BYTES). `written` tells how
+// many of them it took. `allanite decode` reads them on a workstation.
+//
+// # Safety
+// `certificate` is null, or points to an `AllaniteCertificate`; `buffer` is null, or points to `capacity` bytes; `written`
+// is null, or points to a `size_t`.
+AllaniteStatus allanite_certificate_encode(const AllaniteCertificate *certificate,
+                                           uint8_t *buffer,
+                                           size_t capacity,
+                                           size_t *written);
+
+// Begins a diagnosis of an axis: what do the five terms lack? `bytes` is `sizeof(AllaniteDiagnosis)`.
+//
+// # Safety
+// `diagnosis` is null, or points to an `AllaniteDiagnosis` that nothing else uses; `evidence` is null, or points to an
+// `AllaniteEvidence` that stays there, unchanged, for as long as the diagnosis is used.
+AllaniteStatus allanite_diagnosis_begin(AllaniteDiagnosis *diagnosis, size_t bytes, const AllaniteEvidence *evidence);
+
+// Does one piece of a diagnosis and tells what it has led to. A piece takes at most 2 million instructions on a
+// Cortex-M4F, except for the one that reports a step, which takes as much as a fit for the correlations of a certificate.
+// After the end, it tells the verdict again.
+//
+// # Safety
+// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`.
+AllaniteStatus allanite_diagnosis_advance(AllaniteDiagnosis *diagnosis,
+                                          AllaniteProgress *progress);
+
+// The model of the last step, fitted.
+//
+// # Safety
+// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `to` is null, or points to an `AllaniteFit`.
+AllaniteStatus allanite_diagnosis_fit(const AllaniteDiagnosis *diagnosis, AllaniteFit *to);
+
+// Takes the evidence about an axis from a record, to which it does not belong afterwards. `bytes` is
+// `sizeof(AllaniteEvidence)`. `rate_per_count` is the rate of one count, `rate_hz` the number of samples per second, and
+// `kelvin_per_count` the temperature of one count of the thermometer.
+//
+// # Safety
+// `evidence` is null, or points to an `AllaniteEvidence` that nothing else uses; `gyro` is null, or points to an
+// `AllaniteGyro`.
+AllaniteStatus allanite_evidence_take(AllaniteEvidence *evidence,
+                                      size_t bytes,
+                                      const AllaniteGyro *gyro,
+                                      size_t axis,
+                                      float rate_per_count,
+                                      float rate_hz,
+                                      float kelvin_per_count);
+
+// The number of samples of the record, and whether it is that of a gyro at rest. Either pointer may be null.
+//
+// # Safety
+// `evidence` is null, or points to an `AllaniteEvidence`; the others are null, or point to what they say.
+AllaniteStatus allanite_evidence_summary(const AllaniteEvidence *evidence, uint64_t *samples, AllaniteReason *reason);
+
+// Fits the five terms of IEEE Std 952 to the curve and to the spectrum of an axis, in one go: some 20 million
+// instructions on a Cortex-M4F. A diagnosis begins with the same fit and does it in pieces.
+//
+// # Safety
+// `evidence` is null, or points to an `AllaniteEvidence`; `to` is null, or points to an `AllaniteFit`.
+AllaniteStatus allanite_fit(const AllaniteEvidence *evidence, AllaniteFit *to);
+
+// Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro` that nothing else uses.
+AllaniteStatus allanite_gyro_init(AllaniteGyro *gyro, size_t bytes);
+
+// Adds one sample: a count of every axis, and one of the thermometer.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro`; `counts` is null, or points to [`ALLANITE_AXES`] counts.
+AllaniteStatus allanite_gyro_push(AllaniteGyro *gyro, const int32_t *counts, int32_t temperature);
+
+// Notes that the next sample does not adjoin the one before it.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro`.
+AllaniteStatus allanite_gyro_gap(AllaniteGyro *gyro);
+
+// Notes that so many samples are missing at this place. Does nothing for 0.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro`.
+AllaniteStatus allanite_gyro_missing(AllaniteGyro *gyro, uint64_t samples);
+
+// Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` tells whether there is
+// more; it may be null.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro`; `more` is null, or points to a `bool`.
+AllaniteStatus allanite_gyro_advance(AllaniteGyro *gyro, bool *more);
+
+// Adds the samples that the gate holds back, at the end of a record.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro`.
+AllaniteStatus allanite_gyro_release(AllaniteGyro *gyro);
+
+// Adds another record of the same gyro, as if a gap lay between the two.
+//
+// # Safety
+// Both are null or point to an `AllaniteGyro`, and not to the same one.
+AllaniteStatus allanite_gyro_merge(AllaniteGyro *gyro, const AllaniteGyro *other);
+
+// The numbers of samples that are kept and that the gate left out. Either pointer may be null.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro`; the others are null, or point to a `uint64_t`.
+AllaniteStatus allanite_gyro_samples(const AllaniteGyro *gyro, uint64_t *kept, uint64_t *left_out);
+
+// The name of the effect with a code, such as "angle_random_walk"; "other" for a code that this library does not know.
+const char *allanite_effect_name(int32_t code);
+
+// The name of a parameter of the effect with a code, such as "frequency_hz"; an empty text if there is no such parameter.
+const char *allanite_parameter_name(int32_t code,
+                                    int32_t parameter);
+
+// Makes a self-test of a plan with so many limits. `bytes` is `sizeof(AllaniteSelfTest)`.
+//
+// # Safety
+// `test` is null, or points to an `AllaniteSelfTest` that nothing else uses; `plan` is null, or points to a plan; `limits`
+// is null, or points to `count` limits.
+AllaniteStatus allanite_self_test_init(AllaniteSelfTest *test,
+                                       size_t bytes,
+                                       const AllanitePlan *plan,
+                                       const AllaniteLimit *limits,
+                                       size_t count,
+                                       float rate_per_count,
+                                       float rate_hz);
+
+// Whether a look is due at this number of samples.
+//
+// # Safety
+// `test` is null, or points to an `AllaniteSelfTest`; `due` is null, or points to a `bool`.
+AllaniteStatus allanite_self_test_is_due(const AllaniteSelfTest *test, uint64_t samples, bool *due);
+
+// How the self-test stands at this number of samples.
+//
+// # Safety
+// `test` is null, or points to an `AllaniteSelfTest`; `to` is null, or points to an `AllaniteTestStatus`.
+AllaniteStatus allanite_self_test_status(const AllaniteSelfTest *test, uint64_t samples, AllaniteTestStatus *to);
+
+// Begins a look of a self-test at the evidence about its axis. `bytes` is `sizeof(AllaniteLook)`. The evidence may change
+// afterwards.
+//
+// # Safety
+// `look` is null, or points to an `AllaniteLook` that nothing else uses; the others are null, or point to what they say.
+AllaniteStatus allanite_look_begin(AllaniteLook *look,
+                                   size_t bytes,
+                                   const AllaniteSelfTest *test,
+                                   const AllaniteEvidence *evidence);
+
+// Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` tells whether it was the last.
+//
+// # Safety
+// `look` is null, or points to an `AllaniteLook`; `complete` is null, or points to a `bool`.
+AllaniteStatus allanite_look_advance(AllaniteLook *look, bool *complete);
+
+// Takes up a complete look, and tells how the self-test stands.
+//
+// # Safety
+// All are null, or point to what they say.
+AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test, const AllaniteLook *look, AllaniteTestStatus *to);
+
+// Writes a snapshot of the record and of a self-test, which may be null, to a buffer of
+// [`ALLANITE_SNAPSHOT_BYTES`](crate::ALLANITE_SNAPSHOT_BYTES). `written` tells how many of them it took.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro`; `test` is null, or points to an `AllaniteSelfTest`; `buffer` is null, or
+// points to `capacity` bytes; `written` is null, or points to a `size_t`.
+AllaniteStatus allanite_gyro_snapshot(const AllaniteGyro *gyro,
+                                      const AllaniteSelfTest *test,
+                                      uint8_t *buffer,
+                                      size_t capacity,
+                                      size_t *written);
+
+// Restores a snapshot into a record and into a self-test of the same plan, which must be null if the snapshot was taken
+// without one. After an error, the record is empty and the self-test must be made anew.
+//
+// # Safety
+// `gyro` is null, or points to an `AllaniteGyro`; `test` is null, or points to an `AllaniteSelfTest`; `bytes` is null, or
+// points to `length` bytes.
+AllaniteStatus allanite_gyro_restore(AllaniteGyro *gyro,
+                                     AllaniteSelfTest *test,
+                                     const uint8_t *bytes,
+                                     size_t length);
+
+// What a status means, as a sentence that ends with NUL. An unknown number gives "unknown status".
+const char *allanite_status_text(int32_t status);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* ALLANITE_H */
+
+#ifndef __cplusplus
+_Static_assert(sizeof(AllaniteGyro) == 8 * ALLANITE_GYRO_WORDS, "AllaniteGyro has padding");
+_Static_assert(sizeof(AllaniteEvidence) == 8 * ALLANITE_EVIDENCE_WORDS, "AllaniteEvidence has padding");
+_Static_assert(sizeof(AllaniteSelfTest) == 8 * ALLANITE_SELF_TEST_WORDS, "AllaniteSelfTest has padding");
+_Static_assert(sizeof(AllaniteLook) == 8 * ALLANITE_LOOK_WORDS, "AllaniteLook has padding");
+_Static_assert(sizeof(AllaniteDiagnosis) == 8 * ALLANITE_DIAGNOSIS_WORDS, "AllaniteDiagnosis has padding");
+_Static_assert(sizeof(AllaniteCertificate) == 8 * ALLANITE_CERTIFICATE_WORDS, "AllaniteCertificate has padding");
+_Static_assert(sizeof(AllaniteStatus) == 4, "compile without -fshort-enums, or with the type int32_t for enumerations");
+#endif

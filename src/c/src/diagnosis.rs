@@ -1,0 +1,170 @@
+//! The diagnosis of an axis, in pieces.
+
+use crate::{
+    fit::{AllaniteEvidence, AllaniteFit, Evidence},
+    gyro::BINS,
+    memory::{self, Memory, get, get_mut, put, status},
+    sizes::{ALLANITE_DIAGNOSIS_WORDS, ALLANITE_OCTAVES},
+    status::AllaniteStatus,
+};
+use allanite::{
+    Model, Observed,
+    diagnosis::{Diagnosis, Options, Progress, Verdict},
+    effect::CATALOGUE,
+    storage::AxisCertificate,
+};
+
+/// A diagnosis in progress, and what it has found.
+pub(crate) struct Diagnosing {
+    evidence: &'static Evidence,
+    diagnosis: Diagnosis<'static, ALLANITE_OCTAVES, BINS>,
+    fit: AllaniteFit,
+    pub(crate) certificate: AxisCertificate,
+    pub(crate) verdict: Option<Verdict>,
+}
+
+/// A diagnosis of one axis. It must stay where it is.
+#[repr(C)]
+pub struct AllaniteDiagnosis {
+    /// Nothing for the caller to read.
+    words: [u64; ALLANITE_DIAGNOSIS_WORDS],
+}
+
+// SAFETY: the type is words, and the mark is its own.
+unsafe impl Memory for AllaniteDiagnosis {
+    type Value = Diagnosing;
+    const MARK: u64 = 0x6779_726f_0000_0005 + ALLANITE_OCTAVES as u64 * 0x100;
+}
+
+/// What one piece of a diagnosis has led to.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AllaniteProgress {
+    /// There is more to do.
+    Working = 0,
+    /// A model is judged: `allanite_diagnosis_fit` gives it. There is more to do.
+    Step = 1,
+    /// The five terms explain the record.
+    Adequate = 2,
+    /// The last model, with effects that were missing, explains the record.
+    Improved = 3,
+    /// The effects that were found improve the model, but it does not explain the record.
+    Incomplete = 4,
+    /// The five terms do not explain the record, and no effect helps.
+    Unexplained = 5,
+    /// The record is too short to judge the five terms.
+    TooShort = 6,
+    /// The record is not that of a gyro at rest.
+    Invalid = 7,
+    /// Another verdict, of a later version.
+    Other = 8,
+}
+
+impl AllaniteProgress {
+    fn of(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Adequate => Self::Adequate,
+            Verdict::Improved => Self::Improved,
+            Verdict::Incomplete => Self::Incomplete,
+            Verdict::Unexplained => Self::Unexplained,
+            Verdict::TooShort => Self::TooShort,
+            Verdict::Invalid(_) => Self::Invalid,
+            _ => Self::Other,
+        }
+    }
+}
+
+/// Begins a diagnosis of an axis: what do the five terms lack? `bytes` is `sizeof(AllaniteDiagnosis)`.
+///
+/// # Safety
+/// `diagnosis` is null, or points to an `AllaniteDiagnosis` that nothing else uses; `evidence` is null, or points to an
+/// `AllaniteEvidence` that stays there, unchanged, for as long as the diagnosis is used.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_diagnosis_begin(
+    diagnosis: *mut AllaniteDiagnosis,
+    bytes: usize,
+    evidence: *const AllaniteEvidence,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get` wants, for as long as the diagnosis is used.
+    let evidence: &'static Evidence = match unsafe { get(evidence) } {
+        Ok(evidence) => evidence,
+        Err(error) => return error,
+    };
+    let begun = || {
+        let (curve, spectrum) = (evidence.curve.clone(), evidence.spectrum.clone());
+        let (known, model) = (evidence.evidence(), Model::ieee_952());
+        let options = Options::default();
+        Ok(Diagnosing {
+            evidence,
+            diagnosis: Diagnosis::with_spectrum(
+                curve, spectrum, known, &model, &CATALOGUE, options,
+            ),
+            fit: AllaniteFit::EMPTY,
+            certificate: AxisCertificate::empty(),
+            verdict: None,
+        })
+    };
+    // SAFETY: the caller promises what `make` wants.
+    status(unsafe { memory::make(diagnosis, bytes, begun) })
+}
+
+/// Does one piece of a diagnosis and tells what it has led to. A piece takes at most 2 million instructions on a
+/// Cortex-M4F, except for the one that reports a step, which takes as much as a fit for the correlations of a certificate.
+/// After the end, it tells the verdict again.
+///
+/// # Safety
+/// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_diagnosis_advance(
+    diagnosis: *mut AllaniteDiagnosis,
+    progress: *mut AllaniteProgress,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get_mut` wants.
+    let it = match unsafe { get_mut(diagnosis) } {
+        Ok(it) => it,
+        Err(error) => return error,
+    };
+    let Diagnosing {
+        evidence,
+        diagnosis,
+        fit,
+        certificate,
+        verdict,
+    } = it;
+    let reached = match diagnosis.advance() {
+        Err(error) => return error.into(),
+        Ok(Progress::Working) => AllaniteProgress::Working,
+        Ok(Progress::Step(step)) => {
+            *fit = AllaniteFit::of(&step.model, &step.fit);
+            let observed = Observed::new(&evidence.curve, &evidence.spectrum);
+            if let Err(error) = certificate.take(observed, step) {
+                return error.into();
+            }
+            AllaniteProgress::Step
+        }
+        Ok(Progress::Finished(reached)) => {
+            *verdict = Some(reached);
+            certificate.verdict = Some(reached);
+            AllaniteProgress::of(reached)
+        }
+    };
+    // SAFETY: the caller promises what `put` wants.
+    status(unsafe { put(progress, reached) })
+}
+
+/// The model of the last step, fitted.
+///
+/// # Safety
+/// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `to` is null, or points to an `AllaniteFit`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_diagnosis_fit(
+    diagnosis: *const AllaniteDiagnosis,
+    to: *mut AllaniteFit,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get` wants.
+    match unsafe { get(diagnosis) } {
+        Err(error) => error,
+        // SAFETY: the caller promises what `put` wants.
+        Ok(it) => status(unsafe { put(to, it.fit) }),
+    }
+}

@@ -1,0 +1,169 @@
+//! The record of a gyro: three axes and a temperature.
+
+use crate::{
+    memory::{self, Memory, get, get_mut, put, slice, status},
+    sizes::{ALLANITE_AXES, ALLANITE_GYRO_WORDS, ALLANITE_OCTAVES},
+    status::AllaniteStatus,
+};
+use allanite::{
+    Axes,
+    axis::{Gated, Moments, Spectral},
+};
+
+/// The bins of a spectrum of five levels.
+pub(crate) const BINS: usize = 140;
+
+/// The record: a gate, fourth moments, a temperature and spectra.
+pub(crate) type Gyro =
+    Axes<ALLANITE_OCTAVES, 1, Gated, Moments, ALLANITE_AXES, Spectral<64, 7, BINS>>;
+
+/// The record of a gyro. It may be copied and moved while no function works on it.
+#[repr(C)]
+pub struct AllaniteGyro {
+    /// Nothing for the caller to read.
+    words: [u64; ALLANITE_GYRO_WORDS],
+}
+
+// SAFETY: the type is words, and the mark is its own.
+unsafe impl Memory for AllaniteGyro {
+    type Value = Gyro;
+    const MARK: u64 = 0x6779_726f_0000_0001 + ALLANITE_OCTAVES as u64 * 0x100;
+}
+
+/// Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`.
+///
+/// # Safety
+/// `gyro` is null, or points to an `AllaniteGyro` that nothing else uses.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_gyro_init(
+    gyro: *mut AllaniteGyro,
+    bytes: usize,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `make` wants.
+    status(unsafe { memory::make(gyro, bytes, || Ok(const { Gyro::new() })) })
+}
+
+/// Adds one sample: a count of every axis, and one of the thermometer.
+///
+/// # Safety
+/// `gyro` is null, or points to an `AllaniteGyro`; `counts` is null, or points to [`ALLANITE_AXES`] counts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_gyro_push(
+    gyro: *mut AllaniteGyro,
+    counts: *const i32,
+    temperature: i32,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `slice` wants.
+    let counts = match unsafe { slice(counts, ALLANITE_AXES) } {
+        Ok(counts) => counts,
+        Err(error) => return error,
+    };
+    // SAFETY: the caller promises what `get_mut` wants.
+    status(unsafe { get_mut(gyro) }.map(|gyro| {
+        let mut sample = [0; ALLANITE_AXES];
+        for (to, from) in sample.iter_mut().zip(counts) {
+            *to = *from;
+        }
+        gyro.push((sample, [temperature]));
+    }))
+}
+
+/// Notes that the next sample does not adjoin the one before it.
+///
+/// # Safety
+/// `gyro` is null, or points to an `AllaniteGyro`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_gyro_gap(gyro: *mut AllaniteGyro) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get_mut` wants.
+    status(unsafe { get_mut(gyro) }.map(Gyro::gap))
+}
+
+/// Notes that so many samples are missing at this place. Does nothing for 0.
+///
+/// # Safety
+/// `gyro` is null, or points to an `AllaniteGyro`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_gyro_missing(
+    gyro: *mut AllaniteGyro,
+    samples: u64,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get_mut` wants.
+    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.missing(samples)))
+}
+
+/// Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` tells whether there is
+/// more; it may be null.
+///
+/// # Safety
+/// `gyro` is null, or points to an `AllaniteGyro`; `more` is null, or points to a `bool`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_gyro_advance(
+    gyro: *mut AllaniteGyro,
+    more: *mut bool,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get_mut` wants.
+    let advanced = unsafe { get_mut(gyro) }.map(Gyro::advance);
+    match advanced {
+        Err(error) => error,
+        Ok(_) if more.is_null() => AllaniteStatus::Ok,
+        // SAFETY: the caller promises what `put` wants.
+        Ok(is_more) => status(unsafe { put(more, is_more) }),
+    }
+}
+
+/// Adds the samples that the gate holds back, at the end of a record.
+///
+/// # Safety
+/// `gyro` is null, or points to an `AllaniteGyro`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_gyro_release(gyro: *mut AllaniteGyro) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get_mut` wants.
+    status(unsafe { get_mut(gyro) }.map(Gyro::release))
+}
+
+/// Adds another record of the same gyro, as if a gap lay between the two.
+///
+/// # Safety
+/// Both are null or point to an `AllaniteGyro`, and not to the same one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_gyro_merge(
+    gyro: *mut AllaniteGyro,
+    other: *const AllaniteGyro,
+) -> AllaniteStatus {
+    if core::ptr::eq(gyro, other) {
+        return AllaniteStatus::InvalidArgument;
+    }
+    // SAFETY: the caller promises what `get` wants.
+    let other = match unsafe { get(other) } {
+        Ok(other) => other,
+        Err(error) => return error,
+    };
+    // SAFETY: the caller promises what `get_mut` wants, and the two records are not the same.
+    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.merge(other)))
+}
+
+/// The numbers of samples that are kept and that the gate left out. Either pointer may be null.
+///
+/// # Safety
+/// `gyro` is null, or points to an `AllaniteGyro`; the others are null, or point to a `uint64_t`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_gyro_samples(
+    gyro: *const AllaniteGyro,
+    kept: *mut u64,
+    left_out: *mut u64,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get` wants.
+    let gyro = match unsafe { get(gyro) } {
+        Ok(gyro) => gyro,
+        Err(error) => return error,
+    };
+    for (to, value) in [(kept, gyro.samples()), (left_out, gyro.left_out())] {
+        if !to.is_null() {
+            // SAFETY: the caller promises what `put` wants.
+            if let Err(error) = unsafe { put(to, value) } {
+                return error;
+            }
+        }
+    }
+    AllaniteStatus::Ok
+}

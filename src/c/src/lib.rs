@@ -1,0 +1,65 @@
+//! allanite for C: the record of a three-axis gyro with a temperature, its evidence, fit, diagnosis, self-test, snapshots
+//! and certificates.
+//!
+//! `include/allanite.h` declares all of it, and `cargo xtask c` builds a static library for every core. All memory belongs
+//! to the caller, and all work is done in pieces, so that a main loop goes on:
+//!
+//! ```c
+//! #include "allanite.h"
+//!
+//! static AllaniteGyro gyro;
+//! static AllaniteEvidence evidence;
+//! static AllaniteDiagnosis diagnosis;
+//!
+//! allanite_gyro_init(&gyro, sizeof gyro);
+//! while (recording) allanite_gyro_push(&gyro, counts, temperature);
+//! allanite_gyro_release(&gyro);
+//! allanite_evidence_take(&evidence, sizeof evidence, &gyro, 0, 1.0f / 131, 100.0f, 0.01f);
+//! allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &evidence);
+//! AllaniteProgress progress;
+//! do { feed_watchdog(); allanite_diagnosis_advance(&diagnosis, &progress); } while (progress <= ALLANITE_PROGRESS_STEP);
+//! AllaniteFit fit;
+//! allanite_diagnosis_fit(&diagnosis, &fit);
+//! ```
+//!
+//! Every function returns an [`AllaniteStatus`]. It refuses null pointers, memory of another size than that of this
+//! library, and memory in which no value was made. It cannot check that a pointer points to as much memory as its type
+//! says, and that nothing else uses it: the callers' duties stand under *Safety*.
+//!
+//! A static library computes in single precision and for one number of octaves: 20, or 14 or 26 with the feature
+//! `octaves-14` or `octaves-26`, for which C code defines `ALLANITE_OCTAVES_14` or `ALLANITE_OCTAVES_26`.
+
+#![cfg_attr(target_os = "none", no_std)]
+// A value of C is behind a pointer. Each block says why it is sound.
+#![allow(unsafe_code)]
+
+mod certificate;
+mod checks;
+mod diagnosis;
+mod fit;
+mod gyro;
+mod memory;
+mod names;
+mod self_test;
+mod sizes;
+mod snapshot;
+mod status;
+
+pub use certificate::*;
+pub use diagnosis::*;
+pub use fit::*;
+pub use gyro::*;
+pub use names::*;
+pub use self_test::*;
+pub use sizes::*;
+pub use snapshot::*;
+pub use status::*;
+
+/// The panic handler of the static library. No code can panic; the linker needs it nevertheless.
+#[cfg(all(target_os = "none", not(test)))]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
+}

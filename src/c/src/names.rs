@@ -1,0 +1,85 @@
+//! Names of effects and of their parameters, which end with NUL.
+
+use core::ffi::{CStr, c_char};
+
+/// The name of the effect with a code, such as "angle_random_walk"; "other" for a code that this library does not know.
+#[unsafe(no_mangle)]
+pub extern "C" fn allanite_effect_name(code: i32) -> *const c_char {
+    let (_, name, _) = effect(code);
+    name.as_ptr()
+}
+
+/// The name of a parameter of the effect with a code, such as "frequency_hz"; an empty text if there is no such parameter.
+#[unsafe(no_mangle)]
+pub extern "C" fn allanite_parameter_name(code: i32, parameter: i32) -> *const c_char {
+    let (_, _, parameters) = effect(code);
+    let place = usize::try_from(parameter).unwrap_or(usize::MAX);
+    parameters.get(place).copied().unwrap_or(c"").as_ptr()
+}
+
+/// A code, its name, and the names of the parameters.
+type Named = (u8, &'static CStr, &'static [&'static CStr]);
+
+fn effect(code: i32) -> Named {
+    let known = EFFECTS.iter().find(|(known, ..)| i32::from(*known) == code);
+    known.copied().unwrap_or((0, c"other", &[]))
+}
+
+/// The effects of the catalogue and the five terms of IEEE Std 952. A test compares them with the library.
+const EFFECTS: [Named; 13] = [
+    (1, c"quantization", &[]),
+    (2, c"angle_random_walk", &[]),
+    (3, c"bias_instability", &[]),
+    (4, c"rate_random_walk", &[]),
+    (5, c"rate_ramp", &[]),
+    (6, c"gauss_markov", &[c"correlation_time_s"]),
+    (7, c"sinusoid", &[c"frequency_hz"]),
+    (8, c"resonance", &[c"frequency_hz", c"quality"]),
+    (9, c"low_pass", &[c"time_constant_s", c"poles"]),
+    (10, c"decimation_filter", &[c"width_s", c"stages"]),
+    (11, c"random_telegraph", &[c"correlation_time_s"]),
+    (12, c"power_law", &[c"exponent"]),
+    (13, c"notch", &[c"frequency_hz", c"quality"]),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use allanite::effect::{CATALOGUE, IEEE_952};
+
+    #[test]
+    fn names_are_those_of_the_library() {
+        let all = IEEE_952.iter().chain(&CATALOGUE);
+        let mut found = 0;
+        for effect in all {
+            let code = effect.description().code;
+            let Some((_, name, parameters)) = EFFECTS.iter().find(|(known, ..)| *known == code)
+            else {
+                panic!("{} (code {code}) has no name here", effect.name());
+            };
+            assert_eq!(name.to_str(), Ok(effect.name()));
+            let here = parameters.iter().map(|name| name.to_str().unwrap());
+            assert!(
+                here.eq(effect.parameters().iter().map(|one| one.name)),
+                "{name:?}"
+            );
+            found += 1;
+        }
+        assert!(found >= EFFECTS.len());
+    }
+
+    #[test]
+    fn unknown_codes_have_names_too() {
+        for code in [-1, 0, 99, i32::MAX, i32::MIN] {
+            // SAFETY: the function returns a text that ends with NUL.
+            let name = unsafe { CStr::from_ptr(allanite_effect_name(code)) };
+            assert_eq!(name, c"other");
+        }
+        // SAFETY: as before.
+        let name = unsafe { CStr::from_ptr(allanite_parameter_name(8, -1)) };
+        assert_eq!(name, c"");
+        // SAFETY: as before.
+        let name = unsafe { CStr::from_ptr(allanite_parameter_name(8, 1)) };
+        assert_eq!(name, c"quality");
+    }
+}

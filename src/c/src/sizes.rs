@@ -1,0 +1,34 @@
+//! The sizes of the caller's memory, in words of 64 bits. They suffice for every core, and for a host of 64 bits.
+
+/// The number of axes of a record.
+pub const ALLANITE_AXES: usize = 3;
+
+/// The number of octaves of a record. Code for another number is compiled with `ALLANITE_OCTAVES_14` or
+/// `ALLANITE_OCTAVES_26`, as this library is with a feature.
+#[cfg(feature = "octaves-14")]
+pub const ALLANITE_OCTAVES: usize = 14;
+/// The number of octaves of a record. Code for another number is compiled with `ALLANITE_OCTAVES_14` or
+/// `ALLANITE_OCTAVES_26`, as this library is with a feature.
+#[cfg(all(feature = "octaves-26", not(feature = "octaves-14")))]
+pub const ALLANITE_OCTAVES: usize = 26;
+/// The number of octaves of a record. Code for another number is compiled with `ALLANITE_OCTAVES_14` or
+/// `ALLANITE_OCTAVES_26`, as this library is with a feature.
+#[cfg(not(any(feature = "octaves-14", feature = "octaves-26")))]
+pub const ALLANITE_OCTAVES: usize = 20;
+
+/// Words of an `AllaniteGyro`.
+pub const ALLANITE_GYRO_WORDS: usize = 2160 + 66 * ALLANITE_OCTAVES;
+/// Words of an `AllaniteEvidence`.
+pub const ALLANITE_EVIDENCE_WORDS: usize = 440 + 7 * ALLANITE_OCTAVES;
+/// Words of an `AllaniteSelfTest`.
+pub const ALLANITE_SELF_TEST_WORDS: usize = 44;
+/// Words of an `AllaniteLook`.
+pub const ALLANITE_LOOK_WORDS: usize = 180 + 30 * ALLANITE_OCTAVES;
+/// Words of an `AllaniteDiagnosis`.
+pub const ALLANITE_DIAGNOSIS_WORDS: usize = 3500 + 42 * ALLANITE_OCTAVES;
+/// Words of an `AllaniteCertificate`.
+pub const ALLANITE_CERTIFICATE_WORDS: usize = 560;
+/// Bytes of a buffer for any snapshot of a record and a self-test.
+pub const ALLANITE_SNAPSHOT_BYTES: usize = 8400 + 310 * ALLANITE_OCTAVES;
+/// Bytes of a buffer for any certificate.
+pub const ALLANITE_CERTIFICATE_BYTES: usize = 3400;

@@ -184,6 +184,9 @@ pub(crate) const HIDDEN: [(&str, &[Hidden]); 11] = [
     ),
 ];
 
+/// The case whose diagnosis with a spectrum has the longest piece.
+pub(crate) const HARDEST: &str = "sinusoid_0_3_hz";
+
 /// An oscillation at 7.7 Hz.
 pub(crate) const SINUSOID: Hidden = (&Sinusoid, [7.7, 0.0], 0.02);
 

@@ -199,6 +199,48 @@ fn a_line_is_no_coefficient_above_its_limit() {
     );
 }
 
+/// A weak line takes long to become an evident misfit, and looks like bias instability before. Without regard to the
+/// p-value of the fit, half of the gyros at 0.2, 0.5 and 1 Hz failed by the coefficient.
+#[test]
+fn weak_slow_lines_are_seldom_blamed_on_bias_instability() {
+    // The gyros' own bias instability is 0.003 °/s.
+    let failures = |most: f64, amplitude: f64, frequency_hz: f64| {
+        let seeds = 0..40;
+        let tests = seeds.map(|seed| {
+            let mut test = SelfTest::new(plan("bias_instability", most), scale()).unwrap();
+            let mut gyro = Gyro::new();
+            let rates = Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 700 + seed);
+            for (at, rate) in rates.enumerate() {
+                let phase = std::f64::consts::TAU * frequency_hz * at as f64 / RATE_HZ;
+                gyro.push(((rate + amplitude * phase.sin()) / UNIT).round() as i32);
+                match look(&mut test, &gyro) {
+                    Status::Running { .. } => continue,
+                    Status::Failed(failure) => return Some(failure),
+                    _ => return None,
+                }
+            }
+            None
+        });
+        let failures: Vec<Failure> = tests.flatten().collect();
+        let blamed = failures
+            .iter()
+            .filter(|one| matches!(one, Failure::Limit { .. }));
+        (failures.len(), blamed.count())
+    };
+    let mut all = (0, 0);
+    for (amplitude, frequency_hz) in [(0.01, 0.1), (0.01, 0.2), (0.01, 0.5), (0.02, 1.0)] {
+        let (failed, blamed) = failures(0.0045, amplitude, frequency_hz);
+        println!("{amplitude} °/s at {frequency_hz} Hz: {failed} fail, {blamed} by the limit");
+        assert!(failed >= 36, "{frequency_hz} Hz: {failed}");
+        all = (all.0 + failed, all.1 + blamed);
+    }
+    assert!(10 * all.1 <= all.0, "{all:?}");
+    // Without a line it is the coefficient that is named.
+    let (failed, blamed) = failures(0.001, 0.0, 1.0);
+    println!("no line: {failed} fail, {blamed} by the limit");
+    assert!(failed >= 36 && failed - blamed <= 2, "{failed}, {blamed}");
+}
+
 #[test]
 fn plans_that_contradict_themselves_are_refused() {
     let good = plan("angle_random_walk", 0.02);

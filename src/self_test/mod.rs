@@ -23,8 +23,8 @@ use crate::{
 use look::Compared;
 use quantile::quantile;
 
-/// Below this p-value of all looks together the five terms do not explain a curve, whatever the plan asks for. It is so
-/// small that it adds next to nothing to the false fails of a plan.
+/// Below this p-value of all looks together the five terms do not explain a curve at the last look, whatever the plan
+/// asks for, and an undecided gyro fails. It is so small that it adds next to nothing to the false fails of a plan.
 const MISFIT: Real = 1e-6;
 
 /// The state of a self-test.
@@ -59,16 +59,18 @@ pub enum Status {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Failure {
-    /// A coefficient is above its limit, and the five terms explain the curve.
+    /// A coefficient is above its limit, and the five terms explain the curve: its p-value is
+    /// [`ADEQUATE_P`](crate::fit::ADEQUATE_P) or more.
     Limit {
         /// The limit that the coefficient exceeds.
         limit: Limit,
         /// The measured value of the coefficient, in the unit of the limit.
         value: Real,
     },
-    /// The five terms do not explain the curve. Either its p-value is below the one that the plan asks for, or a
-    /// coefficient is above its limit, or not known at the last look, because the curve has an effect that the five terms
-    /// lack, such as a vibration.
+    /// The five terms do not explain the curve. Either its p-value is below the one that the plan asks for, or it is
+    /// below [`ADEQUATE_P`](crate::fit::ADEQUATE_P) and a coefficient is above its limit, or it is below 10⁻⁶ and a
+    /// coefficient is undecided at the last look. Such a curve has an effect that the five terms lack, such as a
+    /// vibration. Of the gyros that the five terms explain and that fail a limit, one in a hundred is called so, too.
     Misfit {
         /// The probability of a χ² this large or larger if the five terms explained the curve.
         p_value: Real,
@@ -296,8 +298,9 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             if above < -self.pass && coefficient.value < limit.most {
                 self.progress.kept.add(i);
             } else if above > self.fail && coefficient.value > limit.most {
-                // An effect that the five terms lack, such as a vibration, must not be blamed on one of them.
-                return Status::Failed(if is_misfit {
+                // An effect that the five terms lack, such as a vibration, must not be blamed on one of them. The
+                // gyro fails either way, so that the usual threshold of an adequate fit adds no false fail.
+                return Status::Failed(if fit.is_adequate() == Some(false) {
                     misfit
                 } else {
                     Failure::Limit {

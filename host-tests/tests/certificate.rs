@@ -435,6 +435,25 @@ const FINDINGS: &[SpoilFindings] = &[
         found.bands.clear();
         found.bands.push(band).unwrap();
     }),
+    ("a band above half of the sample rate", |found| {
+        let band = CertifiedBand {
+            from_hz: 40.0,
+            to_hz: 60.0,
+            z: 6.0,
+        };
+        found.bands.clear();
+        found.bands.push(band).unwrap();
+    }),
+    ("an event after the record", |found| {
+        found.events = Some(
+            [CertifiedEvent {
+                at_s: 800.0,
+                ..STEP
+            }]
+            .into_iter()
+            .collect(),
+        );
+    }),
     ("an event at no time", |found| {
         found.events = Some(
             [CertifiedEvent {
@@ -647,3 +666,69 @@ const FROZEN: &str = "414c4e5402017f0004534e2d310102ac02010000b4410000c2417b14ae
     040301010000000000002940000000000000d03f0b0000003f040305ac022802020000003f0000803e000040\
     3f0000003e0000070000004000000000000080400000003f02010000004101000000410000e0400000104100\
     0000bf3f6debd2";
+
+/// The limit of detection and the findings that version 3 has behind the correlations of an axis, packed by hand from
+/// the same table: no limits; 0.5 ± 0.25 for covariate 1; the sinusoid or effect 6; 1 … 2 Hz at 6 σ; a step.
+const FROZEN_FINDINGS: &str = "00\
+    01010000003f0000803e\
+    010706\
+    010000803f000000400000c040\
+    01010200007042000080be000000bf000000000000c0c0";
+
+/// A limit of detection as version 2 has it: a sinusoid of 0.5 from 1 Hz to 2 Hz.
+const FROZEN_LIMIT: &str = "01070000003f0000803f00000040";
+
+#[test]
+fn later_versions_have_not_changed_since_they_were_frozen() {
+    let bytes = |hex: &str| -> Vec<u8> {
+        let at = (0..hex.len()).step_by(2);
+        at.map(|i| u8::from_str_radix(&hex[i..i + 2], 16).unwrap())
+            .collect()
+    };
+    let first = bytes(FROZEN);
+    let payload = |more: &str| [&first[8..first.len() - 4], &bytes(more)].concat();
+
+    let second = sealed(2, 2, &payload(FROZEN_LIMIT));
+    let record = Certificate::decode(&second).unwrap();
+    let [limit] = record.axes[0].limits[..] else {
+        panic!("{record:?}")
+    };
+    assert_eq!(limit.effect.name(), "sinusoid");
+    assert_eq!((limit.size, limit.low, limit.high), (0.5, 1.0, 2.0));
+    assert!(record.axes[0].findings.is_empty());
+    assert_eq!(encoded(&record), second);
+
+    let third = sealed(2, 3, &payload(FROZEN_FINDINGS));
+    let record = Certificate::decode(&third).unwrap();
+    let found = &record.axes[0].findings;
+    let slope = CertifiedSlope {
+        covariate: 1,
+        value: 0.5,
+        error: 0.25,
+    };
+    assert_eq!(found.covariates[..], [slope]);
+    let [doubt] = found.doubts[..] else {
+        panic!("{found:?}")
+    };
+    assert_eq!((doubt.effect.number(), doubt.other.number()), (7, 6));
+    let band = CertifiedBand {
+        from_hz: 1.0,
+        to_hz: 2.0,
+        z: 6.0,
+    };
+    assert_eq!(found.bands[..], [band]);
+    let step = CertifiedEvent {
+        what: CertifiedWhat::Step,
+        at_s: 60.0,
+        size: -0.25,
+        lower: -0.5,
+        upper: 0.0,
+        z: -6.0,
+    };
+    assert_eq!(found.events.as_ref().unwrap()[..], [step]);
+    assert_eq!(encoded(&record), third);
+    // A version to come is refused and not misread.
+    let unknown = Error::UnknownVersion { found: 4, known: 3 };
+    let later = Certificate::decode(&sealed(2, 4, &payload(FROZEN_FINDINGS)));
+    assert_eq!(later, Err(unknown));
+}

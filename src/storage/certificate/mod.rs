@@ -17,7 +17,7 @@
 //! | – χ², p-value | 2 × f64 |
 //! | – degrees of freedom | u16 |
 //! | – tolerance granted | f32 |
-//! | – verdict: 0 none, 1 adequate, 2 improved, 3 unexplained, 4 invalid and why, 5 too short | u8, reason |
+//! | – verdict: 0 none, 1 adequate, 2 improved, 3 unexplained, 4 invalid and why, 5 too short, 6 incomplete | u8, reason |
 //! | – number of terms up to 8; for each term: | u8 |
 //! | – – [code](EffectCode) of the effect, 0 for an effect that has none | u8 |
 //! | – – value, lower, upper, standard error of the square | 4 × f32 |
@@ -41,7 +41,11 @@
 //!
 //! A reason is 0 stuck (longest run u32, changes u64, samples u64), 1 railed (hits u64, samples u64),
 //! 2 spiked (spikes u64, percent u8), 3 moved (motions u64, cluster u16, percent u8), 4 missing (missing u64,
-//! sent u64) or 5 left out (left out u64, samples u64).
+//! sent u64), 5 left out (left out u64, samples u64), 6 repeated (times u8, changes u64, samples u64) or 7 coarse
+//! (per mille u16).
+//!
+//! Every number is checked when a certificate is read, by itself and beside the others: intervals contain their values,
+//! a doubt is one about an effect of the model, bands lie below half of the sample rate, and events within the duration.
 
 mod axis;
 mod effect_code;

@@ -11,15 +11,17 @@ use crate::{
     real::real,
 };
 
+/// The largest ratio of two durations of one record, by the clock of the gyro and by that of whoever measured the time.
+const CLOCKS: f64 = 1.1;
+
 impl Conditions {
     /// Whether a gyro can have been measured under these conditions.
     pub(super) fn are_possible(&self) -> bool {
         let temperature = self
             .temperature_c
             .is_none_or(|(low, high)| (-273.15..=high).contains(&low) && high.is_finite());
-        // The longest time is thirty thousand years. Samples may be missing, but there are no more than the time allows. The clocks of the gyro
-        // and of whoever measured the time may differ by some per cent.
-        let most = 1.1 * self.duration_s * self.rate_hz + 1.0;
+        // The longest time is thirty thousand years. Samples may be missing, but there are no more than the time allows.
+        let most = CLOCKS * self.duration_s * self.rate_hz + 1.0;
         temperature
             && (1e-6..=1e12).contains(&self.duration_s)
             && (1e-6..=1e9).contains(&self.rate_hz)
@@ -30,8 +32,8 @@ impl Conditions {
 }
 
 impl AxisCertificate {
-    /// Whether a fit can have these results.
-    pub(super) fn is_possible(&self) -> bool {
+    /// Whether a fit of a record under these conditions can have these results.
+    pub(super) fn is_possible(&self, conditions: &Conditions) -> bool {
         let chi_squared = self.chi_squared.is_nan() || self.chi_squared >= 0.0;
         let p_value = self.p_value.is_nan() || (0.0..=1.0).contains(&self.p_value);
         let tolerance = self.tolerance.is_finite() && self.tolerance >= 0.0;
@@ -54,7 +56,7 @@ impl AxisCertificate {
             })
             && self.limits.iter().all(CertifiedLimit::is_possible)
             && self.verdict.is_none_or(is_possible_verdict)
-            && self.findings.are_possible(&self.terms)
+            && self.findings.are_possible(&self.terms, conditions)
     }
 }
 
@@ -107,8 +109,8 @@ impl CertifiedLimit {
 }
 
 impl Findings {
-    /// Whether a diagnosis that ends with these terms can find this.
-    fn are_possible(&self, terms: &[CertifiedTerm]) -> bool {
+    /// Whether a diagnosis of a record under these conditions that ends with these terms can find this.
+    fn are_possible(&self, terms: &[CertifiedTerm], conditions: &Conditions) -> bool {
         let one = self.covariates.first().map(|slope| slope.covariate);
         let twice = self
             .covariates
@@ -117,11 +119,18 @@ impl Findings {
         let mut events = self.events.iter().flatten();
         // Two effects may be in doubt with the same other one, and one effect that is there twice with two.
         let in_model = |doubt: &Doubt| terms.iter().any(|term| term.effect == doubt.effect);
+        let highest_hz = 0.5 * CLOCKS * conditions.rate_hz;
+        let in_spectrum = |band: &CertifiedBand| f64::from(band.to_hz) <= highest_hz;
+        let latest_s = CLOCKS * conditions.duration_s;
+        let in_record = |event: &CertifiedEvent| f64::from(event.at_s) <= latest_s;
         !twice
             && self.covariates.iter().all(CertifiedSlope::is_possible)
             && self.doubts.iter().all(in_model)
-            && self.bands.iter().all(CertifiedBand::is_possible)
-            && events.all(CertifiedEvent::is_possible)
+            && self
+                .bands
+                .iter()
+                .all(|band| band.is_possible() && in_spectrum(band))
+            && events.all(|event| event.is_possible() && in_record(event))
     }
 }
 

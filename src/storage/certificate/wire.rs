@@ -263,7 +263,7 @@ fn decode_payload(rest: &mut &[u8], version: u8) -> Option<Certificate> {
     }
     let mut axes = Vec::new();
     for _ in 0..head.axes {
-        axes.push(decode_axis(rest, version)?).ok()?;
+        axes.push(decode_axis(rest, version, &conditions)?).ok()?;
     }
     Some(Certificate {
         device: Vec::from_slice(head.device).ok()?,
@@ -278,7 +278,7 @@ fn decode_payload(rest: &mut &[u8], version: u8) -> Option<Certificate> {
     })
 }
 
-fn decode_axis(rest: &mut &[u8], version: u8) -> Option<AxisCertificate> {
+fn decode_axis(rest: &mut &[u8], version: u8, conditions: &Conditions) -> Option<AxisCertificate> {
     let axis: WireAxis = take(rest)?;
     let mut terms = Vec::new();
     for _ in 0..axis.terms {
@@ -310,7 +310,7 @@ fn decode_axis(rest: &mut &[u8], version: u8) -> Option<AxisCertificate> {
         limits,
         findings,
     };
-    axis.is_possible().then_some(axis)
+    axis.is_possible(conditions).then_some(axis)
 }
 
 fn decode_limit(rest: &mut &[u8]) -> Option<CertifiedLimit> {

@@ -11,6 +11,9 @@ use statrs::distribution::{Beta, ChiSquared, ContinuousCDF};
 /// 1964, table 26.5). The library's own constant is not public.
 pub const TWO_SIDED_95: f64 = 1.959_964;
 
+/// The number of standard errors that a normal variable exceeds with a probability of 5 % (same table).
+pub const ONE_SIDED_95: f64 = 1.644_854;
+
 /// Probability below the lower limit and above the upper limit, which leaves 95 % between them.
 const TAIL: f64 = 0.025;
 

@@ -7,6 +7,7 @@ pub mod curve_file;
 pub mod equivalent;
 pub mod failure;
 pub mod log;
+pub mod lot;
 pub mod overbound;
 pub mod plot;
 pub mod program;

@@ -141,6 +141,7 @@ fn five_hundred_devices_are_judged_by_three_limits() {
     let text = command(folder.path(), &arguments).output().unwrap();
     assert!(text.status.success());
     let text = String::from_utf8(text.stdout).unwrap();
+    println!("{text}");
     let lot = json(folder.path(), &arguments);
 
     // Yield and guard band: the truth is known.

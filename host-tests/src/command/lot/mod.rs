@@ -1,9 +1,11 @@
 //! `lot`: judges a lot of devices by limits, from their certificates alone.
 
+mod device;
 mod judgement;
 mod limit;
-mod statistics;
+mod limited;
 mod text;
+mod unusual;
 
 use crate::{
     command::{
@@ -14,28 +16,36 @@ use crate::{
     failure::{Failure, Place},
 };
 use clap::Args;
-use judgement::{Device, Lot};
-use limit::Limit;
-
+use device::Device;
+use judgement::Lot;
+use limit::{Limit, LimitArgument};
 use std::{
     collections::BTreeMap,
     io::Write,
     path::{Path, PathBuf},
 };
 
+/// The risk unless another one is given: a device passes if its two-sided 95 % interval lies below the limit.
+const RISK: f64 = 0.025;
+
 /// Judge a lot of devices by limits: yield, guard bands, Cpk, outliers and drift, from their certificates
 ///
-/// A device passes a limit if the upper end of its 95 % interval is at most the limit, and fails if the lower end
-/// is above it. In between it lies in the guard band, where the record is too short to tell.
+/// A device passes a limit if its coefficient is above the limit with a probability of at most --risk, and fails if it
+/// is within the limit with at most this probability. In between it lies in the guard band, where the record is too
+/// short to tell.
 #[derive(Debug, Args)]
 #[command(after_help = examples::LOT)]
 pub(super) struct Arguments {
     /// Files with one certificate each
     #[arg(required = true, value_name = "CERTIFICATE")]
     files: Vec<PathBuf>,
-    /// A limit of a coefficient, by its symbol or its name, in the unit of the certificate
+    /// A limit of a coefficient, by its symbol or its name, in the unit of the certificate or in the customary one:
+    /// N=0.005, N=0.3deg/sqrt(h), B=10deg/h
     #[arg(long = "limit", value_name = "EFFECT=VALUE", required = true)]
     limits: Vec<String>,
+    /// The largest probability that a device passes whose coefficient is at its limit, or that one fails
+    #[arg(long, value_name = "PROBABILITY", default_value_t = RISK)]
+    risk: f64,
     /// Earlier certificates of the same devices, to find those that drifted
     #[arg(long, num_args = 1.., value_name = "CERTIFICATE")]
     earlier: Vec<PathBuf>,
@@ -46,22 +56,29 @@ pub(super) struct Arguments {
 
 /// Runs the command. Files that cannot be decoded are named, and the lot is that of the others.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let limits: Vec<Limit> = arguments
+    let limits: Vec<LimitArgument> = arguments
         .limits
         .iter()
-        .map(|text| Limit::parse(text))
+        .map(|text| LimitArgument::parse(text))
         .collect::<Result<_, _>>()?;
     if let Some((i, limit)) = (limits.iter().enumerate()).find(|(i, limit)| {
         limits[..*i]
             .iter()
-            .any(|other| other.effect == limit.effect)
+            .any(|other| other.name() == limit.name())
     }) {
         return Err(Failure::option(
             format!(
                 "--limit {}: {} has two limits",
-                arguments.limits[i], limit.effect
+                arguments.limits[i],
+                limit.name()
             ),
             "give one",
+        ));
+    }
+    if !(arguments.risk > 0.0 && arguments.risk < 0.5) {
+        return Err(Failure::option(
+            format!("--risk {}: this is no risk", arguments.risk),
+            "give a probability above 0 and below 0.5",
         ));
     }
     let mut failures = Vec::new();
@@ -75,7 +92,11 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
                 "judge devices of one unit together",
             ));
         }
-        let lot = Lot::new(&devices, &earlier, &limits);
+        let limits: Vec<Limit> = limits
+            .iter()
+            .map(|limit| limit.of_unit(unit))
+            .collect::<Result<_, _>>()?;
+        let lot = Lot::new(&devices, &earlier, unit, &limits, arguments.risk);
         let printed = if arguments.json {
             serde_json::to_writer(&mut *output, &lot)
                 .map_err(std::io::Error::from)

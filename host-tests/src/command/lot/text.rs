@@ -26,7 +26,8 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
         "yield {} ({low} … {high})\n",
         percent(lot.yield_share)
     )?;
-    writeln!(output, "{}", limits(lot).trim_fmt())?;
+    writeln!(output, "{}\n", limits(lot).trim_fmt())?;
+    writeln!(output, "{}", distributions(lot).trim_fmt())?;
     list(output, "fail", &lot.failures, |one| {
         let [low, high] = one.interval.map(number);
         let place = place(&one.device, &one.axis, one.effect);
@@ -35,6 +36,12 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
             number(one.value),
             one.unit
         )
+    })?;
+    list(output, "not valid, not judged", &lot.invalid, |one| {
+        format!("{} {}", one.device, one.axis)
+    })?;
+    list(output, "not explained", &lot.unexplained, |one| {
+        format!("{} {}", one.device, one.axis)
     })?;
     list(output, "outliers", &lot.outliers, |one| {
         let place = place(&one.device, &one.axis, one.effect);
@@ -45,7 +52,7 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
         writeln!(
             output,
             "\n{} devices have earlier certificates; a change counts from {:.1} σ on",
-            lot.compared, lot.significant
+            lot.compared, lot.drift_threshold
         )?;
     }
     list(output, "drifted", &lot.drifted, |one| {
@@ -71,41 +78,61 @@ fn place(device: &str, axis: &str, effect: &str) -> String {
     format!("{device} {axis}: {}", plain(effect))
 }
 
-/// One row for each limit of each axis.
+/// What is decided: one row for each limit of each axis.
 fn limits(lot: &Lot) -> Table {
-    let mut table = Table::new();
-    table.load_style(NOTHING);
-    table.set_header([
-        "limited",
-        "",
-        "≤",
-        "pass",
-        "guard",
-        "fail",
-        "Cpk",
-        "median",
-        "95 % of devices",
-    ]);
-    for one in &lot.limits {
-        let [low, median, high] = match one.percentiles {
-            Some(values) => values.map(number),
-            None => ["–"; 3].map(str::to_owned),
-        };
-        table.add_row([
+    let header = [
+        "", "", "limit", "accept", "", "pass", "guard", "fail", "wrong",
+    ];
+    let rows = lot.limits.iter().map(|one| {
+        let wrong = one.expected_false_passes + one.expected_false_failures;
+        vec![
             plain(one.effect),
             one.axis.clone(),
             number(one.limit),
+            one.accepted_up_to.map_or("–".into(), number),
+            one.unit.clone(),
             one.passed.to_string(),
             one.guarded.to_string(),
             one.failed.to_string(),
+            format!("{wrong:.1}"),
+        ]
+    });
+    table(&header, rows, &[2, 3, 5, 6, 7, 8])
+}
+
+/// How the devices are distributed: one row for each limit of each axis.
+fn distributions(lot: &Lot) -> Table {
+    let header = ["", "", "Cpk", "", "5 %", "median", "95 %", "", "of"];
+    let rows = lot.limits.iter().map(|one| {
+        let percentiles = match one.percentiles {
+            Some(values) => values.map(number),
+            None => ["–"; 3].map(str::to_owned),
+        };
+        let interval = |[low, high]: [f64; 2]| format!("({low:.2} … {high:.2})");
+        let mut row = vec![
+            plain(one.effect),
+            one.axis.clone(),
             one.cpk.map_or("–".into(), |cpk| format!("{cpk:.2}")),
-            median,
-            format!("{low} … {high}"),
-        ]);
+            one.cpk_interval.map_or(String::new(), interval),
+        ];
+        row.extend(percentiles);
+        row.extend([one.unit.clone(), one.measured.to_string()]);
+        row
+    });
+    table(&header, rows, &[2, 4, 5, 6, 8])
+}
+
+/// A table whose columns with these numbers are aligned to the right.
+fn table(header: &[&str], rows: impl Iterator<Item = Vec<String>>, right: &[usize]) -> Table {
+    let mut table = Table::new();
+    table.load_style(NOTHING);
+    table.set_header(header);
+    for row in rows {
+        table.add_row(row);
     }
     for (i, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 1));
-        if (2..8).contains(&i) {
+        if right.contains(&i) {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }

@@ -72,8 +72,8 @@ pub(super) const DECODE: &str = examples! {
 };
 
 pub(super) const LOT: &str = examples! {
-    "allanite lot --limit N=0.005 --limit B=0.002 device1.bin device2.bin"
-    "allanite lot --limit N=0.005 device1.bin --earlier before1.bin before2.bin --json"
+    "allanite lot --limit N=0.005 --limit B=10°/h device1.bin device2.bin"
+    "allanite lot --limit N=0.3°/√h --risk 0.01 now --earlier before --json"
 };
 
 pub(super) const WATCH: &str = examples! {

@@ -8,7 +8,7 @@ use statrs::distribution::{ContinuousCDF as _, Normal};
 pub enum Decision {
     /// The probability that the coefficient is above the limit is at most the risk.
     Passed,
-    /// The record is too short to tell.
+    /// The record is too short to tell, or the coefficient is not observable.
     Guarded,
     /// The probability that the coefficient is within the limit is at most the risk.
     Failed,
@@ -34,6 +34,9 @@ impl Measurement {
     /// The decision for this limit. `risk`, below ½, is the largest probability that it is wrong.
     pub fn decision(&self, limit: f64, risk: f64) -> Decision {
         let conformity = self.conformity(limit);
+        if !self.is_observable {
+            return Decision::Guarded;
+        }
         if 1.0 - conformity <= risk {
             Decision::Passed
         } else if conformity <= risk {
@@ -67,6 +70,7 @@ mod tests {
             below: uncertainty,
             error: uncertainty,
             is_measured: true,
+            is_observable: true,
         }
     }
 
@@ -100,6 +104,11 @@ mod tests {
         let one = measured(0.005, 3e-6);
         assert_eq!(one.decision(LIMIT, 0.1), Decision::Passed);
         assert_eq!(one.decision(LIMIT, 0.08), Decision::Guarded);
+        let unknown = Measurement {
+            is_observable: false,
+            ..one
+        };
+        assert_eq!(unknown.decision(LIMIT, 0.1), Decision::Guarded);
         let worse = measured(0.0058, 3e-6);
         assert_eq!(worse.decision(LIMIT, 0.1), Decision::Failed);
         assert_eq!(worse.decision(LIMIT, 0.01), Decision::Guarded);

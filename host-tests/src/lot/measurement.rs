@@ -20,17 +20,22 @@ pub struct Measurement {
     pub error: f64,
     /// Whether the interval of the coefficient excludes zero.
     pub is_measured: bool,
+    /// Whether the record says more than that the effect cannot exceed the whole curve. If not, the upper end still bounds
+    /// the coefficient for a comparison, and nothing is decided by it.
+    pub is_observable: bool,
 }
 
 impl Measurement {
-    /// The measurement of a term; `None` if its record says nothing about the coefficient.
+    /// The measurement of a term; `None` if the coefficient has no finite bound.
     pub fn of(term: &CertifiedTerm) -> Option<Self> {
         let [value, lower, upper] = [term.value, term.lower, term.upper].map(f64::from);
         let (is_measured, quantile) = match term.state {
             CertifiedState::Measured => (true, TWO_SIDED_95),
-            CertifiedState::UpperBound => (false, ONE_SIDED_95),
-            CertifiedState::NotObservable { .. } => return None,
+            CertifiedState::UpperBound | CertifiedState::NotObservable { .. } => {
+                (false, ONE_SIDED_95)
+            }
         };
+        let is_observable = !matches!(term.state, CertifiedState::NotObservable { .. });
         let square = value * value;
         let above = (upper * upper - square) / quantile;
         let below = (square - lower * lower) / quantile;
@@ -42,6 +47,7 @@ impl Measurement {
             below: below.max(0.0),
             error,
             is_measured,
+            is_observable,
         })
     }
 
@@ -101,8 +107,11 @@ mod tests {
         assert!((bound.above - 4.0 / 1.644_854).abs() < 1e-5 && !bound.is_measured);
         assert_eq!((bound.value(), bound.lower()), (0.0, 0.0));
         assert!((bound.upper() - 2.0).abs() < 1e-9);
-        let nothing = CertifiedState::NotObservable { after_s: None };
-        let nothing = term(0.0, 0.0, f32::INFINITY, nothing);
+        assert!(bound.is_observable);
+        let unknown = CertifiedState::NotObservable { after_s: None };
+        let loose = Measurement::of(&term(0.0, 0.0, 2.0, unknown)).unwrap();
+        assert!(!loose.is_observable && loose.above == bound.above);
+        let nothing = term(0.0, 0.0, f32::INFINITY, unknown);
         assert_eq!(Measurement::of(&nothing), None);
     }
 }

@@ -21,6 +21,8 @@ pub struct Fences {
     pub high: f64,
     /// The median of the coefficients, or of their upper bounds if most of the devices have these only.
     pub median: f64,
+    /// Whether most of the devices have upper bounds only.
+    pub of_bounds: bool,
 }
 
 impl Fences {
@@ -45,6 +47,7 @@ impl Fences {
             low: if is_seen { (median - width).exp() } else { 0.0 },
             high: (median + width).exp(),
             median: median.exp(),
+            of_bounds: !is_seen,
         })
     }
 
@@ -67,6 +70,7 @@ mod tests {
             below: relative * square,
             error: relative * square,
             is_measured: true,
+            is_observable: true,
         }
     }
 
@@ -121,7 +125,7 @@ mod tests {
         let mut all: Vec<Measurement> = VALUES.map(bound).into();
         all.push(measured(0.05, 0.1));
         let fences = Fences::of(&all).unwrap();
-        assert_eq!(fences.low, 0.0);
+        assert!(fences.low == 0.0 && fences.of_bounds);
         assert!(fences.exclude(&all[10]) && !fences.exclude(&all[0]));
         assert!(!fences.exclude(&measured(0.006, 0.1)));
     }

@@ -31,6 +31,8 @@ pub(super) struct Lot {
     pub(super) yield_interval: [f64; 2],
     pub(super) limits: Vec<Limited>,
     pub(super) failures: Vec<Failing>,
+    /// Coefficients in a guard band: a longer record may decide. The text tells their number only.
+    pub(super) undecided: Vec<Undecided>,
     /// Axes whose records are not valid. Nothing is decided of them, and they are left out of all that follows.
     pub(super) invalid: Vec<Named>,
     /// Axes that a diagnosis did not explain. Their intervals are wider for it.
@@ -57,6 +59,14 @@ pub(super) struct Failing {
     /// The 95 % interval.
     pub(super) interval: [f64; 2],
     pub(super) unit: String,
+}
+
+/// A coefficient of a device that its record does not decide.
+#[derive(Serialize)]
+pub(super) struct Undecided {
+    pub(super) device: String,
+    pub(super) axis: String,
+    pub(super) effect: &'static str,
 }
 
 /// An axis of a device.
@@ -109,6 +119,7 @@ impl Lot {
             yield_interval: [1.0 - at_most(1.0 - share), at_most(share)],
             limits: rows.collect(),
             failures: failures(devices, limits, risk),
+            undecided: undecided(devices, limits, risk),
             invalid: named(devices, |verdict| matches!(verdict, Verdict::Invalid(_))),
             unexplained: named(devices, |verdict| {
                 matches!(verdict, Verdict::Unexplained | Verdict::Incomplete)
@@ -156,6 +167,26 @@ fn failures(devices: &[Device], limits: &[Limit], risk: f64) -> Vec<Failing> {
         }
     }
     worst_first(failures)
+}
+
+fn undecided(devices: &[Device], limits: &[Limit], risk: f64) -> Vec<Undecided> {
+    let mut undecided = Vec::new();
+    for device in devices {
+        for axis in 0..device.certificate.axes.len() {
+            for limit in limits {
+                let effect = limit.effect.name();
+                let known = device.measurement((axis, effect));
+                if decision(known, limit.value, risk) == Decision::Guarded {
+                    undecided.push(Undecided {
+                        device: device.id.clone(),
+                        axis: decode::axis_name(axis),
+                        effect,
+                    });
+                }
+            }
+        }
+    }
+    undecided
 }
 
 fn found(devices: &[Device]) -> BTreeMap<&'static str, usize> {

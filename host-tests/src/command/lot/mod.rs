@@ -21,6 +21,7 @@ use judgement::Lot;
 use limit::{Limit, LimitArgument};
 use std::{
     collections::BTreeMap,
+    fs,
     io::Write,
     path::{Path, PathBuf},
 };
@@ -36,17 +37,17 @@ const RISK: f64 = 0.025;
 #[derive(Debug, Args)]
 #[command(after_help = examples::LOT)]
 pub(super) struct Arguments {
-    /// Files with one certificate each
+    /// Files with one certificate each, or folders of such files (.bin)
     #[arg(required = true, value_name = "CERTIFICATE")]
     files: Vec<PathBuf>,
     /// A limit of a coefficient, by its symbol or its name, in the unit of the certificate or in the customary one:
-    /// N=0.005, N=0.3deg/sqrt(h), B=10deg/h
+    /// N=0.005, N=0.3°/√h, B=10deg/h
     #[arg(long = "limit", value_name = "EFFECT=VALUE", required = true)]
     limits: Vec<String>,
     /// The largest probability that a device passes whose coefficient is at its limit, or that one fails
     #[arg(long, value_name = "PROBABILITY", default_value_t = RISK)]
     risk: f64,
-    /// Earlier certificates of the same devices, to find those that drifted
+    /// Earlier certificates of the same devices, to find those that drifted, or folders of them
     #[arg(long, num_args = 1.., value_name = "CERTIFICATE")]
     earlier: Vec<PathBuf>,
     /// Print the result as JSON
@@ -128,7 +129,7 @@ fn devices(files: &[PathBuf], failures: &mut Vec<Failure>) -> Result<Vec<Device>
 /// The devices of these files.
 fn devices_before(files: &[PathBuf], failures: &mut Vec<Failure>) -> Result<Vec<Device>, Failure> {
     let mut devices = Vec::new();
-    for file in files {
+    for file in &in_folders(files)? {
         match certificate(file) {
             Ok(certificate) => devices.push(Device {
                 id: decode::device(&certificate),
@@ -140,4 +141,32 @@ fn devices_before(files: &[PathBuf], failures: &mut Vec<Failure>) -> Result<Vec<
         }
     }
     Ok(devices)
+}
+
+/// These files, with the `.bin` files of a folder in its place, by their names.
+fn in_folders(files: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut all = Vec::new();
+    for file in files {
+        if !file.is_dir() {
+            all.push(file.clone());
+            continue;
+        }
+        let failed = |error: std::io::Error| Place::file(file).io(&error);
+        let mut inside = Vec::new();
+        for entry in fs::read_dir(file).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            if path.extension().is_some_and(|extension| extension == "bin") {
+                inside.push(path);
+            }
+        }
+        if inside.is_empty() {
+            return Err(Place::file(file).failure(
+                "there is no certificate in this folder",
+                "give files, or a folder whose files end with .bin",
+            ));
+        }
+        inside.sort();
+        all.extend(inside);
+    }
+    Ok(all)
 }

@@ -46,7 +46,11 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
     list(output, "outliers", &lot.outliers, |one| {
         let place = place(&one.device, &one.axis, one.effect);
         let (value, median) = (number(one.value), number(one.median));
-        format!("{place} {value} {}, where the median is {median}", one.unit)
+        let median = match one.median_is_bound {
+            true => format!("the median bound is {median}"),
+            false => format!("the median is {median}"),
+        };
+        format!("{place} {value} {}, {median}", one.unit)
     })?;
     if lot.compared > 0 {
         writeln!(
@@ -57,7 +61,12 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
     }
     list(output, "drifted", &lot.drifted, |one| {
         let place = place(&one.device, &one.axis, one.effect);
-        let (before, now) = (number(one.before), number(one.now));
+        let shown = |value, bound: Option<f64>| match bound {
+            Some(bound) => format!("below {}", number(bound)),
+            None => number(value),
+        };
+        let before = shown(one.before, one.before_bound);
+        let now = shown(one.now, one.now_bound);
         format!("{place} {before} → {now} {} ({:+.1} σ)", one.unit, one.z)
     })?;
     let found = lot.found.iter();

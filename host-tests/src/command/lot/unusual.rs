@@ -19,6 +19,8 @@ pub(super) struct Outlier {
     pub(super) value: f64,
     /// The median of the devices, or of their upper bounds where most of them have these only.
     pub(super) median: f64,
+    /// Whether it is that of bounds.
+    pub(super) median_is_bound: bool,
     pub(super) unit: String,
 }
 
@@ -41,10 +43,18 @@ pub(super) struct Drift {
     pub(super) axis: String,
     pub(super) effect: &'static str,
     pub(super) before: f64,
+    /// The upper bound, if it was not measured.
+    pub(super) before_bound: Option<f64>,
     pub(super) now: f64,
+    pub(super) now_bound: Option<f64>,
     /// The change in standard errors of it.
     pub(super) z: f64,
     pub(super) unit: String,
+}
+
+/// The upper bound of a coefficient that is not measured.
+fn bound(one: &Measurement) -> Option<f64> {
+    (!one.is_measured).then(|| one.upper())
 }
 
 /// The unit of a term's coefficient.
@@ -85,6 +95,7 @@ pub(super) fn outliers(devices: &[Device]) -> Vec<Outlier> {
                 effect: place.1,
                 value: one.value(),
                 median: fences.median,
+                median_is_bound: fences.of_bounds,
                 unit: unit_of(term, device.unit),
             };
             ((one.value() / fences.median).ln().abs(), outlier)
@@ -110,6 +121,7 @@ impl Drifts {
                 continue;
             };
             count += 1;
+            let [was, is] = [before, device].map(|one| one.certificate.conditions.duration_s);
             for (place, term) in device.terms() {
                 let Some((before, now)) = before.measurement(place).zip(Measurement::of(term))
                 else {
@@ -120,8 +132,10 @@ impl Drifts {
                     axis: decode::axis_name(place.0),
                     effect: place.1,
                     before: before.value(),
+                    before_bound: bound(&before),
                     now: now.value(),
-                    z: difference(&before, &now),
+                    now_bound: bound(&now),
+                    z: difference(&before, &now, is / was),
                     unit: unit_of(term, device.unit),
                 });
             }

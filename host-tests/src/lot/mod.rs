@@ -8,6 +8,7 @@
 mod capability;
 mod conformity;
 mod drift;
+mod error_model;
 mod measurement;
 mod outlier;
 mod sample;
@@ -15,6 +16,7 @@ mod sample;
 pub use capability::Capability;
 pub use conformity::{Decision, acceptance_limit};
 pub use drift::{difference, threshold};
+pub use error_model::ErrorModel;
 pub use measurement::Measurement;
 pub use outlier::Fences;
 pub use sample::Sample;

@@ -230,8 +230,9 @@ fn devices_at_the_limit_pass_and_fail_with_the_stated_risk() {
     let usual = Preset::Mems.coefficients();
     let Lot { folder, now, .. } = lot(400, 0, |device, _| certificate(device, usual, 0.0, device));
     for risk in [0.025_f64, 0.2] {
-        let (limit, asked) = (format!("N={}", usual.angle_random_walk), risk.to_string());
-        let mut arguments = vec!["lot", "--limit", &limit, "--risk", &asked];
+        let white = format!("N={}", usual.angle_random_walk);
+        let (bias, asked) = (format!("B={}", usual.bias_instability), risk.to_string());
+        let mut arguments = vec!["lot", "--limit", &white, "--limit", &bias, "--risk", &asked];
         arguments.extend(now.iter().map(String::as_str));
         let lot = json(folder.path(), &arguments);
         let row = &lot["limits"][0];
@@ -242,6 +243,13 @@ fn devices_at_the_limit_pass_and_fail_with_the_stated_risk() {
             let error = (risk * (1.0 - risk) / 400.0).sqrt();
             assert!((share - risk).abs() < 3.0 * error, "{row}");
         }
+        // The error of bias instability is a third of it, and grows with it. By the errors at their own low values, 4 % of
+        // the devices pass at a risk of 2.5 %.
+        let row = &lot["limits"][1];
+        let [passed, failed] = ["passed", "failed"].map(|key| count(&row[key]) as f64 / 400.0);
+        println!("risk {risk}: bias instability, {passed} pass, {failed} fail");
+        let most = risk + 1.5 * (risk * (1.0 - risk) / 400.0).sqrt();
+        assert!(passed > 0.0 && passed <= most && failed <= most, "{row}");
     }
 }
 

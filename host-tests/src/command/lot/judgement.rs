@@ -3,7 +3,7 @@
 use super::{
     device::Device,
     limit::Limit,
-    limited::{Limited, decision},
+    limited::{Limited, Rule},
     unusual::{Drift, Drifts, Outlier, outliers, unit_of, worst_first},
 };
 use crate::{
@@ -86,12 +86,16 @@ impl Lot {
         limits: &[Limit],
         risk: f64,
     ) -> Self {
+        let rules: Vec<Rule> = limits
+            .iter()
+            .map(|limit| Rule::of(devices, *limit, risk))
+            .collect();
         let worst = |device: &Device| {
             let axes = 0..device.certificate.axes.len();
             let decisions = axes.flat_map(|axis| {
-                limits.iter().map(move |limit| {
-                    let known = device.measurement((axis, limit.effect.name()));
-                    decision(known, limit.value, risk)
+                rules.iter().map(move |rule| {
+                    let known = device.measurement((axis, rule.limit.effect.name()));
+                    rule.decision(axis, known)
                 })
             });
             // A certificate without axes says nothing.
@@ -103,11 +107,9 @@ impl Lot {
         let share = passed as f64 / all as f64;
         let at_most = |share| share_is_at_most(share, all as u64, 0.975);
         let drifts = Drifts::of(devices, earlier);
-        let axes = devices.iter().map(|device| device.certificate.axes.len());
-        let axes = axes.max().unwrap_or(0);
-        let rows = limits
-            .iter()
-            .flat_map(|limit| (0..axes).map(|axis| Limited::of(devices, unit, axis, *limit, risk)));
+        let rows = rules.iter().flat_map(|rule| {
+            (0..rule.axes()).map(move |axis| Limited::of(devices, unit, axis, rule))
+        });
         Self {
             devices: all,
             risk,
@@ -118,8 +120,8 @@ impl Lot {
             // At either end lies half of the 5 %.
             yield_interval: [1.0 - at_most(1.0 - share), at_most(share)],
             limits: rows.collect(),
-            failures: failures(devices, limits, risk),
-            undecided: undecided(devices, limits, risk),
+            failures: failures(devices, &rules),
+            undecided: undecided(devices, &rules),
             invalid: named(devices, |verdict| matches!(verdict, Verdict::Invalid(_))),
             unexplained: named(devices, |verdict| {
                 matches!(verdict, Verdict::Unexplained | Verdict::Incomplete)
@@ -145,15 +147,15 @@ fn named(devices: &[Device], wanted: fn(Verdict) -> bool) -> Vec<Named> {
 }
 
 /// Devices beyond their limits, the farthest one first.
-fn failures(devices: &[Device], limits: &[Limit], risk: f64) -> Vec<Failing> {
+fn failures(devices: &[Device], rules: &[Rule]) -> Vec<Failing> {
     let mut failures: Vec<(f64, Failing)> = Vec::new();
     for device in devices {
         for ((axis, effect), term) in device.terms() {
-            let limit = limits.iter().find(|limit| limit.effect.name() == effect);
-            let Some((limit, known)) = limit.zip(Measurement::of(term)) else {
+            let rule = rules.iter().find(|rule| rule.limit.effect.name() == effect);
+            let Some((rule, known)) = rule.zip(Measurement::of(term)) else {
                 continue;
             };
-            if known.decision(limit.value, risk) == Decision::Failed {
+            if rule.decision(axis, Some(known)) == Decision::Failed {
                 let failing = Failing {
                     device: device.id.clone(),
                     axis: decode::axis_name(axis),
@@ -162,21 +164,21 @@ fn failures(devices: &[Device], limits: &[Limit], risk: f64) -> Vec<Failing> {
                     interval: [known.lower(), known.upper()],
                     unit: unit_of(term, device.unit),
                 };
-                failures.push((known.value() / limit.value, failing));
+                failures.push((known.value() / rule.limit.value, failing));
             }
         }
     }
     worst_first(failures)
 }
 
-fn undecided(devices: &[Device], limits: &[Limit], risk: f64) -> Vec<Undecided> {
+fn undecided(devices: &[Device], rules: &[Rule]) -> Vec<Undecided> {
     let mut undecided = Vec::new();
     for device in devices {
         for axis in 0..device.certificate.axes.len() {
-            for limit in limits {
-                let effect = limit.effect.name();
+            for rule in rules {
+                let effect = rule.limit.effect.name();
                 let known = device.measurement((axis, effect));
-                if decision(known, limit.value, risk) == Decision::Guarded {
+                if rule.decision(axis, known) == Decision::Guarded {
                     undecided.push(Undecided {
                         device: device.id.clone(),
                         axis: decode::axis_name(axis),

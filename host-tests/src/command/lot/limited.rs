@@ -3,7 +3,7 @@
 use super::{device::Device, limit::Limit};
 use crate::{
     command::{decode, output::units},
-    lot::{Capability, Decision, Measurement, Sample, acceptance_limit},
+    lot::{Capability, Decision, ErrorModel, Measurement, Sample, acceptance_limit},
     unit::Unit,
 };
 use serde::Serialize;
@@ -18,8 +18,8 @@ pub(super) struct Limited {
     pub(super) effect: &'static str,
     pub(super) unit: String,
     pub(super) limit: f64,
-    /// A device passes whose value is at most this, if its uncertainty is that of the median device. `None` if no
-    /// device measures the coefficient.
+    /// A device passes whose value is at most this, if its uncertainty is usual for the lot. `None` if the devices are too
+    /// few to tell, or if none would pass.
     pub(super) accepted_up_to: Option<f64>,
     /// The limit less that value.
     pub(super) guard_band: Option<f64>,
@@ -39,14 +39,53 @@ pub(super) struct Limited {
     pub(super) cpk_interval: Option<[f64; 2]>,
 }
 
-/// What is decided of a coefficient of which this is known. A certificate without the coefficient decides nothing.
-pub(super) fn decision(known: Option<Measurement>, limit: f64, risk: f64) -> Decision {
-    known.map_or(Decision::Guarded, |one| one.decision(limit, risk))
+/// How a limit is applied to the devices of a lot.
+pub(super) struct Rule {
+    pub(super) limit: Limit,
+    /// For each axis, the error of the square of a device at the limit; zero if the lot does not tell it.
+    errors: Vec<f64>,
+    risk: f64,
+}
+
+impl Rule {
+    /// The rule for a limit of these devices.
+    pub(super) fn of(devices: &[Device], limit: Limit, risk: f64) -> Self {
+        let axes = devices.iter().map(|device| device.certificate.axes.len());
+        let errors = (0..axes.max().unwrap_or(0)).map(|axis| {
+            let place = (axis, limit.effect.name());
+            let known = devices.iter().filter_map(|one| one.measurement(place));
+            let model = ErrorModel::of(&known.collect::<Vec<_>>());
+            model.map_or(0.0, |model| model.error(limit.value * limit.value))
+        });
+        Self {
+            limit,
+            errors: errors.collect(),
+            risk,
+        }
+    }
+
+    /// The number of axes of the lot.
+    pub(super) fn axes(&self) -> usize {
+        self.errors.len()
+    }
+
+    /// The error of the square of a device at the limit.
+    fn error(&self, axis: usize) -> f64 {
+        self.errors.get(axis).copied().unwrap_or(0.0)
+    }
+
+    /// What is decided of a coefficient of which this is known. A certificate without the coefficient decides nothing.
+    pub(super) fn decision(&self, axis: usize, known: Option<Measurement>) -> Decision {
+        known.map_or(Decision::Guarded, |one| {
+            one.decision(self.limit.value, self.error(axis), self.risk)
+        })
+    }
 }
 
 impl Limited {
     /// The devices that have this axis beside a limit.
-    pub(super) fn of(devices: &[Device], unit: Unit, axis: usize, limit: Limit, risk: f64) -> Self {
+    pub(super) fn of(devices: &[Device], unit: Unit, axis: usize, rule: &Rule) -> Self {
+        let (limit, error) = (rule.limit, rule.error(axis));
         let place = (axis, limit.effect.name());
         let with_axis = devices
             .iter()
@@ -56,15 +95,15 @@ impl Limited {
         let decided: Vec<(Decision, f64)> = known
             .iter()
             .map(|one| {
-                let conformity = one.map_or(0.5, |one| one.conformity(limit.value));
-                (decision(*one, limit.value, risk), conformity)
+                let conformity = one.map_or(0.5, |one| one.conformity(limit.value, error));
+                (rule.decision(axis, *one), conformity)
             })
             .collect();
         let with = |wanted| decided.iter().filter(move |(one, _)| *one == wanted);
         let measured = || known.iter().flatten().filter(|one| one.is_measured);
         let values = Sample::of(measured().map(Measurement::value));
-        let relative = Sample::of(measured().map(|one| one.above / one.square)).median();
-        let accepted = relative.map(|relative| acceptance_limit(limit.value, relative, risk));
+        let accepted = (error > 0.0).then(|| acceptance_limit(limit.value, error, rule.risk));
+        let accepted = accepted.flatten();
         let capability = Capability::of(&values, limit.value);
         Self {
             axis: decode::axis_name(axis),

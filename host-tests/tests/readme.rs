@@ -1,11 +1,15 @@
 //! The READMEs and the crate's page show what their readers will see.
 
+use clap::Parser as _;
 use host_tests::program::output;
 use std::{fs, path::Path};
-use xtask::firmware::{
-    Precision, Way,
-    budgets::{self, target},
-    figures,
+use xtask::{
+    CommandLine, cost,
+    firmware::{
+        Precision, Way,
+        budgets::{self, target},
+        figures,
+    },
 };
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
@@ -146,6 +150,25 @@ fn figures_are_those_of_the_budgets() {
     let shown = figures::readme(&budgets::committed(Way::Rustup).unwrap()).unwrap();
     assert!(shown.lines().count() > 20);
     assert!(text(MANUAL).contains(&shown), "{MANUAL} lacks:\n{shown}");
+}
+
+#[test]
+fn the_cost_of_a_product_is_what_the_calculator_says() {
+    let page = text(MANUAL);
+    let mut commands = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("$ cargo xtask cost "));
+    let arguments = commands.next().expect("a command");
+    let line = ["xtask", "cost"].into_iter().chain(arguments.split(' '));
+    let product = CommandLine::try_parse_from(line)
+        .expect("valid arguments")
+        .product();
+    let budgets = budgets::committed(Way::Rustup).unwrap();
+    let table = cost::table(&product.expect("a product"), &budgets).unwrap();
+    assert!(
+        table.lines().count() > 8 && page.contains(&table),
+        "{MANUAL} lacks:\n{table}"
+    );
 }
 
 /// The number at the start of the last column of the row that begins so; a blank parts thousands.

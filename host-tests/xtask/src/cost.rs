@@ -105,7 +105,7 @@ pub struct Cost {
     pub queue: f64,
     /// Stack of a diagnosis in bytes, the diagnosis itself included.
     pub stack: f64,
-    /// Flash of the library in bytes, without the explanations of effects.
+    /// Flash of the whole library in bytes, without the explanations of effects. Programs that use a part take less.
     pub flash: f64,
     /// Flash of the explanations of effects in bytes.
     pub explanations: f64,
@@ -296,9 +296,9 @@ pub fn table(product: &Product, budgets: &Value) -> Result<String> {
         ("RAM of the queue", kib(cost.queue)),
         ("stack of a diagnosis", kib(cost.stack)),
         ("RAM together", kib(cost.record + cost.queue + cost.stack)),
-        ("flash without explanations", kib(cost.flash)),
+        ("flash of the whole library", kib(cost.flash)),
         (
-            "flash with explanations",
+            "the same with explanations",
             kib(cost.flash + cost.explanations),
         ),
         (

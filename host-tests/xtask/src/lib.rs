@@ -60,6 +60,14 @@ enum Task {
 }
 
 impl CommandLine {
+    /// The product of the task `cost`.
+    pub fn product(self) -> Option<cost::Product> {
+        match self.task {
+            Task::Cost(product) => Some(product),
+            _ => None,
+        }
+    }
+
     /// Runs the task.
     ///
     /// # Errors

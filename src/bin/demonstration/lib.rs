@@ -3,6 +3,7 @@
 
 #![no_std]
 
+pub mod appliance;
 pub mod characterise;
 pub mod diagnose;
 pub mod lines;

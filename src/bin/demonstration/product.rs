@@ -48,20 +48,25 @@ const RATE_HZ: Real = 100.0;
 const KELVIN: Real = 0.01;
 
 /// Three simulated gyros and a thermometer.
-struct Sensor {
+pub(super) struct Sensor {
     gyros: [SimulatedGyro; 3],
     made: u32,
 }
 
 impl Sensor {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             gyros: [0, 1, 2].map(|axis| SimulatedGyro::new(AMPLITUDES, SEED + axis)),
             made: 0,
         }
     }
 
-    fn sample(&mut self) -> Sample<3, 1> {
+    /// The number of samples that were made.
+    pub(super) fn made(&self) -> u32 {
+        self.made
+    }
+
+    pub(super) fn sample(&mut self) -> Sample<3, 1> {
         let n = self.made;
         self.made += 1;
         let mut counts = [0; 3];
@@ -71,7 +76,7 @@ impl Sensor {
         // The temperature rises by ten kelvin and falls again within eleven minutes. The first axis follows
         // it by 0.06 °/s per kelvin.
         let half = SAMPLES / 2;
-        let temperature = (n.min(SAMPLES - n) * 1000 / half) as i32;
+        let temperature = (n.min(SAMPLES.saturating_sub(n)) * 1000 / half) as i32;
         counts[0] += temperature * 8 / 100;
         if MOTION.contains(&n) {
             counts[1] += 3000;
@@ -86,7 +91,7 @@ impl Sensor {
 }
 
 /// The self-test of the first axis.
-fn self_test(scale: Scale) -> Option<SelfTest<OCTAVES>> {
+pub(super) fn self_test(scale: Scale) -> Option<SelfTest<OCTAVES>> {
     let limit = Limit {
         effect: "angle_random_walk",
         most: 0.00495,

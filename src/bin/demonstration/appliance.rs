@@ -17,7 +17,7 @@ mod saver;
 mod world;
 
 pub use flash::Flash;
-pub use recorder::Recorder;
+pub use recorder::{Counts, Recorder, Restart};
 pub use replay::replay;
 pub use report::{GyroEvidence, Report};
 pub use world::{CUTS, Cut, Plan, Source, Stored, World};

@@ -27,12 +27,20 @@ pub struct Recorder<'a> {
     scale: Scale,
     /// The number of the sample that comes next.
     taken: u32,
+    counts: Counts,
+}
+
+/// What has happened since power was switched on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// The number of samples that the queue lost.
+    pub lost: u32,
     /// The number of snapshots and looks that were not complete in time.
-    late: u32,
+    pub late: u32,
     /// The number of samples that were taken while the flash erased.
-    during_erase: u32,
+    pub during_erase: u32,
     /// The number of samples that were taken during a look.
-    during_look: u32,
+    pub during_look: u32,
 }
 
 /// What a product finds when it is switched on.
@@ -90,9 +98,7 @@ impl<'a> Recorder<'a> {
             look: None,
             scale,
             taken,
-            late: 0,
-            during_erase: 0,
-            during_look: 0,
+            counts: Counts::default(),
         };
         Ok((recorder, restart))
     }
@@ -107,25 +113,25 @@ impl<'a> Recorder<'a> {
         self.taken >= SAMPLES
     }
 
-    /// The numbers of snapshots and looks that were not complete in time, of samples taken while the flash
-    /// erased, and of samples taken during a look, since power was switched on.
-    pub fn counts(&self) -> [u32; 3] {
-        [self.late, self.during_erase, self.during_look]
+    /// What has happened since power was switched on.
+    pub fn counts(&self) -> Counts {
+        self.counts
     }
 
-    /// Takes a sample from the queue. Samples after the record are dropped.
+    /// Takes a sample from the queue. A sample after the record is only counted if it was lost.
     ///
     /// # Errors
     /// [`Failure`], if a snapshot cannot be encoded.
     pub fn push(&mut self, queued: Queued<Sample<3, 1>>) -> Result<(), Failure> {
+        self.counts.lost = self.counts.lost.saturating_add(queued.lost);
         if self.has_ended() {
             return Ok(());
         }
         self.gyro.missing(queued.lost.into());
         self.gyro.push(queued.sample);
         self.taken = (self.taken + queued.lost + 1).min(SAMPLES);
-        self.during_erase += u32::from(self.saver.is_erasing());
-        self.during_look += u32::from(self.look.is_some());
+        self.counts.during_erase += u32::from(self.saver.is_erasing());
+        self.counts.during_look += u32::from(self.look.is_some());
         if self.has_ended() {
             self.gyro.release();
         }
@@ -142,7 +148,7 @@ impl<'a> Recorder<'a> {
         let ends = |look: &mut (Look<OCTAVES>, bool, u32)| taken >= look.2 || taken == SAMPLES;
         if let Some((mut look, is_complete, _)) = self.look.take_if(ends) {
             if !is_complete {
-                self.late += 1;
+                self.counts.late += 1;
                 while !look.advance() {}
             }
             self.tests[0].conclude(&look);
@@ -158,7 +164,7 @@ impl<'a> Recorder<'a> {
     /// Encodes a snapshot into the buffer, from where it goes to the flash.
     fn snapshot(&mut self) -> Result<(), Failure> {
         if self.saver.is_busy() {
-            self.late += 1;
+            self.counts.late += 1;
             return Ok(());
         }
         while self.gyro.advance() {}

@@ -18,11 +18,11 @@ pub fn replay(
     let mut world = World::new(seed);
     let mut cuts = cuts.iter();
     loop {
+        world.switch_on();
         let World { source, stored } = &mut world;
-        let done = source.done();
         let (mut recorder, restart) =
             Recorder::switch_on(gyro, buffer, &stored.flash, source.made())?;
-        line(format_args!("start {done} {restart:?}"));
+        line(format_args!("start {} {restart:?}", stored.starts));
         let cut = cuts.next().copied();
         let end = cut.map_or(SAMPLES, |cut| cut.taken);
         let last = cut.map_or(u32::MAX, |cut| cut.operations);
@@ -48,6 +48,5 @@ pub fn replay(
         while source.made() < cut.made {
             source.sample();
         }
-        world.switch_on();
     }
 }

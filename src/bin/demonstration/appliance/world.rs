@@ -1,6 +1,6 @@
 //! What a power cut leaves as it is.
 
-use super::{BURST, Flash, SAMPLES};
+use super::{BURST, Counts, Flash, SAMPLES};
 use crate::{product::Sensor, simulated::Random};
 use allanite::axis::Sample;
 use core::fmt::{self, Display, Formatter};
@@ -48,11 +48,6 @@ impl Source {
         self.sensor.made()
     }
 
-    /// The number of cuts so far.
-    pub fn done(&self) -> usize {
-        self.done
-    }
-
     /// Makes the next sample, and tells whether power is cut after it.
     pub fn sample(&mut self) -> (Sample<3, 1>, Plan) {
         let sample = self.sensor.sample();
@@ -66,13 +61,19 @@ impl Source {
     }
 }
 
-/// What the product keeps.
+/// The flash, and notes about the product that belong to no product. The notes are kept so that the host can
+/// repeat a cut.
 pub struct Stored {
     /// The flash.
     pub flash: Flash,
-    /// The number of the sample that comes next, as of the last cut. It belongs to no product. It is here so that the
-    /// host can repeat the cut.
+    /// The number of times that power was switched on.
+    pub starts: u32,
+    /// The number of the sample that comes next, as of the last cut.
     pub taken: u32,
+    /// What had happened between the last start and the last cut.
+    pub counts: Counts,
+    /// Whether the next diagnosis is done in one piece, which is longer than the watchdog permits.
+    pub undivided: bool,
 }
 
 /// The gyros, the supply of power and the flash.
@@ -90,7 +91,10 @@ impl World {
             source: Source::new(seed),
             stored: Stored {
                 flash: Flash::ERASED,
+                starts: 0,
                 taken: 0,
+                counts: Counts::default(),
+                undivided: false,
             },
         }
     }
@@ -107,6 +111,9 @@ impl World {
     /// Switches power on.
     pub fn switch_on(&mut self) {
         self.stored.flash.switch_on();
+        self.stored.starts += 1;
+        self.stored.taken = 0;
+        self.stored.counts = Counts::default();
     }
 }
 

@@ -1,0 +1,53 @@
+//! The appliance as a main loop without an operating system: a timer interrupt hands the bursts of the sensor's
+//! FIFO over, and the loop takes them, does a short piece of work and feeds the watchdog.
+//!
+//! The arguments are the seed of the power cuts, and `true` if the first diagnosis is done in one piece.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(not(target_os = "none"))]
+fn main() {}
+
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+mod board;
+#[cfg(target_os = "none")]
+mod panic;
+
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+mod image {
+    use crate::board::{self, Shared, Watchdog};
+    use core::cell::RefCell;
+    use cortex_m::Peripherals;
+    use critical_section::Mutex;
+    use demonstration::appliance::Progress;
+
+    static FIFO: Shared = Mutex::new(RefCell::new(None));
+
+    #[cortex_m_rt::exception]
+    fn SysTick() {
+        critical_section::with(|section| {
+            if let Some(fifo) = &mut *FIFO.borrow_ref_mut(section) {
+                fifo.burst();
+            }
+        });
+    }
+
+    #[cortex_m_rt::entry]
+    fn main() -> ! {
+        let (mut product, fifo) = board::switch_on();
+        let mut watchdog = Watchdog::start();
+        critical_section::with(|section| FIFO.replace(section, Some(fifo)));
+        if let Some(core) = Peripherals::take() {
+            board::start_timer(core.SYST);
+        }
+        while product.pass() != Progress::Complete {
+            watchdog.feed();
+        }
+        let evidence = product.evidence();
+        let mut last = product.finish(&evidence);
+        while last.pass() != Progress::Complete {
+            watchdog.feed();
+        }
+        last.end(&watchdog)
+    }
+}

@@ -27,6 +27,15 @@ fn number(line: &str, name: &str) -> u32 {
         .unwrap_or_else(|| panic!("{line:?} does not contain {name}"))
 }
 
+/// The number of the next snapshot after a start.
+fn next_snapshot(start: &str) -> u32 {
+    if start.contains("snapshot: None") {
+        0
+    } else {
+        number(start, "snapshot") + 1
+    }
+}
+
 fn of<'l>(lines: &'l [String], start: &str) -> Vec<&'l str> {
     let lines = lines.iter().map(String::as_str);
     lines.filter(|line| line.starts_with(start)).collect()
@@ -71,34 +80,38 @@ fn every_start_restores_the_newest_complete_snapshot_and_accounts_for_every_samp
     let mut random = Random::new(77);
     let (mut newest, mut before) = (0, 0);
     for _ in 0..6 {
-        let mut cuts = random_cuts(&mut random);
+        let cuts = random_cuts(&mut random);
         let lines = here(1, &cuts);
         println!("{cuts:?}\n{}", lines[..13].join("\n"));
         let starts = of(&lines, "start ");
         assert_eq!(starts.len(), cuts.len() + 1);
-        let (mut kept, mut first) = (0, 0);
+        let (mut next, mut first, mut kept) = (0, 0, 0);
         for (index, (cut, start)) in cuts.iter().zip(&starts[1..]).enumerate() {
-            let accounted = number(start, "accounted");
-            // A start continues with the sample that the gyro makes next. Samples that the product had not taken are
-            // part of the gap of the next start.
-            let due = cut.taken.max(first) / EVERY * EVERY;
-            let complete = if due > first { due } else { kept };
+            // A life counts on from the sample that the gyro makes first, and saves at every multiple.
+            let saved = cut.taken.max(first) / EVERY - first / EVERY;
+            let number_here = next_snapshot(start);
+            let case = format!("start {}: {start}", index + 2);
             if cut.operations == u32::MAX {
-                assert_eq!(accounted, complete, "cut {index}");
+                assert_eq!(number_here, next + saved, "{case}");
             }
-            assert!(accounted >= kept && accounted <= complete, "cut {index}");
-            if accounted == complete {
-                newest += 1;
+            assert!((next..=next + saved).contains(&number_here), "{case}");
+            if number_here > next {
+                // The gate holds back up to 128 samples, which are not in a snapshot.
+                let at = (first / EVERY + number_here - next) * EVERY;
+                let held = at.checked_sub(number(start, "accounted"));
+                assert!(held.is_some_and(|held| held <= 128), "{case}");
             } else {
-                before += 1;
+                assert_eq!(number(start, "accounted"), kept, "{case}");
             }
+            newest += usize::from(saved > 0 && number_here == next + saved);
+            before += usize::from(number_here < next + saved);
             let made = cut.made.min(SAMPLES);
-            assert_eq!(accounted + number(start, "missing"), made, "cut {index}");
-            (kept, first) = (accounted, made);
+            kept = number(start, "accounted");
+            assert_eq!(kept + number(start, "missing"), made, "{case}");
+            (next, first) = (number_here, made);
         }
         let record = of(&lines, "record ")[0];
         assert_eq!(number(record, "accounted"), SAMPLES);
-        cuts.clear();
     }
     assert!(newest > 10 && before > 10, "{newest} {before}");
 }

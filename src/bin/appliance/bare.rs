@@ -15,13 +15,13 @@ mod panic;
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
 mod image {
-    use crate::board::{self, Shared, Watchdog};
+    use crate::board::{self, Fifo, Watchdog};
     use core::cell::RefCell;
     use cortex_m::Peripherals;
     use critical_section::Mutex;
     use demonstration::appliance::Progress;
 
-    static FIFO: Shared = Mutex::new(RefCell::new(None));
+    static FIFO: Mutex<RefCell<Option<Fifo>>> = Mutex::new(RefCell::new(None));
 
     #[cortex_m_rt::exception]
     fn SysTick() {

@@ -142,7 +142,8 @@ impl Product {
         let mut progress = self.recorder.step();
         for _ in 0..OPERATIONS {
             // An operation of the flash cannot be divided, so that the power fails before or after it.
-            let is_storing = critical_section::with(|_| self.recorder.store(&mut self.stored.flash));
+            let is_storing =
+                critical_section::with(|_| self.recorder.store(&mut self.stored.flash));
             if !is_storing {
                 break;
             }
@@ -178,6 +179,8 @@ pub(crate) struct Last<'p> {
     report: Report<'p>,
     stored: &'p mut Stored,
     receiver: &'p mut Receiver<'static, Sample<3, 1>>,
+    /// The number of samples that were taken meanwhile, which belong to no record.
+    meanwhile: u32,
 }
 
 impl Product {
@@ -189,6 +192,7 @@ impl Product {
             report: Report::new(self.recorder.gyro(), self.recorder.self_test(), evidence),
             stored: self.stored,
             receiver: &mut self.receiver,
+            meanwhile: 0,
         }
     }
 }
@@ -197,6 +201,7 @@ impl Last<'_> {
     /// Takes the samples that wait, and does a piece of the report.
     pub(crate) fn pass(&mut self) -> Progress {
         while let Some(queued) = self.receiver.receive() {
+            self.meanwhile += 1;
             self.stored.counts.lost += queued.lost;
         }
         let mut progress = self.step();
@@ -215,8 +220,13 @@ impl Last<'_> {
 
     /// Logs what the watchdog saw, and ends the image.
     pub(crate) fn end(&self, watchdog: &Watchdog) -> ! {
-        log(format_args!("end {:?}", self.stored.counts));
-        log(format_args!("longest {} of {}", watchdog.longest, Watchdog::TICKS));
+        let (meanwhile, counts) = (self.meanwhile, self.stored.counts);
+        log(format_args!("end meanwhile {meanwhile} {counts:?}"));
+        log(format_args!(
+            "longest {} of {}",
+            watchdog.longest,
+            Watchdog::TICKS
+        ));
         semihosting::process::exit(0)
     }
 }

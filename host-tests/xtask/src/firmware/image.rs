@@ -24,6 +24,9 @@ const PANICS: [&str; 8] = [
     "copy_from_slice_impl::len_mismatch_fail",
 ];
 
+/// The images that need a feature of their package, with the feature.
+const FEATURES: [(&str, &str); 2] = [("appliance_rtic", "rtic"), ("appliance_embassy", "embassy")];
+
 /// A linked image.
 #[derive(Clone, Debug)]
 pub struct Image {
@@ -67,6 +70,9 @@ impl Image {
             .args(["--package", "images", "--bin", name])
             .args(["--profile", profile])
             .args(core.precision.arguments());
+        for (_, feature) in FEATURES.iter().filter(|(image, _)| *image == name) {
+            command.args(["--features", feature]);
+        }
         // The images of both precisions have the same path, and another program may be building.
         let lock = exclusive()?;
         let status = command

@@ -5,7 +5,11 @@ use host_tests::demonstration::{
     simulated::Random,
 };
 use rayon::prelude::*;
-use xtask::firmware::{Image, agreement::first_difference, run_with};
+use xtask::firmware::{
+    Image, Precision,
+    agreement::{first_difference, told_here},
+    run_with,
+};
 
 fn here(seed: u64, cuts: &[Cut]) -> Vec<String> {
     let mut gyro = Box::new(Gyro::new());
@@ -178,7 +182,13 @@ fn check(image: &str, seed: u64, there: &There) {
         assert!(last[1..].starts_with(&life[1..]), "{case}: {life:?}");
     }
     lines.extend_from_slice(&last[1..]);
-    let here = here(seed, &there.cuts);
+    let arguments = [seed.to_string()].into_iter();
+    let cuts = there.cuts.iter().map(Cut::to_string);
+    let arguments: Vec<String> = arguments.chain(cuts).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    // The images compute in single precision, and this program in double precision.
+    let here = told_here(Precision::Single, "appliance_loop", &arguments);
+    let here = here.unwrap_or_else(|error| panic!("{case}: {error:#}"));
     assert_eq!(first_difference(&here, &lines), None, "{case}");
 
     let sum = |name| -> u32 { there.counts.iter().map(|line| number(line, name)).sum() };

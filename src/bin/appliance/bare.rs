@@ -1,12 +1,28 @@
 //! The appliance as a main loop without an operating system: a timer interrupt hands the bursts of the sensor's
 //! FIFO over, and the loop takes them, does a short piece of work and feeds the watchdog.
 //!
-//! The arguments are the seed of the power cuts, and `true` if the first diagnosis is done in one piece.
+//! The arguments are the seed of the power cuts, and `true` if the first diagnosis is done in one piece, which is
+//! longer than the watchdog permits. On the host, the arguments are the seed and the cuts that an image logged, and
+//! the program does the same without interrupts.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(not(target_os = "none"))]
-fn main() {}
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    use demonstration::appliance::{BUFFER, Cut, Gyro, replay};
+
+    let mut arguments = std::env::args().skip(1);
+    let seed = arguments.next().ok_or("no seed")?.parse()?;
+    let cuts: Option<Vec<Cut>> = arguments.map(|cut| Cut::parse(&cut)).collect();
+    let cuts = cuts.ok_or("a cut is not of the form made:taken:operations")?;
+    let mut gyro = Box::new(Gyro::new());
+    let mut buffer = vec![0; BUFFER];
+    replay(seed, &cuts, &mut gyro, &mut buffer, |line| {
+        println!("{line}");
+    })
+    .map_err(|failure| format!("{failure:?}"))?;
+    Ok(())
+}
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
 mod board;

@@ -191,6 +191,10 @@ fn check(image: &str, seed: u64, there: &There) {
     let here = here.unwrap_or_else(|error| panic!("{case}: {error:#}"));
     assert_eq!(first_difference(&here, &lines), None, "{case}");
 
+    for (cut, life) in there.cuts.iter().zip(&there.lives[1..]) {
+        let [accounted, missing] = ["accounted", "missing"].map(|name| number(&life[0], name));
+        assert_eq!(accounted + missing, cut.made.min(SAMPLES), "{case}");
+    }
     let sum = |name| -> u32 { there.counts.iter().map(|line| number(line, name)).sum() };
     assert_eq!((sum("lost"), sum("late")), (0, 0), "{case}");
     assert!(sum("during_erase") > 100 && sum("during_look") > 100);

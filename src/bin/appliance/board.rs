@@ -17,9 +17,9 @@ use demonstration::appliance::{
 };
 use heapless::spsc::Queue;
 
-/// The timer's ticks from one burst of the FIFO to the next: 512 000 instructions in QEMU. A core of 64 million
-/// instructions a second would get 1000 samples a second, ten times as many as the record has.
-const INTERVAL: u32 = 12_800;
+/// The timer's ticks from one burst of the FIFO to the next: 320 000 instructions in QEMU. A core of 64 million
+/// instructions a second would get 1600 samples a second, sixteen times as many as the record has.
+const INTERVAL: u32 = 8000;
 
 /// The size of the queue, which holds the samples of fifteen bursts.
 const ROOM: usize = 128;

@@ -33,7 +33,7 @@ pub enum Plan {
 impl Source {
     fn new(seed: u64) -> Self {
         let mut random = Random::new(seed);
-        let mut below = |end: u32| (u64::from(random.bits()) * u64::from(end) >> 32) as u32;
+        let mut below = |end: u32| ((u64::from(random.bits()) * u64::from(end)) >> 32) as u32;
         let mut cuts = [0; CUTS].map(|_: u32| 1 + below(SAMPLES - 1));
         cuts[CUTS - 1] = SAMPLES + BURST + below(DIAGNOSIS);
         cuts.sort_unstable();

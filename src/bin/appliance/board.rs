@@ -17,15 +17,16 @@ use demonstration::appliance::{
 };
 use heapless::spsc::Queue;
 
-/// The timer's ticks from one burst of the FIFO to the next: 320 000 instructions in QEMU. A core of 64 million
-/// instructions a second would get 1600 samples a second, sixteen times as many as the record has.
-const INTERVAL: u32 = 8000;
+/// The timer's ticks from one burst of the FIFO to the next: 512 000 instructions in QEMU. A core of 64 million
+/// instructions a second would get 1000 samples a second, ten times as many as the record has.
+const INTERVAL: u32 = 12_800;
 
 /// The size of the queue, which holds the samples of fifteen bursts.
 const ROOM: usize = 128;
 
-/// The number of operations of the flash in a pass.
-const OPERATIONS: u32 = 32;
+/// The number of operations of the flash in a pass. A piece of a look is long, so that with 32 operations and shorter
+/// intervals of the timer a snapshot was not complete before the next one.
+const OPERATIONS: u32 = 256;
 
 /// Says that the memory holds a world.
 const MARK: u64 = 0x616c_6c61_6e69_7465;

@@ -9,6 +9,7 @@ pub mod diagnose;
 pub mod lines;
 pub mod product;
 pub mod simulated;
+pub mod soak;
 pub mod stream;
 
 use simulated::Amplitudes;

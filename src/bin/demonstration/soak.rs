@@ -166,7 +166,7 @@ pub fn run(plan: Plan, mut progress: impl FnMut(u64)) -> Result<Tally, Failure> 
     let mut next = plan.first;
     while record.tally.samples < plan.samples {
         if next == 0 {
-            let rare = random.bits() % RARE == 0;
+            let rare = random.bits().is_multiple_of(RARE);
             let log = random.bits() % if rare { LONG } else { COMMON };
             next = 1 + u64::from(random.bits() % (2 << log));
         }

@@ -34,7 +34,7 @@ fn every_bad_input_ends_with_its_status_and_message_in_little_time_and_memory() 
     .into_iter()
     .flatten()
     .collect();
-    assert!(cases.len() >= 150, "{} cases", cases.len());
+    assert!(cases.len() >= 250, "{} cases", cases.len());
     let needed_kib = case::needed_kib();
     let next = AtomicUsize::new(0);
     let work = || {

@@ -6,7 +6,9 @@ mod bench;
 mod c;
 pub mod cost;
 mod setup;
+mod soak;
 mod step;
+mod supply_chain;
 mod test;
 
 pub use setup::CHROMIUM;
@@ -36,6 +38,28 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]
         arguments: Vec<String>,
     },
+    /// Accumulate samples with gaps, snapshots, power cuts and merges at random, and compare every sum with its
+    /// definition.
+    Soak {
+        /// The number of samples.
+        #[arg(long, default_value_t = 100_000_000)]
+        samples: u64,
+        /// The seed of samples and faults.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// The number of samples before the first fault. The accumulator's counter laps at 2^32 samples.
+        #[arg(long, default_value_t = 0)]
+        first: u64,
+        /// Run on a Cortex-M4F in QEMU instead of this machine.
+        #[arg(long)]
+        target: bool,
+    },
+    /// Check the licences, versions and sources of all crates with cargo-deny, which is installed if missing.
+    Deny,
+    /// Check that the library builds with the oldest versions that it allows. This needs rustup's nightly.
+    MinimalVersions,
+    /// Build an image twice from nothing, in different folders, and compare the bytes.
+    Reproduce,
     /// Measure instructions, memory and time. QEMU counts instructions, not cycles.
     Bench {
         /// Print JSON instead of a table.
@@ -83,6 +107,15 @@ impl CommandLine {
                 study.args(["--bin", "study", "--"]).args(arguments);
                 step::step("the study", &mut study)
             }
+            Task::Soak {
+                samples,
+                seed,
+                first,
+                target,
+            } => soak::run([samples, seed, first], target),
+            Task::Deny => supply_chain::deny(),
+            Task::MinimalVersions => supply_chain::minimal_versions(),
+            Task::Reproduce => supply_chain::reproduce(),
             Task::Bench {
                 json,
                 update_budgets,

@@ -135,6 +135,14 @@ impl Toolchain {
     /// # Errors
     /// Fails if the linker is missing.
     pub fn cargo(&self, subcommand: &str) -> Result<Command> {
+        self.cargo_into(subcommand, &target_directory())
+    }
+
+    /// A cargo command whose artefacts go to a folder.
+    ///
+    /// # Errors
+    /// Fails if the linker is missing.
+    pub fn cargo_into(&self, subcommand: &str, artefacts: &Path) -> Result<Command> {
         let mut command = match self.way {
             Way::Rustup => {
                 let mut command = cargo();
@@ -157,14 +165,19 @@ impl Toolchain {
         }
         if let Some(board) = self.core.board {
             let flags = format!("-C link-arg=--defsym={board}=1");
-            command.env(variable(self.core.target, "RUSTFLAGS"), flags);
+            command.env(Self::flags_variable(&self.core), flags);
         }
         command
             .args(["--target", self.core.target])
             .arg("--target-dir")
-            .arg(target_directory())
+            .arg(artefacts)
             .env("DEFMT_LOG", "info");
         Ok(command)
+    }
+
+    /// The environment variable with flags of the compiler for a core, beside those of `.cargo/config.toml`.
+    pub fn flags_variable(core: &Core) -> String {
+        variable(core.target, "RUSTFLAGS")
     }
 
     fn debian(&self, subcommand: &str, linker: &Path) -> Command {

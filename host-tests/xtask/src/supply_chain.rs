@@ -1,0 +1,160 @@
+//! What others build from and what they get: licences and sources of every crate, oldest versions, and images
+//! that are the same bytes wherever they are built.
+
+use crate::{
+    firmware::{CORTEX_M4F, Core, Toolchain, cargo, workspace},
+    step::{run, step},
+};
+use anyhow::{Context as _, Result, bail, ensure};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+use tempfile::TempDir;
+
+/// The rules of cargo-deny, in the workspace.
+const RULES: &str = "host-tests/deny.toml";
+
+/// The image that uses every part of the library.
+const IMAGE: &str = "product";
+
+/// Where the debug information of an image says that the sources lie.
+const SOURCES: &str = "/allanite";
+
+/// Checks licences, duplicates, sources and, if their database can be reached, known vulnerabilities.
+pub(crate) fn deny() -> Result<()> {
+    if !succeeds(cargo().args(["deny", "--version"])) {
+        step(
+            "installing cargo-deny",
+            cargo().args(["install", "--locked", "cargo-deny"]),
+        )?;
+    }
+    let check = |offline: bool, what: &[&str]| {
+        let mut command = cargo();
+        command.arg("deny").args(offline.then_some("--offline"));
+        command.args(["--workspace", "--config", RULES, "check"]);
+        command.args(what);
+        command
+    };
+    let heading = "licences, duplicates and sources";
+    step(heading, &mut check(true, &["licenses", "bans", "sources"]))?;
+    let fetched = run(cargo().args(["deny", "--config", RULES, "fetch", "db"]));
+    if let Err(error) = fetched {
+        println!(
+            "\nThe known vulnerabilities are not checked: {error:#}. Connect to their database's host."
+        );
+        return Ok(());
+    }
+    step("known vulnerabilities", &mut check(true, &["advisories"]))
+}
+
+/// Builds the library with the oldest versions that its `Cargo.toml` allows.
+pub(crate) fn minimal_versions() -> Result<()> {
+    let copy = Copy::new("tree")?;
+    let nightly = |arguments: &[&str]| {
+        let mut command = Command::new("rustup");
+        command.args(["run", "nightly", "cargo"]).args(arguments);
+        // Variables of the cargo that runs this program would select its compiler.
+        command.env_remove("CARGO").env_remove("RUSTUP_TOOLCHAIN");
+        command.current_dir(&copy.path);
+        command
+    };
+    step(
+        "the oldest versions",
+        &mut nightly(&["update", "-Z", "direct-minimal-versions"]),
+    )?;
+    for features in [&["--all-features"][..], &["--features", "flash"], &[]] {
+        let mut check = cargo();
+        check.current_dir(&copy.path);
+        check.env("CARGO_TARGET_DIR", copy.path.join("target"));
+        check.args(["check", "--locked", "--package", "allanite"]);
+        step("the library with them", check.args(features))?;
+    }
+    Ok(())
+}
+
+/// Builds an image twice from nothing, in folders of different names, and compares the bytes.
+pub(crate) fn reproduce() -> Result<()> {
+    let images = ["one", "another/folder"].map(|folder| Copy::new(folder)?.image(&CORTEX_M4F));
+    let [first, second] = images;
+    let (first, second) = (first?, second?);
+    let differing = first.iter().zip(&second).filter(|(a, b)| a != b).count();
+    ensure!(
+        first == second,
+        "{differing} of {} bytes of {IMAGE} differ, and {} bytes of the length: look for a path or a time in it",
+        first.len(),
+        first.len().abs_diff(second.len()),
+    );
+    println!("\n{IMAGE}: {} bytes, the same in both builds", first.len());
+    Ok(())
+}
+
+/// The files that git knows, as they are now, in a folder of their own.
+struct Copy {
+    path: PathBuf,
+    _folder: TempDir,
+}
+
+impl Copy {
+    fn new(name: &str) -> Result<Self> {
+        let folder = TempDir::new()?;
+        let path = folder.path().join(name);
+        let mut list = Command::new("git");
+        list.args(["ls-files", "-z"]).current_dir(workspace());
+        let output = list.output().context("git did not start: install it")?;
+        let names = String::from_utf8(output.stdout)?;
+        let names: Vec<_> = names.split_terminator('\0').collect();
+        ensure!(!names.is_empty(), "git lists no files: run this in a clone");
+        for name in names {
+            let from = workspace().join(name);
+            // A file that was deleted and not committed is listed.
+            if from.is_file() {
+                copy(&from, &path.join(name)).with_context(|| format!("copying {name}"))?;
+            }
+        }
+        Ok(Self {
+            path,
+            _folder: folder,
+        })
+    }
+
+    /// The bytes of the image, built here.
+    fn image(&self, core: &Core) -> Result<Vec<u8>> {
+        let target = self.path.join("target");
+        let mut build = Toolchain::find(core)?.cargo_into("build", &target)?;
+        let home = cargo_home()?;
+        let flags = [(self.path.as_path(), SOURCES), (home.as_path(), "/cargo")]
+            .map(|(path, name)| format!("--remap-path-prefix={}={name}", path.display()));
+        build
+            .current_dir(&self.path)
+            .env(Toolchain::flags_variable(core), flags.join(" "));
+        build.args(["--locked", "--package", "images", "--bin", IMAGE]);
+        step(
+            &format!("{IMAGE}, in {}", self.path.display()),
+            build.args(["--profile", "firmware"]),
+        )?;
+        let path = target.join(core.target).join("firmware").join(IMAGE);
+        fs::read(&path).with_context(|| format!("reading {}", path.display()))
+    }
+}
+
+fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
+    to.parent().map_or(Ok(()), fs::create_dir_all)?;
+    fs::copy(from, to).map(drop)
+}
+
+/// The folder where cargo keeps the sources of crates.
+fn cargo_home() -> Result<PathBuf> {
+    let set = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let default = || std::env::home_dir().map(|home| home.join(".cargo"));
+    match set.or_else(default) {
+        Some(path) => Ok(path),
+        None => bail!("cargo's folder is unknown: set CARGO_HOME"),
+    }
+}
+
+fn succeeds(command: &mut Command) -> bool {
+    let quiet = command.stdout(Stdio::null()).stderr(Stdio::null());
+    quiet.status().is_ok_and(|status| status.success())
+}

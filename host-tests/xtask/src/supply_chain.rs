@@ -52,6 +52,7 @@ pub(crate) fn deny() -> Result<()> {
 /// Builds the library with the oldest versions that its `Cargo.toml` allows.
 pub(crate) fn minimal_versions() -> Result<()> {
     let copy = Copy::new("tree")?;
+    copy.library_alone()?;
     let nightly = |arguments: &[&str]| {
         let mut command = Command::new("rustup");
         command.args(["run", "nightly", "cargo"]).args(arguments);
@@ -117,6 +118,24 @@ impl Copy {
             path,
             _folder: folder,
         })
+    }
+
+    /// Leaves only the library in the workspace. The versions of the tools on the host are those of `Cargo.lock`.
+    fn library_alone(&self) -> Result<()> {
+        let path = self.path.join("Cargo.toml");
+        let manifest = fs::read_to_string(&path)?;
+        let is_members = |line: &&str| line.starts_with("members = ");
+        ensure!(
+            manifest.lines().filter(is_members).count() == 1,
+            "Cargo.toml has not one line of members: write them on one line"
+        );
+        let lines = manifest.lines().map(|line| match is_members(&line) {
+            true => "members = []\n".to_owned(),
+            false => format!("{line}\n"),
+        });
+        fs::write(&path, lines.collect::<String>())?;
+        fs::remove_file(self.path.join("Cargo.lock"))?;
+        Ok(())
     }
 
     /// The bytes of the image, built here.

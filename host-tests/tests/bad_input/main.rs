@@ -34,7 +34,7 @@ fn every_bad_input_ends_with_its_status_and_message_in_little_time_and_memory() 
     .into_iter()
     .flatten()
     .collect();
-    assert!(cases.len() >= 250, "{} cases", cases.len());
+    assert!(cases.len() >= 600, "{} cases", cases.len());
     let needed_kib = case::needed_kib();
     let next = AtomicUsize::new(0);
     let work = || {
@@ -45,6 +45,7 @@ fn every_bad_input_ends_with_its_status_and_message_in_little_time_and_memory() 
         }
         wrong
     };
+    println!("{} bad inputs", cases.len());
     let wrong: Vec<String> = thread::scope(|scope| {
         let workers: Vec<_> = (0..AT_ONCE).map(|_| scope.spawn(work)).collect();
         let found = workers.into_iter().map(|worker| worker.join().unwrap());

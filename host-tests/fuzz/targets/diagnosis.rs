@@ -1,0 +1,4 @@
+//! Fuzzes `fuzz::diagnosis`.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::diagnosis::check(bytes));

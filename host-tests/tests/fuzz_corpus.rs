@@ -1,0 +1,67 @@
+//! The fuzz targets accept their committed corpora, and what bytes changed at random make of them.
+
+// The targets are public in the fuzzer's library.
+#![allow(unreachable_pub)]
+
+#[path = "../fuzz/src/accumulator.rs"]
+mod accumulator;
+#[path = "../fuzz/src/diagnosis.rs"]
+mod diagnosis;
+#[path = "../fuzz/src/file.rs"]
+mod file;
+#[path = "../fuzz/src/stored.rs"]
+mod stored;
+
+use rand::{Rng as _, RngExt as _, SeedableRng as _};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::{fs, path::Path};
+
+/// Checks every file of a corpus, and so many changed copies of each.
+fn replay(name: &str, changed: u64, check: fn(&[u8])) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("fuzz/corpus")
+        .join(name);
+    let mut checked = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let bytes = fs::read(entry.unwrap().path()).unwrap();
+        check(&bytes);
+        for seed in 0..changed {
+            check(&change(bytes.clone(), seed));
+        }
+        checked += 1;
+    }
+    assert!(checked >= 2, "{checked} files of {name}");
+}
+
+/// A copy with a few other bytes, and now and then a shorter one.
+fn change(mut bytes: Vec<u8>, seed: u64) -> Vec<u8> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    for _ in 0..random.random_range(1..6) {
+        let place = random.random_range(0..bytes.len());
+        bytes[place] = random.next_u32() as u8;
+    }
+    if random.random_range(0..8) == 0 {
+        bytes.truncate(random.random_range(1..=bytes.len()));
+    }
+    bytes
+}
+
+#[test]
+fn accumulators_follow_the_definition() {
+    replay("accumulator", 300, accumulator::check);
+}
+
+#[test]
+fn diagnoses_of_any_curve_end_with_finite_numbers() {
+    replay("diagnosis", 10, diagnosis::check);
+}
+
+#[test]
+fn files_of_any_contents_are_read_or_refused_by_name() {
+    replay("file", 100, file::check);
+}
+
+#[test]
+fn stored_data_of_any_contents_are_restored_or_refused() {
+    replay("stored", 2000, stored::check);
+}

@@ -233,6 +233,8 @@ pub mod detection;
 pub mod diagnosis;
 pub mod effect;
 mod error;
+#[cfg(test)]
+mod extremes;
 pub mod fit;
 pub mod integrity;
 pub mod kurtosis;

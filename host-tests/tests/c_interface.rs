@@ -2,9 +2,9 @@
 
 use std::fs;
 use xtask::firmware::{
-    CORTEX_M4F,
+    CORES, CORTEX_M4F,
     agreement::first_difference,
-    c_library::{folder, host_program, rust_example, target_program},
+    c_library::{folder, host_program, library, rust_example, target_program},
 };
 
 /// Makes the header anew if this variable is set.
@@ -47,6 +47,18 @@ fn a_product_in_c_finds_what_it_finds_in_rust_to_the_bit() {
     let there = target_program(&CORTEX_M4F, folder.path());
     let there = there.unwrap_or_else(|error| panic!("{error:#}"));
     assert_eq!(first_difference(&rust, &there), None);
+}
+
+/// Not every core has every atomic instruction, and the library for C is to ask nothing of its program.
+#[test]
+fn the_library_builds_for_every_core_and_needs_no_symbol_for_atomics() {
+    for core in &CORES {
+        let path = library(core, 20).unwrap_or_else(|error| panic!("{}: {error:#}", core.name));
+        let bytes = fs::read(&path).expect("a library");
+        let holds = |name: &[u8]| bytes.windows(name.len()).any(|part| part == name);
+        assert!(holds(b"allanite_diagnosis_advance"), "{}", core.name);
+        assert!(!holds(b"_critical_section_1_0_acquire"), "{}", core.name);
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::{
     hidden_effect::{Outcome, diagnose_with},
     theory::squares,
 };
-use crate::simulate::{Hidden, Preset};
+use crate::simulate::{Coefficients, Hidden, Preset};
 use allanite::{diagnosis::Options, effect::MAX_PARAMETERS};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -51,17 +51,21 @@ pub struct Row {
     pub covered_effect: [f64; 1 + MAX_PARAMETERS],
 }
 
+/// The hidden effect of one of [`CASES`] in a gyro with these coefficients; `None` where nothing is hidden.
+pub fn hidden_case(base: Coefficients, case: usize) -> Option<Hidden> {
+    let white = base.angle_random_walk * RATE_HZ.sqrt();
+    let (name, parameters, size) = (*CASES.get(case)?)?;
+    let mut hidden = Hidden::new(name, parameters, base.angle_random_walk)?;
+    if !hidden.replaces_white_noise() {
+        hidden.coefficient = size * white;
+    }
+    Some(hidden)
+}
+
 /// Diagnoses records of a gyro that hides one of [`CASES`].
 pub fn study(preset: Preset, case: usize, records: u64, options: Options) -> Row {
     let base = preset.coefficients();
-    let white = base.angle_random_walk * RATE_HZ.sqrt();
-    let hidden = CASES[case].and_then(|(name, parameters, size)| {
-        let mut hidden = Hidden::new(name, parameters, base.angle_random_walk)?;
-        if !hidden.replaces_white_noise() {
-            hidden.coefficient = size * white;
-        }
-        Some(hidden)
-    });
+    let hidden = hidden_case(base, case);
     let outcomes: Vec<Outcome> = (0..records)
         .into_par_iter()
         .map(|seed| diagnose_with(base, hidden.as_slice(), SAMPLES, seed, options))

@@ -7,6 +7,7 @@ pub mod coefficients;
 pub mod confusion;
 pub mod course;
 pub mod detection;
+pub mod efficiency;
 pub mod hidden_effect;
 pub mod lines;
 pub mod paper;
@@ -14,6 +15,7 @@ pub mod precision;
 pub mod self_test;
 pub mod theory;
 pub mod thermal;
+pub mod whittle;
 
 use crate::{
     log::{BINS, SpectrumSums},

@@ -31,8 +31,8 @@ enum Task {
     Setup,
     /// Set up, then check and test everything.
     Test,
-    /// Run a study behind the README's figures: theory, coefficients, calibration, paper, hidden-effect,
-    /// confusion, detection, lines, clean, course, thermal, self-test or precision.
+    /// Run a study behind the README's figures: theory, coefficients, efficiency, calibration, paper,
+    /// hidden-effect, confusion, detection, lines, clean, course, thermal, self-test or precision.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]

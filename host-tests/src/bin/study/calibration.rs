@@ -1,10 +1,12 @@
 //! Whether p-values are uniform and intervals contain the truth.
 
+use crate::origin::{Origin, print_json};
 use allanite::diagnosis::Options;
 use host_tests::{
     simulate::Preset,
     study::calibration::{CASES, SAMPLES, TERMS, study},
 };
+use std::time::Instant;
 
 pub(crate) fn print(
     records: u64,
@@ -12,6 +14,7 @@ pub(crate) fn print(
     tolerance: Option<f64>,
     json: bool,
 ) -> anyhow::Result<()> {
+    let begun = Instant::now();
     let mut options = Options::default();
     options.tolerance = tolerance.unwrap_or(options.tolerance);
     let presets = Preset::TYPICAL.into_iter();
@@ -20,8 +23,7 @@ pub(crate) fn print(
     let rows = rows.map(|(preset, case)| study(preset, case, records, options));
     if json {
         let rows: Vec<_> = rows.collect();
-        println!("{}", serde_json::to_string(&rows)?);
-        return Ok(());
+        return print_json(Origin::new("calibration", [0, records - 1], begun), &rows);
     }
     println!("{records} records of {SAMPLES} samples at 100 Hz; shares in % of those named right");
     println!(
@@ -64,5 +66,6 @@ pub(crate) fn print(
                 .join(" "),
         );
     }
+    println!("\n{}", Origin::new("calibration", [0, records - 1], begun));
     Ok(())
 }

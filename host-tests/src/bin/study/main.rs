@@ -6,8 +6,10 @@ mod coefficients;
 mod confusion;
 mod course;
 mod detection;
+mod efficiency;
 mod hidden_effect;
 mod lines;
+mod origin;
 mod paper;
 mod precision;
 mod self_test;
@@ -156,6 +158,18 @@ enum Study {
         #[arg(long)]
         json: bool,
     },
+    /// Compare errors with the smallest ones that the records allow, of coefficients and of effects' sizes and shapes
+    Efficiency {
+        /// Number of records per case
+        #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(2..))]
+        records: u64,
+        /// Study only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
+        /// Print JSON instead of tables
+        #[arg(long)]
+        json: bool,
+    },
     /// Compare single with double precision on the same records
     Precision {
         /// Number of records per table
@@ -225,6 +239,11 @@ fn main() -> Result<()> {
             tolerance,
             json,
         } => calibration::print(records, preset, tolerance, json)?,
+        Study::Efficiency {
+            records,
+            preset,
+            json,
+        } => efficiency::print(records, preset, json)?,
         Study::Precision { records } => precision::print(records)?,
         Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),
     }

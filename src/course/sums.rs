@@ -53,6 +53,22 @@ impl<const COVARIATES: usize> Sums<COVARIATES> {
         self.squares_high = self.squares_high.wrapping_add(u32::from(carry));
     }
 
+    /// Adds counts that follow each other and the one before, and the squares of their differences.
+    pub(super) fn add_slice(&mut self, counts: &[i32], before: i32) {
+        let sum = counts.iter().map(|&count| i64::from(count));
+        self.counts = self.counts.wrapping_add(sum.fold(0, i64::wrapping_add));
+        let mut squares = u128::from(self.squares_high) << 64 | u128::from(self.squares);
+        let mut before = before;
+        for &count in counts {
+            let difference = count.abs_diff(before);
+            let square = u64::from(difference).wrapping_mul(difference.into());
+            squares = squares.wrapping_add(square.into());
+            before = count;
+        }
+        self.squares = squares as u64;
+        self.squares_high = (squares >> 64) as u32;
+    }
+
     /// Counts a sample that has no difference.
     #[inline(always)]
     pub(super) fn add_start(&mut self) {

@@ -101,6 +101,25 @@ impl Recorded {
 }
 
 #[test]
+fn slices_lead_to_the_state_of_single_counts() {
+    let mut random = Random::new(72);
+    let [mut one_by_one, mut at_once] = [const { Course::<0>::new() }; 2];
+    for _ in 0..400 {
+        if random.below(10) == 0 {
+            one_by_one.gap();
+            at_once.gap();
+        }
+        let length = random.below(70);
+        let shift = if random.below(8) == 0 { 0 } else { 20 };
+        let counts: List<i32> = (0..length).map(|_| random.bits() as i32 >> shift).collect();
+        counts.iter().for_each(|&count| one_by_one.push(count, []));
+        at_once.push_slice(&counts);
+        assert_eq!(one_by_one, at_once);
+    }
+    assert!(one_by_one.block_length() > 1);
+}
+
+#[test]
 fn sums_are_exact_through_doublings_and_gaps() {
     let mut random = Random::new(71);
     for wide in [false, true] {

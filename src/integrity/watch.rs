@@ -73,6 +73,16 @@ const BLOCKS: u8 = 4;
 /// that a spike of any size raises the scale of samples by 1 %.
 const CUT: u64 = 2;
 
+/// The integer in which usual values are judged: what the core computes with at once.
+#[cfg(target_pointer_width = "64")]
+type Word = u64;
+#[cfg(not(target_pointer_width = "64"))]
+type Word = u32;
+
+/// The scales below which usual values are judged in a [`Word`]. Records that were rounded from floats have scales
+/// beyond 2^30; their limit of 64 bits is far below the overflow of its product with a factor of 16 bits.
+const USUAL_BELOW: u64 = 1 << if Word::BITS == 64 { 46 } else { 30 };
+
 impl Rule {
     /// The rule for neighbouring samples. Its floor is half a count, because noise may be hidden for a while
     /// in the middle of a quantum. Its other numbers are chosen by hand; no study varies them.
@@ -125,18 +135,22 @@ impl Watch {
     };
 
     /// Adds a value if it is as usual, and returns whether it was added. Nearly every sample takes this path,
-    /// which computes in 32 bits. If the value may be odd or a number does not fit, nothing is added, and
+    /// which computes in a [`Word`]. If the value may be odd or a number does not fit, nothing is added, and
     /// [`push`](Self::push) decides.
+    #[allow(
+        clippy::unnecessary_cast,
+        reason = "on a core of 32 bits, a Word is not a u64"
+    )]
     #[inline(always)]
     pub(super) fn push_usual(&mut self, value: i32, rule: &Rule) -> bool {
-        let scale = self.scale as u32;
-        if !self.steady || self.scale >= 1 << 30 {
+        let scale = self.scale as Word;
+        if !self.steady || self.scale >= USUAL_BELOW {
             return false;
         }
         let difference = value.abs_diff(self.previous as i32);
-        let usual = scale.wrapping_add(rule.floor as u32);
+        let usual = scale.wrapping_add(rule.floor as Word);
         let long = u64::from(difference) << FRACTION;
-        if long > u64::from(usual) * u64::from(rule.factor) {
+        if long > (usual as u64).wrapping_mul(rule.factor.into()) {
             return false;
         }
         let [low, _] = &mut self.total;
@@ -144,10 +158,10 @@ impl Watch {
             return false;
         };
         *low = sum;
-        // The result is at most 2^31.
-        let new = long.min(u64::from(usual.wrapping_mul(CUT as u32))) as u32;
+        // The result is at most twice the largest scale.
+        let new = long.min(usual.wrapping_mul(CUT as Word) as u64) as Word;
         let scale = scale.wrapping_sub(scale.wrapping_shr(rule.span));
-        self.scale = scale.wrapping_add(new.wrapping_shr(rule.span)).into();
+        self.scale = scale.wrapping_add(new.wrapping_shr(rule.span)) as u64;
         self.previous = value.into();
         true
     }

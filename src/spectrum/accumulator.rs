@@ -130,10 +130,40 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
     /// Adds counts, and does all the work of them and of those that wait. None is lost.
     pub fn push_slice(&mut self, counts: &[i32]) {
         self.finish();
-        for counts in counts.chunks(P) {
-            counts.iter().for_each(|&count| self.push(count));
-            self.finish();
+        let mut rest = counts;
+        while let Some(&first) = rest.first() {
+            if self.number == 0 {
+                self.reference = first;
+            }
+            // Up to the end of a block of the second level, as in `take`.
+            let (reference, number) = (self.reference, self.number as u32);
+            let room = (RADIX as u32).wrapping_sub(number % RADIX as u32) as usize;
+            let (taken, after) = rest.split_at(room.min(rest.len()));
+            if let Some(lowest) = self.levels.first_mut() {
+                for (i, &count) in (number..=u32::MAX).zip(taken) {
+                    lowest.push_count(i, count, reference);
+                }
+            }
+            self.number = self.number.wrapping_add(taken.len() as u64);
+            if taken.len() == room {
+                self.complete();
+                while self.due != 0 {
+                    self.transform();
+                }
+            }
+            rest = after;
         }
+        self.pass_by(counts);
+    }
+
+    /// Leaves the room for counts as if these had waited in it.
+    fn pass_by(&mut self, counts: &[i32]) {
+        let (skipped, last) = counts.split_at(counts.len().saturating_sub(P));
+        let first = (self.taken as usize).wrapping_add(skipped.len());
+        for (i, &count) in (first..usize::MAX).zip(last) {
+            self.counts[i % P] = count;
+        }
+        self.taken = (first.wrapping_add(last.len()) % P) as u32;
     }
 
     /// Does a part of the work that waits, and tells whether there is more. A call transforms at most one

@@ -11,6 +11,7 @@ pub(super) trait Field {
     fn number(&self) -> Result<f64, Flaw>;
 
     /// The value as a finite number that keeps every digit of a whole number.
+    #[inline]
     fn exact(&self) -> Result<Exact, Flaw> {
         self.number().map(Exact::Float)
     }
@@ -226,11 +227,17 @@ impl Field for f64 {
         (f64::from(count) == *self).then_some(count)
     }
 
+    #[inline]
     fn number(&self) -> Result<f64, Flaw> {
+        #[cold]
+        #[inline(never)]
+        fn flaw(value: f64) -> Flaw {
+            Flaw::not_finite(&value.to_string())
+        }
         if self.is_finite() {
             Ok(*self)
         } else {
-            Err(Flaw::not_finite(&self.to_string()))
+            Err(flaw(*self))
         }
     }
 }

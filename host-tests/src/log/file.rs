@@ -1,6 +1,11 @@
 //! Reads a log with the reader of its format.
 
-use super::{Axis, Covariates, Log, Options, csv, npy, reading::read_table, source::Format, ulog};
+use super::{
+    Axis, Covariates, Log, Options, csv, npy,
+    reading::{Watched, read_table},
+    source::Format,
+    ulog,
+};
 #[cfg(feature = "bags")]
 use super::{bag, bag_folder};
 use crate::failure::{Failure, Place};
@@ -27,7 +32,29 @@ pub fn read_with_evidence(
     covariates: &Covariates,
     progress: &ProgressBar,
 ) -> Result<Log, Failure> {
-    let (log, _) = read_parts(path, options, None, Some(covariates), progress)?;
+    let watch = Watched {
+        covariates,
+        moments: true,
+    };
+    let (log, _) = read_parts(path, options, None, Some(watch), progress)?;
+    Ok(log)
+}
+
+/// As [`read_with_evidence`], without the kurtosis, which takes time and only a diagnosis needs.
+///
+/// # Errors
+/// The errors are those of [`read_with_evidence`].
+pub fn read_for_fit(
+    path: &Path,
+    options: &Options,
+    covariates: &Covariates,
+    progress: &ProgressBar,
+) -> Result<Log, Failure> {
+    let watch = Watched {
+        covariates,
+        moments: false,
+    };
+    let (log, _) = read_parts(path, options, None, Some(watch), progress)?;
     Ok(log)
 }
 
@@ -59,7 +86,7 @@ fn read_parts(
     path: &Path,
     options: &Options,
     first: Option<u64>,
-    watch: Option<&Covariates>,
+    watch: Option<Watched>,
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let parts = (first, watch);

@@ -130,7 +130,7 @@ use allanite::{
     spectrum::SpectrumAccumulator,
 };
 pub use covariate::{CovariateChoice, Covariates};
-pub use file::{read, read_in_two, read_with_evidence};
+pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
 

@@ -123,11 +123,18 @@ impl Npy {
 
     fn number(&self, element: &[u8]) -> Option<f64> {
         let mut number = None;
-        let keep = &mut Keep(&mut number);
-        visit_element(&self.header, element, 0, keep)
-            .is_ok()
-            .then_some(number)
-            .flatten()
+        let block = Block {
+            bytes: element,
+            run_bytes: element.len(),
+            row: 0,
+            first: 0,
+        };
+        let column = AxisColumn {
+            column: 0,
+            axis: String::new(),
+        };
+        self.show(&block, &[column], &mut Keep(&mut number)).ok()?;
+        number
     }
 
     fn failure(&self, row: Option<u64>, error: &std::io::Error) -> Failure {
@@ -179,34 +186,37 @@ impl Table for Npy {
         let mut reader = source::open(&self.path, progress)?;
         read_header(&self.path, &mut reader)?;
         let width = self.columns.looks.len();
-        // One read takes a row, or one element of a column in the other memory order.
-        let size = self.header.size;
+        // A run is a row, or one element of a column in the other memory order.
         let (columns, runs) = if self.header.fortran_order {
             (1, self.rows * width as u64)
         } else {
             (width, self.rows)
         };
-        let mut bytes = vec![0; columns * size];
-        for run in 0..runs {
+        let run_bytes = columns * self.header.size;
+        let mut bytes = vec![0; (BLOCK / run_bytes).max(1) * run_bytes];
+        let mut run = 0;
+        while run < runs {
             let (row, first) = if self.header.fortran_order {
                 (run % self.rows, (run / self.rows) as usize)
             } else {
                 (run, 0)
             };
-            reader
-                .read_exact(&mut bytes)
-                .map_err(|error| self.failure(Some(row), &error))?;
-            let place = || Place::row(&self.path, row + 1);
-            for (i, axis) in axes.iter().enumerate() {
-                let at = axis.column.checked_sub(first);
-                let Some(element) = at.and_then(|at| bytes.chunks_exact(size).nth(at)) else {
-                    continue;
-                };
-                match visit_element(&self.header, element, i, visitor) {
-                    Ok(()) => {}
-                    Err(Stop::NotCounts) => return Ok(Ended::NotCounts),
-                    Err(stop) => return Err(stop.failure(axis, place())),
-                }
+            // A block ends with its column.
+            let wanted = (self.rows - row).min((bytes.len() / run_bytes) as u64) as usize;
+            let (filled, ended) = fill(&mut reader, &mut bytes[..wanted * run_bytes]);
+            let whole = filled / run_bytes;
+            let block = Block {
+                bytes: &bytes[..whole * run_bytes],
+                run_bytes,
+                row,
+                first,
+            };
+            if let Some(ended) = self.show(&block, axes, visitor)? {
+                return Ok(ended);
+            }
+            run += whole as u64;
+            if let Some(error) = ended {
+                return Err(self.failure(Some(row + whole as u64), &error));
             }
         }
         match reader.read(&mut [0]) {
@@ -259,29 +269,98 @@ fn read_header(path: &Path, reader: &mut impl Read) -> Result<Header, Failure> {
     }
 }
 
-/// Shows one element of one to eight bytes to a visitor.
-#[inline]
-fn visit_element<V: Visitor>(
-    header: &Header,
-    element: &[u8],
-    axis: usize,
-    visitor: &mut V,
-) -> Result<(), Stop> {
-    // The element is stored at the least significant end of eight bytes, most significant byte
-    // first.
-    let mut bytes = [0; 8];
-    let end = &mut bytes[8 - element.len()..];
-    end.copy_from_slice(element);
-    if !header.big_endian {
-        end.reverse();
+/// The size of the blocks that are read at once, in bytes. Chosen by hand.
+const BLOCK: usize = 1 << 16;
+
+/// Some runs that follow each other.
+struct Block<'a> {
+    bytes: &'a [u8],
+    run_bytes: usize,
+    /// The row of the first run.
+    row: u64,
+    /// The column of the first element of a run.
+    first: usize,
+}
+
+/// Fills a buffer as far as the reader has bytes. Returns the number of bytes, and why it is not the whole buffer.
+fn fill(reader: &mut impl Read, buffer: &mut [u8]) -> (usize, Option<std::io::Error>) {
+    let mut filled = 0;
+    while filled < buffer.len() {
+        match reader.read(&mut buffer[filled..]) {
+            Ok(0) => return (filled, Some(ErrorKind::UnexpectedEof.into())),
+            Ok(read) => filled += read,
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return (filled, Some(error)),
+        }
     }
-    let bits = u64::from_be_bytes(bytes);
-    let unused = 64 - 8 * element.len() as u32;
-    match (header.kind, element.len()) {
-        (Kind::Signed, _) => visitor.visit(axis, (bits << unused) as i64 >> unused),
-        (Kind::Unsigned, _) => visitor.visit(axis, bits),
-        (Kind::Float, 4) => visitor.visit(axis, f64::from(f32::from_bits(bits as u32))),
-        (Kind::Float, _) => visitor.visit(axis, f64::from_bits(bits)),
+    (filled, None)
+}
+
+impl Npy {
+    /// Shows the elements of a block to a visitor, row by row. Returns how the pass ended, if it did.
+    fn show<V: Visitor>(
+        &self,
+        block: &Block,
+        axes: &[AxisColumn],
+        visitor: &mut V,
+    ) -> Result<Option<Ended>, Failure> {
+        let Header {
+            kind,
+            size,
+            big_endian,
+            ..
+        } = self.header;
+        // The type is decided once for all elements, which leaves a short loop for each of them.
+        macro_rules! elements {
+            ($size:literal, $convert:expr) => {
+                self.show_elements::<$size, _, _>(block, axes, visitor, |mut bytes: [u8; $size]| {
+                    if big_endian {
+                        bytes.reverse();
+                    }
+                    $convert(bytes)
+                })
+            };
+        }
+        match (kind, size) {
+            (Kind::Signed, 1) => elements!(1, |b| i64::from(i8::from_le_bytes(b))),
+            (Kind::Signed, 2) => elements!(2, |b| i64::from(i16::from_le_bytes(b))),
+            (Kind::Signed, 4) => elements!(4, |b| i64::from(i32::from_le_bytes(b))),
+            (Kind::Signed, _) => elements!(8, i64::from_le_bytes),
+            (Kind::Unsigned, 1) => elements!(1, |b| u64::from(u8::from_le_bytes(b))),
+            (Kind::Unsigned, 2) => elements!(2, |b| u64::from(u16::from_le_bytes(b))),
+            (Kind::Unsigned, 4) => elements!(4, |b| u64::from(u32::from_le_bytes(b))),
+            (Kind::Unsigned, _) => elements!(8, u64::from_le_bytes),
+            (Kind::Float, 4) => elements!(4, |b| f64::from(f32::from_le_bytes(b))),
+            (Kind::Float, _) => elements!(8, f64::from_le_bytes),
+        }
+    }
+
+    fn show_elements<const SIZE: usize, F: Field, V: Visitor>(
+        &self,
+        block: &Block,
+        axes: &[AxisColumn],
+        visitor: &mut V,
+        convert: impl Fn([u8; SIZE]) -> F,
+    ) -> Result<Option<Ended>, Failure> {
+        let columns = block.run_bytes / SIZE;
+        let here = axes.iter().enumerate().filter_map(|(i, axis)| {
+            let at = axis.column.checked_sub(block.first)?;
+            (at < columns).then_some((i, at))
+        });
+        let here: Vec<_> = here.collect();
+        let (elements, _) = block.bytes.as_chunks::<SIZE>();
+        for (run, row) in elements.chunks_exact(columns).zip(block.row..) {
+            for &(i, at) in &here {
+                match visitor.visit(i, convert(run[at])) {
+                    Ok(()) => {}
+                    Err(Stop::NotCounts) => return Ok(Some(Ended::NotCounts)),
+                    Err(stop) => {
+                        return Err(stop.failure(&axes[i], Place::row(&self.path, row + 1)));
+                    }
+                }
+            }
+        }
+        Ok(None)
     }
 }
 

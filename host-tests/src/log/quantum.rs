@@ -146,8 +146,17 @@ impl Quantum {
     /// whole number.
     #[inline]
     pub(super) fn count(&self, relative: f64) -> i32 {
-        (relative / self.step - self.origin).round_ties_even() as i32
+        round(relative / self.step - self.origin) as i32
     }
+}
+
+/// The nearest whole number to one within ±2^51, the even one of two. Where the processor that a program is built for
+/// has no instruction for it, `round_ties_even` is a call.
+#[inline]
+fn round(number: f64) -> f64 {
+    // Next to this number, floats are whole. The sum is rounded to one of them, and the difference is exact.
+    const LARGE: f64 = (3_u64 << 51) as f64;
+    (number + LARGE) - LARGE
 }
 
 #[cfg(test)]
@@ -160,6 +169,19 @@ mod tests {
             .iter()
             .for_each(|&value| range.include(Exact::Float(value)));
         Quantum::of(range).unwrap()
+    }
+
+    #[test]
+    fn numbers_are_rounded_to_the_nearest_even_one() {
+        for halves in -9..9 {
+            for near in [-1e-9, 0.0, 1e-9] {
+                let number = f64::from(halves) / 2.0 + near;
+                assert_eq!(round(number), number.round_ties_even());
+            }
+        }
+        for number in [f64::from(i32::MIN), f64::from(i32::MAX), 2e9 + 0.5] {
+            assert_eq!(round(number), number.round_ties_even());
+        }
     }
 
     #[test]

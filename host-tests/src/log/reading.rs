@@ -17,13 +17,21 @@ use allanite::Accumulator;
 use indicatif::ProgressBar;
 use std::path::Path;
 
+/// What to watch beside the curves of a log.
+#[derive(Clone, Copy)]
+pub(super) struct Watched<'a> {
+    pub(super) covariates: &'a Covariates,
+    /// Whether the kurtosis is needed.
+    pub(super) moments: bool,
+}
+
 /// Reads the first rows of a table, and the axes of the remaining rows if a number of first rows is
 /// given. With covariates, the axes are watched together with them.
 pub(super) fn read_table(
     table: &impl Table,
     path: &Path,
     options: &Options,
-    (first, watch): (Option<u64>, Option<&Covariates>),
+    (first, watch): (Option<u64>, Option<Watched>),
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
     let metadata = table.metadata();
@@ -62,13 +70,14 @@ pub(super) fn read_table(
     }
     let scaling = Scaling::settle(table, path, options, &axis_columns, taken.sensor)?;
     let mut columns = axis_columns.clone();
-    let (covariates, found): (Vec<_>, Vec<_>) = match watch {
+    let tried = watch.map(|watch| watch.covariates);
+    let (covariates, found): (Vec<_>, Vec<_>) = match tried {
         Some(Covariates::Found) => table.columns().temperatures(&axis_columns),
         _ => Vec::new(),
     }
     .into_iter()
     .unzip();
-    let covariates = match watch {
+    let covariates = match tried {
         Some(Covariates::Chosen(choices)) => choices,
         _ => &covariates,
     };
@@ -93,7 +102,10 @@ pub(super) fn read_table(
     let plan = worker::Plan {
         axes: axis_columns.len(),
         first: first.unwrap_or(u64::MAX),
-        watch: watch.map(|_| covariates.clone()),
+        watch: watch.map(|watch| worker::Watch {
+            covariates: covariates.clone(),
+            moments: watch.moments,
+        }),
     };
     let passes = Passes {
         table,
@@ -153,7 +165,7 @@ pub(super) fn read_table(
         if let worker::Sums::Watched(watched, beside) = &sums {
             let evidence = recorded.evidence(path, &axis, &**watched)?;
             axis.evidence = Some(Evidence {
-                course: Some(beside.course.clone()),
+                course: Some(*beside.course.clone()),
                 ..evidence
             });
         }

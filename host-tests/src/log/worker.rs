@@ -1,4 +1,6 @@
-//! Accumulates counts on a thread of its own, while the caller cuts and parses text.
+//! Accumulates counts on threads of their own, while the caller cuts and parses text: one for what is kept of each
+//! axis, and one for spectra and courses. A sum over all samples of an axis stays on one thread, because parts of a
+//! record that are accumulated apart and merged lack the differences across the cuts.
 
 use super::{
     CovariateChoice, OCTAVES, SpectrumSums,
@@ -10,7 +12,7 @@ use std::{
     collections::VecDeque,
     mem::replace,
     panic::resume_unwind,
-    sync::mpsc::{Receiver, SyncSender, channel, sync_channel},
+    sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
     thread::{self, JoinHandle},
 };
 
@@ -22,7 +24,7 @@ pub(super) enum Sums {
     /// The sums of the first rows, and those of the remaining rows.
     InTwo { first: Box<Part>, rest: Box<Part> },
     /// The axis with everything that is kept beside its curve.
-    Watched(Box<dyn WatchedAxis>, Box<Beside>),
+    Watched(Box<dyn WatchedAxis>, Beside),
 }
 
 /// The curve and the spectrum of some rows.
@@ -33,10 +35,28 @@ pub(super) struct Part {
 }
 
 /// What is kept beside an axis of the library.
-#[derive(Clone)]
 pub(super) struct Beside {
-    pub(super) spectrum: SpectrumSums,
-    pub(super) course: Course,
+    pub(super) spectrum: Box<SpectrumSums>,
+    pub(super) course: Box<Course>,
+}
+
+impl Beside {
+    fn new() -> Self {
+        Self {
+            spectrum: Box::new(SpectrumSums::new()),
+            course: Box::new(Course::new()),
+        }
+    }
+
+    fn push(&mut self, counts: &[i32]) {
+        self.spectrum.push_slice(counts);
+        self.course.push_slice(counts);
+    }
+
+    fn gap(&mut self) {
+        self.spectrum.gap();
+        self.course.gap();
+    }
 }
 
 impl Part {
@@ -83,29 +103,32 @@ pub(super) struct Plan {
     /// The number of first rows. Later samples are accumulated separately if only the curve is
     /// kept.
     pub(super) first: u64,
-    /// The covariates, if the evidence beside the curve is kept.
-    pub(super) watch: Option<Vec<CovariateChoice>>,
+    /// What is watched, if the evidence beside the curve is kept.
+    pub(super) watch: Option<Watch>,
+}
+
+/// What is watched beside the curves.
+#[derive(Clone)]
+pub(super) struct Watch {
+    pub(super) covariates: Vec<CovariateChoice>,
+    /// Whether the fourth moments are kept, which tell jumps from Gaussian noise.
+    pub(super) moments: bool,
 }
 
 impl Plan {
     fn covariates(&self) -> &[CovariateChoice] {
-        self.watch.as_deref().unwrap_or_default()
+        let watch = self.watch.as_ref();
+        watch.map_or(&[], |watch| watch.covariates.as_slice())
     }
 
     fn columns(&self) -> usize {
         self.axes + self.covariates().len()
     }
 
-    fn sums(&self) -> Sums {
+    fn kept(&self) -> Kept {
         match &self.watch {
-            Some(covariates) => {
-                let beside = Box::new(Beside {
-                    spectrum: SpectrumSums::new(),
-                    course: Course::new(),
-                });
-                Sums::Watched(watched::axis(covariates.len()), beside)
-            }
-            None => Sums::InTwo {
+            Some(watch) => Kept::Watched(watched::axis(watch.covariates.len(), watch.moments)),
+            None => Kept::InTwo {
                 first: Part::new(),
                 rest: Part::new(),
             },
@@ -113,7 +136,7 @@ impl Plan {
     }
 }
 
-/// A message to the thread.
+/// A message to a thread.
 enum Work {
     /// The counts of a column.
     Batch(usize, Vec<i32>),
@@ -122,15 +145,16 @@ enum Work {
     Gap,
 }
 
-/// Sends the counts of every column to the thread with the accumulators. Accumulating takes about
-/// as long as cutting and parsing text, so each has its own thread.
+/// Sends the counts of every column to the thread with the accumulators, which passes those of watched axes on to the
+/// thread with their spectra and courses. Either takes about as long as cutting and parsing text.
 pub(super) struct Batches {
     /// The batch of each column that is being filled.
     open: Vec<Vec<i32>>,
     full: SyncSender<Work>,
     /// Batches that have been accumulated and can be filled again.
     empty: Receiver<Vec<i32>>,
-    thread: JoinHandle<Totals>,
+    thread: JoinHandle<Worker>,
+    beside: JoinHandle<Vec<Beside>>,
 }
 
 /// What the thread has accumulated.
@@ -149,29 +173,53 @@ impl Batches {
         let columns = plan.columns();
         let (full, incoming) = sync_channel(2 * columns);
         let (outgoing, empty) = channel();
+        let beside = plan.watch.as_ref().map_or(0, |_| plan.axes);
+        let (accumulated, incoming_beside) = sync_channel(2 * columns);
+        let recycled = outgoing.clone();
+        // The receiver of an empty batch is gone once the last batches are on their way.
+        let recycle = |to: &Sender<Vec<i32>>, mut batch: Vec<i32>| {
+            batch.clear();
+            let _ = to.send(batch);
+        };
         let thread = thread::spawn(move || {
             let mut worker = Worker::new(plan);
             for work in incoming {
                 match work {
-                    Work::Batch(column, batch) => worker.take(column, batch, |mut batch| {
-                        batch.clear();
-                        // The receiver is gone once the last batches are on their way.
-                        let _ = outgoing.send(batch);
+                    Work::Batch(column, batch) => worker.take(column, batch, |column, batch| {
+                        if column < beside {
+                            // This fails only if the other thread has panicked, which `finish` passes on.
+                            let _ = accumulated.send(Work::Batch(column, batch));
+                        } else {
+                            recycle(&recycled, batch);
+                        }
                     }),
-                    Work::Gap => worker.gap(),
+                    Work::Gap => {
+                        worker.gap();
+                        let _ = accumulated.send(Work::Gap);
+                    }
                 }
             }
-            Totals {
-                axes: worker.sums,
-                columns: worker.columns,
-                pairs: worker.pairs,
+            worker
+        });
+        let beside = thread::spawn(move || {
+            let mut axes: Vec<_> = (0..beside).map(|_| Beside::new()).collect();
+            for work in incoming_beside {
+                match work {
+                    Work::Batch(axis, batch) => {
+                        axes[axis].push(&batch);
+                        recycle(&outgoing, batch);
+                    }
+                    Work::Gap => axes.iter_mut().for_each(Beside::gap),
+                }
             }
+            axes
         });
         Self {
             open: vec![Vec::with_capacity(BATCH); columns],
             full,
             empty,
             thread,
+            beside,
         }
     }
 
@@ -211,15 +259,36 @@ impl Batches {
     pub(super) fn finish(mut self) -> Totals {
         self.send_all();
         drop(self.full);
-        self.thread
-            .join()
+        let worker = self.thread.join();
+        let worker = worker.unwrap_or_else(|panic| resume_unwind(panic));
+        let beside = self.beside.join();
+        let mut beside = beside
             .unwrap_or_else(|panic| resume_unwind(panic))
+            .into_iter();
+        let axes = worker.axes.into_iter().map(|kept| match kept {
+            Kept::InTwo { first, rest } => Sums::InTwo { first, rest },
+            Kept::Watched(axis) => {
+                // There is one for every watched axis.
+                Sums::Watched(axis, beside.next().unwrap_or_else(Beside::new))
+            }
+        });
+        Totals {
+            axes: axes.collect(),
+            columns: worker.columns,
+            pairs: worker.pairs,
+        }
     }
+}
+
+/// What the first thread keeps of one axis.
+enum Kept {
+    InTwo { first: Box<Part>, rest: Box<Part> },
+    Watched(Box<dyn WatchedAxis>),
 }
 
 struct Worker {
     plan: Plan,
-    sums: Vec<Sums>,
+    axes: Vec<Kept>,
     pairs: Vec<([usize; 2], SharedSums)>,
     derived: Vec<Derived>,
     columns: Vec<Course>,
@@ -231,7 +300,7 @@ struct Worker {
 impl Worker {
     fn new(plan: Plan) -> Self {
         Self {
-            sums: (0..plan.axes).map(|_| plan.sums()).collect(),
+            axes: (0..plan.axes).map(|_| plan.kept()).collect(),
             pairs: covariate::pairs(plan.covariates())
                 .map(|pair| (pair, SharedSums::new()))
                 .collect(),
@@ -242,10 +311,10 @@ impl Worker {
         }
     }
 
-    fn take(&mut self, column: usize, batch: Vec<i32>, mut done: impl FnMut(Vec<i32>)) {
+    fn take(&mut self, column: usize, batch: Vec<i32>, mut done: impl FnMut(usize, Vec<i32>)) {
         if self.derived.is_empty() {
             self.accumulate(column, &batch, &[]);
-            return done(batch);
+            return done(column, batch);
         }
         self.waiting[column].push_back(batch);
         let complete = self.waiting.iter().all(|column| !column.is_empty());
@@ -259,7 +328,7 @@ impl Worker {
             .collect();
         let (axes, covariates) = rows.split_at_mut(self.plan.axes);
         for (course, counts) in self.columns.iter_mut().zip(covariates.iter()) {
-            counts.iter().for_each(|&count| course.push(count, []));
+            course.push_slice(counts);
         }
         for (derived, counts) in self.derived.iter_mut().zip(covariates.iter_mut()) {
             for count in counts {
@@ -274,7 +343,9 @@ impl Worker {
         for (axis, counts) in axes.iter().enumerate() {
             self.accumulate(axis, counts, covariates);
         }
-        rows.into_iter().for_each(done);
+        for (column, counts) in rows.into_iter().enumerate() {
+            done(column, counts);
+        }
     }
 
     fn gap(&mut self) {
@@ -287,40 +358,30 @@ impl Worker {
         for (_, shared) in &mut self.pairs {
             shared.gap();
         }
-        for sums in &mut self.sums {
-            match sums {
-                Sums::InTwo { first, rest } => {
+        for kept in &mut self.axes {
+            match kept {
+                Kept::InTwo { first, rest } => {
                     if first.accumulator.samples() >= self.plan.first {
                         rest.gap();
                     } else {
                         first.gap();
                     }
                 }
-                Sums::Watched(axis, beside) => {
-                    axis.gap();
-                    beside.spectrum.gap();
-                    beside.course.gap();
-                }
+                Kept::Watched(axis) => axis.gap(),
             }
         }
     }
 
     fn accumulate(&mut self, axis: usize, counts: &[i32], covariates: &[Vec<i32>]) {
-        match &mut self.sums[axis] {
-            Sums::InTwo { first, rest } => {
+        match &mut self.axes[axis] {
+            Kept::InTwo { first, rest } => {
                 let room = self.plan.first - first.accumulator.samples();
                 let room = usize::try_from(room).unwrap_or(usize::MAX);
                 let (of_start, of_rest) = counts.split_at(room.min(counts.len()));
                 first.push(of_start);
                 rest.push(of_rest);
             }
-            Sums::Watched(axis, beside) => {
-                axis.push(counts, covariates);
-                beside.spectrum.push_slice(counts);
-                for &count in counts {
-                    beside.course.push(count, []);
-                }
-            }
+            Kept::Watched(axis) => axis.push(counts, covariates),
         }
     }
 }

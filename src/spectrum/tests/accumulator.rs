@@ -4,6 +4,7 @@ use super::{
     counts, densities,
     std::{self, vec::Vec},
 };
+use crate::test_random::Random;
 use crate::{
     Scale,
     real::double,
@@ -105,6 +106,35 @@ fn merged_records_are_as_one_with_a_gap() {
     let stretches = [first, &second[..4_964]];
     assert_is_direct(&merged, &stretches);
     assert_eq!(merged.lost(), 0);
+}
+
+#[test]
+fn slices_lead_to_the_state_of_single_counts() {
+    let mut random = Random::new(91);
+    let [mut one_by_one, mut at_once] = [const { SpectrumAccumulator::<64, 3>::new() }; 2];
+    for _ in 0..600 {
+        if random.below(20) == 0 {
+            one_by_one.gap();
+            at_once.gap();
+        }
+        let length = random.below(150);
+        let shift = if random.below(8) == 0 { 0 } else { 20 };
+        for _ in 0..length.min(3) {
+            // What waits is worked on before a slice.
+            let count = random.bits() as i32 >> shift;
+            one_by_one.push(count);
+            at_once.push(count);
+        }
+        while one_by_one.advance() {}
+        let counts: std::vec::Vec<i32> =
+            (0..length).map(|_| random.bits() as i32 >> shift).collect();
+        for &count in &counts {
+            one_by_one.push(count);
+            while one_by_one.advance() {}
+        }
+        at_once.push_slice(&counts);
+        assert_eq!(one_by_one, at_once);
+    }
 }
 
 #[test]

@@ -61,7 +61,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let model = arguments.filter.model()?;
     let work = |path: &Path| {
         let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
-        let axes = record::read_with_evidence(path, about_log, covariates)?.into_iter();
+        let axes = record::read_for_fit(path, about_log, covariates)?.into_iter();
         let method = arguments.method;
         axes.map(|(axis, evidence)| Fitted::with_evidence(path, axis, &model, method, evidence))
             .collect::<Result<Vec<_>, _>>()

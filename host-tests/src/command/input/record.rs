@@ -105,6 +105,29 @@ pub(crate) fn read_with_evidence(
     arguments: &LogArguments,
     covariates: &CovariateArguments,
 ) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
+    read_beside(path, arguments, covariates, log::read_with_evidence)
+}
+
+/// As [`read_with_evidence`], without the kurtosis of a log, which takes time and only a diagnosis needs.
+pub(crate) fn read_for_fit(
+    path: &Path,
+    arguments: &LogArguments,
+    covariates: &CovariateArguments,
+) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
+    read_beside(path, arguments, covariates, log::read_for_fit)
+}
+
+fn read_beside(
+    path: &Path,
+    arguments: &LogArguments,
+    covariates: &CovariateArguments,
+    read_log: fn(
+        &Path,
+        &log::Options,
+        &Covariates,
+        &indicatif::ProgressBar,
+    ) -> Result<Log, Failure>,
+) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
     if is_curve(path) {
         if !covariates.covariates.is_empty() {
             return Err(Place::file(path).failure(
@@ -117,7 +140,7 @@ pub(crate) fn read_with_evidence(
     }
     let bar = progress::reading(path);
     let covariates = covariates.tried();
-    let log = log::read_with_evidence(path, &arguments.options(), &covariates, &bar);
+    let log = read_log(path, &arguments.options(), &covariates, &bar);
     bar.finish_and_clear();
     let log = log?;
     note(path, &log);

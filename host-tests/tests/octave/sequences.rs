@@ -8,6 +8,25 @@ use super::{
 use allanite::Accumulator;
 use proptest::{collection::vec, prelude::*};
 
+/// Squares in four samples that swing by the whole range make the largest second differences for that range. 2^11 is
+/// the last range that slices square in 16 bits.
+#[test]
+fn swings_of_any_range_give_the_same_sums_in_slices() {
+    for half_period in [1, 2, 4, 8, 16] {
+        for range in [1, 2046, 2047, 2048, 2049, 1 << 20] {
+            for offset in [0, -5, i32::MAX - (1 << 20)] {
+                let high = |n: i32| n / half_period % 2 == 1;
+                let count = |n| offset + if high(n) { range } else { 0 };
+                let counts: Vec<i32> = (0..3000).map(count).collect();
+                let (mut singly, mut sliced) = (Accumulator::<9>::new(), Accumulator::<9>::new());
+                counts.iter().for_each(|&count| singly.push(count));
+                sliced.push_slice(&counts);
+                assert_eq!(singly, sliced, "{half_period} {range} {offset}");
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(seeded(256))]
 

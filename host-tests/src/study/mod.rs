@@ -13,6 +13,7 @@ pub mod lines;
 pub mod paper;
 pub mod precision;
 pub mod self_test;
+pub mod speed;
 pub mod theory;
 pub mod thermal;
 pub mod whittle;

@@ -32,7 +32,8 @@ enum Task {
     /// Set up, then check and test everything.
     Test,
     /// Run a study behind the README's figures: theory, coefficients, efficiency, calibration, paper,
-    /// hidden-effect, confusion, detection, lines, clean, course, thermal, self-test or precision.
+    /// hidden-effect, confusion, detection, lines, clean, course, thermal, self-test,
+    /// speed or precision.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]

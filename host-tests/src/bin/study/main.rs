@@ -13,6 +13,7 @@ mod origin;
 mod paper;
 mod precision;
 mod self_test;
+mod speed;
 mod theory;
 mod thermal;
 
@@ -170,6 +171,15 @@ enum Study {
         #[arg(long)]
         json: bool,
     },
+    /// Time how fast logs of every type of element are read, and how fast an accumulator takes slices
+    Speed {
+        /// Number of samples
+        #[arg(long, default_value_t = 10_000_000, value_parser = clap::value_parser!(u32).range(1000..))]
+        samples: u32,
+        /// Print JSON instead of a table
+        #[arg(long)]
+        json: bool,
+    },
     /// Compare single with double precision on the same records
     Precision {
         /// Number of records per table
@@ -244,6 +254,7 @@ fn main() -> Result<()> {
             preset,
             json,
         } => efficiency::print(records, preset, json)?,
+        Study::Speed { samples, json } => speed::print(samples as usize, json)?,
         Study::Precision { records } => precision::print(records)?,
         Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),
     }

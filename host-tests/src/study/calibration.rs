@@ -1,12 +1,17 @@
 //! Studies whether p-values are uniform and intervals contain the truth, with and without a hidden effect.
 
 use super::{
-    RATE_HZ,
-    hidden_effect::{Outcome, diagnose_with},
+    OCTAVES, RATE_HZ,
+    hidden_effect::{Outcome, added, diagnose_with, steps},
+    quantum,
     theory::squares,
 };
-use crate::simulate::{Coefficients, Hidden, Preset};
-use allanite::{diagnosis::Options, effect::MAX_PARAMETERS};
+use crate::{
+    log::SpectrumSums,
+    simulate::{Coefficients, Hidden, Preset, Random, Simulator},
+};
+use allanite::{Axis, Model, Scale, diagnosis::Options, effect::MAX_PARAMETERS, fit::Fit};
+use rand::{RngExt as _, SeedableRng as _};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -29,6 +34,72 @@ pub const CASES: [Option<(&str, [f64; MAX_PARAMETERS], f64)>; 8] = [
     Some(("notch", [30.0, 2.0], 1.0)),
 ];
 
+/// The cases: [`CASES`] in whole records, and nothing hidden in records with gaps.
+pub const ALL: usize = CASES.len() + 1;
+
+/// The lengths of the stretches between gaps, and of the gaps, in samples. Each is drawn uniformly.
+const STRETCHES: std::ops::Range<usize> = 50..4000;
+const GAPS: std::ops::Range<usize> = 1..200;
+
+/// Diagnoses a record in which nothing is hidden, with gaps at random.
+fn with_gaps(base: Coefficients, seed: u64, options: Options) -> Judged {
+    let mut simulator = Simulator::new(base, RATE_HZ, seed);
+    let mut random = Random::seed_from_u64(!seed);
+    let mut gyro = Axis::<OCTAVES, 0, ()>::new();
+    let mut sums = SpectrumSums::new();
+    let quantum = quantum(base, RATE_HZ);
+    let mut left = SAMPLES;
+    while left > 0 {
+        let stretch = random.random_range(STRETCHES).min(left);
+        left -= stretch;
+        for rate in simulator.by_ref().take(stretch) {
+            let count = (rate / quantum).round() as i32;
+            gyro.push(count);
+            sums.push_slice(&[count]);
+        }
+        for _ in 0..random.random_range(GAPS) {
+            simulator.next();
+        }
+        gyro.gap();
+        sums.gap();
+    }
+    let scale = Scale::new(quantum, RATE_HZ).expect("positive");
+    let [accumulator] = gyro.accumulators();
+    let (steps, _) = steps(
+        &gyro,
+        accumulator.curve(scale),
+        sums.spectrum(scale),
+        options,
+    );
+    let last = &steps[steps.len() - 1];
+    Judged {
+        added: added(&steps)
+            .iter()
+            .map(|(term, _)| term.effect.name())
+            .collect(),
+        fit: last.fit.clone(),
+        model: last.model.clone(),
+    }
+}
+
+/// What a diagnosis says about one record.
+struct Judged {
+    added: Vec<&'static str>,
+    fit: Fit,
+    model: Model,
+}
+
+impl From<Outcome> for Judged {
+    fn from(outcome: Outcome) -> Self {
+        let added = outcome.added.iter().map(|(term, _)| term.effect.name());
+        Self {
+            added: added.collect(),
+            fit: outcome.fit,
+            model: outcome.model,
+        }
+    }
+}
+
 /// The results of one case: shares of the records of which the diagnosis names the hidden effect and nothing else.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
@@ -36,6 +107,8 @@ pub struct Row {
     pub preset: String,
     /// The hidden effect; `None` where nothing is hidden.
     pub effect: Option<&'static str>,
+    /// Whether the records have gaps.
+    pub gaps: bool,
     /// Its shape.
     pub shape: [f64; MAX_PARAMETERS],
     /// The number of records in which it is named alone.
@@ -62,24 +135,28 @@ pub fn hidden_case(base: Coefficients, case: usize) -> Option<Hidden> {
     Some(hidden)
 }
 
-/// Diagnoses records of a gyro that hides one of [`CASES`].
+/// Diagnoses records of a gyro of the case of this number, below [`ALL`].
 pub fn study(preset: Preset, case: usize, records: u64, options: Options) -> Row {
     let base = preset.coefficients();
     let hidden = hidden_case(base, case);
-    let outcomes: Vec<Outcome> = (0..records)
+    let gaps = case == CASES.len();
+    let outcomes: Vec<Judged> = (0..records)
         .into_par_iter()
-        .map(|seed| diagnose_with(base, hidden.as_slice(), SAMPLES, seed, options))
+        .map(|seed| match gaps {
+            true => with_gaps(base, seed, options),
+            false => diagnose_with(base, hidden.as_slice(), SAMPLES, seed, options).into(),
+        })
         .filter(|outcome| {
-            let named = outcome.added.iter().map(|(term, _)| term.effect.name());
-            named.eq(hidden.iter().map(|one| one.effect.name()))
+            let hidden = hidden.iter().map(|one| one.effect.name());
+            outcome.added.iter().copied().eq(hidden)
         })
         .collect();
-    let share = |is: &dyn Fn(&Outcome) -> Option<bool>| {
+    let share = |is: &dyn Fn(&Judged) -> Option<bool>| {
         let known: Vec<bool> = outcomes.iter().filter_map(is).collect();
         known.iter().filter(|&&is| is).count() as f64 / known.len() as f64
     };
     // The coefficient of an effect in a fit contains the truth.
-    let contains = |outcome: &Outcome, name: &str, truth: f64| {
+    let contains = |outcome: &Judged, name: &str, truth: f64| {
         let mut terms = outcome.model.terms().iter();
         let at = terms.position(|term| term.effect.name() == name)?;
         let found = outcome.fit.coefficients.get(at)?;
@@ -126,6 +203,7 @@ pub fn study(preset: Preset, case: usize, records: u64, options: Options) -> Row
     Row {
         preset: format!("{preset:?}").to_lowercase(),
         effect: hidden.map(|hidden| hidden.effect.name()),
+        gaps,
         shape: hidden.map_or([0.0; MAX_PARAMETERS], |hidden| hidden.parameters),
         records: outcomes.len(),
         p_below: [0.05, 0.01].map(|limit| share(&|outcome| Some(outcome.fit.p_value < limit))),

@@ -11,6 +11,7 @@ use allanite::{
     diagnosis::{Addition, Diagnosis, Evidence, Step, Verdict},
     effect::{BiasInstability, CATALOGUE, EXPLAINED, Effect, IEEE_952, MAX_PARAMETERS},
     fit::{Fit, Options, fit},
+    spectrum::Spectrum,
 };
 use rayon::prelude::*;
 
@@ -164,17 +165,7 @@ pub fn diagnose_with(
         other_sums.push_slice(counts);
     });
     let [spectrum, other_spectrum] = [sums, other_sums].map(|sums| super::spectrum(&sums, base));
-    let scale = Scale::new(1.0, RATE_HZ).expect("positive");
-    let kurtosis = gyro.evidence(0, scale, []).expect("one axis").kurtosis;
-    let mut steps: Vec<Step<OCTAVES, BINS>> = Vec::new();
-    let evidence = Evidence {
-        kurtosis: kurtosis.as_ref(),
-        ..Evidence::NONE
-    };
-    let model = Model::ieee_952();
-    let verdict = Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options)
-        .run(|step| steps.push(step.clone()))
-        .ok();
+    let (steps, verdict) = steps(&gyro, curve, spectrum, options);
     let (first, last) = (&steps[0], &steps[steps.len() - 1]);
     let on_other = |step: &Step<OCTAVES, BINS>| {
         let tolerance = Options::default().tolerance;
@@ -197,8 +188,29 @@ pub fn diagnose_with(
     }
 }
 
+/// The steps of a diagnosis of a curve, a spectrum and the kurtosis of the same record, and its verdict.
+pub(super) fn steps(
+    gyro: &Axis<OCTAVES, 0, ()>,
+    curve: Curve<OCTAVES>,
+    spectrum: Spectrum<BINS>,
+    options: allanite::diagnosis::Options,
+) -> (Vec<Step<OCTAVES, BINS>>, Option<Verdict>) {
+    let scale = Scale::new(1.0, RATE_HZ).expect("positive");
+    let kurtosis = gyro.evidence(0, scale, []).expect("one axis").kurtosis;
+    let mut steps = Vec::new();
+    let evidence = Evidence {
+        kurtosis: kurtosis.as_ref(),
+        ..Evidence::NONE
+    };
+    let model = Model::ieee_952();
+    let verdict = Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options)
+        .run(|step| steps.push(step.clone()))
+        .ok();
+    (steps, verdict)
+}
+
 /// The effects that the steps added and kept.
-fn added(steps: &[Step<OCTAVES, BINS>]) -> Vec<(Term, Vec<&'static str>)> {
+pub(super) fn added(steps: &[Step<OCTAVES, BINS>]) -> Vec<(Term, Vec<&'static str>)> {
     let mut added = Vec::new();
     for step in steps {
         for dropped in &step.dropped {

@@ -176,13 +176,12 @@ fn write(path: &Path, counts: &[i32], kind: Kind, size: usize, step: f64) -> Res
     };
     header.write(&mut file)?;
     for &count in counts {
-        match (kind, size) {
-            (Kind::Float, 4) => {
-                file.write_all(&((f64::from(count) * step) as f32).to_le_bytes())?
-            }
-            (Kind::Float, _) => file.write_all(&(f64::from(count) * step).to_le_bytes())?,
-            _ => file.write_all(&count.to_le_bytes()[..size])?,
-        }
+        let bytes = match (kind, size) {
+            (Kind::Float, 4) => ((f64::from(count) * step) as f32).to_le_bytes().to_vec(),
+            (Kind::Float, _) => (f64::from(count) * step).to_le_bytes().to_vec(),
+            _ => count.to_le_bytes()[..size].to_vec(),
+        };
+        file.write_all(&bytes)?;
     }
     file.flush()?;
     Ok(())

@@ -4,7 +4,7 @@ use crate::origin::{Origin, print_json};
 use allanite::diagnosis::Options;
 use host_tests::{
     simulate::Preset,
-    study::calibration::{CASES, SAMPLES, TERMS, study},
+    study::calibration::{ALL, SAMPLES, TERMS, study},
 };
 use std::time::Instant;
 
@@ -19,13 +19,15 @@ pub(crate) fn print(
     options.tolerance = tolerance.unwrap_or(options.tolerance);
     let presets = Preset::TYPICAL.into_iter();
     let presets = presets.filter(|&preset| only.is_none_or(|only| only == preset));
-    let rows = presets.flat_map(|preset| (0..CASES.len()).map(move |case| (preset, case)));
+    let rows = presets.flat_map(|preset| (0..ALL).map(move |case| (preset, case)));
     let rows = rows.map(|(preset, case)| study(preset, case, records, options));
     if json {
         let rows: Vec<_> = rows.collect();
         return print_json(Origin::new("calibration", [0, records - 1], begun), &rows);
     }
-    println!("{records} records of {SAMPLES} samples at 100 Hz; shares in % of those named right");
+    println!(
+        "{records} records of {SAMPLES} samples at 100 Hz; shares in % of those named right, with standard errors √(p (1 − p)/n)"
+    );
     println!(
         "{:<8} {:<18} {:>10} {:>7} | {:>6} {:>6} {:>6} | {} | {:>7} {:>7} {:>7}",
         "preset",
@@ -52,7 +54,8 @@ pub(crate) fn print(
         println!(
             "{:<8} {:<18} {:>10} {:>7} | {:>6} {:>6} {:>6.3} | {} | {}",
             row.preset,
-            row.effect.unwrap_or("nothing"),
+            row.effect
+                .unwrap_or(if row.gaps { "nothing, gaps" } else { "nothing" }),
             shape,
             row.records,
             percent(row.p_below[0]),

@@ -8,6 +8,7 @@ mod course;
 mod detection;
 mod hidden_effect;
 mod lines;
+mod long;
 mod paper;
 mod precision;
 mod self_test;
@@ -17,8 +18,12 @@ mod thermal;
 use allanite::fit::Options;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use host_tests::{simulate::Preset, study::detection::Judged};
-use std::path::PathBuf;
+use host_tests::{
+    command::CommandLine,
+    simulate::Preset,
+    study::{detection::Judged, long::Program},
+};
+use std::{ffi::OsString, path::PathBuf};
 
 /// The symbols of the five terms, in the order of the model.
 const SYMBOLS: [&str; 5] = ["Q", "N", "B", "K", "R"];
@@ -89,6 +94,15 @@ enum Study {
         /// Take limits from octaves alone, and diagnose octaves alone
         #[arg(long)]
         octaves: bool,
+    },
+    /// Accumulate a record of known sums, measure time and memory against its length, and merge what separate
+    /// processes measured
+    Long(#[command(flatten)] long::Arguments),
+    /// Run a command of `allanite` in this process, for the studies that need several processes
+    #[command(hide = true)]
+    Allanite {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
     },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
@@ -201,6 +215,11 @@ fn main() -> Result<()> {
             };
             detection::print(records, effect.as_deref(), judged, factor);
         }
+        Study::Long(arguments) => long::print(&arguments, &allanite()?)?,
+        Study::Allanite { arguments } => {
+            let name = [OsString::from("allanite")];
+            CommandLine::try_parse_from(name.into_iter().chain(arguments))?.run()?;
+        }
         Study::Lines { records } => lines::print(records),
         Study::Clean {
             records,
@@ -229,4 +248,12 @@ fn main() -> Result<()> {
         Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),
     }
     Ok(())
+}
+
+/// This program, which runs the commands of `allanite` as well.
+fn allanite() -> Result<Program> {
+    Ok(Program {
+        file: std::env::current_exe()?,
+        first: vec!["allanite".into()],
+    })
 }

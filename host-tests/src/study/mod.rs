@@ -11,6 +11,7 @@ pub mod hidden_effect;
 pub mod lines;
 pub mod long;
 pub mod paper;
+pub mod peers;
 pub mod precision;
 pub mod resources;
 pub mod self_test;

@@ -84,7 +84,7 @@ pub(crate) fn print(arguments: &Arguments, program: &Program) -> Result<()> {
     ensure!(exact.all(|exact| exact == all), "a sum is not exact");
     ensure!(figures.merged.exact == all, "a merged sum is not exact");
     let same = figures.distributed.as_ref();
-    let same = same.is_none_or(|all| all.same_bytes == all.orders.len());
+    let same = same.is_none_or(|all| all.same_bytes == all.orders.len() && all.same_sums_in_groups);
     ensure!(same, "the order of merging changes the curve");
     Ok(())
 }
@@ -142,6 +142,15 @@ fn tables(figures: &Figures) {
         all.same_bytes,
         all.orders.len(),
         all.bytes
+    );
+    println!(
+        "halves merged first: {} sums, densities differ by at most {:.1e}",
+        if all.same_sums_in_groups {
+            "the same"
+        } else {
+            "other"
+        },
+        all.density_in_groups
     );
     println!(
         "{:>12} {:>14} {:>14} {:>8}",

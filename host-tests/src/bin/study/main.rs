@@ -9,7 +9,9 @@ mod detection;
 mod hidden_effect;
 mod lines;
 mod long;
+mod own;
 mod paper;
+mod peers;
 mod precision;
 mod self_test;
 mod theory;
@@ -98,6 +100,17 @@ enum Study {
     /// Accumulate a record of known sums, measure time and memory against its length, and merge what separate
     /// processes measured
     Long(#[command(flatten)] long::Arguments),
+    /// Compare the library with other programs on the same records: deviations, CPU time, memory, errors of
+    /// coefficients, and what is said of hidden effects. Needs Python and a connection to the package indexes
+    Peers(#[command(flatten)] peers::Arguments),
+    /// Measure a record with the library, and print what that took, for the study of peers
+    #[command(hide = true)]
+    Own {
+        /// What to do
+        task: own::Task,
+        /// Record of 32-bit counts, .npy
+        file: PathBuf,
+    },
     /// Run a command of `allanite` in this process, for the studies that need several processes
     #[command(hide = true)]
     Allanite {
@@ -216,6 +229,8 @@ fn main() -> Result<()> {
             detection::print(records, effect.as_deref(), judged, factor);
         }
         Study::Long(arguments) => long::print(&arguments, &allanite()?)?,
+        Study::Peers(arguments) => peers::print(&arguments, &allanite()?)?,
+        Study::Own { task, file } => own::print(task, &file)?,
         Study::Allanite { arguments } => {
             let name = [OsString::from("allanite")];
             CommandLine::try_parse_from(name.into_iter().chain(arguments))?.run()?;
@@ -250,7 +265,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// This program, which runs the commands of `allanite` as well.
+/// This program, which runs the commands of `allanite` and tasks of the studies as well.
 fn allanite() -> Result<Program> {
     Ok(Program {
         file: std::env::current_exe()?,

@@ -1,6 +1,10 @@
 //! A long record that is cut into files, which separate processes simulate and measure, and `allanite merge` joins.
 
-use crate::{curve_file::CurveFile, log::OCTAVES, simulate::Random};
+use crate::{
+    curve_file::{AxisCurve, CurveFile},
+    log::OCTAVES,
+    simulate::Random,
+};
 use anyhow::{Context as _, Result, ensure};
 use rand::{SeedableRng, seq::SliceRandom};
 use rayon::prelude::*;
@@ -66,6 +70,10 @@ pub struct Distributed {
     pub same_bytes: usize,
     /// The size of the merged file, in bytes.
     pub bytes: usize,
+    /// Whether the sums are the same if halves are merged first.
+    pub same_sums_in_groups: bool,
+    /// The largest relative difference of a density then. Densities are floats, whose sum depends on the order.
+    pub density_in_groups: f64,
     /// Octaves with a difference in a record without cuts.
     pub octaves: Vec<Cost>,
 }
@@ -81,6 +89,16 @@ pub fn distributed(program: &Program, files: u64, file_s: u64) -> Result<Distrib
     let mut shuffled = names.clone();
     shuffled.shuffle(&mut Random::seed_from_u64(files));
     let reversed: Vec<String> = names.iter().rev().cloned().collect();
+    let orders = [
+        ("in order", &names),
+        ("reversed", &reversed),
+        ("shuffled", &shuffled),
+    ];
+    let mut all = Vec::new();
+    for (_, parts) in orders {
+        all.push(merge(program, folder, parts, "all.json")?);
+    }
+    let same_bytes = all.iter().filter(|&one| *one == all[0]).count();
     // The parts of a half are merged first, and then the halves.
     let (left, right) = shuffled.split_at(shuffled.len() / 2);
     let mut halves = Vec::new();
@@ -90,17 +108,9 @@ pub fn distributed(program: &Program, files: u64, file_s: u64) -> Result<Distrib
             halves.push(name.to_owned());
         }
     }
-    let orders = [
-        ("in order", &names),
-        ("reversed", &reversed),
-        ("shuffled", &shuffled),
-        ("merged halves of the shuffled", &halves),
-    ];
-    let mut all = Vec::new();
-    for (_, parts) in orders {
-        all.push(merge(program, folder, parts, "all.json")?);
-    }
-    let same_bytes = all.iter().filter(|&one| *one == all[0]).count();
+    let halves = merge(program, folder, &halves, "halves.json")?;
+    let [one, grouped] = [&all[0], &halves].map(|bytes| axis(bytes));
+    let (one, grouped) = (one?, grouped?);
     let samples = files * file_s * RATE_HZ;
     Ok(Distributed {
         files,
@@ -110,7 +120,9 @@ pub fn distributed(program: &Program, files: u64, file_s: u64) -> Result<Distrib
         orders: orders.map(|(name, _)| name).to_vec(),
         same_bytes,
         bytes: all[0].len(),
-        octaves: costs(&all[0], samples)?,
+        same_sums_in_groups: one.octaves == grouped.octaves && one.short == grouped.short,
+        density_in_groups: density_difference(&one, &grouped),
+        octaves: costs(&one, samples),
     })
 }
 
@@ -152,10 +164,26 @@ fn merge(program: &Program, folder: &Path, curves: &[String], name: &str) -> Res
     Ok(fs::read(folder.join(name))?)
 }
 
-/// The differences of the merged curve beside those of a record without cuts.
-fn costs(curve: &[u8], samples: u64) -> Result<Vec<Cost>> {
+/// The only axis of a curve file.
+fn axis(curve: &[u8]) -> Result<AxisCurve> {
     let curve: CurveFile = serde_json::from_slice(curve)?;
-    let axis = curve.axes.first().context("a curve file has no axis")?;
+    let axis = curve.axes.into_iter().next();
+    axis.context("a curve file has no axis")
+}
+
+/// The largest relative difference between the densities of two curves.
+fn density_difference(one: &AxisCurve, other: &AxisCurve) -> f64 {
+    let densities = |axis: &AxisCurve| -> Vec<f64> {
+        let levels = axis.spectrum.iter().flat_map(|spectrum| &spectrum.levels);
+        levels.flat_map(|level| level.density.clone()).collect()
+    };
+    let pairs = densities(one).into_iter().zip(densities(other));
+    let differences = pairs.map(|(one, other)| (one / other - 1.0).abs());
+    differences.fold(0.0, f64::max)
+}
+
+/// The differences of the merged curve beside those of a record without cuts.
+fn costs(axis: &AxisCurve, samples: u64) -> Vec<Cost> {
     let measured = axis
         .octaves
         .iter()
@@ -174,5 +202,5 @@ fn costs(curve: &[u8], samples: u64) -> Result<Vec<Cost>> {
             whole: (samples / step + 1).saturating_sub(2 * u64::from(m) / step),
         }
     });
-    Ok(costs.filter(|cost| cost.whole > 0).collect())
+    costs.filter(|cost| cost.whole > 0).collect()
 }

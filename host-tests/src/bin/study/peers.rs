@@ -187,9 +187,9 @@ fn print_cost(figures: &Figures) {
         .filter(|row| row.program.starts_with("allanite"))
     {
         println!(
-            "allantools takes {:.0} times the CPU time and {:.0} times the memory of {}",
+            "allantools takes {:.1} times the CPU time and at least {:.0} times the memory of {}",
             peer.channel_s() / ours.channel_s(),
-            peer.channel_bytes() / ours.channel_bytes(),
+            ours.times_the_memory(peer),
             ours.program
         );
     }
@@ -212,6 +212,10 @@ fn print_gyro(gyro: &Gyro) {
         for row in &method.errors {
             let percent =
                 |[value, error]: [f64; 2]| format!("{:.2} ± {:.2}", 100.0 * value, 100.0 * error);
+            let ratio = |[value, error]: [f64; 2]| match value.is_nan() {
+                true => String::new(),
+                false => format!("{value:.2} ± {error:.2}"),
+            };
             println!(
                 "{:<24} {:>10} {:>7} {:>18} {:>18} {:>16}",
                 method.program,
@@ -219,7 +223,7 @@ fn print_gyro(gyro: &Gyro) {
                 row.records,
                 percent(row.bias),
                 percent(row.rms),
-                format!("{:.2} ± {:.2}", row.ratio[0], row.ratio[1])
+                ratio(row.ratio)
             );
         }
         for (note, records) in &method.notes {

@@ -35,8 +35,9 @@ pub struct Cost {
     pub taus: usize,
     /// CPU time in s, all channels: the median of the runs, the least and the largest.
     pub cpu_s: [f64; 3],
-    /// The largest resident memory, all channels, in bytes: the median of the runs.
-    pub bytes: f64,
+    /// The largest resident memory, all channels, in bytes: the median of the runs, the least and the largest. It may
+    /// be negative where the system's part of the memory varies by more than the program takes.
+    pub bytes: [f64; 3],
     /// The CPU time for the short record, in s.
     pub start_s: f64,
     /// The memory for the short record, in bytes.
@@ -51,7 +52,14 @@ impl Cost {
 
     /// The memory of a channel.
     pub fn channel_bytes(&self) -> f64 {
-        self.bytes / f64::from(self.channels)
+        self.bytes[0] / f64::from(self.channels)
+    }
+
+    /// How many times the memory another program takes, at least: by its least, and by the largest of this program,
+    /// which counts for a page of 4 KiB or more.
+    pub fn times_the_memory(&self, other: &Self) -> f64 {
+        let least = other.bytes[1] / f64::from(other.channels);
+        least / self.bytes[2].max(4096.0) * f64::from(self.channels)
     }
 }
 
@@ -116,7 +124,7 @@ fn cost(
         channels,
         taus,
         cpu_s: [cpu[RUNS / 2], cpu[0], cpu[RUNS - 1]].map(|cpu| cpu - start_s),
-        bytes: peak[RUNS / 2] - start_bytes,
+        bytes: [peak[RUNS / 2], peak[0], peak[RUNS - 1]].map(|peak| peak - start_bytes),
         start_s,
         start_bytes,
     })

@@ -28,7 +28,10 @@ fn main() -> Result<()> {
         };
         println!("{found}");
     }
-    println!("{}", json!({ "cpu_s": cpu_s(), "peak_bytes": peak_bytes()? }));
+    println!(
+        "{}",
+        json!({ "cpu_s": cpu_s(), "peak_bytes": peak_bytes()? })
+    );
     Ok(())
 }
 
@@ -51,10 +54,14 @@ fn counts(file: &str) -> Result<impl Iterator<Item = f64>> {
 /// octaves.
 fn decades(file: &str) -> Result<Value> {
     let longest = samples(file)? / 8;
-    let configuration = Allan::builder().style(Style::Decade1248).max_tau(longest as usize);
+    let configuration = Allan::builder()
+        .style(Style::Decade1248)
+        .max_tau(longest as usize);
     let mut allan = configuration.data_type(DataType::Frequency).build_allan();
     counts(file)?.for_each(|count| allan.record(count));
-    let taus = allan.iter().filter_map(|tau| Some(json!([tau.tau(), tau.deviation()?])));
+    let taus = allan
+        .iter()
+        .filter_map(|tau| Some(json!([tau.tau(), tau.deviation()?])));
     Ok(taus.collect())
 }
 
@@ -70,7 +77,9 @@ fn same(file: &str) -> Result<Value> {
             break;
         }
         let tau = m / block;
-        let configuration = Allan::builder().style(Style::SingleTau(tau as u32)).max_tau(tau);
+        let configuration = Allan::builder()
+            .style(Style::SingleTau(tau as u32))
+            .max_tau(tau);
         let mut allan = configuration.data_type(DataType::Phase).build_allan();
         let mut phase = 0.0;
         allan.record(phase);
@@ -93,7 +102,12 @@ fn clusters(file: &str, rate: f64, scale: f64) -> Result<AllanResult> {
         num_clusters: octaves as usize + 1,
         min_pairs: 1,
     };
-    estimated(file, AllanEstimator::with_rate(configuration, rate)?, rate, scale)
+    estimated(
+        file,
+        AllanEstimator::with_rate(configuration, rate)?,
+        rate,
+        scale,
+    )
 }
 
 fn estimated(
@@ -111,7 +125,9 @@ fn estimated(
 
 fn points(result: &AllanResult) -> Value {
     let points = result.points.iter();
-    points.map(|point| json!([point.tau.round() as u64, point.gyro[0]])).collect()
+    points
+        .map(|point| json!([point.tau.round() as u64, point.gyro[0]]))
+        .collect()
 }
 
 /// N and K of the crate with its defaults, and its words where it has none.
@@ -145,5 +161,8 @@ fn peak_bytes() -> Result<f64> {
     let status = fs::read_to_string("/proc/self/status")?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let kib = line.and_then(|line| line.split_whitespace().next());
-    Ok(1024.0 * kib.context("Linux tells the peak of the memory")?.parse::<f64>()?)
+    Ok(1024.0
+        * kib
+            .context("Linux tells the peak of the memory")?
+            .parse::<f64>()?)
 }

@@ -1,10 +1,13 @@
 //! Time and memory of an accumulator against the length of its record, with every sum checked.
 
-use super::{OCTAVES, sequence::Sequence};
+use super::sequence::Sequence;
 use crate::study::resources::{cpu_s, peak_bytes};
 use allanite::Accumulator;
 use serde::Serialize;
 use std::{hint::black_box, ops::Range};
+
+/// The octaves of the accumulator, all that it can have.
+pub const OCTAVES: usize = 30;
 
 /// The shortest record of the table, in octaves of samples.
 const SHORTEST: u32 = 20;

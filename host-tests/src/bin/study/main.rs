@@ -9,8 +9,11 @@ mod detection;
 mod efficiency;
 mod hidden_effect;
 mod lines;
+mod long;
 mod origin;
+mod own;
 mod paper;
+mod peers;
 mod precision;
 mod self_test;
 mod speed;
@@ -20,8 +23,12 @@ mod thermal;
 use allanite::fit::Options;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use host_tests::{simulate::Preset, study::detection::Judged};
-use std::path::PathBuf;
+use host_tests::{
+    command::CommandLine,
+    simulate::Preset,
+    study::{detection::Judged, long::Program},
+};
+use std::{ffi::OsString, path::PathBuf};
 
 /// The symbols of the five terms, in the order of the model.
 const SYMBOLS: [&str; 5] = ["Q", "N", "B", "K", "R"];
@@ -92,6 +99,26 @@ enum Study {
         /// Take limits from octaves alone, and diagnose octaves alone
         #[arg(long)]
         octaves: bool,
+    },
+    /// Accumulate a record of known sums, measure time and memory against its length, and merge what separate
+    /// processes measured
+    Long(#[command(flatten)] long::Arguments),
+    /// Compare the library with other programs on the same records: deviations, CPU time, memory, errors of
+    /// coefficients, and what is said of hidden effects. Needs Python and a connection to the package indexes
+    Peers(#[command(flatten)] peers::Arguments),
+    /// Measure a record with the library, and print what that took, for the study of peers
+    #[command(hide = true)]
+    Own {
+        /// What to do
+        task: own::Task,
+        /// Record of 32-bit counts, .npy
+        file: PathBuf,
+    },
+    /// Run a command of `allanite` in this process, for the studies that need several processes
+    #[command(hide = true)]
+    Allanite {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
     },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
@@ -225,6 +252,13 @@ fn main() -> Result<()> {
             };
             detection::print(records, effect.as_deref(), judged, factor);
         }
+        Study::Long(arguments) => long::print(&arguments, &allanite()?)?,
+        Study::Peers(arguments) => peers::print(&arguments, &allanite()?)?,
+        Study::Own { task, file } => own::print(task, &file)?,
+        Study::Allanite { arguments } => {
+            let name = [OsString::from("allanite")];
+            CommandLine::try_parse_from(name.into_iter().chain(arguments))?.run()?;
+        }
         Study::Lines { records } => lines::print(records),
         Study::Clean {
             records,
@@ -259,4 +293,12 @@ fn main() -> Result<()> {
         Study::Coefficients { records, tolerance } => coefficients::print(records, tolerance),
     }
     Ok(())
+}
+
+/// This program, which runs the commands of `allanite` and tasks of the studies as well.
+fn allanite() -> Result<Program> {
+    Ok(Program {
+        file: std::env::current_exe()?,
+        first: vec!["allanite".into()],
+    })
 }

@@ -1,7 +1,8 @@
 //! Where the figures of a study come from.
 
+use host_tests::study::resources::commit;
 use serde::Serialize;
-use std::{process::Command, time::Instant};
+use std::time::Instant;
 
 /// What it takes to repeat a study.
 #[derive(Serialize)]
@@ -9,7 +10,6 @@ pub(crate) struct Origin {
     study: &'static str,
     /// The first and the last seed.
     seeds: [u64; 2],
-    /// The commit of the working tree, with a plus where files were changed since; empty outside of a clone.
     commit: String,
     seconds: f64,
     cores: usize,
@@ -37,11 +37,10 @@ impl std::fmt::Display for Origin {
             cores,
             ..
         } = self;
-        write!(f, "seeds {first} to {last}; ")?;
-        if !commit.is_empty() {
-            write!(f, "commit {commit}; ")?;
-        }
-        write!(f, "{seconds:.0} s on {cores} cores")
+        write!(
+            f,
+            "seeds {first} to {last}; commit {commit}; {seconds:.0} s on {cores} cores"
+        )
     }
 }
 
@@ -55,13 +54,4 @@ pub(crate) fn print_json(origin: Origin, rows: &impl Serialize) -> anyhow::Resul
     }
     println!("{}", serde_json::to_string(&Study { origin, rows })?);
     Ok(())
-}
-
-fn commit() -> String {
-    let output = Command::new("git")
-        .args(["describe", "--always", "--dirty=+", "--exclude=*"])
-        .output();
-    let told = output.ok().filter(|output| output.status.success());
-    let text = told.map(|output| String::from_utf8_lossy(&output.stdout).into_owned());
-    text.unwrap_or_default().trim().to_owned()
 }

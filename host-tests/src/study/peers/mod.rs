@@ -1,0 +1,10 @@
+//! Compares the library with other programs for the Allan deviation, on the same records.
+
+pub mod agreement;
+pub mod bootstrap;
+pub mod coefficients;
+pub mod cost;
+mod environment;
+mod record;
+
+pub use environment::{Environment, Overlap, PEERS, Peer};

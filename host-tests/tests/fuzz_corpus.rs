@@ -9,6 +9,8 @@ mod accumulator;
 mod diagnosis;
 #[path = "../fuzz/src/file.rs"]
 mod file;
+#[path = "../fuzz/src/spectrum.rs"]
+mod spectrum;
 #[path = "../fuzz/src/stored.rs"]
 mod stored;
 
@@ -59,6 +61,11 @@ fn diagnoses_of_any_curve_end_with_finite_numbers() {
 #[test]
 fn files_of_any_contents_are_read_or_refused_by_name() {
     replay("file", 100, file::check);
+}
+
+#[test]
+fn spectra_follow_the_definition() {
+    replay("spectrum", 20, spectrum::check);
 }
 
 #[test]

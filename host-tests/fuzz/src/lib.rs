@@ -3,4 +3,5 @@
 pub mod accumulator;
 pub mod diagnosis;
 pub mod file;
+pub mod spectrum;
 pub mod stored;

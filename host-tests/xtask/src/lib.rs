@@ -5,6 +5,7 @@ pub mod firmware;
 mod bench;
 mod c;
 pub mod cost;
+mod fuzz;
 mod setup;
 mod soak;
 mod step;
@@ -53,6 +54,18 @@ enum Task {
         /// Run on a Cortex-M4F in QEMU instead of this machine.
         #[arg(long)]
         target: bool,
+    },
+    /// Give a fuzz target inputs that reach ever more of the code, until time is over or one fails. This needs
+    /// rustup's nightly, and installs cargo-fuzz if it is missing.
+    Fuzz {
+        /// The target, a file of host-tests/fuzz/targets.
+        target: String,
+        /// The time to run, in seconds.
+        #[arg(long, default_value_t = 120)]
+        seconds: u64,
+        /// The seed of the inputs.
+        #[arg(long, default_value_t = 1)]
+        seed: u32,
     },
     /// Check the licences, versions and sources of all crates with cargo-deny, which is installed if missing.
     Deny,
@@ -113,6 +126,11 @@ impl CommandLine {
                 first,
                 target,
             } => soak::run([samples, seed, first], target),
+            Task::Fuzz {
+                target,
+                seconds,
+                seed,
+            } => fuzz::fuzz(&target, seconds, seed),
             Task::Deny => supply_chain::deny(),
             Task::MinimalVersions => supply_chain::minimal_versions(),
             Task::Reproduce => supply_chain::reproduce(),

@@ -17,6 +17,9 @@ use tempfile::TempDir;
 /// The compiler that the fuzzer needs.
 const NIGHTLY: &str = "nightly";
 
+/// The target of the interface for C, which is built in single precision. All others are built with the tools.
+const SINGLE: &str = "c";
+
 /// An input may take this much memory and this many seconds.
 const LIMITS: [&str; 2] = ["-rss_limit_mb=128", "-timeout=5"];
 
@@ -52,6 +55,9 @@ pub(crate) fn fuzz(target: &str, seconds: u64, seed: u32) -> Result<()> {
     let cargo_fuzz = |task: &str| {
         let mut command = cargo(&["fuzz", task, target, "-s", "none"]);
         command.arg("--fuzz-dir").arg(&folder);
+        if target == SINGLE {
+            command.args(["--no-default-features", "--features", SINGLE]);
+        }
         command.arg("--target-dir").arg(&built);
         command
     };

@@ -42,8 +42,7 @@ impl Questions {
 
     /// Answers a question as the server does; `None` if there is no question of this name.
     pub fn ask(&self, name: &str, body: &[u8]) -> Option<Answered> {
-        let Reply { status, kind, body } =
-            Session::knows(name).then(|| self.0.ask(name, body))?;
+        let Reply { status, kind, body } = Session::knows(name).then(|| self.0.ask(name, body))?;
         Some(Answered { status, kind, body })
     }
 }

@@ -15,7 +15,7 @@ use std::{
 use tempfile::TempDir;
 
 /// The compiler that the fuzzer needs.
-const NIGHTLY: &str = "nightly";
+pub(crate) const NIGHTLY: &str = "nightly";
 
 /// The target of the interface for C, which is built in single precision. All others are built with the tools.
 const SINGLE: &str = "c";
@@ -113,7 +113,7 @@ fn watched(fuzzer: &mut Command) -> Result<u64> {
 }
 
 /// The cargo of nightly.
-fn cargo(arguments: &[&str]) -> Command {
+pub(crate) fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new("rustup");
     command.args(["run", NIGHTLY, "cargo"]).args(arguments);
     // Variables of the cargo that runs this program would select its compiler.

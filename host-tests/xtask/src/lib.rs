@@ -6,6 +6,7 @@ mod bench;
 mod c;
 pub mod cost;
 mod fuzz;
+mod miri;
 mod setup;
 mod soak;
 mod step;
@@ -66,6 +67,13 @@ enum Task {
         /// The seed of the inputs.
         #[arg(long, default_value_t = 1)]
         seed: u32,
+    },
+    /// Run the queue between two threads, and the tests of sums and storage, in Miri, which reports races and undefined
+    /// behaviour. Each seed is another order of the threads' steps. This needs rustup's nightly.
+    Miri {
+        /// The number of seeds.
+        #[arg(long, default_value_t = 64)]
+        seeds: u32,
     },
     /// Check the licences, versions and sources of all crates with cargo-deny, which is installed if missing.
     Deny,
@@ -131,6 +139,7 @@ impl CommandLine {
                 seconds,
                 seed,
             } => fuzz::fuzz(&target, seconds, seed),
+            Task::Miri { seeds } => miri::miri(seeds),
             Task::Deny => supply_chain::deny(),
             Task::MinimalVersions => supply_chain::minimal_versions(),
             Task::Reproduce => supply_chain::reproduce(),

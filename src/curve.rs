@@ -168,7 +168,8 @@ pub(crate) fn clusters(point: &Point) -> Real {
     point.differences.saturating_sub(1) as Real * (0.25 * m).max(1.0) / m + 2.0
 }
 
-/// The power of four nearest to the smallest positive variance, or 1 if there is none.
+/// The power of four nearest to the smallest positive variance, or 1 if there is none. It is a normal number, even if
+/// the variance is not: what is below the least normal number would be rounded to zero, which no product leaves.
 fn power_of_four(points: &[Point]) -> Real {
     let positive = points.iter().map(|point| point.variance);
     let least = positive
@@ -176,7 +177,7 @@ fn power_of_four(points: &[Point]) -> Real {
         .fold(Real::INFINITY, Real::min);
     let mut unit = 1.0;
     if least < Real::INFINITY {
-        while least < unit {
+        while least < unit && unit > Real::MIN_POSITIVE {
             unit *= 0.25;
         }
         while least >= 4.0 * unit {

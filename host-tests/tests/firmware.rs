@@ -267,3 +267,20 @@ fn samples_that_a_late_main_loop_loses_are_counted_and_become_gaps() {
         assert!(there.eq(&here), "{:?}, here {here:?}", run.lines);
     }
 }
+
+#[test]
+fn an_interrupt_at_any_instruction_of_the_receiver_loses_no_sample_without_its_place() {
+    for core in [CORES[0], CORTEX_M4F, RISCV] {
+        println!("{core}");
+        let run = Image::build_for("race", &core).and_then(|image| run(&image));
+        let run = run.unwrap_or_else(|error| panic!("{error:#}"));
+        println!("{}", run.lines.join("\n"));
+        assert!(run.status.success(), "the image ended with {}", run.status);
+        let total = run.lines.last().expect("a line");
+        let names = ["made", "taken", "lost", "gaps", "empty", "amid"];
+        let [made, taken, lost, gaps, empty, amid] = numbers(total, names);
+        assert_eq!((made, taken + lost), (200_000, made));
+        // The queue was full and empty many times, and many interrupts came within a call of the receiver.
+        assert!(gaps > 1000 && empty > 1000 && amid > 1000, "{total}");
+    }
+}

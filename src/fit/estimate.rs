@@ -171,7 +171,9 @@ fn bounded<const K: usize, const B: usize>(
     i: usize,
     coefficient: Coefficient,
 ) -> Coefficient {
+    // At its own covariance the best square may be smaller than at that of the fit. A bound lies above the value.
     let bound = bound(problem, solver, i, coefficient.upper * coefficient.upper);
+    let bound = bound.max(coefficient.square);
     let upper = math::sqrt(bound);
     let state = if is_informative(problem, solver, i, bound) {
         State::UpperBound

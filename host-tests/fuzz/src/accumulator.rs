@@ -71,7 +71,7 @@ fn count(kind: u8, bytes: &mut impl Iterator<Item = u8>) -> i32 {
 }
 
 /// Σ D² of octave `k` and the number of differences, as the definition of the accumulator has them.
-fn definition(stretches: &[Vec<i32>], k: usize) -> (u128, u64) {
+pub(crate) fn definition(stretches: &[Vec<i32>], k: usize) -> (u128, u64) {
     let m = 1_usize << k;
     let step = (m / 4).max(1);
     let (mut sum, mut differences) = (0, 0);

@@ -8,41 +8,19 @@ use allanite::{
     spectrum::{Bin, Spectrum},
 };
 
-const OCTAVES: usize = 12;
-const BINS: usize = 140;
+pub(crate) const OCTAVES: usize = 12;
+pub(crate) const BINS: usize = 140;
 /// The number of blocks of a segment.
 const SEGMENT: u32 = 64;
 
 /// The most pieces of work. A diagnosis of a record takes some thousands.
 const MOST_STEPS: u32 = 200_000;
 
-/// Diagnoses what the bytes encode: the rate, the octaves of three bytes, then the bins of two bytes.
+/// Diagnoses what the bytes encode.
 pub fn check(bytes: &[u8]) {
-    let Some((&[rate, many, small], rest)) = bytes.split_first_chunk() else {
+    let Some((curve, spectrum)) = measured(bytes) else {
         return;
     };
-    let rate_hz = 10_f64.powf(f64::from(rate as i8) / 14.0);
-    let level = 10_f64.powf(f64::from(small as i8) / 8.0);
-    let octaves = usize::from(many) % (OCTAVES + 1);
-    let (octaves, bins) = rest.split_at(rest.len().min(3 * octaves));
-    let samples = 2_u64 << (octaves.len() / 3);
-    let octaves = (0..).zip(octaves.chunks_exact(3)).map(|(k, three)| {
-        let size = f64::from(i16::from_le_bytes([three[0], three[1]]));
-        let differences = 1 + (samples >> k) * u64::from(three[2]);
-        (1 << k, differences, variance(size, level))
-    });
-    let Ok(curve) = Curve::<OCTAVES>::new(rate_hz, octaves) else {
-        return;
-    };
-    let bins = (4..).zip(bins.chunks_exact(2)).map(|(index, two)| Bin {
-        block: 1,
-        index,
-        frequency_hz: 0.0,
-        density: variance(f64::from(two[0] as i8) * 256.0, level / rate_hz),
-        segments: 16 + u32::from(two[1]),
-        spectral_kurtosis: f64::from(two[1]) / 64.0,
-    });
-    let spectrum = Spectrum::<BINS>::new(rate_hz, SEGMENT, bins).unwrap_or(Spectrum::EMPTY);
     let model = Model::ieee_952();
     let (evidence, options) = (Evidence::NONE, Options::default());
     let mut diagnosis =
@@ -59,6 +37,32 @@ pub fn check(bytes: &[u8]) {
         }
     }
     panic!("not finished after {MOST_STEPS} pieces of work");
+}
+
+/// The curve and the spectrum that the bytes encode: the rate, the octaves of three bytes, then the bins of two bytes.
+pub(crate) fn measured(bytes: &[u8]) -> Option<(Curve<OCTAVES>, Spectrum<BINS>)> {
+    let (&[rate, many, small], rest) = bytes.split_first_chunk()?;
+    let rate_hz = 10_f64.powf(f64::from(rate as i8) / 14.0);
+    let level = 10_f64.powf(f64::from(small as i8) / 8.0);
+    let octaves = usize::from(many) % (OCTAVES + 1);
+    let (octaves, bins) = rest.split_at(rest.len().min(3 * octaves));
+    let samples = 2_u64 << (octaves.len() / 3);
+    let octaves = (0..).zip(octaves.chunks_exact(3)).map(|(k, three)| {
+        let size = f64::from(i16::from_le_bytes([three[0], three[1]]));
+        let differences = 1 + (samples >> k) * u64::from(three[2]);
+        (1 << k, differences, variance(size, level))
+    });
+    let curve = Curve::<OCTAVES>::new(rate_hz, octaves).ok()?;
+    let bins = (4..).zip(bins.chunks_exact(2)).map(|(index, two)| Bin {
+        block: 1,
+        index,
+        frequency_hz: 0.0,
+        density: variance(f64::from(two[0] as i8) * 256.0, level / rate_hz),
+        segments: 16 + u32::from(two[1]),
+        spectral_kurtosis: f64::from(two[1]) / 64.0,
+    });
+    let spectrum = Spectrum::<BINS>::new(rate_hz, SEGMENT, bins).unwrap_or(Spectrum::EMPTY);
+    Some((curve, spectrum))
 }
 
 /// A variance over eight decades about the level; 0 for the least number.

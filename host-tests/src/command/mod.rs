@@ -6,7 +6,7 @@ mod decode;
 mod diagnose;
 mod effect_argument;
 mod examples;
-mod explore;
+pub mod explore;
 mod export;
 mod fit;
 mod input;

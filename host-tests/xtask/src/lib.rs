@@ -5,6 +5,8 @@ pub mod firmware;
 mod bench;
 mod c;
 pub mod cost;
+mod fuzz;
+mod miri;
 mod setup;
 mod soak;
 mod step;
@@ -54,6 +56,25 @@ enum Task {
         /// Run on a Cortex-M4F in QEMU instead of this machine.
         #[arg(long)]
         target: bool,
+    },
+    /// Give a fuzz target inputs that reach ever more of the code, until time is over or one fails. This needs
+    /// rustup's nightly, and installs cargo-fuzz if it is missing.
+    Fuzz {
+        /// The target, a file of host-tests/fuzz/targets.
+        target: String,
+        /// The time to run, in seconds.
+        #[arg(long, default_value_t = 120)]
+        seconds: u64,
+        /// The seed of the inputs.
+        #[arg(long, default_value_t = 1)]
+        seed: u32,
+    },
+    /// Run the queue between two threads, and the tests of sums and storage, in Miri, which reports races and undefined
+    /// behaviour. Each seed is another order of the threads' steps. This needs rustup's nightly.
+    Miri {
+        /// The number of seeds.
+        #[arg(long, default_value_t = 64)]
+        seeds: u32,
     },
     /// Check the licences, versions and sources of all crates with cargo-deny, which is installed if missing.
     Deny,
@@ -114,6 +135,12 @@ impl CommandLine {
                 first,
                 target,
             } => soak::run([samples, seed, first], target),
+            Task::Fuzz {
+                target,
+                seconds,
+                seed,
+            } => fuzz::fuzz(&target, seconds, seed),
+            Task::Miri { seeds } => miri::miri(seeds),
             Task::Deny => supply_chain::deny(),
             Task::MinimalVersions => supply_chain::minimal_versions(),
             Task::Reproduce => supply_chain::reproduce(),

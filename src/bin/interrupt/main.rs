@@ -31,6 +31,11 @@ mod image {
     const SEED: u64 = 1024;
     /// The number of samples that the sensor makes.
     const SAMPLES: u32 = 1 << 14;
+    /// The timer's ticks per sample: 10 000 to 30 000 instructions in QEMU.
+    #[cfg(target_arch = "arm")]
+    const INTERVAL: u32 = 400;
+    #[cfg(target_arch = "riscv32")]
+    const INTERVAL: u32 = 200;
     /// The interrupt fails to read one sample in this many.
     const FAILS: u32 = 3000;
     /// The size of the queue, which has room for fifteen samples.
@@ -89,7 +94,7 @@ mod image {
             made: 0,
         };
         critical_section::with(|section| SENSOR.replace(section, Some(sensor)));
-        crate::timer::start();
+        crate::timer::start(INTERVAL);
         semihosting::process::exit(i32::from(!take_all(receiver)))
     }
 

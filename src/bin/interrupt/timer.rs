@@ -11,16 +11,14 @@ pub(crate) use machine_timer::start;
 mod systick {
     use cortex_m::peripheral::{Peripherals, syst::SystClkSource};
 
-    /// The timer's ticks per sample: 10 000 to 30 000 instructions in QEMU.
-    const INTERVAL: u32 = 400;
-
-    pub(crate) fn start() {
+    /// Starts the timer with so many ticks per sample. A tick is 25 to 75 instructions in QEMU.
+    pub(crate) fn start(interval: u32) {
         let Some(core) = Peripherals::take() else {
             return;
         };
         let mut systick = core.SYST;
         systick.set_clock_source(SystClkSource::Core);
-        systick.set_reload(INTERVAL);
+        systick.set_reload(interval);
         systick.clear_current();
         systick.enable_interrupt();
         systick.enable_counter();
@@ -36,18 +34,21 @@ mod systick {
 #[allow(unsafe_code)]
 mod machine_timer {
     use core::ptr;
+    use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
     use riscv::interrupt::{self, Interrupt};
     use riscv::register::mie;
-
-    /// The ticks per sample of the timer, which runs at 10 MHz: 20 000 instructions in QEMU.
-    const INTERVAL: u64 = 200;
 
     /// The address of `mtimecmp` of the first hart on QEMU's `virt`.
     const COMPARE: *mut u64 = 0x0200_4000 as *mut u64;
     /// The address of `mtime`.
     const TIME: *const u32 = 0x0200_BFF8 as *const u32;
 
-    pub(crate) fn start() {
+    /// The ticks per sample.
+    static INTERVAL: AtomicU32 = AtomicU32::new(0);
+
+    /// Starts the timer with so many ticks per sample. It runs at 10 MHz, so that a tick is 100 instructions in QEMU.
+    pub(crate) fn start(interval: u32) {
+        INTERVAL.store(interval, Relaxed);
         next();
         // SAFETY: the handler exists, and it accesses shared data only in critical sections.
         unsafe {
@@ -68,7 +69,7 @@ mod machine_timer {
         // upper half of the time is zero.
         unsafe {
             let now = u64::from(ptr::read_volatile(TIME));
-            ptr::write_volatile(COMPARE, now + INTERVAL);
+            ptr::write_volatile(COMPARE, now + u64::from(INTERVAL.load(Relaxed)));
         }
     }
 }

@@ -18,6 +18,8 @@ mod page;
 #[cfg(feature = "explore")]
 mod question;
 #[cfg(feature = "explore")]
+mod questions;
+#[cfg(feature = "explore")]
 mod record;
 #[cfg(feature = "explore")]
 mod server;
@@ -27,6 +29,8 @@ mod session;
 mod shell;
 
 pub(super) use arguments::Arguments;
+#[cfg(feature = "explore")]
+pub use questions::{Answered, Questions};
 #[cfg(feature = "explore")]
 pub(super) use server::run;
 

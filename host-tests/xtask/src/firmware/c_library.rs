@@ -73,6 +73,24 @@ pub fn rust_example() -> Result<Vec<String>> {
     lines(&mut command)
 }
 
+/// Plays the calls of every file of a folder in single precision with debug assertions, and returns what is printed: the
+/// number of the files.
+///
+/// # Errors
+/// Fails if it cannot be built, or if a call goes wrong.
+pub fn replay(corpus: &Path) -> Result<Vec<String>> {
+    let mut command = cargo();
+    command
+        .args(["run", "--package", "allanite-c", "--example", "replay"])
+        .arg("--target-dir")
+        .arg(target_directory())
+        .arg("--")
+        .arg(corpus);
+    let _lock = exclusive()?;
+    let _heartbeat = Heartbeat::new("calls of the interface for C".into());
+    lines(&mut command)
+}
+
 /// Compiles a program of the example's folder for this host, with checks of memory and of undefined behaviour, and returns
 /// the lines that it prints.
 ///

@@ -1,0 +1,4 @@
+//! Fuzzes `fuzz::spectrum`.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::spectrum::check(bytes));

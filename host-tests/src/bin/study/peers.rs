@@ -1,7 +1,7 @@
 //! The library beside other programs.
 
 use anyhow::{Context as _, Result};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use host_tests::{
     simulate::{Hidden, Preset},
     study::{
@@ -27,12 +27,31 @@ pub(crate) struct Arguments {
     /// Samples of the record for CPU time and memory
     #[arg(long, default_value_t = 10_000_000, value_parser = clap::value_parser!(u64).range(1 << 16..1 << 30))]
     samples: u64,
+    /// Study only this part
+    #[arg(long)]
+    part: Option<Part>,
+    /// Study the coefficients of this preset only
+    #[arg(long)]
+    preset: Option<Preset>,
     /// Folder for the virtual environment and the crates [default: a temporary folder]
     #[arg(long, value_name = "FOLDER")]
     install: Option<PathBuf>,
     /// Print JSON instead of tables
     #[arg(long)]
     json: bool,
+}
+
+/// The parts of the study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Part {
+    /// Whether deviations agree.
+    Deviations,
+    /// CPU time and memory.
+    Cost,
+    /// Errors of coefficients where nothing is hidden.
+    Coefficients,
+    /// Errors of coefficients beside a hidden effect, and what is said of it.
+    Hidden,
 }
 
 #[derive(Serialize)]
@@ -68,56 +87,61 @@ pub(crate) fn print(arguments: &Arguments, program: &Program) -> Result<()> {
     for (package, why) in &environment.missing {
         eprintln!("{package} cannot be installed and is left out: {why}");
     }
-    let folder = temporary.path();
-    let agreement = agreement(&environment, folder)?;
-    eprintln!(
-        "deviations are compared after {:.0} s",
-        begun.elapsed().as_secs_f64()
-    );
-    let cost = costs(&environment, program, folder, arguments.samples)?;
-    eprintln!(
-        "costs are measured after {:.0} s",
-        begun.elapsed().as_secs_f64()
-    );
-    let mut gyros = Vec::new();
-    let clean = Preset::TYPICAL.map(|preset| (preset, None, arguments.records));
-    let few = (arguments.records / 5).max(2);
-    let effects = hidden(Preset::Mems)?.map(|hidden| (Preset::Mems, Some(hidden), few));
-    for (preset, hidden, records) in clean.into_iter().chain(effects) {
-        gyros.push(gyro(&environment, folder, preset, hidden, records)?);
-        eprintln!(
-            "a gyro is done after {:.0} s",
-            begun.elapsed().as_secs_f64()
-        );
-    }
     let mut packages: Vec<&str> = PEERS.iter().map(|peer| peer.package).collect();
     packages.dedup();
-    let figures = Figures {
+    let mut figures = Figures {
         commit: commit(),
         packages,
-        missing: environment.missing,
+        missing: environment.missing.clone(),
         agreement_samples: agreement::SAMPLES,
-        agreement,
+        agreement: Vec::new(),
         cost_samples: arguments.samples,
-        cost,
+        cost: Vec::new(),
         coefficient_samples: coefficients::SAMPLES,
-        gyros,
-        run_time_s: begun.elapsed().as_secs_f64(),
+        gyros: Vec::new(),
+        run_time_s: 0.0,
     };
-    if arguments.json {
-        println!("{}", serde_json::to_string(&figures)?);
-        return Ok(());
+    let folder = temporary.path();
+    let is_chosen = |part| arguments.part.is_none_or(|only| only == part);
+    let tables = !arguments.json;
+    if tables {
+        println!("commit {}; {}", figures.commit, figures.packages.join(", "));
     }
-    println!(
-        "commit {}, {:.0} s of run time; {}",
-        figures.commit,
-        figures.run_time_s,
-        figures.packages.join(", ")
-    );
-    print_agreement(&figures);
-    print_cost(&figures);
-    for gyro in &figures.gyros {
-        print_gyro(gyro);
+    if is_chosen(Part::Deviations) {
+        figures.agreement = agreement(&environment, folder)?;
+        if tables {
+            print_agreement(&figures);
+        }
+    }
+    if is_chosen(Part::Cost) {
+        figures.cost = costs(&environment, program, folder, arguments.samples)?;
+        if tables {
+            print_cost(&figures);
+        }
+    }
+    let is_studied = |preset: &Preset| arguments.preset.is_none_or(|only| only == *preset);
+    let mut gyros = Vec::new();
+    if is_chosen(Part::Coefficients) {
+        let presets = Preset::TYPICAL.into_iter().filter(is_studied);
+        gyros.extend(presets.map(|preset| (preset, None, arguments.records)));
+    }
+    if is_chosen(Part::Hidden) && is_studied(&Preset::Mems) {
+        let effects = hidden(Preset::Mems)?;
+        let few = (arguments.records / 5).max(2);
+        gyros.extend(effects.map(|hidden| (Preset::Mems, Some(hidden), few)));
+    }
+    for (preset, hidden, records) in gyros {
+        let gyro = gyro(&environment, folder, preset, hidden, records)?;
+        if tables {
+            print_gyro(&gyro);
+        }
+        figures.gyros.push(gyro);
+    }
+    figures.run_time_s = begun.elapsed().as_secs_f64();
+    if tables {
+        println!("\n{:.0} s of run time", figures.run_time_s);
+    } else {
+        println!("{}", serde_json::to_string(&figures)?);
     }
     Ok(())
 }

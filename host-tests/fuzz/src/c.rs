@@ -11,7 +11,7 @@ const PIECES: usize = 64;
 fn zeroed<T>() -> Box<T> {
     // SAFETY: every type of the interface that is used here is made of words, numbers and C's enumerations, all of
     // which have a value of 0.
-    unsafe { Box::<T>::new_zeroed().assume_init() }
+    Box::new(unsafe { std::mem::zeroed() })
 }
 
 /// All that a program has.
@@ -286,7 +286,7 @@ unsafe fn certify(certificate: *mut AllaniteCertificate, bytes: &mut Bytes<'_>) 
     let (to, length) = (buffer.as_mut_ptr(), buffer.len());
     // SAFETY: the caller promises that of the certificate, and the others are here.
     unsafe {
-        if bytes.next() % 2 == 0 {
+        if bytes.next().is_multiple_of(2) {
             let size = bytes.size::<AllaniteCertificate>();
             let longer = usize::from(bytes.next()) % 21;
             allanite_certificate_init(

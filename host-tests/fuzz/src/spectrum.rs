@@ -172,7 +172,7 @@ fn counts(kind: u8, times: usize, bytes: &mut impl Iterator<Item = u8>) -> Vec<i
                 random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             }
             match kind {
-                4 if n / period % 2 == 0 => i32::MIN,
+                4 if (n / period).is_multiple_of(2) => i32::MIN,
                 4 => i32::MAX,
                 _ => (random as i32).checked_shr(size).unwrap_or(-1),
             }

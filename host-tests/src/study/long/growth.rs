@@ -61,7 +61,7 @@ pub fn growth(sequence: &Sequence, samples: u64) -> Vec<Length> {
         sequence.accumulate(at, end, black_box(&mut accumulator));
         cpu += cpu_s() - begun;
         at = end;
-        let (octaves, exact) = checked(sequence, &accumulator, [0..end]);
+        let (octaves, exact) = checked(sequence, &accumulator, std::iter::once(0..end));
         Length {
             samples: end,
             cpu_s: cpu,

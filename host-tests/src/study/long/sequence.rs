@@ -162,5 +162,9 @@ impl Sequence {
 
 /// The square wave at a sample.
 const fn level(n: u64) -> i32 {
-    if n / HALF_WAVE % 2 == 0 { 0 } else { LEVEL }
+    if (n / HALF_WAVE).is_multiple_of(2) {
+        0
+    } else {
+        LEVEL
+    }
 }

@@ -1,6 +1,5 @@
 //! A bad input: files, a command, and what must come of it.
 
-use super::messages::FOLDER;
 use host_tests::program;
 use std::{
     fs,
@@ -80,12 +79,8 @@ impl Case {
         self
     }
 
-    pub(crate) fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Runs the command, and returns what it says on standard error, or what is wrong with its end.
-    pub(crate) fn run(&self, folder: &Path, needed_kib: u64) -> Result<String, String> {
+    /// Runs the command, and returns what is wrong with its end.
+    pub(crate) fn run(&self, folder: &Path, needed_kib: u64) -> Result<(), String> {
         for (name, bytes) in &self.files {
             fs::write(folder.join(name), bytes).unwrap();
         }
@@ -103,28 +98,13 @@ impl Case {
         };
         match ended.status {
             None => wrong("still running"),
-            Some(0 | 2) if self.is_ambiguous => Ok(ended.message(folder)),
+            Some(0 | 2) if self.is_ambiguous => Ok(()),
             status if status != Some(self.status) => wrong("another exit status"),
             _ if !ended.errors.contains(&self.expected) => wrong("another message"),
             _ if self.status == 2 && !is_one_line(&ended.errors) => wrong("not one clear line"),
             _ if ended.has_controls() => wrong("control characters"),
-            _ if self.status == 2 && !self.names_its_place(&ended.errors) => {
-                wrong("neither a file nor an argument is named")
-            }
-            _ => Ok(ended.message(folder)),
+            _ => Ok(()),
         }
-    }
-}
-
-impl Case {
-    /// Whether the last line names the file, or an argument of the command.
-    fn names_its_place(&self, errors: &str) -> bool {
-        let last = errors.lines().last().unwrap_or_default();
-        let files = self.files.iter().map(|(name, _)| name.as_str());
-        let arguments = self.arguments.iter().skip(1).map(String::as_str);
-        files
-            .chain(arguments)
-            .any(|name| name.len() > 2 && last.contains(name))
     }
 }
 
@@ -146,11 +126,6 @@ struct Ended {
 }
 
 impl Ended {
-    /// What was said, wherever the folder is.
-    fn message(&self, folder: &Path) -> String {
-        self.errors.replace(&*folder.to_string_lossy(), FOLDER)
-    }
-
     fn has_controls(&self) -> bool {
         let is_control = |c: char| c.is_control() && c != '\n' && c != '\t';
         self.output.contains(is_control) || self.errors.contains(is_control)

@@ -102,18 +102,34 @@ impl Case {
             status if status != Some(self.status) => wrong("another exit status"),
             _ if !ended.errors.contains(&self.expected) => wrong("another message"),
             _ if self.status == 2 && !is_one_line(&ended.errors) => wrong("not one clear line"),
+            _ if self.status == 2 && !self.names_place(&ended.errors) => wrong("no place"),
             _ if ended.has_controls() => wrong("control characters"),
             _ => Ok(()),
         }
     }
 }
 
-/// The last line tells what is wrong. Notes may stand before it.
+impl Case {
+    /// Whether the last line names an option, the standard input, or one of the arguments: a file with its place in it,
+    /// or a value.
+    fn names_place(&self, errors: &str) -> bool {
+        let last = errors.lines().last().unwrap_or_default();
+        let mut words = self.arguments.iter().skip(1);
+        let is_told = ["--", "standard input"]
+            .iter()
+            .any(|place| last.contains(place));
+        is_told || words.any(|word| last.contains(word.as_str()))
+    }
+}
+
+/// The last line tells what is wrong, and what to do about it behind a semicolon. Notes may stand before it.
 fn is_one_line(errors: &str) -> bool {
     let last = errors.lines().last().unwrap_or_default();
     errors.ends_with('\n')
         && errors.lines().all(|line| line.starts_with("allanite: "))
-        && last.contains("; ")
+        && last
+            .rsplit_once("; ")
+            .is_some_and(|(_, remedy)| !remedy.trim().is_empty())
         && last.len() < 2000
 }
 

@@ -336,7 +336,10 @@ impl Record {
     fn failure(&self, error: &io::Error, otherwise: impl FnOnce() -> Failure) -> Failure {
         match error.kind() {
             io::ErrorKind::InvalidData => Failure::option(error, "give a larger --scale"),
-            io::ErrorKind::InvalidInput => Failure::option(error, "give smaller coefficients"),
+            io::ErrorKind::InvalidInput => Failure::option(
+                error,
+                "give smaller coefficients, such as --angle-random-walk",
+            ),
             _ => otherwise(),
         }
     }

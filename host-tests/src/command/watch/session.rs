@@ -94,8 +94,14 @@ pub(in crate::command) fn run(
     } else {
         None
     };
+    let place = match &arguments.port {
+        Some(port) => port,
+        None if arguments.image => "the image",
+        None => "standard input",
+    };
     let mut watch = Watch {
         recording,
+        place,
         received,
         interrupted,
         path: arguments.output.as_deref(),
@@ -149,6 +155,8 @@ fn seconds(option: &str, value: f64) -> Result<Duration, Failure> {
 /// The state of a session.
 struct Watch<'a> {
     recording: Recording,
+    /// Where the samples come from.
+    place: &'a str,
     received: Receiver<Received>,
     interrupted: Arc<AtomicBool>,
     path: Option<&'a Path>,
@@ -274,7 +282,8 @@ impl Watch<'_> {
         if self.recording.curves()?.is_none() {
             return Err(Failure::option(
                 format!(
-                    "received {} samples and {} invalid lines, but a curve needs 9 samples",
+                    "{}: received {} samples and {} invalid lines, but a curve needs 9 samples",
+                    self.place,
                     self.recording.samples(),
                     self.recording.garbled()
                 ),
@@ -322,7 +331,7 @@ impl Watch<'_> {
             Ok(())
         } else {
             Err(Failure::option(
-                format!("no fit: {}", unfitted.join("; ")),
+                format!("{}: no fit: {}", self.place, unfitted.join("; ")),
                 "check the sensor and the scale",
             ))
         }

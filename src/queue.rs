@@ -141,7 +141,10 @@ mod tests {
         });
         while take(&mut receiver) {}
         assert_eq!(next + untold, samples);
-        assert_eq!(received + receiver.lost() + u64::from(untold), samples.into());
+        assert_eq!(
+            received + receiver.lost() + u64::from(untold),
+            samples.into()
+        );
     }
 
     /// Under Miri, each seed is another order of the threads' steps and of the values that a weak memory may show.

@@ -19,6 +19,10 @@ use std::{
 /// The number of counts of a column that are collected before they are accumulated as a slice.
 const BATCH: usize = 1 << 13;
 
+/// The number of batches of a column that may wait for a thread. With three threads on two cores, each of them stops
+/// for a while.
+const ROOM: usize = 16;
+
 /// What is kept of one axis.
 pub(super) enum Sums {
     /// The sums of the first rows, and those of the remaining rows.
@@ -171,10 +175,10 @@ pub(super) struct Totals {
 impl Batches {
     pub(super) fn new(plan: Plan) -> Self {
         let columns = plan.columns();
-        let (full, incoming) = sync_channel(2 * columns);
+        let (full, incoming) = sync_channel(ROOM * columns);
         let (outgoing, empty) = channel();
         let beside = plan.watch.as_ref().map_or(0, |_| plan.axes);
-        let (accumulated, incoming_beside) = sync_channel(2 * columns);
+        let (accumulated, incoming_beside) = sync_channel(ROOM * columns);
         let recycled = outgoing.clone();
         // The receiver of an empty batch is gone once the last batches are on their way.
         let recycle = |to: &Sender<Vec<i32>>, mut batch: Vec<i32>| {

@@ -16,6 +16,10 @@ const GONE: Real = by_precision(200.0, 40.0);
 /// it, cancellation leaves twelve digits in double precision, or six in single precision.
 const SMALL: Real = by_precision(0.1, 1.0);
 
+/// The magnitude of an exponent from which the remainder of the exponential is taken from one. Through the square of
+/// the exponent it would lose eight of sixteen digits, or three of seven in single precision.
+const LARGE: Real = by_precision(1e4, 1e2);
+
 /// The magnitude of a sample's exponent below which κ is computed by its series. Above it, cancellation
 /// leaves as many digits as above [`SMALL`].
 const SLOW: Real = by_precision(0.01, 0.3);
@@ -262,7 +266,7 @@ impl Exponential {
         self.exponent.norm_sqr() < SMALL * SMALL
     }
 
-    /// `1 − v + v²/2 − e^(−v)`, without cancellation.
+    /// `1 − v + v²/2 − e^(−v)`, without cancellation if `v` is small.
     fn third_rest(&self) -> Complex<Real> {
         let v = self.exponent;
         if !self.is_small() {
@@ -283,6 +287,9 @@ impl Exponential {
 
     /// `1 − e^(−v)`.
     fn rest(&self) -> Complex<Real> {
+        if self.exponent.norm_sqr() > LARGE * LARGE {
+            return ONE - self.power;
+        }
         self.exponent - self.second_rest()
     }
 }
@@ -295,4 +302,34 @@ fn power(decay: Real, cycles: Real, n: Real) -> Complex<Real> {
     }
     let (sine, cosine) = math::sincos_of_turns(cycles * n);
     Complex::new(size * cosine, size * sine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pole_far_faster_than_a_sample_is_white() {
+        for time_s in [1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 1e-15] {
+            let pole = Pole::new(time_s, 0.0, 1.0);
+            for m in [1.0, 4.0, 1024.0] {
+                let variance = pole.variance(m) * m;
+                assert!((variance - 1.0).abs() < 1e-5, "{time_s} {m}: {variance}");
+            }
+        }
+    }
+
+    /// Far from the origin, the second difference is `z^(x−m) (1−z^m)² z/(1−z)²`, without its sign, where `z^m` is gone.
+    #[test]
+    fn second_differences_of_long_clusters_do_not_cancel() {
+        let pole = Pole::new(1.0, 0.0, 0.01);
+        for m in [16_384.0, 131_072.0, 1_048_576.0] {
+            let found = pole.second_difference(m, m);
+            let expected = -pole.factor.re;
+            assert!(
+                (found / expected - 1.0).abs() < 1e-6,
+                "{m}: {found} {expected}"
+            );
+        }
+    }
 }

@@ -138,8 +138,9 @@ impl Watch {
     /// which computes in a [`Word`]. If the value may be odd or a number does not fit, nothing is added, and
     /// [`push`](Self::push) decides.
     #[allow(
+        clippy::cast_lossless,
         clippy::unnecessary_cast,
-        reason = "on a core of 32 bits, a Word is not a u64"
+        reason = "a Word is a u64 on some cores and a u32 on others"
     )]
     #[inline(always)]
     pub(super) fn push_usual(&mut self, value: i32, rule: &Rule) -> bool {

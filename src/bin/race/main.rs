@@ -120,7 +120,9 @@ mod image {
             }
             if random >> 28 == 15 {
                 let until = SAMPLES.min(MADE.load(Relaxed) + (random >> 20 & 7));
-                while MADE.load(Relaxed) < until {}
+                while MADE.load(Relaxed) < until {
+                    core::hint::spin_loop();
+                }
             }
         }
         let untold = with_sender(|sender| sender.untold());

@@ -90,7 +90,8 @@ pub struct Comparison<const K: usize, const B: usize = 0> {
     pub octaves: Vec<ComparedOctave, K>,
     /// The bins of the density, those of the shortest blocks first. Empty without a density.
     pub bins: Vec<ComparedBin, B>,
-    /// χ²: the squared disagreement of all that is fitted, in units of its covariance.
+    /// χ²: the squared disagreement of all that is fitted, in units of its covariance, corrected as that of a
+    /// [`Fit`].
     pub chi_squared: Real,
     /// The number of octaves and bins that are fitted, less the number of unknowns.
     pub degrees_of_freedom: usize,
@@ -207,7 +208,8 @@ impl<const K: usize, const B: usize> Comparison<K, B> {
                 z: (problem.measured(row) - model) / error,
             }
         }));
-        self.chi_squared = weights.chi_squared(problem, squares);
+        let squared_residuals = weights.squared_residuals(problem, squares);
+        self.chi_squared = weights.chi_squared(problem, squares, squared_residuals);
         self.degrees_of_freedom = problem.row_count().saturating_sub(unknowns);
         self.p_value = chi_squared_tail(self.chi_squared, self.degrees_of_freedom);
         self.rms_percent = math::sqrt(sum_of_squares / self.octaves.len().max(1) as Real);

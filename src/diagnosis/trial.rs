@@ -244,7 +244,9 @@ impl Trial {
                     looking.and_then(|looking| looking.advance(&problem, &work.solver, span));
                 match seen {
                     None => {}
-                    Some(seen) if seen.chi_squared < MUCH_BETTER * work.solver.chi_squared => {
+                    Some(seen)
+                        if seen.chi_squared < MUCH_BETTER * work.solver.squared_residuals =>
+                    {
                         self.begin_again(&seen);
                         self.stage = Stage::Begin;
                     }

@@ -133,7 +133,7 @@ impl LikelihoodRatio {
         squares.put(self.place, self.square);
         solver.squares = squares;
         if solver.has_ended(problem, self.converged)? {
-            self.at_limit = Some(solver.weights.chi_squared(problem, &squares));
+            self.at_limit = Some(solver.weights.squared_residuals(problem, &squares));
         }
         Ok(())
     }
@@ -150,7 +150,7 @@ impl LikelihoodRatio {
         let (weights, equations) = (&solver.weights, &mut solver.equations);
         weights.equations(problem, &|_| 1.0, &[], &curve, equations)?;
         let (squares, _): (Vector, _) = solver.equations.solve_non_negative(&problem.held());
-        let free = solver.weights.chi_squared(problem, &squares);
+        let free = solver.weights.squared_residuals(problem, &squares);
         let root = math::sqrt((at_limit - free).max(0.0));
         Ok(if squares[self.place] > self.square {
             root

@@ -37,7 +37,8 @@ pub struct Fit {
     pub coefficients: Vec<Coefficient, MAX_EFFECTS>,
     /// The shape parameters that were fitted.
     pub shape: Vec<ShapeEstimate, MAX_SHAPE>,
-    /// χ²: the squared residuals in units of their covariance. NaN for `Ordinary`, `AccuratePart` and
+    /// χ²: the squared residuals in units of their covariance, `r'C⁻¹r − 2 Σ(measured/model − 1)`. The sum corrects for
+    /// the covariance, which follows the measurement (Farrington 1996). NaN for `Ordinary`, `AccuratePart` and
     /// `ClusterCount`, which have no error model. Too large for `RelativeAccuracy`, which takes the octaves for
     /// independent.
     pub chi_squared: Real,

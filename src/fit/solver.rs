@@ -78,6 +78,8 @@ pub(crate) struct Solver<const K: usize, const B: usize = 0> {
     pub(crate) squares: Vector,
     pub(crate) free: Free,
     pub(crate) chi_squared: Real,
+    /// What the solution makes smallest, `r'C⁻¹r`.
+    pub(crate) squared_residuals: Real,
     /// The squares at which the covariance is taken. They approach the squares that it leads to.
     pub(crate) assumed: Vector,
     degrees_of_freedom: usize,
@@ -101,6 +103,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         squares: Vector::ZEROS,
         free: Free::NONE,
         chi_squared: 0.0,
+        squared_residuals: 0.0,
         assumed: Vector::ZEROS,
         degrees_of_freedom: 0,
         last: None,
@@ -204,17 +207,24 @@ impl<const K: usize, const B: usize> Solver<K, B> {
             || match self.rounds {
                 Rounds::One => true,
                 Rounds::Promising if self.round == 1 => {
-                    self.chi_squared = self.weights.chi_squared(problem, &self.squares);
+                    self.judge(problem);
                     self.p_value() < HOPELESS_P
                 }
                 _ => self.round >= ROUNDS,
             };
         if is_last {
-            self.chi_squared = self.weights.chi_squared(problem, &self.squares);
+            self.judge(problem);
             return Ok(true);
         }
         self.begin_next(problem, change)?;
         Ok(false)
+    }
+
+    /// Sets χ² of the solution.
+    fn judge(&mut self, problem: &Problem<'_, K, B>) {
+        let (weights, squares) = (&self.weights, &self.squares);
+        self.squared_residuals = weights.squared_residuals(problem, squares);
+        self.chi_squared = weights.chi_squared(problem, squares, self.squared_residuals);
     }
 
     /// Whether the rounds have ended at a solution that the caller has put into `squares`, because the model changed
@@ -278,7 +288,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
 
     /// `−2 ln L = r'C⁻¹r + ln det C`, up to a constant.
     pub(crate) fn minus_two_log_likelihood(&self) -> Real {
-        self.chi_squared + self.weights.log_determinant
+        self.squared_residuals + self.weights.log_determinant
     }
 
     /// The effect above zero whose place a fitted shape could take. If the effect is held at zero, the

@@ -33,7 +33,7 @@ impl Pair<'_> {
         let stride = lattice::stride(self.shorter.m);
         let starts = Starts::new(self.shorter, self.longer);
         let outer = middle.saturating_add(NEAR);
-        let (mut sum, mut quiet) = (0.0_f32, 0_u32);
+        let (mut sum, mut beats, mut quiet) = (0.0_f32, 0.0_f32, 0_u32);
         let (mut lag, mut step_before) = (0_u32, 0);
         loop {
             let step = step_after(lag, middle, stride);
@@ -47,13 +47,15 @@ impl Pair<'_> {
                 // signs of the lag.
                 let weight =
                     (u64::from(step_before) + u64::from(step)).saturating_mul(pairs) as f32;
-                let mut factor = random;
+                let mut beat = 0.0;
                 for wave in &*waves {
-                    factor += wave.value();
+                    beat += wave.value();
                 }
-                let term = weight * (random * factor);
+                let term = weight * (random * random);
+                let beat = weight * (random * beat);
                 sum += term;
-                let counts = lag <= outer || term.abs() > NEGLIGIBLE * sum.abs();
+                beats += beat;
+                let counts = lag <= outer || (term + beat).abs() > NEGLIGIBLE * (sum + beats).abs();
                 quiet = if counts { 0 } else { quiet.saturating_add(1) };
             } else {
                 quiet = quiet.saturating_add(1);
@@ -68,7 +70,11 @@ impl Pair<'_> {
                 break;
             }
         }
-        self.scaled(sum, stride, differences)
+        // The beats of waves against noise cannot lower the variance of one octave. Where a wave is strong and turns far
+        // over a step, the rule leaves of it more than the noise scatters, of either sign.
+        let is_variance = self.shorter.m == self.longer.m;
+        let beats = if is_variance { beats.max(0.0) } else { beats };
+        self.scaled(sum + beats, stride, differences)
     }
 
     /// The covariance that belongs to a sum over pairs, which took every pair `2 stride` times.

@@ -127,7 +127,7 @@ fn all_that_a_diagnosis_found_is_printed() {
     fs::write(folder.path().join("a.bin"), encoded(&certificate)).unwrap();
     let text = output(folder.path(), &["decode", "a.bin"]);
     for line in [
-        "follows covariate 0 with 0.1521 ± 0.005257 deg/s per unit of it; the curve is that without it",
+        "follows covariate 0 with 0.1521 ± 0.005248 deg/s per unit of it; the curve is that without it",
         "sinusoid: ambiguous, Gauss–Markov noise or a low pass would explain the record about as well",
         "unexplained in the spectrum: 12 σ above the model at 14.10–26.60 Hz",
     ] {

@@ -1,6 +1,7 @@
 //! Flicker noise as a sum of relaxations.
 
 use super::{Random, Source, random::normal};
+use rustfft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::PI;
 
 /// The ratio of neighbouring relaxation rates. With it, the spectrum of the sum deviates from 1/f
@@ -99,4 +100,24 @@ impl Source for Flicker {
         let slow: f64 = self.relaxations.iter_mut().map(|r| r.next(random)).sum();
         slow + self.white * normal(random)
     }
+}
+
+/// So many samples of flicker noise of coefficient B that ends at half the sample rate, as behind an ideal filter. Its
+/// two-sided density is `B²/(2πf)` up to there, and none of it is folded back. It is a sum of waves on a circle of at
+/// least four times the samples.
+pub fn band_limited_flicker(
+    bias_instability: f64,
+    samples: usize,
+    random: &mut Random,
+) -> Vec<f64> {
+    let length = (4 * samples).next_power_of_two();
+    let mut waves = vec![Complex::default(); length];
+    for (wave, k) in waves[1..=length / 2].iter_mut().zip(1_u32..) {
+        let deviation = bias_instability / (PI * f64::from(k)).sqrt();
+        *wave = Complex::new(normal(random), normal(random)) * deviation;
+    }
+    FftPlanner::new()
+        .plan_fft_inverse(length)
+        .process(&mut waves);
+    waves.iter().take(samples).map(|wave| wave.re).collect()
 }

@@ -12,6 +12,7 @@ mod simulator;
 mod thermal;
 mod two_levels;
 
+pub use flicker::band_limited_flicker;
 pub use hidden::Hidden;
 pub use preset::{CUSTOMARY, Preset};
 pub use random::Random;

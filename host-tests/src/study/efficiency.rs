@@ -2,7 +2,7 @@
 
 use super::{
     OCTAVES, RATE_HZ,
-    calibration::{CASES, hidden_case},
+    calibration::{EFFECTS, hidden_effect},
     hidden_effect::{Outcome, diagnose},
     record, spectrum,
     theory::squares,
@@ -140,11 +140,11 @@ pub fn coefficients(preset: Preset, samples: usize, records: u64) -> Vec<Row> {
     .collect()
 }
 
-/// Diagnoses records that hide a case of [`CASES`]. The errors are those of the records of which the diagnosis names
+/// Diagnoses records that hide an effect of [`EFFECTS`]. The errors are those of the records of which the diagnosis names
 /// the effect and nothing else.
-pub fn effect(preset: Preset, case: usize, records: u64) -> Vec<Row> {
+pub fn effect(preset: Preset, place: usize, records: u64) -> Vec<Row> {
     let base = preset.coefficients();
-    let Some(hidden) = hidden_case(base, case) else {
+    let Some(hidden) = hidden_effect(base, place) else {
         return Vec::new();
     };
     let outcomes: Vec<Outcome> = (0..records)
@@ -176,9 +176,10 @@ pub fn effect(preset: Preset, case: usize, records: u64) -> Vec<Row> {
     .collect()
 }
 
-/// The cases of [`effect`].
+/// The places of the effects in [`EFFECTS`] whose bounds are known: telegraph noise is not Gaussian.
 pub fn effects() -> impl Iterator<Item = usize> {
-    (0..CASES.len()).filter(|&case| CASES[case].is_some())
+    let is_gaussian = |name: &str| name != "random_telegraph";
+    (0..EFFECTS.len()).filter(move |&place| is_gaussian(EFFECTS[place].0))
 }
 
 fn name_of(preset: Preset) -> String {

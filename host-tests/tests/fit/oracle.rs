@@ -135,6 +135,8 @@ struct Optimum {
     /// coefficient would move if it were the only one.
     pulls: [f64; 5],
     /// The value of `r'C⁻¹r`.
+    squared_residuals: f64,
+    /// χ², which is that less twice the sum of the relative residuals (Farrington 1996).
     chi_squared: f64,
     /// The value of `ln det C`.
     log_determinant: f64,
@@ -165,7 +167,8 @@ impl Optimum {
         let factor = filled.cholesky().expect("positive definite");
         Self {
             pulls,
-            chi_squared: dot(&residual, &weighted),
+            squared_residuals: dot(&residual, &weighted),
+            chi_squared: dot(&residual, &weighted) - 2.0 * residual.iter().sum::<f64>(),
             log_determinant: factor.ln_determinant(),
         }
     }
@@ -216,7 +219,7 @@ fn the_covariance_fit_is_the_non_negative_optimum() {
             continue;
         }
         assert_relative(fit.chi_squared, optimum.chi_squared, 0.02, &what);
-        let likelihood = optimum.chi_squared + optimum.log_determinant;
+        let likelihood = optimum.squared_residuals + optimum.log_determinant;
         let difference = fit.minus_two_log_likelihood - likelihood;
         assert!(difference.abs() < 0.1, "{what}, −2 ln L: {difference}");
     }

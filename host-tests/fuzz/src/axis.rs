@@ -208,9 +208,12 @@ impl Record {
         self.end_stretches();
     }
 
+    /// Begins a new stretch, unless the last one is still empty: merges of merges would double the number of empty ones.
     fn end_stretches(&mut self) {
         for stretches in &mut self.stretches {
-            stretches.push(Vec::new());
+            if stretches.last().is_none_or(|last| !last.is_empty()) {
+                stretches.push(Vec::new());
+            }
         }
     }
 
@@ -256,7 +259,7 @@ impl Record {
         }
         self.end_stretches();
         for (own, other) in self.stretches.iter_mut().zip(other.stretches) {
-            own.extend(other);
+            own.extend(other.into_iter().filter(|stretch| !stretch.is_empty()));
         }
         self.end_stretches();
         self.pushed += other.pushed;

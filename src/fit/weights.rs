@@ -217,7 +217,8 @@ impl<const K: usize, const B: usize> Weights<K, B> {
         let tolerance = self.tolerance * self.tolerance;
         let corrections = problem.rows().map(|row| {
             let error = self.relative_error(row);
-            let excess = problem.measured(row) / problem.variance(row, squares) - 1.0;
+            // Relative to the model of the weights, which is above zero in every row. That of the squares need not be.
+            let excess = (problem.measured(row) - problem.variance(row, squares)) / self.model[row];
             2.0 * excess * (1.0 - tolerance / (error * error))
         });
         (squared_residuals - corrections.sum::<Real>()).max(0.0)

@@ -3,9 +3,10 @@
 
 use allanite::Model;
 use host_tests::{
-    simulate::{Coefficients, Preset, Simulator},
+    simulate::{Coefficients, Preset, Random, Simulator, band_limited_flicker},
     study::{self, RATE_HZ},
 };
+use rand::SeedableRng as _;
 use rayon::prelude::*;
 
 /// The number of samples of every averaged record.
@@ -257,4 +258,22 @@ fn records_of_the_presets_have_not_changed() {
             );
         }
     }
+}
+
+/// Beyond some samples, flicker noise that ends at half the sample rate has the Allan variance of IEEE Std 952, eq. C.17.
+#[test]
+fn band_limited_flicker_noise_has_its_floor() {
+    let variance = |seed: u64| {
+        let mut random = Random::seed_from_u64(seed);
+        let rates = band_limited_flicker(1.0, SAMPLES, &mut random);
+        let means: Vec<f64> = rates
+            .chunks_exact(32)
+            .map(|chunk| chunk.iter().sum::<f64>() / 32.0)
+            .collect();
+        let differences = means.windows(2).map(|two| (two[1] - two[0]).powi(2));
+        0.5 * differences.sum::<f64>() / (means.len() - 1) as f64
+    };
+    let mean = (0..100).map(variance).sum::<f64>() / 100.0;
+    let floor = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI;
+    assert!((mean / floor - 1.0).abs() < 0.03, "{mean}, not {floor}");
 }

@@ -1,7 +1,10 @@
 //! Studies whether p-values are uniform and intervals contain the truth, with and without a hidden effect.
 
 use super::{
-    OCTAVES, RATE_HZ, hidden_effect::added, hidden_effect::steps, quantum, theory::squares,
+    OCTAVES, RATE_HZ,
+    hidden_effect::{added, steps},
+    quantum,
+    theory::squares,
 };
 use crate::{
     log::SpectrumSums,

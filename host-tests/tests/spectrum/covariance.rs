@@ -20,7 +20,7 @@ fn bins_of_white_noise_scatter_as_they_are_said_to() {
     };
     // Both levels, the variance and its two neighbours: the mean over all bins of a level.
     for level in [0..28, 28..56] {
-        for (distance, tolerance) in [(0, 0.04), (1, 0.06), (2, 0.4)] {
+        for (distance, tolerance) in [(0, 0.02), (1, 0.02), (2, 0.2)] {
             let places = level.start..level.end - distance;
             let found = mean(
                 places

@@ -7,9 +7,9 @@
 //! Here `c_ℓ` is the covariance that the random effects give two differences a lag of `ℓ` apart, `g_ℓ`
 //! is the product that the deterministic effects add to it, `N_jk(ℓ)` is the number of pairs of starts
 //! that far apart, and `n_j` is the number of differences of octave `j`. The fourth moments follow
-//! Isserlis 1918, the Allan variances follow Greenhall 1991. Only the ends of the octaves limit the
-//! pairs: a curve does not know the gaps inside its record. The smaller numbers of differences that
-//! gaps leave stand in for them.
+//! Isserlis 1918, the Allan variances follow Greenhall 1991. The ends of the record and its gaps limit the
+//! pairs. A curve does not keep where its gaps are; the [number of stretches](crate::curve::Point::stretches) that are
+//! long enough for an octave follows from the numbers of differences, and the stretches count as equally long.
 //!
 //! The sum takes every lag near 0 and near `m_k`, where `c` has its kinks. Elsewhere it follows the
 //! trapezoidal rule, in steps that grow with the distance from both. It is within 1 % of the full sum

@@ -61,6 +61,9 @@ pub struct Point {
     pub differences: u64,
     /// Allan variance σ²(τ), in rate units squared.
     pub variance: Real,
+    /// The number of stretches without gaps that have differences of this octave. It is estimated from the numbers of
+    /// differences of neighbouring octaves, and is 1 for a record without gaps.
+    pub stretches: u64,
 }
 
 impl Point {
@@ -112,11 +115,13 @@ impl<const K: usize> Curve<K> {
                 tau_s: real(m) / rate_hz,
                 differences,
                 variance,
+                stretches: 1,
             };
             if points.push(point).is_err() {
                 return Err(Error::TooManyOctaves { capacity: K });
             }
         }
+        set_stretches(&mut points);
         Ok(Self {
             rate_hz,
             variance_unit: power_of_four(&points),
@@ -168,6 +173,50 @@ pub(crate) fn clusters(point: &Point) -> Real {
     point.differences.saturating_sub(1) as Real * (0.25 * m).max(1.0) / m + 2.0
 }
 
+/// Estimates the number of stretches in every octave.
+///
+/// A stretch of `n` samples has differences that span `x = 2m` of them at `n − x` places, nearly. So the number of
+/// places in all stretches falls with `x` by the number of the stretches that are longer than `x` (`−dS/dx`). It is taken from the
+/// octaves on both sides. Differences start a quarter of a cluster apart: rounded to whole quarters, a stretch seems
+/// shorter by half of one on average, and so does the distance of two octaves by a sixteenth.
+fn set_stretches(points: &mut [Point]) {
+    let span = |point: &Point| 2 * u64::from(point.m);
+    let places = |point: &Point| {
+        let quarter = u64::from(point.m / 4).max(1);
+        point.differences.saturating_mul(quarter)
+    };
+    // In fifteenths of a stretch.
+    let between = |pair: &[Point]| {
+        let [one, next] = pair else { return 15 };
+        let lost = places(one).saturating_sub(places(next));
+        let longer = span(next).saturating_sub(span(one));
+        let rounded = if one.m < 4 { 15 } else { 16 };
+        lost.saturating_mul(rounded)
+            .checked_div(longer)
+            .unwrap_or(15)
+    };
+    let mut before = None;
+    let mut left = points;
+    while !left.is_empty() {
+        let after = left.get(..2).map(between);
+        // The octave before is half as far away as the one behind.
+        let all = match (before, after) {
+            (Some(before), Some(after)) => {
+                (2 * before.min(u64::MAX / 4) + after.min(u64::MAX / 4)) / 3
+            }
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => 15,
+        };
+        before = after;
+        let Some((first, rest)) = left.split_first_mut() else {
+            return;
+        };
+        let stretches = all.saturating_add(7) / 15;
+        first.stretches = stretches.min(first.differences).max(1);
+        left = rest;
+    }
+}
+
 /// The power of four nearest to the smallest positive variance, or 1 if there is none. It is a normal number, even if
 /// the variance is not: what is below the least normal number would be rounded to zero, which no product leaves.
 fn power_of_four(points: &[Point]) -> Real {
@@ -209,10 +258,12 @@ impl<const K: usize> Accumulator<K> {
                 tau_s: real(octave.m) / scale.rate_hz,
                 differences: octave.differences,
                 variance: 0.5 * mean_square * cluster_scale * cluster_scale,
+                stretches: 1,
             };
             // There is room for every octave.
             let _ = points.push(point);
         }
+        set_stretches(&mut points);
         Curve {
             rate_hz: scale.rate_hz,
             variance_unit: power_of_four(&points),

@@ -21,6 +21,7 @@ mod accumulator;
 mod covariance;
 mod density;
 mod expected;
+mod fine;
 mod level;
 mod line;
 mod overlap;
@@ -35,6 +36,7 @@ pub use covariance::{BAND, covariance_rows, relative_covariance};
 pub use density::{Bin, Spectrum};
 pub use expected::expected_densities;
 
+pub(crate) use fine::{Fine, Sum};
 pub(crate) use overlap::{Lags, octave_lag};
 
 #[cfg(test)]

@@ -298,3 +298,47 @@ fn errors_name_the_fault_and_the_remedy() {
         assert!(words.iter().all(|word| text.contains(word)), "{text}");
     }
 }
+
+/// The numbers of stretches that the curve tells, with the lengths of the stretches.
+fn stretches(lengths: &[usize]) -> Vec<(u32, u64)> {
+    let mut accumulator = Accumulator::<16>::new();
+    for (i, &length) in lengths.iter().enumerate() {
+        (0..length).for_each(|n| accumulator.push((n * n % 7) as i32));
+        if i + 1 < lengths.len() {
+            accumulator.gap();
+        }
+    }
+    let curve = accumulator.curve(scale());
+    let points = curve.points().iter();
+    points.map(|point| (point.m, point.stretches)).collect()
+}
+
+#[test]
+fn a_record_without_gaps_is_one_stretch() {
+    for length in (20..3000).chain([70_001, 100_000]) {
+        for (m, stretches) in stretches(&[length]) {
+            assert_eq!(stretches, 1, "m = {m} of {length} samples");
+        }
+    }
+}
+
+#[test]
+fn the_stretches_that_are_long_enough_for_an_octave_follow_from_the_numbers_of_differences() {
+    let mut random = 1_u32;
+    let lengths: Vec<usize> = (0..200)
+        .map(|_| {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            50 + (random >> 16) as usize % 4000
+        })
+        .collect();
+    let mut compared = 0;
+    for (m, found) in stretches(&lengths) {
+        let long = lengths.iter().filter(|&&n| n >= 2 * m as usize).count();
+        if long >= 20 {
+            compared += 1;
+            let off = found as f64 / long as f64 - 1.0;
+            assert!(off.abs() < 0.1, "m = {m}: {found} of {long}");
+        }
+    }
+    assert!(compared >= 10, "{compared} octaves");
+}

@@ -34,6 +34,8 @@ pub(super) struct Starts {
     last: u64,
     /// The number of starts of the longer difference.
     count: u64,
+    /// The number of stretches without gaps in which these starts lie.
+    stretches: u64,
 }
 
 impl Starts {
@@ -47,6 +49,7 @@ impl Starts {
                 .saturating_sub(1)
                 .wrapping_shl(floor_log2(advance(shorter.m))),
             count: longer.differences,
+            stretches: longer.stretches.max(1),
         }
     }
 
@@ -60,6 +63,11 @@ impl Starts {
         let advance = 1_u64.wrapping_shl(self.advance_bits);
         let partly = outside.saturating_add(advance.saturating_sub(1));
         let before = partly.wrapping_shr(self.advance_bits);
+        if self.stretches > 1 {
+            // Every stretch has its own ends. At both, as many starts lack their partner.
+            let before = before.saturating_mul(self.stretches);
+            return self.count.saturating_sub(before).saturating_mul(2);
+        }
         // In the other order, these starts have a partner that does not lie beyond the end of the
         // record.
         let end = distance.saturating_add(self.inside);
@@ -79,6 +87,10 @@ impl Starts {
         let count = self.count as f32;
         let distance = u64::from(lag).saturating_mul(u64::from(step));
         let outside = distance.saturating_sub(self.inside);
+        if self.stretches > 1 {
+            let before = outside as f32 / advance + if outside == 0 { 0.0 } else { half };
+            return 2.0 * (count - self.stretches as f32 * before).max(0.0);
+        }
         let before = if outside == 0 {
             count
         } else {
@@ -95,7 +107,8 @@ impl Starts {
     /// The pairs that each further start of a lag loses beyond all kinks, where the starts are `step` samples
     /// apart.
     pub(super) fn slope(&self, step: u32) -> f32 {
-        2.0 * step as f32 / 1_u64.wrapping_shl(self.advance_bits) as f32
+        let lost = self.stretches as f32 * step as f32;
+        2.0 * lost / 1_u64.wrapping_shl(self.advance_bits) as f32
     }
 }
 

@@ -6,6 +6,8 @@ use crate::{
     effect::Span,
     error::Error,
     fit::{Estimator, Fit, Problem, Refinement, Solver, Start, Tolerance, Work},
+    limits::MAX_SHAPE,
+    math,
     model::Term,
     nnls::Vector,
     observed::Observed,
@@ -56,6 +58,8 @@ pub(super) enum Judging<const K: usize, const B: usize> {
         shape: usize,
         interval: Option<JointInterval>,
         profile: Profile<K, B>,
+        /// The variance of each shape relative to the one that follows from the weights.
+        widening: [Real; MAX_SHAPE],
     },
     /// The model is judged, and its coefficients are estimated anew.
     Refining {
@@ -103,7 +107,8 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                     return Ok(None);
                 }
                 if !step.fit.shape.is_empty() {
-                    self.begin_bounding(&problem, solver);
+                    let widening = estimator.widening_of_shapes();
+                    self.begin_bounding(&problem, solver, widening);
                     return Ok(None);
                 }
                 let judged = judged(solver, &step.fit);
@@ -127,6 +132,7 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                 shape,
                 interval,
                 profile,
+                widening,
             } => {
                 let Some(estimate) = step.fit.shape.get_mut(*shape) else {
                     let (fit, comparison) = (&step.fit, &mut step.comparison);
@@ -141,7 +147,8 @@ impl<const K: usize, const B: usize> Judging<K, B> {
                     profile.choose(&problem, estimate.term, &solver.squares)?;
                     profile.release();
                     let mut evaluation = Evaluation::new(profile, &problem, &solver.weights);
-                    let widened = step.fit.birge_ratio;
+                    let overlap = widening.get(*shape).copied().unwrap_or(1.0);
+                    let widened = step.fit.birge_ratio * math::sqrt(overlap);
                     begin_interval(interval, &mut evaluation, term, j, span, widened);
                     return Ok(None);
                 }
@@ -198,11 +205,17 @@ impl<const K: usize, const B: usize> Judging<K, B> {
     }
 
     #[inline(never)]
-    fn begin_bounding(&mut self, problem: &Problem<'_, K, B>, solver: &Solver<K, B>) {
+    fn begin_bounding(
+        &mut self,
+        problem: &Problem<'_, K, B>,
+        solver: &Solver<K, B>,
+        widening: [Real; MAX_SHAPE],
+    ) {
         *self = Self::Bounding {
             shape: 0,
             interval: None,
             profile: Profile::EMPTY,
+            widening,
         };
         if let Self::Bounding { profile, .. } = self {
             profile.begin(problem, &solver.weights);

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     coefficient::{Coefficient, State},
     curve::clusters,
-    limits::CHI_SQUARED_95,
+    limits::{CHI_SQUARED_95, MAX_SHAPE},
     math,
     model::Term,
     nnls::{Interval, NormalEquations, Vector},
@@ -37,6 +37,15 @@ impl Estimator {
         is_valid: false,
         next: 0,
     };
+
+    /// The variances of the fitted shapes relative to those that follow from the weights, in the order of the fit's shapes.
+    pub(crate) fn widening_of_shapes(&self) -> [Real; MAX_SHAPE] {
+        if self.is_valid {
+            self.shape.widening_of_shapes()
+        } else {
+            [1.0; MAX_SHAPE]
+        }
+    }
 
     /// Begins with a solution. What belongs to the whole model is written to the fit immediately.
     #[inline(never)]

@@ -1,130 +1,263 @@
-//! The variance that estimates have because bins of different levels, and octaves, look at the same samples.
+//! The variance of estimates beyond the one that the weights of a fit say.
 //!
-//! The weights of a fit take the levels of a spectrum and the octaves for independent of each other. This loses
-//! little, but the errors that follow from it are too small where a level and the next one see the same noise: the next
-//! one sees aliases from above its range. A line beats against the same noise in every bin of every level that shows it.
+//! The weights take the levels of a spectrum and the octaves for independent of each other, and the noise for the same
+//! over the width of a bin. This loses little, but the errors that follow from it are wrong in three ways:
+//!
+//! * A level and the next one see the same noise, since the next one sees aliases from above its range, and so do octaves.
+//! * Noise that is narrower than a bin scatters more in one bin, and lets neighbouring bins scatter together.
+//! * A line beats against the same noise in every bin of every level that shows it. Within a level, how much of the noise
+//!   is the same in two bins depends on the line's place between them.
+//!
 //! The variance of the coefficients is therefore that of the sandwich `H⁻¹A'C⁻¹(C + Δ)C⁻¹AH⁻¹` (Huber 1967), in which
-//! `Δ` holds what the weights leave out.
-//!
-//! Noise is taken to have the same density within the width of a bin. Beside a resonance that is narrower, its
-//! coefficient scatters up to a fifth more than its error says (`cargo xtask study calibration`).
+//! `Δ` holds what the weights leave out. Between levels, noise is taken to have the width of the finer level's
+//! [`Fine`] density at least.
 
 use super::{problem::Problem, rows::Rows};
 use crate::{
+    limits::MAX_EFFECTS,
     list::numbered,
+    math,
     model::Term,
-    nnls::Vector,
+    nnls::{Free, Vector},
     real::{Real, real},
-    spectrum::{Bin, Lags, octave_lag},
+    spectrum::{BAND, Bin, Fine, Lags, Sum, octave_lag, relative_covariance},
 };
 
-/// A sum of octaves and bins, each times a factor.
-pub(super) struct Sum<'a, const K: usize, const B: usize> {
-    pub(super) problem: &'a Problem<'a, K, B>,
-    pub(super) squares: &'a Vector,
-    /// The densities of the model's random part, from [`random_parts`].
-    pub(super) random: &'a Rows<K, B>,
-    pub(super) factors: &'a Rows<K, B>,
+/// A solved model, with what its weights leave out.
+pub(super) struct Overlap<'a, const K: usize, const B: usize> {
+    problem: &'a Problem<'a, K, B>,
+    squares: &'a Vector,
+    /// The effects that are lines: deterministic effects with a frequency.
+    lines: Free,
+    /// The densities of the model's random part.
+    random: Rows<K, B>,
 }
 
-/// The random part of the model's values.
-#[inline(never)]
-pub(super) fn random_parts<const K: usize, const B: usize>(
-    problem: &Problem<'_, K, B>,
-    squares: &Vector,
-    model: &Rows<K, B>,
-) -> Rows<K, B> {
-    let deterministic = problem.deterministic();
-    Rows::of(problem.rows(), |row| {
-        let share = problem.share_of(&deterministic, row, squares);
-        model[row] * (1.0 - share).max(0.0)
-    })
+/// One level of the spectrum.
+#[derive(Clone, Copy)]
+pub(super) struct Level<'a> {
+    /// The row of its first bin.
+    row: usize,
+    bins: &'a [Bin],
 }
 
-impl<const K: usize, const B: usize> Sum<'_, K, B> {
-    /// The variance of the sum beyond the one that follows from the weights. It may be negative.
+impl Level<'_> {
+    fn row(&self, b: usize) -> usize {
+        self.row.saturating_add(b)
+    }
+}
+
+impl<'a, const K: usize, const B: usize> Overlap<'a, K, B> {
+    /// A model with these squared coefficients. `model` are its values.
     #[inline(never)]
-    pub(super) fn excess(&self) -> Real {
-        let Some(spectrum) = self.problem.observed.spectrum() else {
+    pub(super) fn new(
+        problem: &'a Problem<'a, K, B>,
+        squares: &'a Vector,
+        model: &Rows<K, B>,
+    ) -> Self {
+        let deterministic = problem.deterministic();
+        let random = Rows::of(problem.rows(), |row| {
+            let share = problem.share_of(&deterministic, row, squares);
+            model[row] * (1.0 - share).max(0.0)
+        });
+        let is_line = |term: &Term| {
+            let shape = term.sampled_shape(problem.interval_s);
+            let response = term.effect.response(1.0, &shape);
+            response.is_some_and(|response| response.phase != 0.0)
+        };
+        let terms = problem.model.terms();
+        Self {
+            problem,
+            squares,
+            lines: Free::of(|i| terms.get(i).is_some_and(is_line)),
+            random,
+        }
+    }
+
+    /// The levels, shortest blocks first.
+    pub(super) fn levels(&self) -> impl Iterator<Item = Level<'a>> + use<'a, K, B> {
+        let mut row = K;
+        let spectrum = self.problem.observed.spectrum();
+        let levels = spectrum.into_iter().flat_map(|spectrum| spectrum.levels());
+        levels.map(move |bins| {
+            let level = Level { row, bins };
+            row = row.saturating_add(bins.len());
+            level
+        })
+    }
+
+    /// The density of the noise between the bins of a level.
+    #[inline(never)]
+    pub(super) fn fine(&self, level: &Level<'_>) -> Fine {
+        let mut fine = Fine::new(self.segment());
+        let deterministic = self.problem.deterministic();
+        let block = level.bins.first().map_or(1, |bin| bin.block);
+        for (i, term) in numbered(self.problem.model.terms().iter()) {
+            if !deterministic.has(i) && self.squares[i] > 0.0 {
+                let shape = term.sampled_shape(self.problem.interval_s);
+                fine.add(term.effect, &shape, block, self.squares[i]);
+            }
+        }
+        fine
+    }
+
+    fn segment(&self) -> usize {
+        let spectrum = self.problem.observed.spectrum();
+        spectrum.map_or(0, |spectrum| spectrum.segment() as usize)
+    }
+
+    /// What a level adds to the variance of a sum of octaves and bins, each times its factor, beyond the variance that
+    /// follows from the weights. It may be negative. `next` is the level behind it, with which it shares noise.
+    #[inline(never)]
+    pub(super) fn of_level(
+        &self,
+        level: &Level<'_>,
+        next: Option<&Level<'_>>,
+        fine: &Fine,
+        factors: &Rows<K, B>,
+    ) -> Real {
+        let Some(first) = level.bins.first() else {
             return 0.0;
         };
-        let length = spectrum.segment() as usize;
-        let mut excess = 0.0;
-        let mut row = K;
-        let mut finer: Option<(Lags, &Bin)> = None;
-        for level in spectrum.levels() {
-            let Some(bin) = level.first() else {
-                continue;
-            };
-            let factor = |b: usize| self.factors[row.saturating_add(b)];
-            if let Some((finer, above)) = &finer {
-                let own = Lags::of_bins(length, level, length / 8, &factor);
-                let beside = |l: usize| own.at_eighths(l);
-                excess += finer.covariance(&beside, length, above.block, above.segments);
-            }
-            let noise = Lags::of_bins(length, level, length, &|b| {
-                let random = self.random[row.saturating_add(b)];
-                factor(b) * random * random
-            });
-            let octaves = |l: usize| self.octaves(real(l) * real(bin.block));
-            excess += noise.covariance(&octaves, length, bin.block, bin.segments);
-            finer = Some((noise, bin));
-            row = row.saturating_add(level.len());
+        let length = self.segment();
+        let weighted = Sum::new(level.bins, |b| factors[level.row(b)]);
+        let noise = fine.lags(&weighted);
+        let octaves = |l: usize| self.octaves(factors, real(l) * real(first.block));
+        let mut shared = noise.covariance(&octaves, length, first.block, first.segments);
+        if let Some(next) = next {
+            let own = Lags::of_bins(length, next.bins, length / 8, &|b| factors[next.row(b)]);
+            let beside = |l: usize| own.at_eighths(l);
+            shared += noise.covariance(&beside, length, first.block, first.segments);
         }
-        let lines = numbered(self.problem.model.terms());
-        let lines = lines.filter(|(_, term)| self.is_line(term));
-        2.0 * excess + lines.map(|(i, _)| self.of_line(i)).sum::<Real>()
+        let lines = (0..MAX_EFFECTS).filter(|&i| self.lines.has(i));
+        let beats: Real = lines.map(|i| self.beats(level, i, factors)).sum();
+        fine.variance(&weighted, first.segments) + beats - self.weighted(level, factors)
+            + 2.0 * shared
+    }
+
+    /// The variance of the bins' sum that follows from the weights, of noise and of lines that beat against it.
+    fn weighted(&self, level: &Level<'_>, factors: &Rows<K, B>) -> Real {
+        let part = |b: usize| {
+            let row = level.row(b);
+            let lines = (0..MAX_EFFECTS).filter(|&i| self.lines.has(i));
+            let line: Real = lines.map(|i| self.value(i, row)).sum();
+            let all = self.random[row] + line;
+            (factors[row] * all, if all > 0.0 { line / all } else { 0.0 })
+        };
+        let mut sum = 0.0;
+        for (b, bin) in numbered(level.bins.iter()) {
+            let (own, share) = part(b);
+            let later = numbered(level.bins.iter()).skip(b).take(BAND);
+            for (c, later) in later {
+                let (other, other_share) = part(c);
+                let distance = later.index.wrapping_sub(bin.index) as usize;
+                let effective = bin.effective_segments();
+                let relative = relative_covariance(distance, effective, [share, other_share]);
+                let twice = if c == b { 1.0 } else { 2.0 };
+                sum += twice * own * other * relative;
+            }
+        }
+        sum
+    }
+
+    /// What an effect adds to a row.
+    fn value(&self, i: usize, row: usize) -> Real {
+        self.problem.unit(i, row) * self.squares[i]
+    }
+
+    /// The bin of a level that shows a line best, and what the noise beside it makes of the line's share: the variance
+    /// `4c/((n + 1) Σg)`, with the number `n` of segments, the densities `g` of the line in the bins, and the density `c`
+    /// of the noise. `None` for a level that does not show the line.
+    fn shown(&self, level: &Level<'_>, i: usize) -> Option<(usize, Real)> {
+        let (mut best, mut highest, mut sum) = (0, 0.0, 0.0);
+        for (b, _) in numbered(level.bins.iter()) {
+            let here = self.value(i, level.row(b));
+            sum += here;
+            if here > highest {
+                (best, highest) = (b, here);
+            }
+        }
+        let segments = real(level.bins.first()?.segments);
+        let noise = self.random[level.row(best)];
+        (sum > 0.0).then_some((best, 4.0 * noise / ((segments + 1.0) * sum)))
+    }
+
+    /// The variance that the beats of a line against the noise give the sum of a level's bins.
+    ///
+    /// The mean over segments that overlap by half lets the line beat against the noise at its own frequency and at those
+    /// two bins beside it. The two ends of the record, which a single segment sees, add those one bin beside it. With the
+    /// bins' factors `a` and the line's densities `g`,
+    ///
+    /// ```text
+    /// (4c/((n + 1) Σg)) [(Σ a_k g_k)² + b_2 + b_1/2n],    b_d = (Σ a_k √(g_k g_{k+d}))² + (Σ a_{k+d} √(g_k g_{k+d}))²
+    /// ```
+    ///
+    /// Of the sums in `b`, those bins count that are in the main lobe of the line.
+    fn beats(&self, level: &Level<'_>, i: usize, factors: &Rows<K, B>) -> Real {
+        let Some((best, variance)) = self.shown(level, i) else {
+            return 0.0;
+        };
+        let beside = |distance: usize| {
+            let (mut above, mut below) = (0.0, 0.0);
+            let last = best.saturating_add(2).saturating_sub(distance);
+            for b in best.saturating_sub(2)..=last {
+                let other = b.saturating_add(distance);
+                if other < level.bins.len() {
+                    let (row, later) = (level.row(b), level.row(other));
+                    let both = math::sqrt(self.value(i, row) * self.value(i, later));
+                    above += factors[row] * both;
+                    below += factors[later] * both;
+                }
+            }
+            above * above + below * below
+        };
+        let own = self.line_in(level, i, factors);
+        let segments = level.bins.first().map_or(1, |bin| bin.segments);
+        variance * (own * own + beside(2) + beside(1) / (2.0 * real(segments)))
+    }
+
+    /// The part of a line in the sum of a level's bins.
+    fn line_in(&self, level: &Level<'_>, i: usize, factors: &Rows<K, B>) -> Real {
+        let rows = (0..level.bins.len()).map(|b| level.row(b));
+        rows.map(|row| factors[row] * self.value(i, row)).sum()
+    }
+
+    /// What lines add to the variance because the noise at a line's frequency changes its amplitude by the same share in
+    /// octaves and in every level. The share has the variance that the level with the smallest one gives.
+    #[inline(never)]
+    pub(super) fn of_lines(&self, factors: &Rows<K, B>) -> Real {
+        let lines = (0..MAX_EFFECTS).filter(|&i| self.lines.has(i));
+        let of_line = |i: usize| {
+            // The octaves count as a level.
+            let octaves = self.problem.rows().take(self.problem.points.len());
+            let mut all: Real = octaves.map(|row| factors[row] * self.value(i, row)).sum();
+            let mut within = all * all;
+            let mut least = Real::INFINITY;
+            for level in self.levels() {
+                let own = self.line_in(&level, i, factors);
+                all += own;
+                within += own * own;
+                if let Some((_, variance)) = self.shown(&level, i) {
+                    least = least.min(variance);
+                }
+            }
+            if least < Real::INFINITY {
+                least * (all * all - within)
+            } else {
+                0.0
+            }
+        };
+        lines.map(of_line).sum()
     }
 
     /// The sum of the octaves as a function of the samples' distance, relative to a density of one.
-    fn octaves(&self, distance: Real) -> Real {
+    fn octaves(&self, factors: &Rows<K, B>, distance: Real) -> Real {
         let points = numbered(self.problem.points);
         let terms = points.map(|(k, point)| {
             let m = real(point.m);
-            self.factors[k] * octave_lag(distance / m) / m
+            factors[k] * octave_lag(distance / m) / m
         });
         0.5 / self.problem.interval_s * terms.sum::<Real>()
-    }
-
-    fn is_line(&self, term: &Term) -> bool {
-        let shape = term.sampled_shape(self.problem.interval_s);
-        let response = term.effect.response(1.0, &shape);
-        response.is_some_and(|response| response.phase != 0.0)
-    }
-
-    /// The part of a line. The noise at its frequency changes its amplitude by the same share in octaves and in every
-    /// level. The variance of the share is `c/((n + 1) Σg)`, with the number `n` of segments of the level that shows
-    /// the line best, its densities `g` in the bins of this level, and the density `c` of the noise beside it.
-    #[inline(never)]
-    fn of_line(&self, i: usize) -> Real {
-        let line = |row: usize| self.problem.unit(i, row) * self.squares[i];
-        let part = |row: usize| self.factors[row] * line(row);
-        let octaves = self.problem.points.len();
-        // The octaves count as a level. Within a level, the weights know of the line.
-        let mut level: Real = self.problem.rows().take(octaves).map(part).sum();
-        let (mut all, mut within) = (0.0, 0.0);
-        let mut best: Real = 0.0;
-        let (mut block, mut sum, mut highest, mut noise) = (0, 0.0, 0.0, 0.0);
-        for (row, bin) in self.problem.rows().skip(octaves).zip(self.problem.bins) {
-            if bin.block != block {
-                all += level;
-                within += level * level;
-                (block, level, sum, highest) = (bin.block, 0.0, 0.0, 0.0);
-            }
-            level += part(row);
-            sum += line(row);
-            if line(row) > highest {
-                (highest, noise) = (line(row), self.random[row]);
-            }
-            best = best.max(sum * (real(bin.segments) + 1.0) / noise);
-        }
-        all += level;
-        within += level * level;
-        if best > 0.0 {
-            4.0 / best * (all * all - within)
-        } else {
-            0.0
-        }
     }
 }
 

@@ -1,11 +1,7 @@
 //! The uncertainty of fitted shapes, and what it adds to the uncertainty of the coefficients.
 
 use super::{
-    overlap::{Sum, random_parts},
-    problem::Problem,
-    result::ShapeEstimate,
-    rows::Rows,
-    weights::Weights,
+    overlap::Overlap, problem::Problem, result::ShapeEstimate, rows::Rows, weights::Weights,
 };
 use crate::{
     limits::{MAX_SHAPE, TWO_SIDED_95},
@@ -21,8 +17,19 @@ use heapless::Vec;
 /// precision, 0.005, where the error of a central difference is smallest.
 const STEP: Real = 0.01;
 
-/// The variance of an unknown is never taken for less than half of the one that follows from the weights. Chosen by hand.
-const MOST_LESS: Real = -0.5;
+/// The change of a column over two steps, relative to twice the column, up to which a central difference is taken for the
+/// derivative. The error is about the square of this. A line leaves its bin within a step, which says nothing of
+/// the derivative.
+const SMOOTH: Real = 0.1;
+
+/// The factor by which a step becomes smaller if it is too large, and how often it does so at most. The smallest
+/// step, 4·10⁻⁵, is a twentieth of a bin for the line of the highest frequency in a bin of the second level.
+const SMALLER: Real = 0.25;
+const SMALLER_TIMES: u8 = 4;
+
+/// The variance of an unknown is never taken for less than a quarter of the one that follows from the weights. Chosen by
+/// hand. That of a line's frequency is a third, since neighbouring bins beat together less than the weights say.
+const MOST_LESS: Real = -0.75;
 
 /// The change of a term's variances with the logarithm of its parameter `j`, for a squared coefficient of
 /// `square`.
@@ -37,13 +44,40 @@ pub(crate) fn derivative<const K: usize, const B: usize>(
         term.scale_parameter(j, factor);
         problem.column(&term)
     };
-    let (above, below) = (column(math::exp(STEP)), column(math::exp(-STEP)));
-    let scale = 0.5 * square / STEP;
-    let mut derivative = Rows::ZEROS;
-    for row in problem.rows() {
-        derivative.put(row, single((above[row] - below[row]) * scale));
+    let mut step = STEP;
+    let mut left = SMALLER_TIMES;
+    loop {
+        let (above, below) = (column(math::exp(step)), column(math::exp(-step)));
+        if left == 0 || is_smooth(problem, &above, &below) {
+            let scale = 0.5 * square / step;
+            let mut derivative = Rows::ZEROS;
+            for row in problem.rows() {
+                derivative.put(row, single((above[row] - below[row]) * scale));
+            }
+            return derivative;
+        }
+        step *= SMALLER;
+        left = left.saturating_sub(1);
     }
-    derivative
+}
+
+/// Whether a column changes little from one value of a parameter to another one, measured in shares of what is measured.
+fn is_smooth<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    above: &Rows<K, B>,
+    below: &Rows<K, B>,
+) -> bool {
+    let (mut change, mut size) = (0.0, 0.0);
+    for row in problem.rows() {
+        let measured = problem.measured(row);
+        if measured > 0.0 {
+            let difference = (above[row] - below[row]) / measured;
+            let sum = (above[row] + below[row]) / measured;
+            change += difference * difference;
+            size += sum * sum;
+        }
+    }
+    change <= SMOOTH * SMOOTH * size
 }
 
 /// The derivatives by the fitted shape parameters of the effects above zero, computed one per call.
@@ -172,11 +206,10 @@ impl ShapeEquations {
     ) {
         let (count, unknowns) = (self.count(), self.equations.count());
         let free = self.with_shapes(free, count);
-        let random = random_parts(problem, squares, &weights.model);
-        for i in 0..unknowns {
-            let Some(covariances) = self.equations.covariances(i, &free.with(i)) else {
-                continue;
-            };
+        let overlap = Overlap::new(problem, squares, &weights.model);
+        // An unknown's variance, and the factors by which it changes with the rows.
+        let factors = |i: usize| {
+            let covariances = self.equations.covariances(i, &free.with(i))?;
             let change = |row: usize| -> Real {
                 let of = |j: usize| match j.checked_sub(count) {
                     None => problem.unit(j, row),
@@ -184,22 +217,38 @@ impl ShapeEquations {
                 };
                 (0..unknowns).map(|j| covariances[j] * of(j)).sum()
             };
-            // The unknown changes by these factors with the rows.
             let factors = weights.solve(problem, &|_| 1.0, &change);
-            let sum = Sum {
-                problem,
-                squares,
-                random: &random,
-                factors: &factors,
-            };
-            let excess = sum.excess() / covariances[i];
-            self.excess.put(i, excess.max(MOST_LESS));
+            Some((covariances[i], factors))
+        };
+        let mut excess = Vector::ZEROS;
+        let mut levels = overlap.levels().peekable();
+        while let Some(level) = levels.next() {
+            let fine = overlap.fine(&level);
+            for i in 0..unknowns {
+                if let Some((_, factors)) = factors(i) {
+                    let more = overlap.of_level(&level, levels.peek(), &fine, &factors);
+                    excess.put(i, excess[i] + more);
+                }
+            }
         }
+        for i in 0..unknowns {
+            if let Some((variance, factors)) = factors(i) {
+                let more = excess[i] + overlap.of_lines(&factors);
+                excess.put(i, (more / variance).max(MOST_LESS));
+            }
+        }
+        self.excess = excess;
     }
 
     /// The variance of an unknown relative to the one that follows from the weights.
     pub(crate) fn widening(&self, i: usize) -> Real {
         1.0 + self.excess[i]
+    }
+
+    /// The same for the shapes, in their order.
+    pub(crate) fn widening_of_shapes(&self) -> [Real; MAX_SHAPE] {
+        let count = self.count();
+        core::array::from_fn(|at| self.widening(count.saturating_add(at)))
     }
 
     fn with_shapes(&self, free: &Free, count: usize) -> Free {

@@ -153,7 +153,9 @@ impl<const K: usize, const B: usize> Weights<K, B> {
                 let other = b.checked_sub(d).and_then(|at| problem.bins.get(at));
                 let relative = match other.filter(|other| other.block == bin.block) {
                     None => 0.0,
-                    Some(_) => relative_covariance(d, bin.effective_segments(), [own, *share]),
+                    Some(_) => {
+                        relative_covariance(d, problem.effective_segments(bin), [own, *share])
+                    }
                 };
                 let kept = if d == 0 {
                     relative + self.tolerance * self.tolerance

@@ -18,9 +18,11 @@ use crate::{
 /// interval. Chosen by hand: it is about the smallest error of a shape in
 /// `cargo xtask study hidden-effect`, 0.4 %.
 const FIRST_STEP: Real = 0.005;
-/// How often the last step is halved after that. Six halvings find an end to a 64th of that step, which
-/// is at most 2 % of the interval's half-width if steps have doubled.
+/// How often the last step is halved once a step has led to a place inside. Six halvings find an end to a 64th of that
+/// step, which is at most 2 % of the interval's half-width.
 const HALVINGS: u8 = 6;
+/// The step from which on halvings count even if no step has led to a place inside. No record tells a shape as well.
+const SMALLEST: Real = 1e-6;
 
 /// The search for one end of an interval, where χ² has risen by so much.
 struct End {
@@ -68,7 +70,9 @@ impl End {
             if *halvings >= HALVINGS {
                 return Some(at(self.inside));
             }
-            *halvings = halvings.saturating_add(1);
+            if self.inside > 0.0 || self.step < SMALLEST {
+                *halvings = halvings.saturating_add(1);
+            }
             self.step *= 0.5;
         }
         let mut term = best.term;

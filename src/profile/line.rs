@@ -44,7 +44,7 @@ pub(crate) fn strongest_peak<const K: usize, const B: usize>(
     };
     let significance = |at: usize, bin: &Bin| {
         let row = K.saturating_add(at);
-        excess(at) / problem.variance(row, squares) * math::sqrt(bin.effective_segments())
+        excess(at) / problem.variance(row, squares) * math::sqrt(problem.effective_segments(bin))
     };
     let bins = problem.bins;
     let mut strongest: Option<(usize, Real)> = None;

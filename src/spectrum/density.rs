@@ -14,9 +14,9 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The effective number of segments per segment, `1/(1 + 2/36)`: those that overlap by half are correlated by
-/// 1/36 (Welch 1967, for the Hann window).
-const EFFECTIVE: Real = 18.0 / 19.0;
+/// What an overlapping neighbour adds to the variance of a segment's density, on both sides together: segments that overlap
+/// by half are correlated by 1/36 (Welch 1967, for the Hann window).
+const OVERLAP: Real = 2.0 / 36.0;
 
 /// One bin of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,14 @@ impl Bin {
     /// The number of independent segments that would scatter as much. For Gaussian noise, the relative
     /// standard error of the density is one over its root.
     pub fn effective_segments(&self) -> Real {
-        EFFECTIVE * real(self.segments)
+        self.effective_segments_of(1)
+    }
+
+    /// The same for segments from so many stretches without gaps.
+    pub(crate) fn effective_segments_of(&self, stretches: u64) -> Real {
+        let segments = real(self.segments);
+        let first = real(stretches.saturating_sub(1) as u32).min(segments);
+        segments / (1.0 + OVERLAP * (segments - first) / segments)
     }
 }
 

@@ -33,11 +33,24 @@ pub fn expected_densities(
     block: u32,
     densities: &mut [Real],
 ) {
+    densities_from(first_bin(length), effect, shape, length, block, densities);
+}
+
+/// Does the same for the bins `k = first … P/2 − 1`, where `first` is 2 or more.
+#[inline(never)]
+pub(super) fn densities_from(
+    first: usize,
+    effect: &dyn Effect,
+    shape: &SampledShape,
+    length: usize,
+    block: u32,
+    densities: &mut [Real],
+) {
     if !is_possible(length) {
         return;
     }
     let per_block = real(block) * shape.interval_s;
-    let bins = first_bin(length)..length / 2;
+    let bins = first..length / 2;
     if let Some(response) = effect.response(1.0, shape) {
         let line = Line::new(response, shape.interval_s, length, block);
         for (density, k) in densities.iter_mut().zip(bins) {
@@ -49,7 +62,7 @@ pub fn expected_densities(
     let folded = folded(effect, shape, length, block);
     let scale = -4.0 * per_block / sum_of_squares(real(length));
     let mut set = |k: usize, sum: Real| {
-        let place = k.wrapping_sub(first_bin(length));
+        let place = k.wrapping_sub(first);
         if k < length / 2
             && let Some(density) = densities.get_mut(place)
         {

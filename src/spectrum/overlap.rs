@@ -6,6 +6,7 @@ use super::{
 };
 use crate::{
     limits::MAX_SEGMENT,
+    list::numbered,
     real::{Real, real},
 };
 
@@ -17,6 +18,19 @@ pub(crate) struct Lags {
 }
 
 impl Lags {
+    /// Of no estimate.
+    pub(super) const ZEROS: Self = Self {
+        nodes: [0.0; MAX_SEGMENT + 1],
+    };
+
+    /// Adds a value at a frequency, whose angle from one block to the next is that of a place of the table of cosines.
+    pub(super) fn add(&mut self, value: Real, length: usize, place: usize) {
+        let nodes = self.nodes.iter_mut().take(length.saturating_add(1));
+        for (l, node) in numbered(nodes) {
+            *node += value * cosine(place.wrapping_mul(l));
+        }
+    }
+
     /// The sum of the bins of a level with segments of `length` blocks, each times its weight. Only the values at
     /// distances of up to `last` blocks are needed.
     #[inline(never)]

@@ -121,7 +121,7 @@ impl<const K: usize> Curve<K> {
                 return Err(Error::TooManyOctaves { capacity: K });
             }
         }
-        set_stretches(&mut points);
+        set_stretches(&mut points, K);
         Ok(Self {
             rate_hz,
             variance_unit: power_of_four(&points),
@@ -178,8 +178,9 @@ pub(crate) fn clusters(point: &Point) -> Real {
 /// A stretch of `n` samples has differences that span `x = 2m` of them at `n − x` places, nearly. So the number of
 /// places in all stretches falls with `x` by the number of the stretches that are longer than `x` (`−dS/dx`). It is taken from the
 /// octaves on both sides. Differences start a quarter of a cluster apart: rounded to whole quarters, a stretch seems
-/// shorter by half of one on average, and so does the distance of two octaves by a sixteenth.
-fn set_stretches(points: &mut [Point]) {
+/// shorter by half of one on average, and so does the distance of two octaves by a sixteenth. Behind the last octave, the
+/// record is too short for a further one, unless there was no room for it among `capacity`.
+fn set_stretches(points: &mut [Point], capacity: usize) {
     let span = |point: &Point| 2 * u64::from(point.m);
     let places = |point: &Point| {
         let quarter = u64::from(point.m / 4).max(1);
@@ -195,17 +196,23 @@ fn set_stretches(points: &mut [Point]) {
             .checked_div(longer)
             .unwrap_or(15)
     };
+    let is_complete = points.len() < capacity;
     let mut before = None;
     let mut left = points;
     while !left.is_empty() {
-        let after = left.get(..2).map(between);
-        // The octave before is half as far away as the one behind.
+        let after = match left {
+            [last] if is_complete => Some(last.differences.saturating_mul(15) / 8),
+            _ => left.get(..2).map(between),
+        };
         let all = match (before, after) {
+            // The octave before is half as far away as the one behind, and has as many stretches or more.
             (Some(before), Some(after)) => {
-                (2 * before.min(u64::MAX / 4) + after.min(u64::MAX / 4)) / 3
+                let after = after.min(before);
+                after.saturating_add(before.saturating_sub(after) / 3 * 2)
             }
-            (Some(one), None) | (None, Some(one)) => one,
-            (None, None) => 15,
+            (Some(one), None) => one,
+            (None, Some(one)) if left.len() > 1 => one,
+            _ => 15,
         };
         before = after;
         let Some((first, rest)) = left.split_first_mut() else {
@@ -263,7 +270,7 @@ impl<const K: usize> Accumulator<K> {
             // There is room for every octave.
             let _ = points.push(point);
         }
-        set_stretches(&mut points);
+        set_stretches(&mut points, K);
         Curve {
             rate_hz: scale.rate_hz,
             variance_unit: power_of_four(&points),

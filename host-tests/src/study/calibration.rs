@@ -11,10 +11,10 @@ use crate::{
     simulate::{Coefficients, Hidden, Preset, Random, Simulator, band_limited_flicker},
 };
 use allanite::{
-    Axis, Model, Scale,
+    Axis, Curve, Model, Scale,
     diagnosis::Options,
     effect::MAX_PARAMETERS,
-    fit::{Fit, State},
+    fit::{Fit, State, fit},
 };
 use rand::{RngExt as _, SeedableRng as _};
 use rayon::prelude::*;
@@ -60,6 +60,9 @@ pub enum Case {
     Short,
     /// Nothing is hidden in records with gaps.
     Gaps,
+    /// Nothing is hidden, and the rate random walk is as large as a record just shows: its square is twice its standard
+    /// error. So its bound is sometimes below the truth.
+    Faint,
     /// Flicker noise ends at half the sample rate, instead of being averaged over each sample interval.
     BandLimited,
     /// The effect of [`EFFECTS`] at this place is hidden.
@@ -69,7 +72,13 @@ pub enum Case {
 impl Case {
     /// All cases.
     pub fn all() -> impl Iterator<Item = Self> {
-        let nothing = [Self::Nothing, Self::Short, Self::Gaps, Self::BandLimited];
+        let nothing = [
+            Self::Nothing,
+            Self::Short,
+            Self::Gaps,
+            Self::Faint,
+            Self::BandLimited,
+        ];
         let hidden = (0..EFFECTS.len()).map(Self::Hidden);
         nothing.into_iter().chain(hidden)
     }
@@ -80,6 +89,27 @@ impl Case {
             _ => SAMPLES,
         }
     }
+}
+
+/// A gyro whose rate random walk is [just shown](Case::Faint) by a record. The standard error is that of the expected curve.
+fn faint(base: Coefficients) -> Coefficients {
+    let mut coefficients = base;
+    // The error depends a little on the coefficient itself.
+    for _ in 0..8 {
+        let model = Model::ieee_952();
+        let squares = squares(coefficients);
+        let octaves = (0..OCTAVES as u32).map(|k| 1_u32 << k).map_while(|m| {
+            let differences =
+                (SAMPLES.checked_sub(2 * m as usize)? / (m as usize / 4).max(1)) as u64 + 1;
+            let variance = model.variance(&squares, m, 1.0 / RATE_HZ);
+            (differences >= Curve::<OCTAVES>::MIN_DIFFERENCES).then_some((m, differences, variance))
+        });
+        let curve = Curve::<OCTAVES>::new(RATE_HZ, octaves).expect("a model's curve");
+        let fit =
+            fit(&curve, &model, Default::default()).expect("the model explains its own curve");
+        coefficients.rate_random_walk = (2.0 * fit.coefficients[3].square_error).sqrt();
+    }
+    coefficients
 }
 
 /// The lengths of the stretches between gaps, and of the gaps, in samples. Each is drawn uniformly.
@@ -243,7 +273,10 @@ fn range_of_deviations(lists: &[&[f64]]) -> [f64; 2] {
 
 /// Diagnoses records of a gyro.
 pub fn study(preset: Preset, case: Case, records: u64, options: Options) -> Row {
-    let base = preset.coefficients();
+    let base = match case {
+        Case::Faint => faint(preset.coefficients()),
+        _ => preset.coefficients(),
+    };
     let hidden = match case {
         Case::Hidden(place) => hidden_effect(base, place),
         _ => None,

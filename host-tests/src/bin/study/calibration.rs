@@ -67,6 +67,7 @@ fn print_row(row: &Row) {
         Case::Nothing => "nothing",
         Case::Short => "nothing, short",
         Case::Gaps => "nothing, gaps",
+        Case::Faint => "nothing, faint K",
         Case::BandLimited => "band-limited",
         Case::Hidden(_) => row.effect.unwrap_or_default(),
     };

@@ -6,7 +6,8 @@ use super::{
     columns::AxisColumn,
     field::{Field, Stamp},
     quantum::{Quantum, Range},
-    table::{Ended, Stop, Table, Visitor},
+    rounding::{Steps, range_of},
+    table::{Ended, RUN, Stop, Table, Visitor, visit_each},
     time_column::TimeColumn,
     tried::TriedColumns,
     watched::SharedSums,
@@ -82,6 +83,9 @@ struct Timed<'a, V> {
 }
 
 impl<V: Visitor> Visitor for Timed<'_, V> {
+    /// A stamp tells whether its own row is left out, and whether samples are missing before it.
+    const BY_ROWS: bool = true;
+
     #[inline]
     fn visit<F: Field>(&mut self, column: usize, value: F) -> Result<(), Stop> {
         if let Some(axis) = column.checked_sub(self.columns) {
@@ -240,6 +244,24 @@ impl Visitor for Counts {
         Ok(())
     }
 
+    fn visit_run<F: Field>(&mut self, axis: usize, values: &[F]) -> Result<(), (usize, Stop)> {
+        if axis >= self.tried.first {
+            return visit_each(self, axis, values);
+        }
+        let mut counts = [0; RUN];
+        let mut are_counts = true;
+        for (own, value) in counts.iter_mut().zip(values) {
+            let count = value.count();
+            are_counts &= count.is_some();
+            *own = count.unwrap_or(0);
+        }
+        if !are_counts {
+            return visit_each(self, axis, values);
+        }
+        self.batches.extend(axis, &counts[..values.len()]);
+        Ok(())
+    }
+
     fn gap(&mut self) {
         self.batches.gap();
     }
@@ -257,6 +279,17 @@ impl Visitor for Ranges {
         }
         Ok(())
     }
+
+    fn visit_run<F: Field>(&mut self, axis: usize, values: &[F]) -> Result<(), (usize, Stop)> {
+        if let Some(range) = self.0.get_mut(axis)
+            && let Some(floats) = F::floats(values)
+            && let Some(found) = range_of(floats)
+        {
+            range.include_floats(&found);
+            return Ok(());
+        }
+        visit_each(self, axis, values)
+    }
 }
 
 /// The visitor that rounds numbers to counts.
@@ -265,28 +298,6 @@ struct Rounded {
     quanta: Vec<Quantum>,
     tried: TriedColumns,
     steps: Vec<Steps>,
-}
-
-/// The differences between neighbouring values of one axis.
-#[derive(Clone, Copy, Default)]
-struct Steps {
-    last: Option<(f64, i32)>,
-    /// The number of differences that are not zero as numbers.
-    changes: u64,
-    /// The number of these that are zero as counts.
-    lost: u64,
-}
-
-impl Steps {
-    #[inline]
-    fn step_to(&mut self, number: f64, count: i32) {
-        if let Some((last, last_count)) = self.last {
-            let changes = number != last;
-            self.changes += u64::from(changes);
-            self.lost += u64::from(changes && count == last_count);
-        }
-        self.last = Some((number, count));
-    }
 }
 
 impl Visitor for Rounded {
@@ -303,8 +314,22 @@ impl Visitor for Rounded {
         Ok(())
     }
 
+    fn visit_run<F: Field>(&mut self, axis: usize, values: &[F]) -> Result<(), (usize, Stop)> {
+        let mut counts = [0; RUN];
+        let counts = &mut counts[..values.len()];
+        if axis < self.tried.first
+            && let Some(floats) = F::floats(values)
+            && self.quanta[axis].count_all(floats, counts)
+        {
+            self.steps[axis].step_through(floats, counts);
+            self.batches.extend(axis, counts);
+            return Ok(());
+        }
+        visit_each(self, axis, values)
+    }
+
     fn gap(&mut self) {
         self.batches.gap();
-        self.steps.iter_mut().for_each(|steps| steps.last = None);
+        self.steps.iter_mut().for_each(Steps::gap);
     }
 }

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Place, quoted};
 
 /// A value that can be read as a count, as a number or as a time stamp.
-pub(super) trait Field {
+pub(super) trait Field: Copy {
     /// The value as a count, or `None` if it is not a whole number within `i32`.
     fn count(&self) -> Option<i32>;
 
@@ -19,6 +19,11 @@ pub(super) trait Field {
     /// The value as a time stamp, which is exact if it is a whole number.
     fn stamp(&self) -> Result<Stamp, Flaw> {
         self.number().map(Stamp::Real)
+    }
+
+    /// The values as floats, if this type is a float, so that many of them are handled at once.
+    fn floats(_values: &[Self]) -> Option<&[f64]> {
+        None
     }
 }
 
@@ -112,6 +117,7 @@ impl Flaw {
 }
 
 /// A field of a text file.
+#[derive(Clone, Copy)]
 pub(super) struct Text<'a>(pub(super) &'a [u8]);
 
 impl Field for Text<'_> {
@@ -216,7 +222,7 @@ macro_rules! integer_fields {
     )*};
 }
 
-integer_fields!(i64 u64);
+integer_fields!(i32 i64 u64);
 
 impl Field for f64 {
     #[inline]
@@ -239,5 +245,9 @@ impl Field for f64 {
         } else {
             Err(flaw(*self))
         }
+    }
+
+    fn floats(values: &[Self]) -> Option<&[f64]> {
+        Some(values)
     }
 }

@@ -4,7 +4,8 @@ use super::{
     columns::{AxisColumn, Columns, Look},
     field::Field,
     metadata::Metadata,
-    npy_header::{Header, Kind, sidecar},
+    npy_block::{Block, Stopped},
+    npy_header::{Header, sidecar},
     source,
     table::{Ended, Stop, Table, Visitor},
 };
@@ -38,7 +39,7 @@ pub(super) struct Npy {
 impl Npy {
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         let place = || Place::file(path);
-        let mut reader = source::open(path, &ProgressBar::hidden())?;
+        let mut reader = source::open_unbuffered(path, &ProgressBar::hidden())?;
         let header = read_header(path, &mut reader)?;
         let (rows, width) = match header.shape[..] {
             [rows] => (rows, 1),
@@ -125,7 +126,7 @@ impl Npy {
         let mut number = None;
         let block = Block {
             bytes: element,
-            run_bytes: element.len(),
+            columns: 1,
             row: 0,
             first: 0,
         };
@@ -133,7 +134,9 @@ impl Npy {
             column: 0,
             axis: String::new(),
         };
-        self.show(&block, &[column], &mut Keep(&mut number)).ok()?;
+        block
+            .show(&self.header, &[column], &mut Keep(&mut number))
+            .ok()?;
         number
     }
 
@@ -183,7 +186,7 @@ impl Table for Npy {
         visitor: &mut V,
         progress: &ProgressBar,
     ) -> Result<Ended, Failure> {
-        let mut reader = source::open(&self.path, progress)?;
+        let mut reader = source::open_unbuffered(&self.path, progress)?;
         read_header(&self.path, &mut reader)?;
         let width = self.columns.looks.len();
         // A run is a row, or one element of a column in the other memory order.
@@ -207,12 +210,19 @@ impl Table for Npy {
             let whole = filled / run_bytes;
             let block = Block {
                 bytes: &bytes[..whole * run_bytes],
-                run_bytes,
+                columns,
                 row,
                 first,
             };
-            if let Some(ended) = self.show(&block, axes, visitor)? {
-                return Ok(ended);
+            match block.show(&self.header, axes, visitor) {
+                Ok(()) => {}
+                Err(Stopped {
+                    stop: Stop::NotCounts,
+                    ..
+                }) => return Ok(Ended::NotCounts),
+                Err(Stopped { axis, row, stop }) => {
+                    return Err(stop.failure(&axes[axis], Place::row(&self.path, row + 1)));
+                }
             }
             run += whole as u64;
             if let Some(error) = ended {
@@ -272,16 +282,6 @@ fn read_header(path: &Path, reader: &mut impl Read) -> Result<Header, Failure> {
 /// The size of the blocks that are read at once, in bytes. Chosen by hand.
 const BLOCK: usize = 1 << 16;
 
-/// Some runs that follow each other.
-struct Block<'a> {
-    bytes: &'a [u8],
-    run_bytes: usize,
-    /// The row of the first run.
-    row: u64,
-    /// The column of the first element of a run.
-    first: usize,
-}
-
 /// Fills a buffer as far as the reader has bytes. Returns the number of bytes, and why it is not the whole buffer.
 fn fill(reader: &mut impl Read, buffer: &mut [u8]) -> (usize, Option<std::io::Error>) {
     let mut filled = 0;
@@ -294,74 +294,6 @@ fn fill(reader: &mut impl Read, buffer: &mut [u8]) -> (usize, Option<std::io::Er
         }
     }
     (filled, None)
-}
-
-impl Npy {
-    /// Shows the elements of a block to a visitor, row by row. Returns how the pass ended, if it did.
-    fn show<V: Visitor>(
-        &self,
-        block: &Block,
-        axes: &[AxisColumn],
-        visitor: &mut V,
-    ) -> Result<Option<Ended>, Failure> {
-        let Header {
-            kind,
-            size,
-            big_endian,
-            ..
-        } = self.header;
-        // The type is decided once for all elements, which leaves a short loop for each of them.
-        macro_rules! elements {
-            ($size:literal, $convert:expr) => {
-                self.show_elements::<$size, _, _>(block, axes, visitor, |mut bytes: [u8; $size]| {
-                    if big_endian {
-                        bytes.reverse();
-                    }
-                    $convert(bytes)
-                })
-            };
-        }
-        match (kind, size) {
-            (Kind::Signed, 1) => elements!(1, |b| i64::from(i8::from_le_bytes(b))),
-            (Kind::Signed, 2) => elements!(2, |b| i64::from(i16::from_le_bytes(b))),
-            (Kind::Signed, 4) => elements!(4, |b| i64::from(i32::from_le_bytes(b))),
-            (Kind::Signed, _) => elements!(8, i64::from_le_bytes),
-            (Kind::Unsigned, 1) => elements!(1, |b| u64::from(u8::from_le_bytes(b))),
-            (Kind::Unsigned, 2) => elements!(2, |b| u64::from(u16::from_le_bytes(b))),
-            (Kind::Unsigned, 4) => elements!(4, |b| u64::from(u32::from_le_bytes(b))),
-            (Kind::Unsigned, _) => elements!(8, u64::from_le_bytes),
-            (Kind::Float, 4) => elements!(4, |b| f64::from(f32::from_le_bytes(b))),
-            (Kind::Float, _) => elements!(8, f64::from_le_bytes),
-        }
-    }
-
-    fn show_elements<const SIZE: usize, F: Field, V: Visitor>(
-        &self,
-        block: &Block,
-        axes: &[AxisColumn],
-        visitor: &mut V,
-        convert: impl Fn([u8; SIZE]) -> F,
-    ) -> Result<Option<Ended>, Failure> {
-        let columns = block.run_bytes / SIZE;
-        let here = axes.iter().enumerate().filter_map(|(i, axis)| {
-            let at = axis.column.checked_sub(block.first)?;
-            (at < columns).then_some((i, at))
-        });
-        let here: Vec<_> = here.collect();
-        let (elements, _) = block.bytes.as_chunks::<SIZE>();
-        for (run, row) in elements.chunks_exact(columns).zip(block.row..) {
-            for &(i, at) in &here {
-                match visitor.visit(i, convert(run[at])) {
-                    Ok(()) => {}
-                    Err(Stop::NotCounts) => return Ok(Some(Ended::NotCounts)),
-                    Err(stop) => {
-                        return Err(stop.failure(&axes[i], Place::row(&self.path, row + 1)));
-                    }
-                }
-            }
-        }
-        Ok(None)
-    }
 }
 
 /// A visitor that keeps the number that it is shown.

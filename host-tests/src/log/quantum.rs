@@ -23,6 +23,24 @@ impl Range {
         large: None,
     };
 
+    /// The range from the lowest to the highest of some floats. `whole` tells whether all of them are whole numbers, as
+    /// far as they lie within `i32`.
+    pub(super) fn of_floats(lowest: f64, highest: f64, whole: bool) -> Self {
+        Self {
+            lowest,
+            highest,
+            whole: whole && lowest >= i32::MIN.into() && highest <= i32::MAX.into(),
+            large: None,
+        }
+    }
+
+    /// Widens the range to include that of other floats.
+    pub(super) fn include_floats(&mut self, floats: &Self) {
+        self.lowest = self.lowest.min(floats.lowest);
+        self.highest = self.highest.max(floats.highest);
+        self.whole &= floats.whole;
+    }
+
     /// Widens the range to include a value.
     #[inline]
     pub(super) fn include(&mut self, value: Exact) {
@@ -123,6 +141,16 @@ impl Quantum {
         self.step == 1.0 && self.origin == 0.0
     }
 
+    /// Whether whole numbers that a float does not hold are within the range.
+    pub(super) const fn has_base(&self) -> bool {
+        self.base != 0
+    }
+
+    /// The number of counts that is subtracted.
+    pub(super) const fn origin(&self) -> f64 {
+        self.origin
+    }
+
     /// The value less the base.
     #[inline]
     pub(super) fn relative(&self, value: Exact) -> f64 {
@@ -150,12 +178,14 @@ impl Quantum {
     }
 }
 
+/// Next to this number, floats are whole.
+pub(super) const LARGE: f64 = (3_u64 << 51) as f64;
+
 /// The nearest whole number to one within ±2^51, the even one of two. Where the processor that a program is built for
 /// has no instruction for it, `round_ties_even` is a call.
 #[inline]
 fn round(number: f64) -> f64 {
-    // Next to this number, floats are whole. The sum is rounded to one of them, and the difference is exact.
-    const LARGE: f64 = (3_u64 << 51) as f64;
+    // The sum is rounded to a whole number, and the difference is exact.
     (number + LARGE) - LARGE
 }
 

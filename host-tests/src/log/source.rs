@@ -110,10 +110,20 @@ impl Format {
 
 /// Opens a file at its beginning. `progress` follows the bytes that are read.
 pub(super) fn open(path: &Path, progress: &ProgressBar) -> Result<impl BufRead + use<>, Failure> {
+    let file = open_unbuffered(path, progress)?;
+    Ok(BufReader::with_capacity(BUFFER, file))
+}
+
+/// Opens a file at its beginning, for a reader that asks for large blocks, so that a buffer would only copy them once
+/// more. `progress` follows the bytes that are read.
+pub(super) fn open_unbuffered(
+    path: &Path,
+    progress: &ProgressBar,
+) -> Result<impl Read + use<>, Failure> {
     let (file, length) = regular_file::open(path)?;
     progress.set_length(length);
     progress.set_position(0);
-    Ok(BufReader::with_capacity(BUFFER, progress.wrap_read(file)))
+    Ok(progress.wrap_read(file))
 }
 
 /// Opens the text of a file at its beginning, unpacked and without a byte order mark.

@@ -236,6 +236,21 @@ impl Batches {
         }
     }
 
+    /// Adds counts of a column that follow each other.
+    pub(super) fn extend(&mut self, column: usize, counts: &[i32]) {
+        let mut rest = counts;
+        while !rest.is_empty() {
+            let batch = &mut self.open[column];
+            let room = BATCH.saturating_sub(batch.len());
+            let (counts, after) = rest.split_at(room.min(rest.len()));
+            batch.extend_from_slice(counts);
+            if batch.len() >= BATCH {
+                self.send(column);
+            }
+            rest = after;
+        }
+    }
+
     #[cold]
     fn send(&mut self, column: usize) {
         let next = self

@@ -1,0 +1,118 @@
+//! Finds the range of many floats and rounds them to counts, in loops that the compiler spreads over vectors. The results
+//! are those of the same floats one by one.
+
+use super::quantum::{LARGE, Quantum, Range};
+
+/// The number of floats that are compared side by side. Vectors of two floats then have enough of them to hide how
+/// long a comparison takes.
+const LANES: usize = 8;
+
+/// The range of floats, or `None` if some of them are not finite.
+pub(super) fn range_of(floats: &[f64]) -> Option<Range> {
+    let mut lowest = [f64::INFINITY; LANES];
+    let mut highest = [f64::NEG_INFINITY; LANES];
+    // Masks of whole words, because the compiler keeps those in vectors.
+    let mut odd = [0_u64; LANES];
+    let mut endless = [0_u64; LANES];
+    let (chunks, rest) = floats.as_chunks::<LANES>();
+    let mut last = [floats.first().copied().unwrap_or(0.0); LANES];
+    last[..rest.len()].copy_from_slice(rest);
+    let last = if rest.is_empty() {
+        &[][..]
+    } else {
+        &[last][..]
+    };
+    for chunk in chunks.iter().chain(last) {
+        for i in 0..LANES {
+            let float = chunk[i];
+            lowest[i] = if float < lowest[i] { float } else { lowest[i] };
+            highest[i] = if float > highest[i] {
+                float
+            } else {
+                highest[i]
+            };
+            // A whole number beyond ±2^51 may seem to be none here. It is not within `i32` anyway.
+            odd[i] |= u64::from((float + LARGE) - LARGE != float).wrapping_neg();
+            endless[i] |= u64::from(!float.is_finite()).wrapping_neg();
+        }
+    }
+    if endless != [0; LANES] {
+        return None;
+    }
+    Some(Range::of_floats(
+        lowest.into_iter().fold(f64::INFINITY, f64::min),
+        highest.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        odd == [0; LANES],
+    ))
+}
+
+impl Quantum {
+    /// Rounds floats within the range to counts. Does nothing and returns `false` if some of them are not finite, or
+    /// if whole numbers that a float does not hold belong to the range.
+    pub(super) fn count_all(&self, floats: &[f64], counts: &mut [i32]) -> bool {
+        if self.has_base()
+            || !floats
+                .iter()
+                .fold(true, |all, float| all & float.is_finite())
+        {
+            return false;
+        }
+        // The step is a power of two, of which the inverse is exact.
+        let (inverse, origin) = (1.0 / self.step(), self.origin());
+        for (count, float) in counts.iter_mut().zip(floats) {
+            // The sum is a multiple of its last bit, which is 1. So the lower half of its bits are those of the count.
+            *count = ((float * inverse - origin) + LARGE).to_bits() as i32;
+        }
+        true
+    }
+}
+
+/// The differences between neighbouring values of one axis.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Steps {
+    last: Option<(f64, i32)>,
+    /// The number of differences that are not zero as numbers.
+    pub(super) changes: u64,
+    /// The number of these that are zero as counts.
+    pub(super) lost: u64,
+}
+
+impl Steps {
+    #[inline]
+    pub(super) fn step_to(&mut self, number: f64, count: i32) {
+        if let Some((last, last_count)) = self.last {
+            let changes = number != last;
+            self.changes += u64::from(changes);
+            self.lost += u64::from(changes && count == last_count);
+        }
+        self.last = Some((number, count));
+    }
+
+    /// Steps to all numbers in their order.
+    pub(super) fn step_through(&mut self, numbers: &[f64], counts: &[i32]) {
+        /// The number of pairs of neighbours that are looked at together. Few of them then hold a pair of equal counts.
+        const PAIRS: usize = 16;
+        let mut at = 0;
+        while at < numbers.len() {
+            // Counts that differ are those of numbers that differ.
+            let differ = at > 0
+                && at + PAIRS <= counts.len()
+                && (at..at + PAIRS).fold(true, |all, i| all & (counts[i] != counts[i - 1]));
+            let end = (at + PAIRS).min(numbers.len());
+            if differ {
+                self.changes += PAIRS as u64;
+                self.last = Some((numbers[end - 1], counts[end - 1]));
+            } else {
+                for i in at..end {
+                    self.step_to(numbers[i], counts[i]);
+                }
+            }
+            at = end;
+        }
+    }
+
+    /// Tells that samples are missing before the next number.
+    pub(super) fn gap(&mut self) {
+        self.last = None;
+    }
+}

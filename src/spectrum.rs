@@ -25,6 +25,8 @@ mod fine;
 mod level;
 mod line;
 mod overlap;
+#[cfg(target_pointer_width = "64")]
+mod several;
 #[cfg(feature = "storage")]
 mod stored;
 mod transform;

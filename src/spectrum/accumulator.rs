@@ -1,5 +1,7 @@
 //! The accumulator: it turns counts into one sum of powers per bin.
 
+#[cfg(target_pointer_width = "64")]
+use super::several::Several;
 use super::{
     level::{Level, RADIX, RADIX_BITS},
     window::is_possible,
@@ -130,6 +132,8 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
     /// Adds counts, and does all the work of them and of those that wait. None is lost.
     pub fn push_slice(&mut self, counts: &[i32]) {
         self.finish();
+        #[cfg(target_pointer_width = "64")]
+        let mut waiting = None;
         let mut rest = counts;
         while let Some(&first) = rest.first() {
             if self.number == 0 {
@@ -140,18 +144,26 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
             let room = (RADIX as u32).wrapping_sub(number % RADIX as u32) as usize;
             let (taken, after) = rest.split_at(room.min(rest.len()));
             if let Some(lowest) = self.levels.first_mut() {
-                for (i, &count) in (number..=u32::MAX).zip(taken) {
-                    lowest.push_count(i, count, reference);
-                }
+                lowest.push_counts(number, taken, reference);
             }
             self.number = self.number.wrapping_add(taken.len() as u64);
             if taken.len() == room {
                 self.complete();
+                #[cfg(target_pointer_width = "64")]
+                while let Some((level, block_bits, end)) = self.next_due() {
+                    let several = waiting.get_or_insert_with(Several::new);
+                    several.push(&mut self.levels, level, block_bits, end);
+                }
+                #[cfg(not(target_pointer_width = "64"))]
                 while self.due != 0 {
                     self.transform();
                 }
             }
             rest = after;
+        }
+        #[cfg(target_pointer_width = "64")]
+        if let Some(several) = &mut waiting {
+            several.finish(&mut self.levels);
         }
         self.pass_by(counts);
     }
@@ -239,14 +251,26 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
 
     /// Transforms the segment of the lowest level that has one.
     fn transform(&mut self) {
+        if let Some((i, block_bits, end)) = self.next_due()
+            && let Some(level) = self.levels.get_mut(i)
+        {
+            level.add_segment(end, block_bits);
+        }
+    }
+
+    /// The lowest level that has a segment to transform, the number of bits in the length of its blocks, and the block
+    /// that the segment ends before. The segment counts as transformed.
+    #[inline(always)]
+    fn next_due(&mut self) -> Option<(usize, u32, u32)> {
+        if self.due == 0 {
+            return None;
+        }
         let i = self.due.trailing_zeros();
         // The lowest bit is no longer set.
         self.due &= self.due.wrapping_sub(1);
-        if let Some(level) = self.levels.get_mut(i as usize) {
-            let block_bits = RADIX_BITS.wrapping_mul(i);
-            let end = self.number.wrapping_shr(block_bits) as u32;
-            level.add_segment(end, block_bits);
-        }
+        let block_bits = RADIX_BITS.wrapping_mul(i);
+        let end = self.number.wrapping_shr(block_bits) as u32;
+        Some((i as usize, block_bits, end))
     }
 
     /// Marks a place where samples were lost or the gyro was disturbed. No block and no segment spans this

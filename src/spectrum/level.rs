@@ -1,5 +1,7 @@
 //! What is kept for one block length.
 
+#[cfg(target_pointer_width = "64")]
+use super::transform::add_power;
 use super::{transform::Segment, window::bins};
 
 /// The number of blocks that make a block of the next level.
@@ -63,6 +65,30 @@ impl<const P: usize> Level<P> {
         }
     }
 
+    /// Keeps blocks of single counts, less the reference, up to the end of a block of the next level.
+    #[inline(always)]
+    pub(super) fn push_counts(&mut self, number: u32, counts: &[i32], reference: i32) {
+        let (groups, _) = self.blocks.as_chunks_mut::<RADIX>();
+        let group = groups.get_mut(number as usize % P / RADIX);
+        if let (Some(group), Ok(&counts), 0) =
+            (group, <&[_; RADIX]>::try_from(counts), self.exponent)
+        {
+            let differences = counts.map(|count: i32| count.wrapping_sub(reference));
+            // The sign tells whether a difference overflows, or whether it is not within the limit.
+            let signs = counts.iter().zip(differences).map(|(count, difference)| {
+                let overflow = (count ^ reference) & (count ^ difference);
+                overflow | difference.wrapping_add(LIMIT as i32)
+            });
+            if signs.fold(0, |all, sign| all | sign) >= 0 {
+                *group = differences;
+                return;
+            }
+        }
+        for (i, &count) in (number..=u32::MAX).zip(counts) {
+            self.push_count(i, count, reference);
+        }
+    }
+
     #[cold]
     #[inline(never)]
     fn push_far_count(&mut self, number: u32, count: i32, reference: i32) {
@@ -123,13 +149,53 @@ impl<const P: usize> Level<P> {
         // The transform multiplies by 8.
         let scale = power_of_two(self.exponent, block_bits.wrapping_add(UNIT_BITS + 3));
         let segment = Segment::<P>::new(&self.blocks, start, scale);
+        let (powers, squares) = self.begin_segment();
+        segment.add_powers(powers, squares);
+    }
+
+    /// Counts a segment, and returns the sums that its powers and their squares are added to.
+    #[inline(always)]
+    fn begin_segment(&mut self) -> (&mut [f32], &mut [f32]) {
         if self.segments >= MANY {
             self.halve();
         }
         self.segments = self.segments.saturating_add(1);
         let (powers, squares) = self.sums.split_at_mut(P / 2);
-        let squares = squares.get_mut(..bins(P)).unwrap_or_default();
-        segment.add_powers(powers, squares);
+        (powers, squares.get_mut(..bins(P)).unwrap_or_default())
+    }
+
+    /// The values of the segment that ends before block `number`, in the order of its blocks and in the unit of the
+    /// transform.
+    #[cfg(target_pointer_width = "64")]
+    #[inline]
+    pub(super) fn segment_values(&self, number: u32, block_bits: u32, values: &mut [f32; P]) {
+        let scale = power_of_two(self.exponent, block_bits.wrapping_add(UNIT_BITS + 3));
+        let start = number as usize % P;
+        let first = self.blocks[start];
+        let (late, early) = self.blocks.split_at(start);
+        let (to_early, to_late) = values.split_at_mut(early.len().min(P));
+        for (from, to) in [(early, to_early), (late, to_late)] {
+            for (value, block) in to.iter_mut().zip(from) {
+                *value = block.wrapping_sub(first) as f32 * scale;
+            }
+        }
+    }
+
+    /// Adds the segment with these values.
+    #[cfg(target_pointer_width = "64")]
+    pub(super) fn add_values(&mut self, values: &[f32; P]) {
+        let (powers, squares) = self.begin_segment();
+        Segment::<P>::of_blocks(|j| values[j % P]).add_powers(powers, squares);
+    }
+
+    /// Adds the powers of a segment's bins, as far as they are given.
+    #[cfg(target_pointer_width = "64")]
+    #[inline]
+    pub(super) fn add_powers(&mut self, powers: &[f32]) {
+        let (sums, squares) = self.begin_segment();
+        for ((sum, square), &power) in sums.iter_mut().zip(squares).zip(powers) {
+            add_power(power, sum, square);
+        }
     }
 
     /// Gives everything so far half its weight. A sum in single precision would otherwise stop taking up the

@@ -2,9 +2,28 @@
 
 use super::window::{cosine_and_sine, first_bin, places};
 use crate::real::single;
+use core::ops::{Add, Mul, Neg, Sub};
+
+/// What a transform computes with: a number, or the same place of several segments.
+pub(super) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self> + Neg<Output = Self>
+{
+    const ZERO: Self;
+
+    fn squared(self) -> Self;
+}
+
+impl Number for f32 {
+    const ZERO: Self = 0.0;
+
+    #[inline(always)]
+    fn squared(self) -> Self {
+        self * self
+    }
+}
 
 /// A complex number: its real and its imaginary part.
-type Complex = [f32; 2];
+type Complex<T> = [T; 2];
 
 /// A segment as it enters the transform: its even blocks are real parts, its odd blocks imaginary parts, and
 /// the pairs are in bit-reversed order.
@@ -13,26 +32,11 @@ type Complex = [f32; 2];
 /// section 12.3). Everything is computed in single precision, in an order that the program gives. So host and
 /// target compute the same bits. No index here needs a check that could fail, which no published transform for
 /// microcontrollers offers.
-pub(super) struct Segment<const P: usize> {
-    values: [f32; P],
+pub(super) struct Segment<const P: usize, T = f32> {
+    values: [T; P],
 }
 
 impl<const P: usize> Segment<P> {
-    /// The block of each value: pairs of blocks in bit-reversed order. A byte is enough, because a segment has at most
-    /// 256 blocks.
-    const ORDER: [u8; P] = {
-        let mut order = [0; P];
-        let bits = (P / 2).trailing_zeros();
-        let mut pair = 0_u32;
-        while pair < P as u32 / 2 {
-            let block = 2 * (pair.reverse_bits() >> (u32::BITS - bits));
-            order[2 * pair as usize] = block as u8;
-            order[2 * pair as usize + 1] = block as u8 + 1;
-            pair += 1;
-        }
-        order
-    };
-
     /// The segment that begins in slot `start` of a ring. Its blocks are taken less the first one, which is
     /// subtracted before anything is rounded, and times `scale`.
     #[inline]
@@ -48,7 +52,44 @@ impl<const P: usize> Segment<P> {
     /// Adds `|8 Σ_j w_j y_j e^(−2πijk/P)|²` to `powers` and its square to `squares`, for the bins `k` that are
     /// kept, in their order.
     #[inline]
-    pub(super) fn add_powers(mut self, powers: &mut [f32], squares: &mut [f32]) {
+    pub(super) fn add_powers(self, powers: &mut [f32], squares: &mut [f32]) {
+        let sums = powers.iter_mut().zip(squares);
+        self.for_each_power(sums, |power, (sum, square)| add_power(power, sum, square));
+    }
+}
+
+impl<const P: usize, T: Number> Segment<P, T> {
+    /// The block of each value: pairs of blocks in bit-reversed order. A byte is enough, because a segment has at most
+    /// 256 blocks.
+    const ORDER: [u8; P] = {
+        let mut order = [0; P];
+        let bits = (P / 2).trailing_zeros();
+        let mut pair = 0_u32;
+        while pair < P as u32 / 2 {
+            let block = 2 * (pair.reverse_bits() >> (u32::BITS - bits));
+            order[2 * pair as usize] = block as u8;
+            order[2 * pair as usize + 1] = block as u8 + 1;
+            pair += 1;
+        }
+        order
+    };
+
+    /// The segment of which `block` tells the value of each block.
+    #[inline]
+    pub(super) fn of_blocks(mut block: impl FnMut(usize) -> T) -> Self {
+        Self {
+            values: Self::ORDER.map(|place| block(place.into())),
+        }
+    }
+
+    /// Hands `|8 Σ_j w_j y_j e^(−2πijk/P)|²` to `keep`, each with the next one of the `places`, for the bins `k` that
+    /// are kept, in their order.
+    #[inline]
+    pub(super) fn for_each_power<S>(
+        mut self,
+        mut places: impl Iterator<Item = S>,
+        keep: impl Fn(T, S),
+    ) {
         self.transform();
         let highest = self.separate();
         let (pairs, _) = self.values.as_chunks::<2>();
@@ -56,14 +97,13 @@ impl<const P: usize> Segment<P> {
             return;
         };
         let (mut before, mut here) = (before, here);
-        let mut sums = powers.iter_mut().zip(squares);
-        for (after, (sum, square)) in later.iter().zip(&mut sums) {
-            add_power(windowed_power(before, here, after), sum, square);
+        for (after, place) in later.iter().zip(&mut places) {
+            keep(windowed_power(before, here, after), place);
             (before, here) = (here, after);
         }
         // The neighbour of the last bin lies elsewhere.
-        if let Some((sum, square)) = sums.next() {
-            add_power(windowed_power(before, here, &highest), sum, square);
+        if let Some(place) = places.next() {
+            keep(windowed_power(before, here, &highest), place);
         }
     }
 
@@ -102,14 +142,14 @@ impl<const P: usize> Segment<P> {
     /// Turns the complex transform of the pairs into twice that of the blocks, for the bins from 1 to P/2 − 1,
     /// and returns that of bin P/2.
     #[inline]
-    fn separate(&mut self) -> Complex {
+    fn separate(&mut self) -> Complex<T> {
         let (pairs, _) = self.values.as_chunks_mut::<2>();
-        let highest = pairs.first().map_or(0.0, |[re, im]| 2.0 * (re - im));
+        let highest = pairs.first().map_or(T::ZERO, |&[re, im]| (re - im) * 2.0);
         let Some((low, high)) = pairs.split_at_mut_checked(P / 4) else {
-            return [0.0; 2];
+            return [T::ZERO; 2];
         };
         if let Some([re, im]) = high.first_mut() {
-            [*re, *im] = [2.0 * *re, -2.0 * *im];
+            [*re, *im] = [*re * 2.0, *im * -2.0];
         }
         let low = low.split_first_mut().map_or(&mut [][..], |(_, rest)| rest);
         let both = low.iter_mut().zip(high.iter_mut().rev());
@@ -118,34 +158,34 @@ impl<const P: usize> Segment<P> {
             let [sum_re, sum_im] = [ar + br, ai - bi];
             let [difference_re, difference_im] = [ar - br, ai + bi];
             let (cosine, sine) = twiddle(k, P);
-            let re = cosine * difference_im - sine * difference_re;
-            let im = cosine * difference_re + sine * difference_im;
+            let re = difference_im * cosine - difference_re * sine;
+            let im = difference_re * cosine + difference_im * sine;
             *low = [sum_re + re, sum_im - im];
             *high = [sum_re - re, -(sum_im + im)];
         }
-        [highest, 0.0]
+        [highest, T::ZERO]
     }
 }
 
 /// The power of a bin of the windowed segment, from twice the transform of the segment at the bin and its
 /// neighbours: the window is `½ − ¼ e^(iθj) − ¼ e^(−iθj)`.
 #[inline(always)]
-fn windowed_power(before: &Complex, here: &Complex, after: &Complex) -> f32 {
-    let re = 2.0 * here[0] - (before[0] + after[0]);
-    let im = 2.0 * here[1] - (before[1] + after[1]);
-    re * re + im * im
+fn windowed_power<T: Number>(before: &Complex<T>, here: &Complex<T>, after: &Complex<T>) -> T {
+    let re = here[0] * 2.0 - (before[0] + after[0]);
+    let im = here[1] * 2.0 - (before[1] + after[1]);
+    re.squared() + im.squared()
 }
 
 /// Adds a power and its square to the sums of a bin.
 #[inline(always)]
-fn add_power(power: f32, sum: &mut f32, square: &mut f32) {
+pub(super) fn add_power(power: f32, sum: &mut f32, square: &mut f32) {
     *sum += power;
     *square += power * power;
 }
 
 /// Joins the transforms in the two halves of a group to the transform of `length` pairs.
 #[inline]
-fn join(group: &mut [f32], length: usize) {
+fn join<T: Number>(group: &mut [T], length: usize) {
     let Some((low, high)) = group.split_at_mut_checked(length) else {
         return;
     };
@@ -157,7 +197,7 @@ fn join(group: &mut [f32], length: usize) {
         let (cosine, sine) = (single(cosine), single(sine));
         place = place.wrapping_add(step);
         let [re, im] = *high;
-        let [turned_re, turned_im] = [cosine * re + sine * im, cosine * im - sine * re];
+        let [turned_re, turned_im] = [re * cosine + im * sine, im * cosine - re * sine];
         let [low_re, low_im] = *low;
         *low = [low_re + turned_re, low_im + turned_im];
         *high = [low_re - turned_re, low_im - turned_im];

@@ -7,6 +7,7 @@ mod observation;
 mod rails;
 mod reason;
 mod runs;
+mod slice;
 mod state;
 mod watch;
 
@@ -175,6 +176,11 @@ impl Integrity {
             };
         }
         state.push(count, limits)
+    }
+
+    /// Adds counts. The state afterwards is the same as if they were pushed one by one, but it is reached sooner.
+    pub fn push_slice(&mut self, counts: &[i32]) {
+        self.state.push_slice(counts, self.limits());
     }
 
     /// Counts samples that were lost at this place, and marks a [`gap`](Self::gap). Does nothing for 0

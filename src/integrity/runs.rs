@@ -1,5 +1,7 @@
 //! Runs of equal values.
 
+use super::slice::Differences;
+
 /// The number of ended runs from which the mean run is known well enough to judge a run by it. The mean
 /// of 16 runs of independent noise has a standard error of a quarter. The number is chosen by hand.
 const KNOWN: u32 = 16;
@@ -77,6 +79,36 @@ impl Runs {
             self.stuck_samples = self.stuck_samples.saturating_add(new.into());
         }
         stuck
+    }
+
+    /// Whether [`push_slice`](Self::push_slice) can add counts with these differences.
+    #[inline(always)]
+    pub(super) fn takes(&self, differences: &Differences) -> bool {
+        let (repeats_at_once, _) = differences.repeats_at_ends();
+        let longest = if repeats_at_once { 1 } else { HALF / 4 };
+        let long = (1..=longest).contains(&self.present) && !differences.repeats_twice;
+        // More than all samples that can join ended runs here.
+        let room = HALF / 2;
+        long && self.ended_samples < room
+    }
+
+    /// Adds counts with these differences, the last of which is `last`. No run among them has more than two samples,
+    /// which is never implausible, because the factor is at least 8.
+    #[inline(always)]
+    pub(super) fn push_slice(&mut self, differences: &Differences, last: i32) {
+        let number = differences.number as u32;
+        let (_, repeats_last) = differences.repeats_at_ends();
+        let present = if repeats_last { 2 } else { 1 };
+        let samples = self.present.wrapping_add(number).wrapping_sub(present);
+        self.add_ended(samples, number.wrapping_sub(differences.repeats));
+        if let Some(reached) = self.reached.first_mut()
+            && differences.repeats > 0
+        {
+            *reached = reached.saturating_add(differences.repeats);
+            self.longest = self.longest.max(2);
+        }
+        self.value = last;
+        self.present = present;
     }
 
     /// Ends the present run, because a different value has followed.

@@ -175,7 +175,7 @@ impl State {
 
     #[cold]
     #[inline(never)]
-    fn end_short_cluster(&mut self, factor: u16) {
+    pub(super) fn end_short_cluster(&mut self, factor: u16) {
         let [short, long] = &mut self.clusters;
         let [short_length, _] = CLUSTERS;
         // The sum of 1024 counts of 32 bits is far from the limit of 64 bits.

@@ -1,5 +1,7 @@
 //! Detects values that deviate from their neighbours by far more than is usual in their sequence.
 
+use super::slice::{Differences, MOST};
+
 /// A sequence of values, the scale of the differences of its neighbours, and its departures from its level.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -165,6 +167,54 @@ impl Watch {
         self.scale = scale.wrapping_add(new.wrapping_shr(rule.span)) as u64;
         self.previous = value.into();
         true
+    }
+
+    /// Whether the scale is known, and the last value was this one and ordinary.
+    pub(super) fn is_steady_at(&self, value: i32) -> bool {
+        self.steady && self.scale < USUAL_BELOW && self.previous == i64::from(value)
+    }
+
+    /// Adds values if all of them are as usual for certain, and returns whether they were added. `last` is the last
+    /// one. The watch is [steady](Self::is_steady_at).
+    #[inline(always)]
+    pub(super) fn push_usual_slice(
+        &mut self,
+        differences: &Differences,
+        last: i32,
+        rule: &Rule,
+    ) -> bool {
+        // A value lowers the scale by a 256th at most. So 64 of them leave three quarters of it.
+        const { assert!(MOST <= 64) };
+        let least = self
+            .scale
+            .wrapping_sub(self.scale / 4)
+            .wrapping_add(rule.floor);
+        let largest = u64::from(differences.bits) << FRACTION;
+        if rule.span < 8 || largest > least.wrapping_mul(rule.factor.into()) {
+            return false;
+        }
+        let [low, _] = &mut self.total;
+        let Some(sum) = low.checked_add(differences.squares) else {
+            return false;
+        };
+        *low = sum;
+        // This is the arithmetic of `push_usual`, in an order in which a value waits for the one before it as briefly as
+        // possible.
+        let mut usual = self.scale.wrapping_add(rule.floor);
+        for &difference in differences.sizes() {
+            let new = (u64::from(difference) << FRACTION).wrapping_shr(rule.span);
+            let most = usual.wrapping_mul(CUT).wrapping_shr(rule.span);
+            let faded = usual.wrapping_sub(rule.floor).wrapping_shr(rule.span);
+            usual = usual.wrapping_sub(faded).wrapping_add(new.min(most));
+        }
+        self.scale = usual.wrapping_sub(rule.floor);
+        self.previous = last.into();
+        true
+    }
+
+    /// Notes that this value repeated the one before it and was ordinary.
+    pub(super) fn repeat(&mut self, value: i32) {
+        self.reference = value.into();
     }
 
     /// Adds a value within ±2^41, and returns the magnitude of its difference from the one before.

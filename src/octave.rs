@@ -1,6 +1,8 @@
 //! The accumulator: it turns counts into one exact sum of squares per octave of averaging time.
 
 mod slice;
+#[cfg(target_pointer_width = "64")]
+mod wide;
 
 pub use crate::square_sum::SquareSum;
 

@@ -3,10 +3,10 @@
 use super::{Accumulator, FIRST, RING};
 
 /// The number of counts that are taken together.
-const BATCH: usize = 128;
+pub(super) const BATCH: usize = 128;
 
 /// The number of levels above 0 that complete blocks within a batch.
-const DEPTH: usize = BATCH.trailing_zeros() as usize;
+pub(super) const DEPTH: usize = BATCH.trailing_zeros() as usize;
 
 /// The sample number from which on every level up to [`DEPTH`] has a full ring.
 const FULL: u32 = (RING * BATCH) as u32;
@@ -23,12 +23,13 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// reached sooner.
     pub fn push_slice(&mut self, counts: &[i32]) {
         let mut rest = counts;
+        let mut is_far = false;
         while !rest.is_empty() {
             let past = self.number as usize % BATCH;
             let ready = past == 0 && self.number >= FULL && self.number < u32::MAX - FULL;
             if ready
                 && let Some((batch, after)) = rest.split_first_chunk()
-                && self.push_batch(batch)
+                && self.push_any_batch(batch, &mut is_far)
             {
                 rest = after;
             } else {
@@ -88,6 +89,20 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
         self.complete_scheduled(self.number);
         true
+    }
+
+    /// Adds a batch in the way that suits it. If none does, it does nothing and returns `false`. `is_far` tells whether
+    /// the last batch had angles that are too far apart for 32 bits, so that this one probably has them, too.
+    #[inline(always)]
+    fn push_any_batch(&mut self, counts: &[i32; BATCH], is_far: &mut bool) -> bool {
+        if !*is_far && self.push_batch(counts) {
+            return true;
+        }
+        #[cfg(target_pointer_width = "64")]
+        {
+            *is_far = self.push_wide_batch(counts);
+        }
+        *is_far
     }
 
     /// Hands the level `COUNT` boundaries: every other one of those that the level below took.

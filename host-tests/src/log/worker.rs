@@ -17,11 +17,11 @@ use std::{
 };
 
 /// The number of counts of a column that are collected before they are accumulated as a slice.
-const BATCH: usize = 1 << 13;
+const BATCH: usize = 1 << 14;
 
 /// The number of batches of a column that may wait for a thread. With three threads on two cores, each of them stops
 /// for a while.
-const ROOM: usize = 16;
+const ROOM: usize = 8;
 
 /// What is kept of one axis.
 pub(super) enum Sums {

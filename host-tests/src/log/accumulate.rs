@@ -7,11 +7,12 @@ use super::{
     field::{Field, Stamp},
     quantum::{Quantum, Range},
     rounding::{Steps, range_of},
+    sums::Sums,
     table::{Ended, RUN, Stop, Table, Visitor, visit_each},
     time_column::TimeColumn,
     tried::TriedColumns,
     watched::SharedSums,
-    worker::{Batches, Plan, Sums, Totals},
+    worker::{Batches, Plan, Totals},
 };
 use crate::failure::{Failure, Place};
 use allanite::course::Course;

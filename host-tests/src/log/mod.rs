@@ -111,6 +111,7 @@ mod records;
 mod rounding;
 mod scaling;
 mod source;
+mod sums;
 mod table;
 mod time_column;
 mod tried;

@@ -7,6 +7,7 @@ use super::{
     clock::Clock,
     evidence::{self, Recorded, spread_motion},
     scaling::{self, Origin, Scaling},
+    sums::Sums,
     table::Table,
     time_column::TimeColumn,
     tried::TriedColumns,
@@ -134,9 +135,9 @@ pub(super) fn read_table(
     let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
     let mut axes = Vec::new();
     let mut rest = Vec::new();
-    let is_constant = |sums: &worker::Sums| {
+    let is_constant = |sums: &Sums| {
         is_constant(sums.accumulator())
-            || matches!(sums, worker::Sums::InTwo { rest, .. } if first.is_some() && is_constant(&rest.accumulator))
+            || matches!(sums, Sums::InTwo { rest, .. } if first.is_some() && is_constant(&rest.accumulator))
     };
     let some_change = measured.axes.iter().any(|(sums, _)| !is_constant(sums));
     for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
@@ -152,7 +153,7 @@ pub(super) fn read_table(
             spectrum: sums.spectrum().clone(),
             evidence: None,
         };
-        if let (Some(_), worker::Sums::InTwo { rest: behind, .. }) = (first, &sums) {
+        if let (Some(_), Sums::InTwo { rest: behind, .. }) = (first, &sums) {
             let behind = Axis {
                 accumulator: behind.accumulator.clone(),
                 spectrum: behind.spectrum.clone(),
@@ -162,7 +163,7 @@ pub(super) fn read_table(
             rest.push(behind);
         }
         check_axis(path, &axis)?;
-        if let worker::Sums::Watched(watched, beside) = &sums {
+        if let Sums::Watched(watched, beside) = &sums {
             let evidence = recorded.evidence(path, &axis, &**watched)?;
             axis.evidence = Some(Evidence {
                 course: Some(*beside.course.clone()),

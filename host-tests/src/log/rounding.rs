@@ -68,7 +68,7 @@ impl Quantum {
 }
 
 /// The differences between neighbouring values of one axis.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Steps {
     last: Option<(f64, i32)>,
     /// The number of differences that are not zero as numbers.
@@ -114,5 +114,101 @@ impl Steps {
     /// Tells that samples are missing before the next number.
     pub(super) fn gap(&mut self) {
         self.last = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::field::Exact, *};
+
+    /// Floats of many sizes, whole numbers, halves and both zeros.
+    fn floats(number: usize, size: f64) -> Vec<f64> {
+        let mut random = 1_u64;
+        let mut next = || {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            let float = size * ((random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
+            match random >> 61 {
+                0 => float.round(),
+                1 => float.round() + 0.5,
+                2 => -0.0,
+                _ => float,
+            }
+        };
+        (0..number).map(|_| next()).collect()
+    }
+
+    const SIZES: [f64; 6] = [1e-280, 3.0, 1e5, 2_147_483_648.0, 4e15, 1e290];
+
+    fn one_by_one(floats: &[f64]) -> Range {
+        let mut range = Range::EMPTY;
+        for &float in floats {
+            range.include(Exact::Float(float));
+        }
+        range
+    }
+
+    #[test]
+    fn range_is_that_of_the_floats_one_by_one() {
+        for size in SIZES {
+            for number in [1, 7, 8, 9, 1000] {
+                let floats = floats(number, size);
+                let whole: Vec<f64> = floats.iter().map(|float| float.round()).collect();
+                for floats in [floats, whole] {
+                    let found = range_of(&floats).unwrap();
+                    assert_eq!(found, one_by_one(&floats), "{size} {number}");
+                    let mut range = one_by_one(&[1.5]);
+                    range.include_floats(&found);
+                    assert_eq!(range, one_by_one(&[&[1.5], &floats[..]].concat()));
+                }
+            }
+        }
+        for whole in [i32::MIN, i32::MAX].map(f64::from) {
+            for float in [whole, whole - 1.0, whole + 1.0, whole + 0.5] {
+                let found = range_of(&[float]).unwrap();
+                assert_eq!(found, one_by_one(&[float]), "{float}");
+            }
+        }
+        assert_eq!(range_of(&[]), Some(Range::EMPTY));
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_have_no_range_and_no_count() {
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for place in [0, 8, 18] {
+                let mut floats = floats(19, 3.0);
+                floats[place] = odd;
+                assert_eq!(range_of(&floats), None);
+                assert!(!Quantum::WHOLE.count_all(&floats, &mut [0; 19]));
+            }
+        }
+    }
+
+    #[test]
+    fn counts_and_steps_are_those_of_the_floats_one_by_one() {
+        for size in SIZES {
+            let mut floats = floats(1000, size);
+            // Numbers that repeat, and some that differ by less than a count.
+            for i in (0..990).step_by(13) {
+                floats[i + 1] = floats[i];
+                floats[i + 3] = floats[i + 2] * (1.0 + 1e-15);
+            }
+            let Some(quantum) = Quantum::of(one_by_one(&floats)) else {
+                panic!("a quantum for {size}");
+            };
+            let mut counts = vec![0; floats.len()];
+            assert!(quantum.count_all(&floats, &mut counts));
+            let (mut singly, mut together) = (Steps::default(), Steps::default());
+            for (&float, &count) in floats.iter().zip(&counts) {
+                assert_eq!(quantum.count(float), count, "{float}");
+                singly.step_to(float, count);
+            }
+            for (numbers, counts) in floats.chunks(70).zip(counts.chunks(70)) {
+                together.step_through(numbers, counts);
+            }
+            assert!(singly.changes > 500, "{singly:?}");
+            assert_eq!(singly, together, "{size}");
+        }
     }
 }

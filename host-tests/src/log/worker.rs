@@ -3,11 +3,12 @@
 //! record that are accumulated apart and merged lack the differences across the cuts.
 
 use super::{
-    CovariateChoice, OCTAVES, SpectrumSums,
+    CovariateChoice,
     covariate::{self, Derived},
+    sums::{Beside, Part, Sums},
     watched::{self, SharedSums, WatchedAxis},
 };
-use allanite::{Accumulator, course::Course};
+use allanite::course::Course;
 use std::{
     collections::VecDeque,
     mem::replace,
@@ -22,83 +23,6 @@ const BATCH: usize = 1 << 14;
 /// The number of batches of a column that may wait for a thread. With three threads on two cores, each of them stops
 /// for a while.
 const ROOM: usize = 8;
-
-/// What is kept of one axis.
-pub(super) enum Sums {
-    /// The sums of the first rows, and those of the remaining rows.
-    InTwo { first: Box<Part>, rest: Box<Part> },
-    /// The axis with everything that is kept beside its curve.
-    Watched(Box<dyn WatchedAxis>, Beside),
-}
-
-/// The curve and the spectrum of some rows.
-#[derive(Clone)]
-pub(super) struct Part {
-    pub(super) accumulator: Accumulator<OCTAVES>,
-    pub(super) spectrum: SpectrumSums,
-}
-
-/// What is kept beside an axis of the library.
-pub(super) struct Beside {
-    pub(super) spectrum: Box<SpectrumSums>,
-    pub(super) course: Box<Course>,
-}
-
-impl Beside {
-    fn new() -> Self {
-        Self {
-            spectrum: Box::new(SpectrumSums::new()),
-            course: Box::new(Course::new()),
-        }
-    }
-
-    fn push(&mut self, counts: &[i32]) {
-        self.spectrum.push_slice(counts);
-        self.course.push_slice(counts);
-    }
-
-    fn gap(&mut self) {
-        self.spectrum.gap();
-        self.course.gap();
-    }
-}
-
-impl Part {
-    fn new() -> Box<Self> {
-        Box::new(Self {
-            accumulator: Accumulator::new(),
-            spectrum: SpectrumSums::new(),
-        })
-    }
-
-    fn push(&mut self, counts: &[i32]) {
-        self.accumulator.push_slice(counts);
-        self.spectrum.push_slice(counts);
-    }
-
-    fn gap(&mut self) {
-        self.accumulator.gap();
-        self.spectrum.gap();
-    }
-}
-
-impl Sums {
-    /// The accumulator of the rows that were asked for.
-    pub(super) fn accumulator(&self) -> &Accumulator<OCTAVES> {
-        match self {
-            Self::InTwo { first, .. } => &first.accumulator,
-            Self::Watched(axis, _) => axis.accumulator(),
-        }
-    }
-
-    /// The spectrum of the rows that were asked for.
-    pub(super) fn spectrum(&self) -> &SpectrumSums {
-        match self {
-            Self::InTwo { first, .. } => &first.spectrum,
-            Self::Watched(_, beside) => &beside.spectrum,
-        }
-    }
-}
 
 /// How to use the columns: the first ones are axes, and the covariates follow them.
 #[derive(Clone)]

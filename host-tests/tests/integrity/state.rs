@@ -41,6 +41,49 @@ fn an_observation_identifies_the_odd_sample() {
 }
 
 #[test]
+fn slices_lead_to_the_state_of_single_counts() {
+    let quiet = |seed, divisor| mems(seed).into_iter().map(move |count| count / divisor);
+    let mut odd = mems(3);
+    for (n, size) in [
+        (5000, 9000),
+        (9000, 500),
+        (9001, -500),
+        (20_000, i32::MAX),
+        (20_001, i32::MIN),
+    ] {
+        odd[n] = size;
+    }
+    disturb(&mut odd, 30_000, 1000, |_| 20.0);
+    disturb(&mut odd, 50_000, 15_000, |x| 3.0 * x);
+    odd.copy_within(40_000..40_001, 40_001);
+    let (value, pair) = (odd[44_000], odd[45_000]);
+    odd[44_000..44_400].fill(value);
+    odd[45_000..45_003].fill(pair);
+    let records: [Vec<i32>; 5] = [
+        odd,
+        quiet(4, 40).collect(),
+        quiet(5, 400).collect(),
+        // As floats are rounded, and with differences beyond 32 bits.
+        mems(6).iter().map(|count| count << 16).collect(),
+        mems(7).iter().map(|count| count << 24).collect(),
+    ];
+    for (i, counts) in records.iter().enumerate() {
+        for length in [1, 7, 8, 63, 64, 65, 100, 1000, counts.len()] {
+            let (mut singly, mut sliced) = (Integrity::default(), Integrity::default());
+            for (n, slice) in counts.chunks(length).enumerate() {
+                slice.iter().for_each(|&count| drop(singly.push(count)));
+                sliced.push_slice(slice);
+                if n % 300 == 299 {
+                    singly.gap();
+                    sliced.gap();
+                }
+            }
+            assert_eq!(format!("{singly:?}"), format!("{sliced:?}"), "{i} {length}");
+        }
+    }
+}
+
+#[test]
 fn contradictory_limits_are_refused_by_name() {
     let refuse = |limits| {
         Integrity::with_limits(leaked(limits))

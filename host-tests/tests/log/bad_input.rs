@@ -203,6 +203,31 @@ fn bad_arrays_are_refused() {
 }
 
 #[test]
+fn the_first_bad_row_is_reported_whatever_its_column() {
+    let rows = 3000;
+    let spoilt = |places: &[(usize, usize)]| {
+        let mut values = vec![0.5_f64; 3 * rows];
+        for &(row, column) in places {
+            values[3 * row + column] = f64::NAN;
+        }
+        let bytes: Vec<u8> = values
+            .iter()
+            .flat_map(|value| value.to_le_bytes())
+            .collect();
+        npy(&header(Kind::Float, 8, &[rows as u64, 3]), &bytes)
+    };
+    for (places, expected) in [
+        (&[(900, 0), (700, 1), (800, 2)][..], "a.npy:701: axis gy: "),
+        (&[(900, 2), (900, 1)], "a.npy:901: axis gy: "),
+        (&[(2999, 0), (1024, 2)], "a.npy:1025: axis gz: "),
+        (&[(2999, 0)], "a.npy:3000: axis gx: "),
+    ] {
+        let line = refusal("a.npy", &spoilt(places), &at_100_hz());
+        assert!(line.starts_with(expected), "{line}");
+    }
+}
+
+#[test]
 fn missing_columns_are_reported_with_the_existing_ones() {
     let good = rows_of_text(&counts(50));
     let named = format!("gx,gy,gz\n{good}");

@@ -27,6 +27,27 @@ fn swings_of_any_range_give_the_same_sums_in_slices() {
     }
 }
 
+/// Floats are read as counts of up to 2^30. The wider they are, the fewer of their differences have 32 bits.
+#[test]
+fn noise_of_any_width_gives_the_same_sums_in_slices() {
+    for bits in 1..=32 {
+        for offset in [0, 1 << 20, i32::MIN] {
+            let mut random = 1_u64;
+            let mut count = || {
+                random = random
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1);
+                ((random >> 32) as u32 >> (32 - bits)).wrapping_add(offset as u32) as i32
+            };
+            let counts: Vec<i32> = (0..5000).map(|_| count()).collect();
+            let (mut singly, mut sliced) = (Accumulator::<13>::new(), Accumulator::<13>::new());
+            counts.iter().for_each(|&count| singly.push(count));
+            sliced.push_slice(&counts);
+            assert_eq!(singly, sliced, "{bits} {offset}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(seeded(256))]
 

@@ -117,7 +117,9 @@ fn slices_lead_to_the_state_of_single_counts() {
             one_by_one.gap();
             at_once.gap();
         }
-        let length = random.below(150);
+        // A long slice has several segments, which are transformed together.
+        let longest = if random.below(8) == 0 { 2000 } else { 150 };
+        let length = random.below(longest);
         let shift = if random.below(8) == 0 { 0 } else { 20 };
         for _ in 0..length.min(3) {
             // What waits is worked on before a slice.

@@ -1,0 +1,81 @@
+//! What is kept of an axis while a log is read.
+
+use super::{OCTAVES, SpectrumSums, watched::WatchedAxis};
+use allanite::{Accumulator, course::Course};
+
+/// What is kept of one axis.
+pub(super) enum Sums {
+    /// The sums of the first rows, and those of the remaining rows.
+    InTwo { first: Box<Part>, rest: Box<Part> },
+    /// The axis with everything that is kept beside its curve.
+    Watched(Box<dyn WatchedAxis>, Beside),
+}
+
+/// The curve and the spectrum of some rows.
+#[derive(Clone)]
+pub(super) struct Part {
+    pub(super) accumulator: Accumulator<OCTAVES>,
+    pub(super) spectrum: SpectrumSums,
+}
+
+/// What is kept beside an axis of the library.
+pub(super) struct Beside {
+    pub(super) spectrum: Box<SpectrumSums>,
+    pub(super) course: Box<Course>,
+}
+
+impl Beside {
+    pub(super) fn new() -> Self {
+        Self {
+            spectrum: Box::new(SpectrumSums::new()),
+            course: Box::new(Course::new()),
+        }
+    }
+
+    pub(super) fn push(&mut self, counts: &[i32]) {
+        self.spectrum.push_slice(counts);
+        self.course.push_slice(counts);
+    }
+
+    pub(super) fn gap(&mut self) {
+        self.spectrum.gap();
+        self.course.gap();
+    }
+}
+
+impl Part {
+    pub(super) fn new() -> Box<Self> {
+        Box::new(Self {
+            accumulator: Accumulator::new(),
+            spectrum: SpectrumSums::new(),
+        })
+    }
+
+    pub(super) fn push(&mut self, counts: &[i32]) {
+        self.accumulator.push_slice(counts);
+        self.spectrum.push_slice(counts);
+    }
+
+    pub(super) fn gap(&mut self) {
+        self.accumulator.gap();
+        self.spectrum.gap();
+    }
+}
+
+impl Sums {
+    /// The accumulator of the rows that were asked for.
+    pub(super) fn accumulator(&self) -> &Accumulator<OCTAVES> {
+        match self {
+            Self::InTwo { first, .. } => &first.accumulator,
+            Self::Watched(axis, _) => axis.accumulator(),
+        }
+    }
+
+    /// The spectrum of the rows that were asked for.
+    pub(super) fn spectrum(&self) -> &SpectrumSums {
+        match self {
+            Self::InTwo { first, .. } => &first.spectrum,
+            Self::Watched(_, beside) => &beside.spectrum,
+        }
+    }
+}

@@ -300,6 +300,9 @@ fn fill(reader: &mut impl Read, buffer: &mut [u8]) -> (usize, Option<std::io::Er
 struct Keep<'a>(&'a mut Option<f64>);
 
 impl Visitor for Keep<'_> {
+    /// A run of a single number would only take room for many.
+    const BY_ROWS: bool = true;
+
     fn visit<F: Field>(&mut self, _axis: usize, value: F) -> Result<(), Stop> {
         *self.0 = value.number().ok();
         Ok(())

@@ -222,7 +222,23 @@ macro_rules! integer_fields {
     )*};
 }
 
-integer_fields!(i32 i64 u64);
+integer_fields!(i64 u64);
+
+impl Field for i32 {
+    #[inline]
+    fn count(&self) -> Option<i32> {
+        Some(*self)
+    }
+
+    #[inline]
+    fn number(&self) -> Result<f64, Flaw> {
+        Ok((*self).into())
+    }
+
+    fn stamp(&self) -> Result<Stamp, Flaw> {
+        Ok(Stamp::Whole((*self).into()))
+    }
+}
 
 impl Field for f64 {
     #[inline]

@@ -71,7 +71,9 @@ fn slices_lead_to_the_state_of_single_counts() {
         for length in [1, 7, 8, 63, 64, 65, 100, 1000, counts.len()] {
             let (mut singly, mut sliced) = (Integrity::default(), Integrity::default());
             for (n, slice) in counts.chunks(length).enumerate() {
-                slice.iter().for_each(|&count| drop(singly.push(count)));
+                for &count in slice {
+                    singly.push(count);
+                }
                 sliced.push_slice(slice);
                 if n % 300 == 299 {
                     singly.gap();

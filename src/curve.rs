@@ -63,7 +63,7 @@ pub struct Point {
     pub variance: Real,
     /// The number of stretches without gaps that have differences of this octave. It is estimated from the numbers of
     /// differences of neighbouring octaves, and is 1 for a record without gaps.
-    pub stretches: u64,
+    pub stretches: u32,
 }
 
 impl Point {
@@ -181,45 +181,33 @@ pub(crate) fn clusters(point: &Point) -> Real {
 /// shorter by half of one on average, and so does the distance of two octaves by a sixteenth. Behind the last octave, the
 /// record is too short for a further one, unless there was no room for it among `capacity`.
 fn set_stretches(points: &mut [Point], capacity: usize) {
-    let span = |point: &Point| 2 * u64::from(point.m);
     let places = |point: &Point| {
         let quarter = u64::from(point.m / 4).max(1);
-        point.differences.saturating_mul(quarter)
+        point.differences.wrapping_mul(quarter)
     };
-    // In fifteenths of a stretch.
-    let between = |pair: &[Point]| {
-        let [one, next] = pair else { return 15 };
-        let lost = places(one).saturating_sub(places(next));
-        let longer = span(next).saturating_sub(span(one));
-        let rounded = if one.m < 4 { 15 } else { 16 };
-        lost.saturating_mul(rounded)
-            .checked_div(longer)
-            .unwrap_or(15)
+    // The difference is exact before it is rounded.
+    let between = |one: &Point, next: &Point| {
+        let lost = places(one).saturating_sub(places(next)) as Real;
+        let rounded = if one.m < 4 { 1.0 } else { 16.0 / 15.0 };
+        lost * rounded / real(next.m.saturating_sub(one.m).saturating_mul(2).max(1))
     };
     let is_complete = points.len() < capacity;
-    let mut before = None;
+    let mut before: Option<Real> = None;
     let mut left = points;
-    while !left.is_empty() {
-        let after = match left {
-            [last] if is_complete => Some(last.differences.saturating_mul(15) / 8),
-            _ => left.get(..2).map(between),
+    while let Some((first, rest)) = left.split_first_mut() {
+        let after = match rest.first() {
+            Some(next) => Some(between(first, next)),
+            None if is_complete && before.is_some() => Some(first.differences as Real / 8.0),
+            None => None,
         };
-        let all = match (before, after) {
-            // The octave before is half as far away as the one behind, and has as many stretches or more.
-            (Some(before), Some(after)) => {
-                let after = after.min(before);
-                after.saturating_add(before.saturating_sub(after) / 3 * 2)
-            }
-            (Some(one), None) => one,
-            (None, Some(one)) if left.len() > 1 => one,
-            _ => 15,
+        // The octave before is half as far away as the one behind, and has as many stretches or more.
+        let stretches = match (before, after) {
+            (Some(before), Some(after)) => (2.0 * before + after.min(before)) / 3.0,
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => 1.0,
         };
+        first.stretches = (stretches.min(first.differences as Real).max(1.0) + 0.5) as u32;
         before = after;
-        let Some((first, rest)) = left.split_first_mut() else {
-            return;
-        };
-        let stretches = all.saturating_add(7) / 15;
-        first.stretches = stretches.min(first.differences).max(1);
         left = rest;
     }
 }

@@ -300,7 +300,7 @@ fn errors_name_the_fault_and_the_remedy() {
 }
 
 /// The numbers of stretches that the curve tells, with the lengths of the stretches.
-fn stretches(lengths: &[usize]) -> Vec<(u32, u64)> {
+fn stretches(lengths: &[usize]) -> Vec<(u32, u32)> {
     let mut accumulator = Accumulator::<16>::new();
     for (i, &length) in lengths.iter().enumerate() {
         (0..length).for_each(|n| accumulator.push((n * n % 7) as i32));
@@ -336,7 +336,7 @@ fn the_stretches_that_are_long_enough_for_an_octave_follow_from_the_numbers_of_d
         let long = lengths.iter().filter(|&&n| n >= 2 * m as usize).count();
         if long >= 20 {
             compared += 1;
-            let off = found as f64 / long as f64 - 1.0;
+            let off = f64::from(found) / long as f64 - 1.0;
             assert!(off.abs() < 0.1, "m = {m}: {found} of {long}");
         }
     }

@@ -35,7 +35,7 @@ pub(super) struct Starts {
     /// The number of starts of the longer difference.
     count: u64,
     /// The number of stretches without gaps in which these starts lie.
-    stretches: u64,
+    stretches: u32,
 }
 
 impl Starts {
@@ -65,8 +65,8 @@ impl Starts {
         let before = partly.wrapping_shr(self.advance_bits);
         if self.stretches > 1 {
             // Every stretch has its own ends. At both, as many starts lack their partner.
-            let before = before.saturating_mul(self.stretches);
-            return self.count.saturating_sub(before).saturating_mul(2);
+            let before = u64::from(before.min(u32::MAX.into()) as u32) * u64::from(self.stretches);
+            return self.count.saturating_sub(before) << 1;
         }
         // In the other order, these starts have a partner that does not lie beyond the end of the
         // record.

@@ -45,9 +45,9 @@ impl Bin {
     }
 
     /// The same for segments from so many stretches without gaps.
-    pub(crate) fn effective_segments_of(&self, stretches: u64) -> Real {
+    pub(crate) fn effective_segments_of(&self, stretches: u32) -> Real {
         let segments = real(self.segments);
-        let first = real(stretches.saturating_sub(1) as u32).min(segments);
+        let first = real(stretches.saturating_sub(1)).min(segments);
         segments / (1.0 + OVERLAP * (segments - first) / segments)
     }
 }

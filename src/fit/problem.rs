@@ -47,13 +47,14 @@ fn column<const K: usize, const B: usize>(observed: Observed<'_, K, B>, term: &T
     let shape = term.sampled_shape(observed.interval_s());
     term.effect
         .variances(&mut factors, &shape, &mut |variance| {
-            column.put(row, variance);
+            // Where a shape lies far beyond what a record can tell, rounding may leave less than zero.
+            column.put(row, variance.max(0.0));
             row = row.saturating_add(1);
         });
     if let Some(spectrum) = observed.spectrum() {
         let expected = spectrum.expected(term.effect, term.parameters);
         for (row, &expected) in (K..usize::MAX).zip(&expected) {
-            column.put(row, expected);
+            column.put(row, expected.max(0.0));
         }
     }
     column

@@ -302,7 +302,8 @@ fn compare_short<const K: usize, const B: usize>(
     let terms = problem.model.terms().iter();
     for ((i, term), share) in numbered(terms).zip(&mut shares) {
         let shape = term.sampled_shape(problem.interval_s);
-        *share = squares[i] * term.effect.variance(real(point.m), &shape);
+        // Rounding may leave less than zero of an effect far beyond what a record can tell.
+        *share = squares[i] * term.effect.variance(real(point.m), &shape).max(0.0);
         model += *share;
     }
     let mut relative = tolerance * tolerance;

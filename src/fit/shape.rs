@@ -18,9 +18,9 @@ use heapless::Vec;
 const STEP: Real = 0.01;
 
 /// The change of a column over two steps, relative to twice the column, up to which a central difference is taken for the
-/// derivative. The error is about the square of this. A line leaves its bin within a step, which says nothing of
-/// the derivative.
-const SMOOTH: Real = 0.1;
+/// derivative. Chosen by hand: only lines change by more, since they leave their bin within the first step, which says
+/// nothing of the derivative.
+const SMOOTH: Real = 0.3;
 
 /// The factor by which a step becomes smaller if it is too large, and how often it does so at most. The smallest
 /// step, 4·10⁻⁵, is a twentieth of a bin for the line of the highest frequency in a bin of the second level.

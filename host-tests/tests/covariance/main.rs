@@ -2,6 +2,7 @@
 
 mod catalogue;
 mod every_pair;
+mod gaps;
 mod simulated;
 
 use allanite::{

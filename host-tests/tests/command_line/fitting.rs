@@ -268,3 +268,25 @@ fn logs_of_other_programs_are_fitted_without_an_option() {
         );
     }
 }
+
+/// Nobody sees in a record what flicker noise is below the sample interval. Where it is as strong as the white noise of a
+/// sample, the angle random walk depends on it.
+#[test]
+fn flicker_noise_below_the_sample_interval_is_told_where_it_matters() {
+    let folder = TempDir::new().expect("a temporary folder");
+    let simulated = |coefficients: &[&str]| {
+        let record = ["simulate", "mems", "--duration", "20min", "--seed", "3"];
+        let to_file = ["--output", "log.csv"];
+        output(folder.path(), &[&record, coefficients, &to_file].concat());
+        output(folder.path(), &["fit", "log.csv"])
+    };
+    let words = "If the flicker noise ends at half the sample rate, the angle random walk is";
+    let strong = ["--angle-random-walk", "0.002", "--bias-instability", "0.02"];
+    let printed = simulated(&strong);
+    let line = printed.lines().find(|line| line.starts_with(words));
+    // 0.09 B²τ₀/2N² with B√τ₀ = N.
+    let share = line.and_then(|line| line[words.len()..].split(' ').nth(1));
+    let share: f64 = share.expect(&printed).parse().expect("a number");
+    assert!((4.0..5.5).contains(&share), "{share} %");
+    assert!(!simulated(&[]).contains(words));
+}

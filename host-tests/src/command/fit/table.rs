@@ -207,5 +207,6 @@ fn verdict(fitted: &Fitted) -> Vec<String> {
     [first, judgement]
         .into_iter()
         .chain(words::widened(fit))
+        .chain(words::unseen_flicker(fit, fitted.axis.rate_hz))
         .collect()
 }

@@ -272,6 +272,31 @@ pub(crate) fn widened(fit: &Fit) -> Option<String> {
     })
 }
 
+/// What is added to the square of the angle random walk where flicker noise ends at half the sample rate, instead of being
+/// averaged over each sample interval: this times `B²τ₀`. Measured in the records of an independent simulator.
+const UNSEEN_FLICKER: f64 = 0.09;
+
+/// That nobody sees in a record what flicker noise is below the sample interval, if this matters beside the interval of the
+/// angle random walk.
+pub(crate) fn unseen_flicker(fit: &Fit, rate_hz: f64) -> Option<String> {
+    let measured = |name: &str| {
+        let mut coefficients = fit.coefficients.iter();
+        coefficients.find(|one| one.name == name && one.state == State::Measured)
+    };
+    let white = measured("angle_random_walk")?;
+    let flicker = measured("bias_instability")?;
+    let change = 0.5 * UNSEEN_FLICKER * flicker.square / (rate_hz * white.square);
+    // A quarter of the half-width, chosen by hand: less hardly changes what the interval says.
+    let matters = change > 0.25 * 0.5 * (white.upper - white.lower) / white.value;
+    matters.then(|| {
+        format!(
+            "If the flicker noise ends at half the sample rate, the angle random walk is {} % lower: no record shows \
+             what it is below the sample interval.",
+            number(100.0 * change)
+        )
+    })
+}
+
 /// How the coefficients of one model were wrong, and are right in another one.
 pub(crate) fn damage<'a>(
     before: (&'a Model, &'a Fit),

@@ -99,7 +99,7 @@
 //! | a sample into an accumulator, any number of octaves | 140 instructions |
 //! | RAM of an accumulator of 24 octaves | 2400 bytes |
 //! | flash of accumulator, curve and fit | 39 600 bytes |
-//! | flash with the diagnosis and the whole catalogue | 77 500 bytes |
+//! | flash with the diagnosis and the whole catalogue | 78 900 bytes |
 //! | a fit of 20 octaves | 15 million instructions |
 //! | RAM of a spectrum, for an axis | 3928 bytes |
 //! | a sample into a spectrum | 25 instructions in the interrupt, 216 in the main loop |

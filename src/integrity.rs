@@ -2,6 +2,7 @@
 //! missing samples.
 
 mod cluster;
+mod differences;
 mod limits;
 mod observation;
 mod rails;

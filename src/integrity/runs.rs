@@ -1,6 +1,6 @@
 //! Runs of equal values.
 
-use super::slice::Differences;
+use super::differences::Differences;
 
 /// The number of ended runs from which the mean run is known well enough to judge a run by it. The mean
 /// of 16 runs of independent noise has a standard error of a quarter. The number is chosen by hand.

@@ -1,6 +1,6 @@
 //! Detects values that deviate from their neighbours by far more than is usual in their sequence.
 
-use super::slice::{Differences, MOST};
+use super::differences::{Differences, MOST};
 
 /// A sequence of values, the scale of the differences of its neighbours, and its departures from its level.
 #[derive(Clone, Debug, PartialEq, Eq)]

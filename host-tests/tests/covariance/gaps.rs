@@ -64,7 +64,7 @@ fn worst(lengths: &[usize]) -> [f64; 2] {
 #[test]
 fn stretches_of_one_length_scatter_as_the_pairs_within_them_say() {
     for length in [40, 100, 333] {
-        let [many, few] = worst(&vec![length; 20]);
+        let [many, few] = worst(&[length; 20]);
         println!("{length} samples: {many:.3}, {few:.3}");
         assert!(many < 0.01, "{length} samples: {many}");
         assert!(few < 0.1, "{length} samples: {few}");

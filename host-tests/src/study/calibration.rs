@@ -1,7 +1,7 @@
 //! Studies whether p-values are uniform and intervals contain the truth, with and without a hidden effect.
 
 use super::{
-    OCTAVES, RATE_HZ,
+    OCTAVES, RATE_HZ, expected_curve,
     hidden_effect::{added, steps},
     quantum,
     theory::squares,
@@ -11,7 +11,7 @@ use crate::{
     simulate::{Coefficients, Hidden, Preset, Random, Simulator, band_limited_flicker},
 };
 use allanite::{
-    Axis, Curve, Model, Scale,
+    Axis, Model, Scale,
     diagnosis::Options,
     effect::MAX_PARAMETERS,
     fit::{Fit, State, fit},
@@ -98,13 +98,7 @@ fn faint(base: Coefficients) -> Coefficients {
     for _ in 0..8 {
         let model = Model::ieee_952();
         let squares = squares(coefficients);
-        let octaves = (0..OCTAVES as u32).map(|k| 1_u32 << k).map_while(|m| {
-            let differences =
-                (SAMPLES.checked_sub(2 * m as usize)? / (m as usize / 4).max(1)) as u64 + 1;
-            let variance = model.variance(&squares, m, 1.0 / RATE_HZ);
-            (differences >= Curve::<OCTAVES>::MIN_DIFFERENCES).then_some((m, differences, variance))
-        });
-        let curve = Curve::<OCTAVES>::new(RATE_HZ, octaves).expect("a model's curve");
+        let curve = expected_curve(SAMPLES, |m| model.variance(&squares, m, 1.0 / RATE_HZ));
         let fit =
             fit(&curve, &model, Default::default()).expect("the model explains its own curve");
         coefficients.rate_random_walk = (2.0 * fit.coefficients[3].square_error).sqrt();

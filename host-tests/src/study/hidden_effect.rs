@@ -1,6 +1,6 @@
 //! Studies whether a hidden effect is found and named.
 
-use super::{OCTAVES, RATE_HZ, record, theory::squares};
+use super::{OCTAVES, RATE_HZ, expected_curve, record, theory::squares};
 use crate::{
     log::{BINS, SpectrumSums},
     quantile::quantile,
@@ -108,14 +108,10 @@ fn expected_chi_squared(hidden: &Hidden, base: Coefficients) -> f64 {
         ..Term::new(hidden.effect)
     };
     let shape = term.sampled_shape(1.0 / RATE_HZ);
-    let octaves = (0..OCTAVES as u32).map(|k| 1_u32 << k).map_while(|m| {
-        let differences =
-            (SAMPLES.checked_sub(2 * m as usize)? / (m as usize / 4).max(1)) as u64 + 1;
+    let curve = expected_curve(SAMPLES, |m| {
         let effect = hidden.effect.variance(f64::from(m), &shape) * hidden.coefficient.powi(2);
-        let variance = model.variance(&squares, m, 1.0 / RATE_HZ) + effect;
-        (differences >= 6).then_some((m, differences, variance))
+        model.variance(&squares, m, 1.0 / RATE_HZ) + effect
     });
-    let curve = Curve::<OCTAVES>::new(RATE_HZ, octaves).expect("a model's curve");
     fit(&curve, &model, Options::default()).map_or(0.0, |fit| fit.chi_squared)
 }
 

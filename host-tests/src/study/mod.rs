@@ -75,6 +75,16 @@ fn record_at(
     accumulator.curve(scale)
 }
 
+/// The curve that a record of so many samples is expected to have, of the octaves with enough differences.
+fn expected_curve(samples: usize, variance: impl Fn(u32) -> f64) -> Curve<OCTAVES> {
+    let octaves = (0..OCTAVES as u32).map(|k| 1_u32 << k).map_while(|m| {
+        let differences =
+            (samples.checked_sub(2 * m as usize)? / (m as usize / 4).max(1)) as u64 + 1;
+        (differences >= Curve::<OCTAVES>::MIN_DIFFERENCES).then_some((m, differences, variance(m)))
+    });
+    Curve::new(RATE_HZ, octaves).expect("a model's curve")
+}
+
 /// The spectrum of a record whose counts are those of [`record`].
 pub fn spectrum(sums: &SpectrumSums, coefficients: Coefficients) -> Spectrum<BINS> {
     sums.spectrum(Scale::new(quantum(coefficients, RATE_HZ), RATE_HZ).expect("positive"))

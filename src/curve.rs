@@ -175,11 +175,11 @@ pub(crate) fn clusters(point: &Point) -> Real {
 
 /// Estimates the number of stretches in every octave.
 ///
-/// A stretch of `n` samples has differences that span `x = 2m` of them at `n − x` places, nearly. So the number of
-/// places in all stretches falls with `x` by the number of the stretches that are longer than `x` (`−dS/dx`). It is taken from the
-/// octaves on both sides. Differences start a quarter of a cluster apart: rounded to whole quarters, a stretch seems
-/// shorter by half of one on average, and so does the distance of two octaves by a sixteenth. Behind the last octave, the
-/// record is too short for a further one, unless there was no room for it among `capacity`.
+/// A stretch of `n` samples has room for differences that span `x = 2m` of them at nearly `n − x` places. So the number of
+/// places in all stretches falls by as many, with each further sample of `x`, as there are stretches longer than `x`. This
+/// slope is taken from the octaves on both sides. Differences start a quarter of a cluster apart. Rounded to whole quarters,
+/// a stretch seems shorter by half a quarter on average, and the fall between two octaves smaller by a sixteenth. Behind
+/// the last octave, the record is too short for a further one, unless there was no room for it among `capacity`.
 fn set_stretches(points: &mut [Point], capacity: usize) {
     let places = |point: &Point| {
         let quarter = u64::from(point.m / 4).max(1);

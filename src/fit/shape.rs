@@ -22,8 +22,8 @@ const STEP: Real = 0.01;
 /// nothing of the derivative.
 const SMOOTH: Real = 0.3;
 
-/// The factor by which a step becomes smaller if it is too large, and how often it does so at most. The smallest
-/// step, 4·10⁻⁵, is a twentieth of a bin for the line of the highest frequency in a bin of the second level.
+/// The factor by which a step becomes smaller if it is too large, and how often it does so at most. With segments of 64
+/// blocks, the smallest step, 4·10⁻⁵, is a hundredth of a bin of the second level for a line at half the sample rate.
 const SMALLER: Real = 0.25;
 const SMALLER_TIMES: u8 = 4;
 

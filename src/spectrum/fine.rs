@@ -69,9 +69,9 @@ impl Fine {
                 .copied()
                 .unwrap_or(0.0)
         };
-        let ratio = self.length.saturating_mul(PER_BIN) / long.max(1);
+        let ratio = (self.length.saturating_mul(PER_BIN) / long.max(1)).max(1);
         for (place, density) in numbered(self.densities.iter_mut()).skip(FIRST) {
-            let (k, share) = (place / ratio.max(1), real(place % ratio.max(1)));
+            let (k, share) = (place / ratio, real(place % ratio));
             let (one, next) = (at(k), at(k.saturating_add(1)));
             *density += square * (one + (next - one) * share / real(ratio.max(1)));
         }

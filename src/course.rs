@@ -18,6 +18,7 @@ mod analysis;
 mod baseline;
 mod contrasts;
 mod correction;
+mod cosine;
 mod event;
 mod noise;
 mod response;
@@ -26,6 +27,7 @@ mod stored;
 mod sums;
 
 pub use analysis::{Analysis, analyse, events};
+pub use cosine::CosineTransform;
 pub use event::{Event, Events, Largest, MAX_EVENTS, What};
 pub use response::{allan_variance_of_step, allan_variance_of_warm_up};
 

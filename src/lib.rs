@@ -250,6 +250,7 @@ pub mod octave;
 mod profile;
 pub mod queue;
 mod real;
+mod record;
 pub mod self_test;
 pub mod sensor;
 pub mod spectrum;
@@ -269,6 +270,7 @@ pub use model::{Model, Term};
 pub use observed::Observed;
 pub use octave::Accumulator;
 pub use real::Real;
+pub use record::Record;
 
 /// The example in the README, so that it is compiled.
 #[cfg(doctest)]

@@ -48,6 +48,14 @@ impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
         }
     }
 
+    /// A curve without a spectrum.
+    pub(crate) const fn of_curve(curve: &'a Curve<K>) -> Self {
+        Self {
+            curve,
+            spectrum: None,
+        }
+    }
+
     /// The curve.
     pub const fn curve(&self) -> &'a Curve<K> {
         self.curve

@@ -38,6 +38,7 @@ pub use covariance::{BAND, covariance_rows, relative_covariance};
 pub use density::{Bin, Spectrum};
 pub use expected::expected_densities;
 
+pub(crate) use density::levels_of;
 pub(crate) use fine::{Fine, Sum};
 pub(crate) use overlap::{Lags, octave_lag};
 

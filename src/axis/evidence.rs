@@ -5,16 +5,17 @@ use super::{
     gate::{Gate, GatePart, Passing as _},
     moments::{MomentPart, MomentSums as _},
     spectra::{SpectrumPart, SpectrumSums as _},
-    track::TrackPart,
+    track::{Track as _, TrackPart},
 };
 use crate::{
+    course::CosineTransform,
     covariate::CrossCurve,
     curve::{Curve, Scale},
-    diagnosis::Evidence,
     error::Error,
     integrity::{Integrity, Reason, exceeds},
     kurtosis::Kurtosis,
     real::Real,
+    record::Record,
     spectrum::Spectrum,
 };
 use heapless::Vec;
@@ -30,6 +31,8 @@ pub struct AxisEvidence<const OCTAVES: usize, const COVARIATES: usize = 0, D = S
     pub curve: Curve<OCTAVES>,
     /// The power spectral densities; without bins if no spectrum is kept.
     pub spectrum: D,
+    /// The cosine transform of the course; `None` if no course is kept, or if it is too short.
+    pub course: Option<CosineTransform>,
     /// The kurtosis of the differences, which tells whether they are Gaussian; `None` if fourth moments
     /// are not kept.
     pub kurtosis: Option<Kurtosis<OCTAVES>>,
@@ -39,10 +42,15 @@ pub struct AxisEvidence<const OCTAVES: usize, const COVARIATES: usize = 0, D = S
     pub invalid: Option<Reason>,
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, D> AxisEvidence<OCTAVES, COVARIATES, D> {
-    /// The evidence that a diagnosis takes in addition to the curve and the spectrum.
-    pub fn evidence(&self) -> Evidence<'_, OCTAVES> {
-        Evidence {
+impl<const OCTAVES: usize, const COVARIATES: usize, const B: usize>
+    AxisEvidence<OCTAVES, COVARIATES, Spectrum<B>>
+{
+    /// The record that a diagnosis takes.
+    pub fn record(&self) -> Record<'_, OCTAVES, B> {
+        Record {
+            curve: &self.curve,
+            spectrum: Some(&self.spectrum),
+            course: self.course.as_ref(),
             kurtosis: self.kurtosis.as_ref(),
             covariates: &self.covariates,
             pairs: &[],
@@ -87,6 +95,10 @@ where
             samples: sums.accumulator.samples(),
             curve: sums.accumulator.curve(scale),
             spectrum: sums.spectrum.spectrum(scale),
+            course: sums
+                .track
+                .course()
+                .and_then(|course| course.cosine_transform(scale)),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
             covariates,
             invalid: self.verdict(axis),

@@ -24,7 +24,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pair<const K: usize> {
-    /// The covariates' places among [`Evidence::covariates`](crate::diagnosis::Evidence::covariates).
+    /// The covariates' places among [`Record::covariates`](crate::Record::covariates).
     pub covariates: [usize; 2],
     /// The cross curve of the two: that of an axis whose counts are the first covariate's, with the second one as its
     /// covariate. It has the octaves of the gyro's curve.

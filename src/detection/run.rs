@@ -1,44 +1,49 @@
-//! The limits of all effects of a list, in pieces.
+//! The limits of all effects of a list.
 
 use super::{
-    expected::{Derivatives, Ground, at_least_zero},
+    excess::Excess,
     limit::{Limit, is_of_shape},
-    trial::{Progress as Sought, Trial},
 };
 use crate::{
-    curve::Curve,
-    diagnosis::{Options, Step, cost, place},
+    diagnosis::{
+        Options, Step,
+        search::{Observation, Pause, price},
+    },
     effect::{Effect, Span},
-    error::Error,
-    fit::{Columns, Problem, Weights, derivative},
+    fit::{Columns, Problem},
     limits::MAX_PARAMETERS,
-    list::numbered,
-    model::{Model, Term},
-    nnls::Vector,
+    list,
+    model::Term,
     observed::Observed,
     profile::Grid,
-    real::{Real, real},
-    spectrum::Spectrum,
+    real::Real,
+    record::Record,
 };
+use core::ops::ControlFlow;
 
 /// The number of values of the first shape parameter for each factor of two. Between them, the limit of a
 /// sinusoid changes by up to 10 %, because an octave grid sees some frequencies better than others.
 const STEPS_AN_OCTAVE: Real = 4.0;
 
-/// The limits of detection, in progress: the size of each effect that a record would have shown.
+/// How often the limit of a coefficient, and that of a shape, is halved at most.
+const COEFFICIENT_STEPS: u8 = 24;
+const SHAPE_STEPS: u8 = 12;
+
+/// The relative difference of two sizes that are the same.
+const AGREES: Real = 0.004;
+
+/// The size of each effect that a record would have shown, beside the model that a diagnosis ended with.
 ///
-/// [`run`](Self::run) goes through all effects and shapes, and [`advance`](Self::advance) does one piece of the
-/// work, so that a main loop can do something else in between. A piece is a row of the curve's covariance, the
-/// choice of a shape, or one fit to an expected curve. Nothing is computed unless it is asked for, and a program
-/// that does not name this type holds none of its code.
+/// Nothing is computed unless it is asked for, and a program that does not name this type holds none of its code.
 ///
 /// # Example
 ///
 /// ```
 /// use allanite::{Accumulator, Model, Scale};
 /// use allanite::detection::{Detection, Ranges};
-/// use allanite::diagnosis::{Diagnosis, Evidence, Options};
+/// use allanite::diagnosis::{Diagnosis, Options};
 /// use allanite::effect::CATALOGUE;
+/// use core::ops::ControlFlow;
 ///
 /// let mut gyro = Accumulator::<12>::new();
 /// let mut random = 1_u32;
@@ -48,13 +53,15 @@ const STEPS_AN_OCTAVE: Real = 4.0;
 /// }
 /// let curve = gyro.curve(Scale::new(0.01, 100.0)?);
 /// let (model, options) = (Model::ieee_952(), Options::default());
+/// let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
 /// let mut last = None;
-/// Diagnosis::new(curve.clone(), Evidence::NONE, &model, &CATALOGUE, options)
-///     .run(|step| last = Some(step.clone()))?;
+/// Diagnosis::new((&curve).into(), &model, &CATALOGUE, options)
+///     .run(|step| last = Some(step.clone()), &mut pause)?;
 /// let Some(step) = last else { return Ok(()) };
 ///
 /// let mut ranges = Ranges::default();
-/// Detection::new(curve, &step, &CATALOGUE, options).run(|limit| ranges.push(&limit))?;
+/// Detection::new((&curve).into(), &step, &CATALOGUE, options)
+///     .run(|limit| ranges.push(&limit), &mut pause);
 /// let mut ranges = ranges.as_slice().iter();
 /// let sinusoid = ranges.find(|range| range.effect.name() == "sinusoid");
 /// // The samples have a standard deviation of 0.74 °/s.
@@ -62,287 +69,218 @@ const STEPS_AN_OCTAVE: Real = 4.0;
 /// # Ok::<(), allanite::Error>(())
 /// ```
 pub struct Detection<'a, const K: usize, const B: usize = 0> {
-    curve: Curve<K>,
-    spectrum: Spectrum<B>,
-    span: Span,
-    model: Model,
-    squares: Vector,
-    columns: Columns<K, B>,
-    weights: Weights<K, B>,
-    derivatives: Derivatives<K, B>,
+    record: Record<'a, K, B>,
+    step: &'a Step<K, B>,
     effects: &'a [&'static dyn Effect],
     options: Options,
-    /// The effect that comes next, and the next steps of its grids.
-    effect: usize,
-    at: [u32; MAX_PARAMETERS],
-    /// The largest limit of the present value of the first shape parameter, for the values of the second one so
-    /// far.
-    worst: Option<Limit>,
-    stage: Stage,
-    /// The limit that is handed out next.
-    limit: Option<Limit>,
-}
-
-enum Stage {
-    Beginning,
-    /// The covariance of the curve is being computed.
-    Weighting,
-    /// The next shape is chosen.
-    Choosing,
-    Searching(Trial),
-    Finished(Result<(), Error>),
-}
-
-/// The result of one piece of work.
-#[derive(Clone, Copy, Debug)]
-pub enum Progress {
-    /// There is more to do.
-    Working,
-    /// The limit of one more shape is known.
-    Limit(Limit),
-    /// All effects have been gone through.
-    Finished,
-}
-
-impl<'a, const K: usize> Detection<'a, K> {
-    /// The limits beside the model of a step, which is the last one of a diagnosis. `curve` is the curve on which
-    /// the step was judged, without what follows a covariate. `effects` and `options` are those of the
-    /// diagnosis.
-    ///
-    /// There are no limits if the model is not adequate.
-    // Inlined, so that some kilobytes are built where they stay and not moved there.
-    #[inline(always)]
-    pub fn new(
-        curve: Curve<K>,
-        step: &Step<K>,
-        effects: &'a [&'static dyn Effect],
-        options: Options,
-    ) -> Self {
-        Self::with_spectrum(curve, Spectrum::EMPTY, step, effects, options)
-    }
 }
 
 impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
-    /// The limits beside the model of a step that was judged on a curve and on a spectrum.
-    // Inlined, so that some kilobytes are built where they stay and not moved there.
-    #[inline(always)]
-    pub fn with_spectrum(
-        curve: Curve<K>,
-        spectrum: Spectrum<B>,
-        step: &Step<K, B>,
+    /// The limits beside the model of a step, which is the last one of a diagnosis. The curve and the spectrum of the record
+    /// are those on which the step was judged, without what follows a covariate. `effects` and `options` are those of the
+    /// diagnosis.
+    ///
+    /// There are no limits if the model is not adequate.
+    pub const fn new(
+        record: Record<'a, K, B>,
+        step: &'a Step<K, B>,
         effects: &'a [&'static dyn Effect],
         options: Options,
     ) -> Self {
-        let model = step.model.clone();
-        let columns = Columns::EMPTY;
-        let problem = Problem::new(Observed::new(&curve, &spectrum), &model, &columns);
-        let squares = at_least_zero(&problem.squares_of(&step.fit));
-        let stage = if step.fit.is_adequate() == Some(true) {
-            Stage::Beginning
-        } else {
-            Stage::Finished(Ok(()))
-        };
         Self {
-            span: curve.span(),
-            curve,
-            spectrum,
-            model,
-            squares,
-            columns,
-            weights: Weights::EMPTY,
-            derivatives: Derivatives::new(),
+            record,
+            step,
             effects,
             options,
-            effect: 0,
-            at: [0; MAX_PARAMETERS],
-            worst: None,
-            stage,
-            limit: None,
         }
     }
 
-    /// Calls `each` for every limit.
-    ///
-    /// # Errors
-    /// The same as those of [`advance`](Self::advance).
-    pub fn run(&mut self, mut each: impl FnMut(Limit)) -> Result<(), Error> {
-        loop {
-            match self.advance()? {
-                Progress::Working => {}
-                Progress::Limit(limit) => each(limit),
-                Progress::Finished => return Ok(()),
+    /// Calls `each` for every limit, and `pause` between two pieces of work. Returns `None` if the pause ended it.
+    pub fn run(
+        &self,
+        mut each: impl FnMut(Limit),
+        pause: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Option<()> {
+        let done = self.with_excess(|excess| {
+            for effect in self.effects.iter().copied() {
+                let is_missing = self.step.model.position(effect.name()).is_none();
+                if is_missing && self.has_limit(effect) {
+                    self.of_effect(effect, excess, &mut each, pause)?;
+                }
             }
+            ControlFlow::Continue(())
+        });
+        match done {
+            Some(ControlFlow::Break(())) => None,
+            _ => Some(()),
         }
     }
 
-    /// The limit of one shape, in one go. The first parameter of a filter is replaced by its limit. `None` if the
+    /// The limit of one shape. The first parameter of a filter is replaced by its limit. `None` if the
     /// effect hides in the model, if it has no shape, or if the model is not adequate.
-    ///
-    /// # Errors
-    /// The same as those of [`advance`](Self::advance).
-    pub fn limit_of(&mut self, term: Term) -> Result<Option<Limit>, Error> {
-        while matches!(self.stage, Stage::Beginning | Stage::Weighting) {
-            self.advance()?;
+    pub fn limit_of(&self, term: Term) -> Option<Limit> {
+        if term.effect.parameters().is_empty() {
+            return None;
         }
-        let range = term.effect.search_range(0, &self.span);
-        let Some(range) = range.filter(|_| matches!(self.stage, Stage::Choosing)) else {
-            return Ok(None);
-        };
-        let observed = Observed::new(&self.curve, &self.spectrum);
-        let problem = Problem::new(observed, &self.model, &self.columns);
-        let ground = Ground {
-            problem: &problem,
-            weights: &self.weights,
-            derivatives: &self.derivatives,
-        };
-        let mut trial = Trial::new(&ground, term, (range.low, range.high));
-        let gain = gain(&self.options, term.effect);
-        loop {
-            match trial.advance(&ground, &self.squares, gain) {
-                Sought::Searching => {}
-                Sought::Hidden => return Ok(None),
-                Sought::Found(limit) => return Ok(Some(limit)),
-            }
+        let mut go_on = || ControlFlow::Continue(());
+        let found = self.with_excess(|excess| self.of_shape(term, excess, &mut go_on))?;
+        match found {
+            ControlFlow::Continue(limit) => limit,
+            ControlFlow::Break(()) => None,
         }
     }
 
-    /// Does one piece of work.
-    ///
-    /// # Errors
-    /// [`Error::Singular`] if the covariance of the curve cannot be made positive definite. An error ends the
-    /// work.
-    pub fn advance(&mut self) -> Result<Progress, Error> {
-        if let Err(error) = self.work() {
-            self.stage = Stage::Finished(Err(error));
-        }
-        match (&self.stage, self.limit.take()) {
-            (_, Some(limit)) => Ok(Progress::Limit(limit)),
-            (Stage::Finished(result), None) => result.map(|()| Progress::Finished),
-            _ => Ok(Progress::Working),
-        }
-    }
-
+    /// Works with the record as the model explains it; `None` if it does not.
     #[inline(never)]
-    fn work(&mut self) -> Result<(), Error> {
-        match &mut self.stage {
-            Stage::Beginning => self.begin(),
-            Stage::Weighting => {
-                let observed = Observed::new(&self.curve, &self.spectrum);
-                let problem = Problem::new(observed, &self.model, &self.columns);
-                if self.weights.advance(&problem, &self.squares)? {
-                    self.stage = Stage::Choosing;
-                }
-                Ok(())
-            }
-            Stage::Choosing => {
-                self.choose();
-                Ok(())
-            }
-            Stage::Searching(trial) => {
-                let observed = Observed::new(&self.curve, &self.spectrum);
-                let problem = Problem::new(observed, &self.model, &self.columns);
-                let ground = Ground {
-                    problem: &problem,
-                    weights: &self.weights,
-                    derivatives: &self.derivatives,
-                };
-                let gain = gain(&self.options, trial.effect());
-                match trial.advance(&ground, &self.squares, gain) {
-                    Sought::Searching => return Ok(()),
-                    Sought::Hidden => self.skip(),
-                    Sought::Found(limit) => self.keep(limit),
-                }
-                self.stage = Stage::Choosing;
-                Ok(())
-            }
-            Stage::Finished(_) => Ok(()),
+    fn with_excess<T>(&self, work: impl FnOnce(&mut Excess<'_, '_, B>) -> T) -> Option<T> {
+        if self.step.fit.is_adequate() != Some(true) {
+            return None;
         }
+        let observed: Observed<'a, K, B> = self.record.observed();
+        let course = self.record.course.filter(|_| self.step.covariate.is_none());
+        let columns = Columns::EMPTY;
+        let problem = Problem::new(observed, &self.step.model, &columns);
+        let observation = Observation::new(observed, course, |bin| problem.effective_segments(bin));
+        let squares = self.step.fit.squares();
+        let mut excess = Excess::new(&observation, &self.step.model, &squares)?;
+        Some(work(&mut excess))
     }
 
-    #[inline(never)]
-    fn begin(&mut self) -> Result<(), Error> {
-        let observed = Observed::new(&self.curve, &self.spectrum);
-        self.columns.set(observed, &self.model);
-        let problem = Problem::new(observed, &self.model, &self.columns);
-        for (i, term) in numbered(self.model.terms().iter()) {
-            for j in term.fitted_parameters().filter(|_| self.squares[i] > 0.0) {
-                let change = derivative(&problem, *term, j, self.squares[i]);
-                // A model has no more shapes than there are places.
-                let _ = self.derivatives.push(change);
-            }
-        }
-        self.weights
-            .begin(&problem, &self.squares, self.options.tolerance)?;
-        self.stage = Stage::Weighting;
-        Ok(())
+    fn span(&self) -> Span {
+        self.record.curve.span()
     }
 
-    /// Leaves out the present value of the first shape parameter, because the effect hides with one value of
-    /// the second.
-    fn skip(&mut self) {
-        if self.at[1] > 0 {
-            self.at = [self.at[0].saturating_add(1), 0];
-        }
-        self.worst = None;
-    }
-
-    /// Keeps the larger limit of the present value of the first shape parameter, and hands it out after the last
-    /// value of the second.
-    fn keep(&mut self, limit: Limit) {
-        if self.worst.is_none_or(|worst| worst.size() < limit.size()) {
-            self.worst = Some(limit);
-        }
-        if self.at[1] == 0 {
-            self.limit = self.worst.take();
-        }
-    }
-
-    /// Chooses the next shape.
-    #[inline(never)]
-    fn choose(&mut self) {
-        let Some(&effect) = self.effects.get(self.effect) else {
-            self.stage = Stage::Finished(Ok(()));
-            return;
+    /// Whether there is a size from which on an effect shows beside the model. That of a filter is its length, which a
+    /// filter around a frequency does not have.
+    fn has_limit(&self, effect: &'static dyn Effect) -> bool {
+        let Some(first) = effect.parameters().first() else {
+            return false;
         };
-        let observed = Observed::new(&self.curve, &self.spectrum);
-        let problem = Problem::new(observed, &self.model, &self.columns);
-        let is_missing = self.model.position(effect.name()).is_none();
-        let is_candidate = is_missing && has_limit(effect) && place(&problem, effect).is_some();
-        let [first, second]: [Grid; MAX_PARAMETERS] =
-            core::array::from_fn(|j| Grid::coarse(effect, j, &self.span, STEPS_AN_OCTAVE));
+        let sees = self.record.observed().spectrum().is_some() || !effect.needs_spectrum();
+        let model = &self.step.model;
+        let has_place = effect
+            .replaces()
+            .is_none_or(|replaced| model.position(replaced.name()).is_some());
+        let is_around = is_of_shape(effect) && first.unit == "Hz";
+        sees && has_place && !is_around && effect.mirror().is_none()
+    }
+
+    /// The limits of all shapes of an effect: for each value of its first parameter the largest one of the others.
+    #[inline(never)]
+    fn of_effect(
+        &self,
+        effect: &'static dyn Effect,
+        excess: &mut Excess<'_, '_, B>,
+        each: &mut dyn FnMut(Limit),
+        pause: &mut Pause<'_>,
+    ) -> ControlFlow<()> {
+        let span = self.span();
+        let grids: [Grid; MAX_PARAMETERS] =
+            core::array::from_fn(|j| Grid::coarse(effect, j, &span, STEPS_AN_OCTAVE));
+        let [first, others @ ..] = grids;
         let firsts = if is_of_shape(effect) { 1 } else { first.steps };
-        if !is_candidate || self.at[0] >= firsts {
-            self.effect = self.effect.saturating_add(1);
-            self.at = [0; MAX_PARAMETERS];
-            return;
+        let shapes = others.iter().fold(1_u32, |n, grid| n.saturating_mul(grid.steps));
+        for at in 0..firsts {
+            let mut worst: Option<Limit> = None;
+            let mut hides = false;
+            for shape in 0..shapes {
+                let mut rest = shape;
+                let mut term = Term::fitted(effect);
+                term.set_parameter(0, first.at(at));
+                for (j, grid) in list::numbered(others.iter()) {
+                    term.set_parameter(j.saturating_add(1), grid.at(rest % grid.steps.max(1)));
+                    rest /= grid.steps.max(1);
+                }
+                match self.of_shape(term, excess, pause)? {
+                    None => hides = true,
+                    Some(limit) if worst.is_none_or(|worst| worst.size() < limit.size()) => {
+                        worst = Some(limit);
+                    }
+                    Some(_) => {}
+                }
+            }
+            if let Some(worst) = worst.filter(|_| !hides) {
+                each(worst);
+            }
         }
-        let mut term = Term::fitted(effect);
-        term.parameters = [first.at(self.at[0]), second.at(self.at[1])];
-        self.at[1] = self.at[1].saturating_add(1);
-        if self.at[1] >= second.steps {
-            self.at = [self.at[0].saturating_add(1), 0];
+        ControlFlow::Continue(())
+    }
+
+    /// The limit of one shape.
+    fn of_shape(
+        &self,
+        term: Term,
+        excess: &mut Excess<'_, '_, B>,
+        pause: &mut Pause<'_>,
+    ) -> ControlFlow<(), Option<Limit>> {
+        let needed = price(&term, self.record.curve.interval_s(), self.options.threshold);
+        if is_of_shape(term.effect) {
+            self.of_filter(term, needed, excess, pause)
+        } else {
+            of_coefficient(term, needed, excess, pause)
         }
-        let ground = Ground {
-            problem: &problem,
-            weights: &self.weights,
-            derivatives: &self.derivatives,
+    }
+
+    /// The least first parameter of a filter that shows.
+    fn of_filter(
+        &self,
+        term: Term,
+        needed: Real,
+        excess: &mut Excess<'_, '_, B>,
+        pause: &mut Pause<'_>,
+    ) -> ControlFlow<(), Option<Limit>> {
+        let Some(range) = term.effect.search_range(0, &self.span()) else {
+            return ControlFlow::Continue(None);
         };
-        self.stage = Stage::Searching(Trial::new(&ground, term, (first.low, first.high)));
+        let (mut low, mut high) = (range.low, range.high);
+        let mut found: Option<Limit> = None;
+        for _ in 0..SHAPE_STEPS {
+            pause()?;
+            // The first one is the widest filter.
+            let size = if found.is_none() { high } else { crate::math::sqrt(low * high) };
+            let mut tried = term;
+            tried.set_parameter(0, size);
+            excess.set(&tried);
+            match excess.of_filter(needed) {
+                Some(limit) => {
+                    found = Some(limit);
+                    high = size;
+                }
+                None if found.is_none() => return ControlFlow::Continue(None),
+                None => low = size,
+            }
+            if high < low * (1.0 + AGREES) {
+                break;
+            }
+        }
+        ControlFlow::Continue(found)
     }
 }
 
-/// Whether there is a size from which on an effect shows. That of a filter is its length, which a filter around a
-/// frequency does not have.
-fn has_limit(effect: &dyn Effect) -> bool {
-    let first = effect.parameters().first();
-    !(is_of_shape(effect) && first.is_some_and(|first| first.unit == "Hz"))
-}
-
-/// The least fall of the score with which an effect of the right shape is added. A diagnosis asks for the threshold
-/// and the costs of the effect, and its search fits the shape to the noise of the record, too, which makes χ² fall by
-/// one more for each parameter.
-fn gain(options: &Options, effect: &'static dyn Effect) -> Real {
-    let continuous = effect.parameters().iter().filter(|one| !one.is_whole);
-    let fitted = continuous.skip(usize::from(is_of_shape(effect))).count();
-    options.threshold + 2.0 * cost(effect) - real(fitted)
+/// The least coefficient of an effect that shows.
+fn of_coefficient<const B: usize>(
+    term: Term,
+    needed: Real,
+    excess: &mut Excess<'_, '_, B>,
+    pause: &mut Pause<'_>,
+) -> ControlFlow<(), Option<Limit>> {
+    excess.set(&term);
+    // A size in units of the largest share of the model in any row.
+    let (mut low, mut high) = (1e-4, excess.most());
+    if excess.of_size(high, needed).is_none() {
+        return ControlFlow::Continue(None);
+    }
+    for _ in 0..COEFFICIENT_STEPS {
+        pause()?;
+        let size = crate::math::sqrt(low * high);
+        if excess.of_size(size, needed).is_some() {
+            high = size;
+        } else {
+            low = size;
+        }
+        if high < low * (1.0 + AGREES) {
+            break;
+        }
+    }
+    ControlFlow::Continue(excess.of_size(high, needed))
 }

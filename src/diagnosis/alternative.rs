@@ -2,13 +2,13 @@
 
 use super::{
     judged::{Judged, Judging},
+    polished::{Fitted, Polishing},
     step::{Candidate, Step},
-    trial::{Fitted, Trial},
 };
 use crate::{
     error::Error,
     fit::{Problem, Start, Tolerance, Work},
-    model::{Model, Term},
+    model::Model,
     observed::Observed,
     real::Real,
 };
@@ -17,9 +17,7 @@ use crate::{
 /// with the candidate, with all fitted shapes polished, and where this model fails. The step has no
 /// candidates of its own.
 ///
-/// `before` is the step before `step`. Its candidates give the shape of the effect that a
-/// [`swap`](Candidate::swap) takes. `curve` is the curve on which `step` was judged, without what
-/// follows a covariate.
+/// `observed` is what the step was judged on, without what follows a covariate.
 ///
 /// # Errors
 /// The same as those of [`fit`](crate::fit::fit()), and [`Error::TooManyEffects`] if the model has no
@@ -27,22 +25,15 @@ use crate::{
 pub fn alternative<'a, const K: usize, const B: usize>(
     observed: impl Into<Observed<'a, K, B>>,
     step: &Step<K, B>,
-    before: Option<&Step<K, B>>,
     candidate: &Candidate,
 ) -> Result<Step<K, B>, Error> {
     let observed = observed.into();
     let mut model = step.model.clone();
-    if let Some(swap) = candidate.swap {
-        let known = before.into_iter().flat_map(|before| &before.candidates);
-        let mut same = known.filter(|known| known.term.effect.name() == swap.taken.name());
-        let taken = same.next().map(|known| known.term);
-        model.exchange(swap.dropped, taken.unwrap_or(Term::fitted(swap.taken)))?;
-    }
     if let Some(replaced) = candidate.term.effect.replaces() {
         model.remove(replaced.name());
     }
     model.add(candidate.term)?;
-    let fitted = polished(observed, model, step.fit.tolerance, candidate)?;
+    let fitted = polished(observed, model, step.fit.tolerance)?;
     let mut alternative = Step::of(&fitted.model);
     alternative.covariate = step.covariate;
     judged(observed, &fitted, step.fit.tolerance, &mut alternative)?;
@@ -54,7 +45,6 @@ pub(super) fn polished<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     model: Model,
     tolerance: Real,
-    candidate: &Candidate,
 ) -> Result<Fitted, Error> {
     let mut work = Work::NEW;
     work.begin_at(
@@ -66,15 +56,11 @@ pub(super) fn polished<const K: usize, const B: usize>(
     let problem = Problem::new(observed, &model, &work.columns);
     while !work.solver.advance(&problem)? {}
     let squares = work.solver.squares;
-    let mut trial = Trial::new(Fitted { model, squares });
-    let mut candidate = *candidate;
+    let mut polishing = Polishing::new(Fitted { model, squares });
+    let span = observed.span();
     loop {
-        // No other candidate competes, so no round is hopeless.
-        let span = observed.span();
-        let completed =
-            trial.advance(observed, &span, tolerance, None, &mut work, &mut candidate)?;
-        if let Some(completed) = completed {
-            return Ok(completed.fitted);
+        if let Some(polished) = polishing.advance(observed, &span, tolerance, &mut work)? {
+            return Ok(polished);
         }
     }
 }

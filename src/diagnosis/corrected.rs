@@ -1,8 +1,8 @@
 //! A curve and a spectrum without what follows covariates.
 
-use super::{evidence::Evidence, step::FollowedCovariate};
+use super::step::FollowedCovariate;
 use crate::{
-    covariate::CrossCurve, curve::Curve, math, real::Real, real::real, spectrum::Spectrum,
+    covariate::CrossCurve, curve::Curve, math, real::Real, real::real, record::Record, spectrum::Spectrum,
 };
 
 /// The share of a bin's standard error by which a covariate may change what a level sees. Chosen by hand: a line in
@@ -31,14 +31,14 @@ impl FollowedCovariate {
     /// follows the covariate there, and is not slower, exceeds a tenth of a bin's standard error in one of them, or
     /// if what leaks into the bins from slower changes does.
     ///
-    /// `evidence` is that of the diagnosis that found the covariate.
+    /// `record` is that of the diagnosis that found the covariate.
     pub fn correct<const K: usize, const B: usize>(
         &self,
-        evidence: &Evidence<'_, K>,
+        record: &Record<'_, K, B>,
         curve: &mut Curve<K>,
         spectrum: &mut Spectrum<B>,
     ) {
-        self.correct_up_to(Real::INFINITY, evidence, curve, spectrum);
+        self.correct_up_to(Real::INFINITY, record, curve, spectrum);
     }
 
     /// As [`correct`](Self::correct), where at most `most` times the rest of an octave is added back.
@@ -46,16 +46,16 @@ impl FollowedCovariate {
     pub(super) fn correct_up_to<const K: usize, const B: usize>(
         &self,
         most: Real,
-        evidence: &Evidence<'_, K>,
+        record: &Record<'_, K, B>,
         curve: &mut Curve<K>,
         spectrum: &mut Spectrum<B>,
     ) {
-        let Some(one) = evidence.covariates.get(self.index) else {
+        let Some(one) = record.covariates.get(self.index) else {
             return;
         };
         let beside = self.beside.and_then(|beside| {
-            let other = evidence.covariates.get(beside.index)?;
-            Some((beside, other, evidence.pairs.get(beside.pair)?))
+            let other = record.covariates.get(beside.index)?;
+            Some((beside, other, record.pairs.get(beside.pair)?))
         });
         let others = beside.map_or(0, |(_, other, _)| other.first_octave());
         let first = one.first_octave().max(others);

@@ -1,8 +1,7 @@
 //! Covariate stage: whether the rate follows a covariate, or two that act together. This comes before the search for
-//! effects, because a covariate carries its own evidence.
+//! effects, because a covariate carries its own record.
 
 use super::{
-    evidence::Evidence,
     judged::Judged,
     step::{Beside, FollowedCovariate},
 };
@@ -16,6 +15,7 @@ use crate::{
     nnls::Vector,
     observed::Observed,
     real::{Real, real},
+    record::Record,
     spectrum::Spectrum,
 };
 
@@ -71,16 +71,16 @@ impl<const K: usize, const B: usize> Following<K, B> {
     pub(super) fn advance(
         &mut self,
         observed: Observed<'_, K, B>,
-        evidence: &Evidence<'_, K>,
+        record: &Record<'_, K, B>,
         model: &Model,
         judged: &Judged,
         least_z: Real,
         work: &mut Work<K, B>,
     ) -> Result<Option<Option<FollowedCovariate>>, Error> {
-        let tried = evidence
+        let tried = record
             .covariates
             .len()
-            .saturating_add(evidence.pairs.len());
+            .saturating_add(record.pairs.len());
         let tried_log = math::log(real(u32::try_from(tried).unwrap_or(u32::MAX).max(1)));
         let least_square = least_z * least_z + 2.0 * tried_log;
         if self.place >= tried {
@@ -96,7 +96,7 @@ impl<const K: usize, const B: usize> Following<K, B> {
             self.squares = work.solver.squares;
             self.solving = false;
         }
-        self.found = self.estimate(observed.curve(), evidence, model);
+        self.found = self.estimate(observed.curve(), record, model);
         self.round = self.round.saturating_add(1);
         match self.found.filter(|_| self.round < ROUNDS) {
             Some(found) => {
@@ -110,7 +110,7 @@ impl<const K: usize, const B: usize> Following<K, B> {
                 } else {
                     1.0
                 };
-                found.correct_up_to(most, evidence, &mut self.corrected, &mut self.spectrum);
+                found.correct_up_to(most, record, &mut self.corrected, &mut self.spectrum);
                 let start = Start::From(self.squares);
                 let tolerance = Tolerance::Fixed(judged.tolerance);
                 let corrected = Observed::new(&self.corrected, &self.spectrum);
@@ -127,7 +127,7 @@ impl<const K: usize, const B: usize> Following<K, B> {
     fn estimate(
         &self,
         curve: &Curve<K>,
-        evidence: &Evidence<'_, K>,
+        record: &Record<'_, K, B>,
         model: &Model,
     ) -> Option<FollowedCovariate> {
         let octaves = curve.points();
@@ -136,19 +136,19 @@ impl<const K: usize, const B: usize> Following<K, B> {
             let squares = self.squares.as_slice();
             model.variance(squares, m, curve.interval_s()) * curve.variance_unit()
         };
-        if let Some(cross) = evidence.covariates.get(self.place) {
+        if let Some(cross) = record.covariates.get(self.place) {
             return Some(FollowedCovariate {
                 index: self.place,
                 slope: Slope::of(cross, octaves, noise)?,
                 beside: None,
             });
         }
-        let at = self.place.checked_sub(evidence.covariates.len())?;
-        let pair = evidence.pairs.get(at)?;
+        let at = self.place.checked_sub(record.covariates.len())?;
+        let pair = record.pairs.get(at)?;
         let [index, other] = pair.covariates;
         let crosses = [
-            evidence.covariates.get(index)?,
-            evidence.covariates.get(other)?,
+            record.covariates.get(index)?,
+            record.covariates.get(other)?,
         ];
         let Slopes {
             slopes: [slope, beside],

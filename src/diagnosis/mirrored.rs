@@ -1,75 +1,51 @@
-//! Last stage: the kurtosis tells an effect from another one that has the same Allan variance. If it
-//! cannot, both are named.
+//! The kurtosis tells an effect from another one that has the same Allan variance. If it cannot, both are named.
 
-use super::{
-    step::{Addition, Step},
-    trial::Fitted,
-};
+use super::polished::Fitted;
 use crate::{
     effect::Effect,
-    fit::{Columns, Problem},
+    fit::{Problem, Work},
     kurtosis::Kurtosis,
-    list,
     observed::Observed,
 };
 
-/// Names the mirror of every ambiguous effect beside it. For the best candidate, the kurtosis may
-/// decide between the effect and its mirror. The right one is then added, and the other one is not
-/// named. The memory of `columns` is used.
+/// What the kurtosis says of an effect.
+pub(super) enum Mirrored {
+    /// The effect is what it is called, or no other one has its Allan variance.
+    Same,
+    /// It is this one.
+    Other(&'static dyn Effect),
+    /// It may be this one as well.
+    Unknown(&'static dyn Effect),
+}
+
+/// Asks the kurtosis whether the effect at a place of a model is its mirror. The memory of `work` is used.
 #[inline(never)]
 pub(super) fn tell_from_mirror<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     kurtosis: Option<&Kurtosis<K>>,
     effects: &[&'static dyn Effect],
-    columns: &mut Columns<K, B>,
-    best: &mut Fitted,
-    step: &mut Step<K, B>,
-) {
-    let Step {
-        added,
-        ambiguous,
-        candidates,
-        ..
-    } = step;
-    // Behind each name comes the name of its mirror, because nothing has told the two apart.
-    let mut at = 0_usize;
-    while let Some(name) = ambiguous.get(at) {
-        at = at.saturating_add(1);
-        if let Some(mirror) = mirror_of(name, effects) {
-            // There is a place for every name that candidates can bring, and for its mirror.
-            list::insert(ambiguous, at, mirror.name());
-            at = at.saturating_add(1);
-        }
-    }
-    let Some(Addition::Effect(term)) = added else {
-        return;
+    work: &mut Work<K, B>,
+    fitted: &Fitted,
+    place: usize,
+) -> Mirrored {
+    let Some(term) = fitted.model.terms().get(place) else {
+        return Mirrored::Same;
     };
     let Some(mirror) = mirror_of(term.effect.name(), effects) else {
-        return;
+        return Mirrored::Same;
     };
-    let place = best.model.terms().len().saturating_sub(1);
     // The kurtosis is known by octaves, and not only by those that are fitted.
     let octaves = observed.octaves();
-    columns.set(octaves, &best.model);
-    let problem = Problem::new(octaves, &best.model, columns);
-    let share = |k: usize| problem.share(k, place, &best.squares);
-    let correlation_time_s = term.parameters[0];
+    work.columns.set(octaves, &fitted.model);
+    let problem = Problem::new(octaves, &fitted.model, &work.columns);
+    let share = |k: usize| problem.share(k, place, &fitted.squares);
+    let correlation_time_s = term.parameter(0);
     let jumps =
         kurtosis.and_then(|kurtosis| kurtosis.jumps(observed.curve(), correlation_time_s, share));
     match jumps {
-        Some(true) => {
-            term.effect = mirror;
-            if let Some(last) = best.model.terms_mut().last_mut() {
-                last.effect = mirror;
-            }
-            if let Some(first) = candidates.first_mut() {
-                first.term.effect = mirror;
-            }
-        }
-        Some(false) => {}
-        None => {
-            let _ = ambiguous.push(mirror.name());
-        }
+        Some(true) => Mirrored::Other(mirror),
+        Some(false) => Mirrored::Same,
+        None => Mirrored::Unknown(mirror),
     }
 }
 

@@ -24,7 +24,7 @@ pub struct Options {
     /// tried, it is raised to `√(z² + 2 ln n)`, so that noise exceeds it no more often. Both slopes of a pair have
     /// to exceed it.
     pub covariate_z: Real,
-    /// The largest number of effects to add, including a covariate. Default 3. It is chosen by hand; no
+    /// The largest number of effects to add, including a covariate. Default 4. It is chosen by hand; no
     /// study varies it.
     pub max_effects: usize,
 }
@@ -36,7 +36,7 @@ impl Default for Options {
             threshold: 8.0,
             ambiguity: 6.0,
             covariate_z: 3.5,
-            max_effects: 3,
+            max_effects: 4,
         }
     }
 }

@@ -1,50 +1,46 @@
-//! A diagnosis, in one go or in pieces: one stage follows the other until the model is adequate or
-//! nothing helps.
+//! A diagnosis: a model is judged, what it lacks is looked for, and the way to the model that explains the record is told
+//! step by step.
 
 use super::{
-    chosen::choose,
-    dropped::Dropping,
-    evidence::Evidence,
-    followed::Following,
     judged::{Judged, Judging},
-    mirrored::tell_from_mirror,
+    followed::Following,
+    narrated::{Story, with},
     options::Options,
-    scanned::Scanning,
+    search::{Observation, Pause, Search},
     step::{Addition, Step},
-    swapped::{Preferred, Swapping},
-    trial::Fitted,
-    tried::{Base, Contest, Trying},
     verdict::Verdict,
 };
 use crate::{
     curve::Curve,
-    effect::{Effect, Span},
+    effect::Effect,
     error::Error,
     fit::{Problem, Start, Tolerance, Work, check},
-    list,
+    math,
     model::Model,
     observed::Observed,
+    record::Record,
     spectrum::Spectrum,
 };
+use core::ops::ControlFlow;
 
-/// A diagnosis in progress, which finds out which effect is missing.
+/// A diagnosis in progress, which finds out which effects are missing.
 ///
-/// It looks for what a model lacks in a list of effects such as
-/// [`CATALOGUE`](crate::effect::CATALOGUE). It fits the model, compares it with the curve, tries every
-/// effect, adds the best one, and starts again, until the model is adequate or nothing helps.
-/// Covariates are tried first, because they carry their own evidence.
+/// It judges a model, looks whether the rate follows a covariate, and then looks for what is missing among a list of effects
+/// such as [`CATALOGUE`](crate::effect::CATALOGUE). It always looks, because no single test of the whole model sees every
+/// effect. The steps from the first model to the last one are told in the order in which the error falls most.
 ///
-/// [`run`](Self::run) does all of it. [`advance`](Self::advance) does one piece and returns, so that a
-/// main loop can feed its watchdog and take its samples in between. One piece takes at most 2 million
-/// instructions on a Cortex-M4F in single precision, with a spectrum or without, of some 300 million for a
-/// whole diagnosis of 20 octaves (`cargo xtask bench` measures both). To abort a diagnosis, drop it.
+/// [`run`](Self::run) does all of it. [`advance`](Self::advance) leads to the next step. In both, a *pause* is called between
+/// two pieces of work, so that a main loop can feed its watchdog and take its samples. A piece takes at most 2 million
+/// instructions on a Cortex-M4F in single precision (`cargo xtask bench` measures it). If the pause returns
+/// [`ControlFlow::Break`], what is in progress is given up, and the next call begins it anew.
 ///
 /// # Example
 ///
 /// ```
 /// use allanite::{Accumulator, Model, Scale};
-/// use allanite::diagnosis::{Diagnosis, Evidence, Options, Progress, Verdict};
+/// use allanite::diagnosis::{Diagnosis, Options, Verdict};
 /// use allanite::effect::CATALOGUE;
+/// use core::ops::ControlFlow;
 ///
 /// let mut gyro = Accumulator::<12>::new();
 /// let mut random = 1_u32;
@@ -53,423 +49,352 @@ use crate::{
 ///     gyro.push((random >> 24) as i32);
 /// }
 /// let curve = gyro.curve(Scale::new(0.01, 100.0)?);
-/// let model = Model::ieee_952();
-/// let (evidence, options) = (Evidence::NONE, Options::default());
-/// let mut diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options);
-/// let verdict = loop {
-///     match diagnosis.advance()? {
-///         Progress::Working => {} // feed the watchdog, take the next samples
-///         Progress::Step(step) => assert!(step.fit.p_value > 0.01),
-///         Progress::Finished(verdict) => break verdict,
-///     }
-/// };
-/// assert_eq!(verdict, Verdict::Adequate);
+/// let (model, options) = (Model::ieee_952(), Options::default());
+/// let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+/// let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
+/// let verdict = diagnosis.run(|step| assert!(step.fit.p_value > 0.01), &mut pause)?;
+/// assert_eq!(verdict, Some(Verdict::Adequate));
 /// # Ok::<(), allanite::Error>(())
 /// ```
 pub struct Diagnosis<'a, const K: usize, const B: usize = 0> {
-    /// The curve, without what follows a covariate.
+    record: Record<'a, K, B>,
+    /// The curve and the spectrum, without what follows a covariate.
     curve: Curve<K>,
     spectrum: Spectrum<B>,
-    span: Span,
-    evidence: Evidence<'a, K>,
+    /// The model that was asked about.
+    model: Model,
     effects: &'a [&'static dyn Effect],
     options: Options,
     /// The present model, and what is reported about it.
     step: Step<K, B>,
     judged: Judged,
-    /// The model with the first of the step's candidates.
-    best: Fitted,
-    /// Effects and covariates added so far.
-    additions: usize,
-    /// The number of fitted effects in the model that the diagnosis began with.
-    given: usize,
-    /// The effect that was added last, and the effects to which it was preferred.
-    preferred: Option<Preferred>,
     work: Work<K, B>,
-    stage: Stage<K, B>,
+    /// What was found and is told; `None` before the search.
+    story: Option<Story>,
+    next: Next,
 }
 
-/// The stage that is in progress.
-// The large variants share their memory. A diagnosis is stored once and never copied.
-#[allow(clippy::large_enum_variant)]
-enum Stage<const K: usize, const B: usize> {
-    /// Nothing has been done yet.
-    Beginning,
-    /// The step's model is fitted and compared.
-    Judging(Judging<K, B>),
-    /// The model is tried without each of its earlier additions.
-    Dropping(Dropping),
-    /// The covariates are tested for whether the rate follows them.
-    Following(Following<K, B>),
-    /// The step's model is solved again, because the solver has worked on other models or on
-    /// covariates. The covariates come next, unless they have been tested.
-    Resolving { followed: bool },
-    /// The effects are scanned for their best shapes.
-    Scanning(Scanning<K, B>),
-    /// The best shapes are fitted in full.
-    Trying(Trying),
-    /// Pairs of effects are tried in the place of the effect that was added last.
-    Swapping(Swapping<K, B>),
-    /// The step is reported. What it adds comes next.
-    Reported,
-    /// There is nothing left to do.
+/// What comes next.
+#[derive(Clone, Copy)]
+enum Next {
+    /// The model that was asked about is judged, and covariates are tried.
+    Judging,
+    /// The model is judged again, without what follows the covariate.
+    JudgingAgain,
+    /// Effects are looked for, and the step is told.
+    Searching,
+    /// The next step of the story is told.
+    Telling,
     Finished(Result<Verdict, Error>),
 }
 
 /// The result of one piece of a diagnosis.
 #[derive(Debug)]
 pub enum Progress<'s, const K: usize, const B: usize = 0> {
-    /// There is more to do.
-    Working,
-    /// A model has been judged, and it has been decided what to add.
+    /// The pause ended the work before the next step.
+    Paused,
+    /// A model has been judged, and it is known what to add.
     Step(&'s Step<K, B>),
     /// The diagnosis is complete.
     Finished(Verdict),
 }
 
-impl<'a, const K: usize> Diagnosis<'a, K> {
-    /// A diagnosis that looks for what a model lacks. It does not begin before it is advanced.
-    // Inlined, so that some 7 KiB are built where they stay and not moved there.
-    #[inline(always)]
-    pub fn new(
-        curve: Curve<K>,
-        evidence: Evidence<'a, K>,
-        model: &Model,
-        effects: &'a [&'static dyn Effect],
-        options: Options,
-    ) -> Self {
-        Self::with_spectrum(curve, Spectrum::EMPTY, evidence, model, effects, options)
+/// Why a piece of work ended before its result.
+pub(super) enum Stop {
+    Paused,
+    Failed(Error),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        Self::Failed(error)
+    }
+}
+
+/// Calls the pause.
+pub(super) fn call(pause: &mut Pause<'_>) -> Result<(), Stop> {
+    match pause() {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(Stop::Paused),
     }
 }
 
 impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
-    /// A diagnosis of a curve and of the density of the same record.
-    // Inlined, so that some 7 KiB are built where they stay and not moved there.
+    /// A diagnosis of a record that looks for what a model lacks. It does not begin before it is run.
+    // Inlined, so that some kilobytes are built where they stay and not moved there.
     #[inline(always)]
-    pub fn with_spectrum(
-        curve: Curve<K>,
-        spectrum: Spectrum<B>,
-        evidence: Evidence<'a, K>,
+    pub fn new(
+        record: Record<'a, K, B>,
         model: &Model,
         effects: &'a [&'static dyn Effect],
         options: Options,
     ) -> Self {
         Self {
-            span: curve.span(),
-            curve,
-            spectrum,
-            evidence,
+            curve: record.curve.clone(),
+            spectrum: record.spectrum.cloned().unwrap_or(Spectrum::EMPTY),
+            record,
+            model: model.clone(),
             effects,
             options,
             step: Step::of(model),
             judged: Judged::none(),
-            best: Fitted::empty(),
-            additions: 0,
-            given: list::count(model.terms().iter().filter(|term| term.fitted)),
-            preferred: None,
             work: Work::NEW,
-            stage: Stage::Beginning,
+            story: None,
+            next: Next::Judging,
         }
     }
 
-    /// Does the whole diagnosis. Calls `report` for every step, including the last one.
+    /// Does the whole diagnosis. Calls `report` for every step, including the last one, and `pause` between two pieces of
+    /// work. Returns `None` if the pause ended it.
     ///
     /// # Errors
     /// As of [`fit`](crate::fit::fit()).
-    pub fn run(&mut self, mut report: impl FnMut(&Step<K, B>)) -> Result<Verdict, Error> {
+    pub fn run(
+        &mut self,
+        mut report: impl FnMut(&Step<K, B>),
+        pause: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<Verdict>, Error> {
         loop {
-            match self.advance()? {
-                Progress::Working => {}
+            match self.advance(pause)? {
+                Progress::Paused => return Ok(None),
                 Progress::Step(step) => report(step),
-                Progress::Finished(verdict) => return Ok(verdict),
+                Progress::Finished(verdict) => return Ok(Some(verdict)),
             }
         }
     }
 
-    /// Does one piece of work.
+    /// Works until the next step, or until the pause ends the work.
     ///
     /// # Errors
     /// The same as those of [`fit`](crate::fit::fit()). An error ends the diagnosis.
-    pub fn advance(&mut self) -> Result<Progress<'_, K, B>, Error> {
-        let advanced = match self.work() {
-            Ok(false) => Ok(()),
-            Ok(true) => self.go_on(),
-            Err(error) => Err(error),
-        };
-        if let Err(error) = advanced {
-            self.stage = Stage::Finished(Err(error));
-        }
-        match &self.stage {
-            Stage::Finished(verdict) => verdict.map(Progress::Finished),
-            Stage::Reported => Ok(Progress::Step(&self.step)),
-            _ => Ok(Progress::Working),
-        }
-    }
-
-    /// Does one piece of work on the present stage, and returns whether the stage is complete.
-    // This is a function of its own, because the temporaries of what follows a stage would lie on the
-    // stack below it.
-    #[inline(never)]
-    fn work(&mut self) -> Result<bool, Error> {
-        let contest = self.contest();
-        let Self {
-            curve,
-            spectrum,
-            span,
-            evidence,
-            effects,
-            options,
-            step,
-            judged,
-            best,
-            work,
-            stage,
-            ..
-        } = self;
-        let observed = Observed::new(curve, spectrum);
-        match stage {
-            Stage::Judging(judging) => {
-                let complete = judging.advance(observed, span, work, step)?;
-                if let Some(complete) = complete {
-                    *judged = complete;
-                }
-                Ok(complete.is_some())
+    pub fn advance(
+        &mut self,
+        pause: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Progress<'_, K, B>, Error> {
+        loop {
+            if let Next::Finished(verdict) = self.next {
+                return verdict.map(Progress::Finished);
             }
-            Stage::Dropping(dropping) => {
-                Ok(dropping.advance(observed, &contest, &step.model, &judged.squares, work))
+            match self.work(pause) {
+                Ok(true) => return Ok(Progress::Step(&self.step)),
+                Ok(false) => {}
+                Err(Stop::Paused) => return Ok(Progress::Paused),
+                Err(Stop::Failed(error)) => self.next = Next::Finished(Err(error)),
             }
-            Stage::Following(following) => {
-                let (model, least_z) = (&step.model, options.covariate_z);
-                let complete =
-                    following.advance(observed, evidence, model, judged, least_z, work)?;
-                if let Some(followed) = complete {
-                    step.added = followed.map(Addition::Covariate);
-                }
-                Ok(complete.is_some())
-            }
-            Stage::Resolving { .. } => {
-                let problem = Problem::new(observed, &step.model, &work.columns);
-                work.solver.advance(&problem)
-            }
-            Stage::Scanning(scanning) => {
-                let problem = Problem::new(observed, &step.model, &work.columns);
-                Ok(scanning.advance(&problem, &work.solver, effects, span))
-            }
-            Stage::Trying(trying) => {
-                let base = Base {
-                    model: &step.model,
-                    swap: None,
-                };
-                Ok(trying.advance(observed, &contest, base, work, &mut step.candidates, best))
-            }
-            Stage::Swapping(swapping) => {
-                Ok(swapping.advance(observed, effects, &contest, work, step, best))
-            }
-            Stage::Beginning | Stage::Reported | Stage::Finished(_) => Ok(true),
         }
     }
 
-    /// Goes on to the stage that follows the present one, which is complete.
-    #[inline(never)]
-    fn go_on(&mut self) -> Result<(), Error> {
-        match &mut self.stage {
-            Stage::Beginning => {
+    /// Does what comes next. Returns whether it led to a step.
+    fn work(&mut self, pause: &mut Pause<'_>) -> Result<bool, Stop> {
+        match self.next {
+            Next::Judging => {
                 check(self.curve.points(), 2)?;
                 let tolerance = Tolerance::IfNeeded(self.options.tolerance);
-                self.judge(Start::Independent, tolerance)?;
-            }
-            Stage::Judging(_) => match Dropping::new(&self.step.model, self.given) {
-                Some(dropping) => self.stage = Stage::Dropping(dropping),
-                None => {
-                    self.step.begin_report();
-                    self.follow_or_scan();
+                self.judge(Start::Independent, tolerance, pause)?;
+                self.step.begin_report();
+                if self.has_room() && !self.record.covariates.is_empty() {
+                    self.follow(pause)?;
                 }
-            },
-            Stage::Dropping(_) => self.drop()?,
-            Stage::Following(_) => {
-                if self.step.added.is_some() || self.judged.adequate != Some(false) {
-                    self.stage = Stage::Reported;
-                } else {
-                    self.resolve(true)?;
+                self.next = Next::Searching;
+                if self.step.added.is_some() {
+                    self.next = Next::JudgingAgain;
+                    return Ok(true);
                 }
             }
-            Stage::Resolving { followed: true } => self.scan_or_report(),
-            Stage::Resolving { followed: false } => self.follow_or_scan(),
-            Stage::Scanning(_) => self.try_shapes(),
-            Stage::Trying(_) if self.preferred.is_some() => self.swap(),
-            Stage::Trying(_) | Stage::Swapping(_) => self.choose(),
-            Stage::Reported => self.add()?,
-            Stage::Finished(_) => {}
+            Next::JudgingAgain => {
+                self.correct();
+                let tolerance = Tolerance::IfNeeded(self.options.tolerance);
+                self.judge(Start::From(self.judged.squares), tolerance, pause)?;
+                self.step.begin_report();
+                self.next = Next::Searching;
+            }
+            Next::Searching => {
+                self.search(pause)?;
+                return self.tell(pause);
+            }
+            Next::Telling => {
+                self.judge_next(pause)?;
+                return self.tell(pause);
+            }
+            Next::Finished(_) => {}
         }
-        Ok(())
+        Ok(false)
     }
 
-    /// Begins to judge the step's model.
-    fn judge(&mut self, start: Start, tolerance: Tolerance) -> Result<(), Error> {
+    /// Judges the step's model.
+    #[inline(never)]
+    fn judge(
+        &mut self,
+        start: Start,
+        tolerance: Tolerance,
+        pause: &mut Pause<'_>,
+    ) -> Result<(), Stop> {
         let observed = Observed::new(&self.curve, &self.spectrum);
         self.work
             .begin_at(observed, &self.step.model, start, tolerance)?;
-        self.stage = Stage::Judging(Judging::new());
-        Ok(())
+        let span = self.curve.span();
+        let mut judging = Judging::new();
+        loop {
+            call(pause)?;
+            let judged = judging.advance(observed, &span, &mut self.work, &mut self.step)?;
+            if let Some(judged) = judged {
+                self.judged = judged;
+                return Ok(());
+            }
+        }
+    }
+
+    /// Tests the covariates for whether the rate follows them.
+    #[inline(never)]
+    fn follow(&mut self, pause: &mut Pause<'_>) -> Result<(), Stop> {
+        let observed = Observed::new(&self.curve, &self.spectrum);
+        let mut following = Following::new(&self.curve, self.judged.squares);
+        let least_z = self.options.covariate_z;
+        loop {
+            call(pause)?;
+            let (model, judged) = (&self.step.model, &self.judged);
+            let complete =
+                following.advance(observed, &self.record, model, judged, least_z, &mut self.work)?;
+            if let Some(followed) = complete {
+                self.step.added = followed.map(Addition::Covariate);
+                return Ok(());
+            }
+        }
+    }
+
+    /// Takes what follows the covariate from the curve and the spectrum.
+    fn correct(&mut self) {
+        if let Some(Addition::Covariate(followed)) = self.step.added {
+            self.step.covariate = Some(followed);
+            followed.correct(&self.record, &mut self.curve, &mut self.spectrum);
+        }
     }
 
     /// Whether something may be added to the model.
     fn has_room(&self) -> bool {
-        self.additions < self.options.max_effects && self.evidence.invalid.is_none()
+        self.left() > 0 && self.record.invalid.is_none()
     }
 
-    /// Begins to scan the list of effects if the model is not adequate; otherwise reports the step.
-    fn scan_or_report(&mut self) {
-        if !self.has_room() || self.judged.adequate != Some(false) {
-            self.stage = Stage::Reported;
-            return;
-        }
-        self.stage = Stage::Scanning(Scanning::new());
-        if let Stage::Scanning(scanning) = &mut self.stage {
-            let observed = Observed::new(&self.curve, &self.spectrum);
-            let problem = Problem::new(observed, &self.step.model, &self.work.columns);
-            scanning.begin(&problem, &mut self.work.solver);
-        }
+    /// The number of effects that may be added.
+    fn left(&self) -> usize {
+        let followed = usize::from(self.step.covariate.is_some());
+        self.options.max_effects.saturating_sub(followed)
     }
 
-    /// Goes on with the covariates if there are any, and else with the list of effects.
-    fn follow_or_scan(&mut self) {
-        if self.has_room() && self.step.covariate.is_none() && !self.evidence.covariates.is_empty()
-        {
-            self.follow();
-        } else {
-            self.scan_or_report();
+    /// Looks for what the model lacks.
+    #[inline(never)]
+    fn search(&mut self, pause: &mut Pause<'_>) -> Result<(), Stop> {
+        if !self.has_room() {
+            self.story = Some(Story::NOTHING);
+            return Ok(());
         }
-    }
-
-    /// Begins to solve the step's model again.
-    fn resolve(&mut self, followed: bool) -> Result<(), Error> {
-        let start = Start::Once(self.judged.assumed);
-        let tolerance = Tolerance::Fixed(self.judged.tolerance);
-        let model = &self.step.model;
         let observed = Observed::new(&self.curve, &self.spectrum);
-        self.work.begin_at(observed, model, start, tolerance)?;
-        self.stage = Stage::Resolving { followed };
+        // The course is the one of the record with what follows a covariate.
+        let course = self.record.course.filter(|_| self.step.covariate.is_none());
+        let problem = Problem::new(observed, &self.step.model, &self.work.columns);
+        let observation = Observation::new(observed, course, |bin| problem.effective_segments(bin));
+        let mut search = Search::<B>::NEW;
+        let limits = super::search::Limits {
+            effects: self.left(),
+            threshold: self.options.threshold,
+            ambiguity: self.options.ambiguity,
+        };
+        let found = search.run(&observation, &self.model, self.effects, limits, pause);
+        let ControlFlow::Continue(found) = found else {
+            return Err(Stop::Paused);
+        };
+        let told = Story::new(
+            &mut search,
+            &observation,
+            observed,
+            &self.model,
+            self.record.kurtosis,
+            self.effects,
+            found,
+            self.step.fit.tolerance,
+            &mut self.work,
+            pause,
+        )?;
+        self.story = Some(told);
         Ok(())
     }
 
-    /// Drops the addition that the model needs least, if it does not need it, and begins to judge the
-    /// model without it.
-    #[inline(never)]
-    fn drop(&mut self) -> Result<(), Error> {
-        let Stage::Dropping(dropping) = &self.stage else {
+    /// Judges the model of the story's next step.
+    fn judge_next(&mut self, pause: &mut Pause<'_>) -> Result<(), Stop> {
+        let covariate = self.step.covariate;
+        let Some(story) = &self.story else {
             return Ok(());
         };
-        match dropping.dropped(self.options.threshold) {
-            Some((term, fitted)) => {
-                // There is a place for every effect that a model can have.
-                let _ = self.step.dropped.push(term.effect.name());
-                self.step.model.clone_from(&fitted.model);
-                let start = Start::Once(fitted.squares);
-                self.judge(start, Tolerance::IfNeeded(self.options.tolerance))
-            }
-            None => {
-                self.step.begin_report();
-                self.resolve(false)
-            }
-        }
+        self.step = Step::of(&story.model(&self.model)?);
+        self.step.covariate = covariate;
+        let tolerance = Tolerance::IfNeeded(self.options.tolerance);
+        self.judge(Start::Independent, tolerance, pause)?;
+        self.step.begin_report();
+        Ok(())
     }
 
-    // Each stage begins in a function of its own. What is moved into place there does not lie on the
-    // stack below the others.
+    /// Says what the step adds, and what comes next.
+    fn tell(&mut self, pause: &mut Pause<'_>) -> Result<bool, Stop> {
+        let told = self
+            .story
+            .as_ref()
+            .is_some_and(|story| story.tell(&mut self.step));
+        self.measure_candidates(pause)?;
+        if let Some(story) = &mut self.story {
+            story.go_on();
+        }
+        self.next = if told {
+            Next::Telling
+        } else {
+            Next::Finished(Ok(self.verdict()))
+        };
+        Ok(true)
+    }
 
+    /// Fits the step's model with each of its candidates, for the candidate's coefficient and χ².
     #[inline(never)]
-    fn follow(&mut self) {
-        let following = Following::new(&self.curve, self.judged.squares);
-        self.stage = Stage::Following(following);
-    }
-
-    #[inline(never)]
-    fn try_shapes(&mut self) {
-        if let Stage::Scanning(scanning) = &self.stage {
-            let shapes = scanning.shapes().clone();
-            self.stage = Stage::Trying(Trying::new(shapes));
-        }
-    }
-
-    #[inline(never)]
-    fn swap(&mut self) {
-        if let Some(preferred) = self.preferred.take() {
-            self.stage = Stage::Swapping(Swapping::new(preferred));
-        }
-    }
-
-    /// What the candidates are compared with.
-    const fn contest(&self) -> Contest {
-        Contest {
-            score: self.judged.score,
-            tolerance: self.judged.tolerance,
-            span: self.span,
-        }
-    }
-
-    /// Chooses from the step's candidates, and reports the step.
-    fn choose(&mut self) {
-        let Options {
-            threshold,
-            ambiguity,
-            ..
-        } = self.options;
-        let (step, best) = (&mut self.step, &mut self.best);
-        if let Some(chosen) = choose(&step.candidates, threshold, ambiguity) {
-            step.ambiguous = chosen.ambiguous;
-            step.added = step
-                .candidates
-                .first()
-                .map(|first| Addition::Effect(first.term));
-            tell_from_mirror(
-                Observed::new(&self.curve, &self.spectrum),
-                self.evidence.kurtosis,
-                self.effects,
-                &mut self.work.columns,
-                best,
-                step,
-            );
-        }
-        self.stage = Stage::Reported;
-    }
-
-    /// Adds what the step adds, and begins to judge the model with it. If the step adds nothing, the
-    /// diagnosis ends.
-    fn add(&mut self) -> Result<(), Error> {
-        match self.step.added {
-            Some(Addition::Covariate(followed)) => {
-                self.step.covariate = Some(followed);
-                followed.correct(&self.evidence, &mut self.curve, &mut self.spectrum);
-                self.additions = self.additions.saturating_add(1);
-                // The curve is another one now, so the tolerance is decided anew.
-                let tolerance = Tolerance::IfNeeded(self.options.tolerance);
-                self.judge(Start::From(self.judged.squares), tolerance)
+    fn measure_candidates(&mut self, pause: &mut Pause<'_>) -> Result<(), Stop> {
+        let observed = Observed::new(&self.curve, &self.spectrum);
+        let unit = self.curve.variance_unit();
+        for candidate in &mut self.step.candidates {
+            let model = with(&self.step.model, &[candidate.term])?;
+            let tolerance = Tolerance::Fixed(self.judged.tolerance);
+            // A candidate that cannot be fitted keeps an unknown χ².
+            if self
+                .work
+                .begin_at(observed, &model, Start::Independent, tolerance)
+                .is_err()
+            {
+                continue;
             }
-            Some(Addition::Effect(_)) => {
-                let (candidates, threshold) = (&self.step.candidates, self.options.threshold);
-                self.preferred = Preferred::of(candidates, threshold);
-                self.step.dropped.clear();
-                self.step.model.clone_from(&self.best.model);
-                self.additions = self.additions.saturating_add(1);
-                // The model may explain the record without the tolerance that the one before needed.
-                let tolerance = Tolerance::IfNeeded(self.judged.tolerance);
-                self.judge(Start::Once(self.best.squares), tolerance)
-            }
-            None => {
-                self.stage = Stage::Finished(Ok(self.verdict()));
-                Ok(())
+            loop {
+                call(pause)?;
+                let problem = Problem::new(observed, &model, &self.work.columns);
+                match self.work.solver.advance(&problem) {
+                    Ok(false) => {}
+                    Ok(true) => {
+                        let place = model.terms().len().saturating_sub(1);
+                        let square = self.work.solver.squares[place].max(0.0);
+                        candidate.coefficient = math::sqrt(square * unit);
+                        candidate.chi_squared = self.work.solver.chi_squared;
+                        break;
+                    }
+                    Err(_) => break,
+                }
             }
         }
+        Ok(())
     }
 
     fn verdict(&self) -> Verdict {
-        match (self.evidence.invalid, self.additions, self.judged.adequate) {
+        let has_story = self.story.as_ref().is_some_and(|story| !story.is_empty());
+        let has_added = has_story || self.step.covariate.is_some();
+        match (self.record.invalid, has_added, self.judged.adequate) {
             (Some(reason), ..) => Verdict::Invalid(reason),
-            (_, 0, Some(true)) => Verdict::Adequate,
-            (_, 0, Some(false)) => Verdict::Unexplained,
-            (_, 0, None) => Verdict::TooShort,
-            (_, _, Some(true)) => Verdict::Improved,
+            (_, false, Some(true)) => Verdict::Adequate,
+            (_, false, Some(false)) => Verdict::Unexplained,
+            (_, false, None) => Verdict::TooShort,
+            (_, true, Some(true)) => Verdict::Improved,
             _ => Verdict::Incomplete,
         }
     }

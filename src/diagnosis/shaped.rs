@@ -1,9 +1,13 @@
 //! The shapes of effects that are known to be in a model, fitted to a record.
 
-use super::{alternative::polished, scanned::scan_for, step::Candidate};
+use super::{
+    alternative::polished,
+    search::{Observation, best_shape_of},
+};
 use crate::{
     error::Error,
-    fit::{Problem, Start, Tolerance, Work},
+    fit::{Columns, Problem, Start, Tolerance, Work},
+    limits::MAX_PARAMETERS,
     model::{Model, Term},
     observed::Observed,
     real::Real,
@@ -55,21 +59,17 @@ pub fn fit_shapes<'a, const K: usize, const B: usize>(
     let observed = observed.into();
     let mut shaped = model.clone();
     while let Some((place, term)) = first_unknown(&shaped) {
-        let found = scan_for(observed, &with_known_shapes(&shaped)?, &term, tolerance)?;
+        let found = best_shape(observed, &with_known_shapes(&shaped)?, &term)?;
         if let Some(term) = shaped.terms_mut().get_mut(place) {
             term.parameters = found;
         }
     }
-    let Some(last) = shaped.terms().last().copied() else {
-        return Ok(shaped);
-    };
     if shaped.terms().iter().all(|term| !term.fitted) {
         return Ok(shaped);
     }
     for _ in 0..POLISHES {
         let granted = granted(observed, &shaped, tolerance)?;
-        let candidate = Candidate::of(last, None);
-        let polished = polished(observed, shaped.clone(), granted, &candidate)?.model;
+        let polished = polished(observed, shaped.clone(), granted)?.model;
         let settled = are_settled(&shaped, &polished);
         shaped = polished;
         if settled {
@@ -126,4 +126,17 @@ fn granted<const K: usize, const B: usize>(
     let problem = Problem::new(observed, model, &work.columns);
     while !work.solver.advance(&problem)? {}
     Ok(work.solver.weights.tolerance)
+}
+
+/// The best shape of an effect beside a model, in the whole range of shapes. A whole number above zero is kept.
+fn best_shape<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
+    model: &Model,
+    term: &Term,
+) -> Result<[Real; MAX_PARAMETERS], Error> {
+    let columns = Columns::EMPTY;
+    let problem = Problem::new(observed, model, &columns);
+    let observation = Observation::new(observed, None, |bin| problem.effective_segments(bin));
+    let found = best_shape_of(&observation, model, term);
+    found.map(|found| found.parameters).ok_or(Error::Singular)
 }

@@ -45,7 +45,7 @@ pub(crate) use likelihood_ratio::LikelihoodRatio;
 pub(crate) use problem::{Columns, Problem, check};
 pub(crate) use refinement::Refinement;
 pub(crate) use rows::Rows;
-pub(crate) use shape::{ShapeEquations, derivative};
+pub(crate) use shape::ShapeEquations;
 pub(crate) use solver::{Solver, Start, Tolerance};
 pub(crate) use weights::{Weights, Whitened};
 pub(crate) use work::Work;

@@ -60,12 +60,19 @@ pub struct Spectrum<const B: usize> {
     rate_hz: Real,
     segment: u32,
     bins: Vec<Bin, B>,
+    /// The number of bins of the levels with [`MIN_SEGMENTS`](Self::MIN_SEGMENTS) or more. The sparse ones follow.
+    fitted: usize,
 }
 
 impl<const B: usize> Spectrum<B> {
-    /// The number of segments that a level needs to enter a spectrum. With fewer, the distribution of the
+    /// The number of segments that a level needs to be fitted. With fewer, the distribution of the
     /// estimates is too far from any that a fit can weight. The number is chosen by hand; no study varies it.
     pub const MIN_SEGMENTS: u32 = 16;
+
+    /// The number of segments that a level needs to be kept. A level with fewer than
+    /// [`MIN_SEGMENTS`](Self::MIN_SEGMENTS) is [sparse](Self::sparse): a diagnosis weighs it by the distribution of its
+    /// powers, and no fit takes it.
+    pub const SPARSE_SEGMENTS: u32 = 3;
 
     /// A spectrum without bins.
     // All zero, so that it is set where it stays and not moved there.
@@ -73,6 +80,7 @@ impl<const B: usize> Spectrum<B> {
         rate_hz: 0.0,
         segment: 0,
         bins: Vec::new(),
+        fitted: 0,
     };
 
     /// A spectrum from stored bins, of segments of `segment` blocks. Of each bin, `block`, `index`, `density`,
@@ -118,6 +126,7 @@ impl<const B: usize> Spectrum<B> {
         Ok(Self {
             rate_hz,
             segment,
+            fitted: fitted::<B>(&list),
             bins: list,
         })
     }
@@ -132,58 +141,103 @@ impl<const B: usize> Spectrum<B> {
         self.segment
     }
 
-    /// All bins.
+    /// The bins that are fitted.
     pub fn bins(&self) -> &[Bin] {
+        self.bins.get(..self.fitted).unwrap_or_default()
+    }
+
+    /// The bins of the levels with too few segments to be fitted, which lie below the others.
+    pub fn sparse(&self) -> &[Bin] {
+        self.bins.get(self.fitted..).unwrap_or_default()
+    }
+
+    /// The bins that are fitted, and the sparse ones.
+    pub fn all(&self) -> &[Bin] {
         &self.bins
     }
 
-    /// The bins of each level, shortest blocks first.
+    /// The fitted bins of each level, shortest blocks first.
     pub fn levels(&self) -> impl Iterator<Item = &[Bin]> {
-        let mut rest = self.bins();
-        core::iter::from_fn(move || {
-            let block = rest.first()?.block;
-            let end = rest.iter().position(|bin| bin.block != block);
-            let (level, later) = rest.split_at_checked(end.unwrap_or(rest.len()))?;
-            rest = later;
-            Some(level)
-        })
+        levels_of(self.bins())
     }
 
     /// Leaves out the levels whose blocks have this number of samples or more.
     pub(crate) fn leave_out_from(&mut self, block: u32) {
         let kept = self.bins.partition_point(|bin| bin.block < block);
         self.bins.truncate(kept);
+        self.fitted = self.fitted.min(kept);
     }
 
-    /// The densities that an effect with a coefficient of one is expected to have in the bins, in their order,
+    /// Hands the densities that an effect with a coefficient of one is expected to have to `each`, for the fitted bins
+    /// and then the sparse ones, in their order.
+    pub(crate) fn each_expected(
+        &self,
+        effect: &dyn Effect,
+        parameters: [Real; crate::limits::MAX_PARAMETERS],
+        each: &mut dyn FnMut(Real),
+    ) {
+        expected(self, self.all(), effect, parameters, each);
+    }
+
+    /// The densities that an effect with a coefficient of one is expected to have in the fitted bins, in their order,
     /// in rate units squared per hertz and per coefficient squared. `parameters` are those of its shape.
     pub fn expected(
         &self,
         effect: &dyn Effect,
         parameters: [Real; crate::limits::MAX_PARAMETERS],
     ) -> Vec<Real, B> {
-        let shape = SampledShape {
-            interval_s: 1.0 / self.rate_hz,
-            parameters,
-        };
-        let length = self.segment as usize;
         let mut all = Vec::new();
-        for level in self.levels() {
-            let Some(block) = level.first().map(|bin| bin.block) else {
-                continue;
-            };
-            let mut densities = [0.0; crate::limits::MAX_SEGMENT / 2];
-            expected_densities(effect, &shape, length, block, &mut densities);
-            for bin in level {
-                let place = (bin.index as usize).wrapping_sub(first_bin(length));
-                // There are as many densities as bins.
-                let _ = all.push(densities.get(place).copied().unwrap_or(0.0));
-            }
-        }
+        expected(self, self.bins(), effect, parameters, &mut |density| {
+            // There are as many densities as bins.
+            let _ = all.push(density);
+        });
         all
     }
 }
 
+/// The expected densities of some bins of a spectrum.
+#[inline(never)]
+fn expected<const B: usize>(
+    spectrum: &Spectrum<B>,
+    bins: &[Bin],
+    effect: &dyn Effect,
+    parameters: [Real; crate::limits::MAX_PARAMETERS],
+    each: &mut dyn FnMut(Real),
+) {
+    let shape = SampledShape {
+        interval_s: 1.0 / spectrum.rate_hz,
+        parameters,
+    };
+    let length = spectrum.segment as usize;
+    for level in levels_of(bins) {
+        let Some(block) = level.first().map(|bin| bin.block) else {
+            continue;
+        };
+        let mut densities = [0.0; crate::limits::MAX_SEGMENT / 2];
+        expected_densities(effect, &shape, length, block, &mut densities);
+        for bin in level {
+            let place = (bin.index as usize).wrapping_sub(first_bin(length));
+            each(densities.get(place).copied().unwrap_or(0.0));
+        }
+    }
+}
+
+/// The number of bins of the levels that are fitted.
+fn fitted<const B: usize>(bins: &[Bin]) -> usize {
+    bins.partition_point(|bin| bin.segments >= Spectrum::<B>::MIN_SEGMENTS)
+}
+
+/// Bins of several levels, level by level.
+pub(crate) fn levels_of(bins: &[Bin]) -> impl Iterator<Item = &[Bin]> {
+    let mut rest = bins;
+    core::iter::from_fn(move || {
+        let block = rest.first()?.block;
+        let end = rest.iter().position(|bin| bin.block != block);
+        let (level, later) = rest.split_at_checked(end.unwrap_or(rest.len()))?;
+        rest = later;
+        Some(level)
+    })
+}
 /// Whether blocks can have this number of samples: a power of 8 up to 8^9.
 fn is_block(block: u32) -> bool {
     block.is_power_of_two() && block.trailing_zeros().is_multiple_of(3) && block <= 1 << 27
@@ -195,7 +249,7 @@ fn frequency(rate_hz: Real, length: usize, block: u32, index: u32) -> Real {
 }
 
 impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
-    /// The spectrum of the levels with at least [`Spectrum::MIN_SEGMENTS`] segments. Only whole levels are
+    /// The spectrum of the levels with at least [`Spectrum::SPARSE_SEGMENTS`] segments. Only whole levels are
     /// taken, shortest blocks first, as many as the list has room for. A level has `7P/16` bins.
     ///
     /// What still waits for [`advance`](Self::advance) is not in it.
@@ -204,7 +258,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         for (block_bits, level) in self.levels() {
             let segments = level.segments();
             let room = B.saturating_sub(list.len());
-            if segments < Spectrum::<B>::MIN_SEGMENTS || room < bins(P) {
+            if segments < Spectrum::<B>::SPARSE_SEGMENTS || room < bins(P) {
                 break;
             }
             let block = 1_u32.wrapping_shl(block_bits);
@@ -228,6 +282,7 @@ impl<const P: usize, const LEVELS: usize> SpectrumAccumulator<P, LEVELS> {
         Spectrum {
             rate_hz: scale.rate_hz(),
             segment: P as u32,
+            fitted: fitted::<B>(&list),
             bins: list,
         }
     }

@@ -1,0 +1,236 @@
+//! The way from the first model to the one that was found: one effect a step, the largest fall of the error first.
+
+use super::{
+    mirrored::{Mirrored, tell_from_mirror},
+    polished::{Fitted, Polishing},
+    run::{Stop, call},
+    search::{Found, Hypothesis, MAX_ALTERNATIVES, Observation, Pause, Search},
+    step::{Addition, Candidate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, cost},
+};
+use crate::{
+    effect::Effect,
+    error::Error,
+    fit::{Problem, Start, Tolerance, Work},
+    kurtosis::Kurtosis,
+    list,
+    model::{Model, Term},
+    observed::Observed,
+    real::Real,
+};
+use core::ops::ControlFlow;
+use heapless::Vec;
+
+/// The largest number of steps: a filter, and what adds to it.
+const MAX_STEPS: usize = 4;
+
+/// One step of a story.
+#[derive(Debug)]
+struct Told {
+    /// What is added, and what could be added instead, best first.
+    candidates: Vec<Candidate, MAX_CANDIDATES>,
+    ambiguous: Vec<&'static str, MAX_AMBIGUOUS>,
+}
+
+/// What was found, in the order in which it is told.
+#[derive(Debug)]
+pub(super) struct Story {
+    steps: Vec<Told, MAX_STEPS>,
+    /// The number of steps that have been told.
+    told: usize,
+}
+
+impl Story {
+    /// Nothing is missing, or nothing that is missing was found.
+    pub(super) const NOTHING: Self = Self {
+        steps: Vec::new(),
+        told: 0,
+    };
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    /// Tells what a search has found: refines the shapes with the covariance of a fit, lets the kurtosis decide between
+    /// effects of one spectrum, and sorts the effects by what they explain.
+    // What a story is made of has no smaller unit.
+    #[allow(clippy::too_many_arguments)]
+    #[inline(never)]
+    pub(super) fn new<const K: usize, const B: usize>(
+        search: &mut Search<B>,
+        observation: &Observation<'_, B>,
+        observed: Observed<'_, K, B>,
+        model: &Model,
+        kurtosis: Option<&Kurtosis<K>>,
+        effects: &[&'static dyn Effect],
+        found: Found,
+        tolerance: Real,
+        work: &mut Work<K, B>,
+        pause: &mut Pause<'_>,
+    ) -> Result<Self, Stop> {
+        let mut best = found.best;
+        let terms: Vec<Term, MAX_STEPS> = list::fill(best.terms().copied());
+        if terms.is_empty() {
+            return Ok(Self::NOTHING);
+        }
+        let whole = with(model, &terms)?;
+        let fitted = polish(observed, whole, tolerance, work, pause)?;
+        // The effects that were added are the last ones of the model, in the order of the hypothesis.
+        let first = fitted.model.terms().len().saturating_sub(terms.len());
+        let polished = fitted.model.terms().iter().skip(first);
+        for (term, polished) in best.filter.iter_mut().chain(&mut best.added).zip(polished) {
+            *term = *polished;
+        }
+        let ControlFlow::Continue(ordered) = search.ordered(observation, model, effects, &best, pause) else {
+            return Err(Stop::Paused);
+        };
+        let mut steps: Vec<Told, MAX_STEPS> = Vec::new();
+        for (term, fall) in ordered {
+            let mut candidates: Vec<Candidate, MAX_CANDIDATES> = Vec::new();
+            let mut ambiguous: Vec<&'static str, MAX_AMBIGUOUS> = Vec::new();
+            let improvement = fall - 2.0 * cost(term.effect);
+            let mut own = Candidate::of(term);
+            own.improvement = improvement;
+            let _ = candidates.push(own);
+            for (other, beyond) in &found.alternatives {
+                let Some(instead) = instead(&best, other, &term) else {
+                    continue;
+                };
+                let name = instead.effect.name();
+                if name != term.effect.name() && !ambiguous.contains(&name) {
+                    let _ = ambiguous.push(name);
+                    let mut candidate = Candidate::of(instead);
+                    candidate.improvement = improvement - beyond;
+                    let _ = candidates.push(candidate);
+                }
+            }
+            let _ = steps.push(Told {
+                candidates,
+                ambiguous,
+            });
+        }
+        let place = |term: &Term| {
+            let mut terms = fitted.model.terms().iter();
+            terms.position(|other| other.effect.name() == term.effect.name() && other.parameters == term.parameters)
+        };
+        for told in &mut steps {
+            let Some(first) = told.candidates.first_mut() else {
+                continue;
+            };
+            let Some(place) = place(&first.term) else {
+                continue;
+            };
+            match tell_from_mirror(observed, kurtosis, effects, work, &fitted, place) {
+                Mirrored::Same => {}
+                Mirrored::Other(effect) => first.term.effect = effect,
+                Mirrored::Unknown(effect) => {
+                    let _ = told.ambiguous.push(effect.name());
+                }
+            }
+            mirrors(&mut told.ambiguous, effects);
+        }
+        Ok(Self { steps, told: 0 })
+    }
+
+    /// The model of the present step.
+    pub(super) fn model(&self, model: &Model) -> Result<Model, Error> {
+        let told = self.steps.iter().take(self.told);
+        let terms: Vec<Term, MAX_STEPS> =
+            list::fill(told.filter_map(|told| Some(told.candidates.first()?.term)));
+        with(model, &terms)
+    }
+
+    /// Writes what the present step adds. Returns whether it adds anything.
+    pub(super) fn tell<const K: usize, const B: usize>(&self, step: &mut Step<K, B>) -> bool {
+        let Some(told) = self.steps.get(self.told) else {
+            return false;
+        };
+        step.candidates = told.candidates.clone();
+        step.ambiguous = told.ambiguous.clone();
+        step.added = told.candidates.first().map(|first| Addition::Effect(first.term));
+        true
+    }
+
+    /// Goes on to the next step.
+    pub(super) fn go_on(&mut self) {
+        self.told = self.told.saturating_add(1);
+    }
+}
+
+/// The model with some effects. Each takes the place of the effect that it replaces, or the last place.
+pub(super) fn with(model: &Model, terms: &[Term]) -> Result<Model, Error> {
+    let mut whole = model.clone();
+    for term in terms {
+        if let Some(replaced) = term.effect.replaces() {
+            whole.remove(replaced.name());
+        }
+        whole.add(*term)?;
+    }
+    Ok(whole)
+}
+
+/// Refines the shapes of a model by the likelihood of a fit.
+#[inline(never)]
+fn polish<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
+    model: Model,
+    tolerance: Real,
+    work: &mut Work<K, B>,
+    pause: &mut Pause<'_>,
+) -> Result<Fitted, Stop> {
+    let granted = Tolerance::IfNeeded(tolerance);
+    work.begin_at(observed, &model, Start::Independent, granted)?;
+    loop {
+        call(pause)?;
+        let problem = Problem::new(observed, &model, &work.columns);
+        if work.solver.advance(&problem)? {
+            break;
+        }
+    }
+    let (squares, tolerance) = (work.solver.squares, work.solver.weights.tolerance);
+    let span = observed.span();
+    let mut polishing = Polishing::new(Fitted { model, squares });
+    loop {
+        call(pause)?;
+        if let Some(polished) = polishing.advance(observed, &span, tolerance, work)? {
+            return Ok(polished);
+        }
+    }
+}
+
+/// The term that another hypothesis has in the place of one of the best hypothesis; `None` if it has the same one, or none.
+fn instead(best: &Hypothesis, other: &Hypothesis, term: &Term) -> Option<Term> {
+    let count = |one: &Hypothesis, name: &str| {
+        list::count(one.terms().filter(|term| term.effect.name() == name))
+    };
+    let name = term.effect.name();
+    if count(other, name) >= count(best, name) {
+        return None;
+    }
+    // A filter stands for a filter if both have one.
+    let is_filter = term.effect.replaces().is_some();
+    if is_filter && let Some(filter) = other.filter {
+        return Some(filter);
+    }
+    let mut more = other.terms().filter(|other_term| {
+        let name = other_term.effect.name();
+        let is_other_filter = other_term.effect.replaces().is_some();
+        count(other, name) > count(best, name) && (is_filter || !is_other_filter || best.filter.is_none())
+    });
+    more.next().copied()
+}
+
+/// Puts the name of its mirror behind each name, because nothing has told the two apart.
+fn mirrors(names: &mut Vec<&'static str, MAX_AMBIGUOUS>, effects: &[&'static dyn Effect]) {
+    let mut at = 0_usize;
+    while let Some(name) = names.get(at).copied() {
+        at = at.saturating_add(1);
+        let mut all = effects.iter();
+        let mirror = all.find(|effect| effect.mirror().is_some_and(|other| other.name() == name));
+        if let Some(mirror) = mirror.filter(|mirror| !names.contains(&mirror.name())) {
+            list::insert(names, at, mirror.name());
+            at = at.saturating_add(1);
+        }
+    }
+}
+
+const _: () = assert!(MAX_ALTERNATIVES + 1 >= MAX_CANDIDATES);

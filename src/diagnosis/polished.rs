@@ -1,0 +1,248 @@
+//! The shapes of a model, polished by the likelihood of a fit: the covariance follows the model.
+
+use crate::{
+    effect::Span,
+    error::Error,
+    fit::{Problem, ShapeEquations, Start, Tolerance, Work},
+    limits::MAX_SHAPE,
+    math,
+    model::Model,
+    nnls::Vector,
+    observed::Observed,
+    real::{Real, real, single},
+};
+use heapless::Vec;
+
+/// The largest number of rounds of fitting a candidate and polishing its shapes. Chosen by hand.
+/// `cargo xtask study hidden-effect` runs with this value and does not vary it.
+const ROUNDS: u8 = 10;
+/// The rounds end when `−2 ln L` changes by less than this. Chosen by hand, to save rounds: it is small
+/// beside the improvement of 8 for which an effect is accepted.
+const SETTLED: Real = 0.5;
+/// The largest step of a shape's logarithm. Chosen by hand: a round changes a shape by at most 22 %.
+/// `cargo xtask study hidden-effect` runs with this value and does not vary it.
+const STRIDE: Real = 0.2;
+/// How often a step may be halved because it led too far. Chosen by hand: the last step is then a
+/// sixteenth of the first. `cargo xtask study hidden-effect` runs with this value and does not vary it.
+const HALVINGS: u8 = 4;
+
+/// Changes of the logarithms of fitted shapes, with the place of the effect and of the parameter.
+type Steps = Vec<(u8, u8, f32), MAX_SHAPE>;
+
+/// A model, and the squared coefficients at which its covariance is taken.
+#[derive(Clone, Debug)]
+pub(super) struct Fitted {
+    pub(super) model: Model,
+    pub(super) squares: Vector,
+}
+
+impl Fitted {
+    /// Changes the logarithms of shapes within their ranges.
+    fn change(&mut self, steps: &Steps, sign: Real, span: &Span) {
+        for &(i, j, step) in steps {
+            let (j, step) = (usize::from(j), real(step));
+            let Some(term) = self.model.terms_mut().get_mut(usize::from(i)) else {
+                continue;
+            };
+            let Some(range) = term.effect.search_range(j, span) else {
+                continue;
+            };
+            let changed = term.parameter(j) * math::exp(sign * step);
+            let highest = range.high.max(range.low);
+            term.set_parameter(j, changed.max(range.low).min(highest));
+        }
+    }
+}
+
+/// The polishing of a model, in progress. Each round takes the covariance, fits the coefficients, and changes the shapes by
+/// the method of Gauss and Newton. At last, the coefficients are fitted with fixed shapes.
+pub(super) struct Polishing {
+    present: Fitted,
+    /// The best model so far, and its score.
+    kept: Option<(Fitted, Real)>,
+    before: Real,
+    steps: Steps,
+    halvings: u8,
+    round: u8,
+    stage: Stage,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// A round begins.
+    Begin,
+    /// The coefficients of a round are fitted.
+    Round,
+    /// The shapes are changed.
+    Polishing,
+    /// The last fit begins.
+    BeginLast,
+    /// The best round is fitted again, with fixed shapes.
+    Last,
+}
+
+impl Polishing {
+    /// Begins with a model.
+    pub(super) fn new(fitted: Fitted) -> Self {
+        Self {
+            present: fitted,
+            kept: None,
+            before: Real::INFINITY,
+            steps: Steps::new(),
+            halvings: 0,
+            round: 0,
+            stage: Stage::Begin,
+        }
+    }
+
+    /// Does one piece of work. Returns the model when it is polished, with the squares at which its covariance was taken.
+    ///
+    /// # Errors
+    /// An error means that the model cannot be fitted.
+    #[inline(never)]
+    pub(super) fn advance<const K: usize, const B: usize>(
+        &mut self,
+        observed: Observed<'_, K, B>,
+        span: &Span,
+        tolerance: Real,
+        work: &mut Work<K, B>,
+    ) -> Result<Option<Fitted>, Error> {
+        match self.stage {
+            Stage::Begin => {
+                let squares = self.present.squares;
+                self.begin(Stage::Round, Start::Once(squares), observed, tolerance, work)?;
+                return Ok(None);
+            }
+            Stage::BeginLast => {
+                let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
+                self.present = fitted;
+                let squares = self.present.squares;
+                self.begin(Stage::Last, Start::From(squares), observed, tolerance, work)?;
+                return Ok(None);
+            }
+            _ => {}
+        }
+        let problem = Problem::new(observed, &self.present.model, &work.columns);
+        if self.stage == Stage::Polishing {
+            let squares = &work.solver.squares;
+            if work.derivatives.advance(&problem, squares) {
+                self.end_round(observed, span, work);
+            }
+            return Ok(None);
+        }
+        if !work.solver.advance(&problem)? {
+            return Ok(None);
+        }
+        if self.stage == Stage::Last {
+            return Ok(Some(Fitted {
+                model: self.present.model.clone(),
+                squares: work.solver.assumed,
+            }));
+        }
+        work.derivatives.clear();
+        self.stage = Stage::Polishing;
+        Ok(None)
+    }
+
+    /// Ends a round whose coefficients are fitted: changes the shapes and decides what comes next.
+    #[inline(never)]
+    fn end_round<const K: usize, const B: usize>(
+        &mut self,
+        observed: Observed<'_, K, B>,
+        span: &Span,
+        work: &Work<K, B>,
+    ) {
+        let problem = Problem::new(observed, &self.present.model, &work.columns);
+        let mut next = Steps::new();
+        let confused = polish(&problem, work, &mut next);
+        self.present.squares = work.solver.squares;
+        let now = work.solver.minus_two_log_likelihood();
+        let goes_on = match confused {
+            Some(confused) => {
+                // This is another model, whose scores cannot be compared with the earlier ones.
+                if let Some(term) = self.present.model.terms_mut().get_mut(confused) {
+                    term.held = true;
+                }
+                self.present.squares.put(confused, 0.0);
+                self.before = Real::INFINITY;
+                true
+            }
+            None => self.step(now, next, span),
+        };
+        self.round = self.round.saturating_add(1);
+        self.stage = if goes_on && self.round < ROUNDS {
+            Stage::Begin
+        } else {
+            Stage::BeginLast
+        };
+    }
+
+    /// Begins the fit of a stage.
+    fn begin<const K: usize, const B: usize>(
+        &mut self,
+        stage: Stage,
+        start: Start,
+        observed: Observed<'_, K, B>,
+        tolerance: Real,
+        work: &mut Work<K, B>,
+    ) -> Result<(), Error> {
+        self.stage = stage;
+        let tolerance = Tolerance::Fixed(tolerance);
+        work.begin_at(observed, &self.present.model, start, tolerance)
+    }
+
+    /// Keeps a round that is the best so far, and changes the shapes for the next round. Returns
+    /// whether there is a next round.
+    fn step(&mut self, now: Real, next: Steps, span: &Span) -> bool {
+        let gain = self.before - now;
+        let is_best = self.kept.as_ref().is_none_or(|(_, score)| now < *score);
+        if is_best {
+            self.kept = Some((self.present.clone(), now));
+        }
+        if gain > -SETTLED {
+            if gain < SETTLED {
+                if let Some((fitted, _)) = self.kept.as_mut().filter(|_| is_best) {
+                    fitted.change(&next, 1.0, span);
+                }
+                return false;
+            }
+            self.before = now;
+            self.steps = next;
+            self.present.change(&self.steps, 1.0, span);
+            return true;
+        }
+        // The step led too far, so half of it is taken back.
+        self.halvings = self.halvings.saturating_add(1);
+        if self.halvings > HALVINGS {
+            return false;
+        }
+        for step in &mut self.steps {
+            step.2 *= 0.5;
+        }
+        self.present.change(&self.steps, -1.0, span);
+        true
+    }
+}
+
+/// Finds how the shapes should change. Returns the effect that must be held at zero before the shapes
+/// are determined, if there is one.
+#[inline(never)]
+fn polish<const K: usize, const B: usize>(
+    problem: &Problem<'_, K, B>,
+    work: &Work<K, B>,
+    steps: &mut Steps,
+) -> Option<usize> {
+    let solver = &work.solver;
+    let mut shape = ShapeEquations::EMPTY;
+    if !shape.set(problem, &solver.weights, &solver.squares, &work.derivatives) {
+        return None;
+    }
+    let confused = solver.confused(problem, &shape);
+    if confused.is_none() {
+        shape.steps(&solver.free, |i, j, step| {
+            // There is a place for every fitted shape.
+            let _ = steps.push((i as u8, j as u8, single(step.clamp(-STRIDE, STRIDE))));
+        });
+    }
+    confused
+}

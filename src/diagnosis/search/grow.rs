@@ -1,0 +1,225 @@
+//! One more effect beside a hypothesis: a line, a resonance, or noise.
+
+use super::{
+    hypothesis::Hypothesis,
+    price::{has_frequency, is_line},
+    refine::Solver,
+    rows::Values,
+    start::at,
+    variant::Variant,
+};
+use crate::{
+    effect::Effect,
+    limits::MAX_PARAMETERS,
+    list::{self, numbered},
+    math,
+    model::Term,
+    real::{Real, real},
+};
+use core::ops::ControlFlow;
+use heapless::Vec;
+
+/// A candidate that gains less beside a hypothesis, with all else fixed, is not refined.
+const LEAST_GAIN: Real = 6.0;
+/// The peaks of a level, and the candidates of lines and resonances, that are looked at.
+const PEAKS: usize = 3;
+const RESONANCES: usize = 2;
+/// A peak stands this many standard errors above the hypothesis.
+const PEAK: Real = 3.0;
+/// Two resonances are different if the logarithms of their frequencies are this far apart.
+const APART: Real = 0.25;
+/// The frequencies that are tried for each factor of two, and the values of each other parameter.
+const FREQUENCY_STEPS: Real = 5.0;
+const QUALITIES: u32 = 3;
+
+/// A frequency that may be missing, and what a line there gains.
+#[derive(Clone, Copy)]
+struct Peak {
+    frequency_hz: Real,
+    gain: Real,
+}
+
+impl<const B: usize> Solver<'_, '_, '_, B> {
+    /// Hands the hypothesis with one more effect to `each`, for every effect of the list that may be missing. All shapes
+    /// are refined together.
+    pub(super) fn grow(
+        &mut self,
+        hypothesis: &Hypothesis,
+        effects: &[&'static dyn Effect],
+        each: &mut dyn FnMut(&mut Self, &Hypothesis) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut candidates: Vec<Term, 12> = Vec::new();
+        self.load(hypothesis);
+        for effect in effects.iter().copied().filter(|effect| is_added(*effect)) {
+            if is_line(effect) && self.observation.has_bins() {
+                for peak in self.peaks(effect)? {
+                    let _ = candidates.push(at(effect, &[peak.frequency_hz]));
+                }
+            } else if has_frequency(effect) {
+                self.shapes(effect, &mut candidates)?;
+            }
+        }
+        for term in candidates {
+            if let Some(with) = hypothesis.with(term, self.limits.effects) {
+                let grown = self.refine(with, 10)?;
+                each(self, &grown)?;
+            }
+        }
+        for effect in effects.iter().copied().filter(|effect| is_added(*effect)) {
+            let mut added = hypothesis.added.iter();
+            if has_frequency(effect) || added.any(|term| term.effect.name() == effect.name()) {
+                continue;
+            }
+            if let Some(with) = self.scan_noise(effect, hypothesis)? {
+                let grown = self.refine(with, 10)?;
+                each(self, &grown)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The shapes of an effect with a frequency that gain most.
+    #[inline(never)]
+    fn shapes(&mut self, effect: &'static dyn Effect, found: &mut Vec<Term, 12>) -> ControlFlow<()> {
+        let mut best: Vec<(Term, Real), RESONANCES> = Vec::new();
+        let mut column = Values::<B>::ZEROS;
+        for variant in Variant::of(effect, &self.observation.span) {
+            for term in variant.grid(self.observation, FREQUENCY_STEPS, QUALITIES).terms() {
+                (self.pause)()?;
+                if self.observation.column(&term, None, &mut column) == 0.0 {
+                    continue;
+                }
+                let gain = self.work.gain(self.observation, &column);
+                if gain < LEAST_GAIN {
+                    continue;
+                }
+                let near = |other: &(Term, Real)| {
+                    let ratio = math::log(other.0.parameter(0) / term.parameter(0));
+                    ratio < APART && ratio > -APART
+                };
+                match best.iter().position(near) {
+                    Some(place) if best.get(place).is_some_and(|other| other.1 < gain) => {
+                        list::remove(&mut best, place);
+                    }
+                    Some(_) => continue,
+                    None => {}
+                }
+                list::rank(&mut best, (term, gain), |other| other.1 < gain);
+            }
+        }
+        for (term, _) in best {
+            let _ = found.push(term);
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The peaks above the present model that a line explains best. The frequency is that between two bins (for Hann's
+    /// window, δ = (2r − 1)/(r + 1) bins from the larger of two neighbours of amplitude ratio r), made sharper on the two
+    /// finer levels, which see the line's alias.
+    #[inline(never)]
+    fn peaks(&mut self, effect: &'static dyn Effect) -> ControlFlow<(), Vec<Peak, PEAKS>> {
+        let mut strongest: Vec<(usize, usize, Real), { 2 * PEAKS }> = Vec::new();
+        for (i, (first, bins)) in numbered(self.observation.levels()) {
+            let z = |b: usize| {
+                let row = first.saturating_add(b);
+                let shape = real(self.work.shape[row]);
+                (1.0 / real(self.work.model[row]) - 1.0) * math::sqrt(shape)
+            };
+            for b in 0..bins.len() {
+                let own = z(b);
+                let is_higher = |other: Option<usize>| {
+                    other.is_none_or(|other| other >= bins.len() || z(other) <= own)
+                };
+                if own > PEAK && is_higher(b.checked_sub(1)) && is_higher(b.checked_add(1)) {
+                    list::rank(&mut strongest, (i, b, own), |other| other.2 < own);
+                }
+            }
+        }
+        let mut found: Vec<Peak, PEAKS> = Vec::new();
+        for (level, b, _) in strongest {
+            let Some(mut frequency_hz) = self.between_bins(level, b) else {
+                continue;
+            };
+            let mut gain = 0.0;
+            for finer in 0..3_usize {
+                let Some((_, bins)) = self.observation.levels().nth(level.saturating_add(finer)) else {
+                    break;
+                };
+                let Some(bin) = bins.first() else { break };
+                let width_hz = bin.frequency_hz / real(bin.index);
+                let (reach, steps) = if finer == 0 { (0.36, 6) } else { (0.6, 8) };
+                (frequency_hz, gain) =
+                    self.sharpened(effect, frequency_hz, reach * width_hz, steps)?;
+            }
+            let is_known = |other: &Peak| {
+                let distance = other.frequency_hz - frequency_hz;
+                distance * distance < 1e-4 / (self.observation.duration_s * self.observation.duration_s)
+            };
+            if gain > LEAST_GAIN && !found.iter().any(is_known) {
+                let peak = Peak { frequency_hz, gain };
+                list::rank(&mut found, peak, |other| other.gain < gain);
+            }
+        }
+        ControlFlow::Continue(found)
+    }
+
+    /// The frequency of a peak between bins.
+    fn between_bins(&self, level: usize, b: usize) -> Option<Real> {
+        let (first, bins) = self.observation.levels().nth(level)?;
+        let bin = bins.get(b)?;
+        let amplitude = |b: usize| {
+            let row = first.saturating_add(b);
+            let density = bins.get(b).map_or(0.0, |bin| bin.density);
+            let above = density * (1.0 - real(self.work.model[row]));
+            math::sqrt(above.max(0.0))
+        };
+        let below = b.checked_sub(1).map_or(0.0, amplitude);
+        let above = amplitude(b.saturating_add(1));
+        let own = amplitude(b);
+        let ratio = below.max(above) / own;
+        let distance = ((2.0 * ratio - 1.0) / (ratio + 1.0)).clamp(0.0, 0.6);
+        let width_hz = bin.frequency_hz / real(bin.index);
+        let signed = if above > below { distance } else { -distance };
+        Some(bin.frequency_hz + signed * width_hz)
+    }
+
+    /// The frequency near a given one at which a line gains most, and that gain.
+    fn sharpened(
+        &mut self,
+        effect: &'static dyn Effect,
+        frequency_hz: Real,
+        reach_hz: Real,
+        steps: i16,
+    ) -> ControlFlow<(), (Real, Real)> {
+        let mut best = (frequency_hz, 0.0);
+        let mut column = Values::<B>::ZEROS;
+        let range = effect.search_range(0, &self.observation.span);
+        for step in -steps..=steps {
+            (self.pause)()?;
+            let share = Real::from(step) / Real::from(steps);
+            let mut frequency = frequency_hz + reach_hz * share;
+            if let Some(range) = range {
+                frequency = frequency.max(range.low).min(range.high);
+            }
+            let mut parameters = [0.0; MAX_PARAMETERS];
+            if let Some(first) = parameters.first_mut() {
+                *first = frequency;
+            }
+            let term = at(effect, &parameters);
+            if self.observation.column(&term, None, &mut column) == 0.0 {
+                continue;
+            }
+            let gain = self.work.gain(self.observation, &column);
+            if gain > best.1 {
+                best = (frequency, gain);
+            }
+        }
+        ControlFlow::Continue(best)
+    }
+}
+
+/// Whether an effect adds to the noise, and a search can find it: it takes the place of none, and has a shape. An effect
+/// with the same Allan variance as another one is told from it afterwards.
+pub(super) fn is_added(effect: &'static dyn Effect) -> bool {
+    effect.replaces().is_none() && effect.mirror().is_none() && !effect.parameters().is_empty()
+}

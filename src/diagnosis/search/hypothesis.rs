@@ -1,0 +1,128 @@
+//! A hypothesis: what the white noise went through, and what adds to it.
+
+use super::{price::price, rows::Observation, variant::Variant};
+use crate::{
+    effect::Effect,
+    limits::{MAX_EFFECTS, MAX_SHAPE},
+    list,
+    model::Term,
+    real::{Real, real},
+};
+use heapless::Vec;
+
+/// The largest number of effects beside a filter.
+pub(crate) const MAX_ADDED: usize = 3;
+
+/// The effects beside a filter.
+pub(crate) type Added = Vec<Term, MAX_ADDED>;
+
+/// A story of the whole record. The terms that every hypothesis has, such as flicker noise, are not repeated in it.
+#[derive(Clone, Debug)]
+pub(crate) struct Hypothesis {
+    /// What the white noise went through; `None` if it went through nothing.
+    pub(crate) filter: Option<Term>,
+    /// What adds to it.
+    pub(crate) added: Added,
+    /// The squared coefficients in units of their columns: the common terms, the white noise, what was added.
+    pub(super) squares: [f32; MAX_EFFECTS],
+    /// `−2 ln L` plus two for each parameter.
+    pub(crate) score: Real,
+    /// The score plus the price of each effect.
+    pub(crate) cost: Real,
+}
+
+/// The number of an effect's shape parameters that are not whole numbers.
+pub(super) fn continuous(effect: &'static dyn Effect) -> u32 {
+    list::count(Term::fitted(effect).fitted_parameters()) as u32
+}
+
+impl Hypothesis {
+    /// A hypothesis that has not been solved.
+    pub(super) fn new(filter: Option<Term>, added: Added) -> Self {
+        Self {
+            filter,
+            added,
+            squares: [0.0; MAX_EFFECTS],
+            score: Real::INFINITY,
+            cost: Real::INFINITY,
+        }
+    }
+
+    /// The same with one more effect. `None` if there is no room for it or for its shapes.
+    pub(super) fn with(&self, term: Term, most: usize) -> Option<Self> {
+        let mut added = self.added.clone();
+        added.push(term).ok()?;
+        let more = Self {
+            added,
+            ..self.clone()
+        };
+        more.has_room(most).then_some(more)
+    }
+
+    /// Whether a fit has room for all shapes, and there are no more effects than `most`.
+    pub(super) fn has_room(&self, most: usize) -> bool {
+        let shapes = self.terms().map(|term| list::count(term.fitted_parameters()));
+        shapes.fold(0_usize, |sum, one| sum.saturating_add(one)) <= MAX_SHAPE
+            && list::count(self.terms()) <= most
+    }
+
+    /// The filter, if there is one, and what adds to it.
+    pub(crate) fn terms(&self) -> impl Iterator<Item = &Term> {
+        self.filter.iter().chain(&self.added)
+    }
+
+    /// The number of parameters beyond the model without filter and additions.
+    fn parameters(&self) -> Real {
+        let shapes: u32 = self.terms().map(|term| continuous(term.effect)).sum();
+        real(shapes) + real(self.added.len() as u32)
+    }
+
+    /// Sets score and cost from `−2 ln L`.
+    pub(super) fn judge<const B: usize>(
+        &mut self,
+        deviance: Real,
+        observation: &Observation<'_, B>,
+        threshold: Real,
+    ) {
+        self.score = deviance + 2.0 * self.parameters();
+        let prices = self.terms().map(|term| price(term, observation.interval_s, threshold));
+        self.cost = self.score + prices.sum::<Real>();
+    }
+
+    /// Whether both have filters of the same variant, or none.
+    pub(super) fn has_filter_of(&self, other: &Self) -> bool {
+        match (&self.filter, &other.filter) {
+            (Some(one), Some(other)) => Variant::of_term(one).is(&Variant::of_term(other)),
+            (None, None) => true,
+            _ => false,
+        }
+    }
+
+    /// Whether both add the same kinds of effects.
+    pub(super) fn adds_like(&self, other: &Self) -> bool {
+        is_permutation(&self.added, &other.added)
+    }
+
+    /// Whether both have the same kinds of effects.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        self.has_filter_of(other) && self.adds_like(other)
+    }
+
+    /// Whether both are called by the same names.
+    pub(crate) fn is_named_like(&self, other: &Self) -> bool {
+        let name = |one: &Self| one.filter.as_ref().map(|filter| filter.effect.name());
+        name(self) == name(other) && self.adds_like(other)
+    }
+}
+
+/// Whether two lists of terms have the same effects, each as often.
+pub(super) fn is_permutation(one: &[Term], other: &[Term]) -> bool {
+    let times = |list: &[Term], name: &str| {
+        list::count(list.iter().filter(|term| term.effect.name() == name))
+    };
+    one.len() == other.len()
+        && one.iter().all(|term| {
+            let name = term.effect.name();
+            times(one, name) == times(other, name)
+        })
+}

@@ -1,0 +1,310 @@
+//! The gamma likelihood of a record, and the squared coefficients that make it largest.
+//!
+//! A density of `n` segments, an octave or a cosine coefficient is a mean of squares, with the gamma distribution of shape
+//! ν, half its degrees of freedom. With the model's value `m` relative to the measurement,
+//!
+//! ```text
+//! −2 ln L = 2 Σ ν (1/m − 1 + ln m)
+//! ```
+//!
+//! up to a constant (McCullagh & Nelder 1989, ch. 8). A row that a model puts 20 times too high adds 2ν (ln 20 − 0.95), four
+//! times what it adds to χ² at the model's own covariance: deficits are seen as well as excesses.
+
+use super::rows::{Observation, Values};
+use crate::{
+    limits::{MAX_EFFECTS, MAX_SHAPE},
+    list::numbered,
+    math,
+    model::Term,
+    nnls::{Free, NormalEquations, Vector},
+    real::{Real, real, single},
+};
+use heapless::Vec;
+
+/// A row of the model is at least this share of the measurement, so that its logarithm stays near.
+const LEAST: f32 = 1e-4;
+
+/// How far the logarithm of a shape may follow an effect that is added.
+const FOLLOWS: Real = 1.0;
+
+/// A round of scoring that gains less is the last one.
+const SETTLED: Real = 0.02;
+
+/// The memory in which hypotheses are solved.
+pub(crate) struct Workspace<const B: usize> {
+    /// The columns of the terms that every hypothesis has.
+    pub(super) common: Vec<Values<B>, MAX_EFFECTS>,
+    /// The columns of the white noise and of what was added.
+    pub(super) own: Vec<Values<B>, MAX_EFFECTS>,
+    /// The factors of these columns.
+    pub(super) factors: Vec<Real, MAX_EFFECTS>,
+    /// The columns of the shapes: the change of the model with the logarithm of each.
+    pub(super) slopes: Vec<Values<B>, MAX_SHAPE>,
+    /// The model relative to the measurement.
+    pub(super) model: Values<B>,
+    /// The shape of each row's distribution; zero for a row that is left out.
+    pub(super) shape: Values<B>,
+    pub(super) equations: NormalEquations,
+    /// The squared coefficients in units of their columns.
+    pub(super) squares: Vector,
+}
+
+impl<const B: usize> Workspace<B> {
+    /// No columns yet.
+    // All zero, so that it is set where it stays and not moved there.
+    pub(crate) const NEW: Self = Self {
+        common: Vec::new(),
+        own: Vec::new(),
+        factors: Vec::new(),
+        slopes: Vec::new(),
+        model: Values::ZEROS,
+        shape: Values::ZEROS,
+        equations: NormalEquations::EMPTY,
+        squares: Vector::ZEROS,
+    };
+
+    /// The number of columns, slopes left out.
+    pub(super) fn count(&self) -> usize {
+        self.common.len().saturating_add(self.own.len())
+    }
+
+    /// A column: the common ones first, then the own ones, then the slopes.
+    pub(super) fn column(&self, i: usize) -> Option<&Values<B>> {
+        let own = i.checked_sub(self.common.len());
+        let Some(own) = own else {
+            return self.common.get(i);
+        };
+        match own.checked_sub(self.own.len()) {
+            None => self.own.get(own),
+            Some(slope) => self.slopes.get(slope),
+        }
+    }
+
+    /// Sets the columns of the white noise and of what was added.
+    pub(super) fn set_own<'t>(
+        &mut self,
+        observation: &Observation<'_, B>,
+        terms: impl Iterator<Item = &'t Term>,
+    ) {
+        self.own.clear();
+        self.factors.clear();
+        for term in terms {
+            self.add_own(observation, term);
+        }
+    }
+
+    /// Adds the column of one more term.
+    pub(crate) fn add_own(&mut self, observation: &Observation<'_, B>, term: &Term) {
+        if self.own.push(Values::ZEROS).is_ok()
+            && let Some(values) = self.own.last_mut()
+        {
+            let factor = observation.column(term, None, values);
+            let _ = self.factors.push(factor);
+        }
+    }
+
+    /// Gives every row its weight.
+    pub(crate) fn set_shape(&mut self, observation: &Observation<'_, B>) {
+        self.shape = observation.shape;
+    }
+
+    /// Sets the model of these squared coefficients.
+    pub(crate) fn set_model(&mut self, observation: &Observation<'_, B>, squares: &Vector) {
+        self.squares = *squares;
+        self.model = self.model_of(observation, squares);
+    }
+
+    /// The model relative to the measurement.
+    pub(crate) const fn model(&self) -> &Values<B> {
+        &self.model
+    }
+
+    /// The shape of each row's distribution.
+    pub(crate) const fn shape(&self) -> &Values<B> {
+        &self.shape
+    }
+
+    /// The factor of an own column.
+    pub(crate) fn factor(&self, i: usize) -> Real {
+        self.factors.get(i).copied().unwrap_or(0.0)
+    }
+
+    /// An own column.
+    pub(crate) fn own_column(&self, i: usize) -> Option<&Values<B>> {
+        self.own.get(i)
+    }
+
+    /// What the columns and the slopes follow of expected values: the squares of their best fit, and the rest. The weights
+    /// are those of the present model. `None` if the columns cannot be told apart.
+    #[inline(never)]
+    pub(crate) fn followed(
+        &mut self,
+        observation: &Observation<'_, B>,
+        with: &Values<B>,
+    ) -> Option<(Vector, Values<B>)> {
+        let shift: Vec<Real, MAX_SHAPE> = crate::list::fill(self.slopes.iter().map(|_| FOLLOWS));
+        if !self.set_equations(observation, Some(with), &shift, 0.0) {
+            return None;
+        }
+        let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
+        let mut rest = *with;
+        for i in 0..self.count().saturating_add(shift.len()) {
+            let slope = i >= self.count();
+            let size = if slope { squares[i] - FOLLOWS } else { squares[i] };
+            if let Some(column) = self.column(i) {
+                for row in observation.rows() {
+                    rest.put(row, rest[row] - single(size) * column[row]);
+                }
+            }
+        }
+        Some((squares, rest))
+    }
+
+    /// `−2 ln L` of a model.
+    pub(super) fn deviance(&self, observation: &Observation<'_, B>, model: &Values<B>) -> Real {
+        let rows = observation.rows().filter(|&row| self.shape[row] > 0.0);
+        let sum: Real = rows
+            .map(|row| {
+                let m = real(model[row]);
+                real(self.shape[row]) * (1.0 / m - 1.0 + math::log(m))
+            })
+            .sum();
+        2.0 * sum
+    }
+
+    /// The model of these squared coefficients.
+    pub(super) fn model_of(&self, observation: &Observation<'_, B>, squares: &Vector) -> Values<B> {
+        let mut model = Values::ZEROS;
+        for i in 0..self.count() {
+            let square = single(squares[i]);
+            if square > 0.0
+                && let Some(column) = self.column(i)
+            {
+                for row in observation.rows() {
+                    model.put(row, model[row] + square * column[row]);
+                }
+            }
+        }
+        for row in observation.rows() {
+            model.put(row, model[row].max(LEAST));
+        }
+        model
+    }
+
+    /// Sets the normal equations of all columns at the present model, by Fisher's weights `ν/m²`. What they explain is
+    /// `data`, or one in each row, what was measured, plus `shift` times each slope.
+    pub(crate) fn set_equations(
+        &mut self,
+        observation: &Observation<'_, B>,
+        data: Option<&Values<B>>,
+        shift: &[Real],
+        damping: Real,
+    ) -> bool {
+        let slopes = shift.len();
+        let mut weighted = Values::<B>::ZEROS;
+        let count = self.count().saturating_add(slopes);
+        let mut target = Values::<B>::ZEROS;
+        for row in observation.rows() {
+            let m = self.model[row];
+            weighted.put(row, self.shape[row] / (m * m));
+            let mut sum = data.map_or(1.0, |data| data[row]);
+            for (slope, shift) in self.slopes.iter().take(slopes).zip(shift) {
+                sum += slope[row] * single(*shift);
+            }
+            target.put(row, sum);
+        }
+        let first_slope = self.count();
+        let mut equations = core::mem::replace(&mut self.equations, NormalEquations::EMPTY);
+        let set = equations.set(count, &|i, own| {
+            let Some(column) = self.column(i) else {
+                return 0.0;
+            };
+            let mut product = Values::<B>::ZEROS;
+            for row in observation.rows() {
+                product.put(row, column[row] * weighted[row]);
+            }
+            for j in 0..=i {
+                own.put(j, self.column(j).map_or(0.0, |other| real(product.dot(other))));
+            }
+            let mut right = real(product.dot(&target));
+            if let Some(at) = i.checked_sub(first_slope) {
+                let diagonal = own[i];
+                own.put(i, diagonal * (1.0 + damping));
+                right += damping * diagonal * shift.get(at).copied().unwrap_or(0.0);
+            }
+            right
+        });
+        self.equations = equations;
+        set.is_ok()
+    }
+
+    /// Fits the squared coefficients by Fisher scoring from the present model on. Returns `−2 ln L` of the best round, whose
+    /// model and squares are kept.
+    #[inline(never)]
+    pub(super) fn solve(&mut self, observation: &Observation<'_, B>, rounds: u8) -> Real {
+        let mut best: Option<(Real, Values<B>, Vector)> = None;
+        let mut last: Option<Real> = None;
+        for _ in 0..rounds {
+            if !self.set_equations(observation, None, &[], 0.0) {
+                break;
+            }
+            let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
+            let model = self.model_of(observation, &squares);
+            let deviance = self.deviance(observation, &model);
+            self.model = model;
+            if best.as_ref().is_none_or(|(least, ..)| deviance < *least) {
+                best = Some((deviance, model, squares));
+            }
+            if last.is_some_and(|last| deviance > last - SETTLED) {
+                break;
+            }
+            last = Some(deviance);
+        }
+        match best {
+            Some((deviance, model, squares)) => {
+                self.model = model;
+                self.squares = squares;
+                deviance
+            }
+            None => Real::INFINITY,
+        }
+    }
+
+    /// By how much `−2 ln L` falls if a column is added at its best size, with all else fixed.
+    #[inline(never)]
+    pub(super) fn gain(&self, observation: &Observation<'_, B>, column: &Values<B>) -> Real {
+        let mut square: f32 = 0.0;
+        for _ in 0..7 {
+            let (mut along, mut own) = (0.0, 0.0);
+            for row in observation.rows() {
+                let (c, m) = (column[row], self.model[row]);
+                let whole = m + square * c;
+                let weight = self.shape[row] * c / (whole * whole);
+                along += weight * (1.0 - m);
+                own += weight * c;
+            }
+            square = if own > 0.0 { (along / own).max(0.0) } else { 0.0 };
+        }
+        if square == 0.0 {
+            return 0.0;
+        }
+        let rows = observation.rows().filter(|&row| self.shape[row] > 0.0);
+        let sum: Real = rows
+            .map(|row| {
+                let m = real(self.model[row]);
+                let whole = m + real(square * column[row]);
+                real(self.shape[row]) * (1.0 / m - 1.0 / whole - math::log(whole / m))
+            })
+            .sum();
+        2.0 * sum
+    }
+}
+
+/// The squared coefficients as a hypothesis keeps them.
+pub(super) fn kept(squares: &Vector) -> [f32; MAX_EFFECTS] {
+    let mut kept = [0.0; MAX_EFFECTS];
+    for (i, kept) in numbered(kept.iter_mut()) {
+        *kept = single(squares[i]);
+    }
+    kept
+}

@@ -1,0 +1,66 @@
+//! What an effect costs beyond its parameters.
+
+use super::hypothesis::continuous;
+use crate::{
+    effect::{Distribution, Effect},
+    model::Term,
+    real::Real,
+};
+
+/// The prices are above what the best effect of each kind gains on clean records by chance, beyond two for each parameter.
+/// `cargo xtask study clean` measures how often that happens.
+const LINE: Real = 14.0;
+const RESONANCE: Real = 13.0;
+/// A resonance of a quality above [`NARROW`] has as many places as a line.
+const NARROW_RESONANCE: Real = 17.0;
+const NARROW: Real = 25.0;
+const NOISE: Real = 10.5;
+/// Noise that is correlated over fewer than [`FAST`] samples competes with every filter.
+const FAST_NOISE: Real = 15.5;
+const FAST: Real = 20.0;
+const FILTER: Real = 9.0;
+/// A filter of two shapes has more places.
+const SHAPED_FILTER: Real = 12.0;
+
+/// Whether a frequency comes first among an effect's parameters.
+pub(super) fn has_frequency(effect: &dyn Effect) -> bool {
+    effect.parameters().first().is_some_and(|first| first.unit == "Hz")
+}
+
+/// Whether an effect is a line: deterministic, with a frequency.
+pub(super) fn is_line(effect: &dyn Effect) -> bool {
+    effect.description().distribution == Distribution::Deterministic && has_frequency(effect)
+}
+
+/// The threshold at which the prices are those above. Another threshold changes all of them by as much.
+pub(crate) const THRESHOLD: Real = 8.0;
+
+/// The price of an effect, beside samples that lie `interval_s` seconds apart.
+pub(crate) fn price(term: &Term, interval_s: Real, threshold: Real) -> Real {
+    usual(term, interval_s) + threshold - THRESHOLD
+}
+
+fn usual(term: &Term, interval_s: Real) -> Real {
+    let effect = term.effect;
+    if effect.replaces().is_some() {
+        return match continuous(effect) {
+            0 | 1 => FILTER,
+            _ => SHAPED_FILTER,
+        };
+    }
+    if is_line(effect) {
+        return LINE;
+    }
+    if has_frequency(effect) {
+        return if term.parameter(1) > NARROW {
+            NARROW_RESONANCE
+        } else {
+            RESONANCE
+        };
+    }
+    if term.parameter(0) < FAST * interval_s {
+        FAST_NOISE
+    } else {
+        NOISE
+    }
+}

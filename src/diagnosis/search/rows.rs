@@ -1,0 +1,233 @@
+//! What a search compares with its hypotheses: the densities of all bins and, below them, the course or the octaves.
+
+use crate::{
+    course::CosineTransform,
+    curve::{Point, clusters},
+    effect::Span,
+    fit::Rows,
+    list::numbered,
+    model::Term,
+    observed::Observed,
+    real::{Real, real, single},
+    spectrum::{Spectrum, levels_of},
+};
+
+/// The largest number of rows below the bins.
+pub(crate) const LOW: usize = 56;
+
+/// One number for every row. All of them are relative to what was measured, so that single precision is enough.
+pub(crate) type Values<const B: usize> = Rows<LOW, B, f32>;
+
+/// Neighbouring bins of Hann's window scatter together: `1 + 2 (4/9 + 1/36)` of them count as one.
+const BINS_AS_ONE: Real = 1.944;
+
+/// The degrees of freedom of an octave for each of its clusters, less than one because neighbouring octaves scatter
+/// together. Chosen by hand, near the mean of white noise and random walks.
+const PER_CLUSTER: Real = 0.75;
+
+/// The share of a density by which no model is believed to be true, which is added to its relative error. Chosen by hand:
+/// a third of the tolerance of a fit.
+const TOLERANCE: Real = 0.003;
+
+/// Cosine coefficients are taken up to this share of the lowest bin's frequency: to where Hann's window begins to see.
+const BELOW: Real = 0.625;
+
+/// A row with fewer degrees of freedom is smoothed before a solution starts from it.
+const SPARSE: Real = 10.0;
+
+/// What lies below the bins.
+enum Low<'a> {
+    Course(&'a CosineTransform),
+    Octaves(&'a [Point]),
+}
+
+/// A record as a search sees it: rows that are nearly independent, each with the gamma distribution.
+pub(crate) struct Observation<'a, const B: usize> {
+    spectrum: Option<&'a Spectrum<B>>,
+    low: Low<'a>,
+    lows: usize,
+    bins: usize,
+    pub(super) interval_s: Real,
+    pub(super) span: Span,
+    /// The length of the record in seconds.
+    pub(super) duration_s: Real,
+    /// The shape of each row's gamma distribution: half of its degrees of freedom.
+    pub(super) shape: Values<B>,
+    /// Where a solution starts: the measurement, smoothed where it is sparse, relative to itself.
+    pub(super) start: Values<B>,
+    /// The reciprocal of what was measured.
+    per_measured: Values<B>,
+}
+
+impl<'a, const B: usize> Observation<'a, B> {
+    /// The rows of a record.
+    #[inline(never)]
+    pub(crate) fn new<const K: usize>(
+        observed: Observed<'a, K, B>,
+        course: Option<&'a CosineTransform>,
+        degrees: impl Fn(&crate::spectrum::Bin) -> Real,
+    ) -> Self {
+        let spectrum = observed.spectrum();
+        let all = spectrum.map_or(&[][..], |spectrum| spectrum.all());
+        let points = observed.curve().points();
+        let (low, lows) = match (course, all.last()) {
+            (Some(course), Some(last)) => {
+                let lowest = levels_of(all).last().and_then(|level| level.first());
+                let below = BELOW * lowest.unwrap_or(last).frequency_hz;
+                let places = 0..course.densities().len().min(LOW);
+                let count = places.filter(|&place| course.frequency_hz(place) < below);
+                (Low::Course(course), crate::list::count(count))
+            }
+            (_, last) => {
+                let from = last.map_or(0, |last| last.block.saturating_mul(8));
+                let first = points.partition_point(|point| point.m < from);
+                let points = points.get(first..).unwrap_or_default();
+                (Low::Octaves(points), points.len().min(LOW))
+            }
+        };
+        let longest = points.first().map_or(0.0, |point| clusters(point));
+        let mut observation = Self {
+            spectrum,
+            low,
+            lows,
+            bins: all.len(),
+            interval_s: observed.interval_s(),
+            span: observed.span(),
+            duration_s: longest * observed.interval_s(),
+            shape: Values::ZEROS,
+            start: Values::ZEROS,
+            per_measured: Values::ZEROS,
+        };
+        observation.measure(all, degrees);
+        observation
+    }
+
+    /// Sets what was measured.
+    #[inline(never)]
+    fn measure(
+        &mut self,
+        all: &[crate::spectrum::Bin],
+        degrees: impl Fn(&crate::spectrum::Bin) -> Real,
+    ) {
+        for row in 0..self.lows {
+            let (measured, shape) = match &self.low {
+                Low::Course(course) => {
+                    let density = course.densities().get(row);
+                    (density.copied().unwrap_or(0.0), 0.5)
+                }
+                Low::Octaves(points) => points.get(row).map_or((0.0, 0.0), |point| {
+                    let freedom = PER_CLUSTER * (clusters(point) - 1.0).max(0.5);
+                    (point.variance, 0.5 * freedom)
+                }),
+            };
+            self.put(row, measured, shape);
+        }
+        for (b, bin) in numbered(all) {
+            let shape = degrees(bin) / BINS_AS_ONE;
+            self.put(LOW.saturating_add(b), bin.density, shape);
+        }
+        self.smooth(all);
+    }
+
+    fn put(&mut self, row: usize, measured: Real, shape: Real) {
+        // A row of zero has no logarithm. It weighs nothing.
+        let is_sound = measured > Real::MIN_POSITIVE && measured.is_finite() && shape > 0.0;
+        let (per_measured, shape) = if is_sound {
+            (1.0 / measured, 1.0 / (1.0 / shape + TOLERANCE * TOLERANCE))
+        } else {
+            (0.0, 0.0)
+        };
+        self.per_measured.put(row, single(per_measured));
+        self.shape.put(row, single(shape));
+        self.start.put(row, 1.0);
+    }
+
+    /// Smooths the rows that are sparse, over up to three neighbours at either side.
+    fn smooth(&mut self, all: &[crate::spectrum::Bin]) {
+        let group = |row: usize| {
+            let bin = row.checked_sub(LOW).and_then(|bin| all.get(bin));
+            bin.map(|bin| bin.block)
+        };
+        let rows = self.rows();
+        for row in rows.clone() {
+            if real(self.shape[row]) >= SPARSE || self.per_measured[row] == 0.0 {
+                continue;
+            }
+            let near = rows.clone().filter(|&other| {
+                other.abs_diff(row) < 4
+                    && group(other) == group(row)
+                    && self.per_measured[other] > 0.0
+            });
+            let (mut sum, mut number) = (0.0, 0.0);
+            for other in near {
+                sum += 1.0 / real(self.per_measured[other]);
+                number += 1.0;
+            }
+            let smooth = sum / number * real(self.per_measured[row]);
+            self.start.put(row, single(smooth));
+        }
+    }
+
+    /// The rows: those below the bins, then the bins.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = usize> + Clone + use<B> {
+        (0..self.lows).chain(LOW..LOW.saturating_add(self.bins.min(B)))
+    }
+
+    /// The levels of the spectrum, shortest blocks first: the first row of each, and its bins.
+    pub(super) fn levels(&self) -> impl Iterator<Item = (usize, &'a [crate::spectrum::Bin])> + use<'a, B> {
+        let all = self.spectrum.map_or(&[][..], |spectrum| spectrum.all());
+        let mut row = LOW;
+        levels_of(all).map(move |level| {
+            let first = row;
+            row = row.saturating_add(level.len());
+            (first, level)
+        })
+    }
+
+    /// Whether there are bins.
+    pub(super) const fn has_bins(&self) -> bool {
+        self.bins > 0
+    }
+
+    /// What a term would add to each row, relative to the measurement, times a factor. Without a factor, the largest
+    /// number is one. Returns the factor, or zero if the term adds nothing.
+    #[inline(never)]
+    pub(crate) fn column(&self, term: &Term, factor: Option<Real>, values: &mut Values<B>) -> Real {
+        let shape = term.sampled_shape(self.interval_s);
+        let mut largest: Real = 0.0;
+        // The range of single precision holds no square of a ramp at the longest times, so that numbers are scaled first.
+        let mut raw = Rows::<LOW, B, Real>::ZEROS;
+        let mut row = 0_usize;
+        let mut low = |value: Real| {
+            let value = (value * real(self.per_measured[row])).max(0.0);
+            largest = largest.max(value);
+            raw.put(row, value);
+            row = row.saturating_add(1);
+        };
+        match &self.low {
+            Low::Course(course) => {
+                course.each_expected(term.effect, term.parameters, self.lows, &mut low);
+            }
+            Low::Octaves(points) => {
+                let mut factors = points.iter().take(self.lows).map(|point| real(point.m));
+                term.effect.variances(&mut factors, &shape, &mut low);
+            }
+        }
+        if let Some(spectrum) = self.spectrum {
+            let mut row = LOW;
+            spectrum.each_expected(term.effect, term.parameters, &mut |value| {
+                let value = (value * real(self.per_measured[row])).max(0.0);
+                largest = largest.max(value);
+                raw.put(row, value);
+                row = row.saturating_add(1);
+            });
+        }
+        let factor = factor.unwrap_or(if largest > 0.0 && largest.is_finite() {
+            1.0 / largest
+        } else {
+            0.0
+        });
+        *values = raw.map(|value| single(value * factor));
+        factor
+    }
+}

@@ -1,0 +1,190 @@
+//! The first hypotheses: every filter at its best shape, with the narrow peaks left out.
+
+use super::{
+    hypothesis::{Added, Hypothesis},
+    likelihood::kept,
+    refine::Solver,
+    rows::Observation,
+    variant::Variant,
+};
+use crate::{
+    effect::Effect,
+    list::{self, numbered},
+    math,
+    model::Term,
+    real::{Real, real, single},
+    spectrum::Bin,
+};
+use core::ops::ControlFlow;
+
+/// The shapes of a filter that are tried for each factor of two of its first parameter, and of each other one.
+pub(super) const FILTER_STEPS: Real = 3.0;
+pub(super) const FILTER_OTHERS: u32 = 3;
+
+/// The correlation times that are tried for each factor of two.
+const NOISE_STEPS: Real = 1.0;
+const NOISE_OTHERS: u32 = 3;
+
+/// How far a peak stands above the neighbourhood before it is left out: by this much, and by this many standard errors.
+const ABOVE: Real = 0.12;
+const STANDARD_ERRORS: Real = 4.5;
+/// The logarithm by which a bin with too few neighbours has to exceed them.
+const WITHOUT_NEIGHBOURS: Real = 0.15;
+
+impl<const B: usize> Solver<'_, '_, '_, B> {
+    /// Tries every filter, without and with noise of each of these effects. `each` gets the hypothesis as the whole record
+    /// sees it, and its score in the continuum.
+    pub(super) fn start(
+        &mut self,
+        variants: &mut dyn Iterator<Item = Variant>,
+        noises: &[&'static dyn Effect],
+        each: &mut dyn FnMut(&Hypothesis, Real),
+    ) -> ControlFlow<()> {
+        let mut next = Some(None);
+        while let Some(variant) = next {
+            leave_out_peaks(self.observation, &mut self.work.shape);
+            let found = match variant {
+                None => self.refine(Hypothesis::new(None, Added::new()), 8)?,
+                Some(variant) => {
+                    let found = self.best_filter(variant, &Hypothesis::new(None, Added::new()))?;
+                    self.refine(found, 8)?
+                }
+            };
+            self.whole(found.clone(), each)?;
+            for noise in noises {
+                leave_out_peaks(self.observation, &mut self.work.shape);
+                if let Some(with) = self.scan_noise(*noise, &found)? {
+                    let with = self.refine(with, 10)?;
+                    self.whole(with, each)?;
+                }
+            }
+            next = variants.next().map(Some);
+        }
+        self.work.shape = self.observation.shape;
+        ControlFlow::Continue(())
+    }
+
+    /// Refines a hypothesis of the continuum on the whole record.
+    fn whole(
+        &mut self,
+        hypothesis: Hypothesis,
+        each: &mut dyn FnMut(&Hypothesis, Real),
+    ) -> ControlFlow<()> {
+        let masked = hypothesis.score;
+        self.work.shape = self.observation.shape;
+        let whole = self.refine(hypothesis, 6)?;
+        each(&whole, masked);
+        ControlFlow::Continue(())
+    }
+
+    /// A hypothesis behind another filter, at the best shape of the filter's grid.
+    #[inline(never)]
+    pub(super) fn best_filter(
+        &mut self,
+        variant: Variant,
+        hypothesis: &Hypothesis,
+    ) -> ControlFlow<(), Hypothesis> {
+        let mut best = hypothesis.clone();
+        best.filter = None;
+        self.load(&best);
+        let mut least = Real::INFINITY;
+        for term in variant.grid(self.observation, FILTER_STEPS, FILTER_OTHERS).terms() {
+            (self.pause)()?;
+            if let (Some(own), Some(factor)) =
+                (self.work.own.first_mut(), self.work.factors.first_mut())
+            {
+                *factor = self.observation.column(&term, None, own);
+            }
+            let deviance = self.work.solve(self.observation, 3);
+            if deviance < least {
+                least = deviance;
+                best.filter = Some(term);
+                best.squares = kept(&self.work.squares);
+            }
+        }
+        ControlFlow::Continue(best)
+    }
+
+    /// A hypothesis with noise of one more effect, at the best shape of its grid. All coefficients are fitted anew for each
+    /// shape, because slow noise shows by what flicker and random walks lose. `None` if there is no room.
+    #[inline(never)]
+    pub(super) fn scan_noise(
+        &mut self,
+        effect: &'static dyn Effect,
+        hypothesis: &Hypothesis,
+    ) -> ControlFlow<(), Option<Hypothesis>> {
+        self.load(hypothesis);
+        let mut best: Option<Hypothesis> = None;
+        let mut least = Real::INFINITY;
+        let own = self.work.own.len();
+        for variant in Variant::of(effect, &self.observation.span) {
+            for term in variant.grid(self.observation, NOISE_STEPS, NOISE_OTHERS).terms() {
+                (self.pause)()?;
+                let Some(with) = hypothesis.with(term, self.limits.effects) else {
+                    return ControlFlow::Continue(None);
+                };
+                self.work.own.truncate(own);
+                self.work.factors.truncate(own);
+                self.work.add_own(self.observation, &term);
+                let deviance = self.work.solve(self.observation, 3);
+                if deviance < least {
+                    least = deviance;
+                    let squares = kept(&self.work.squares);
+                    best = Some(Hypothesis { squares, ..with });
+                }
+            }
+        }
+        ControlFlow::Continue(best)
+    }
+}
+
+/// Sets the rows' shapes, those of narrow peaks and their neighbours to zero. A peak stands above the median of the bins
+/// three to five places away, on both sides.
+#[inline(never)]
+fn leave_out_peaks<const B: usize>(
+    observation: &Observation<'_, B>,
+    shape: &mut super::rows::Values<B>,
+) {
+    *shape = observation.shape;
+    for (first, bins) in observation.levels() {
+        let log = |b: usize| bins.get(b).map(|bin: &Bin| math::log(bin.density.max(Real::MIN_POSITIVE)));
+        for (b, bin) in numbered(bins) {
+            let Some(own) = log(b) else { continue };
+            let below = median([5, 4, 3].map(|distance| b.checked_sub(distance).and_then(&log)));
+            let above = median([3, 4, 5].map(|distance| log(b.saturating_add(distance))));
+            let base = match (below, above) {
+                (Some(below), Some(above)) => 0.5 * (below + above),
+                (Some(one), None) | (None, Some(one)) => one + WITHOUT_NEIGHBOURS,
+                (None, None) => continue,
+            };
+            let error = 1.0 / math::sqrt(real(bin.segments));
+            if own - base > ABOVE + STANDARD_ERRORS * error {
+                let rows = b.saturating_sub(2)..b.saturating_add(3).min(bins.len());
+                for near in rows {
+                    shape.put(first.saturating_add(near), single(0.0));
+                }
+            }
+        }
+    }
+}
+
+/// The median of up to three numbers; the mean of two.
+fn median(numbers: [Option<Real>; 3]) -> Option<Real> {
+    let mut known: heapless::Vec<Real, 3> = list::fill(numbers.into_iter().flatten());
+    known.sort_unstable_by(Real::total_cmp);
+    match known.as_slice() {
+        [] => None,
+        [one] => Some(*one),
+        [one, other] => Some(0.5 * (one + other)),
+        [_, middle, ..] => Some(*middle),
+    }
+}
+
+/// The term of an effect at a shape.
+pub(super) fn at(effect: &'static dyn Effect, parameters: &[Real]) -> Term {
+    let mut term = Term::fitted(effect);
+    for (j, &parameter) in numbered(parameters) {
+        term.set_parameter(j, parameter);
+    }
+    term
+}

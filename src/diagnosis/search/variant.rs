@@ -1,0 +1,149 @@
+//! The kinds of an effect: one for each whole number that a shape parameter takes, such as the poles of a filter.
+
+use super::rows::Observation;
+use crate::{
+    effect::{Effect, SearchRange},
+    limits::MAX_PARAMETERS,
+    math,
+    model::Term,
+    real::{Real, real},
+};
+
+/// An effect, with its whole number if it has one.
+#[derive(Clone, Copy)]
+pub(super) struct Variant {
+    pub(super) effect: &'static dyn Effect,
+    /// The whole number, or 0.
+    pub(super) whole: u8,
+}
+
+impl Variant {
+    /// The variants of an effect, one after the other.
+    pub(super) fn of(effect: &'static dyn Effect, observation_span: &crate::effect::Span) -> impl Iterator<Item = Self> {
+        let whole = (0..MAX_PARAMETERS).find(|&j| effect.is_whole(j));
+        let range = whole.and_then(|j| effect.search_range(j, observation_span));
+        let (low, high) = range.map_or((0, 0), |range| (range.low as u8, range.high as u8));
+        (low..=high).map(move |whole| Self { effect, whole })
+    }
+
+    /// The variant of a term.
+    pub(super) fn of_term(term: &Term) -> Self {
+        let whole = (0..MAX_PARAMETERS).find(|&j| term.effect.is_whole(j));
+        Self {
+            effect: term.effect,
+            whole: whole.map_or(0, |j| (term.parameter(j) + 0.5) as u8),
+        }
+    }
+
+    /// Whether two variants are the same.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.effect.name() == other.effect.name() && self.whole == other.whole
+    }
+
+    /// The term with these numbers for the parameters that are not whole.
+    fn term(&self, numbers: [Real; MAX_PARAMETERS]) -> Term {
+        let mut term = Term::fitted(self.effect);
+        let mut numbers = numbers.into_iter();
+        for j in 0..self.effect.parameters().len().min(MAX_PARAMETERS) {
+            let number = if self.effect.is_whole(j) {
+                real(u32::from(self.whole))
+            } else {
+                numbers.next().unwrap_or(0.0)
+            };
+            term.set_parameter(j, number);
+        }
+        term
+    }
+
+    /// The shapes of a grid: `per_octave` values of the first parameter for each factor of two, and at most `others`
+    /// values of each other one.
+    pub(super) fn grid<const B: usize>(
+        self,
+        observation: &Observation<'_, B>,
+        per_octave: Real,
+        others: u32,
+    ) -> Grid {
+        let mut axes = [Axis::SINGLE; MAX_PARAMETERS];
+        let mut places = axes.iter_mut();
+        let mut is_first = true;
+        for j in 0..self.effect.parameters().len().min(MAX_PARAMETERS) {
+            if self.effect.is_whole(j) {
+                continue;
+            }
+            if let (Some(range), Some(axis)) = (
+                self.effect.search_range(j, &observation.span),
+                places.next(),
+            ) {
+                *axis = Axis::new(&range, if is_first { Some(per_octave) } else { None }, others);
+                is_first = false;
+            }
+        }
+        Grid { variant: self, axes }
+    }
+}
+
+/// The values of one parameter, from a low one on, each by a factor higher than the one before.
+#[derive(Clone, Copy)]
+struct Axis {
+    low: Real,
+    factor: Real,
+    count: u32,
+}
+
+impl Axis {
+    const SINGLE: Self = Self {
+        low: 0.0,
+        factor: 1.0,
+        count: 1,
+    };
+
+    fn new(range: &SearchRange, per_octave: Option<Real>, most: u32) -> Self {
+        let octaves = (math::log(range.high.max(range.low) / range.low)).max(0.0)
+            / real(core::f64::consts::LN_2);
+        let count = match per_octave {
+            Some(per_octave) => 1 + math::ceil(octaves * per_octave) as u32,
+            None => most.min(1 + math::ceil(octaves) as u32),
+        };
+        let step = if count > 1 {
+            octaves / real(count - 1)
+        } else {
+            0.0
+        };
+        Self {
+            low: range.low,
+            factor: math::exp(step * real(core::f64::consts::LN_2)),
+            count,
+        }
+    }
+
+    fn at(&self, place: u32) -> Real {
+        let mut value = self.low;
+        for _ in 0..place {
+            value *= self.factor;
+        }
+        value
+    }
+}
+
+/// Shapes of a variant.
+#[derive(Clone, Copy)]
+pub(super) struct Grid {
+    variant: Variant,
+    axes: [Axis; MAX_PARAMETERS],
+}
+
+impl Grid {
+    /// The terms of the grid.
+    pub(super) fn terms(&self) -> impl Iterator<Item = Term> + use<> {
+        let grid = *self;
+        let count = grid.axes.iter().fold(1_u32, |n, axis| n.saturating_mul(axis.count));
+        (0..count).map(move |place| {
+            let mut rest = place;
+            grid.variant.term(grid.axes.map(|axis| {
+                let value = axis.at(rest % axis.count.max(1));
+                rest /= axis.count.max(1);
+                value
+            }))
+        })
+    }
+}

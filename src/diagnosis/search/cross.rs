@@ -1,6 +1,6 @@
 //! The same additions behind every other filter.
 
-use super::{hypothesis::{Added, Hypothesis}, price::has_frequency, refine::Solver, variant::Variant};
+use super::{hypothesis::{Added, Hypothesis}, price::has_frequency, refine::Solver};
 use crate::{list, real::Real};
 use core::ops::ControlFlow;
 
@@ -14,28 +14,17 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         &mut self,
         added: &Added,
         own: Option<&Hypothesis>,
-        variants: &mut dyn Iterator<Item = Variant>,
         each: &mut dyn FnMut(&Hypothesis),
     ) -> ControlFlow<()> {
-        let bare = Hypothesis::new(None, added.clone());
-        let mut next = Some(None);
-        while let Some(variant) = next {
-            let is_own = own.is_some_and(|own| match (&own.filter, &variant) {
-                (None, None) => true,
-                (Some(filter), Some(variant)) => Variant::of_term(filter).is(variant),
-                _ => false,
-            });
-            if !is_own {
-                let begun = match variant {
-                    None => bare.clone(),
-                    Some(variant) => self.best_filter(variant, &bare)?,
-                };
-                if begun.has_room(self.limits.effects) {
-                    let refined = self.refine(begun, 8)?;
-                    each(&refined);
-                }
+        let shapes = self.shapes.clone();
+        let filters = core::iter::once(None).chain(shapes.into_iter().map(Some));
+        for filter in filters {
+            let begun = Hypothesis::new(filter, added.clone());
+            let is_own = own.is_some_and(|own| own.has_filter_of(&begun));
+            if !is_own && begun.has_room(self.limits.effects) {
+                let refined = self.refine(begun, 8)?;
+                each(&refined);
             }
-            next = variants.next().map(Some);
         }
         ControlFlow::Continue(())
     }

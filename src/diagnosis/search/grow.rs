@@ -31,6 +31,12 @@ const APART: Real = 0.25;
 /// The frequencies that are tried for each factor of two, and the values of each other parameter.
 const FREQUENCY_STEPS: Real = 5.0;
 const QUALITIES: u32 = 3;
+/// The shapes of resonances that are tested in one piece of work.
+const TERMS_A_PIECE: usize = 16;
+/// The bins of a segment of 64 up to half the rate of its blocks.
+const SEEN: Real = 32.0;
+/// The square of the half width of Hann's window, in bins.
+const WINDOW: Real = 0.5;
 
 /// A frequency that may be missing, and what a line there gains.
 #[derive(Clone, Copy)]
@@ -55,6 +61,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 for peak in self.peaks(effect)? {
                     let _ = candidates.push(at(effect, &[peak.frequency_hz]));
                 }
+            } else if is_resonance(effect) && self.observation.has_bins() {
+                self.humps(effect, &mut candidates)?;
             } else if has_frequency(effect) {
                 self.shapes(effect, &mut candidates)?;
             }
@@ -93,24 +101,60 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 if gain < LEAST_GAIN {
                     continue;
                 }
-                let near = |other: &(Term, Real)| {
-                    let ratio = math::log(other.0.parameter(0) / term.parameter(0));
-                    ratio < APART && ratio > -APART
-                };
-                match best.iter().position(near) {
-                    Some(place) if best.get(place).is_some_and(|other| other.1 < gain) => {
-                        list::remove(&mut best, place);
-                    }
-                    Some(_) => continue,
-                    None => {}
-                }
-                list::rank(&mut best, (term, gain), |other| other.1 < gain);
+                enter(&mut best, term, gain);
             }
         }
         for (term, _) in best {
             let _ = found.push(term);
         }
         ControlFlow::Continue(())
+    }
+
+    /// The humps above the present model that a resonance explains best, by the score test of its density: with the density
+    /// `c` of a Lorentzian, `(Σ ν c (1 − m)/m²)²/Σ ν c²/m²` is about what the resonance gains. Each level sees it as wide as
+    /// its bins at least, and no level sees it below half its rate.
+    #[inline(never)]
+    fn humps(&mut self, effect: &'static dyn Effect, found: &mut Vec<Term, 12>) -> ControlFlow<()> {
+        let mut best: Vec<(Term, Real), RESONANCES> = Vec::new();
+        for variant in Variant::of(effect, &self.observation.span) {
+            for (i, term) in numbered(variant.grid(self.observation, FREQUENCY_STEPS, QUALITIES).terms()) {
+                if i % TERMS_A_PIECE == 0 {
+                    (self.pause)()?;
+                }
+                let gain = self.score_of_hump(&term);
+                if gain >= LEAST_GAIN {
+                    enter(&mut best, term, gain);
+                }
+            }
+        }
+        for (term, _) in best {
+            let _ = found.push(term);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn score_of_hump(&self, term: &Term) -> Real {
+        let (middle_hz, quality) = (term.parameter(0), term.parameter(1));
+        let half_hz = 0.5 * middle_hz / quality;
+        let (mut along, mut own) = (0.0, 0.0);
+        for row in self.observation.rows() {
+            let Some((frequency_hz, width_hz)) = self.observation.place(row) else {
+                continue;
+            };
+            // Bins of a level reach to half the rate of its blocks, 32 bins of a segment of 64.
+            if middle_hz > SEEN * width_hz {
+                continue;
+            }
+            let half_seen = math::sqrt(half_hz * half_hz + WINDOW * width_hz * width_hz);
+            let distance = (frequency_hz - middle_hz) / half_seen;
+            let density = half_hz / (half_seen * (1.0 + distance * distance));
+            let c = real(self.observation.relative(row, density));
+            let (m, shape) = (real(self.work.model[row]), real(self.work.shape[row]));
+            let weight = shape * c / (m * m);
+            along += weight * (1.0 - m);
+            own += weight * c;
+        }
+        if along > 0.0 && own > 0.0 { along * along / own } else { 0.0 }
     }
 
     /// The peaks above the present model that a line explains best. The frequency is that between two bins (for Hann's
@@ -216,6 +260,28 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         }
         ControlFlow::Continue(best)
     }
+}
+
+/// Keeps a shape if it is one of the best, and the best one near its frequency.
+fn enter(best: &mut Vec<(Term, Real), RESONANCES>, term: Term, gain: Real) {
+    let near = |other: &(Term, Real)| {
+        let ratio = math::log(other.0.parameter(0) / term.parameter(0));
+        ratio < APART && ratio > -APART
+    };
+    match best.iter().position(near) {
+        Some(place) if best.get(place).is_some_and(|other| other.1 < gain) => {
+            list::remove(best, place);
+        }
+        Some(_) => return,
+        None => {}
+    }
+    list::rank(best, (term, gain), |other| other.1 < gain);
+}
+
+/// Whether an effect is a hump around a frequency, with a quality.
+fn is_resonance(effect: &dyn Effect) -> bool {
+    let second = effect.parameters().get(1);
+    has_frequency(effect) && second.is_some_and(|second| second.name == "quality")
 }
 
 /// Whether an effect adds to the noise, and a search can find it: it takes the place of none, and has a shape. An effect

@@ -45,6 +45,9 @@ struct Shape {
     stride: Real,
 }
 
+/// The largest number of variants of filters.
+pub(super) const MAX_VARIANTS: usize = 24;
+
 type Shapes = Vec<Shape, MAX_SHAPE>;
 type Terms = Vec<Term, 4>;
 
@@ -55,6 +58,8 @@ pub(crate) struct Solver<'s, 'a, 'p, const B: usize> {
     /// The white noise as the model has it; `None` if the model has none that a filter could replace.
     pub(super) white: Option<Term>,
     pub(super) limits: Limits,
+    /// The best shape of every filter in the continuum.
+    pub(super) shapes: &'s mut Vec<Term, MAX_VARIANTS>,
     pub(super) pause: &'s mut Pause<'p>,
 }
 

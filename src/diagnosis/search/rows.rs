@@ -184,6 +184,23 @@ impl<'a, const B: usize> Observation<'a, B> {
         })
     }
 
+    /// The frequency of a row and the distance of its neighbours, in Hz; `None` for an octave.
+    pub(super) fn place(&self, row: usize) -> Option<(Real, Real)> {
+        let Some(bin) = row.checked_sub(LOW) else {
+            return match &self.low {
+                Low::Course(course) => Some((course.frequency_hz(row), course.frequency_hz(0))),
+                Low::Octaves(_) => None,
+            };
+        };
+        let bin = self.spectrum?.all().get(bin)?;
+        Some((bin.frequency_hz, bin.frequency_hz / real(bin.index)))
+    }
+
+    /// What a density would be in a row, relative to the measurement.
+    pub(super) fn relative(&self, row: usize, density: Real) -> f32 {
+        single(density * real(self.per_measured[row]))
+    }
+
     /// Whether there are bins.
     pub(super) const fn has_bins(&self) -> bool {
         self.bins > 0

@@ -8,7 +8,7 @@ use super::{
     likelihood::Workspace,
     pool::Pool,
     price::has_frequency,
-    refine::Solver,
+    refine::{MAX_VARIANTS, Solver},
     rows::{Observation, Values},
     variant::Variant,
 };
@@ -32,6 +32,8 @@ const DEPTH: u8 = 5;
 /// A hypothesis that lags behind the best one by more does not grow, and one that lags by more is not crossed.
 const LAGS: Real = 60.0;
 const LAGS_CROSSED: Real = 40.0;
+/// A start that is not better than the plain model by this much does not grow.
+const EVIDENCE: Real = 4.0;
 /// The growth ends when the best new hypothesis is worse than the best one by more.
 const WORSE: Real = 8.0;
 /// The sets of additions that are crossed with all filters in each round.
@@ -68,6 +70,7 @@ pub(crate) struct Search<const B: usize> {
     grown: Pool<BEAM>,
     beam: Pool<STARTS>,
     done: Pool<KEPT>,
+    shapes: Vec<Term, MAX_VARIANTS>,
 }
 
 fn score(hypothesis: &Hypothesis) -> Real {
@@ -85,6 +88,7 @@ impl<const B: usize> Search<B> {
         grown: Pool::new(2, score),
         beam: Pool::new(2, score),
         done: Pool::new(3, cost),
+        shapes: Vec::new(),
     };
 
     /// Looks for what a model lacks in a list of effects.
@@ -101,6 +105,7 @@ impl<const B: usize> Search<B> {
             grown,
             beam,
             done,
+            shapes,
         } = self;
         let white = set_common(work, observation, model, effects);
         let filters = || {
@@ -115,6 +120,7 @@ impl<const B: usize> Search<B> {
             observation,
             work,
             white,
+            shapes,
             limits: Limits {
                 effects: limits.effects.min(MAX_EFFECTS.saturating_sub(model.terms().len()).saturating_add(usize::from(white.is_some()))),
                 ..limits
@@ -147,7 +153,9 @@ impl<const B: usize> Search<B> {
         }
 
         let mut crossed: Vec<Added, { CROSSED * DEPTH as usize }> = Vec::new();
-        let mut parents: Vec<Hypothesis, STARTS> = list::fill(beam.as_slice().iter().cloned());
+        // Those that the data speak for grow, and the plain one.
+        let spoken = beam.as_slice().iter().filter(|hypothesis| hypothesis.score < plain.score - EVIDENCE);
+        let mut parents: Vec<Hypothesis, STARTS> = list::fill(core::iter::once(&plain).chain(spoken).cloned());
         for _ in 0..DEPTH {
             grown.clear();
             let mut best_new = Real::INFINITY;
@@ -181,7 +189,7 @@ impl<const B: usize> Search<B> {
             }
             for (added, from) in &sets {
                 let own = (added.len() == from.added.len()).then_some(from);
-                solver.cross(added, own, &mut filters(), &mut |hypothesis| {
+                solver.cross(added, own, &mut |hypothesis| {
                     best_new = best_new.min(hypothesis.score);
                     grown.enter(hypothesis);
                     done.enter(hypothesis);
@@ -250,6 +258,7 @@ impl<const B: usize> Search<B> {
             observation,
             work: &mut self.work,
             white,
+            shapes: &mut self.shapes,
             limits: Limits {
                 effects: 4,
                 threshold: 0.0,
@@ -301,6 +310,7 @@ pub(crate) fn best_shape_of<const B: usize>(
         observation,
         work: &mut work,
         white,
+        shapes: &mut Vec::new(),
         limits: Limits {
             effects: MAX_EFFECTS,
             threshold: 0.0,

@@ -40,6 +40,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         noises: &[&'static dyn Effect],
         each: &mut dyn FnMut(&Hypothesis, Real),
     ) -> ControlFlow<()> {
+        self.shapes.clear();
         let mut next = Some(None);
         while let Some(variant) = next {
             leave_out_peaks(self.observation, &mut self.work.shape);
@@ -47,7 +48,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 None => self.refine(Hypothesis::new(None, Added::new()), 8)?,
                 Some(variant) => {
                     let found = self.best_filter(variant, &Hypothesis::new(None, Added::new()))?;
-                    self.refine(found, 8)?
+                    let found = self.refine(found, 8)?;
+                    if let Some(filter) = found.filter {
+                        let _ = self.shapes.push(filter);
+                    }
+                    found
                 }
             };
             self.whole(found.clone(), each)?;

@@ -6,7 +6,7 @@
 pub const MAX_EFFECTS: usize = 8;
 
 /// The number of shape parameters that one effect has room for.
-pub const MAX_PARAMETERS: usize = 2;
+pub const MAX_PARAMETERS: usize = 3;
 
 /// The number of fitted shape parameters that one model has room for.
 pub const MAX_SHAPE: usize = 6;

@@ -1,7 +1,7 @@
 //! A model: the effects that make up a curve.
 
 use crate::{
-    effect::{Effect, IEEE_952, SampledShape},
+    effect::{Effect, IEEE_952, SampledShape, padded},
     error::Error,
     limits::MAX_PARAMETERS,
     list,
@@ -38,10 +38,10 @@ impl Term {
     }
 
     /// An effect whose shape is known, such as the filter of a sensor's data sheet. The parameters come in the order
-    /// in which the effect names them.
-    pub fn known(effect: &'static dyn Effect, parameters: [Real; MAX_PARAMETERS]) -> Self {
+    /// in which the effect names them. There may be up to [`MAX_PARAMETERS`](crate::effect::MAX_PARAMETERS) of them.
+    pub fn known<const N: usize>(effect: &'static dyn Effect, parameters: [Real; N]) -> Self {
         Self {
-            parameters,
+            parameters: padded(parameters),
             ..Self::new(effect)
         }
     }

@@ -54,8 +54,8 @@ fn detection(curve: &Curve<20>) -> Detection<'static, 20> {
 
 fn term(effect: &'static dyn Effect, parameters: [Real; 2]) -> Term {
     Term {
-        parameters,
-        ..Term::fitted(effect)
+        fitted: true,
+        ..Term::known(effect, parameters)
     }
 }
 

@@ -54,7 +54,7 @@ struct Filter {
 
 impl Filter {
     fn new(shape: &SampledShape) -> Self {
-        let [width_s, stages] = shape.parameters;
+        let [width_s, stages, ..] = shape.parameters;
         let width = width_s / (shape.interval_s * math::sqrt(stages.max(1.0)));
         let width = width.clamp(1e-3, WIDEST);
         let mut filter = Self {
@@ -231,6 +231,6 @@ impl Explain for DecimationFilter {
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[0.03, 1.0], [0.03, 2.0]]
+        &[[0.03, 1.0, 0.0], [0.03, 2.0, 0.0]]
     }
 }

@@ -59,6 +59,9 @@ pub enum Distribution {
     /// The rate jumps between two levels of the same size and opposite sign, at times that are
     /// independent of each other. The autocovariance is exponential.
     TwoLevels,
+    /// The frequency of an oscillation runs over a range, up and down at a steady pace. The kernel is the average over
+    /// the range.
+    Swept,
     /// The rate is a ramp, or a sinusoid of random phase, which [`Effect::response`] determines.
     Deterministic,
 }

@@ -95,7 +95,7 @@ impl Explain for GaussMarkov {
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[0.1, 0.0], [1.0, 0.0]]
+        &[[0.1, 0.0, 0.0], [1.0, 0.0, 0.0]]
     }
 }
 

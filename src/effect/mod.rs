@@ -12,7 +12,9 @@
 //! [`Diagnosis`](crate::diagnosis::Diagnosis).
 
 mod definition;
+mod drift;
 mod explanation;
+mod filter;
 mod pole;
 mod sampled_shape;
 mod search_range;
@@ -22,7 +24,7 @@ pub use definition::{
     Decay, Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Reciprocal, Response, Tail,
 };
 pub use explanation::{Explain, Explanation};
-pub use sampled_shape::SampledShape;
+pub use sampled_shape::{SampledShape, padded};
 pub use search_range::{SearchRange, Span};
 
 /// Declares the module of every effect, exports its type and lists it.
@@ -63,6 +65,12 @@ catalogue! {
     random_telegraph::RandomTelegraph,
     power_law::PowerLaw,
     notch::Notch,
+    digital_low_pass::DigitalLowPass,
+    cascade::Cascade,
+    mode_split::ModeSplit,
+    high_pass::HighPass,
+    drifting_resonance::DriftingResonance,
+    drifting_sinusoid::DriftingSinusoid,
 }
 
 /// The five terms of IEEE Std 952-1997, annex C, in the order of their slopes.

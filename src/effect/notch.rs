@@ -1,6 +1,8 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, Tail, angle_random_walk::AngleRandomWalk,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange,
+    angle_random_walk::AngleRandomWalk,
+    filter::{Filter, Output},
     pole::Pole,
 };
 use crate::{
@@ -33,50 +35,6 @@ const WIDEST: Real = 0.95;
 /// The highest frequency in cycles per sample. Chosen by hand: nearer to half the sample rate, a notch is no other
 /// than a low pass.
 const HIGHEST: Real = 0.42;
-
-/// The two paths of the filter.
-struct Filter {
-    /// The share `d` of the noise that is white.
-    white: Real,
-    pole: Pole,
-}
-
-impl Filter {
-    fn new(shape: &SampledShape) -> Self {
-        let [frequency_hz, quality] = shape.parameters;
-        let turns = frequency_hz * shape.interval_s;
-        let (sine, cosine) = math::sincos_of_turns(turns);
-        let (half_sine, half_cosine) = math::sincos_of_turns(0.5 * turns / quality);
-        // The tangent is out of its domain where the notch is as wide as all frequencies.
-        let widest = WIDEST * sine;
-        let tangent = if half_sine < widest * half_cosine {
-            half_sine / half_cosine
-        } else {
-            widest
-        };
-        let gain = 1.0 / (1.0 + tangent);
-        // |p|² = 2g − 1, and 1 − |p|² = 2g tan(Ω/2Q).
-        let lost = 2.0 * gain * tangent;
-        let square = 1.0 - lost;
-        let size = math::sqrt(square);
-        let cycles = angle(gain * cosine / size, turns);
-        let (sine, cosine) = math::sincos_of_turns(cycles);
-        let p = Complex::new(size * cosine, size * sine);
-        let one = Complex::new(1.0, 0.0);
-        let weight = (one - p * p) * lost / (p * Complex::new(0.0, 4.0 * p.im));
-        let decay = -0.5 * math::log(square);
-        let sum = 1.0 + square;
-        Self {
-            white: 0.25 * sum * sum / square,
-            pole: Pole::weighted(
-                weight,
-                shape.interval_s / decay,
-                cycles / shape.interval_s,
-                shape.interval_s,
-            ),
-        }
-    }
-}
 
 /// The angle in turns whose cosine is given, by Newton's method. It begins at an angle that is nearer to a quarter of a
 /// turn, from where no step leads too far.
@@ -138,79 +96,51 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Effect for Notch {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+impl Filter for Notch {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const NEEDS_SPECTRUM: bool = true;
+
+    fn output(shape: &SampledShape) -> Output {
+        let [frequency_hz, quality, ..] = shape.parameters;
+        let turns = frequency_hz * shape.interval_s;
+        let (sine, cosine) = math::sincos_of_turns(turns);
+        let (half_sine, half_cosine) = math::sincos_of_turns(0.5 * turns / quality);
+        // The tangent is out of its domain where the notch is as wide as all frequencies.
+        let widest = WIDEST * sine;
+        let tangent = if half_sine < widest * half_cosine {
+            half_sine / half_cosine
+        } else {
+            widest
+        };
+        let gain = 1.0 / (1.0 + tangent);
+        // |p|² = 2g − 1, and 1 − |p|² = 2g tan(Ω/2Q).
+        let lost = 2.0 * gain * tangent;
+        let square = 1.0 - lost;
+        let size = math::sqrt(square);
+        let cycles = angle(gain * cosine / size, turns);
+        let (sine, cosine) = math::sincos_of_turns(cycles);
+        let p = Complex::new(size * cosine, size * sine);
+        let one = Complex::new(1.0, 0.0);
+        let weight = (one - p * p) * lost / (p * Complex::new(0.0, 4.0 * p.im));
+        let decay = -0.5 * math::log(square);
+        let sum = 1.0 + square;
+        Output {
+            white: 0.25 * sum * sum / square,
+            gain: 1.0,
+            first: Pole::at(weight, decay, cycles),
+            second: None,
+        }
     }
 
-    fn needs_spectrum(&self) -> bool {
-        true
-    }
-
-    fn distinct(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
-        let [frequency_hz, quality] = shape.parameters;
+    fn distinct(shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+        let [frequency_hz, quality, ..] = shape.parameters;
         let turns = frequency_hz * shape.interval_s;
         let (sine, _) = math::sincos_of_turns(turns);
         // Below the quality at which tan(Ω/2Q) is as large as it can be, every notch is the same.
         let tangent = WIDEST * sine;
         let half = angle(1.0 / math::sqrt(1.0 + tangent * tangent), BELOW_A_QUARTER);
         let lowest = ABOVE * 0.5 * turns / half;
-        [frequency_hz, quality.max(lowest)]
-    }
-
-    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        let filter = Filter::new(shape);
-        filter.white * AngleRandomWalk.kernel(lag, shape)
-            + shape.interval_s * filter.pole.kernel(lag)
-    }
-
-    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        let filter = Filter::new(shape);
-        filter.white * AngleRandomWalk.second_difference(x, m, shape)
-            + shape.interval_s * filter.pole.second_difference(x, m)
-    }
-
-    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
-        let filter = Filter::new(shape);
-        (filter.white / m + filter.pole.variance(m)) / shape.interval_s
-    }
-
-    fn variances(
-        &self,
-        factors: &mut dyn Iterator<Item = Real>,
-        shape: &SampledShape,
-        each: &mut dyn FnMut(Real),
-    ) {
-        let filter = Filter::new(shape);
-        for m in factors {
-            each((filter.white / m + filter.pole.variance(m)) / shape.interval_s);
-        }
-    }
-
-    fn add_second_differences(
-        &self,
-        m: Real,
-        weight: Real,
-        shape: &SampledShape,
-        sum: &mut SecondDifferences,
-    ) {
-        let filter = Filter::new(shape);
-        AngleRandomWalk.add_second_differences(m, weight * filter.white, shape, sum);
-        let weight = weight * shape.interval_s;
-        filter.pole.add_second_differences(m, weight, sum);
-    }
-
-    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
-        // White noise has no second differences from m on.
-        let tail = Filter::new(shape).pole.tail(m);
-        Some(tail.scaled(shape.interval_s))
-    }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        let filter = Filter::new(shape);
-        let per_interval = 1.0 / shape.interval_s;
-        values.fill(filter.white * per_interval / m);
-        filter.pole.add_variogram(m, per_interval, values);
+        [frequency_hz, quality.max(lowest), 0.0]
     }
 }
 
@@ -224,21 +154,19 @@ impl Explain for Notch {
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[20.0, 2.0], [8.0, 4.0]]
+        &[[20.0, 2.0, 0.0], [8.0, 4.0, 0.0]]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Effect;
 
     /// Below the lowest quality, a search would find no way uphill or downhill.
     #[test]
     fn a_notch_that_is_as_wide_as_can_be_is_told_by_a_quality_at_which_it_changes() {
-        let shape = |parameters| SampledShape {
-            interval_s: 0.01,
-            parameters,
-        };
+        let shape = |parameters: [Real; 2]| SampledShape::known(0.01, parameters);
         let of = |frequency_hz, quality| Notch.kernel(1.0, &shape([frequency_hz, quality]));
         for (frequency_hz, quality, is_wide) in [
             (32.0, 1.0, true),
@@ -247,7 +175,7 @@ mod tests {
             (5.0, 1.0, false),
             (41.0, 2.0, true),
         ] {
-            let [same_hz, distinct] = Notch.distinct(&shape([frequency_hz, quality]));
+            let [same_hz, distinct, _] = Effect::distinct(&Notch, &shape([frequency_hz, quality]));
             assert_eq!(same_hz, frequency_hz);
             let found = of(frequency_hz, distinct);
             assert!((found / of(frequency_hz, quality) - 1.0).abs() < 0.05);

@@ -75,8 +75,11 @@ impl Pole {
         frequency_hz: Real,
         interval_s: Real,
     ) -> Self {
-        let decay = interval_s / time_s;
-        let cycles = frequency_hz * interval_s;
+        Self::at(weight, interval_s / time_s, frequency_hz * interval_s)
+    }
+
+    /// A pole with this weight, this decay per sample and these cycles per sample.
+    pub(super) fn at(weight: Complex<Real>, decay: Real, cycles: Real) -> Self {
         let s = Complex::new(decay, 2.0 * PI * (math::floor(cycles + 0.5) - cycles));
         let z = power(decay, cycles, 1.0);
         let sample = Exponential {
@@ -104,6 +107,21 @@ impl Pole {
     /// The variance of the mean of many samples, times the number of samples.
     pub(super) fn long_mean(&self) -> Real {
         self.long
+    }
+
+    /// The decay per sample.
+    pub(super) fn decay(&self) -> Real {
+        self.decay
+    }
+
+    /// Whether the pole is real and positive, so that its autocovariance only falls.
+    pub(super) fn is_plain(&self) -> bool {
+        self.cycles == 0.0
+    }
+
+    /// `w z/(1−z)²`, which multiplies the powers of `z` in the kernel.
+    pub(super) fn factor(&self) -> Complex<Real> {
+        self.factor
     }
 
     /// The power `z^n` with its exponent.
@@ -294,8 +312,14 @@ impl Exponential {
     }
 }
 
+/// `1 − e^(−v)`, without cancellation if `v` is small.
+pub(super) fn rest(v: Complex<Real>) -> Complex<Real> {
+    let power = power(v.re, -v.im / (2.0 * PI), 1.0);
+    Exponential { exponent: v, power }.rest()
+}
+
 /// `e^((−decay + 2πi cycles) n)`.
-fn power(decay: Real, cycles: Real, n: Real) -> Complex<Real> {
+pub(super) fn power(decay: Real, cycles: Real, n: Real) -> Complex<Real> {
     let size = math::exp(-decay * n);
     if cycles == 0.0 {
         return Complex::new(size, 0.0);

@@ -154,7 +154,7 @@ impl Explain for PowerLaw {
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[0.7, 0.0], [1.3, 0.0], [1.5, 0.0]]
+        &[[0.7, 0.0, 0.0], [1.3, 0.0, 0.0], [1.5, 0.0, 0.0]]
     }
 }
 
@@ -285,10 +285,7 @@ mod tests {
     const INTERVAL_S: f64 = 0.01;
 
     fn shape(exponent: f64) -> SampledShape {
-        SampledShape {
-            interval_s: real(INTERVAL_S),
-            parameters: [real(exponent), 0.0],
-        }
+        SampledShape::known(real(INTERVAL_S), [real(exponent)])
     }
 
     /// The second difference over one cluster, in units of τ² times the Allan variance, from its definition.

@@ -78,6 +78,6 @@ impl Explain for RandomTelegraph {
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[0.1, 0.0], [1.0, 0.0]]
+        &[[0.1, 0.0, 0.0], [1.0, 0.0, 0.0]]
     }
 }

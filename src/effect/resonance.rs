@@ -16,7 +16,7 @@ use crate::real::{Real, consts::PI};
 pub struct Resonance;
 
 fn pole(shape: &SampledShape) -> Pole {
-    let [frequency_hz, quality] = shape.parameters;
+    let [frequency_hz, quality, ..] = shape.parameters;
     Pole::new(
         quality / (PI * frequency_hz),
         frequency_hz,
@@ -24,36 +24,38 @@ fn pole(shape: &SampledShape) -> Pole {
     )
 }
 
+/// The frequency. A resonance is broader than a line, so that a coarser grid finds it.
+pub(super) const FREQUENCY: Parameter = Parameter {
+    name: "frequency_hz",
+    unit: "Hz",
+    is_whole: false,
+    search_range: |span| SearchRange {
+        steps_per_octave: 3.0,
+        ..frequencies(span)
+    },
+    reciprocal: None,
+};
+
+/// The quality factor.
+pub(super) const QUALITY: Parameter = Parameter {
+    name: "quality",
+    unit: "",
+    is_whole: false,
+    search_range: |_| SearchRange {
+        low: 1.0,
+        high: 32.0,
+        steps_per_octave: 0.5,
+    },
+    reciprocal: None,
+};
+
 pub(super) const DESCRIPTION: Description = Description {
     name: "resonance",
     symbol: "s",
     coefficient: "rms",
     half_seconds: 0,
     reference_s: None,
-    parameters: &[
-        Parameter {
-            name: "frequency_hz",
-            unit: "Hz",
-            is_whole: false,
-            // A resonance is broader than a line, so that a coarser grid finds it.
-            search_range: |span| SearchRange {
-                steps_per_octave: 3.0,
-                ..frequencies(span)
-            },
-            reciprocal: None,
-        },
-        Parameter {
-            name: "quality",
-            unit: "",
-            is_whole: false,
-            search_range: |_| SearchRange {
-                low: 1.0,
-                high: 32.0,
-                steps_per_octave: 0.5,
-            },
-            reciprocal: None,
-        },
-    ],
+    parameters: &[FREQUENCY, QUALITY],
     code: 8,
     replaces: None,
     mirror: None,
@@ -117,7 +119,7 @@ impl Explain for Resonance {
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[3.0, 3.0]]
+        &[[3.0, 3.0, 0.0]]
     }
 }
 

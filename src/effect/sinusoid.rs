@@ -106,7 +106,7 @@ impl Explain for Sinusoid {
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[0.3, 0.0], [7.7, 0.0]]
+        &[[0.3, 0.0, 0.0], [7.7, 0.0, 0.0]]
     }
 }
 
@@ -116,7 +116,7 @@ impl Explain for Sinusoid {
 pub(super) fn frequencies(span: &Span) -> SearchRange {
     SearchRange {
         low: 0.33 / span.longest_tau_s,
-        high: 0.495 / span.interval_s,
+        high: 0.4999 / span.interval_s,
         steps_per_octave: 24.0,
     }
 }

@@ -15,10 +15,7 @@ const INTERVAL_S: Real = 0.01;
 
 /// A curve of white noise, an effect and flicker noise, with a known scatter.
 fn curve(effect: &dyn Effect, parameters: [Real; 2], square: Real, white: Real) -> Curve<OCTAVES> {
-    let shape = SampledShape {
-        interval_s: INTERVAL_S,
-        parameters,
-    };
+    let shape = SampledShape::known(INTERVAL_S, parameters);
     let octaves = (0..OCTAVES).map(|k| {
         let m = 1_u32 << k;
         let tau_s = real(m) * INTERVAL_S;
@@ -149,8 +146,8 @@ fn an_interval_includes_those_of_other_whole_numbers_that_explain_the_curve_as_w
     let filter = [0.015, 2.0];
     let curve = curve(&DecimationFilter, filter, 2.5e-5, 0.0);
     let replaced = Term {
-        parameters: filter,
-        ..Term::fitted(&DecimationFilter)
+        fitted: true,
+        ..Term::known(&DecimationFilter, filter)
     };
     let mut model = Model::ieee_952();
     model.remove("angle_random_walk");
@@ -179,7 +176,7 @@ fn an_interval_includes_those_of_other_whole_numbers_that_explain_the_curve_as_w
         }
     };
     let shape = |stages: u8, step: u32| Term {
-        parameters: [0.01 * math::exp(real(step) * 0.01), real(stages)],
+        parameters: [0.01 * math::exp(real(step) * 0.01), real(stages), 0.0],
         ..replaced
     };
     let mut best = evaluation.found(replaced);

@@ -87,12 +87,8 @@ fn ratios(line: Option<(f64, f64)>, weight: fn(usize) -> Real) -> [f64; 2] {
     let mut truth = Vector::zeros();
     truth.put(0, 0.01);
     if let Some((amplitude, frequency_hz)) = line {
-        let parameters = [real(frequency_hz), 0.0];
         model
-            .put(Term {
-                parameters,
-                ..Term::new(&Sinusoid)
-            })
+            .put(Term::known(&Sinusoid, [real(frequency_hz)]))
             .unwrap();
         truth.put(1, real(amplitude * amplitude));
     }

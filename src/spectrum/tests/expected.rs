@@ -10,7 +10,7 @@ use crate::{
 const INTERVAL_S: f64 = 0.01;
 
 /// The semivariogram of single samples at a distance of `n`, for a coefficient of one.
-fn single(name: &str, [first, second]: [f64; 2], n: f64) -> f64 {
+fn single(name: &str, [first, second, third]: [f64; 3], n: f64) -> f64 {
     if n == 0.0 {
         return 0.0;
     }
@@ -64,18 +64,11 @@ fn single(name: &str, [first, second]: [f64; 2], n: f64) -> f64 {
                 .sum();
             (spline(0.0) - spline(n / width)) / (sum * t)
         }
-        "notch" => {
-            let response = notch(first, second);
-            let at = |l: usize| -> f64 {
-                let later = response.iter().skip(l);
-                response
-                    .iter()
-                    .zip(later)
-                    .map(|(one, other)| one * other)
-                    .sum()
-            };
-            (at(0) - at(n as usize)) / t
+        "drifting_resonance" => {
+            let time_s = second / (PI * first);
+            fallen(libm::exp(-n * t / time_s), first, third, n * t)
         }
+        "drifting_sinusoid" => 0.5 * fallen(1.0, first, second, n * t),
         "power_law" => {
             let growth = first - 1.0;
             let h = |x: f64| libm::pow(x, 2.0 + growth);
@@ -84,6 +77,118 @@ fn single(name: &str, [first, second]: [f64; 2], n: f64) -> f64 {
         }
         _ => panic!("{name} is not known here"),
     }
+}
+
+/// One less the autocovariance of an oscillation whose frequency drifts.
+fn fallen(decay: f64, frequency_hz: f64, drift_hz: f64, time_s: f64) -> f64 {
+    let kappa = PI * drift_hz * time_s;
+    1.0 - decay * libm::cos(2.0 * PI * frequency_hz * time_s) * libm::sin(kappa) / kappa
+}
+
+/// The autocovariance of the samples of a filter's output, up to a lag behind which there is nothing; `None` for an effect that is
+/// no digital filter.
+fn filtered(name: &str, [first, second, _]: [f64; 3]) -> Option<Vec<f64>> {
+    if name == "mode_split" {
+        return Some(mode_split(first, second));
+    }
+    let response = match name {
+        "notch" => notch(first, second),
+        "digital_low_pass" => digital_low_pass(first, second),
+        "cascade" => cascade(first, second),
+        "high_pass" => high_pass(first),
+        _ => return None,
+    };
+    let at = |l: usize| -> f64 {
+        let pairs = response.iter().zip(&response[l..]);
+        pairs.map(|(one, other)| one * other).sum::<f64>() / INTERVAL_S
+    };
+    Some((0..response.len()).map(at).collect())
+}
+
+/// The impulse response of `y_n = Σ b_k x_(n−k) − Σ a_k y_(n−k)` with `k` from 0 and from 1, applied to an input.
+fn recursion(input: &[f64], b: [f64; 3], a: [f64; 2]) -> Vec<f64> {
+    let mut output = Vec::new();
+    for i in 0..input.len() {
+        let before = |values: &[f64], k: usize| i.checked_sub(k).map_or(0.0, |i| values[i]);
+        let forward: f64 = (0..3).map(|k| b[k] * before(input, k)).sum();
+        let back: f64 = (1..3).map(|k| a[k - 1] * before(&output, k)).sum();
+        output.push(forward - back);
+    }
+    output
+}
+
+/// An impulse, and so many zeros behind it as a filter of this time constant needs to forget it.
+fn impulse(time_s: f64) -> Vec<f64> {
+    let mut impulse = std::vec![0.0; 400 + (100.0 * time_s / INTERVAL_S) as usize];
+    impulse[0] = 1.0;
+    impulse
+}
+
+/// The impulse response of a bilinear Butterworth filter, by sections of first and second order.
+fn digital_low_pass(time_s: f64, poles: f64) -> Vec<f64> {
+    let w = libm::tan(0.5 * INTERVAL_S / time_s);
+    let mut response = impulse(time_s);
+    for k in 0..poles as u32 / 2 {
+        // 1/(s² + 2 d s + 1) with s = (1 − B)/(1 + B)/w.
+        let d = libm::sin(PI * (2.0 * f64::from(k) + 1.0) / (2.0 * poles));
+        let unit = 1.0 + 2.0 * d * w + w * w;
+        let gain = w * w / unit;
+        let a = [
+            2.0 * (w * w - 1.0) / unit,
+            (1.0 - 2.0 * d * w + w * w) / unit,
+        ];
+        response = recursion(&response, [gain, 2.0 * gain, gain], a);
+    }
+    if poles as u32 % 2 == 1 {
+        let gain = w / (1.0 + w);
+        response = recursion(&response, [gain, gain, 0.0], [(w - 1.0) / (1.0 + w), 0.0]);
+    }
+    response
+}
+
+/// The impulse response of equal smoothing filters in series.
+fn cascade(time_s: f64, stages: f64) -> Vec<f64> {
+    let z = libm::exp(-INTERVAL_S / time_s);
+    let mut response = impulse(time_s);
+    for _ in 0..stages as u32 {
+        response = recursion(&response, [1.0 - z, 0.0, 0.0], [-z, 0.0]);
+    }
+    response
+}
+
+/// The impulse response of a high pass.
+fn high_pass(time_s: f64) -> Vec<f64> {
+    let z = libm::exp(-INTERVAL_S / time_s);
+    let b = libm::sqrt(z);
+    recursion(&impulse(time_s), [b, -b, 0.0], [-z, 0.0])
+}
+
+/// The autocovariance of rising white noise, from its density with all aliases.
+fn mode_split(rise_hz: f64, corner_hz: f64) -> Vec<f64> {
+    const ALIASES: i32 = 2000;
+    const GRID: i32 = 1024;
+    let density = |hz: f64| {
+        let (rise, corner) = (hz / rise_hz, hz / corner_hz);
+        (1.0 + rise * rise) / (1.0 + corner * corner * corner * corner)
+    };
+    let sampled = |i: i32| {
+        let cycles = f64::from(i) / f64::from(GRID);
+        let near = (-ALIASES..=ALIASES).map(|k| density((cycles + f64::from(k)) / INTERVAL_S));
+        // Far up, the density falls with the square of the frequency.
+        let square = corner_hz * corner_hz * INTERVAL_S / rise_hz;
+        let end = f64::from(ALIASES) + 0.5;
+        near.sum::<f64>() + square * square * (1.0 / (end - cycles) + 1.0 / (end + cycles))
+    };
+    let densities: Vec<f64> = (0..GRID).map(sampled).collect();
+    let unit = 1.0 / (densities[0] * f64::from(GRID) * INTERVAL_S);
+    let at = |lag: i32| {
+        let waves = (0..GRID).map(|i| {
+            let turns = f64::from(i * lag % GRID) / f64::from(GRID);
+            densities[i as usize] * libm::cos(2.0 * PI * turns)
+        });
+        unit * waves.sum::<f64>()
+    };
+    (0..GRID / 4).map(at).collect()
 }
 
 /// The impulse response of a notch filter, by its difference equation.
@@ -120,7 +225,7 @@ fn of_means(single: impl Fn(f64) -> f64, length: usize, block: usize) -> Vec<f64
 }
 
 /// The expected densities, from sums over the window.
-fn direct(name: &str, parameters: [f64; 2], length: usize, block: usize) -> Vec<f64> {
+fn direct(name: &str, parameters: [f64; MAX_PARAMETERS], length: usize, block: usize) -> Vec<f64> {
     let rate_hz = 1.0 / (INTERVAL_S * block as f64);
     let mean = |rate: &dyn Fn(f64) -> f64, j: usize| {
         let samples = (0..block).map(|i| rate((j * block + i) as f64 * INTERVAL_S));
@@ -142,7 +247,14 @@ fn direct(name: &str, parameters: [f64; 2], length: usize, block: usize) -> Vec<
             both.map(|(one, other)| 0.5 * (one + other)).collect()
         }
         _ => {
-            let variogram = of_means(|n| single(name, parameters, n), length, block);
+            let covariance = filtered(name, parameters);
+            let single = |n: f64| match &covariance {
+                Some(covariance) => {
+                    covariance[0] - covariance.get(n as usize).copied().unwrap_or(0.0)
+                }
+                None => single(name, parameters, n),
+            };
+            let variogram = of_means(single, length, block);
             let weights = window(length);
             let squares: f64 = weights.iter().map(|w| w * w).sum();
             let overlap = |l: usize| -> f64 {
@@ -168,27 +280,93 @@ fn direct(name: &str, parameters: [f64; 2], length: usize, block: usize) -> Vec<
 /// The typical shapes, and slow ones whose rate hardly changes within a segment.
 fn shapes(name: &str) -> &'static [[f64; MAX_PARAMETERS]] {
     match name {
-        "gauss_markov" | "random_telegraph" => &[[0.1, 0.0], [1.0, 0.0], [30.0, 0.0], [1e4, 0.0]],
+        "gauss_markov" | "random_telegraph" => &[
+            [0.1, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [30.0, 0.0, 0.0],
+            [1e4, 0.0, 0.0],
+        ],
         "sinusoid" => &[
-            [0.3, 0.0],
-            [7.7, 0.0],
-            [33.0, 0.0],
-            [0.01, 0.0],
-            [81.0, 0.0],
+            [0.3, 0.0, 0.0],
+            [7.7, 0.0, 0.0],
+            [33.0, 0.0, 0.0],
+            [0.01, 0.0, 0.0],
+            [81.0, 0.0, 0.0],
         ],
-        "resonance" => &[[3.0, 3.0], [20.0, 20.0], [0.05, 3.0]],
+        "resonance" => &[[3.0, 3.0, 0.0], [20.0, 20.0, 0.0], [0.05, 3.0, 0.0]],
         "low_pass" => &[
-            [0.02, 1.0],
-            [0.5, 1.0],
-            [0.008, 2.0],
-            [0.02, 3.0],
-            [0.012, 4.0],
-            [0.006, 4.0],
+            [0.02, 1.0, 0.0],
+            [0.5, 1.0, 0.0],
+            [0.008, 2.0, 0.0],
+            [0.02, 3.0, 0.0],
+            [0.012, 4.0, 0.0],
+            [0.006, 4.0, 0.0],
         ],
-        "notch" => &[[20.0, 2.0], [8.0, 4.0], [33.0, 1.5], [3.0, 3.0]],
-        "decimation_filter" => &[[0.03, 1.0], [0.03, 2.0], [0.1, 2.0]],
-        "power_law" => &[[0.7, 0.0], [1.3, 0.0], [1.5, 0.0], [1.9, 0.0]],
-        _ => &[[0.0, 0.0]],
+        "notch" => &[
+            [20.0, 2.0, 0.0],
+            [8.0, 4.0, 0.0],
+            [33.0, 1.5, 0.0],
+            [3.0, 3.0, 0.0],
+        ],
+        "decimation_filter" => &[[0.03, 1.0, 0.0], [0.03, 2.0, 0.0], [0.1, 2.0, 0.0]],
+        "power_law" => &[
+            [0.7, 0.0, 0.0],
+            [1.3, 0.0, 0.0],
+            [1.5, 0.0, 0.0],
+            [1.9, 0.0, 0.0],
+        ],
+        "digital_low_pass" => &[
+            [0.02, 1.0, 0.0],
+            [0.0045, 1.0, 0.0],
+            [0.006_366, 1.0, 0.0],
+            [0.53, 2.0, 0.0],
+            [0.008, 2.0, 0.0],
+            [0.006, 3.0, 0.0],
+            [0.006_366, 3.0, 0.0],
+            [0.1, 3.0, 0.0],
+            [0.012, 4.0, 0.0],
+            [0.2, 4.0, 0.0],
+            [0.0036, 4.0, 0.0],
+        ],
+        "cascade" => &[
+            [0.0025, 2.0, 0.0],
+            [0.01, 2.0, 0.0],
+            [0.2, 2.0, 0.0],
+            [0.02, 3.0, 0.0],
+            [0.3, 3.0, 0.0],
+            [0.003, 4.0, 0.0],
+            [0.015, 4.0, 0.0],
+            [0.1, 4.0, 0.0],
+        ],
+        "mode_split" => &[
+            [10.0, 30.0, 0.0],
+            [5.0, 60.0, 0.0],
+            [1.0, 5.0, 0.0],
+            [1.0, 100.0, 0.0],
+            [30.0, 30.0, 0.0],
+        ],
+        "high_pass" => &[[0.02, 0.0, 0.0], [0.1, 0.0, 0.0], [0.5, 0.0, 0.0]],
+        "drifting_resonance" => &[
+            [20.0, 14.0, 1.0],
+            [20.0, 14.0, 10.0],
+            [6.0, 30.0, 2.0],
+            [6.0, 30.0, 0.01],
+            [0.5, 5.0, 0.1],
+            [0.02, 10.0, 0.01],
+            [0.001, 3.0, 0.0005],
+            [43.0, 3.0, 20.0],
+        ],
+        "drifting_sinusoid" => &[
+            [20.0, 2.0, 0.0],
+            [20.0, 0.05, 0.0],
+            [7.7, 0.5, 0.0],
+            [0.6, 0.3, 0.0],
+            [0.07, 0.03, 0.0],
+            [0.001, 0.0005, 0.0],
+            [33.0, 16.0, 0.0],
+            [48.0, 10.0, 0.0],
+        ],
+        _ => &[[0.0, 0.0, 0.0]],
     }
 }
 
@@ -197,6 +375,20 @@ fn shape(parameters: [f64; MAX_PARAMETERS]) -> SampledShape {
         interval_s: real(INTERVAL_S),
         parameters: parameters.map(real),
     }
+}
+
+/// The error that an approximation may have, relative to the density of the bin, to the largest one of the level, and to
+/// that of white noise with the same variance. The last one is what rounding leaves of the variance where the density is many
+/// powers of ten below it.
+fn approximation(name: &str) -> [f64; 3] {
+    let [own, largest, white] = match name {
+        // Only where the cut-off is a quarter of the sample rate, the pole on the real axis is not exact.
+        "digital_low_pass" => [0.0, by_precision(2e-6, 4e-4), by_precision(1e-13, 5e-6)],
+        "cascade" => [by_precision(3e-5, 5e-4), 0.0, by_precision(1e-10, 2e-4)],
+        "drifting_resonance" | "drifting_sinusoid" => [0.0, 0.01, 5e-6],
+        _ => [0.0; 3],
+    };
+    [own, largest, white].map(double)
 }
 
 /// Whether rounding explains an error of a bin, of this density, in a level whose largest density is given.
@@ -218,7 +410,18 @@ fn densities_are_those_of_sums_over_single_samples() {
     for effect in CATALOGUE {
         let name = effect.name();
         for &parameters in shapes(name) {
-            for (length, block) in [(64, 1), (64, 8), (64, 64), (256, 1), (256, 8), (32, 8)] {
+            let sizes = [
+                (64, 1),
+                (64, 8),
+                (64, 64),
+                (256, 1),
+                (256, 8),
+                (32, 8),
+                (64, 512),
+            ];
+            let is_drifting = name.starts_with("drifting");
+            let variance = filtered(name, parameters).map_or(1.0, |covariance| covariance[0]);
+            for (length, block) in sizes.into_iter().take(if is_drifting { 7 } else { 6 }) {
                 let expected = direct(name, parameters, length, block as usize);
                 let mut found = std::vec![-1.0; expected.len() + 1];
                 expected_densities(effect, &shape(parameters), length, block, &mut found);
@@ -226,6 +429,9 @@ fn densities_are_those_of_sums_over_single_samples() {
                 let largest = expected.iter().copied().fold(0.0, f64::max);
                 for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
                     let off = double(*found) - expected;
+                    let [own, shared, white] = approximation(name);
+                    let white = white * 2.0 * f64::from(block) * INTERVAL_S * variance;
+                    let off = (off.abs() - own * expected - shared * largest - white).max(0.0);
                     assert!(
                         is_rounding(off, expected, largest, length),
                         "{name} {parameters:?}, {length}, {block}, bin {k}: {:e} of {expected:e}, {:e} of the \

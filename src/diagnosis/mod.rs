@@ -35,28 +35,14 @@ pub use width::line_width;
 /// What a search says, for experiments.
 #[doc(hidden)]
 pub fn lab<const K: usize, const B: usize>(
-    curve: &crate::Curve<K>,
-    spectrum: &crate::spectrum::Spectrum<B>,
-    course: Option<&crate::course::CosineTransform>,
+    record: crate::Record<'_, K, B>,
     effects: &[&'static dyn crate::effect::Effect],
-    mut each: impl FnMut(&[crate::Term], crate::Real, crate::Real),
-    pause: &mut dyn FnMut() -> core::ops::ControlFlow<()>,
+    filter: Option<crate::Term>,
+    added: &[crate::Term],
+    each: &mut dyn FnMut(&[crate::Term], crate::Real, crate::Real),
 ) {
-    let observed = crate::Observed::new(curve, spectrum);
-    let observation = search::Observation::new(observed, course, |bin| bin.effective_segments());
+    let observation = search::Observation::new(record.observed(), record.course, |bin| bin.effective_segments());
     let mut search = search::Search::<B>::NEW;
     let model = crate::Model::ieee_952();
-    if let core::ops::ControlFlow::Continue(found) =
-        search.run(&observation, &model, effects, search::Limits { effects: 4, threshold: 8.0, ambiguity: 6.0 }, pause)
-    {
-        let mut tell = |hypothesis: &search::Hypothesis, beyond| {
-            let terms: heapless::Vec<crate::Term, 4> = crate::list::fill(hypothesis.terms().copied());
-            each(&terms, beyond, hypothesis.score);
-        };
-        tell(&found.best, 0.0);
-        for (other, beyond) in &found.alternatives {
-            tell(other, *beyond);
-        }
-        each(&[], crate::Real::INFINITY, found.plain);
-    }
+    search.lab(&observation, &model, effects, filter, added, each);
 }

@@ -3,6 +3,7 @@ use super::{
     SampledShape, SearchRange,
     angle_random_walk::AngleRandomWalk,
     filter::{Filter, Output},
+    low_pass::LowPass,
     pole::{Pole, rest},
 };
 use crate::real::{
@@ -132,7 +133,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 15,
     replaces: Some(&AngleRandomWalk),
     mirror: None,
-    special_case: None,
+    special_case: Some(&LowPass),
     distribution: Distribution::Gaussian,
 };
 

@@ -3,7 +3,7 @@ use super::{
     SampledShape, SearchRange,
     angle_random_walk::AngleRandomWalk,
     filter::{Filter, Output},
-    low_pass::{POLES, Place, butterworth},
+    low_pass::{LowPass, POLES, Place, butterworth},
     pole::Pole,
 };
 use crate::{
@@ -140,7 +140,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 14,
     replaces: Some(&AngleRandomWalk),
     mirror: None,
-    special_case: None,
+    special_case: Some(&LowPass),
     distribution: Distribution::Gaussian,
 };
 

@@ -57,6 +57,9 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let mut candidates: Vec<Term, 12> = Vec::new();
         self.load(hypothesis);
         for effect in effects.iter().copied().filter(|effect| is_added(*effect)) {
+            if is_drifting(effect) {
+                continue;
+            }
             if is_line(effect) && self.observation.has_bins() {
                 for peak in self.peaks(effect)? {
                     let _ = candidates.push(at(effect, &[peak.frequency_hz]));
@@ -73,9 +76,26 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 each(self, &grown)?;
             }
         }
+        for effect in effects.iter().copied().filter(|effect| is_drifting(*effect)) {
+            for (i, term) in numbered(hypothesis.added.iter()) {
+                if let Some(general) = self.drifting(effect, term) {
+                    let mut begun = hypothesis.clone();
+                    if let Some(place) = begun.added.get_mut(i) {
+                        *place = general;
+                    }
+                    if begun.has_room(self.limits.effects) {
+                        let grown = self.refine(begun, 12)?;
+                        each(self, &grown)?;
+                    }
+                }
+            }
+        }
         for effect in effects.iter().copied().filter(|effect| is_added(*effect)) {
             let mut added = hypothesis.added.iter();
-            if has_frequency(effect) || added.any(|term| term.effect.name() == effect.name()) {
+            if has_frequency(effect)
+                || is_drifting(effect)
+                || added.any(|term| term.effect.name() == effect.name())
+            {
                 continue;
             }
             if let Some(with) = self.scan_noise(effect, hypothesis)? {
@@ -84,6 +104,39 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
         }
         ControlFlow::Continue(())
+    }
+
+    /// A drifting oscillation in the place of one that stays at its frequency: its range is as wide as the hump, or two bins
+    /// of the level that shows a line best. `None` if there is none.
+    fn drifting(&self, effect: &'static dyn Effect, term: &Term) -> Option<Term> {
+        if !has_frequency(term.effect) || is_drifting(term.effect) {
+            return None;
+        }
+        let frequency_hz = term.parameter(0);
+        let range_hz = if is_resonance(term.effect) {
+            frequency_hz / term.parameter(1)
+        } else {
+            let widths = self.observation.levels().filter_map(|(_, bins)| {
+                let bin = bins.first()?;
+                Some(bin.frequency_hz / real(bin.index))
+            });
+            let seen = |width_hz: &Real| frequency_hz < SEEN * width_hz;
+            2.0 * widths.filter(seen).last()?
+        };
+        let last = effect.parameters().len().checked_sub(1)?;
+        let mut general = at(effect, &[frequency_hz]);
+        if last > 1 {
+            // As wide as the hump was, or as a line that hardly decays.
+            let quality = if is_resonance(term.effect) {
+                1.5 * term.parameter(1)
+            } else {
+                2.0 * frequency_hz / range_hz
+            };
+            general.set_parameter(1, quality);
+        }
+        let range = effect.search_range(last, &self.observation.span)?;
+        general.set_parameter(last, range_hz.max(range.low).min(range.high));
+        Some(general)
     }
 
     /// The shapes of an effect with a frequency that gain most.
@@ -276,6 +329,13 @@ fn enter(best: &mut Vec<(Term, Real), RESONANCES>, term: Term, gain: Real) {
         None => {}
     }
     list::rank(best, (term, gain), |other| other.1 < gain);
+}
+
+/// Whether an effect is an oscillation whose frequency moves over a range: the last of its parameters, beyond those of the
+/// effect that it becomes without a range.
+pub(super) fn is_drifting(effect: &dyn Effect) -> bool {
+    let last = effect.parameters().last();
+    last.is_some_and(|last| last.name == "drift_hz")
 }
 
 /// Whether an effect is a hump around a frequency, with a quality.

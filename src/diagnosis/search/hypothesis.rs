@@ -108,6 +108,31 @@ impl Hypothesis {
         self.has_filter_of(other) && self.adds_like(other)
     }
 
+    /// Whether the other hypothesis has the special cases of the effects in which the two differ, so that the data do not
+    /// tell the two apart.
+    pub(super) fn is_general_form_of(&self, other: &Self) -> bool {
+        let special = |term: &Term| {
+            let special = term.effect.description().special_case?;
+            (special.replaces().is_some() == term.effect.replaces().is_some()).then(|| special.name())
+        };
+        let times = |terms: &Self, name: &str| {
+            list::count(terms.terms().filter(|term| term.effect.name() == name))
+        };
+        let mut differs = false;
+        for term in self.terms() {
+            let name = term.effect.name();
+            if times(self, name) <= times(other, name) {
+                continue;
+            }
+            differs = true;
+            let is_special = special(term).is_some_and(|special| times(other, special) > times(self, special));
+            if !is_special {
+                return false;
+            }
+        }
+        differs && list::count(self.terms()) == list::count(other.terms())
+    }
+
     /// Whether both are called by the same names.
     pub(crate) fn is_named_like(&self, other: &Self) -> bool {
         let name = |one: &Self| one.filter.as_ref().map(|filter| filter.effect.name());

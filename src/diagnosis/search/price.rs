@@ -1,6 +1,6 @@
 //! What an effect costs beyond its parameters.
 
-use super::hypothesis::continuous;
+use super::{grow::is_drifting, hypothesis::continuous};
 use crate::{
     effect::{Distribution, Effect},
     model::Term,
@@ -14,11 +14,15 @@ const RESONANCE: Real = 13.0;
 /// A resonance of a quality above [`NARROW`] has as many places as a line.
 const NARROW_RESONANCE: Real = 17.0;
 const NARROW: Real = 25.0;
-const NOISE: Real = 10.5;
+/// An oscillation whose frequency moved has to lead over one that stayed.
+const DRIFTING: Real = 17.0;
+const NOISE: Real = 8.5;
 /// Noise that is correlated over fewer than [`FAST`] samples competes with every filter.
 const FAST_NOISE: Real = 15.5;
 const FAST: Real = 20.0;
 const FILTER: Real = 9.0;
+/// A filter that has another one as its special case has to lead over it.
+const SPECIAL_FILTER: Real = 11.0;
 /// A filter of two shapes has more places.
 const SHAPED_FILTER: Real = 12.0;
 
@@ -43,13 +47,17 @@ pub(crate) fn price(term: &Term, interval_s: Real, threshold: Real) -> Real {
 fn usual(term: &Term, interval_s: Real) -> Real {
     let effect = term.effect;
     if effect.replaces().is_some() {
-        return match continuous(effect) {
-            0 | 1 => FILTER,
+        return match (continuous(effect), effect.description().special_case) {
+            (0 | 1, None) => FILTER,
+            (0 | 1, Some(_)) => SPECIAL_FILTER,
             _ => SHAPED_FILTER,
         };
     }
     if is_line(effect) {
         return LINE;
+    }
+    if is_drifting(effect) {
+        return DRIFTING;
     }
     if has_frequency(effect) {
         return if term.parameter(1) > NARROW {

@@ -1,6 +1,8 @@
 //! What a hypothesis does not need.
 
-use super::{hypothesis::Hypothesis, price::has_frequency, refine::Solver};
+use super::{
+    grow::is_drifting, hypothesis::Hypothesis, price::has_frequency, refine::Solver,
+};
 use crate::{list, real::Real};
 use core::ops::ControlFlow;
 
@@ -28,7 +30,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 list::remove(&mut rest, i);
                 consider(self, Hypothesis::new(kept.filter, rest.clone()))?;
                 let simpler = term.effect.description().special_case;
-                let is_narrow = term.effect.parameters().len() > 2 || term.parameter(1) > NARROW;
+                let is_narrow = is_drifting(term.effect) || term.parameter(1) > NARROW;
                 if let Some(simpler) = simpler.filter(|simpler| has_frequency(*simpler) && is_narrow) {
                     let mut parameters = term.parameters;
                     for parameter in parameters.iter_mut().skip(simpler.parameters().len()) {

@@ -184,6 +184,16 @@ impl<'a, const B: usize> Observation<'a, B> {
         })
     }
 
+    /// About what `−2 ln L` of a true model is.
+    pub(super) fn expected_deviance(&self) -> Real {
+        // A row of shape ν adds 2ν (ln ν − ψ(ν)), which is near one, and 1.27 for one degree of freedom.
+        let per_low = match &self.low {
+            Low::Course(_) => 1.27,
+            Low::Octaves(_) => 1.0,
+        };
+        real(self.bins as u32) / BINS_AS_ONE + per_low * real(self.lows as u32)
+    }
+
     /// The frequency of a row and the distance of its neighbours, in Hz; `None` for an octave.
     pub(super) fn place(&self, row: usize) -> Option<(Real, Real)> {
         let Some(bin) = row.checked_sub(LOW) else {

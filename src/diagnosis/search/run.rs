@@ -29,7 +29,8 @@ const KEPT: usize = 20;
 const STARTS: usize = 12;
 /// How often hypotheses grow.
 const DEPTH: u8 = 5;
-/// A hypothesis that lags behind the best one by more does not grow, and one that lags by more is not crossed.
+/// A hypothesis that lags behind the best one by more does not grow, and one that lags by more is not crossed. Where the
+/// best one is far from explaining the record, others may lag by as much as is left.
 const LAGS: Real = 60.0;
 const LAGS_CROSSED: Real = 40.0;
 /// A start that is not better than the plain model by this much does not grow.
@@ -51,6 +52,9 @@ pub(crate) struct Limits {
     /// Alternatives cost up to this much more than the best hypothesis.
     pub(crate) ambiguity: Real,
 }
+
+/// A hypothesis of as many effects whose score is less than this above that of the best one is as good.
+const AS_GOOD: Real = 2.0;
 
 /// The alternatives that are told.
 pub(crate) const MAX_ALTERNATIVES: usize = 6;
@@ -156,7 +160,14 @@ impl<const B: usize> Search<B> {
         // Those that the data speak for grow, and the plain one.
         let spoken = beam.as_slice().iter().filter(|hypothesis| hypothesis.score < plain.score - EVIDENCE);
         let mut parents: Vec<Hypothesis, STARTS> = list::fill(core::iter::once(&plain).chain(spoken).cloned());
-        for _ in 0..DEPTH {
+        for depth in 0..DEPTH {
+            #[cfg(feature = "lab")]
+            {
+                extern crate std;
+                std::eprintln!("== depth {depth} parents");
+                for h in &parents { std::eprintln!("  {:.1} {:.1} {:?}", h.score, h.cost, h.terms().collect::<std::vec::Vec<_>>()); }
+            }
+            let _ = depth;
             grown.clear();
             let mut best_new = Real::INFINITY;
             let lead = |done: &Pool<KEPT>, grown: &Pool<BEAM>| {
@@ -173,6 +184,7 @@ impl<const B: usize> Search<B> {
             }
             // The best sets of additions behind the other filters.
             let top = lead(done, grown);
+            let left = (top - observation.expected_deviance()).max(0.0);
             let mut sets: Vec<(Added, Hypothesis), CROSSED> = Vec::new();
             let mut ranked: Vec<&Hypothesis, { BEAM + KEPT }> = Vec::new();
             for hypothesis in grown.as_slice().iter().chain(done.as_slice()) {
@@ -181,11 +193,19 @@ impl<const B: usize> Search<B> {
             for hypothesis in ranked {
                 for added in [hypothesis.added.clone(), suspects(&hypothesis.added, observation.interval_s)] {
                     let is_known = crossed.iter().any(|known| is_permutation(known, &added));
-                    if !added.is_empty() && !is_known && hypothesis.score < top + LAGS_CROSSED && !sets.is_full() {
+                    if !added.is_empty() && !is_known && hypothesis.score < top + LAGS_CROSSED + left && !sets.is_full() {
                         let _ = crossed.push(added.clone());
                         let _ = sets.push((added, hypothesis.clone()));
                     }
                 }
+            }
+            #[cfg(feature = "lab")]
+            {
+                extern crate std;
+                std::eprintln!("-- grown");
+                for h in grown.as_slice() { std::eprintln!("  {:.1} {:.1} {:?}", h.score, h.cost, h.terms().collect::<std::vec::Vec<_>>()); }
+                std::eprintln!("-- sets");
+                for (h, f) in &sets { std::eprintln!("  {:.1} {:?}", f.score, h); }
             }
             for (added, from) in &sets {
                 let own = (added.len() == from.added.len()).then_some(from);
@@ -196,7 +216,7 @@ impl<const B: usize> Search<B> {
                 })?;
             }
             let top = lead(done, grown);
-            let near = grown.as_slice().iter().filter(|hypothesis| hypothesis.score < top + LAGS);
+            let near = grown.as_slice().iter().filter(|hypothesis| hypothesis.score < top + LAGS + left);
             parents = list::fill(near.cloned());
             if parents.is_empty() || best_new > top + WORSE {
                 break;
@@ -368,7 +388,10 @@ fn chosen(
     for other in finals.iter().chain(done) {
         let beyond = other.cost - best.cost;
         let is_told = |known: &(Hypothesis, Real)| known.0.is_like(other);
-        if beyond >= ambiguity || other.is_like(best) {
+        // Effects of one spectrum are told, whatever their prices.
+        let is_as_good = other.score < best.score + AS_GOOD
+            && list::count(other.terms()) == list::count(best.terms());
+        if !(beyond < ambiguity || is_as_good) || other.is_like(best) || other.is_general_form_of(best) {
             continue;
         }
         if let Some(place) = alternatives.iter().position(is_told) {
@@ -391,5 +414,35 @@ fn chosen(
 impl Hypothesis {
     pub(crate) fn names(&self) -> std::vec::Vec<&'static str> {
         self.terms().map(|term: &Term| term.effect.name()).collect()
+    }
+}
+
+impl<const B: usize> Search<B> {
+    pub(crate) fn lab(
+        &mut self,
+        observation: &Observation<'_, B>,
+        model: &Model,
+        effects: &[&'static dyn Effect],
+        filter: Option<Term>,
+        added: &[Term],
+        each: &mut dyn FnMut(&[Term], Real, Real),
+    ) {
+        let white = set_common(&mut self.work, observation, model, effects);
+        let mut pause = || ControlFlow::Continue(());
+        let mut solver = Solver {
+            observation,
+            work: &mut self.work,
+            white,
+            shapes: &mut self.shapes,
+            limits: Limits { effects: 4, threshold: 8.0, ambiguity: 6.0 },
+            pause: &mut pause,
+        };
+        for rounds in [0, 1, 2, 3, 5, 10, 20] {
+            let h = Hypothesis::new(filter, list::fill(added.iter().copied()));
+            if let ControlFlow::Continue(h) = solver.refine(h, rounds) {
+                let terms: Vec<Term, 4> = list::fill(h.terms().copied());
+                each(&terms, h.score, h.cost);
+            }
+        }
     }
 }

@@ -7,24 +7,17 @@ use heapless::Vec;
 /// Two hypotheses of the same kinds whose scores differ by less are the same.
 const SAME: Real = 0.1;
 
-/// Hypotheses, best first, of which only so many share a filter.
+/// How many of a pool may have the same kind of filter, and how many may add the same kinds of effects.
+const ALIKE: usize = 2;
+
+/// The best hypotheses, best first. Few of them share a filter or what they add, so that different stories stay.
 #[derive(Debug)]
 pub(super) struct Pool<const N: usize> {
     list: Vec<Hypothesis, N>,
-    /// How many of them may have the same kind of filter.
-    per_filter: usize,
-    /// What ranks them.
-    by: fn(&Hypothesis) -> Real,
 }
 
 impl<const N: usize> Pool<N> {
-    pub(super) const fn new(per_filter: usize, by: fn(&Hypothesis) -> Real) -> Self {
-        Self {
-            list: Vec::new(),
-            per_filter,
-            by,
-        }
-    }
+    pub(super) const NEW: Self = Self { list: Vec::new() };
 
     pub(super) fn as_slice(&self) -> &[Hypothesis] {
         &self.list
@@ -36,28 +29,32 @@ impl<const N: usize> Pool<N> {
 
     /// Keeps a hypothesis if it is among the best.
     pub(super) fn enter(&mut self, hypothesis: &Hypothesis) {
-        let by = self.by;
-        let rank = by(hypothesis);
-        if !rank.is_finite() {
+        let score = hypothesis.score;
+        if !score.is_finite() {
             return;
         }
-        let is_same = |other: &&Hypothesis| {
-            let distance = other.score - hypothesis.score;
+        let is_same = |other: &Hypothesis| {
+            let distance = other.score - score;
             distance < SAME && distance > -SAME && other.is_like(hypothesis)
         };
-        if self.list.iter().any(|other| is_same(&other)) {
+        if self.list.iter().any(is_same) {
             return;
         }
-        let rivals = self.list.iter().filter(|other| other.has_filter_of(hypothesis));
-        if list::count(rivals) >= self.per_filter {
-            let last = self.list.iter().rposition(|other| other.has_filter_of(hypothesis));
-            match last {
-                Some(last) if self.list.get(last).is_some_and(|other| by(other) > rank) => {
-                    list::remove(&mut self.list, last);
-                }
-                _ => return,
+        let groups: [fn(&Hypothesis, &Hypothesis) -> bool; 2] =
+            [Hypothesis::adds_like, |one, other| {
+                one.filter.is_some() && one.has_filter_of(other)
+            }];
+        for alike in groups {
+            let mut rivals = self.list.iter().filter(|other| alike(other, hypothesis));
+            if list::count(rivals.clone()) < ALIKE {
+                continue;
             }
+            if rivals.all(|other| other.score <= score) {
+                return;
+            }
+            let worst = self.list.iter().rposition(|other| alike(other, hypothesis));
+            list::remove(&mut self.list, worst.unwrap_or(N));
         }
-        list::rank(&mut self.list, hypothesis.clone(), |other| by(other) > rank);
+        list::rank(&mut self.list, hypothesis.clone(), |other| other.score > score);
     }
 }

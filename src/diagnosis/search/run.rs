@@ -4,7 +4,7 @@ use super::{
     Pause,
     cross::suspects,
     grow::is_added,
-    hypothesis::{Added, Hypothesis, is_permutation},
+    hypothesis::{Added, Hypothesis, MAX_ADDED, is_permutation},
     likelihood::Workspace,
     pool::Pool,
     price::has_frequency,
@@ -23,21 +23,21 @@ use crate::{
 use core::ops::ControlFlow;
 use heapless::Vec;
 
-/// The hypotheses that grow side by side, and those that are kept until the end.
-const BEAM: usize = 8;
-const KEPT: usize = 20;
-const STARTS: usize = 12;
-/// How often hypotheses grow.
-const DEPTH: u8 = 5;
-/// A hypothesis that lags behind the best one by more does not grow, and one that lags by more is not crossed. Where the
-/// best one is far from explaining the record, others may lag by as much as is left.
+/// The largest number of effects of a hypothesis.
+const MOST: usize = MAX_ADDED + 1;
+/// The hypotheses of as many effects that grow side by side.
+const BEAM: usize = 6;
+/// The best hypotheses of the continuum, narrow peaks left out, which grow too.
+const CONTINUA: usize = 2;
+/// A hypothesis that lags behind the best one of as many effects by more does not grow, and one that lags by more is not
+/// crossed. Where the best one is far from explaining the record, others may lag by as much as is left.
 const LAGS: Real = 60.0;
 const LAGS_CROSSED: Real = 40.0;
-/// A start that is not better than the plain model by this much does not grow.
+/// A hypothesis that is not better than the plain model by this much does not grow.
 const EVIDENCE: Real = 4.0;
-/// The growth ends when the best new hypothesis is worse than the best one by more.
+/// The growth ends when the best hypothesis of one more effect is worse than the best one by more.
 const WORSE: Real = 8.0;
-/// The sets of additions that are crossed with all filters in each round.
+/// The sets of additions that are crossed with all filters, for each number of effects.
 const CROSSED: usize = 3;
 /// The hypotheses that are pruned at the end.
 const PRUNED: usize = 10;
@@ -71,14 +71,22 @@ pub(crate) struct Found {
 /// A search, with its memory.
 pub(crate) struct Search<const B: usize> {
     work: Workspace<B>,
-    grown: Pool<BEAM>,
-    beam: Pool<STARTS>,
-    done: Pool<KEPT>,
+    /// The best hypotheses of no effect, of one effect and so on.
+    beams: [Pool<BEAM>; MOST + 1],
     shapes: Vec<Term, MAX_VARIANTS>,
 }
 
-fn score(hypothesis: &Hypothesis) -> Real {
-    hypothesis.score
+/// Keeps a hypothesis among those of as many effects.
+fn enter(beams: &mut [Pool<BEAM>], hypothesis: &Hypothesis) {
+    if let Some(beam) = beams.get_mut(list::count(hypothesis.terms())) {
+        beam.enter(hypothesis);
+    }
+}
+
+/// The lowest score of some hypotheses.
+fn lowest(hypotheses: &[Hypothesis]) -> Real {
+    let scores = hypotheses.iter().map(|hypothesis| hypothesis.score);
+    scores.fold(Real::INFINITY, Real::min)
 }
 
 fn cost(hypothesis: &Hypothesis) -> Real {
@@ -89,9 +97,7 @@ impl<const B: usize> Search<B> {
     /// A search that has not begun.
     pub(crate) const NEW: Self = Self {
         work: Workspace::NEW,
-        grown: Pool::new(2, score),
-        beam: Pool::new(2, score),
-        done: Pool::new(3, cost),
+        beams: [const { Pool::NEW }; MOST + 1],
         shapes: Vec::new(),
     };
 
@@ -106,9 +112,7 @@ impl<const B: usize> Search<B> {
     ) -> ControlFlow<(), Found> {
         let Self {
             work,
-            grown,
-            beam,
-            done,
+            beams,
             shapes,
         } = self;
         let white = set_common(work, observation, model, effects);
@@ -131,100 +135,91 @@ impl<const B: usize> Search<B> {
             },
             pause,
         };
-        grown.clear();
-        beam.clear();
-        done.clear();
+        for beam in beams.iter_mut() {
+            beam.clear();
+        }
 
-        // The filters of the continuum, those of the best continuum first.
+        // The filters of the continuum, and the best continua.
         let mut plain: Option<Hypothesis> = None;
-        let mut masked: Vec<(Hypothesis, Real), 6> = Vec::new();
+        let mut continua: Vec<(Hypothesis, Real), CONTINUA> = Vec::new();
         solver.start(&mut filters(), &noises, &mut |whole, continuum| {
             if plain.is_none() {
                 plain = Some(whole.clone());
             }
-            list::rank(&mut masked, (whole.clone(), continuum), |other| other.1 > continuum);
-            beam.enter(whole);
+            list::rank(&mut continua, (whole.clone(), continuum), |other| other.1 > continuum);
+            enter(beams, whole);
         })?;
-        for (hypothesis, _) in &masked {
-            beam.enter(hypothesis);
-        }
         let Some(plain) = plain else {
             return ControlFlow::Break(());
         };
-        done.enter(&plain);
-        for hypothesis in beam.as_slice() {
-            done.enter(hypothesis);
-        }
 
-        let mut crossed: Vec<Added, { CROSSED * DEPTH as usize }> = Vec::new();
-        // Those that the data speak for grow, and the plain one.
-        let spoken = beam.as_slice().iter().filter(|hypothesis| hypothesis.score < plain.score - EVIDENCE);
-        let mut parents: Vec<Hypothesis, STARTS> = list::fill(core::iter::once(&plain).chain(spoken).cloned());
-        for depth in 0..DEPTH {
-            #[cfg(feature = "lab")]
-            {
-                extern crate std;
-                std::eprintln!("== depth {depth} parents");
-                for h in &parents { std::eprintln!("  {:.1} {:.1} {:?}", h.score, h.cost, h.terms().collect::<std::vec::Vec<_>>()); }
-            }
-            let _ = depth;
-            grown.clear();
-            let mut best_new = Real::INFINITY;
-            let lead = |done: &Pool<KEPT>, grown: &Pool<BEAM>| {
-                let all = done.as_slice().iter().chain(grown.as_slice());
-                all.map(score).fold(Real::INFINITY, Real::min)
+        // One more effect on each of the best hypotheses of as many effects.
+        let mut crossed: Vec<Added, { CROSSED * MOST }> = Vec::new();
+        let mut best = plain.score;
+        for count in 0..MOST {
+            let (lower, higher) = beams.split_at_mut(count.saturating_add(1));
+            let Some(beam) = lower.last_mut() else { break };
+            let lead = lowest(beam.as_slice());
+            best = best.min(lead);
+            let left = (best - observation.expected_deviance()).max(0.0);
+            let is_worth = |hypothesis: &&Hypothesis| {
+                let is_plain = list::count(hypothesis.terms()) == 0;
+                is_plain
+                    || (hypothesis.score < plain.score - EVIDENCE
+                        && hypothesis.score < lead + LAGS + left)
             };
+            let others = continua.iter().map(|(hypothesis, _)| hypothesis);
+            let of_count = others.filter(|other| list::count(other.terms()) == count);
+            let known = beam.as_slice();
+            let more = of_count.filter(|other| !known.iter().any(|known| known.is_like(other)));
+            let parents: Vec<Hypothesis, { BEAM + CONTINUA }> =
+                list::fill(known.iter().chain(more).filter(is_worth).cloned());
             for parent in &parents {
                 solver.grow(parent, effects, &mut |_, hypothesis| {
-                    best_new = best_new.min(hypothesis.score);
-                    grown.enter(hypothesis);
-                    done.enter(hypothesis);
+                    let of = list::count(hypothesis.terms());
+                    let later = of.checked_sub(count.saturating_add(1));
+                    match later.and_then(|later| higher.get_mut(later)) {
+                        Some(beam) => beam.enter(hypothesis),
+                        // A more general effect in the place of one of the parent's.
+                        None if of == count => beam.enter(hypothesis),
+                        None => {}
+                    }
                     ControlFlow::Continue(())
                 })?;
             }
             // The best sets of additions behind the other filters.
-            let top = lead(done, grown);
-            let left = (top - observation.expected_deviance()).max(0.0);
             let mut sets: Vec<(Added, Hypothesis), CROSSED> = Vec::new();
-            let mut ranked: Vec<&Hypothesis, { BEAM + KEPT }> = Vec::new();
-            for hypothesis in grown.as_slice().iter().chain(done.as_slice()) {
-                list::rank(&mut ranked, hypothesis, |other| other.score > hypothesis.score);
-            }
-            for hypothesis in ranked {
-                for added in [hypothesis.added.clone(), suspects(&hypothesis.added, observation.interval_s)] {
+            let top = lowest(beam.as_slice());
+            for hypothesis in beam.as_slice() {
+                let broad = suspects(&hypothesis.added, observation.interval_s);
+                for added in [hypothesis.added.clone(), broad] {
                     let is_known = crossed.iter().any(|known| is_permutation(known, &added));
-                    if !added.is_empty() && !is_known && hypothesis.score < top + LAGS_CROSSED + left && !sets.is_full() {
+                    let is_near = hypothesis.score < top + LAGS_CROSSED + left;
+                    if !added.is_empty() && !is_known && is_near && !sets.is_full() {
                         let _ = crossed.push(added.clone());
                         let _ = sets.push((added, hypothesis.clone()));
                     }
                 }
             }
-            #[cfg(feature = "lab")]
-            {
-                extern crate std;
-                std::eprintln!("-- grown");
-                for h in grown.as_slice() { std::eprintln!("  {:.1} {:.1} {:?}", h.score, h.cost, h.terms().collect::<std::vec::Vec<_>>()); }
-                std::eprintln!("-- sets");
-                for (h, f) in &sets { std::eprintln!("  {:.1} {:?}", f.score, h); }
-            }
             for (added, from) in &sets {
                 let own = (added.len() == from.added.len()).then_some(from);
-                solver.cross(added, own, &mut |hypothesis| {
-                    best_new = best_new.min(hypothesis.score);
-                    grown.enter(hypothesis);
-                    done.enter(hypothesis);
-                })?;
+                solver.cross(added, own, &mut |hypothesis| enter(beams, hypothesis))?;
             }
-            let top = lead(done, grown);
-            let near = grown.as_slice().iter().filter(|hypothesis| hypothesis.score < top + LAGS + left);
-            parents = list::fill(near.cloned());
-            if parents.is_empty() || best_new > top + WORSE {
+            let next = beams.get(count.saturating_add(1));
+            let next = next.map_or(Real::INFINITY, |beam| lowest(beam.as_slice()));
+            if next > best + WORSE {
                 break;
             }
         }
+
+        // The cheapest of all, without what they do not need.
+        let mut cheapest: Vec<&Hypothesis, PRUNED> = Vec::new();
+        for hypothesis in beams.iter().flat_map(Pool::as_slice) {
+            list::rank(&mut cheapest, hypothesis, |other| other.cost > hypothesis.cost);
+        }
         let mut finals: Vec<Hypothesis, PRUNED> = Vec::new();
-        for hypothesis in done.as_slice().iter().take(PRUNED) {
-            let pruned = solver.prune(hypothesis.clone())?;
+        for hypothesis in &cheapest {
+            let pruned = solver.prune((*hypothesis).clone())?;
             match finals.iter_mut().find(|other| other.is_like(&pruned)) {
                 Some(other) if pruned.cost < other.cost => *other = pruned,
                 Some(_) => {}
@@ -233,8 +228,60 @@ impl<const B: usize> Search<B> {
                 }
             }
         }
-        ControlFlow::Continue(chosen(&finals, done.as_slice(), &plain, limits.ambiguity))
+        ControlFlow::Continue(chosen(&finals, &cheapest, &plain, limits.ambiguity))
     }
+}
+
+/// The best shape of an effect beside a model. A whole number above zero is kept. `None` if no shape adds anything.
+pub(crate) fn best_shape_of<const B: usize>(
+    observation: &Observation<'_, B>,
+    model: &Model,
+    term: &Term,
+) -> Option<Term> {
+    let effect = term.effect;
+    let mut work = Workspace::<B>::NEW;
+    let white = set_common(&mut work, observation, model, &[effect]);
+    let mut go_on = || ControlFlow::Continue(());
+    let mut solver = Solver {
+        observation,
+        work: &mut work,
+        white,
+        shapes: &mut Vec::new(),
+        limits: Limits {
+            effects: MAX_EFFECTS,
+            threshold: 0.0,
+            ambiguity: 0.0,
+        },
+        pause: &mut go_on,
+    };
+    let ControlFlow::Continue(plain) = solver.refine(Hypothesis::new(None, Added::new()), 0) else {
+        return None;
+    };
+    let mut best: Option<Hypothesis> = None;
+    let wanted = |variant: &Variant| {
+        let known = Variant::of_term(term).whole;
+        known == 0 || variant.whole == known
+    };
+    let mut keep = |found: &Hypothesis| {
+        if best.as_ref().is_none_or(|best| found.score < best.score) {
+            best = Some(found.clone());
+        }
+    };
+    if effect.replaces().is_some() {
+        for variant in Variant::of(effect, &observation.span).filter(wanted) {
+            if let ControlFlow::Continue(found) = solver.best_filter(variant, &plain)
+                && let ControlFlow::Continue(found) = solver.refine(found, 10)
+            {
+                keep(&found);
+            }
+        }
+    } else {
+        let _ = solver.grow(&plain, &[effect], &mut |_, found| {
+            keep(found);
+            ControlFlow::Continue(())
+        });
+    }
+    best?.terms().next().copied()
 }
 
 /// Sets the columns of the terms that every hypothesis has. Returns the term of the white noise, which is what the filters
@@ -316,63 +363,11 @@ impl<const B: usize> Search<B> {
     }
 }
 
-/// The best shape of an effect beside a model. A whole number above zero is kept. `None` if no shape adds anything.
-pub(crate) fn best_shape_of<const B: usize>(
-    observation: &Observation<'_, B>,
-    model: &Model,
-    term: &Term,
-) -> Option<Term> {
-    let effect = term.effect;
-    let mut work = Workspace::<B>::NEW;
-    let white = set_common(&mut work, observation, model, &[effect]);
-    let mut go_on = || ControlFlow::Continue(());
-    let mut solver = Solver {
-        observation,
-        work: &mut work,
-        white,
-        shapes: &mut Vec::new(),
-        limits: Limits {
-            effects: MAX_EFFECTS,
-            threshold: 0.0,
-            ambiguity: 0.0,
-        },
-        pause: &mut go_on,
-    };
-    let ControlFlow::Continue(plain) = solver.refine(Hypothesis::new(None, Added::new()), 0) else {
-        return None;
-    };
-    let mut best: Option<Hypothesis> = None;
-    let wanted = |variant: &Variant| {
-        let known = Variant::of_term(term).whole;
-        known == 0 || variant.whole == known
-    };
-    let mut keep = |found: &Hypothesis| {
-        if best.as_ref().is_none_or(|best| found.score < best.score) {
-            best = Some(found.clone());
-        }
-    };
-    if effect.replaces().is_some() {
-        for variant in Variant::of(effect, &observation.span).filter(wanted) {
-            if let ControlFlow::Continue(found) = solver.best_filter(variant, &plain)
-                && let ControlFlow::Continue(found) = solver.refine(found, 10)
-            {
-                keep(&found);
-            }
-        }
-    } else {
-        let _ = solver.grow(&plain, &[effect], &mut |_, found| {
-            keep(found);
-            ControlFlow::Continue(())
-        });
-    }
-    best?.terms().next().copied()
-}
-
 /// The hypothesis whose names have the largest weight, the sum of `exp(−Δ/2)` over those that share them: six low passes
 /// near one boxcar are a low pass. Alternatives are those of other kinds that cost little more.
 fn chosen(
     finals: &[Hypothesis],
-    done: &[Hypothesis],
+    cheapest: &[&Hypothesis],
     plain: &Hypothesis,
     ambiguity: Real,
 ) -> Found {
@@ -385,7 +380,7 @@ fn chosen(
     let leading = finals.iter().filter(|one| weight(one) >= heaviest);
     let best = leading.min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap_or(plain);
     let mut alternatives: Vec<(Hypothesis, Real), MAX_ALTERNATIVES> = Vec::new();
-    for other in finals.iter().chain(done) {
+    for other in finals.iter().chain(cheapest.iter().copied()) {
         let beyond = other.cost - best.cost;
         let is_told = |known: &(Hypothesis, Real)| known.0.is_like(other);
         // Effects of one spectrum are told, whatever their prices.

@@ -1,32 +1,87 @@
 //! The same additions behind every other filter.
 
-use super::{hypothesis::{Added, Hypothesis}, price::has_frequency, refine::Solver};
-use crate::{list, real::Real};
+use super::{hypothesis::{Added, Hypothesis}, price::has_frequency, refine::Solver, rows::Values};
+use crate::{list, model::Term, real::Real};
 use core::ops::ControlFlow;
 
 /// Noise that is correlated over fewer samples imitates a filter, and so does a resonance of lower quality.
 const FAST: Real = 30.0;
 const BROAD: Real = 2.5;
+/// The factors by which the first parameter of a filter is tried around the one with a given cut-off frequency.
+const NEAR: [Real; 5] = [0.7, 0.85, 1.0, 1.2, 1.4];
 
 impl<const B: usize> Solver<'_, '_, '_, B> {
-    /// Hands the additions of a hypothesis behind each filter but its own to `each`.
+    /// Hands additions behind each filter to `each`, beginning at its best shape in the continuum, or at the one with the
+    /// cut-off frequency of the filter in the hypothesis that they come from. If they are all that it adds, its own filter
+    /// is left out.
     pub(super) fn cross(
         &mut self,
         added: &Added,
-        own: Option<&Hypothesis>,
+        from: &Hypothesis,
+        is_own: bool,
         each: &mut dyn FnMut(&Hypothesis),
     ) -> ControlFlow<()> {
         let shapes = self.shapes.clone();
+        let cutoff_hz = from.filter.and_then(|filter| self.cutoff_hz(&filter));
         let filters = core::iter::once(None).chain(shapes.into_iter().map(Some));
         for filter in filters {
             let begun = Hypothesis::new(filter, added.clone());
-            let is_own = own.is_some_and(|own| own.has_filter_of(&begun));
-            if !is_own && begun.has_room(self.limits.effects) {
-                let refined = self.refine(begun, 8)?;
-                each(&refined);
+            let is_known = is_own && from.has_filter_of(&begun);
+            if is_known || !begun.has_room(self.limits.effects) {
+                continue;
             }
+            let mut best = (begun, Real::INFINITY);
+            if let Some(filter) = filter {
+                let matched = cutoff_hz.and_then(|cutoff_hz| self.with_cutoff(&filter, cutoff_hz));
+                let around = matched.into_iter().flat_map(|matched| {
+                    NEAR.into_iter().map(move |factor| {
+                        let mut near = matched;
+                        near.scale_parameter(0, factor);
+                        near
+                    })
+                });
+                for shape in core::iter::once(filter).chain(around) {
+                    let tried = Hypothesis::new(Some(shape), added.clone());
+                    let deviance = self.deviance(&tried)?;
+                    if deviance < best.1 {
+                        best = (tried, deviance);
+                    }
+                }
+            }
+            let (begun, _) = best;
+            let refined = self.refine(begun, 8)?;
+            each(&refined);
         }
         ControlFlow::Continue(())
+    }
+
+    /// The lowest frequency at which a filter passes less than half of the white noise, in Hz.
+    fn cutoff_hz(&self, filter: &Term) -> Option<Real> {
+        let white = self.white?;
+        let (mut passed, mut all) = (Values::<B>::ZEROS, Values::<B>::ZEROS);
+        self.observation.column(&white, Some(1.0), &mut all);
+        self.observation.column(filter, Some(1.0), &mut passed);
+        let rows = self.observation.rows();
+        let below = rows.filter(|&row| passed[row] < 0.5 * all[row]);
+        let frequencies = below.filter_map(|row| Some(self.observation.place(row)?.0));
+        let lowest = frequencies.fold(Real::INFINITY, Real::min);
+        lowest.is_finite().then_some(lowest)
+    }
+
+    /// A filter whose first parameter is changed so that it has this cut-off frequency.
+    fn with_cutoff(&self, filter: &Term, cutoff_hz: Real) -> Option<Term> {
+        let own_hz = self.cutoff_hz(filter)?;
+        let mut matched = *filter;
+        let range = matched.effect.search_range(0, &self.observation.span)?;
+        // A time grows where a frequency falls.
+        let ratio = if has_frequency(matched.effect) {
+            cutoff_hz / own_hz
+        } else {
+            own_hz / cutoff_hz
+        };
+        let changed = matched.parameter(0) * ratio;
+        matched.set_parameter(0, changed.max(range.low).min(range.high));
+        Some(matched)
     }
 }
 

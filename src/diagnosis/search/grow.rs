@@ -21,6 +21,8 @@ use heapless::Vec;
 
 /// A candidate that gains less beside a hypothesis, with all else fixed, is not refined.
 const LEAST_GAIN: Real = 6.0;
+/// What a drift has to gain before it is kept.
+const DRIFTED: Real = 4.0;
 /// The peaks of a level, and the candidates of lines and resonances, that are looked at.
 const PEAKS: usize = 3;
 const RESONANCES: usize = 2;
@@ -85,7 +87,10 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                     }
                     if begun.has_room(self.limits.effects) {
                         let grown = self.refine(begun, 12)?;
-                        each(self, &grown)?;
+                        // One that the data do not ask for would take the place of another story.
+                        if grown.score < hypothesis.score - DRIFTED {
+                            each(self, &grown)?;
+                        }
                     }
                 }
             }

@@ -141,7 +141,7 @@ impl Hypothesis {
 }
 
 /// Whether two lists of terms have the same effects, each as often.
-pub(super) fn is_permutation(one: &[Term], other: &[Term]) -> bool {
+fn is_permutation(one: &[Term], other: &[Term]) -> bool {
     let times = |list: &[Term], name: &str| {
         list::count(list.iter().filter(|term| term.effect.name() == name))
     };
@@ -151,3 +151,15 @@ pub(super) fn is_permutation(one: &[Term], other: &[Term]) -> bool {
             times(one, name) == times(other, name)
         })
 }
+
+/// Whether two lists of terms have the same effects at nearly the same frequencies or times.
+pub(super) fn is_near(one: &[Term], other: &[Term]) -> bool {
+    let near = |a: &Term, b: &Term| {
+        let ratio = a.parameter(0) / b.parameter(0);
+        a.effect.name() == b.effect.name() && ratio > 1.0 / NEAR && ratio < NEAR
+    };
+    is_permutation(one, other) && one.iter().all(|a| other.iter().any(|b| near(a, b)))
+}
+
+/// The factor between first parameters that are nearly the same.
+const NEAR: Real = 1.15;

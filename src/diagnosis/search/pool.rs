@@ -8,7 +8,8 @@ use heapless::Vec;
 const SAME: Real = 0.1;
 
 /// How many of a pool may have the same kind of filter, and how many may add the same kinds of effects.
-const ALIKE: usize = 2;
+const SAME_FILTER: usize = 3;
+const SAME_ADDITIONS: usize = 2;
 
 /// The best hypotheses, best first. Few of them share a filter or what they add, so that different stories stay.
 #[derive(Debug)]
@@ -40,13 +41,16 @@ impl<const N: usize> Pool<N> {
         if self.list.iter().any(is_same) {
             return;
         }
-        let groups: [fn(&Hypothesis, &Hypothesis) -> bool; 2] =
-            [Hypothesis::adds_like, |one, other| {
-                one.filter.is_some() && one.has_filter_of(other)
-            }];
-        for alike in groups {
+        let has_filter = |one: &Hypothesis, other: &Hypothesis| {
+            one.filter.is_some() && one.has_filter_of(other)
+        };
+        let groups: [(usize, fn(&Hypothesis, &Hypothesis) -> bool); 2] = [
+            (SAME_ADDITIONS, Hypothesis::adds_like),
+            (SAME_FILTER, has_filter),
+        ];
+        for (most, alike) in groups {
             let mut rivals = self.list.iter().filter(|other| alike(other, hypothesis));
-            if list::count(rivals.clone()) < ALIKE {
+            if list::count(rivals.clone()) < most {
                 continue;
             }
             if rivals.all(|other| other.score <= score) {

@@ -4,7 +4,7 @@ use super::{
     Pause,
     cross::suspects,
     grow::is_added,
-    hypothesis::{Added, Hypothesis, MAX_ADDED, is_permutation},
+    hypothesis::{Added, Hypothesis, MAX_ADDED, is_near},
     likelihood::Workspace,
     pool::Pool,
     price::has_frequency,
@@ -154,9 +154,9 @@ impl<const B: usize> Search<B> {
         };
 
         // One more effect on each of the best hypotheses of as many effects.
-        let mut crossed: Vec<Added, { CROSSED * MOST }> = Vec::new();
+        let mut crossed: Vec<Added, { CROSSED * (MOST + 1) }> = Vec::new();
         let mut best = plain.score;
-        for count in 0..MOST {
+        for count in 0..=MOST {
             let (lower, higher) = beams.split_at_mut(count.saturating_add(1));
             let Some(beam) = lower.last_mut() else { break };
             let lead = lowest(beam.as_slice());
@@ -174,7 +174,13 @@ impl<const B: usize> Search<B> {
             let more = of_count.filter(|other| !known.iter().any(|known| known.is_like(other)));
             let parents: Vec<Hypothesis, { BEAM + CONTINUA }> =
                 list::fill(known.iter().chain(more).filter(is_worth).cloned());
-            for parent in &parents {
+            #[cfg(feature = "lab")]
+            {
+                extern crate std;
+                std::eprintln!("== count {count} best {best:.1} left {left:.1}");
+                for h in &parents { std::eprintln!("  {:.1} {:.1} {:?}", h.score, h.cost, h.terms().collect::<std::vec::Vec<_>>()); }
+            }
+            for parent in parents.iter().filter(|_| count < MOST) {
                 solver.grow(parent, effects, &mut |_, hypothesis| {
                     let of = list::count(hypothesis.terms());
                     let later = of.checked_sub(count.saturating_add(1));
@@ -193,17 +199,17 @@ impl<const B: usize> Search<B> {
             for hypothesis in beam.as_slice() {
                 let broad = suspects(&hypothesis.added, observation.interval_s);
                 for added in [hypothesis.added.clone(), broad] {
-                    let is_known = crossed.iter().any(|known| is_permutation(known, &added));
-                    let is_near = hypothesis.score < top + LAGS_CROSSED + left;
-                    if !added.is_empty() && !is_known && is_near && !sets.is_full() {
+                    let is_known = crossed.iter().any(|known| is_near(known, &added));
+                    let is_close = hypothesis.score < top + LAGS_CROSSED + left;
+                    if !added.is_empty() && !is_known && is_close && !sets.is_full() {
                         let _ = crossed.push(added.clone());
                         let _ = sets.push((added, hypothesis.clone()));
                     }
                 }
             }
             for (added, from) in &sets {
-                let own = (added.len() == from.added.len()).then_some(from);
-                solver.cross(added, own, &mut |hypothesis| enter(beams, hypothesis))?;
+                let is_own = added.len() == from.added.len();
+                solver.cross(added, from, is_own, &mut |hypothesis| enter(beams, hypothesis))?;
             }
             let next = beams.get(count.saturating_add(1));
             let next = next.map_or(Real::INFINITY, |beam| lowest(beam.as_slice()));
@@ -216,6 +222,12 @@ impl<const B: usize> Search<B> {
         let mut cheapest: Vec<&Hypothesis, PRUNED> = Vec::new();
         for hypothesis in beams.iter().flat_map(Pool::as_slice) {
             list::rank(&mut cheapest, hypothesis, |other| other.cost > hypothesis.cost);
+        }
+        #[cfg(feature = "lab")]
+        {
+            extern crate std;
+            std::eprintln!("== cheapest");
+            for h in &cheapest { std::eprintln!("  {:.1} {:.1} {:?}", h.score, h.cost, h.terms().collect::<std::vec::Vec<_>>()); }
         }
         let mut finals: Vec<Hypothesis, PRUNED> = Vec::new();
         for hypothesis in &cheapest {

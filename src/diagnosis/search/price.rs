@@ -16,15 +16,17 @@ const NARROW_RESONANCE: Real = 17.0;
 const NARROW: Real = 25.0;
 /// An oscillation whose frequency moved has to lead over one that stayed.
 const DRIFTING: Real = 17.0;
-const NOISE: Real = 8.5;
+const NOISE: Real = 8.0;
+/// Noise of another kind, such as a power law, competes with all of the five terms.
+const OTHER_NOISE: Real = 14.0;
 /// Noise that is correlated over fewer than [`FAST`] samples competes with every filter.
 const FAST_NOISE: Real = 15.5;
 const FAST: Real = 20.0;
-const FILTER: Real = 9.0;
+const FILTER: Real = 12.0;
 /// A filter that has another one as its special case has to lead over it.
-const SPECIAL_FILTER: Real = 11.0;
+const SPECIAL_FILTER: Real = 13.5;
 /// A filter of two shapes has more places.
-const SHAPED_FILTER: Real = 12.0;
+const SHAPED_FILTER: Real = 14.0;
 
 /// Whether a frequency comes first among an effect's parameters.
 pub(super) fn has_frequency(effect: &dyn Effect) -> bool {
@@ -65,6 +67,10 @@ fn usual(term: &Term, interval_s: Real) -> Real {
         } else {
             RESONANCE
         };
+    }
+    let is_time = effect.parameters().first().is_some_and(|first| first.unit == "s");
+    if !is_time {
+        return OTHER_NOISE;
     }
     if term.parameter(0) < FAST * interval_s {
         FAST_NOISE

@@ -76,6 +76,7 @@ pub type Axis<
 /// ```
 /// use allanite::{Axes, Model, Scale, diagnosis::{Diagnosis, Options}, effect::CATALOGUE};
 /// use allanite::axis::{Gated, Moments, Spectral};
+/// use core::ops::ControlFlow;
 ///
 /// // Three axes of 12 octaves, with a temperature as the covariate, and with a spectrum of three levels.
 /// type Gyro = Axes<12, 1, Gated, Moments, 3, Spectral<64, 3, 84>>;
@@ -97,10 +98,9 @@ pub type Axis<
 /// let x = axes.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [0.01])?;
 /// assert_eq!(x.invalid, None);
 /// let (model, options) = (Model::ieee_952(), Options::default());
-/// let mut diagnosis = Diagnosis::with_spectrum(
-///     x.curve.clone(), x.spectrum.clone(), x.evidence(), &model, &CATALOGUE, options,
-/// );
-/// diagnosis.run(|step| println!("{}", step.comparison))?;
+/// let mut diagnosis = Diagnosis::new(x.record(), &model, &CATALOGUE, options);
+/// let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
+/// diagnosis.run(|step| println!("{}", step.comparison), &mut pause)?;
 /// assert_eq!(x.spectrum.bins().len(), 2 * 28); // a third level needs 35 000 samples
 /// # Ok::<(), allanite::Error>(())
 /// ```

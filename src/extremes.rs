@@ -4,13 +4,14 @@ extern crate std;
 
 use crate::{
     Accumulator, Curve, Error, Model, Scale,
-    diagnosis::{Diagnosis, Evidence, Options, Verdict},
+    diagnosis::{Diagnosis, Options, Step, Verdict},
     effect::CATALOGUE,
     fit::{self, Fit, State, fit},
     integrity::{Integrity, Reason},
     real::{double, real},
     test_random::Random,
 };
+use core::ops::ControlFlow;
 use std::vec::Vec;
 
 const OCTAVES: usize = 12;
@@ -39,15 +40,16 @@ fn fitted(curve: &Curve<OCTAVES>) -> Fit {
     fit(curve, &Model::ieee_952(), fit::Options::default()).unwrap()
 }
 
-fn verdict(curve: Curve<OCTAVES>) -> (Verdict, Vec<&'static str>) {
+fn verdict(curve: &Curve<OCTAVES>) -> (Verdict, Vec<&'static str>) {
     let (model, options) = (Model::ieee_952(), Options::default());
-    let mut diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(curve.into(), &model, &CATALOGUE, options);
     let mut names = Vec::new();
-    let verdict = diagnosis.run(|step| {
+    let report = |step: &Step<OCTAVES>| {
         let terms = step.model.terms().iter();
         names = terms.map(|term| term.effect.name()).collect();
-    });
-    (verdict.unwrap(), names)
+    };
+    let verdict = diagnosis.run(report, &mut || ControlFlow::Continue(()));
+    (verdict.unwrap().unwrap(), names)
 }
 
 #[test]
@@ -56,7 +58,7 @@ fn results_do_not_depend_on_the_units_of_rate_and_time() {
     let unit = |scale, rate| Scale::new(scale, rate).unwrap();
     let base = curve_of(&counts, unit(1.0, 1.0));
     let expected = fitted(&base);
-    let (found, names) = verdict(base);
+    let (found, names) = verdict(&base);
     assert_eq!(found, Verdict::Improved);
     assert!(names.contains(&"sinusoid"), "{names:?}");
     for scale in [1e-12, 1e-6, 1.0 / 131.0, 1.0, 1e6] {
@@ -78,7 +80,7 @@ fn results_do_not_depend_on_the_units_of_rate_and_time() {
             }
             let off = double(fit.chi_squared / expected.chi_squared - 1.0).abs();
             assert!(off < 2e-3, "{case}: {off:e}");
-            assert_eq!(verdict(curve), (found, names.clone()), "{case}");
+            assert_eq!(verdict(&curve), (found, names.clone()), "{case}");
         }
     }
 }

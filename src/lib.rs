@@ -36,11 +36,12 @@
 //! * [`spectrum::Spectrum`] is the power spectral density of the same record, which tells a line from a resonance and
 //!   from a filter. A diagnosis takes it beside the curve.
 //! * [`Curve`] is the Allan curve: at most 30 points, an octave apart. Nothing behind it needs a sample again.
+//! * [`Record`] is everything that is kept of one axis: a curve, and the spectrum, the course and the other sums beside it.
 //! * [`Model`] is a list of effects, such as the five terms of IEEE Std 952.
 //! * [`fit::fit`] fits a model to a curve in one call. [`fit::Fitting`] does the same in pieces, for a main loop
 //!   that has to feed a watchdog.
 //! * [`Comparison`] says where the model fails, octave by octave and in words.
-//! * [`diagnosis::Diagnosis`] finds the effect that is missing, in one call or in pieces.
+//! * [`diagnosis::Diagnosis`] finds the effects that are missing, and calls a pause between two pieces of work.
 //! * [`detection::Detection`] says from which size on a record would have shown an effect.
 //! * [`self_test::SelfTest`] holds coefficients to limits, and decides as soon as the record allows it.
 //! * [`effect::Effect`] is a physical effect. [`effect::CATALOGUE`] lists the known ones, and
@@ -165,10 +166,11 @@
 //!
 //! ```
 //! use allanite::{Accumulator, Model, Real, Scale};
-//! use allanite::diagnosis::{Addition, Diagnosis, Evidence, Options, Verdict};
+//! use allanite::diagnosis::{Addition, Diagnosis, Options, Step, Verdict};
 //! use allanite::effect::{
 //!     CATALOGUE, Description, Distribution, Effect, FIRST_OWN_CODE, SampledShape,
 //! };
+//! use core::ops::ControlFlow;
 //!
 //! struct MainsHum;
 //!
@@ -207,12 +209,13 @@
 //! let curve = gyro.curve(Scale::new(0.01, 1000.0)?);
 //! let effects: [&dyn Effect; 2] = [&MainsHum, CATALOGUE[0]]; // or all of the catalogue
 //! let (model, options) = (Model::ieee_952(), Options::default());
-//! let mut diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &effects, options);
-//! let verdict = diagnosis.run(|step| match step.added {
+//! let mut diagnosis = Diagnosis::new((&curve).into(), &model, &effects, options);
+//! let report = |step: &Step<16>| match step.added {
 //!     Some(Addition::Effect(term)) => assert_eq!(term.effect.name(), "mains_hum"),
 //!     _ => assert_eq!(step.fit.is_adequate(), Some(true)),
-//! })?;
-//! assert_eq!(verdict, Verdict::Improved);
+//! };
+//! let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
+//! assert_eq!(diagnosis.run(report, &mut pause)?, Some(Verdict::Improved));
 //! # Ok::<(), allanite::Error>(())
 //! ```
 

@@ -137,7 +137,7 @@ impl Model {
     /// Adds an effect in the place of the effect that it replaces, such as a filter on white noise in the place of
     /// the angle random walk; at the end if the model has no such effect.
     ///
-    /// A [diagnosis](crate::diagnosis) keeps what its first model has: it never drops or exchanges an effect of
+    /// A [diagnosis](crate::diagnosis) keeps what its first model has: it never removes an effect of
     /// [known](Term::known) shape, and never looks for another filter on the same noise.
     ///
     /// ```
@@ -200,23 +200,6 @@ impl Model {
     /// Removes the effect at a place, if there is one.
     pub(crate) fn take(&mut self, place: usize) {
         list::remove(&mut self.terms, place);
-    }
-
-    /// Exchanges an effect of the model for another one. What the old effect replaced comes back, and
-    /// what the new one replaces is removed.
-    pub(crate) fn exchange(
-        &mut self,
-        dropped: &'static dyn Effect,
-        taken: Term,
-    ) -> Result<(), Error> {
-        self.remove(dropped.name());
-        if let Some(replaced) = dropped.replaces() {
-            self.restore(replaced)?;
-        }
-        if let Some(replaced) = taken.effect.replaces() {
-            self.remove(replaced.name());
-        }
-        self.add(taken)
     }
 
     /// The place of the effect of that name.

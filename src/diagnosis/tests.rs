@@ -1,23 +1,19 @@
-//! The stages of a diagnosis, alone and together, on computed curves.
+//! The judgement of a model, and whole diagnoses, on computed curves.
 
 extern crate std;
 
 use super::{
-    dropped::Dropping,
     judged::{Judged, Judging},
-    run::{Diagnosis, Progress},
-    scanned::Scanning,
-    step::{Addition, Step},
-    trial::Fitted,
-    tried::{Base, Contest, Trying},
     *,
 };
 use crate::{
     Curve, Model, Term,
-    effect::{CATALOGUE, Effect, GaussMarkov, LowPass, SampledShape, Sinusoid},
+    effect::{CATALOGUE, Effect, LowPass, SampledShape, Sinusoid},
     fit::{Problem, Start, Tolerance, Work},
     real::{Real, double, real},
 };
+use core::ops::ControlFlow;
+use std::vec::Vec;
 
 const OCTAVES: usize = 16;
 const INTERVAL_S: Real = 0.01;
@@ -95,94 +91,85 @@ fn solving_again_from_the_assumed_squares_gives_the_same_solution() {
     assert_eq!(work.solver.squares.as_slice(), judged.squares.as_slice());
 }
 
-#[test]
-fn a_scan_finds_the_hidden_shape_and_a_trial_fits_its_size() {
-    let curve = with_sinusoid();
-    let span = curve.span();
-    let mut work = Work::NEW;
-    let mut step = Step::of(&Model::ieee_952());
-    let judged = judge(&curve, &mut work, &mut step);
-    let problem = Problem::new((&curve).into(), &step.model, &work.columns);
-    let mut scanning = Scanning::new();
-    scanning.begin(&problem, &mut work.solver);
-    let effects: [&'static dyn Effect; 2] = [&Sinusoid, &GaussMarkov];
-    while !scanning.advance(&problem, &work.solver, &effects, &span) {}
-    let shapes = scanning.shapes().clone();
-    assert_eq!(shapes.len(), 2);
-    assert_eq!(shapes[0].term.effect.name(), "sinusoid");
-    assert!((shapes[0].term.parameters[0] / 7.7 - 1.0).abs() < 0.05);
-    assert!(shapes[0].chi_squared <= shapes[1].chi_squared);
+/// The diagnosis of a curve by the whole catalogue.
+fn diagnosed(curve: &Curve<OCTAVES>) -> (Verdict, Vec<Step<OCTAVES>>) {
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let mut steps = Vec::new();
+    let mut go_on = || ControlFlow::Continue(());
+    let verdict = Diagnosis::new(curve.into(), &model, &CATALOGUE, options)
+        .run(|step| steps.push(step.clone()), &mut go_on)
+        .unwrap();
+    (verdict.unwrap(), steps)
+}
 
-    let mut trying = Trying::new(shapes);
-    let base = Base {
-        model: &step.model,
-        swap: None,
-    };
-    let contest = Contest {
-        score: judged.score,
-        tolerance: judged.tolerance,
-        span,
-    };
-    let mut best = Fitted::empty();
-    while !trying.advance(
-        (&curve).into(),
-        &contest,
-        base,
-        &mut work,
-        &mut step.candidates,
-        &mut best,
-    ) {}
-    let first = &step.candidates[0];
-    assert_eq!(first.term.effect.name(), "sinusoid");
-    assert!((first.term.parameters[0] / 7.7 - 1.0).abs() < 0.01);
-    assert!((first.coefficient / 0.02 - 1.0).abs() < 0.03, "{first:?}");
-    assert!(
-        step.candidates
-            .iter()
-            .all(|candidate| candidate.improvement > 0.0)
-    );
-    assert!(
-        step.candidates
-            .is_sorted_by(|a, b| a.improvement >= b.improvement)
-    );
-    assert_eq!(best.model.terms().last().unwrap().effect.name(), "sinusoid");
+fn are_the_same(one: &Step<OCTAVES>, other: &Step<OCTAVES>) -> bool {
+    (&one.fit, &one.comparison) == (&other.fit, &other.comparison)
+        && one.candidates.len() == other.candidates.len()
+        && one.ambiguous == other.ambiguous
 }
 
 #[test]
-fn a_diagnosis_in_pieces_reports_the_same_as_a_diagnosis_in_one_go() {
-    let (model, options) = (Model::ieee_952(), Options::default());
-    let new = || Diagnosis::new(with_sinusoid(), Evidence::NONE, &model, &CATALOGUE, options);
-    let mut whole = heapless::Vec::<Step<OCTAVES>, 4>::new();
-    let verdict = new().run(|step| whole.push(step.clone()).unwrap());
-    assert_eq!(verdict, Ok(Verdict::Improved));
+fn a_diagnosis_step_by_step_reports_the_same_as_a_diagnosis_in_one_go() {
+    let curve = with_sinusoid();
+    let (verdict, whole) = diagnosed(&curve);
+    assert_eq!(verdict, Verdict::Improved);
 
-    let mut diagnosis = new();
-    let mut at = 0;
-    let mut pieces = 0;
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+    let (mut at, mut pauses) = (0, 0);
+    let mut pause = || {
+        pauses += 1;
+        ControlFlow::Continue(())
+    };
     let verdict = loop {
-        match diagnosis.advance().unwrap() {
-            Progress::Working => pieces += 1,
+        match diagnosis.advance(&mut pause).unwrap() {
+            Progress::Paused => panic!("no pause ended the work"),
             Progress::Step(step) => {
-                let same = &whole[at];
-                assert_eq!((&step.fit, &step.comparison), (&same.fit, &same.comparison));
+                assert!(are_the_same(step, &whole[at]));
                 at += 1;
             }
             Progress::Finished(verdict) => break verdict,
         }
     };
     assert_eq!((verdict, at), (Verdict::Improved, whole.len()));
-    assert!(pieces > 100, "{pieces} pieces");
     // A finished diagnosis stays finished.
-    assert!(matches!(diagnosis.advance(), Ok(Progress::Finished(_))));
+    let again = diagnosis.advance(&mut pause);
+    assert!(matches!(again, Ok(Progress::Finished(Verdict::Improved))));
+    assert!(pauses > 100, "{pauses} pauses");
+}
+
+/// What is in progress begins anew, so that the pause ends the work ever later.
+#[test]
+fn a_diagnosis_that_pauses_ended_reports_the_same_as_one_in_one_go() {
+    let curve = with_sinusoid();
+    let (expected, whole) = diagnosed(&curve);
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+    let (mut steps, mut ended) = (Vec::new(), 0);
+    let verdict = loop {
+        let mut left = 1_u32 << ended;
+        let mut pause = || {
+            left -= 1;
+            if left > 0 {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
+        match diagnosis.run(|step| steps.push(step.clone()), &mut pause) {
+            Ok(None) => ended += 1,
+            Ok(Some(verdict)) => break verdict,
+            Err(error) => panic!("{error}"),
+        }
+    };
+    assert_eq!((verdict, steps.len()), (expected, whole.len()));
+    assert!(steps.iter().zip(&whole).all(|(one, other)| are_the_same(one, other)));
+    assert!(ended > 3, "ended {ended} times");
 }
 
 #[test]
 fn the_first_candidate_is_the_effect_that_the_next_step_has() {
-    let (model, options) = (Model::ieee_952(), Options::default());
-    let mut steps = heapless::Vec::<Step<OCTAVES>, 4>::new();
-    Diagnosis::new(with_sinusoid(), Evidence::NONE, &model, &CATALOGUE, options)
-        .run(|step| steps.push(step.clone()).unwrap())
-        .unwrap();
+    let (_, steps) = diagnosed(&with_sinusoid());
     let mut compared = 0;
     for pair in steps.windows(2) {
         let Some(Addition::Effect(added)) = pair[0].added else {
@@ -208,24 +195,9 @@ fn a_curve_of_two_octaves_is_too_short() {
     let points = full.points().iter().take(2);
     let octaves = points.map(|point| (point.m, point.differences, point.variance));
     let short = Curve::<OCTAVES>::new(100.0, octaves).unwrap();
-    let (model, options) = (Model::ieee_952(), Options::default());
-    let mut steps = 0;
-    let mut diagnosis = Diagnosis::new(short, Evidence::NONE, &model, &CATALOGUE, options);
-    let verdict = diagnosis.run(|step| {
-        assert!(step.fit.p_value.is_nan());
-        steps += 1;
-    });
-    assert_eq!((verdict, steps), (Ok(Verdict::TooShort), 1));
-}
-
-/// The diagnosis of a curve by the whole catalogue.
-fn steps(curve: Curve<OCTAVES>) -> (Verdict, std::vec::Vec<Step<OCTAVES>>) {
-    let mut steps = std::vec::Vec::new();
-    let (evidence, options) = (Evidence::NONE, Options::default());
-    let model = Model::ieee_952();
-    let mut diagnosis = Diagnosis::new(curve, evidence, &model, &CATALOGUE, options);
-    let verdict = diagnosis.run(|step| steps.push(step.clone())).unwrap();
-    (verdict, steps)
+    let (verdict, steps) = diagnosed(&short);
+    assert_eq!((verdict, steps.len()), (Verdict::TooShort, 1));
+    assert!(steps[0].fit.p_value.is_nan());
 }
 
 #[test]
@@ -234,9 +206,9 @@ fn a_strong_line_is_found_alone_at_any_frequency() {
         // Octaves alone show 118 of 120 frequencies in this range, and not the nearest to 0.7765 and 12.578 Hz.
         let frequency = 0.14 * 1.63_f64.powi(i);
         let curve = curve(&Sinusoid, [real(frequency), 0.0], 1.0);
-        let (verdict, steps) = steps(curve);
+        let (verdict, steps) = diagnosed(&curve);
         let last = steps.last().unwrap();
-        let added: std::vec::Vec<_> = last
+        let added: Vec<_> = last
             .model
             .terms()
             .iter()
@@ -251,44 +223,7 @@ fn a_strong_line_is_found_alone_at_any_frequency() {
 }
 
 #[test]
-fn an_addition_that_the_model_does_not_need_is_dropped() {
-    let curve = with_sinusoid();
-    let mut model = Model::ieee_952();
-    for (effect, first) in [(&GaussMarkov as &dyn Effect, 1.0), (&Sinusoid, 7.7)] {
-        let parameters = [first, 0.0, 0.0];
-        let term = Term::fitted(effect);
-        model.add(Term { parameters, ..term }).unwrap();
-    }
-    let mut work = Work::NEW;
-    let mut step = Step::of(&model);
-    let judged = judge(&curve, &mut work, &mut step);
-    assert_eq!(judged.adequate, Some(true));
-    let contest = Contest {
-        score: judged.score,
-        tolerance: judged.tolerance,
-        span: curve.span(),
-    };
-    // An effect that was given, or that was added last, stays.
-    assert!(Dropping::new(&model, 1).is_none());
-    let mut dropping = Dropping::new(&model, 0).unwrap();
-    while !dropping.advance(
-        (&curve).into(),
-        &contest,
-        &model,
-        &judged.squares,
-        &mut work,
-    ) {}
-    let (term, fitted) = dropping.dropped(8.0).unwrap();
-    assert_eq!(term.effect.name(), "gauss_markov");
-    let last = fitted.model.terms().last();
-    assert_eq!(last.map(|term| term.effect.name()), Some("sinusoid"));
-    assert_eq!(fitted.model.terms().len(), 6);
-    // One that lowers the score by more than is asked for stays as well.
-    assert!(dropping.dropped(-100.0).is_none());
-}
-
-#[test]
-fn a_known_filter_is_neither_missed_nor_dropped_nor_named_twice() {
+fn a_known_filter_is_neither_missed_nor_named_twice() {
     let filter = [0.02, 2.0];
     // The curve has white noise beside the filtered noise, as it would come from behind the filter.
     let curve = curve(&LowPass, filter, 2.5e-5);
@@ -296,9 +231,9 @@ fn a_known_filter_is_neither_missed_nor_dropped_nor_named_twice() {
     let known = Term::known(&LowPass, filter);
     model.put(known).unwrap();
     let options = Options::default();
-    let mut diagnosis = Diagnosis::new(curve, Evidence::NONE, &model, &CATALOGUE, options);
-    let mut named = std::vec::Vec::new();
-    let verdict = diagnosis.run(|step| {
+    let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+    let mut named = Vec::new();
+    let report = |step: &Step<OCTAVES>| {
         let same = |term: &Term| term.effect.name() == "low_pass";
         let mut filters = step.model.terms().iter().filter(|term| same(term));
         assert_eq!(
@@ -309,7 +244,8 @@ fn a_known_filter_is_neither_missed_nor_dropped_nor_named_twice() {
         if let Some(Addition::Effect(term)) = step.added {
             named.push(term.effect.name());
         }
-    });
-    assert_eq!(verdict, Ok(Verdict::Improved));
+    };
+    let verdict = diagnosis.run(report, &mut || ControlFlow::Continue(()));
+    assert_eq!(verdict, Ok(Some(Verdict::Improved)));
     assert_eq!(named, ["angle_random_walk"]);
 }

@@ -85,22 +85,6 @@ fn removing_a_name_that_occurs_twice_removes_the_later_effect() {
 }
 
 #[test]
-fn exchanging_an_effect_restores_and_removes_what_the_effects_replace() {
-    let mut model = Model::ieee_952();
-    model.remove("angle_random_walk");
-    assert_eq!(model.add(Term::fitted(&LowPass)), Ok(()));
-    // A low pass replaces the angle random walk, and a sinusoid replaces nothing.
-    assert_eq!(model.exchange(&LowPass, Term::new(&Sinusoid)), Ok(()));
-    let mut expected = [""; 6];
-    expected[..5].copy_from_slice(&FIVE);
-    expected[5] = "sinusoid";
-    assert_names(&model, &expected);
-    assert_eq!(model.exchange(&Sinusoid, Term::fitted(&LowPass)), Ok(()));
-    let expected = [FIVE[0], FIVE[2], FIVE[3], FIVE[4], "low_pass"];
-    assert_names(&model, &expected);
-}
-
-#[test]
 fn given_shapes_and_whole_numbers_are_not_fitted() {
     assert_eq!(Term::new(&Resonance).fitted_parameters().count(), 0);
     assert!(Term::fitted(&Resonance).fitted_parameters().eq([0, 1]));

@@ -1,6 +1,6 @@
 //! Searches and intervals are compared with a brute-force scan of the profile.
 
-use super::*;
+use super::{likelihood::Found, search::GridSearch, *};
 use crate::{
     Curve, Model,
     effect::{DecimationFilter, Effect, SampledShape, Sinusoid},
@@ -74,33 +74,6 @@ fn a_search_finds_a_minimum_as_low_as_that_of_a_fine_grid() {
     let behind = found.chi_squared - least.chi_squared;
     assert!(behind < 0.05 * least.chi_squared.abs() + 0.5, "{behind}");
     assert!((found.term.parameters[0] / least.term.parameters[0] - 1.0).abs() < 0.02);
-}
-
-/// A strong line has a minimum of χ² every few per cent of its frequency.
-#[test]
-fn a_neighbourhood_leads_from_a_wrong_minimum_to_the_line() {
-    for (frequency_hz, start) in [(5.14, 5.05), (5.14, 5.6), (0.745, 0.817), (14.336, 14.332)] {
-        let curve = curve(&Sinusoid, [frequency_hz, 0.0], 1.0, 2.5e-5);
-        let mut model = Model::ieee_952();
-        let mut term = Term::fitted(&Sinusoid);
-        term.set_parameter(0, start);
-        model.add(term).unwrap();
-        let (model, columns, solver) = solve(&curve, model);
-        let problem = Problem::new((&curve).into(), &model, &columns);
-        let mut neighbourhood = Neighbourhood::new(term);
-        let found = loop {
-            if let Some(found) = neighbourhood.advance(&problem, &solver, &curve.span()) {
-                break found;
-            }
-        };
-        assert!(found.chi_squared < 0.5 * solver.chi_squared);
-        let before = (start / frequency_hz - 1.0).abs();
-        let after = (found.term.parameters[0] / frequency_hz - 1.0).abs();
-        assert!(
-            after < 0.5 * before,
-            "{frequency_hz} Hz: {after} after {before}"
-        );
-    }
 }
 
 #[test]

@@ -416,14 +416,6 @@ fn chosen(
     }
 }
 
-/// The terms of a hypothesis, in words for tests.
-#[cfg(test)]
-impl Hypothesis {
-    pub(crate) fn names(&self) -> std::vec::Vec<&'static str> {
-        self.terms().map(|term: &Term| term.effect.name()).collect()
-    }
-}
-
 impl<const B: usize> Search<B> {
     pub(crate) fn lab(
         &mut self,

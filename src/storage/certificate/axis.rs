@@ -172,18 +172,20 @@ impl AxisCertificate {
     /// # Example
     ///
     /// ```
-    /// use allanite::{Curve, Model, Real, diagnosis::{Diagnosis, Evidence, Options}, effect::CATALOGUE, storage::AxisCertificate};
+    /// use allanite::{Curve, Model, Real, diagnosis::{Diagnosis, Options}, effect::CATALOGUE, storage::AxisCertificate};
+    /// use core::ops::ControlFlow;
     ///
     /// // White noise behind a filter that is shorter than two samples.
     /// let octaves = (0..12).map(|k| (1 << k, (160_000 >> k) - 7, (1.0 - 0.4 / (1 << k) as Real) / (1 << k) as Real));
     /// let curve = Curve::<12>::new(100.0, octaves)?;
-    /// let (model, evidence, options) = (Model::ieee_952(), Evidence::NONE, Options::default());
-    /// let mut diagnosis = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options);
+    /// let (model, options) = (Model::ieee_952(), Options::default());
+    /// let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+    /// let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
     /// let mut axis = AxisCertificate::empty();
     /// let mut taken = Ok(());
-    /// let verdict = diagnosis.run(|step| taken = axis.take(&curve, step))?;
+    /// let verdict = diagnosis.run(|step| taken = axis.take(&curve, step), &mut pause)?;
     /// taken?;
-    /// axis.verdict = Some(verdict);
+    /// axis.verdict = verdict;
     /// assert!(axis.found().count() > 0 && !axis.findings.doubts.is_empty());
     /// # Ok::<(), allanite::Error>(())
     /// ```

@@ -41,6 +41,14 @@ pub enum Error {
         /// The number of bins that there is room for.
         capacity: usize,
     },
+    /// The cosine transform of a course is impossible. It has 32 to 64 blocks, each of a power of two of samples, and one
+    /// density less than blocks, none of which is negative or not finite.
+    InvalidCourse {
+        /// The number of samples in a block.
+        block: u32,
+        /// The number of blocks.
+        blocks: u32,
+    },
     /// Fewer octaves have enough differences than the fit needs: record longer.
     TooFewOctaves {
         /// The number of octaves that the curve has.
@@ -119,6 +127,11 @@ impl core::fmt::Display for Error {
                     "there are more than {capacity} bins: use a spectrum of larger capacity"
                 )
             }
+            Self::InvalidCourse { block, blocks } => write!(
+                f,
+                "a course of {blocks} blocks of {block} samples, or its densities, are impossible: give \
+                 32 to 64 blocks of a power of two, and one finite density less that is not negative"
+            ),
             Self::TooFewOctaves { found, needed } => write!(
                 f,
                 "only {found} of the {needed} octaves that a fit needs have enough differences: \

@@ -3,9 +3,11 @@
 //! The format is JSON. It is exact, because the sums of squares are integers, from which the variances
 //! follow. The whole file is checked before any number of it is used.
 
+mod course;
 mod levels;
 mod merge;
 
+pub use course::CourseDensities;
 use levels::TOLERANCE;
 pub use levels::{SpectrumLevel, SpectrumLevels};
 
@@ -15,16 +17,16 @@ use crate::{
     regular_file,
     unit::Unit,
 };
-use allanite::{Curve, Scale, spectrum::Spectrum};
+use allanite::{Curve, Scale, course::CosineTransform, spectrum::Spectrum};
 use serde::{Deserialize, Serialize};
 use std::{io::Read, ops::Range, path::Path};
 
 /// The name of the format, as it is written in the file.
 pub const FORMAT: &str = "allanite-curve";
 
-/// The version of the format that is written. Versions from 1 on are read; version 1 has no spectrum, and version 2 no
-/// short octaves.
-pub const VERSION: u32 = 3;
+/// The version of the format that is written. Versions from 1 on are read; version 1 has no spectrum, version 2 no short
+/// octaves, and version 3 neither a course nor levels of the spectrum with fewer than 16 segments.
+pub const VERSION: u32 = 4;
 
 /// Largest size of a curve file, in bytes. A curve takes a few kilobytes for each axis. Chosen by hand.
 const LARGEST: u64 = 1 << 24;
@@ -78,6 +80,9 @@ pub struct AxisCurve {
     /// The spectrum. Files of version 1 and records that are too short have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spectrum: Option<SpectrumLevels>,
+    /// The course. Files before version 4, records that are too short and merged records have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub course: Option<CourseDensities>,
 }
 
 /// One octave of a curve.
@@ -243,6 +248,8 @@ impl AxisCurve {
         });
         let mut sums: Vec<ShortOctave> = sums.collect::<Result<_, Failure>>()?;
         let short = sums.split_off(curve.points().len());
+        let evidence = axis.evidence.as_ref();
+        let course = evidence.and_then(|evidence| evidence.course.as_ref()?.cosine_transform(scale));
         let octaves = sums.iter().zip(curve.points());
         let octaves = octaves.map(|(sum, point)| Octave {
             m: sum.m,
@@ -264,6 +271,7 @@ impl AxisCurve {
             short,
             spectrum: Some(SpectrumLevels::of(&axis.spectrum.spectrum(scale)))
                 .filter(|spectrum| !spectrum.levels.is_empty()),
+            course: course.as_ref().map(CourseDensities::of),
         })
     }
 
@@ -276,6 +284,15 @@ impl AxisCurve {
         spectrum.map_or(Ok(Spectrum::EMPTY), |spectrum| {
             spectrum.spectrum(self.rate_hz)
         })
+    }
+
+    /// The cosine transform of the course as the library's type.
+    ///
+    /// # Errors
+    /// When the library refuses a number. [`CurveFile::read`] would have refused it too.
+    pub fn course(&self) -> Result<Option<CosineTransform>, allanite::Error> {
+        let course = self.course.as_ref();
+        course.map(|course| course.transform(self.rate_hz)).transpose()
     }
 
     /// The curve as the library's type.
@@ -334,14 +351,19 @@ impl AxisCurve {
             self.check_sum(short.m, short.differences, short.sum, few)
                 .map_err(here)?;
         }
+        let variance = |m| {
+            let mut octaves = self.octaves.iter();
+            octaves
+                .find(|octave| octave.m == m)
+                .map(|octave| octave.variance)
+        };
         if let Some(spectrum) = &self.spectrum {
-            let variance = |m| {
-                let mut octaves = self.octaves.iter();
-                octaves
-                    .find(|octave| octave.m == m)
-                    .map(|octave| octave.variance)
-            };
             spectrum.check(self.samples, self.rate_hz, variance)?;
+        }
+        if let Some(course) = &self.course {
+            // Missing samples count as time.
+            let samples = (self.gaps == 0).then_some(self.samples);
+            course.check(samples, self.rate_hz, variance)?;
         }
         Ok(())
     }

@@ -1,9 +1,10 @@
 //! The cosine transform of a course, which holds what lies below the bins of a spectrum.
 
-use super::{BLOCKS, Course, contrasts::is_complete};
+use super::{BLOCKS, Course, LONGEST, contrasts::is_complete};
 use crate::{
     curve::Scale,
     effect::{Effect, SampledShape},
+    error::Error,
     list::{self, numbered},
     math,
     real::{Real, real},
@@ -33,6 +34,41 @@ pub struct CosineTransform {
 }
 
 impl CosineTransform {
+    /// A transform from stored densities: of `blocks` blocks of `block` samples, the `P_k` from `k = 1` on, in rate units
+    /// squared per hertz.
+    ///
+    /// # Errors
+    /// [`Error::InvalidRate`] if `rate_hz` is not positive and finite, [`Error::InvalidCourse`] if a course cannot have
+    /// such blocks, or if its densities are not one less than its blocks, or if one is negative or not finite.
+    pub fn new(
+        rate_hz: Real,
+        block: u32,
+        blocks: u32,
+        densities: impl IntoIterator<Item = Real>,
+    ) -> Result<Self, Error> {
+        Scale::new(1.0, rate_hz)?;
+        let invalid = Error::InvalidCourse { block, blocks };
+        let mut powers = Vec::new();
+        for density in densities {
+            let is_number = density.is_finite() && density >= 0.0;
+            if !is_number || powers.push(density).is_err() {
+                return Err(invalid);
+            }
+        }
+        let is_possible = (MIN_BLOCKS..=BLOCKS).contains(&(blocks as usize))
+            && block.is_power_of_two()
+            && block <= LONGEST;
+        if !is_possible || powers.len().saturating_add(1) != blocks as usize {
+            return Err(invalid);
+        }
+        Ok(Self {
+            block,
+            rate_hz,
+            blocks,
+            powers,
+        })
+    }
+
     /// Samples in a block, `M`.
     pub const fn block(&self) -> u32 {
         self.block

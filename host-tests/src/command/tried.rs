@@ -2,14 +2,14 @@
 
 use crate::{
     command::output::number::{number, rounded_up},
+    diagnosis::diagnose,
     log::{BINS, OCTAVES, is_degrees_column},
     unit::Unit,
 };
 use allanite::{
-    Curve, Error, Model,
+    Error, Model, Record,
     covariate::Slope,
-    diagnosis::{Diagnosis, Evidence, Options, Step},
-    spectrum::Spectrum,
+    diagnosis::{Options, Step},
 };
 use serde::Serialize;
 
@@ -44,16 +44,15 @@ pub(crate) struct Document {
     z: Option<f64>,
 }
 
-/// What a step of a diagnosis tells of every covariate. `curve` is that of the record.
+/// What a step of the diagnosis of a record tells of every covariate.
 pub(crate) fn tried(
-    curve: &Curve<OCTAVES>,
-    evidence: &Evidence<'_, OCTAVES>,
+    record: &Record<'_, OCTAVES, BINS>,
     names: &[String],
     step: &Step<OCTAVES, BINS>,
 ) -> Vec<TriedCovariate> {
     let octaves = &step.comparison.octaves;
     let noise = |k: usize| octaves.get(k).map_or(f64::NAN, |octave| octave.model);
-    let points = curve.points();
+    let points = record.curve.points();
     let followed = step.covariate.as_ref();
     let one = |at: usize| {
         let beside = followed.and_then(|followed| followed.beside);
@@ -66,14 +65,14 @@ pub(crate) fn tried(
         // What follows the other covariate of a pair is no part of this one's slope.
         let other = followed.and_then(|followed| {
             let both = [followed.index, at];
-            let mut pairs = evidence.pairs.iter();
+            let mut pairs = record.pairs.iter();
             let pair = pairs.find(|pair| both.iter().all(|one| pair.covariates.contains(one)))?;
             Some((pair, followed.index))
         });
         let slope = match other {
-            None => Slope::of(&evidence.covariates[at], points, noise),
+            None => Slope::of(&record.covariates[at], points, noise),
             Some((pair, acting)) => {
-                let Some([first, second]) = pair.slopes(evidence.covariates, points, noise) else {
+                let Some([first, second]) = pair.slopes(record.covariates, points, noise) else {
                     return Found::SameAs(names[acting].clone());
                 };
                 Some(if pair.covariates[0] == at {
@@ -85,7 +84,7 @@ pub(crate) fn tried(
         };
         slope.map_or(Found::Constant, Found::Nothing)
     };
-    let named = names.iter().take(evidence.covariates.len()).enumerate();
+    let named = names.iter().take(record.covariates.len()).enumerate();
     named
         .map(|(at, name)| TriedCovariate {
             channel: name.clone(),
@@ -99,21 +98,19 @@ pub(crate) fn tried(
 /// # Errors
 /// Those of a fit.
 pub(crate) fn beside_model(
-    curve: &Curve<OCTAVES>,
-    spectrum: &Spectrum<BINS>,
-    evidence: &Evidence<'_, OCTAVES>,
+    record: Record<'_, OCTAVES, BINS>,
     names: &[String],
     model: &Model,
 ) -> Result<Vec<TriedCovariate>, Error> {
-    if evidence.covariates.is_empty() || evidence.invalid.is_some() {
+    if record.covariates.is_empty() || record.invalid.is_some() {
         return Ok(Vec::new());
     }
-    let (own, density, options) = (curve.clone(), spectrum.clone(), Options::default());
-    let mut diagnosis = Diagnosis::with_spectrum(own, density, *evidence, model, &[], options);
     let mut last = None;
-    diagnosis.run(|step| last = Some(step.clone()))?;
+    diagnose(record, model, &[], Options::default(), |step| {
+        last = Some(step.clone());
+    })?;
     let last = last.as_ref();
-    Ok(last.map_or(Vec::new(), |step| tried(curve, evidence, names, step)))
+    Ok(last.map_or(Vec::new(), |step| tried(&record, names, step)))
 }
 
 impl TriedCovariate {

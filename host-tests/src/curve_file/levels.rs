@@ -39,7 +39,8 @@ pub struct SpectrumLevel {
 
 impl SpectrumLevels {
     pub(super) fn of(spectrum: &Spectrum<BINS>) -> Self {
-        let levels = spectrum.levels().map(|level| SpectrumLevel {
+        let levels = spectrum.all().chunk_by(|one, next| one.block == next.block);
+        let levels = levels.map(|level| SpectrumLevel {
             block: level.first().map_or(0, |bin| bin.block),
             segments: level.first().map_or(0, |bin| bin.segments),
             density: level.iter().map(|bin| bin.density).collect(),
@@ -93,7 +94,7 @@ impl SpectrumLevels {
             if u64::from(level.segments) > most {
                 return here("there are more segments than samples for them");
             }
-            if level.segments < Spectrum::<BINS>::MIN_SEGMENTS {
+            if level.segments < Spectrum::<BINS>::SPARSE_SEGMENTS {
                 return here("there are too few segments");
             }
             // By Cauchy and Schwarz, n ΣP² is at least (ΣP)² and at most n (ΣP)².

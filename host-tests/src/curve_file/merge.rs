@@ -81,6 +81,11 @@ impl AxisCurve {
                 })
                 .collect(),
             spectrum: spectrum(parts),
+            course: match parts {
+                [only] => only.course.clone(),
+                // The time between two parts is not known.
+                _ => None,
+            },
         })
     }
 

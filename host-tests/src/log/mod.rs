@@ -148,8 +148,8 @@ pub const SEGMENT: usize = 64;
 /// The number of levels of the spectrum.
 pub const LEVELS: usize = 7;
 
-/// The number of bins that there is room for: those of five levels.
-pub const BINS: usize = 140;
+/// The number of bins that there is room for: those of all levels.
+pub const BINS: usize = 196;
 
 /// The spectrum of an axis as the host accumulates it.
 pub type SpectrumSums = SpectrumAccumulator<SEGMENT, LEVELS>;

@@ -1,17 +1,15 @@
 //! Studies whether p-values are uniform and intervals contain the truth, with and without a hidden effect.
 
 use super::{
-    OCTAVES, RATE_HZ, expected_curve,
+    RATE_HZ, expected_curve,
     hidden_effect::{added, steps},
+    measured::Sums,
     quantum,
     theory::squares,
 };
-use crate::{
-    log::SpectrumSums,
-    simulate::{Coefficients, Hidden, Preset, Random, Simulator, band_limited_flicker},
-};
+use crate::simulate::{Coefficients, Hidden, Preset, Random, Simulator, band_limited_flicker};
 use allanite::{
-    Axis, Model, Scale,
+    Model, Scale,
     diagnosis::Options,
     effect::MAX_PARAMETERS,
     fit::{Fit, State, fit},
@@ -150,8 +148,7 @@ fn diagnose(
 ) -> Judged {
     let mut rates = rates(base, hidden, case, seed);
     let mut random = Random::seed_from_u64(!seed);
-    let mut gyro = Axis::<OCTAVES, 0, ()>::new();
-    let mut sums = SpectrumSums::new();
+    let mut sums = Sums::new();
     let quantum = quantum(base, RATE_HZ);
     let mut left = case.samples();
     while left > 0 {
@@ -164,22 +161,15 @@ fn diagnose(
         let counts: Vec<i32> = rates_of_stretch
             .map(|rate| (rate / quantum).round() as i32)
             .collect();
-        counts.iter().for_each(|&count| gyro.push(count));
         sums.push_slice(&counts);
         if left > 0 {
-            rates.nth(random.random_range(GAPS) - 1);
-            gyro.gap();
-            sums.gap();
+            let missing = random.random_range(GAPS);
+            rates.nth(missing - 1);
+            sums.missing(missing as u64);
         }
     }
     let scale = Scale::new(quantum, RATE_HZ).expect("positive");
-    let [accumulator] = gyro.accumulators();
-    let (steps, _) = steps(
-        &gyro,
-        accumulator.curve(scale),
-        sums.spectrum(scale),
-        options,
-    );
+    let (steps, _) = steps(&sums.measured(scale), options);
     let last = &steps[steps.len() - 1];
     let octaves = last.comparison.octaves.iter();
     let bins = last.comparison.bins.iter();

@@ -1,17 +1,20 @@
 //! Studies records of the five terms alone: how often an effect is claimed that is not there, and how often a
 //! term is called measured that is truly absent.
 
-use super::{OCTAVES, RATE_HZ, quantum};
+use super::{
+    RATE_HZ,
+    measured::{Measured, Sums},
+    quantum,
+};
 use crate::{
-    log::{BINS, SpectrumSums},
+    diagnosis,
     simulate::{Coefficients, Preset, Simulator},
 };
 use allanite::{
-    Accumulator, Curve, Model, Scale,
-    diagnosis::{Diagnosis, Evidence, Options},
+    Model, Scale,
+    diagnosis::Options,
     effect::{CATALOGUE, IEEE_952},
     fit::State,
-    spectrum::Spectrum,
 };
 use rayon::prelude::*;
 
@@ -57,8 +60,7 @@ pub fn study(coefficients: Coefficients, records: u64) -> [Tally; LENGTHS.len()]
     let said: Vec<[Option<Said>; LENGTHS.len()]> = (0..records)
         .into_par_iter()
         .map(|seed| {
-            records_of(coefficients, seed)
-                .map(|(curve, spectrum)| diagnose(coefficients, curve, spectrum))
+            records_of(coefficients, seed).map(|measured| diagnose(coefficients, &measured))
         })
         .collect();
     std::array::from_fn(|length| {
@@ -96,44 +98,27 @@ pub fn without(preset: Preset, absent: Absent) -> Coefficients {
     coefficients
 }
 
-/// The curves and spectra of a record at each of its lengths.
-fn records_of(
-    coefficients: Coefficients,
-    seed: u64,
-) -> [(Curve<OCTAVES>, Spectrum<BINS>); LENGTHS.len()] {
+/// A record at each of its lengths.
+fn records_of(coefficients: Coefficients, seed: u64) -> [Measured; LENGTHS.len()] {
     let mut simulator = Simulator::new(coefficients, RATE_HZ, seed);
     let quantum = quantum(coefficients, RATE_HZ);
     let scale = Scale::new(quantum, RATE_HZ).expect("positive");
-    let mut accumulator = Accumulator::<OCTAVES>::new();
-    let mut sums = SpectrumSums::new();
+    let mut sums = Sums::new();
     LENGTHS.map(|length| {
-        while accumulator.samples() < 1 << length {
+        while sums.samples() < 1 << length {
             let rate = simulator.next().unwrap_or_default();
-            let count = (rate / quantum).round() as i32;
-            accumulator.push(count);
-            sums.push_slice(&[count]);
+            sums.push_slice(&[(rate / quantum).round() as i32]);
         }
-        (accumulator.curve(scale), sums.spectrum(scale))
+        sums.measured(scale)
     })
 }
 
-fn diagnose(
-    coefficients: Coefficients,
-    curve: Curve<OCTAVES>,
-    spectrum: Spectrum<BINS>,
-) -> Option<Said> {
+fn diagnose(coefficients: Coefficients, measured: &Measured) -> Option<Said> {
     let mut first = None;
     let mut claimed = None;
     let model = Model::ieee_952();
-    let mut diagnosis = Diagnosis::with_spectrum(
-        curve,
-        spectrum,
-        Evidence::NONE,
-        &model,
-        &CATALOGUE,
-        Options::default(),
-    );
-    let verdict = diagnosis.run(|step| {
+    let (record, options) = (measured.record(), Options::default());
+    let verdict = diagnosis::diagnose(record, &model, &CATALOGUE, options, |step| {
         first.get_or_insert_with(|| step.fit.clone());
         let is_own = |name: &str| IEEE_952.iter().any(|effect| effect.name() == name);
         let mut terms = step.model.terms().iter();

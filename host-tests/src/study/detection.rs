@@ -1,14 +1,15 @@
 //! Studies whether an effect at its limit of detection shows with the probability that the limit promises.
 
-use super::{OCTAVES, RATE_HZ, hidden_effect::SAMPLES, record, spectrum};
+use super::{OCTAVES, RATE_HZ, hidden_effect::SAMPLES, measured::Measured};
 use crate::{
-    log::{BINS, SpectrumSums},
+    diagnosis::go_on,
+    log::BINS,
     simulate::{Coefficients, Hidden, Preset, Random, Simulator},
 };
 use allanite::{
-    Curve, Model, Term,
+    Model, Record, Term,
     detection::{Detection, Limit},
-    diagnosis::{Addition, Diagnosis, Evidence, Options, Progress, Step},
+    diagnosis::{Addition, Diagnosis, Options, Progress, Step},
     effect::{CATALOGUE, Effect, SearchRange, Span},
     spectrum::Spectrum,
 };
@@ -29,7 +30,7 @@ pub fn effects() -> impl Iterator<Item = &'static dyn Effect> {
 pub enum Judged {
     /// The curve alone.
     Octaves,
-    /// The curve and the spectrum.
+    /// The curve, the spectrum and the course.
     Spectrum,
 }
 
@@ -93,7 +94,7 @@ fn outcome(
 ) -> Outcome {
     let mut random = Random::seed_from_u64(0x11_417 + seed);
     let mut simulator = Simulator::new(base, RATE_HZ, 2 * seed);
-    let measured = Measured::of(&mut simulator, base, judged);
+    let measured = judged.of(&mut simulator, base);
     let Some(limit) = drawn_limit(&measured, effect, &mut random) else {
         return Outcome::default();
     };
@@ -123,8 +124,8 @@ fn outcome(
         hidden.coefficient *= factor;
     }
     let mut simulator = Simulator::with_hidden(beside, &[hidden], RATE_HZ, 2 * seed + 1);
-    let measured = Measured::of(&mut simulator, base, judged);
-    let Some(step) = measured.first_step() else {
+    let measured = judged.of(&mut simulator, base);
+    let Some(step) = first_step(measured.record()) else {
         return Outcome::default();
     };
     let added = match step.added {
@@ -149,14 +150,13 @@ fn drawn_limit(
     effect: &'static dyn Effect,
     random: &mut Random,
 ) -> Option<Limit> {
-    let step = measured.first_step()?;
-    let Measured { curve, spectrum } = measured.clone();
+    let step = first_step(measured.record())?;
+    let curve = &measured.curve;
     let span = Span {
         interval_s: curve.interval_s(),
         longest_tau_s: curve.points().last()?.tau_s,
     };
-    let mut detection =
-        Detection::with_spectrum(curve, spectrum, &step, &CATALOGUE, Options::default());
+    let detection = Detection::new(measured.record(), &step, &CATALOGUE, Options::default());
     if step.fit.is_adequate() != Some(true) {
         return None;
     }
@@ -167,7 +167,7 @@ fn drawn_limit(
             let range = (parameter.search_range)(&span);
             term.parameters[j] = drawn(&range, parameter.is_whole, random);
         }
-        detection.limit_of(term).ok().flatten()
+        detection.limit_of(term)
     })
 }
 
@@ -179,42 +179,27 @@ fn drawn(range: &SearchRange, is_whole: bool, random: &mut Random) -> f64 {
     range.low * (range.high.max(range.low) / range.low).powf(share)
 }
 
-/// What is known of a record.
-#[derive(Clone)]
-struct Measured {
-    curve: Curve<OCTAVES>,
-    spectrum: Spectrum<BINS>,
+impl Judged {
+    /// What is known of the next record of a simulator.
+    fn of(self, simulator: &mut Simulator, base: Coefficients) -> Measured {
+        let measured = Measured::of(simulator, base, SAMPLES);
+        match self {
+            Self::Octaves => Measured {
+                spectrum: Spectrum::EMPTY,
+                course: None,
+                ..measured
+            },
+            Self::Spectrum => measured,
+        }
+    }
 }
 
-impl Measured {
-    fn of(simulator: &mut Simulator, base: Coefficients, judged: Judged) -> Self {
-        let mut sums = SpectrumSums::new();
-        let curve = record(simulator, base, SAMPLES, |counts| {
-            if judged == Judged::Spectrum {
-                sums.push_slice(counts);
-            }
-        });
-        let spectrum = match judged {
-            Judged::Octaves => Spectrum::EMPTY,
-            Judged::Spectrum => spectrum(&sums, base),
-        };
-        Self { curve, spectrum }
-    }
-
-    /// The first step of a diagnosis of the five terms. The others, which cost more, are not needed: an effect has
-    /// shown once another model is preferred.
-    fn first_step(&self) -> Option<Step<OCTAVES, BINS>> {
-        let Self { curve, spectrum } = self.clone();
-        let (model, options) = (Model::ieee_952(), Options::default());
-        let evidence = Evidence::NONE;
-        let mut diagnosis =
-            Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options);
-        loop {
-            match diagnosis.advance().ok()? {
-                Progress::Working => {}
-                Progress::Step(step) => return Some(step.clone()),
-                Progress::Finished(_) => return None,
-            }
-        }
+/// The first step of a diagnosis of the five terms, which says whether anything is missing.
+fn first_step(record: Record<'_, OCTAVES, BINS>) -> Option<Step<OCTAVES, BINS>> {
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let mut diagnosis = Diagnosis::new(record, &model, &CATALOGUE, options);
+    match diagnosis.advance(&mut go_on).ok()? {
+        Progress::Step(step) => Some(step.clone()),
+        Progress::Paused | Progress::Finished(_) => None,
     }
 }

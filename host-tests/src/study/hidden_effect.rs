@@ -1,17 +1,17 @@
 //! Studies whether a hidden effect is found and named.
 
-use super::{OCTAVES, RATE_HZ, expected_curve, record, theory::squares};
+use super::{OCTAVES, RATE_HZ, expected_curve, measured::Measured, theory::squares};
 use crate::{
-    log::{BINS, SpectrumSums},
+    diagnosis,
+    log::BINS,
     quantile::quantile,
     simulate::{Coefficients, Hidden, Preset, Simulator},
 };
 use allanite::{
-    Axis, Comparison, Curve, Model, Observed, Scale, Term,
-    diagnosis::{Addition, Diagnosis, Evidence, Step, Verdict},
+    Comparison, Model, Observed, Term,
+    diagnosis::{Addition, Step, Verdict},
     effect::{BiasInstability, CATALOGUE, EXPLAINED, Effect, IEEE_952, MAX_PARAMETERS},
     fit::{Fit, Options, fit},
-    spectrum::Spectrum,
 };
 use rayon::prelude::*;
 
@@ -151,21 +151,13 @@ pub fn diagnose_with(
     options: allanite::diagnosis::Options,
 ) -> Outcome {
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
-    let mut gyro = Axis::<OCTAVES, 0, ()>::new();
-    let [mut sums, mut other_sums] = [SpectrumSums::new(), SpectrumSums::new()];
-    let curve = record(&mut simulator, base, samples, |counts| {
-        counts.iter().for_each(|&count| gyro.push(count));
-        sums.push_slice(counts);
-    });
-    let other = record(&mut simulator, base, samples, |counts| {
-        other_sums.push_slice(counts);
-    });
-    let [spectrum, other_spectrum] = [sums, other_sums].map(|sums| super::spectrum(&sums, base));
-    let (steps, verdict) = steps(&gyro, curve, spectrum, options);
+    let [measured, other] =
+        std::array::from_fn(|_| Measured::of(&mut simulator, base, samples));
+    let (steps, verdict) = steps(&measured, options);
     let (first, last) = (&steps[0], &steps[steps.len() - 1]);
     let on_other = |step: &Step<OCTAVES, BINS>| {
         let tolerance = Options::default().tolerance;
-        let other = Observed::new(&other, &other_spectrum);
+        let other = Observed::new(&other.curve, &other.spectrum);
         let comparison = Comparison::held_out(other, &step.model, &step.fit, tolerance);
         comparison.map_or((f64::NAN, f64::NAN), |c| (c.rms_percent, c.chi_squared))
     };
@@ -184,47 +176,26 @@ pub fn diagnose_with(
     }
 }
 
-/// The steps of a diagnosis of a curve, a spectrum and the kurtosis of the same record, and its verdict.
+/// The steps of a diagnosis of a record, and its verdict.
 pub(super) fn steps(
-    gyro: &Axis<OCTAVES, 0, ()>,
-    curve: Curve<OCTAVES>,
-    spectrum: Spectrum<BINS>,
+    measured: &Measured,
     options: allanite::diagnosis::Options,
 ) -> (Vec<Step<OCTAVES, BINS>>, Option<Verdict>) {
-    let scale = Scale::new(1.0, RATE_HZ).expect("positive");
-    let kurtosis = gyro.evidence(0, scale, []).expect("one axis").kurtosis;
     let mut steps = Vec::new();
-    let evidence = Evidence {
-        kurtosis: kurtosis.as_ref(),
-        ..Evidence::NONE
-    };
-    let model = Model::ieee_952();
-    let verdict = Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options)
-        .run(|step| steps.push(step.clone()))
-        .ok();
-    (steps, verdict)
+    let (record, model) = (measured.record(), Model::ieee_952());
+    let verdict = diagnosis::diagnose(record, &model, &CATALOGUE, options, |step| {
+        steps.push(step.clone());
+    });
+    (steps, verdict.ok())
 }
 
-/// The effects that the steps added and kept.
+/// The effects that the steps added, each with the names of those that explain the record as well.
 pub(super) fn added(steps: &[Step<OCTAVES, BINS>]) -> Vec<(Term, Vec<&'static str>)> {
-    let mut added = Vec::new();
-    for step in steps {
-        for dropped in &step.dropped {
-            let at = added
-                .iter()
-                .position(|(term, _): &(Term, _)| term.effect.name() == *dropped);
-            at.map(|at| added.remove(at));
-        }
-        if let Some(swap) = step.swap() {
-            // A swap replaces the last effect that was added.
-            added.pop();
-            added.push((Term::new(swap.taken), Vec::new()));
-        }
-        if let Some(Addition::Effect(term)) = step.added {
-            added.push((term, step.ambiguous.to_vec()));
-        }
-    }
-    added
+    let added = steps.iter().filter_map(|step| match step.added {
+        Some(Addition::Effect(term)) => Some((term, step.ambiguous.to_vec())),
+        _ => None,
+    });
+    added.collect()
 }
 
 /// The counts and errors over the records of one case.

@@ -1,13 +1,14 @@
 //! Studies whether a line of any frequency and size is found, and whether anything is named beside it.
 
-use super::{OCTAVES, RATE_HZ, record};
+use super::{OCTAVES, RATE_HZ, measured::Measured};
 use crate::{
-    log::{BINS, SpectrumSums},
+    diagnosis,
+    log::BINS,
     simulate::{Hidden, Preset, Random, Simulator},
 };
 use allanite::{
     Model, Term,
-    diagnosis::{Diagnosis, Evidence, Options, Step},
+    diagnosis::{Options, Step},
     effect::{CATALOGUE, Effect, IEEE_952, Sinusoid},
     fit::fit,
 };
@@ -136,19 +137,15 @@ pub fn diagnose(preset: Preset, line: Line, seed: u64) -> (Said, Vec<Term>) {
         coefficient: line.amplitude,
     };
     let mut simulator = Simulator::with_hidden(base, &[hidden], RATE_HZ, seed);
-    let mut sums = SpectrumSums::new();
-    let curve = record(&mut simulator, base, SAMPLES, |counts| {
-        sums.push_slice(counts);
-    });
-    let spectrum = super::spectrum(&sums, base);
+    let measured = Measured::of(&mut simulator, base, SAMPLES);
     let (model, options) = (Model::ieee_952(), Options::default());
-    if fit(&curve, &model, allanite::fit::Options::default()).is_err() {
+    if fit(&measured.curve, &model, allanite::fit::Options::default()).is_err() {
         return (Said::Aborted, Vec::new());
     }
     let mut steps: Vec<Step<OCTAVES, BINS>> = Vec::new();
-    let verdict =
-        Diagnosis::with_spectrum(curve, spectrum, Evidence::NONE, &model, &CATALOGUE, options)
-            .run(|step| steps.push(step.clone()));
+    let verdict = diagnosis::diagnose(measured.record(), &model, &CATALOGUE, options, |step| {
+        steps.push(step.clone());
+    });
     let (Ok(_), Some(last)) = (verdict, steps.last()) else {
         return (Said::Aborted, Vec::new());
     };

@@ -11,6 +11,7 @@ pub mod efficiency;
 pub mod hidden_effect;
 pub mod lines;
 pub mod long;
+pub mod measured;
 pub mod paper;
 pub mod peers;
 pub mod precision;

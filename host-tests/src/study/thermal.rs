@@ -4,11 +4,12 @@
 use super::{OCTAVES, quantum};
 use crate::{
     confidence::TWO_SIDED_95,
+    diagnosis,
     simulate::{Coefficients, Course, Hidden, Preset, Simulator, Thermal},
 };
 use allanite::{
-    Axis, Model, Scale,
-    diagnosis::{Addition, Diagnosis, Evidence, Options},
+    Axis, Model, Record, Scale, course,
+    diagnosis::{Addition, Options},
     effect::CATALOGUE,
 };
 use rayon::prelude::*;
@@ -66,18 +67,22 @@ pub fn diagnose(
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
     let unit = quantum(base, RATE_HZ);
     let mut gyro = Axis::<OCTAVES, 1, (), ()>::new();
+    let mut course = course::Course::<0>::new();
     for n in 0..SAMPLES {
         let time_s = n as f64 / RATE_HZ;
         let rate = simulator.next().unwrap_or_default() + thermal.rate_at(time_s);
         let count = (rate / unit).round() as i32;
         let celsius = (thermal.celsius_at(time_s) / KELVIN).round() as i32;
         gyro.push((count, [celsius]));
+        course.push(count, []);
     }
     let scale = Scale::new(unit, RATE_HZ).expect("positive");
-    let record = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
-    let evidence = Evidence {
-        covariates: &record.covariates,
-        ..Evidence::NONE
+    let evidence = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
+    let course = course.cosine_transform(scale);
+    let record = Record {
+        course: course.as_ref(),
+        covariates: &evidence.covariates,
+        ..(&evidence.curve).into()
     };
     let mut outcome = Outcome {
         slope: None,
@@ -85,8 +90,7 @@ pub fn diagnose(
     };
     let model = Model::ieee_952();
     let options = Options::default();
-    let mut diagnosis = Diagnosis::new(record.curve, evidence, &model, &CATALOGUE, options);
-    let report = diagnosis.run(|step| match &step.added {
+    let report = diagnosis::diagnose(record, &model, &CATALOGUE, options, |step| match &step.added {
         Some(Addition::Covariate(followed)) => {
             outcome.slope = Some((followed.slope.value, followed.slope.error));
         }

@@ -5,7 +5,7 @@ use allanite::{
     axis::Sample,
     queue::{self, Queued, Receiver, Sender},
 };
-use core::{fmt::Arguments, mem::MaybeUninit, str::FromStr};
+use core::{fmt::Arguments, mem::MaybeUninit, ops::ControlFlow, str::FromStr};
 use cortex_m::{
     peripheral::{SCB, SYST, syst::SystClkSource},
     singleton,
@@ -199,23 +199,21 @@ impl Product {
 }
 
 impl Last<'_> {
-    /// Takes the samples that wait, and does a piece of the report.
-    pub(crate) fn pass(&mut self) -> Progress {
-        while let Some(queued) = self.receiver.receive() {
-            self.meanwhile += 1;
-            self.stored.counts.lost += queued.lost;
-        }
-        let mut progress = self.step();
-        if core::mem::take(&mut self.stored.undivided) {
-            while progress == Progress::Working {
-                progress = self.step();
+    /// Does a part of the report. Between its pieces it takes the samples that wait, and feeds the watchdog.
+    pub(crate) fn pass(&mut self, watchdog: &mut Watchdog) -> Progress {
+        let mut pause = || {
+            while let Some(queued) = self.receiver.receive() {
+                self.meanwhile += 1;
+                self.stored.counts.lost += queued.lost;
             }
-        }
-        progress
-    }
-
-    fn step(&mut self) -> Progress {
-        let progress = self.report.step(&mut log);
+            // Otherwise, the first diagnosis is done in one piece, which is longer than the watchdog permits.
+            if !self.stored.undivided {
+                watchdog.feed();
+            }
+            ControlFlow::Continue(())
+        };
+        let _ = pause();
+        let progress = self.report.step(&mut log, &mut pause);
         progress.unwrap_or_else(|failure| fail(failure))
     }
 

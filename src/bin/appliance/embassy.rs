@@ -76,7 +76,7 @@ mod image {
         }
         let evidence = product.evidence();
         let mut last = product.finish(&evidence);
-        while last.pass() != Progress::Complete {
+        while last.pass(&mut watchdog) != Progress::Complete {
             watchdog.feed();
             embassy_futures::yield_now().await;
         }

@@ -69,7 +69,7 @@ mod image {
         }
         let evidence = product.evidence();
         let mut last = product.finish(&evidence);
-        while last.pass() != Progress::Complete {
+        while last.pass(watchdog) != Progress::Complete {
             watchdog.feed();
         }
         last.end(watchdog)

@@ -41,11 +41,16 @@ impl Clock {
         Some(clock)
     }
 
+    /// The number of ticks since an arbitrary time.
+    pub(crate) fn now(&self) -> u64 {
+        counter::now()
+    }
+
     /// The number of ticks that `work` takes.
     pub(crate) fn ticks(&self, work: impl FnOnce()) -> u64 {
-        let start = counter::now();
+        let start = self.now();
         work();
-        counter::now() - start
+        self.now() - start
     }
 
     /// The number of instructions in this many ticks.

@@ -217,7 +217,7 @@ mod image {
         found
     }
 
-    /// Measures how long a main loop waits for a fit or a diagnosis to return, for each hidden effect.
+    /// Measures how long a main loop waits for a fit to return or a diagnosis to pause, for each hidden effect.
     #[inline(never)]
     fn stretches(clock: &Clock) -> bool {
         let model = Model::ieee_952();
@@ -230,7 +230,7 @@ mod image {
                 return false;
             };
             let Some(diagnosis) =
-                work::longest_stretch_of_diagnosis(clock, &curve, Spectrum::<0>::EMPTY, &model)
+                work::longest_stretch_of_diagnosis(clock, &curve, &Spectrum::<0>::EMPTY, &model)
             else {
                 return false;
             };
@@ -244,7 +244,7 @@ mod image {
             let Some(spectrum) = work::spectrum::<BINS>(hidden) else {
                 return false;
             };
-            let Some(both) = work::longest_stretch_of_diagnosis(clock, &curve, spectrum, &model)
+            let Some(both) = work::longest_stretch_of_diagnosis(clock, &curve, &spectrum, &model)
             else {
                 return false;
             };

@@ -6,13 +6,13 @@ use allanite::effect::{
     SampledShape, Sinusoid,
 };
 use allanite::{
-    Accumulator, Axes, Curve, Error, Model, Real,
+    Accumulator, Axes, Curve, Error, Model, Real, Record,
     axis::{GatePart, MomentPart, SpectrumPart, TrackPart},
-    diagnosis::{self, Diagnosis, Evidence, Progress, Verdict},
+    diagnosis::{self, Diagnosis, Verdict},
     fit::{Fit, Fitting, Options, fit},
     spectrum::{Bin, Spectrum, SpectrumAccumulator},
 };
-use core::hint::black_box;
+use core::{hint::black_box, ops::ControlFlow};
 use demonstration::{
     AMPLITUDES,
     simulated::{Random, SimulatedGyro},
@@ -283,12 +283,16 @@ pub(crate) fn characterise<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Resu
 #[inline(never)]
 pub(crate) fn diagnose<const OCTAVES: usize>(curve: &Curve<OCTAVES>, model: &Model) -> bool {
     let options = diagnosis::Options::default();
-    let (curve, none) = (curve.clone(), Evidence::NONE);
-    let mut diagnosis = Diagnosis::new(curve, none, model, &CATALOGUE, options);
-    let verdict = diagnosis.run(|step| {
+    let mut diagnosis = Diagnosis::new(curve.into(), model, &CATALOGUE, options);
+    let report = |step: &_| {
         black_box(step);
-    });
-    verdict == Ok(Verdict::Improved)
+    };
+    diagnosis.run(report, &mut go_on) == Ok(Some(Verdict::Improved))
+}
+
+/// A pause in which nothing is done.
+fn go_on() -> ControlFlow<()> {
+    ControlFlow::Continue(())
 }
 
 /// Diagnoses the curve and the spectrum, and returns whether the diagnosis found an effect.
@@ -299,42 +303,40 @@ pub(crate) fn diagnose_both<const OCTAVES: usize, const B: usize>(
     model: &Model,
 ) -> bool {
     let options = diagnosis::Options::default();
-    let (curve, spectrum) = (curve.clone(), spectrum.clone());
-    let none = Evidence::NONE;
-    let mut diagnosis = Diagnosis::with_spectrum(curve, spectrum, none, model, &CATALOGUE, options);
-    let verdict = diagnosis.run(|step| {
+    let record = Record::new(curve, spectrum);
+    let mut diagnosis = Diagnosis::new(record, model, &CATALOGUE, options);
+    let report = |step: &_| {
         black_box(step);
-    });
-    verdict == Ok(Verdict::Improved)
+    };
+    diagnosis.run(report, &mut go_on) == Ok(Some(Verdict::Improved))
 }
 
-/// The largest number of instructions between two returns of a diagnosis, including its start; `None` if
-/// it fails.
+/// The largest number of instructions between two pauses of a diagnosis, including its start and its end; `None`
+/// if it fails.
 #[inline(never)]
 pub(crate) fn longest_stretch_of_diagnosis<const OCTAVES: usize, const B: usize>(
     clock: &Clock,
     curve: &Curve<OCTAVES>,
-    spectrum: Spectrum<B>,
+    spectrum: &Spectrum<B>,
     model: &Model,
 ) -> Option<f64> {
     let options = diagnosis::Options::default();
-    let (curve, none) = (curve.clone(), Evidence::NONE);
-    let mut diagnosis = Diagnosis::with_spectrum(curve, spectrum, none, model, &CATALOGUE, options);
-    let mut longest = 0.0_f64;
-    let mut going_on = true;
-    while going_on {
-        let mut failed = false;
-        let stretch = clock.instructions(|| match diagnosis.advance() {
-            Ok(Progress::Finished(_)) => going_on = false,
-            Ok(_) => {}
-            Err(_) => failed = true,
-        });
-        if failed {
-            return None;
-        }
-        longest = longest.max(stretch);
-    }
-    Some(longest)
+    let record = Record::new(curve, spectrum);
+    let (mut longest, mut before) = (0, clock.now());
+    let mut diagnosis = Diagnosis::new(record, model, &CATALOGUE, options);
+    let mut pause = || {
+        let now = clock.now();
+        longest = longest.max(now - before);
+        // The clock's own work is not counted.
+        before = clock.now();
+        ControlFlow::Continue(())
+    };
+    let report = |step: &_| {
+        black_box(step);
+    };
+    diagnosis.run(report, &mut pause).ok()?;
+    let _ = pause();
+    Some(clock.instructions_of(longest))
 }
 
 /// The largest number of instructions between two returns of a fit; a look of the self-test consists of the

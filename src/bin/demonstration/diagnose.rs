@@ -12,6 +12,7 @@ use allanite::{
     effect::CATALOGUE,
     spectrum::Spectrum,
 };
+use core::ops::ControlFlow;
 
 /// The number of octaves of averaging time.
 pub const OCTAVES: usize = 20;
@@ -22,8 +23,8 @@ pub const SAMPLES: usize = 1 << 17;
 /// The sample rate, in samples per second.
 pub const RATE_HZ: Real = 100.0;
 
-/// The number of bins of the spectrum: three levels of 28.
-pub const BINS: usize = 84;
+/// The number of bins of the spectrum: four levels of 28, the last one of which is sparse.
+pub const BINS: usize = 112;
 
 /// What can be hidden.
 #[derive(Clone, Copy, Debug)]
@@ -106,13 +107,18 @@ pub fn hidden(case: &str) -> Option<Disturbance> {
 pub fn diagnose(
     disturbance: Option<Disturbance>,
     seed: u64,
-    report: impl FnMut(&Step<OCTAVES, BINS>),
+    mut report: impl FnMut(&Step<OCTAVES, BINS>),
 ) -> Result<Verdict, Error> {
     let record = recorded(disturbance, seed)?;
     let (model, options) = (Model::ieee_952(), Options::default());
-    let (curve, spectrum) = (record.curve.clone(), record.spectrum.clone());
-    let evidence = record.evidence();
-    Diagnosis::with_spectrum(curve, spectrum, evidence, &model, &CATALOGUE, options).run(report)
+    let mut diagnosis = Diagnosis::new(record.record(), &model, &CATALOGUE, options);
+    loop {
+        // A pause that never ends the work leads to a verdict.
+        let mut pause = || ControlFlow::Continue(());
+        if let Some(verdict) = diagnosis.run(&mut report, &mut pause)? {
+            return Ok(verdict);
+        }
+    }
 }
 
 /// The curve, the spectrum and the kurtosis.

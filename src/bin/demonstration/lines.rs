@@ -49,12 +49,15 @@ pub fn evidence<const K: usize, const C: usize, const B: usize>(
             point.m
         ));
     }
-    for bin in axis.spectrum.bins() {
+    for bin in axis.spectrum.all() {
         let (density, kurtosis) = (Exact(bin.density), Exact(bin.spectral_kurtosis));
         line(format_args!(
             "bin block {} index {} segments {} density {density} kurtosis {kurtosis}",
             bin.block, bin.index, bin.segments
         ));
+    }
+    for density in axis.course.iter().flat_map(|course| course.densities()) {
+        line(format_args!("course density {}", Exact(*density)));
     }
     line(format_args!("invalid {:?}", axis.invalid));
 }
@@ -130,10 +133,6 @@ pub fn step<const K: usize, const B: usize>(
     for candidate in &step.candidates {
         let (name, improvement) = (candidate.term.effect.name(), Exact(candidate.improvement));
         line(format_args!("candidate {name} improvement {improvement}"));
-    }
-    if let Some(swap) = step.swap() {
-        let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| effect.name());
-        line(format_args!("{taken} instead of {dropped}"));
     }
     for name in &step.ambiguous {
         line(format_args!("ambiguous {name}"));

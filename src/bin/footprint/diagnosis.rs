@@ -10,9 +10,9 @@ mod image {
     use allanite::effect::CATALOGUE;
     use allanite::{
         Accumulator, Model, Scale,
-        diagnosis::{Diagnosis, Evidence, Options},
+        diagnosis::{Diagnosis, Options},
     };
-    use core::hint::black_box;
+    use core::{hint::black_box, ops::ControlFlow};
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
     #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
@@ -27,14 +27,9 @@ mod image {
             let report = |step: &_| {
                 black_box(step);
             };
-            Diagnosis::new(
-                curve,
-                Evidence::NONE,
-                &model,
-                &CATALOGUE,
-                Options::default(),
-            )
-            .run(report)
+            let mut pause = || black_box(ControlFlow::Continue(()));
+            let options = Options::default();
+            Diagnosis::new((&curve).into(), &model, &CATALOGUE, options).run(report, &mut pause)
         });
         black_box(&verdict);
         semihosting::process::exit(0)

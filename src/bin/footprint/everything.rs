@@ -18,7 +18,7 @@ mod image {
         diagnosis::{self, Diagnosis},
         fit::{Options, fit},
     };
-    use core::hint::black_box;
+    use core::{hint::black_box, ops::ControlFlow};
     use heapless::{Vec, spsc::Queue};
 
     /// Three axes and a temperature, with every part.
@@ -77,11 +77,10 @@ mod image {
         let report = |step: &_| {
             black_box(step);
         };
-        let (curve, spectrum) = (x.curve.clone(), x.spectrum.clone());
+        let mut pause = || black_box(ControlFlow::Continue(()));
         let options = diagnosis::Options::default();
         let verdict =
-            Diagnosis::with_spectrum(curve, spectrum, x.evidence(), &model, &CATALOGUE, options)
-                .run(report);
+            Diagnosis::new(x.record(), &model, &CATALOGUE, options).run(report, &mut pause);
         let _ = black_box(verdict);
         if let [Some(course), ..] = records.courses() {
             let analysis = analyse(&x.curve, &model, course, scale, Options::default());

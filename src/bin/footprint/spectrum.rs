@@ -10,10 +10,10 @@ mod image {
     use allanite::effect::CATALOGUE;
     use allanite::spectrum::{Spectrum, SpectrumAccumulator};
     use allanite::{
-        Accumulator, Model, Scale,
-        diagnosis::{Diagnosis, Evidence, Options},
+        Accumulator, Model, Record, Scale,
+        diagnosis::{Diagnosis, Options},
     };
-    use core::hint::black_box;
+    use core::{hint::black_box, ops::ControlFlow};
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
     #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
@@ -32,15 +32,9 @@ mod image {
             let report = |step: &_| {
                 black_box(step);
             };
-            Diagnosis::with_spectrum(
-                curve,
-                spectrum,
-                Evidence::NONE,
-                &model,
-                &CATALOGUE,
-                Options::default(),
-            )
-            .run(report)
+            let mut pause = || black_box(ControlFlow::Continue(()));
+            let (record, options) = (Record::new(&curve, &spectrum), Options::default());
+            Diagnosis::new(record, &model, &CATALOGUE, options).run(report, &mut pause)
         });
         black_box(&verdict);
         semihosting::process::exit(0)

@@ -14,18 +14,17 @@ use crate::{
         tried::{TriedCovariate, tried},
     },
     curve_file::AxisCurve,
+    diagnosis::{diagnose, go_on},
     failure::Failure,
     log::{BINS, Evidence, Motion, OCTAVES},
 };
 use allanite::{
-    Curve, Error, Model, Observed, Scale, Term,
+    Curve, Error, Model, Observed, Record, Scale, Term,
     course::Course,
     covariate,
     covariate::{CrossCurve, Pair},
     detection::{Detection, Limit, Ranges},
-    diagnosis::{
-        Addition, Candidate, Diagnosis, FollowedCovariate, Options, Step, Verdict, alternative,
-    },
+    diagnosis::{Addition, Candidate, FollowedCovariate, Options, Step, Verdict, alternative},
     effect::CATALOGUE,
     spectrum::Spectrum,
 };
@@ -57,7 +56,7 @@ impl DiagnosisArguments {
 /// The settings of a diagnosis.
 #[derive(Debug, Args)]
 pub(crate) struct DiagnosisSettings {
-    /// Largest number of effects to add [default: 3]
+    /// Largest number of effects to add [default: 4]
     #[arg(long, value_name = "N")]
     max_effects: Option<usize>,
     #[command(flatten)]
@@ -130,19 +129,20 @@ impl Diagnosed {
         let (course, columns, motion) = (evidence.course, evidence.columns, evidence.motion);
         let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
         let pairs = evidence.pairs;
-        let evidence = allanite::diagnosis::Evidence {
+        let (curve, spectrum, densities) = (axis.curve()?, axis.spectrum()?, axis.course()?);
+        let record = Record {
+            course: densities.as_ref(),
             kurtosis: Some(&evidence.kurtosis),
             covariates: &cross,
             pairs: &pairs,
             invalid: evidence.invalid,
+            ..Record::new(&curve, &spectrum)
         };
-        let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
         let diagnose = |model: &Model, options| {
             let mut steps = Vec::new();
-            let (curve, spectrum) = (curve.clone(), spectrum.clone());
-            let verdict =
-                Diagnosis::with_spectrum(curve, spectrum, evidence, model, &CATALOGUE, options)
-                    .run(|step| steps.push(step.clone()))?;
+            let verdict = diagnose(record, model, &CATALOGUE, options, |step| {
+                steps.push(step.clone());
+            })?;
             Ok((steps, verdict))
         };
         let (mut steps, mut verdict) = diagnose(model, options)?;
@@ -198,12 +198,16 @@ impl Diagnosed {
         Stationarity::of(course, scale, &curve, &last.model)
     }
 
-    /// The evidence beside the curve that covariates give.
-    fn evidence(&self) -> allanite::diagnosis::Evidence<'_, OCTAVES> {
-        allanite::diagnosis::Evidence {
+    /// A curve and a spectrum with the covariates of the axis.
+    fn record<'a>(
+        &'a self,
+        curve: &'a Curve<OCTAVES>,
+        spectrum: &'a Spectrum<BINS>,
+    ) -> Record<'a, OCTAVES, BINS> {
+        Record {
             covariates: &self.cross,
             pairs: &self.pairs,
-            ..allanite::diagnosis::Evidence::NONE
+            ..Record::new(curve, spectrum)
         }
     }
 
@@ -213,8 +217,9 @@ impl Diagnosed {
         let Some(last) = self.steps.last().filter(|_| valid) else {
             return Ok(Vec::new());
         };
-        let curve = self.axis.curve()?;
-        Ok(tried(&curve, &self.evidence(), &self.covariates, last))
+        let (curve, spectrum) = (self.axis.curve()?, self.axis.spectrum()?);
+        let record = self.record(&curve, &spectrum);
+        Ok(tried(&record, &self.covariates, last))
     }
 
     /// The sizes of effects that the record would have shown.
@@ -223,8 +228,13 @@ impl Diagnosed {
         let adequate = matches!(self.verdict, Verdict::Adequate | Verdict::Improved);
         if let Some(last) = self.steps.last().filter(|_| adequate) {
             let (curve, spectrum) = self.observed_in(last)?;
-            Detection::with_spectrum(curve, spectrum, last, &CATALOGUE, self.options)
-                .run(|limit| limits.push(limit))?;
+            let course = self.axis.course()?;
+            let record = Record {
+                course: course.as_ref(),
+                ..Record::new(&curve, &spectrum)
+            };
+            Detection::new(record, last, &CATALOGUE, self.options)
+                .run(|limit| limits.push(limit), &mut go_on);
         }
         Ok(limits)
     }
@@ -250,11 +260,13 @@ impl Diagnosed {
         &self,
         step: &Step<OCTAVES, BINS>,
     ) -> Result<(Curve<OCTAVES>, Spectrum<BINS>), Error> {
-        let (mut curve, mut spectrum) = (self.axis.curve()?, self.axis.spectrum()?);
+        let (curve, spectrum) = (self.axis.curve()?, self.axis.spectrum()?);
+        let (mut corrected, mut densities) = (curve.clone(), spectrum.clone());
         if let Some(followed) = &step.covariate {
-            followed.correct(&self.evidence(), &mut curve, &mut spectrum);
+            let record = self.record(&curve, &spectrum);
+            followed.correct(&record, &mut corrected, &mut densities);
         }
-        Ok((curve, spectrum))
+        Ok((corrected, densities))
     }
 
     /// The verdict, as it is written in files. That of a record in which something happened is `not_stationary`,
@@ -316,15 +328,12 @@ impl Diagnosed {
         step: usize,
         candidate: &Candidate,
     ) -> Result<Step<OCTAVES, BINS>, Error> {
-        let before = step
-            .checked_sub(1)
-            .and_then(|before| self.steps.get(before));
         let step = &self.steps[step];
         let (curve, spectrum) = self.observed_in(step)?;
-        alternative(Observed::new(&curve, &spectrum), step, before, candidate)
+        alternative(Observed::new(&curve, &spectrum), step, candidate)
     }
 
-    /// The effects that were added and kept, as in the last model. Covariates are not among them.
+    /// The effects that were added, as in the last model. Covariates are not among them.
     pub(super) fn added(&self) -> impl Iterator<Item = &Term> {
         self.steps
             .last()
@@ -341,7 +350,7 @@ impl Diagnosed {
         })
     }
 
-    /// Names of the covariate and the effects that were added and kept.
+    /// Names of the covariate and the effects that were added.
     pub(crate) fn missing(&self) -> impl Iterator<Item = &'static str> {
         let followed = self.steps.last().and_then(|last| last.covariate);
         let covariate = followed.map(|_| covariate::NAME);
@@ -351,18 +360,9 @@ impl Diagnosed {
     }
 
     /// The addition of each step that has ambiguous alternatives, with the names of these alternatives:
-    /// they explain the curve about as well. Steps whose addition was dropped later are not among them.
+    /// they explain the curve about as well.
     pub(crate) fn ambiguous(&self) -> impl Iterator<Item = (&'static str, &[&'static str])> {
-        let steps = &self.steps;
-        let kept = steps.iter().enumerate().filter(|&(i, step)| {
-            let swapped = steps.get(i + 1).is_some_and(|next| next.swap().is_some());
-            let added = step.added.as_ref().map(added_name);
-            let dropped = |later: &Step<OCTAVES, BINS>| {
-                added.is_some_and(|name| later.dropped.contains(&name))
-            };
-            !(swapped || steps[i + 1..].iter().any(dropped))
-        });
-        kept.filter_map(|(_, step)| {
+        self.steps.iter().filter_map(|step| {
             let others = step.ambiguous.as_slice();
             let added = step.added.as_ref().filter(|_| !others.is_empty())?;
             Some((added_name(added), others))

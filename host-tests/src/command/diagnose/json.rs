@@ -103,9 +103,6 @@ struct DetectionLimit {
 #[derive(Serialize)]
 struct Step {
     effects: Vec<Effect>,
-    /// The effects of the step before that this model does not need any more.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    dropped: Vec<&'static str>,
     coefficients: Vec<fit::json::Term>,
     chi2: f64,
     dof: usize,
@@ -137,15 +134,6 @@ struct Candidate {
     parameters: Map<String, Value>,
     chi2: f64,
     improvement: f64,
-    /// The effects that are exchanged if the candidate is added.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    swap: Option<Swap>,
-}
-
-#[derive(Serialize)]
-struct Swap {
-    dropped: &'static str,
-    taken: &'static str,
 }
 
 /// Puts the diagnoses of all axes into one document.
@@ -252,7 +240,6 @@ fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step 
         effects: covariates
             .chain(model_json::effects(&step.model, &step.fit))
             .collect(),
-        dropped: step.dropped.to_vec(),
         coefficients: model_json::coefficients(&step.fit, unit),
         chi2: step.fit.chi_squared,
         dof: step.fit.degrees_of_freedom,
@@ -281,9 +268,5 @@ fn candidate(tried: &Tried) -> Candidate {
         parameters: model_json::parameters(&tried.term, tried.coefficient),
         chi2: tried.chi_squared,
         improvement: tried.improvement,
-        swap: tried.swap.map(|swap| Swap {
-            dropped: swap.dropped.name(),
-            taken: swap.taken.name(),
-        }),
     }
 }

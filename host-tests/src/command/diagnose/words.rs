@@ -15,7 +15,7 @@ use allanite::{
     Comparison, Term,
     covariate::{self, Slope},
     detection::Range,
-    diagnosis::{Addition, Candidate, FollowedCovariate, Step, Swap, Verdict},
+    diagnosis::{Addition, Candidate, FollowedCovariate, Step, Verdict},
     effect::{Explanation, explanation},
 };
 
@@ -40,7 +40,7 @@ impl Finding {
         after: &Step<OCTAVES, BINS>,
     ) -> Option<Self> {
         let mut finding = match before.added.as_ref()? {
-            Addition::Effect(added) => Self::effect(diagnosed, before, after, added),
+            Addition::Effect(added) => Self::effect(diagnosed, after, added),
             Addition::Covariate(follows) => Self::covariate(diagnosed, follows),
         };
         if !before.ambiguous.is_empty() {
@@ -52,19 +52,14 @@ impl Finding {
 
     fn effect(
         diagnosed: &Diagnosed,
-        before: &Step<OCTAVES, BINS>,
         after: &Step<OCTAVES, BINS>,
         added: &Term,
     ) -> Self {
         let effect = added.effect;
-        let mut name = words::plain(effect.name()) + &instead(before.swap());
-        for dropped in &after.dropped {
-            name += &format!(", {} no longer needed", words::plain(dropped));
-        }
         let place = |replaced: &str| format!("replaces {}", words::plain(replaced));
         let change = effect.replaces().map(|replaced| place(replaced.name()));
         Self {
-            name,
+            name: words::plain(effect.name()),
             found: found(after, effect.name(), diagnosed),
             explanation: explanation(effect.name()),
             change: change.map(|change| ("in the model", change)),
@@ -153,23 +148,14 @@ pub(crate) fn disagreement(comparison: &Comparison<OCTAVES, BINS>) -> String {
     format!("{comparison}; the spectrum is {}", bands.join(", "))
 }
 
-/// The effect that an addition also exchanges: `, sinusoid instead of resonance`, or nothing.
-fn instead(swap: Option<Swap>) -> String {
-    swap.map_or(String::new(), |swap| {
-        let [taken, dropped] = [swap.taken, swap.dropped].map(|effect| words::plain(effect.name()));
-        format!(", {taken} instead of {dropped}")
-    })
-}
-
-/// A candidate with its shape, and with the effect that it also exchanges, if any.
+/// A candidate with its shape.
 pub(crate) fn candidate_name(candidate: &Candidate) -> String {
     let shape = words::shape(&candidate.term, None);
     let name = words::plain(candidate.term.effect.name());
-    let instead = instead(candidate.swap);
     if shape.is_empty() {
-        name + &instead
+        name
     } else {
-        format!("{name} ({shape}){instead}")
+        format!("{name} ({shape})")
     }
 }
 
@@ -189,7 +175,7 @@ pub(crate) fn shown_p(p: f64) -> String {
     }
 }
 
-/// The covariate and the effects that were added and kept, in words. Lines that are one comb are said as one.
+/// The covariate and the effects that were added, in words. Lines that are one comb are said as one.
 fn missing(diagnosed: &Diagnosed) -> Vec<String> {
     let Some((_, last)) = diagnosed.ends() else {
         return Vec::new();

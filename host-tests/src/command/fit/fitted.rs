@@ -11,7 +11,7 @@ use crate::{
     log::{Evidence, OCTAVES},
 };
 use allanite::{
-    Curve, Model, Observed,
+    Curve, Model, Observed, Record,
     fit::{Fit, Method, Options, fit},
 };
 use clap::ValueEnum;
@@ -118,15 +118,15 @@ impl Fitted {
         let name = &fitted.axis.axis;
         let reason = evidence.invalid;
         let (names, covariates): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
-        let beside = allanite::diagnosis::Evidence {
-            covariates: &covariates,
-            pairs: &evidence.pairs,
-            invalid: reason,
-            ..allanite::diagnosis::Evidence::NONE
-        };
         let spectrum = fitted.axis.spectrum();
         let tried = spectrum.and_then(|spectrum| {
-            tried::beside_model(&fitted.curve, &spectrum, &beside, &names, model)
+            let record = Record {
+                covariates: &covariates,
+                pairs: &evidence.pairs,
+                invalid: reason,
+                ..Record::new(&fitted.curve, &spectrum)
+            };
+            tried::beside_model(record, &names, model)
         });
         let motion = evidence.motion.as_ref();
         Ok(Self {

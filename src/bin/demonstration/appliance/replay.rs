@@ -2,7 +2,7 @@
 
 use super::{Cut, Failure, Gyro, Progress, Recorder, Report, SAMPLES, World};
 use allanite::queue::Queued;
-use core::fmt::Arguments;
+use core::{fmt::Arguments, ops::ControlFlow};
 
 /// Runs the product of a seed with these power cuts, and prints a line for each start and the report.
 ///
@@ -42,7 +42,8 @@ pub fn replay(
                 recorder.evidence(2)?,
             ];
             let mut report = Report::new(recorder.gyro(), recorder.self_test(), &evidence);
-            while report.step(&mut line)? == Progress::Working {}
+            let mut pause = || ControlFlow::Continue(());
+            while report.step(&mut line, &mut pause)? == Progress::Working {}
             return Ok(());
         };
         while source.made() < cut.made {

@@ -11,7 +11,7 @@ use allanite::{
     spectrum::Spectrum,
     storage::{AxisCertificate, Certificate, Conditions, RateUnit},
 };
-use core::fmt::Arguments;
+use core::{fmt::Arguments, ops::ControlFlow};
 
 /// The largest number of bins of a spectrum.
 const BINS: usize = 84;
@@ -29,7 +29,7 @@ pub struct Report<'r> {
     next: Next,
 }
 
-/// The next piece of a report.
+/// The next part of a report.
 #[derive(Clone, Copy)]
 enum Next {
     Record,
@@ -49,10 +49,8 @@ impl<'r> Report<'r> {
             gyro,
             self_test,
             evidence,
-            diagnosis: Diagnosis::with_spectrum(
-                x.curve.clone(),
-                x.spectrum.clone(),
-                x.evidence(),
+            diagnosis: Diagnosis::new(
+                x.record(),
                 &Model::ieee_952(),
                 &CATALOGUE,
                 Options::default(),
@@ -62,11 +60,16 @@ impl<'r> Report<'r> {
         }
     }
 
-    /// Does one piece of the report.
+    /// Does one part of the report, such as a step of the diagnosis. A step takes long, so that `pause` is called between
+    /// its pieces.
     ///
     /// # Errors
     /// [`Failure`], if the record cannot be diagnosed.
-    pub fn step(&mut self, line: &mut impl FnMut(Arguments<'_>)) -> Result<Progress, Failure> {
+    pub fn step(
+        &mut self,
+        line: &mut impl FnMut(Arguments<'_>),
+        pause: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Progress, Failure> {
         self.next = match self.next {
             Next::Record => {
                 self.record(line);
@@ -80,8 +83,8 @@ impl<'r> Report<'r> {
                 }
                 None => Next::Diagnosis,
             },
-            Next::Diagnosis => match self.diagnosis.advance()? {
-                diagnosis::Progress::Working => Next::Diagnosis,
+            Next::Diagnosis => match self.diagnosis.advance(pause)? {
+                diagnosis::Progress::Paused => Next::Diagnosis,
                 diagnosis::Progress::Step(step) => {
                     let [x, ..] = self.evidence;
                     let observed = Observed::new(&x.curve, &x.spectrum);

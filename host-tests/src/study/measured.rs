@@ -1,0 +1,102 @@
+//! Everything that the studies keep of a simulated record.
+
+use super::{OCTAVES, RATE_HZ, quantum, record};
+use crate::{
+    log::{BINS, SpectrumSums},
+    simulate::{Coefficients, Simulator},
+};
+use allanite::{
+    Axis, Curve, Record, Scale,
+    course::{CosineTransform, Course},
+    kurtosis::Kurtosis,
+    spectrum::Spectrum,
+};
+
+/// The sums of a record, beside its curve.
+#[derive(Clone, Debug)]
+pub struct Sums {
+    gyro: Axis<OCTAVES, 0, ()>,
+    spectrum: SpectrumSums,
+    course: Course,
+}
+
+impl Default for Sums {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Sums {
+    /// No samples.
+    pub const fn new() -> Self {
+        Self {
+            gyro: Axis::new(),
+            spectrum: SpectrumSums::new(),
+            course: Course::new(),
+        }
+    }
+
+    /// Adds counts.
+    pub fn push_slice(&mut self, counts: &[i32]) {
+        counts.iter().for_each(|&count| self.gyro.push(count));
+        self.spectrum.push_slice(counts);
+        self.course.push_slice(counts);
+    }
+
+    /// Marks that so many samples are missing here.
+    pub fn missing(&mut self, samples: u64) {
+        self.gyro.gap();
+        self.spectrum.gap();
+        self.course.missing(samples);
+    }
+
+    /// The number of samples.
+    pub fn samples(&self) -> u64 {
+        let [accumulator] = self.gyro.accumulators();
+        accumulator.samples()
+    }
+
+    /// What the sums tell in this scale.
+    pub fn measured(&self, scale: Scale) -> Measured {
+        let evidence = self.gyro.evidence(0, scale, []).expect("one axis");
+        Measured {
+            curve: evidence.curve,
+            spectrum: self.spectrum.spectrum(scale),
+            course: self.course.cosine_transform(scale),
+            kurtosis: evidence.kurtosis,
+        }
+    }
+}
+
+/// What is known of a record.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The curve.
+    pub curve: Curve<OCTAVES>,
+    /// The spectrum.
+    pub spectrum: Spectrum<BINS>,
+    /// The course.
+    pub course: Option<CosineTransform>,
+    /// The kurtosis.
+    pub kurtosis: Option<Kurtosis<OCTAVES>>,
+}
+
+impl Measured {
+    /// The next `samples` of a simulator. The size of a count is that of a gyro with these coefficients.
+    pub fn of(simulator: &mut Simulator, coefficients: Coefficients, samples: usize) -> Self {
+        let mut sums = Sums::new();
+        record(simulator, coefficients, samples, |counts| {
+            sums.push_slice(counts);
+        });
+        sums.measured(Scale::new(quantum(coefficients, RATE_HZ), RATE_HZ).expect("positive"))
+    }
+
+    /// The record that a diagnosis takes.
+    pub fn record(&self) -> Record<'_, OCTAVES, BINS> {
+        Record {
+            course: self.course.as_ref(),
+            kurtosis: self.kurtosis.as_ref(),
+            ..Record::new(&self.curve, &self.spectrum)
+        }
+    }
+}

@@ -249,7 +249,8 @@ impl AxisCurve {
         let mut sums: Vec<ShortOctave> = sums.collect::<Result<_, Failure>>()?;
         let short = sums.split_off(curve.points().len());
         let evidence = axis.evidence.as_ref();
-        let course = evidence.and_then(|evidence| evidence.course.as_ref()?.cosine_transform(scale));
+        let course =
+            evidence.and_then(|evidence| evidence.course.as_ref()?.cosine_transform(scale));
         let octaves = sums.iter().zip(curve.points());
         let octaves = octaves.map(|(sum, point)| Octave {
             m: sum.m,
@@ -292,7 +293,9 @@ impl AxisCurve {
     /// When the library refuses a number. [`CurveFile::read`] would have refused it too.
     pub fn course(&self) -> Result<Option<CosineTransform>, allanite::Error> {
         let course = self.course.as_ref();
-        course.map(|course| course.transform(self.rate_hz)).transpose()
+        course
+            .map(|course| course.transform(self.rate_hz))
+            .transpose()
     }
 
     /// The curve as the library's type.

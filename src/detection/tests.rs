@@ -99,8 +99,16 @@ fn an_effect_at_its_limit_is_found_in_the_expected_curve_and_a_fifth_of_it_is_no
         let Some(limit) = limit else {
             panic!("{name} has no limit");
         };
-        assert_eq!(at_limit(&limit, 1.0), Verdict::Improved, "{name}: {limit:?}");
-        assert_eq!(at_limit(&limit, 0.2), Verdict::Adequate, "{name}: {limit:?}");
+        assert_eq!(
+            at_limit(&limit, 1.0),
+            Verdict::Improved,
+            "{name}: {limit:?}"
+        );
+        assert_eq!(
+            at_limit(&limit, 0.2),
+            Verdict::Adequate,
+            "{name}: {limit:?}"
+        );
     }
 }
 
@@ -160,7 +168,10 @@ fn a_pause_ends_the_work() {
     let step = adequate(&curve);
     let mut limits = 0;
     let mut pause = || ControlFlow::Break(());
-    assert_eq!(detection(&curve, &step).run(|_| limits += 1, &mut pause), None);
+    assert_eq!(
+        detection(&curve, &step).run(|_| limits += 1, &mut pause),
+        None
+    );
     assert_eq!(limits, 0);
 }
 
@@ -175,7 +186,11 @@ fn a_model_that_is_not_adequate_has_no_limits() {
     step.fit = fit;
     let each = |limit: Limit| panic!("{limit:?}");
     assert_eq!(detection(&curve, &step).run(each, &mut go_on), Some(()));
-    assert!(detection(&curve, &step).limit_of(term(&Sinusoid, [1.0, 0.0])).is_none());
+    assert!(
+        detection(&curve, &step)
+            .limit_of(term(&Sinusoid, [1.0, 0.0]))
+            .is_none()
+    );
 }
 
 /// A model with a fitted shape has limits beside this shape, but none of the effect that it has.

@@ -163,7 +163,12 @@ fn a_diagnosis_that_pauses_ended_reports_the_same_as_one_in_one_go() {
         }
     };
     assert_eq!((verdict, steps.len()), (expected, whole.len()));
-    assert!(steps.iter().zip(&whole).all(|(one, other)| are_the_same(one, other)));
+    assert!(
+        steps
+            .iter()
+            .zip(&whole)
+            .all(|(one, other)| are_the_same(one, other))
+    );
     assert!(ended > 3, "ended {ended} times");
 }
 

@@ -2,9 +2,12 @@
 //! to what they say, and memory may hold nothing yet.
 
 use allanite_c::*;
-use std::{ffi::CStr, ptr};
+use std::{
+    ffi::{CStr, c_void},
+    ptr,
+};
 
-/// The pieces of work of a call. A diagnosis takes thousands, which go on in later calls.
+/// The pieces of work of a look in a call.
 const PIECES: usize = 64;
 
 /// Memory of a C program, in which nothing was made.
@@ -199,9 +202,9 @@ impl Program {
                 22 => {
                     let mut progress = AllaniteProgress::Working;
                     let progress = bytes.or_null(&raw mut progress);
-                    for _ in 0..PIECES {
-                        allanite_diagnosis_advance(diagnosis, progress);
-                    }
+                    let mut left = 1_u32 << (bytes.word() % 14);
+                    let context = (&raw mut left).cast();
+                    allanite_diagnosis_advance_with(diagnosis, progress, Some(pause), context);
                     let mut fit: Box<AllaniteFit> = zeroed();
                     allanite_diagnosis_fit(diagnosis, &raw mut *fit);
                     allanite_certificate_add(certificate, diagnosis)
@@ -210,6 +213,17 @@ impl Program {
             }
         }
     }
+}
+
+/// Counts pieces of work, and ends the work after the last one.
+///
+/// # Safety
+/// `context` points to the number of pieces that are left.
+unsafe extern "C" fn pause(context: *mut c_void) -> bool {
+    // SAFETY: the caller promises that.
+    let left = unsafe { &mut *context.cast::<u32>() };
+    *left = left.saturating_sub(1);
+    *left > 0
 }
 
 /// Pushes some samples.

@@ -151,8 +151,7 @@ pub fn diagnose_with(
     options: allanite::diagnosis::Options,
 ) -> Outcome {
     let mut simulator = Simulator::with_hidden(base, hidden, RATE_HZ, seed);
-    let [measured, other] =
-        std::array::from_fn(|_| Measured::of(&mut simulator, base, samples));
+    let [measured, other] = std::array::from_fn(|_| Measured::of(&mut simulator, base, samples));
     let (steps, verdict) = steps(&measured, options);
     let (first, last) = (&steps[0], &steps[steps.len() - 1]);
     let on_other = |step: &Step<OCTAVES, BINS>| {

@@ -90,15 +90,17 @@ pub fn diagnose(
     };
     let model = Model::ieee_952();
     let options = Options::default();
-    let report = diagnosis::diagnose(record, &model, &CATALOGUE, options, |step| match &step.added {
-        Some(Addition::Covariate(followed)) => {
-            outcome.slope = Some((followed.slope.value, followed.slope.error));
+    let report = diagnosis::diagnose(record, &model, &CATALOGUE, options, |step| {
+        match &step.added {
+            Some(Addition::Covariate(followed)) => {
+                outcome.slope = Some((followed.slope.value, followed.slope.error));
+            }
+            Some(Addition::Effect(term)) => {
+                outcome.named.push(term.effect.name());
+                outcome.named.extend(step.ambiguous.iter());
+            }
+            _ => {}
         }
-        Some(Addition::Effect(term)) => {
-            outcome.named.push(term.effect.name());
-            outcome.named.extend(step.ambiguous.iter());
-        }
-        _ => {}
     });
     report.expect("a curve to diagnose");
     outcome

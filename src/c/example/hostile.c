@@ -43,6 +43,12 @@ static AllaniteStatus take(size_t axis, float scale, float rate, float kelvin) {
     return allanite_evidence_take(&evidence, sizeof evidence, &gyro, axis, scale, rate, kelvin);
 }
 
+/* A pause that ends the work. */
+static bool end(void *context) {
+    (void)context;
+    return false;
+}
+
 /* Nothing is there, or nothing was made there. */
 static void without_values(void) {
     size_t length;
@@ -76,12 +82,14 @@ static void without_values(void) {
     EXPECT(NOT_INITIALISED, allanite_look_conclude(&test, &look, &status));
     EXPECT(NOT_INITIALISED, allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &evidence));
     EXPECT(NOT_INITIALISED, allanite_diagnosis_advance(&diagnosis, &progress));
+    EXPECT(NOT_INITIALISED, allanite_diagnosis_advance_with(&diagnosis, &progress, end, NULL));
     EXPECT(NOT_INITIALISED, allanite_diagnosis_fit(&diagnosis, &fit));
     EXPECT(NOT_INITIALISED, allanite_certificate_add(&certificate, &diagnosis));
     EXPECT(NOT_INITIALISED, allanite_certificate_encode(&certificate, bytes, sizeof bytes, &length));
     EXPECT(NULL_POINTER, allanite_gyro_push(NULL, counts, 0));
     EXPECT(NULL_POINTER, allanite_gyro_merge(&gyro, NULL));
     EXPECT(NULL_POINTER, allanite_diagnosis_advance(NULL, NULL));
+    EXPECT(NULL_POINTER, allanite_diagnosis_advance_with(&diagnosis, &progress, NULL, NULL));
     EXPECT(NULL_POINTER, allanite_look_conclude(NULL, NULL, NULL));
     EXPECT(NULL_POINTER, allanite_certificate_encode(NULL, NULL, 0, NULL));
 }

@@ -159,6 +159,13 @@ static void print_sum(const char *what, const uint8_t *from, size_t length) {
     print("\n");
 }
 
+/* Called between two pieces of a diagnosis. A product feeds its watchdog here and takes the next samples. */
+static bool count(void *context) {
+    uint32_t *pauses = context;
+    *pauses += 1;
+    return true;
+}
+
 void product(void) {
     size_t length = 0;
     seed = 1;
@@ -201,8 +208,9 @@ void product(void) {
     check(allanite_fit(&evidence, &fit), "fit");
     print_fit(&fit);
     check(allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &evidence), "diagnosis");
+    uint32_t pauses = 0;
     do {
-        check(allanite_diagnosis_advance(&diagnosis, &progress), "advance");
+        check(allanite_diagnosis_advance_with(&diagnosis, &progress, count, &pauses), "advance");
         if (progress == ALLANITE_PROGRESS_STEP) {
             check(allanite_diagnosis_fit(&diagnosis, &fit), "fit");
             print_fit(&fit);
@@ -210,6 +218,8 @@ void product(void) {
     } while (progress <= ALLANITE_PROGRESS_STEP);
     print("verdict ");
     print_number((uint32_t)progress);
+    print(" pauses ");
+    print_number(pauses);
     print("\n");
 
     static const uint8_t device[] = {'S', 'N', '-', '7'};

@@ -13,6 +13,7 @@ use allanite::{
     spectrum::Spectrum,
     storage::{AxisCertificate, Certificate, Conditions, RateUnit},
 };
+use std::ops::ControlFlow;
 
 const OCTAVES: usize = allanite_c::ALLANITE_OCTAVES;
 const SAMPLES: u32 = 65_536;
@@ -170,15 +171,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::ieee_952();
     let observed = Observed::new(&x.curve, &x.spectrum);
     print_fit(&model, &fit(observed, &model, fit::Options::default())?);
-    let (curve, spectrum) = (x.curve.clone(), x.spectrum.clone());
-    let known = x.evidence();
-    let options = Options::default();
-    let mut diagnosis =
-        Diagnosis::with_spectrum(curve, spectrum, known, &model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(x.record(), &model, &CATALOGUE, Options::default());
     let mut axis = AxisCertificate::empty();
+    let mut pauses = 0;
+    let mut count = || {
+        pauses += 1;
+        ControlFlow::Continue(())
+    };
     let verdict = loop {
-        match diagnosis.advance()? {
-            Progress::Working => {}
+        match diagnosis.advance(&mut count)? {
+            Progress::Paused => {}
             Progress::Step(step) => {
                 print_fit(&step.model, &step.fit);
                 axis.take(observed, step)?;
@@ -195,7 +197,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Verdict::Invalid(_) => 7,
         _ => 8,
     };
-    println!("verdict {code}");
+    println!("verdict {code} pauses {pauses}");
 
     axis.verdict = Some(verdict);
     let conditions = Conditions {

@@ -1,4 +1,4 @@
-//! The diagnosis of an axis, in pieces.
+//! The diagnosis of an axis, step by step.
 
 use crate::{
     fit::{AllaniteEvidence, AllaniteFit, Evidence},
@@ -13,6 +13,7 @@ use allanite::{
     effect::CATALOGUE,
     storage::AxisCertificate,
 };
+use core::{ffi::c_void, ops::ControlFlow};
 
 /// A diagnosis in progress, and what it has found.
 pub(crate) struct Diagnosing {
@@ -36,11 +37,11 @@ unsafe impl Memory for AllaniteDiagnosis {
     const MARK: u64 = 0x6779_726f_0000_0005 + ALLANITE_OCTAVES as u64 * 0x100;
 }
 
-/// What one piece of a diagnosis has led to.
+/// What a diagnosis has led to.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AllaniteProgress {
-    /// There is more to do.
+    /// The pause ended the work. There is more to do.
     Working = 0,
     /// A model is judged: `allanite_diagnosis_fit` gives it. There is more to do.
     Step = 1,
@@ -91,14 +92,10 @@ pub unsafe extern "C" fn allanite_diagnosis_begin(
         Err(error) => return error,
     };
     let begun = || {
-        let (curve, spectrum) = (evidence.curve.clone(), evidence.spectrum.clone());
-        let (known, model) = (evidence.evidence(), Model::ieee_952());
-        let options = Options::default();
+        let (model, options) = (Model::ieee_952(), Options::default());
         Ok(Diagnosing {
             evidence,
-            diagnosis: Diagnosis::with_spectrum(
-                curve, spectrum, known, &model, &CATALOGUE, options,
-            ),
+            diagnosis: Diagnosis::new(evidence.record(), &model, &CATALOGUE, options),
             fit: AllaniteFit::EMPTY,
             certificate: AxisCertificate::empty(),
             verdict: None,
@@ -108,9 +105,8 @@ pub unsafe extern "C" fn allanite_diagnosis_begin(
     status(unsafe { memory::make(diagnosis, bytes, begun) })
 }
 
-/// Does one piece of a diagnosis and tells what it has led to. A piece takes at most 2 million instructions on a
-/// Cortex-M4F, except for the one that reports a step, which takes as much as a fit for the correlations of a certificate.
-/// After the end, it tells the verdict again.
+/// Works until the next step of a diagnosis and tells what it has led to. That takes long;
+/// `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it tells the verdict again.
 ///
 /// # Safety
 /// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`.
@@ -118,6 +114,48 @@ pub unsafe extern "C" fn allanite_diagnosis_begin(
 pub unsafe extern "C" fn allanite_diagnosis_advance(
     diagnosis: *mut AllaniteDiagnosis,
     progress: *mut AllaniteProgress,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `advance` wants.
+    unsafe { advance(diagnosis, progress, &mut || ControlFlow::Continue(())) }
+}
+
+/// Does what `allanite_diagnosis_advance` does, and calls `pause` with `context` between two pieces of work, for the
+/// watchdog and the next samples. A piece takes at most 2 million instructions on a Cortex-M4F, except for the one that
+/// reports a step, which takes as much as a fit for the correlations of a certificate. If `pause` returns false, the work in
+/// progress is given up, `progress` is `ALLANITE_PROGRESS_WORKING`, and the next call begins this work anew.
+///
+/// # Safety
+/// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`. `pause`
+/// is null, or a function that returns, and that uses neither the diagnosis nor its evidence.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_diagnosis_advance_with(
+    diagnosis: *mut AllaniteDiagnosis,
+    progress: *mut AllaniteProgress,
+    pause: Option<unsafe extern "C" fn(context: *mut c_void) -> bool>,
+    context: *mut c_void,
+) -> AllaniteStatus {
+    let Some(pause) = pause else {
+        return AllaniteStatus::NullPointer;
+    };
+    let mut pause = || {
+        // SAFETY: the caller promises that it is a function that may be called here.
+        match unsafe { pause(context) } {
+            true => ControlFlow::Continue(()),
+            false => ControlFlow::Break(()),
+        }
+    };
+    // SAFETY: the caller promises what `advance` wants.
+    unsafe { advance(diagnosis, progress, &mut pause) }
+}
+
+/// Works until the next step, or until the pause ends the work.
+///
+/// # Safety
+/// As of [`allanite_diagnosis_advance`].
+unsafe fn advance(
+    diagnosis: *mut AllaniteDiagnosis,
+    progress: *mut AllaniteProgress,
+    pause: &mut dyn FnMut() -> ControlFlow<()>,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get_mut` wants.
     let it = match unsafe { get_mut(diagnosis) } {
@@ -131,9 +169,9 @@ pub unsafe extern "C" fn allanite_diagnosis_advance(
         certificate,
         verdict,
     } = it;
-    let reached = match diagnosis.advance() {
+    let reached = match diagnosis.advance(pause) {
         Err(error) => return error.into(),
-        Ok(Progress::Working) => AllaniteProgress::Working,
+        Ok(Progress::Paused) => AllaniteProgress::Working,
         Ok(Progress::Step(step)) => {
             *fit = AllaniteFit::of(&step.model, &step.fit);
             let observed = Observed::new(&evidence.curve, &evidence.spectrum);

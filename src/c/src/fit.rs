@@ -91,7 +91,7 @@ pub unsafe extern "C" fn allanite_evidence_summary(
 /// The largest number of effects in a model.
 pub const ALLANITE_MAX_COEFFICIENTS: usize = 8;
 /// The largest number of fitted shape parameters in a model.
-pub const ALLANITE_MAX_SHAPES: usize = 4;
+pub const ALLANITE_MAX_SHAPES: usize = 6;
 
 /// What a record says about a coefficient.
 #[repr(i32)]

@@ -11,13 +11,17 @@
 //! static AllaniteEvidence evidence;
 //! static AllaniteDiagnosis diagnosis;
 //!
+//! static bool pause(void *context) { feed_watchdog(); return true; }
+//!
 //! allanite_gyro_init(&gyro, sizeof gyro);
 //! while (recording) allanite_gyro_push(&gyro, counts, temperature);
 //! allanite_gyro_release(&gyro);
 //! allanite_evidence_take(&evidence, sizeof evidence, &gyro, 0, 1.0f / 131, 100.0f, 0.01f);
 //! allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &evidence);
 //! AllaniteProgress progress;
-//! do { feed_watchdog(); allanite_diagnosis_advance(&diagnosis, &progress); } while (progress <= ALLANITE_PROGRESS_STEP);
+//! do {
+//!     allanite_diagnosis_advance_with(&diagnosis, &progress, pause, NULL);
+//! } while (progress <= ALLANITE_PROGRESS_STEP);
 //! AllaniteFit fit;
 //! allanite_diagnosis_fit(&diagnosis, &fit);
 //! ```

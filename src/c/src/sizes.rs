@@ -19,13 +19,13 @@ pub const ALLANITE_OCTAVES: usize = 20;
 /// Words of an `AllaniteGyro`.
 pub const ALLANITE_GYRO_WORDS: usize = 2160 + 66 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteEvidence`.
-pub const ALLANITE_EVIDENCE_WORDS: usize = 440 + 7 * ALLANITE_OCTAVES;
+pub const ALLANITE_EVIDENCE_WORDS: usize = 470 + 7 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteSelfTest`.
 pub const ALLANITE_SELF_TEST_WORDS: usize = 44;
 /// Words of an `AllaniteLook`.
-pub const ALLANITE_LOOK_WORDS: usize = 180 + 30 * ALLANITE_OCTAVES;
+pub const ALLANITE_LOOK_WORDS: usize = 230 + 31 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteDiagnosis`.
-pub const ALLANITE_DIAGNOSIS_WORDS: usize = 3500 + 42 * ALLANITE_OCTAVES;
+pub const ALLANITE_DIAGNOSIS_WORDS: usize = 2950 + 38 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteCertificate`.
 pub const ALLANITE_CERTIFICATE_WORDS: usize = 560;
 /// Bytes of a buffer for any snapshot of a record and a self-test.

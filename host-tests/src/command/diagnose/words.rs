@@ -50,11 +50,7 @@ impl Finding {
         Some(finding)
     }
 
-    fn effect(
-        diagnosed: &Diagnosed,
-        after: &Step<OCTAVES, BINS>,
-        added: &Term,
-    ) -> Self {
+    fn effect(diagnosed: &Diagnosed, after: &Step<OCTAVES, BINS>, added: &Term) -> Self {
         let effect = added.effect;
         let place = |replaced: &str| format!("replaces {}", words::plain(replaced));
         let change = effect.replaces().map(|replaced| place(replaced.name()));

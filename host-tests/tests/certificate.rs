@@ -32,7 +32,7 @@ fn record_keeps_the_results_of_fit_and_diagnosis() {
     let bytes = encoded(&written);
     let read = Certificate::decode(&bytes).unwrap();
     assert_eq!(encoded(&read), bytes);
-    assert_eq!((bytes.len(), Certificate::MAX_BYTES), (610, 3280));
+    assert_eq!((bytes.len(), Certificate::MAX_BYTES), (610, 3568));
     assert_eq!(read.device, b"SN-0042");
     assert_eq!(read.firmware, [1, 2, 300]);
     assert_eq!(read.conditions, written.conditions);

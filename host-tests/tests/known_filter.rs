@@ -161,7 +161,8 @@ fn what_is_no_filter_is_refused() {
     for (filter, message) in [
         (
             "sinusoid:frequency_hz=1",
-            "is no filter on white noise; choose from low_pass, decimation_filter, notch",
+            "is no filter on white noise; choose from low_pass, decimation_filter, notch, \
+             digital_low_pass, cascade, mode_split, high_pass",
         ),
         (
             "low_pass:poles=2",

@@ -4,7 +4,7 @@
 use crate::diagnosis::{BINS, OCTAVES, measured};
 use allanite::{
     Comparison, Model, Observed, Term,
-    effect::CATALOGUE,
+    effect::{CATALOGUE, MAX_PARAMETERS},
     fit::{Fit, Fitting, Method, Options},
 };
 
@@ -29,7 +29,7 @@ pub fn check(bytes: &[u8]) {
     let mut model = Model::default();
     for three in terms.chunks_exact(3) {
         let effect = CATALOGUE[usize::from(three[0]) % CATALOGUE.len()];
-        let parameters = std::array::from_fn(|j| match effect.is_whole(j) {
+        let parameters: [f64; MAX_PARAMETERS] = std::array::from_fn(|j| match effect.is_whole(j) {
             true => f64::from(three[2] % 7),
             false => 10_f64.powf(f64::from(three[1 + j % 2] as i8) / 16.0),
         });

@@ -213,15 +213,16 @@ impl<'a> EffectArgument<'a> {
         self.failure(what, &remedy)
     }
 
-    /// Takes a shape parameter that is a whole number, which is 1 unless given.
+    /// Takes a shape parameter that is a whole number, which is the least one unless given: one pole, two stages of a
+    /// cascade.
     fn whole(&mut self, parameter: &Parameter) -> Result<f64, Failure> {
         /// Any span will do: the range of a whole number does not depend on it.
         const ANY: Span = Span {
             interval_s: 1.0,
             longest_tau_s: 1.0,
         };
-        let value = self.take(parameter.name).unwrap_or(1.0);
         let range = (parameter.search_range)(&ANY);
+        let value = self.take(parameter.name).unwrap_or(range.low);
         if value.fract() != 0.0 || !(range.low..=range.high).contains(&value) {
             let remedy = format!("give a whole number, {} to {}", range.low, range.high);
             let what = format!("{}={value} is impossible", parameter.name);
@@ -230,7 +231,7 @@ impl<'a> EffectArgument<'a> {
         Ok(value)
     }
 
-    /// Takes the shape parameters of an effect. A parameter that is a whole number is 1 unless given.
+    /// Takes the shape parameters of an effect. A parameter that is a whole number is the least one unless given.
     ///
     /// # Errors
     /// When another parameter is missing, a value is out of range, or a name is no parameter.
@@ -295,7 +296,7 @@ mod tests {
     use super::*;
     use allanite::effect::DecimationFilter;
 
-    fn shape(text: &str) -> Result<[f64; 2], String> {
+    fn shape(text: &str) -> Result<[f64; MAX_PARAMETERS], String> {
         let mut argument =
             EffectArgument::parse("--with", text).map_err(|error| error.to_string())?;
         let effect = argument.effect().map_err(|error| error.to_string())?;
@@ -310,12 +311,15 @@ mod tests {
     fn shape_is_read_by_name_in_any_order() {
         assert_eq!(
             shape("decimation_filter:stages=2,width_s=0.014"),
-            Ok([0.014, 2.0])
+            Ok([0.014, 2.0, 0.0])
         );
-        assert_eq!(shape("decimation_filter:width_s=0.02"), Ok([0.02, 1.0]));
-        assert_eq!(shape("rate_ramp"), Ok([0.0, 0.0]));
+        assert_eq!(
+            shape("decimation_filter:width_s=0.02"),
+            Ok([0.02, 1.0, 0.0])
+        );
+        assert_eq!(shape("rate_ramp"), Ok([0.0; MAX_PARAMETERS]));
         // A cut-off of 42 Hz is that of a time constant of 1/(2π 42 Hz).
-        let [time_constant_s, poles] = shape("low_pass:cutoff_hz=42,poles=2").expect("a shape");
+        let [time_constant_s, poles, _] = shape("low_pass:cutoff_hz=42,poles=2").expect("a shape");
         assert!((time_constant_s - 0.003_789_403_5).abs() < 1e-10);
         assert_eq!(poles, 2.0);
         assert_eq!(DecimationFilter.description().parameters[0].name, "width_s");

@@ -8,7 +8,7 @@ use super::{
 use crate::log::{BINS, OCTAVES};
 use allanite::{
     Comparison, Model,
-    effect::{CATALOGUE, Effect},
+    effect::{CATALOGUE, Distribution, Effect},
     fit::Fit,
     spectrum::{Bin, Spectrum},
 };
@@ -162,11 +162,17 @@ fn short(value: f64) -> f32 {
 }
 
 /// Index of an effect's colour: its place among those effects of the catalogue that neither mirror nor
-/// replace another one. An effect that does so has the colour of the other effect.
+/// replace another one, and do not drift. An effect that does so has the colour of the other effect, or of the one that
+/// does not drift.
 fn colour(effect: &dyn Effect) -> usize {
-    let shown = effect.replaces().or(effect.mirror());
+    let drifts = |effect: &dyn Effect| effect.description().distribution == Distribution::Swept;
+    let steady = effect.description().special_case;
+    let steady = steady.filter(|_| drifts(effect));
+    let shown = effect.replaces().or(effect.mirror()).or(steady);
     let name = shown.map_or(effect.name(), |shown| shown.name());
-    let own = |effect: &&&dyn Effect| effect.replaces().is_none() && effect.mirror().is_none();
+    let own = |effect: &&&dyn Effect| {
+        effect.replaces().is_none() && effect.mirror().is_none() && !drifts(**effect)
+    };
     let mut effects = CATALOGUE.iter().filter(own);
     effects.position(|other| other.name() == name).unwrap_or(0)
 }

@@ -207,10 +207,7 @@ mod tests {
     #[test]
     fn noise_is_stationary_from_the_first_sample_on() {
         const SEEDS: u64 = 1000;
-        let shape = SampledShape {
-            interval_s: 0.01,
-            parameters: [0.1, 0.0],
-        };
+        let shape = SampledShape::known(0.01, [0.1]);
         let block = weights(&GaussMarkov, &shape).len();
         let places = [0, 1, block - 1, block, 2 * block, 3 * block - 1, 3 * block];
         let mut squares = [0.0; 7];

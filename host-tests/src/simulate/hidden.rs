@@ -1,10 +1,11 @@
 //! Effects beyond the five terms that are hidden in a simulated record.
 
 use super::{
-    Random, Source, deterministic::Deterministic, gaussian::Gaussian, two_levels::TwoLevels,
+    Random, Source, deterministic::Deterministic, filtered::Filtered, gaussian::Gaussian,
+    swept::Swept, two_levels::TwoLevels,
 };
 use allanite::effect::{
-    AngleRandomWalk, CATALOGUE, Distribution, Effect, MAX_PARAMETERS, SampledShape,
+    AngleRandomWalk, CATALOGUE, Distribution, Effect, MAX_PARAMETERS, SampledShape, padded,
 };
 
 /// An effect with its shape and its coefficient, in the rate unit of the record.
@@ -22,18 +23,24 @@ pub struct Hidden {
 }
 
 impl Hidden {
-    /// The effect of the catalogue with this name, or `None` if there is none.
-    pub fn new(name: &str, parameters: [f64; MAX_PARAMETERS], coefficient: f64) -> Option<Self> {
+    /// The effect of the catalogue with this name, or `None` if there is none. Parameters that are not given are zero.
+    pub fn new<const N: usize>(name: &str, parameters: [f64; N], coefficient: f64) -> Option<Self> {
         let effect = CATALOGUE.into_iter().find(|effect| effect.name() == name)?;
         Some(Self {
             effect,
-            parameters,
+            parameters: padded(parameters),
             coefficient,
         })
     }
 
-    /// The source that draws a realisation of the effect.
-    pub(super) fn source(&self, interval_s: f64, random: &mut Random) -> Box<dyn Source> {
+    /// The source that draws a realisation of the effect. A frequency that drifts runs up and down once in `sweep_s`
+    /// seconds.
+    pub(super) fn source(
+        &self,
+        interval_s: f64,
+        sweep_s: f64,
+        random: &mut Random,
+    ) -> Box<dyn Source> {
         let (effect, coefficient) = (self.effect, self.coefficient);
         let shape = SampledShape {
             interval_s,
@@ -47,14 +54,20 @@ impl Hidden {
                 random,
             ));
         }
-        match effect.description().distribution {
-            Distribution::TwoLevels => {
-                Box::new(TwoLevels::new(effect, &shape, coefficient, random))
-            }
-            Distribution::Gaussian | Distribution::Deterministic => {
-                Box::new(Gaussian::new(effect, &shape, coefficient, random))
+        if let Some(filtered) = Filtered::new(effect, &shape, coefficient, random) {
+            return Box::new(filtered);
+        }
+        let distribution = effect.description().distribution;
+        if distribution == Distribution::TwoLevels {
+            return Box::new(TwoLevels::new(effect, &shape, coefficient, random));
+        }
+        if distribution == Distribution::Swept {
+            let period = sweep_s / interval_s;
+            if let Some(swept) = Swept::new(effect, &shape, coefficient, period, random) {
+                return Box::new(swept);
             }
         }
+        Box::new(Gaussian::new(effect, &shape, coefficient, random))
     }
 
     /// Whether the effect replaces the white noise of the record.

@@ -1,6 +1,7 @@
 //! Simulates gyros whose noise has known coefficients.
 
 mod deterministic;
+mod filtered;
 mod flicker;
 mod gaussian;
 mod hidden;
@@ -9,6 +10,7 @@ mod kernel;
 mod preset;
 mod random;
 mod simulator;
+mod swept;
 mod thermal;
 mod two_levels;
 
@@ -16,7 +18,7 @@ pub use flicker::band_limited_flicker;
 pub use hidden::Hidden;
 pub use preset::{CUSTOMARY, Preset};
 pub use random::Random;
-pub use simulator::Simulator;
+pub use simulator::{SWEEP, Simulator};
 pub use thermal::{Course, Thermal};
 
 /// The coefficients of the five IEEE-952 terms, in any rate unit and in seconds.

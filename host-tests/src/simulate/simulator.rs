@@ -4,6 +4,9 @@ use super::{Coefficients, Hidden, Random, Source, ieee_952};
 use allanite::effect::BiasInstability;
 use rand::SeedableRng;
 
+/// The number of samples in which a frequency that drifts runs up and down, unless it is told.
+pub const SWEEP: f64 = 65_536.0;
+
 /// An endless record of a gyro at rest. Each rate is averaged over its sample interval.
 pub struct Simulator {
     random: Random,
@@ -21,11 +24,23 @@ impl Simulator {
     }
 
     /// A gyro with hidden effects. An effect that replaces one of the five terms takes the place of
-    /// that term.
+    /// that term. The frequency of an effect that drifts runs up and down once in [`SWEEP`] samples.
     pub fn with_hidden(
+        coefficients: Coefficients,
+        hidden: &[Hidden],
+        rate_hz: f64,
+        seed: u64,
+    ) -> Self {
+        Self::with_sweep(coefficients, hidden, rate_hz, SWEEP / rate_hz, seed)
+    }
+
+    /// The same, with frequencies that run up and down once in `sweep_s` seconds. In a record of this duration every
+    /// frequency of the range has the same share.
+    pub fn with_sweep(
         mut coefficients: Coefficients,
         hidden: &[Hidden],
         rate_hz: f64,
+        sweep_s: f64,
         seed: u64,
     ) -> Self {
         for hidden in hidden {
@@ -38,7 +53,7 @@ impl Simulator {
         }
         let mut simulator = Self::new(coefficients, rate_hz, seed);
         for effect in hidden {
-            let source = effect.source(1.0 / rate_hz, &mut simulator.random);
+            let source = effect.source(1.0 / rate_hz, sweep_s, &mut simulator.random);
             simulator.sources.push(source);
         }
         simulator

@@ -38,14 +38,14 @@ const NEARLY_ALL: f64 = 0.97;
 /// An effect that replaces white noise keeps its coefficient. A power law is not among them: the five terms explain one of
 /// this length.
 pub const EFFECTS: [(&str, [f64; MAX_PARAMETERS], f64); 8] = [
-    ("sinusoid", [7.7, 0.0], 0.4),
-    ("resonance", [5.0, 3.0], 1.0),
-    ("resonance", [20.0, 20.0], 0.5),
-    ("low_pass", [0.02, 2.0], 1.0),
-    ("decimation_filter", [0.03, 1.0], 1.0),
-    ("gauss_markov", [1.0, 0.0], 0.3),
-    ("notch", [30.0, 2.0], 1.0),
-    ("random_telegraph", [1.0, 0.0], 0.5),
+    ("sinusoid", [7.7, 0.0, 0.0], 0.4),
+    ("resonance", [5.0, 3.0, 0.0], 1.0),
+    ("resonance", [20.0, 20.0, 0.0], 0.5),
+    ("low_pass", [0.02, 2.0, 0.0], 1.0),
+    ("decimation_filter", [0.03, 1.0, 0.0], 1.0),
+    ("gauss_markov", [1.0, 0.0, 0.0], 0.3),
+    ("notch", [30.0, 2.0, 0.0], 1.0),
+    ("random_telegraph", [1.0, 0.0, 0.0], 0.5),
 ];
 
 /// What distinguishes the records of a case.

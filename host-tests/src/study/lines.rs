@@ -133,7 +133,7 @@ pub fn diagnose(preset: Preset, line: Line, seed: u64) -> (Said, Vec<Term>) {
     let base = preset.coefficients();
     let hidden = Hidden {
         effect: &Sinusoid,
-        parameters: [line.frequency_hz, 0.0],
+        parameters: [line.frequency_hz, 0.0, 0.0],
         coefficient: line.amplitude,
     };
     let mut simulator = Simulator::with_hidden(base, &[hidden], RATE_HZ, seed);

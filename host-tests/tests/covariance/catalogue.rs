@@ -4,8 +4,8 @@ use super::every_pair;
 use allanite::{
     Model, Term,
     effect::{
-        CATALOGUE, DecimationFilter, Effect, GaussMarkov, MAX_PARAMETERS, Resonance, SampledShape,
-        Sinusoid, Span,
+        CATALOGUE, DecimationFilter, Distribution, Effect, GaussMarkov, MAX_PARAMETERS, Resonance,
+        SampledShape, Sinusoid, Span,
     },
     fit::curve_covariance,
 };
@@ -24,13 +24,13 @@ const NO_SCATTER: f64 = 1e-7;
 /// walk.
 const BASE: [f64; 5] = [0.0, 2.5e-5, 1.6e-5, 9e-8, 0.0];
 
-/// The places of five shapes in the ranges of the two parameters, on a logarithmic scale from 0 to 1.
+/// The places of five shapes in the ranges of the parameters, on a logarithmic scale from 0 to 1.
 const PLACES: [[f64; MAX_PARAMETERS]; 5] = [
-    [0.0, 0.5],
-    [0.25, 1.0],
-    [0.5, 0.0],
-    [0.75, 0.75],
-    [1.0, 0.25],
+    [0.0, 0.5, 0.0],
+    [0.25, 1.0, 0.25],
+    [0.5, 0.0, 0.5],
+    [0.75, 0.75, 0.75],
+    [1.0, 0.25, 1.0],
 ];
 
 /// Five shapes that a search may try on a record.
@@ -137,7 +137,9 @@ fn assert_every_effect(samples: usize) {
     let octaves = every_pair::octaves(samples);
     let longest_tau_s = octaves[octaves.len() - 1].m as f64 * INTERVAL_S;
     let mut cases = Vec::new();
-    for effect in CATALOGUE {
+    // To the covariance, a drifting oscillation is a resonance that forgets its phase as fast.
+    let is_exact = |effect: &&dyn Effect| effect.description().distribution != Distribution::Swept;
+    for effect in CATALOGUE.into_iter().filter(is_exact) {
         for (i, parameters) in shapes(effect, longest_tau_s).into_iter().enumerate() {
             cases.push(alone(effect, parameters));
             // The sum over all pairs of a long record takes a second.
@@ -174,30 +176,36 @@ fn of_two(effects: [(&'static dyn Effect, [f64; MAX_PARAMETERS], f64); 2]) -> [C
 fn products_of_two_effects_are_right() {
     let pairs: [[(&'static dyn Effect, _, _); 2]; 8] = [
         [
-            (&Resonance, [3.0, 3.0], 0.1),
-            (&Resonance, [4.0, 20.0], 0.05),
-        ],
-        [(&Resonance, [3.0, 3.0], 0.1), (&Resonance, [3.0, 3.0], 0.1)],
-        [
-            (&Resonance, [0.02, 1.0], 0.1),
-            (&Resonance, [40.0, 32.0], 0.1),
+            (&Resonance, [3.0, 3.0, 0.0], 0.1),
+            (&Resonance, [4.0, 20.0, 0.0], 0.05),
         ],
         [
-            (&Resonance, [10.0, 32.0], 0.1),
-            (&Sinusoid, [10.1, 0.0], 0.1),
-        ],
-        [(&Resonance, [1.0, 5.0], 0.1), (&Sinusoid, [30.0, 0.0], 0.1)],
-        [
-            (&Resonance, [0.1, 5.0], 0.1),
-            (&GaussMarkov, [1.0, 0.0], 0.1),
+            (&Resonance, [3.0, 3.0, 0.0], 0.1),
+            (&Resonance, [3.0, 3.0, 0.0], 0.1),
         ],
         [
-            (&Resonance, [10.0, 32.0], 0.1),
-            (&DecimationFilter, [0.2, 2.0], 0.01),
+            (&Resonance, [0.02, 1.0, 0.0], 0.1),
+            (&Resonance, [40.0, 32.0, 0.0], 0.1),
         ],
         [
-            (&Sinusoid, [5.0, 0.0], 0.1),
-            (&DecimationFilter, [0.2, 1.0], 0.01),
+            (&Resonance, [10.0, 32.0, 0.0], 0.1),
+            (&Sinusoid, [10.1, 0.0, 0.0], 0.1),
+        ],
+        [
+            (&Resonance, [1.0, 5.0, 0.0], 0.1),
+            (&Sinusoid, [30.0, 0.0, 0.0], 0.1),
+        ],
+        [
+            (&Resonance, [0.1, 5.0, 0.0], 0.1),
+            (&GaussMarkov, [1.0, 0.0, 0.0], 0.1),
+        ],
+        [
+            (&Resonance, [10.0, 32.0, 0.0], 0.1),
+            (&DecimationFilter, [0.2, 2.0, 0.0], 0.01),
+        ],
+        [
+            (&Sinusoid, [5.0, 0.0, 0.0], 0.1),
+            (&DecimationFilter, [0.2, 1.0, 0.0], 0.01),
         ],
     ];
     let cases: Vec<_> = pairs.into_iter().flat_map(of_two).collect();

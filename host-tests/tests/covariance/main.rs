@@ -262,11 +262,7 @@ fn an_oscillation_scatters_with_its_phase() {
             products.sum::<f64>() / PHASES as f64
         };
         let mut model = Model::new(&[]).expect("empty");
-        let parameters = [frequency_hz, 0.0];
-        let term = Term {
-            parameters,
-            ..Term::new(&Sinusoid)
-        };
+        let term = Term::known(&Sinusoid, [frequency_hz]);
         model.add(term).expect("there is room");
         let found = curve_covariance(&curve(&octaves), &model, &[1.0]);
         for j in 0..octaves.len() {

@@ -102,9 +102,9 @@ fn variances_of_poles_are_those_of_the_sum_over_pairs() {
             let time_s = interval_s / decay;
             let frequency_hz = cycles / interval_s;
             let (effect, parameters): (&dyn Effect, _) = if cycles == 0.0 {
-                (&GaussMarkov, [time_s, 0.0])
+                (&GaussMarkov, [time_s, 0.0, 0.0])
             } else {
-                (&Resonance, [frequency_hz, PI * frequency_hz * time_s])
+                (&Resonance, [frequency_hz, PI * frequency_hz * time_s, 0.0])
             };
             let shape = SampledShape {
                 interval_s,

@@ -64,6 +64,6 @@ impl Explain for SecondOrderGaussMarkov {
     }
 
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
-        &[[0.2, 0.0]]
+        &[[0.2, 0.0, 0.0]]
     }
 }

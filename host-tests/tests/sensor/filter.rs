@@ -185,7 +185,7 @@ fn missing(model: &Model, curve: &Curve<OCTAVES>) -> Vec<&'static str> {
 fn a_known_filter_is_part_of_the_model_and_not_found() {
     for (description, cutoff_hz) in [(&MPU_6500, 20.0), (&ICM_42688_P, 45.93), (&LSM6DSO, 31.24)] {
         let term = description.filter.term();
-        let [time_constant_s, poles] = term.parameters;
+        let [time_constant_s, poles, _] = term.parameters;
         let found_hz = 1.0 / (2.0 * PI * time_constant_s);
         assert!((found_hz / cutoff_hz - 1.0).abs() < 1e-3, "{found_hz}");
         assert_eq!(poles, f64::from(description.filter.poles));

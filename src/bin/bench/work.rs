@@ -2,8 +2,8 @@
 
 use crate::clock::Clock;
 use allanite::effect::{
-    CATALOGUE, DecimationFilter, Effect, GaussMarkov, LowPass, RandomTelegraph, Resonance,
-    SampledShape, Sinusoid,
+    CATALOGUE, DecimationFilter, Effect, GaussMarkov, LowPass, MAX_PARAMETERS, RandomTelegraph,
+    Resonance, SampledShape, Sinusoid, padded,
 };
 use allanite::{
     Accumulator, Axes, Curve, Error, Model, Real, Record,
@@ -163,6 +163,12 @@ pub(crate) fn worst<const OCTAVES: usize>(clock: &Clock, deepest: u32) -> u64 {
 /// An effect that is hidden in a curve, with its shape and its coefficient.
 pub(crate) type Hidden = (&'static dyn Effect, [Real; 2], Real);
 
+/// The same with room for every shape parameter.
+fn widened(hidden: &Hidden) -> (&'static dyn Effect, [Real; MAX_PARAMETERS], Real) {
+    let (effect, parameters, coefficient) = *hidden;
+    (effect, padded(parameters), coefficient)
+}
+
 /// The cases of `cargo xtask study hidden-effect`, and their names in the figures.
 pub(crate) const HIDDEN: [(&str, &[Hidden]); 11] = [
     ("nothing", &[]),
@@ -221,7 +227,7 @@ pub(crate) fn spectrum<const B: usize>(hidden: &[Hidden]) -> Option<Spectrum<B>>
     let terms = terms.filter(|(term, _)| !is_replaced(term.effect.name()));
     let terms = terms.map(|(term, coefficient)| (term.effect, term.parameters, coefficient));
     let mut densities = [0.0; B];
-    for (effect, parameters, coefficient) in terms.chain(hidden.iter().copied()) {
+    for (effect, parameters, coefficient) in terms.chain(hidden.iter().map(widened)) {
         for (sum, density) in densities.iter_mut().zip(empty.expected(effect, parameters)) {
             *sum += coefficient * coefficient * density;
         }
@@ -260,10 +266,7 @@ pub(crate) fn curve<const OCTAVES: usize>(hidden: &[Hidden]) -> Option<Curve<OCT
             + 3.0e-8 * tau_s
             + 1.3e-11 * tau_s * tau_s;
         let more = hidden.iter().map(|&(effect, parameters, coefficient)| {
-            let shape = SampledShape {
-                interval_s: 0.01,
-                parameters,
-            };
+            let shape = SampledShape::known(0.01, parameters);
             coefficient * coefficient * effect.variance(averaged, &shape)
         });
         let smooth = smooth + more.sum::<Real>();

@@ -26,7 +26,7 @@ fn effect(code: i32) -> Named {
 }
 
 /// The effects of the catalogue and the five terms of IEEE Std 952. A test compares them with the library.
-const EFFECTS: [Named; 13] = [
+const EFFECTS: [Named; 19] = [
     (1, c"quantization", &[]),
     (2, c"angle_random_walk", &[]),
     (3, c"bias_instability", &[]),
@@ -40,6 +40,16 @@ const EFFECTS: [Named; 13] = [
     (11, c"random_telegraph", &[c"correlation_time_s"]),
     (12, c"power_law", &[c"exponent"]),
     (13, c"notch", &[c"frequency_hz", c"quality"]),
+    (14, c"digital_low_pass", &[c"time_constant_s", c"poles"]),
+    (15, c"cascade", &[c"time_constant_s", c"stages"]),
+    (16, c"mode_split", &[c"rise_hz", c"corner_hz"]),
+    (17, c"high_pass", &[c"time_constant_s"]),
+    (
+        18,
+        c"drifting_resonance",
+        &[c"frequency_hz", c"quality", c"drift_hz"],
+    ),
+    (19, c"drifting_sinusoid", &[c"frequency_hz", c"drift_hz"]),
 ];
 
 #[cfg(test)]

@@ -18,10 +18,12 @@ pub(crate) fn print(records: u64, only: Option<Preset>) {
     for preset in presets.filter(|&preset| only.is_none_or(|only| only == preset)) {
         for case in CASES {
             let t = study(preset, case, records);
-            let names = case.iter().map(|(name, [first, second], size)| match name {
-                _ if *second > 0.0 => format!("{name} {first} {second} ({size})"),
-                _ => format!("{name} {first} ({size})"),
-            });
+            let names = case
+                .iter()
+                .map(|(name, [first, second, _], size)| match name {
+                    _ if *second > 0.0 => format!("{name} {first} {second} ({size})"),
+                    _ => format!("{name} {first} ({size})"),
+                });
             let names: Vec<String> = names.collect();
             let errors = t.errors.iter();
             let errors =

@@ -5,7 +5,9 @@ use crate::{
     failure::{Failure, brief},
     simulate::{Coefficients, Course, Hidden, Thermal},
 };
-use allanite::effect::{AngleRandomWalk, CATALOGUE, DecimationFilter, Effect, IEEE_952};
+use allanite::effect::{
+    AngleRandomWalk, CATALOGUE, DecimationFilter, Effect, IEEE_952, MAX_PARAMETERS,
+};
 use clap::Args;
 
 /// The name of the thermal effect, which a curve without a temperature does not reveal.
@@ -38,7 +40,7 @@ impl HiddenEffects {
         const WIDEST: f64 = 64.0;
         let filter = DecimationFilter.description().name;
         for hidden in self.hidden.iter().filter(|one| one.effect.name() == filter) {
-            let [width_s, _] = hidden.parameters;
+            let [width_s, ..] = hidden.parameters;
             if width_s * rate_hz > WIDEST {
                 return Err(Failure::option(
                     format!(
@@ -117,6 +119,7 @@ fn hidden(
     }
     let effect = argument.effect()?;
     let parameters = argument.shape(effect)?;
+    check_drift(argument, effect, parameters)?;
     let white = coefficients.angle_random_walk;
     let replaced = effect.replaces().map(|replaced| replaced.name());
     let replaces_white_noise = replaced == Some(AngleRandomWalk.description().name);
@@ -130,6 +133,30 @@ fn hidden(
         parameters,
         coefficient,
     })
+}
+
+/// Checks that the range of a drifting frequency is not wider than the effect of the library can be.
+fn check_drift(
+    argument: &EffectArgument<'_>,
+    effect: &dyn Effect,
+    parameters: [f64; MAX_PARAMETERS],
+) -> Result<(), Failure> {
+    let of = |name: &str| {
+        let mut named = effect.parameters().iter().zip(parameters);
+        named.find_map(|(one, value)| (one.name == name).then_some(value))
+    };
+    match (of("frequency_hz"), of("drift_hz")) {
+        (Some(frequency_hz), Some(drift_hz)) if drift_hz > 0.5 * frequency_hz => Err(argument
+            .failure(
+                format!(
+                    "a range of {} Hz around {} Hz is too wide",
+                    brief(drift_hz),
+                    brief(frequency_hz)
+                ),
+                "give a range of at most half the frequency",
+            )),
+        _ => Ok(()),
+    }
 }
 
 fn thermal(argument: &mut EffectArgument<'_>) -> Result<Thermal, Failure> {

@@ -222,7 +222,9 @@ impl Record {
         const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
         let axis = |axis: u64| {
             let seed = self.seed.wrapping_add(axis.wrapping_mul(GOLDEN));
-            Simulator::with_hidden(self.coefficients, &self.effects.hidden, self.rate_hz, seed)
+            let sweep_s = self.samples as f64 / self.rate_hz;
+            let hidden = &self.effects.hidden;
+            Simulator::with_sweep(self.coefficients, hidden, self.rate_hz, sweep_s, seed)
         };
         (0..self.axes as u64).map(axis).collect()
     }

@@ -320,7 +320,8 @@ fn stages(record: &mut Certificate, stages: f32) {
 #[test]
 fn every_effect_of_the_catalogue_has_a_permanent_code() {
     let codes = CATALOGUE.map(|effect| EffectCode::of(effect).number());
-    assert_eq!(codes, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]);
+    // Numbers never change, and new ones follow.
+    assert!(codes.into_iter().eq(1..=19));
     for effect in CATALOGUE {
         let code = EffectCode::of(effect);
         assert_eq!(code.name(), effect.name());

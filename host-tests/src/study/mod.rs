@@ -28,17 +28,6 @@ use crate::{
 };
 use allanite::{Accumulator, Curve, Scale, spectrum::Spectrum};
 
-/// The effects of the catalogue that no stage of the diagnosis tries. They are kept for the search that compares whole
-/// hypotheses; the list goes when that search comes.
-pub const NOT_TRIED: [&str; 6] = [
-    "digital_low_pass",
-    "cascade",
-    "mode_split",
-    "high_pass",
-    "drifting_resonance",
-    "drifting_sinusoid",
-];
-
 /// The number of octaves of every curve in the studies.
 pub const OCTAVES: usize = 24;
 

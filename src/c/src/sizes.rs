@@ -31,4 +31,4 @@ pub const ALLANITE_CERTIFICATE_WORDS: usize = 560;
 /// Bytes of a buffer for any snapshot of a record and a self-test.
 pub const ALLANITE_SNAPSHOT_BYTES: usize = 8400 + 310 * ALLANITE_OCTAVES;
 /// Bytes of a buffer for any certificate.
-pub const ALLANITE_CERTIFICATE_BYTES: usize = 3400;
+pub const ALLANITE_CERTIFICATE_BYTES: usize = 4200;

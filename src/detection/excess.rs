@@ -55,10 +55,14 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
         for (i, (term, square)) in numbered(model.terms().iter().zip(squares)) {
             excess.work.add_own(observation, term);
             let factor = excess.work.factor(i);
-            excess.squares.put(i, square.max(0.0) / factor.max(Real::MIN_POSITIVE));
+            excess
+                .squares
+                .put(i, square.max(0.0) / factor.max(Real::MIN_POSITIVE));
         }
         excess.work.set_model(observation, &excess.squares);
-        excess.work.set_slopes(observation, model.terms(), &excess.squares);
+        excess
+            .work
+            .set_slopes(observation, model.terms(), &excess.squares);
         Some(excess)
     }
 
@@ -123,10 +127,13 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
             with.put(row, with[row] + change);
         }
         let squares = self.shows(&with, &term, needed, |_, _| 0.0)?;
+        let mut beside = squares.map(math::sqrt);
+        // The filter has the white noise that the model follows it with.
+        let white = beside.get_mut(place).map(core::mem::take);
         Some(Limit {
             term,
-            coefficient: math::sqrt(square),
-            beside: squares.map(math::sqrt),
+            coefficient: white.unwrap_or_default(),
+            beside,
         })
     }
 
@@ -146,6 +153,12 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
     ) -> Option<[Real; MAX_EFFECTS]> {
         let (followed, rest) = self.work.followed(self.observation, with)?;
         let (mut lambda, mut scatter) = (0.0, 0.0);
+        let mut true_rows = rest;
+        for row in self.observation.rows() {
+            let m = self.work.model()[row];
+            true_rows.put(row, (m + rest[row]).max(single(LEAST) * m));
+        }
+        let refitted = self.work.refitted(self.observation, &true_rows);
         for row in self.observation.rows() {
             let m = real(self.work.model()[row]);
             let ratio = (1.0 + real(rest[row]) / m).max(LEAST);
@@ -156,6 +169,8 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
             let noise = 1.0 - share * share;
             scatter += 4.0 * shape * (ratio - 1.0) * (ratio - 1.0) * noise;
         }
+        // Where the effect is large, the coefficients follow it further than the weights of the model say.
+        let lambda = lambda.min(refitted);
         let shapes = real(count(term.fitted_parameters()) as u32);
         let is_filter = term.effect.replaces().is_some();
         let freedom = if is_filter { shapes } else { shapes + 1.0 };

@@ -12,7 +12,7 @@ use crate::{
     effect::{Effect, Span},
     fit::{Columns, Problem},
     limits::MAX_PARAMETERS,
-    list,
+    list, math,
     model::Term,
     observed::Observed,
     profile::Grid,
@@ -28,6 +28,9 @@ const STEPS_AN_OCTAVE: Real = 4.0;
 /// How often the limit of a coefficient, and that of a shape, is halved at most.
 const COEFFICIENT_STEPS: u8 = 24;
 const SHAPE_STEPS: u8 = 12;
+
+/// The ratio of neighbouring lengths of a filter that are tried first.
+const LONGER: Real = 1.3;
 
 /// The relative difference of two sizes that are the same.
 const AGREES: Real = 0.004;
@@ -162,7 +165,13 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
             .replaces()
             .is_none_or(|replaced| model.position(replaced.name()).is_some());
         let is_around = is_of_shape(effect) && first.unit == "Hz";
-        sees && has_place && !is_around && effect.mirror().is_none()
+        // The limit of a more general form is that of its special case, or a little more.
+        let is_general = effect.replaces().is_some() && effect.description().special_case.is_some();
+        let is_drifting = effect
+            .parameters()
+            .last()
+            .is_some_and(|last| last.name == "drift_hz");
+        sees && has_place && !(is_around || is_general || is_drifting) && effect.mirror().is_none()
     }
 
     /// The limits of all shapes of an effect: for each value of its first parameter the largest one of the others.
@@ -179,7 +188,9 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
             core::array::from_fn(|j| Grid::coarse(effect, j, &span, STEPS_AN_OCTAVE));
         let [first, others @ ..] = grids;
         let firsts = if is_of_shape(effect) { 1 } else { first.steps };
-        let shapes = others.iter().fold(1_u32, |n, grid| n.saturating_mul(grid.steps));
+        let shapes = others
+            .iter()
+            .fold(1_u32, |n, grid| n.saturating_mul(grid.steps));
         for at in 0..firsts {
             let mut worst: Option<Limit> = None;
             let mut hides = false;
@@ -213,7 +224,11 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
         excess: &mut Excess<'_, '_, B>,
         pause: &mut Pause<'_>,
     ) -> ControlFlow<(), Option<Limit>> {
-        let needed = price(&term, self.record.curve.interval_s(), self.options.threshold);
+        let needed = price(
+            &term,
+            self.record.curve.interval_s(),
+            self.options.threshold,
+        );
         if is_of_shape(term.effect) {
             self.of_filter(term, needed, excess, pause)
         } else {
@@ -232,21 +247,26 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
         let Some(range) = term.effect.search_range(0, &self.span()) else {
             return ControlFlow::Continue(None);
         };
-        let (mut low, mut high) = (range.low, range.high);
+        // The shortest filter does nothing, and a far longer one is taken for another coefficient.
+        let (mut low, mut high) = (range.low, range.low);
         let mut found: Option<Limit> = None;
+        while found.is_none() {
+            pause()?;
+            low = high;
+            high *= LONGER;
+            if high > range.high {
+                return ControlFlow::Continue(None);
+            }
+            found = with_length(term, high, needed, excess);
+        }
         for _ in 0..SHAPE_STEPS {
             pause()?;
-            // The first one is the widest filter.
-            let size = if found.is_none() { high } else { crate::math::sqrt(low * high) };
-            let mut tried = term;
-            tried.set_parameter(0, size);
-            excess.set(&tried);
-            match excess.of_filter(needed) {
+            let size = math::sqrt(low * high);
+            match with_length(term, size, needed, excess) {
                 Some(limit) => {
                     found = Some(limit);
                     high = size;
                 }
-                None if found.is_none() => return ControlFlow::Continue(None),
                 None => low = size,
             }
             if high < low * (1.0 + AGREES) {
@@ -255,6 +275,19 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
         }
         ControlFlow::Continue(found)
     }
+}
+
+/// The limit of a filter of this length, if it shows.
+fn with_length<const B: usize>(
+    term: Term,
+    length: Real,
+    needed: Real,
+    excess: &mut Excess<'_, '_, B>,
+) -> Option<Limit> {
+    let mut tried = term;
+    tried.set_parameter(0, length);
+    excess.set(&tried);
+    excess.of_filter(needed)
 }
 
 /// The least coefficient of an effect that shows.
@@ -272,7 +305,7 @@ fn of_coefficient<const B: usize>(
     }
     for _ in 0..COEFFICIENT_STEPS {
         pause()?;
-        let size = crate::math::sqrt(low * high);
+        let size = math::sqrt(low * high);
         if excess.of_size(size, needed).is_some() {
             high = size;
         } else {

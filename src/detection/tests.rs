@@ -142,7 +142,7 @@ fn the_limits_lie_on_the_grid_of_shapes_and_in_their_ranges() {
         let ranges = ranges.as_slice().iter();
         ranges.filter(|range| range.effect.name() == name).count()
     };
-    assert!((1..=3).contains(&names("sinusoid")));
+    assert!((1..=4).contains(&names("sinusoid")));
     assert!(names("gauss_markov") >= 1 && names("resonance") >= 1);
     assert_eq!((names("low_pass"), names("decimation_filter")), (1, 1));
     // These are in the model.

@@ -2,7 +2,8 @@
 
 use super::step::FollowedCovariate;
 use crate::{
-    covariate::CrossCurve, curve::Curve, math, real::Real, real::real, record::Record, spectrum::Spectrum,
+    covariate::CrossCurve, curve::Curve, math, real::Real, real::real, record::Record,
+    spectrum::Spectrum,
 };
 
 /// The share of a bin's standard error by which a covariate may change what a level sees. Chosen by hand: a line in

@@ -77,10 +77,7 @@ impl<const K: usize, const B: usize> Following<K, B> {
         least_z: Real,
         work: &mut Work<K, B>,
     ) -> Result<Option<Option<FollowedCovariate>>, Error> {
-        let tried = record
-            .covariates
-            .len()
-            .saturating_add(record.pairs.len());
+        let tried = record.covariates.len().saturating_add(record.pairs.len());
         let tried_log = math::log(real(u32::try_from(tried).unwrap_or(u32::MAX).max(1)));
         let least_square = least_z * least_z + 2.0 * tried_log;
         if self.place >= tried {
@@ -146,10 +143,7 @@ impl<const K: usize, const B: usize> Following<K, B> {
         let at = self.place.checked_sub(record.covariates.len())?;
         let pair = record.pairs.get(at)?;
         let [index, other] = pair.covariates;
-        let crosses = [
-            record.covariates.get(index)?,
-            record.covariates.get(other)?,
-        ];
+        let crosses = [record.covariates.get(index)?, record.covariates.get(other)?];
         let Slopes {
             slopes: [slope, beside],
             correlation,

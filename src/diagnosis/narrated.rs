@@ -80,7 +80,9 @@ impl Story {
         for (term, polished) in best.filter.iter_mut().chain(&mut best.added).zip(polished) {
             *term = *polished;
         }
-        let ControlFlow::Continue(ordered) = search.ordered(observation, model, effects, &best, pause) else {
+        let ControlFlow::Continue(ordered) =
+            search.ordered(observation, model, effects, &best, pause)
+        else {
             return Err(Stop::Paused);
         };
         let mut steps: Vec<Told, MAX_STEPS> = Vec::new();
@@ -110,7 +112,9 @@ impl Story {
         }
         let place = |term: &Term| {
             let mut terms = fitted.model.terms().iter();
-            terms.position(|other| other.effect.name() == term.effect.name() && other.parameters == term.parameters)
+            terms.position(|other| {
+                other.effect.name() == term.effect.name() && other.parameters == term.parameters
+            })
         };
         for told in &mut steps {
             let Some(first) = told.candidates.first_mut() else {
@@ -146,7 +150,10 @@ impl Story {
         };
         step.candidates = told.candidates.clone();
         step.ambiguous = told.ambiguous.clone();
-        step.added = told.candidates.first().map(|first| Addition::Effect(first.term));
+        step.added = told
+            .candidates
+            .first()
+            .map(|first| Addition::Effect(first.term));
         true
     }
 
@@ -214,7 +221,8 @@ fn instead(best: &Hypothesis, other: &Hypothesis, term: &Term) -> Option<Term> {
     let mut more = other.terms().filter(|other_term| {
         let name = other_term.effect.name();
         let is_other_filter = other_term.effect.replaces().is_some();
-        count(other, name) > count(best, name) && (is_filter || !is_other_filter || best.filter.is_none())
+        count(other, name) > count(best, name)
+            && (is_filter || !is_other_filter || best.filter.is_none())
     });
     more.next().copied()
 }

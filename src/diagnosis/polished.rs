@@ -110,7 +110,13 @@ impl Polishing {
         match self.stage {
             Stage::Begin => {
                 let squares = self.present.squares;
-                self.begin(Stage::Round, Start::Once(squares), observed, tolerance, work)?;
+                self.begin(
+                    Stage::Round,
+                    Start::Once(squares),
+                    observed,
+                    tolerance,
+                    work,
+                )?;
                 return Ok(None);
             }
             Stage::BeginLast => {

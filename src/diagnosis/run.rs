@@ -2,8 +2,8 @@
 //! step by step.
 
 use super::{
-    judged::{Judged, Judging},
     followed::Following,
+    judged::{Judged, Judging},
     narrated::{Story, with},
     options::Options,
     search::{Observation, Pause, Search},
@@ -253,8 +253,14 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         loop {
             call(pause)?;
             let (model, judged) = (&self.step.model, &self.judged);
-            let complete =
-                following.advance(observed, &self.record, model, judged, least_z, &mut self.work)?;
+            let complete = following.advance(
+                observed,
+                &self.record,
+                model,
+                judged,
+                least_z,
+                &mut self.work,
+            )?;
             if let Some(followed) = complete {
                 self.step.added = followed.map(Addition::Covariate);
                 return Ok(());

@@ -73,7 +73,10 @@ impl GridSearch {
             }
         }
         let [first, others @ ..] = self.grids;
-        let inner = others.iter().fold(1_u32, |n, grid| n.saturating_mul(grid.steps)).max(1);
+        let inner = others
+            .iter()
+            .fold(1_u32, |n, grid| n.saturating_mul(grid.steps))
+            .max(1);
         for _ in 0..evaluations_a_call(B) {
             let step = self.at / inner;
             if step >= first.steps {
@@ -86,7 +89,8 @@ impl GridSearch {
             let mut rest = self.at % inner;
             self.term.set_parameter(0, first.at(step));
             for (j, grid) in list::numbered(others.iter()) {
-                self.term.set_parameter(j.saturating_add(1), grid.at(rest % grid.steps.max(1)));
+                self.term
+                    .set_parameter(j.saturating_add(1), grid.at(rest % grid.steps.max(1)));
                 rest /= grid.steps.max(1);
             }
             let found = evaluation.found(self.term);

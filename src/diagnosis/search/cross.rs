@@ -1,6 +1,11 @@
 //! The same additions behind every other filter.
 
-use super::{hypothesis::{Added, Hypothesis}, price::has_frequency, refine::Solver, rows::Values};
+use super::{
+    hypothesis::{Added, Hypothesis},
+    price::has_frequency,
+    refine::Solver,
+    rows::Values,
+};
 use crate::{list, model::Term, real::Real};
 use core::ops::ControlFlow;
 

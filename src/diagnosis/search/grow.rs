@@ -78,7 +78,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 each(self, &grown)?;
             }
         }
-        for effect in effects.iter().copied().filter(|effect| is_drifting(*effect)) {
+        for effect in effects
+            .iter()
+            .copied()
+            .filter(|effect| is_drifting(*effect))
+        {
             for (i, term) in numbered(hypothesis.added.iter()) {
                 if let Some(general) = self.drifting(effect, term) {
                     let mut begun = hypothesis.clone();
@@ -146,11 +150,18 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
 
     /// The shapes of an effect with a frequency that gain most.
     #[inline(never)]
-    fn shapes(&mut self, effect: &'static dyn Effect, found: &mut Vec<Term, 12>) -> ControlFlow<()> {
+    fn shapes(
+        &mut self,
+        effect: &'static dyn Effect,
+        found: &mut Vec<Term, 12>,
+    ) -> ControlFlow<()> {
         let mut best: Vec<(Term, Real), RESONANCES> = Vec::new();
         let mut column = Values::<B>::ZEROS;
         for variant in Variant::of(effect, &self.observation.span) {
-            for term in variant.grid(self.observation, FREQUENCY_STEPS, QUALITIES).terms() {
+            for term in variant
+                .grid(self.observation, FREQUENCY_STEPS, QUALITIES)
+                .terms()
+            {
                 (self.pause)()?;
                 if self.observation.column(&term, None, &mut column) == 0.0 {
                     continue;
@@ -175,7 +186,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     fn humps(&mut self, effect: &'static dyn Effect, found: &mut Vec<Term, 12>) -> ControlFlow<()> {
         let mut best: Vec<(Term, Real), RESONANCES> = Vec::new();
         for variant in Variant::of(effect, &self.observation.span) {
-            for (i, term) in numbered(variant.grid(self.observation, FREQUENCY_STEPS, QUALITIES).terms()) {
+            for (i, term) in numbered(
+                variant
+                    .grid(self.observation, FREQUENCY_STEPS, QUALITIES)
+                    .terms(),
+            ) {
                 if i % TERMS_A_PIECE == 0 {
                     (self.pause)()?;
                 }
@@ -212,7 +227,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             along += weight * (1.0 - m);
             own += weight * c;
         }
-        if along > 0.0 && own > 0.0 { along * along / own } else { 0.0 }
+        if along > 0.0 && own > 0.0 {
+            along * along / own
+        } else {
+            0.0
+        }
     }
 
     /// The peaks above the present model that a line explains best. The frequency is that between two bins (for Hann's
@@ -244,7 +263,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             };
             let mut gain = 0.0;
             for finer in 0..3_usize {
-                let Some((_, bins)) = self.observation.levels().nth(level.saturating_add(finer)) else {
+                let Some((_, bins)) = self.observation.levels().nth(level.saturating_add(finer))
+                else {
                     break;
                 };
                 let Some(bin) = bins.first() else { break };
@@ -255,7 +275,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
             let is_known = |other: &Peak| {
                 let distance = other.frequency_hz - frequency_hz;
-                distance * distance < 1e-4 / (self.observation.duration_s * self.observation.duration_s)
+                distance * distance
+                    < 1e-4 / (self.observation.duration_s * self.observation.duration_s)
             };
             if gain > LEAST_GAIN && !found.iter().any(is_known) {
                 let peak = Peak { frequency_hz, gain };

@@ -61,7 +61,9 @@ impl Hypothesis {
 
     /// Whether a fit has room for all shapes, and there are no more effects than `most`.
     pub(super) fn has_room(&self, most: usize) -> bool {
-        let shapes = self.terms().map(|term| list::count(term.fitted_parameters()));
+        let shapes = self
+            .terms()
+            .map(|term| list::count(term.fitted_parameters()));
         shapes.fold(0_usize, |sum, one| sum.saturating_add(one)) <= MAX_SHAPE
             && list::count(self.terms()) <= most
     }
@@ -85,7 +87,9 @@ impl Hypothesis {
         threshold: Real,
     ) {
         self.score = deviance + 2.0 * self.parameters();
-        let prices = self.terms().map(|term| price(term, observation.interval_s, threshold));
+        let prices = self
+            .terms()
+            .map(|term| price(term, observation.interval_s, threshold));
         self.cost = self.score + prices.sum::<Real>();
     }
 
@@ -113,7 +117,8 @@ impl Hypothesis {
     pub(super) fn is_general_form_of(&self, other: &Self) -> bool {
         let special = |term: &Term| {
             let special = term.effect.description().special_case?;
-            (special.replaces().is_some() == term.effect.replaces().is_some()).then(|| special.name())
+            (special.replaces().is_some() == term.effect.replaces().is_some())
+                .then(|| special.name())
         };
         let times = |terms: &Self, name: &str| {
             list::count(terms.terms().filter(|term| term.effect.name() == name))
@@ -125,7 +130,8 @@ impl Hypothesis {
                 continue;
             }
             differs = true;
-            let is_special = special(term).is_some_and(|special| times(other, special) > times(self, special));
+            let is_special =
+                special(term).is_some_and(|special| times(other, special) > times(self, special));
             if !is_special {
                 return false;
             }

@@ -24,6 +24,9 @@ use heapless::Vec;
 /// A row of the model is at least this share of the measurement, so that its logarithm stays near.
 const LEAST: f32 = 1e-4;
 
+/// The rounds in which coefficients are fitted to expected values.
+const REFITS: u8 = 4;
+
 /// How far the logarithm of a shape may follow an effect that is added.
 const FOLLOWS: Real = 1.0;
 
@@ -150,7 +153,11 @@ impl<const B: usize> Workspace<B> {
         let mut rest = *with;
         for i in 0..self.count().saturating_add(shift.len()) {
             let slope = i >= self.count();
-            let size = if slope { squares[i] - FOLLOWS } else { squares[i] };
+            let size = if slope {
+                squares[i] - FOLLOWS
+            } else {
+                squares[i]
+            };
             if let Some(column) = self.column(i) {
                 for row in observation.rows() {
                     rest.put(row, rest[row] - single(size) * column[row]);
@@ -158,6 +165,29 @@ impl<const B: usize> Workspace<B> {
             }
         }
         Some((squares, rest))
+    }
+
+    /// `−2 ln L` of expected values beside their best fit, less that of the values themselves: `2 Σ ν (x/m − 1 − ln x/m)`.
+    #[inline(never)]
+    pub(crate) fn refitted(&mut self, observation: &Observation<'_, B>, with: &Values<B>) -> Real {
+        let (model, mut least) = (self.model, Real::INFINITY);
+        for _ in 0..REFITS {
+            if !self.set_equations(observation, Some(with), &[], 0.0) {
+                break;
+            }
+            let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
+            self.model = self.model_of(observation, &squares);
+            let rows = observation.rows().filter(|&row| self.shape[row] > 0.0);
+            let sum: Real = rows
+                .map(|row| {
+                    let ratio = real(with[row]) / real(self.model[row]);
+                    real(self.shape[row]) * (ratio - 1.0 - math::log(ratio))
+                })
+                .sum();
+            least = least.min(2.0 * sum);
+        }
+        self.model = model;
+        least
     }
 
     /// `−2 ln L` of a model.
@@ -224,7 +254,10 @@ impl<const B: usize> Workspace<B> {
                 product.put(row, column[row] * weighted[row]);
             }
             for j in 0..=i {
-                own.put(j, self.column(j).map_or(0.0, |other| real(product.dot(other))));
+                own.put(
+                    j,
+                    self.column(j).map_or(0.0, |other| real(product.dot(other))),
+                );
             }
             let mut right = real(product.dot(&target));
             if let Some(at) = i.checked_sub(first_slope) {
@@ -283,7 +316,11 @@ impl<const B: usize> Workspace<B> {
                 along += weight * (1.0 - m);
                 own += weight * c;
             }
-            square = if own > 0.0 { (along / own).max(0.0) } else { 0.0 };
+            square = if own > 0.0 {
+                (along / own).max(0.0)
+            } else {
+                0.0
+            };
         }
         if square == 0.0 {
             return 0.0;

@@ -28,7 +28,7 @@ pub(crate) use hypothesis::Hypothesis;
 pub(crate) use likelihood::Workspace;
 pub(crate) use price::price;
 pub(crate) use rows::{Observation, Values};
-pub(crate) use run::{best_shape_of, Found, Limits, MAX_ALTERNATIVES, Search};
+pub(crate) use run::{Found, Limits, MAX_ALTERNATIVES, Search, best_shape_of};
 
 use core::ops::ControlFlow;
 

@@ -41,9 +41,8 @@ impl<const N: usize> Pool<N> {
         if self.list.iter().any(is_same) {
             return;
         }
-        let has_filter = |one: &Hypothesis, other: &Hypothesis| {
-            one.filter.is_some() && one.has_filter_of(other)
-        };
+        let has_filter =
+            |one: &Hypothesis, other: &Hypothesis| one.filter.is_some() && one.has_filter_of(other);
         let groups: [(usize, fn(&Hypothesis, &Hypothesis) -> bool); 2] = [
             (SAME_ADDITIONS, Hypothesis::adds_like),
             (SAME_FILTER, has_filter),
@@ -59,6 +58,8 @@ impl<const N: usize> Pool<N> {
             let worst = self.list.iter().rposition(|other| alike(other, hypothesis));
             list::remove(&mut self.list, worst.unwrap_or(N));
         }
-        list::rank(&mut self.list, hypothesis.clone(), |other| other.score > score);
+        list::rank(&mut self.list, hypothesis.clone(), |other| {
+            other.score > score
+        });
     }
 }

@@ -30,7 +30,10 @@ const SHAPED_FILTER: Real = 14.0;
 
 /// Whether a frequency comes first among an effect's parameters.
 pub(super) fn has_frequency(effect: &dyn Effect) -> bool {
-    effect.parameters().first().is_some_and(|first| first.unit == "Hz")
+    effect
+        .parameters()
+        .first()
+        .is_some_and(|first| first.unit == "Hz")
 }
 
 /// Whether an effect is a line: deterministic, with a frequency.
@@ -68,7 +71,10 @@ fn usual(term: &Term, interval_s: Real) -> Real {
             RESONANCE
         };
     }
-    let is_time = effect.parameters().first().is_some_and(|first| first.unit == "s");
+    let is_time = effect
+        .parameters()
+        .first()
+        .is_some_and(|first| first.unit == "s");
     if !is_time {
         return OTHER_NOISE;
     }

@@ -1,8 +1,6 @@
 //! What a hypothesis does not need.
 
-use super::{
-    grow::is_drifting, hypothesis::Hypothesis, price::has_frequency, refine::Solver,
-};
+use super::{grow::is_drifting, hypothesis::Hypothesis, price::has_frequency, refine::Solver};
 use crate::{list, real::Real};
 use core::ops::ControlFlow;
 
@@ -17,7 +15,9 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             let mut best: Option<Hypothesis> = None;
             let mut consider = |solver: &mut Self, simpler: Hypothesis| {
                 let refined = solver.refine(simpler, 8)?;
-                if refined.cost < kept.cost && best.as_ref().is_none_or(|best| refined.cost < best.cost) {
+                if refined.cost < kept.cost
+                    && best.as_ref().is_none_or(|best| refined.cost < best.cost)
+                {
                     best = Some(refined);
                 }
                 ControlFlow::Continue(())
@@ -31,7 +31,9 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 consider(self, Hypothesis::new(kept.filter, rest.clone()))?;
                 let simpler = term.effect.description().special_case;
                 let is_narrow = is_drifting(term.effect) || term.parameter(1) > NARROW;
-                if let Some(simpler) = simpler.filter(|simpler| has_frequency(*simpler) && is_narrow) {
+                if let Some(simpler) =
+                    simpler.filter(|simpler| has_frequency(*simpler) && is_narrow)
+                {
                     let mut parameters = term.parameters;
                     for parameter in parameters.iter_mut().skip(simpler.parameters().len()) {
                         *parameter = 0.0;

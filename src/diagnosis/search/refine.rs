@@ -96,7 +96,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
 
     /// Refines all shapes of a hypothesis together with its coefficients, in at most this number of rounds.
     #[inline(never)]
-    pub(super) fn refine(&mut self, hypothesis: Hypothesis, rounds: u8) -> ControlFlow<(), Hypothesis> {
+    pub(super) fn refine(
+        &mut self,
+        hypothesis: Hypothesis,
+        rounds: u8,
+    ) -> ControlFlow<(), Hypothesis> {
         let mut hypothesis = hypothesis;
         self.load(&hypothesis);
         (self.pause)()?;
@@ -105,7 +109,9 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let mut damping = DAMPING;
         let mut small = 0_u8;
         let mut shapes: Option<Shapes> = None;
-        let has_shapes = hypothesis.terms().any(|term| term.fitted_parameters().next().is_some());
+        let has_shapes = hypothesis
+            .terms()
+            .any(|term| term.fitted_parameters().next().is_some());
         for _ in 0..if has_shapes { rounds } else { 0 } {
             (self.pause)()?;
             if shapes.is_none() {
@@ -126,7 +132,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             let now = self.work.solve(self.observation, 3);
             if now < deviance {
                 let gain = deviance - now;
-                small = if gain < SMALL { small.saturating_add(1) } else { 0 };
+                small = if gain < SMALL {
+                    small.saturating_add(1)
+                } else {
+                    0
+                };
                 (terms, deviance) = (changed, now);
                 shapes = None;
                 damping = (damping / FALLS).max(1e-6);
@@ -171,9 +181,13 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     /// and neither can a step plus its largest size, so that one solver serves both.
     #[inline(never)]
     fn step(&mut self, shapes: &Shapes, damping: Real) -> Option<Vec<Real, MAX_SHAPE>> {
-        let strides: Vec<Real, MAX_SHAPE> = crate::list::fill(shapes.iter().map(|shape| shape.stride));
+        let strides: Vec<Real, MAX_SHAPE> =
+            crate::list::fill(shapes.iter().map(|shape| shape.stride));
         let count = self.work.count();
-        if !self.work.set_equations(self.observation, None, &strides, damping) {
+        if !self
+            .work
+            .set_equations(self.observation, None, &strides, damping)
+        {
             return None;
         }
         let (solution, _) = self.work.equations.solve_non_negative(&Free::NONE);
@@ -212,10 +226,16 @@ impl<const B: usize> Workspace<B> {
                 continue;
             }
             for j in term.fitted_parameters().take(MAX_PARAMETERS) {
-                let (stride, step) = match self.resolution(observation, i).filter(|_| is_line(term.effect)) {
+                let (stride, step) = match self
+                    .resolution(observation, i)
+                    .filter(|_| is_line(term.effect))
+                {
                     Some(width_hz) if j == 0 => {
                         let relative = width_hz / term.parameter(0);
-                        ((LINE_STRIDE * relative).min(STRIDE), (LINE_STEP * relative).min(STEP))
+                        (
+                            (LINE_STRIDE * relative).min(STRIDE),
+                            (LINE_STEP * relative).min(STEP),
+                        )
                     }
                     _ => (STRIDE, STEP),
                 };
@@ -230,7 +250,9 @@ impl<const B: usize> Workspace<B> {
                 let mut slope = Values::<B>::ZEROS;
                 let factor = self.factors.get(i).copied();
                 observation.column(&near, factor, &mut slope);
-                let Some(column) = self.own.get(i) else { continue };
+                let Some(column) = self.own.get(i) else {
+                    continue;
+                };
                 let scale = square / single(step);
                 let mut size = 0.0;
                 for row in observation.rows() {

@@ -174,7 +174,9 @@ impl<'a, const B: usize> Observation<'a, B> {
     }
 
     /// The levels of the spectrum, shortest blocks first: the first row of each, and its bins.
-    pub(super) fn levels(&self) -> impl Iterator<Item = (usize, &'a [crate::spectrum::Bin])> + use<'a, B> {
+    pub(super) fn levels(
+        &self,
+    ) -> impl Iterator<Item = (usize, &'a [crate::spectrum::Bin])> + use<'a, B> {
         let all = self.spectrum.map_or(&[][..], |spectrum| spectrum.all());
         let mut row = LOW;
         levels_of(all).map(move |level| {

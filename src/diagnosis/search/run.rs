@@ -15,9 +15,8 @@ use super::{
 use crate::{
     effect::Effect,
     limits::MAX_EFFECTS,
-    list,
+    list, math,
     model::{Model, Term},
-    math,
     real::Real,
 };
 use core::ops::ControlFlow;
@@ -118,19 +117,27 @@ impl<const B: usize> Search<B> {
         let white = set_common(work, observation, model, effects);
         let filters = || {
             let has_white = white.is_some();
-            let filters = effects.iter().copied().filter(move |effect| has_white && effect.replaces().is_some());
+            let filters = effects
+                .iter()
+                .copied()
+                .filter(move |effect| has_white && effect.replaces().is_some());
             filters.flat_map(|effect| Variant::of(effect, &observation.span))
         };
-        let noises: Vec<&'static dyn Effect, 4> = list::fill(
-            effects.iter().copied().filter(|effect| is_added(*effect) && !has_frequency(*effect) && effect.parameters().len() == 1),
-        );
+        let noises: Vec<&'static dyn Effect, 4> =
+            list::fill(effects.iter().copied().filter(|effect| {
+                is_added(*effect) && !has_frequency(*effect) && effect.parameters().len() == 1
+            }));
         let mut solver = Solver {
             observation,
             work,
             white,
             shapes,
             limits: Limits {
-                effects: limits.effects.min(MAX_EFFECTS.saturating_sub(model.terms().len()).saturating_add(usize::from(white.is_some()))),
+                effects: limits.effects.min(
+                    MAX_EFFECTS
+                        .saturating_sub(model.terms().len())
+                        .saturating_add(usize::from(white.is_some())),
+                ),
                 ..limits
             },
             pause,
@@ -146,7 +153,9 @@ impl<const B: usize> Search<B> {
             if plain.is_none() {
                 plain = Some(whole.clone());
             }
-            list::rank(&mut continua, (whole.clone(), continuum), |other| other.1 > continuum);
+            list::rank(&mut continua, (whole.clone(), continuum), |other| {
+                other.1 > continuum
+            });
             enter(beams, whole);
         })?;
         let Some(plain) = plain else {
@@ -178,7 +187,14 @@ impl<const B: usize> Search<B> {
             {
                 extern crate std;
                 std::eprintln!("== count {count} best {best:.1} left {left:.1}");
-                for h in &parents { std::eprintln!("  {:.1} {:.1} {:?}", h.score, h.cost, h.terms().collect::<std::vec::Vec<_>>()); }
+                for h in &parents {
+                    std::eprintln!(
+                        "  {:.1} {:.1} {:?}",
+                        h.score,
+                        h.cost,
+                        h.terms().collect::<std::vec::Vec<_>>()
+                    );
+                }
             }
             for parent in parents.iter().filter(|_| count < MOST) {
                 solver.grow(parent, effects, &mut |_, hypothesis| {
@@ -209,7 +225,9 @@ impl<const B: usize> Search<B> {
             }
             for (added, from) in &sets {
                 let is_own = added.len() == from.added.len();
-                solver.cross(added, from, is_own, &mut |hypothesis| enter(beams, hypothesis))?;
+                solver.cross(added, from, is_own, &mut |hypothesis| {
+                    enter(beams, hypothesis)
+                })?;
             }
             let next = beams.get(count.saturating_add(1));
             let next = next.map_or(Real::INFINITY, |beam| lowest(beam.as_slice()));
@@ -221,13 +239,22 @@ impl<const B: usize> Search<B> {
         // The cheapest of all, without what they do not need.
         let mut cheapest: Vec<&Hypothesis, PRUNED> = Vec::new();
         for hypothesis in beams.iter().flat_map(Pool::as_slice) {
-            list::rank(&mut cheapest, hypothesis, |other| other.cost > hypothesis.cost);
+            list::rank(&mut cheapest, hypothesis, |other| {
+                other.cost > hypothesis.cost
+            });
         }
         #[cfg(feature = "lab")]
         {
             extern crate std;
             std::eprintln!("== cheapest");
-            for h in &cheapest { std::eprintln!("  {:.1} {:.1} {:?}", h.score, h.cost, h.terms().collect::<std::vec::Vec<_>>()); }
+            for h in &cheapest {
+                std::eprintln!(
+                    "  {:.1} {:.1} {:?}",
+                    h.score,
+                    h.cost,
+                    h.terms().collect::<std::vec::Vec<_>>()
+                );
+            }
         }
         let mut finals: Vec<Hypothesis, PRUNED> = Vec::new();
         for hypothesis in &cheapest {
@@ -351,7 +378,9 @@ impl<const B: usize> Search<B> {
         loop {
             let mut best: Option<(Hypothesis, Term, Real)> = None;
             for term in hypothesis.terms() {
-                let is_told = ordered.iter().any(|(told, _)| told.effect.name() == term.effect.name() && told.parameters == term.parameters);
+                let is_told = ordered.iter().any(|(told, _)| {
+                    told.effect.name() == term.effect.name() && told.parameters == term.parameters
+                });
                 if is_told {
                     continue;
                 }
@@ -385,12 +414,16 @@ fn chosen(
 ) -> Found {
     let low = finals.iter().map(cost).fold(Real::INFINITY, Real::min);
     let weight = |hypothesis: &Hypothesis| -> Real {
-        let same = finals.iter().filter(|other| other.is_named_like(hypothesis));
+        let same = finals
+            .iter()
+            .filter(|other| other.is_named_like(hypothesis));
         same.map(|other| math::exp(0.5 * (low - other.cost))).sum()
     };
     let heaviest = finals.iter().map(&weight).fold(0.0, Real::max);
     let leading = finals.iter().filter(|one| weight(one) >= heaviest);
-    let best = leading.min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap_or(plain);
+    let best = leading
+        .min_by(|a, b| a.cost.total_cmp(&b.cost))
+        .unwrap_or(plain);
     let mut alternatives: Vec<(Hypothesis, Real), MAX_ALTERNATIVES> = Vec::new();
     for other in finals.iter().chain(cheapest.iter().copied()) {
         let beyond = other.cost - best.cost;
@@ -398,16 +431,24 @@ fn chosen(
         // Effects of one spectrum are told, whatever their prices.
         let is_as_good = other.score < best.score + AS_GOOD
             && list::count(other.terms()) == list::count(best.terms());
-        if !(beyond < ambiguity || is_as_good) || other.is_like(best) || other.is_general_form_of(best) {
+        if !(beyond < ambiguity || is_as_good)
+            || other.is_like(best)
+            || other.is_general_form_of(best)
+        {
             continue;
         }
         if let Some(place) = alternatives.iter().position(is_told) {
-            if alternatives.get(place).is_some_and(|known| known.1 <= beyond) {
+            if alternatives
+                .get(place)
+                .is_some_and(|known| known.1 <= beyond)
+            {
                 continue;
             }
             list::remove(&mut alternatives, place);
         }
-        list::rank(&mut alternatives, (other.clone(), beyond), |known| known.1 > beyond);
+        list::rank(&mut alternatives, (other.clone(), beyond), |known| {
+            known.1 > beyond
+        });
     }
     Found {
         best: best.clone(),
@@ -433,7 +474,11 @@ impl<const B: usize> Search<B> {
             work: &mut self.work,
             white,
             shapes: &mut self.shapes,
-            limits: Limits { effects: 4, threshold: 8.0, ambiguity: 6.0 },
+            limits: Limits {
+                effects: 4,
+                threshold: 8.0,
+                ambiguity: 6.0,
+            },
             pause: &mut pause,
         };
         for rounds in [0, 1, 2, 3, 5, 10, 20] {

@@ -93,7 +93,10 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         best.filter = None;
         self.load(&best);
         let mut least = Real::INFINITY;
-        for term in variant.grid(self.observation, FILTER_STEPS, FILTER_OTHERS).terms() {
+        for term in variant
+            .grid(self.observation, FILTER_STEPS, FILTER_OTHERS)
+            .terms()
+        {
             (self.pause)()?;
             if let (Some(own), Some(factor)) =
                 (self.work.own.first_mut(), self.work.factors.first_mut())
@@ -123,7 +126,10 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let mut least = Real::INFINITY;
         let own = self.work.own.len();
         for variant in Variant::of(effect, &self.observation.span) {
-            for term in variant.grid(self.observation, NOISE_STEPS, NOISE_OTHERS).terms() {
+            for term in variant
+                .grid(self.observation, NOISE_STEPS, NOISE_OTHERS)
+                .terms()
+            {
                 (self.pause)()?;
                 let Some(with) = hypothesis.with(term, self.limits.effects) else {
                     return ControlFlow::Continue(None);
@@ -152,7 +158,10 @@ fn leave_out_peaks<const B: usize>(
 ) {
     *shape = observation.shape;
     for (first, bins) in observation.levels() {
-        let log = |b: usize| bins.get(b).map(|bin: &Bin| math::log(bin.density.max(Real::MIN_POSITIVE)));
+        let log = |b: usize| {
+            bins.get(b)
+                .map(|bin: &Bin| math::log(bin.density.max(Real::MIN_POSITIVE)))
+        };
         for (b, bin) in numbered(bins) {
             let Some(own) = log(b) else { continue };
             let below = median([5, 4, 3].map(|distance| b.checked_sub(distance).and_then(&log)));

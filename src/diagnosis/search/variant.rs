@@ -19,7 +19,10 @@ pub(super) struct Variant {
 
 impl Variant {
     /// The variants of an effect, one after the other.
-    pub(super) fn of(effect: &'static dyn Effect, observation_span: &crate::effect::Span) -> impl Iterator<Item = Self> {
+    pub(super) fn of(
+        effect: &'static dyn Effect,
+        observation_span: &crate::effect::Span,
+    ) -> impl Iterator<Item = Self> {
         let whole = (0..MAX_PARAMETERS).find(|&j| effect.is_whole(j));
         let range = whole.and_then(|j| effect.search_range(j, observation_span));
         let (low, high) = range.map_or((0, 0), |range| (range.low as u8, range.high as u8));
@@ -74,11 +77,18 @@ impl Variant {
                 self.effect.search_range(j, &observation.span),
                 places.next(),
             ) {
-                *axis = Axis::new(&range, if is_first { Some(per_octave) } else { None }, others);
+                *axis = Axis::new(
+                    &range,
+                    if is_first { Some(per_octave) } else { None },
+                    others,
+                );
                 is_first = false;
             }
         }
-        Grid { variant: self, axes }
+        Grid {
+            variant: self,
+            axes,
+        }
     }
 }
 
@@ -136,7 +146,10 @@ impl Grid {
     /// The terms of the grid.
     pub(super) fn terms(&self) -> impl Iterator<Item = Term> + use<> {
         let grid = *self;
-        let count = grid.axes.iter().fold(1_u32, |n, axis| n.saturating_mul(axis.count));
+        let count = grid
+            .axes
+            .iter()
+            .fold(1_u32, |n, axis| n.saturating_mul(axis.count));
         (0..count).map(move |place| {
             let mut rest = place;
             grid.variant.term(grid.axes.map(|axis| {

@@ -6,9 +6,6 @@ use super::{
 };
 use crate::real::Real;
 
-/// The logarithm of what is left of an autocovariance of several poles where it is as good as gone: a thousandth.
-const GONE: Real = 7.0;
-
 /// The largest number of starts of differences after which a tail may be zero, as [`Effect::tail`] says.
 const STARTS: Real = 95.0;
 
@@ -20,6 +17,10 @@ pub(super) trait Filter: Sync {
 
     /// Whether only a spectrum shows the effect.
     const NEEDS_SPECTRUM: bool = false;
+
+    /// The decay of the slowest pole at which the autocovariance of several poles is as good as gone, as an exponent. A
+    /// thousandth is left of poles that lie apart.
+    const GONE: Real = 7.0;
 
     /// The noise behind a filter of this shape.
     fn output(shape: &SampledShape) -> Output;
@@ -101,13 +102,13 @@ impl Output {
     }
 
     /// White noise has no second differences from `m` on.
-    fn tail(&self, m: Real, interval_s: Real) -> Option<Tail> {
+    fn tail(&self, gone: Real, m: Real, interval_s: Real) -> Option<Tail> {
         let scale = self.gain * interval_s;
         let Some(second) = &self.second else {
             // The autocovariance of one real pole has no detail.
             return (!self.first.is_plain()).then(|| self.first.tail(m).scaled(scale));
         };
-        let gone = m + GONE / self.first.decay().min(second.decay());
+        let gone = m + gone / self.first.decay().min(second.decay());
         if gone <= STARTS * (0.25 * m).max(1.0) {
             return Some(Tail::none(gone));
         }
@@ -177,7 +178,7 @@ impl<F: Filter> Effect for F {
     }
 
     fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
-        F::output(shape).tail(m, shape.interval_s)
+        F::output(shape).tail(F::GONE, m, shape.interval_s)
     }
 
     fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {

@@ -152,7 +152,7 @@ mod tests {
                     pairs.map(|(one, other)| one * other).sum::<f64>() / interval_s
                 };
                 let tolerance = if effect.description().name == "cascade" {
-                    1.1e-4
+                    1e-3
                 } else {
                     1e-5
                 };

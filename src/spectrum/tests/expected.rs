@@ -2,7 +2,10 @@
 
 use super::{PI, std, std::vec::Vec, window};
 use crate::{
-    effect::{CATALOGUE, MAX_PARAMETERS, SampledShape},
+    effect::{
+        CATALOGUE, DriftingResonance, DriftingSinusoid, Effect, MAX_PARAMETERS, Resonance,
+        SampledShape, Sinusoid,
+    },
     real::{by_precision, double, real},
     spectrum::expected_densities,
 };
@@ -445,6 +448,71 @@ fn densities_are_those_of_sums_over_single_samples() {
         }
     }
     assert!(compared >= 5000, "{compared}");
+}
+
+/// The densities of a drifting oscillation are the average of those of a steady one over the range.
+#[test]
+fn densities_that_drift_are_averages_over_the_range() {
+    const FREQUENCIES: i32 = 200;
+    let line = |frequency_hz, drift_hz| (frequency_hz, 0.0, drift_hz);
+    let cases = [
+        line(20.0, 2.0),
+        line(20.0, 10.0),
+        line(6.0, 0.1),
+        line(0.3, 0.1),
+        line(0.02, 0.01),
+        (20.0, 14.0, 1.0),
+        (20.0, 5.0, 8.0),
+        (6.0, 30.0, 2.0),
+        (0.3, 10.0, 0.1),
+        (0.02, 3.0, 0.01),
+    ];
+    let mut compared = 0;
+    for (frequency_hz, quality, drift_hz) in cases {
+        for block in [1, 8, 64, 512] {
+            // The steady oscillations have to lie closer than the bins.
+            let bin_hz = 1.0 / (64.0 * f64::from(block) * INTERVAL_S);
+            if drift_hz > 20.0 * bin_hz {
+                continue;
+            }
+            let densities = |effect: &dyn Effect, parameters: [f64; 3]| {
+                let mut densities = [0.0; 28];
+                expected_densities(effect, &shape(parameters), 64, block, &mut densities);
+                densities.map(double)
+            };
+            let found = if quality == 0.0 {
+                densities(&DriftingSinusoid, [frequency_hz, drift_hz, 0.0])
+            } else {
+                densities(&DriftingResonance, [frequency_hz, quality, drift_hz])
+            };
+            let mut average = [0.0; 28];
+            for i in 0..FREQUENCIES {
+                let share = (f64::from(i) + 0.5) / f64::from(FREQUENCIES) - 0.5;
+                let own_hz = frequency_hz + share * drift_hz;
+                let own = if quality == 0.0 {
+                    densities(&Sinusoid, [own_hz, 0.0, 0.0])
+                } else {
+                    // The time constant stays.
+                    let own_quality = quality * own_hz / frequency_hz;
+                    densities(&Resonance, [own_hz, own_quality, 0.0])
+                };
+                for (average, own) in average.iter_mut().zip(own) {
+                    *average += own / f64::from(FREQUENCIES);
+                }
+            }
+            let largest = average.iter().copied().fold(0.0, f64::max);
+            // A rounding error of the variance is white.
+            let white = 5e-6 * 2.0 * f64::from(block) * INTERVAL_S;
+            for (k, (found, average)) in found.into_iter().zip(average).enumerate() {
+                assert!(
+                    (found - average).abs() < 0.01 * largest + white,
+                    "{frequency_hz} {quality} {drift_hz}, {block}, bin {k}: {found:e}, not {average:e}"
+                );
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 500, "{compared}");
 }
 
 #[test]

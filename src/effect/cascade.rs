@@ -27,7 +27,7 @@ use nalgebra::Complex;
 pub struct Cascade;
 
 /// The radius `ρ` for two, three and four stages.
-const RADII: [Real; 3] = [0.016, 0.07, 0.135];
+const RADII: [Real; 3] = [0.016, 0.07, 0.13];
 
 /// The sine of 60 degrees, √3/2.
 const SINE_60: Real = by_precision(0.866_025_403_784_438_6, 0.866_025_4);

@@ -60,7 +60,7 @@
 #define ALLANITE_SNAPSHOT_BYTES (8400 + (310 * ALLANITE_OCTAVES))
 
 // Bytes of a buffer for any certificate.
-#define ALLANITE_CERTIFICATE_BYTES 4200
+#define ALLANITE_CERTIFICATE_BYTES 3700
 
 // What a function returns. A code never changes its meaning.
 enum AllaniteStatus

@@ -25,10 +25,10 @@ pub const ALLANITE_SELF_TEST_WORDS: usize = 44;
 /// Words of an `AllaniteLook`.
 pub const ALLANITE_LOOK_WORDS: usize = 230 + 31 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteDiagnosis`.
-pub const ALLANITE_DIAGNOSIS_WORDS: usize = 2950 + 38 * ALLANITE_OCTAVES;
+pub const ALLANITE_DIAGNOSIS_WORDS: usize = 3100 + 38 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteCertificate`.
 pub const ALLANITE_CERTIFICATE_WORDS: usize = 560;
 /// Bytes of a buffer for any snapshot of a record and a self-test.
 pub const ALLANITE_SNAPSHOT_BYTES: usize = 8400 + 310 * ALLANITE_OCTAVES;
 /// Bytes of a buffer for any certificate.
-pub const ALLANITE_CERTIFICATE_BYTES: usize = 4200;
+pub const ALLANITE_CERTIFICATE_BYTES: usize = 3700;

@@ -15,6 +15,7 @@ use crate::{
 ///
 /// A curve alone is a record too: `(&curve).into()`.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Record<'a, const K: usize, const B: usize = 0> {
     /// The Allan curve. It knows the rate and the unit of the record.
     pub curve: &'a Curve<K>,

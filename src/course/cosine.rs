@@ -25,6 +25,7 @@ const MIN_BLOCKS: usize = 32;
 /// Comput. C-23, 90, for the first-order process), so that the `P_k` are almost independent, each a square of one normal
 /// variable. A segment of a spectrum sees a sixteenth of its length at best; these see the whole record.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CosineTransform {
     block: u32,
     rate_hz: Real,

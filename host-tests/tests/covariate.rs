@@ -1,13 +1,16 @@
 //! Compares the covariance of a gyro with a covariate with a direct computation.
 
 use allanite::{
-    Axis, Error, Model, Scale,
+    Axis, Error, Model, Record, Scale,
     covariate::{Pair, Slope},
-    diagnosis::{Addition, Diagnosis, Evidence, FollowedCovariate, Options, Verdict},
+    diagnosis::{Addition, FollowedCovariate, Options, Verdict},
     effect::CATALOGUE,
     spectrum::{Spectrum, SpectrumAccumulator},
 };
-use host_tests::simulate::{Coefficients, Course, Simulator, Thermal};
+use host_tests::{
+    diagnosis::diagnose,
+    simulate::{Coefficients, Course, Simulator, Thermal},
+};
 use proptest::prelude::*;
 use rayon::prelude::*;
 
@@ -140,15 +143,14 @@ fn claimed(
             Tried::Temperature => (1, &[][..]),
             Tried::Both => (2, std::slice::from_ref(&pair)),
         };
-        let evidence = Evidence {
+        let (model, options) = (Model::ieee_952(), Options::default());
+        let record = Record {
             covariates: &record.covariates[..number],
             pairs,
-            ..Evidence::NONE
+            ..(&record.curve).into()
         };
-        let (model, options) = (Model::ieee_952(), Options::default());
-        let mut diagnosis = Diagnosis::new(record.curve, evidence, &model, &CATALOGUE, options);
         let mut found = None;
-        let report = diagnosis.run(|step| {
+        let report = diagnose(record, &model, &CATALOGUE, options, |step| {
             if let Some(Addition::Covariate(followed)) = step.added {
                 found = Some(followed);
             }
@@ -301,18 +303,18 @@ fn a_spectrum_is_explained_when_what_follows_a_strong_temperature_is_subtracted(
                 spectrum.push_slice(&[count]);
             }
             let scale = Scale::new(COUNT, RATE_HZ).expect("positive");
-            let record = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
-            let evidence = Evidence {
-                covariates: &record.covariates,
-                ..Evidence::NONE
-            };
+            let evidence = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
             let (model, options) = (Model::ieee_952(), Options::default());
             let bins: Spectrum<140> = spectrum.spectrum(scale);
             let all = bins.bins().len();
-            let mut diagnosis =
-                Diagnosis::with_spectrum(record.curve, bins, evidence, &model, &CATALOGUE, options);
+            let record = Record {
+                covariates: &evidence.covariates,
+                ..Record::new(&evidence.curve, &bins)
+            };
             let mut last = None;
-            let verdict = diagnosis.run(|step| last = Some(step.clone()));
+            let verdict = diagnose(record, &model, &CATALOGUE, options, |step| {
+                last = Some(step.clone());
+            });
             let last = last.expect("a step");
             let followed = last.covariate.is_some();
             let alone = last.model.terms().len() == model.terms().len();

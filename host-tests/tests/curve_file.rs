@@ -1,8 +1,9 @@
 //! A curve file holds all that a fit needs, to the bit, and impossible values are refused.
 
+use allanite::course::Course;
 use host_tests::{
     curve_file::{AxisCurve, CurveFile, FORMAT, VERSION},
-    log::{Axis, OCTAVES, SpectrumSums},
+    log::{Axis, Evidence, OCTAVES, SpectrumSums},
     unit::Unit,
 };
 use std::{fs, path::Path};
@@ -11,20 +12,29 @@ use tempfile::TempDir;
 /// The curve of some counts, with or without a gap.
 fn curve(samples: u32, gap: bool) -> AxisCurve {
     let mut accumulator = allanite::Accumulator::<OCTAVES>::new();
+    let (mut spectrum, mut course) = (SpectrumSums::new(), Course::new());
     let mut state = 1u32;
     for i in 0..samples {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        accumulator.push((state >> 8) as i32 - (1 << 23));
+        let count = (state >> 8) as i32 - (1 << 23);
+        accumulator.push(count);
+        spectrum.push_slice(&[count]);
+        course.push(count, []);
         if gap && i == samples / 3 {
             accumulator.gap();
+            spectrum.gap();
+            course.gap();
         }
     }
     let axis = Axis {
-        spectrum: SpectrumSums::new(),
+        spectrum,
         name: "gx".into(),
         rate_per_count: 0.05,
         accumulator,
-        evidence: None,
+        evidence: Some(Evidence {
+            course: Some(course),
+            ..Evidence::default()
+        }),
     };
     AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
 }
@@ -60,6 +70,25 @@ fn file_reads_back_to_the_bit() {
         assert_eq!(axis.curve().unwrap(), same.curve().unwrap());
         assert_eq!(axis.curve().unwrap().points().len(), axis.octaves.len());
     }
+}
+
+#[test]
+fn sparse_levels_and_the_course_read_back_to_the_bit() {
+    let curve = curve(2000, false);
+    let file = CurveFile::new(vec![curve.clone()]);
+    let back = read(&file.to_json().unwrap()).unwrap();
+    let [same] = back.axes.as_slice() else {
+        panic!("{} axes", back.axes.len());
+    };
+    let spectrum = same.spectrum().unwrap();
+    assert_eq!(spectrum, curve.spectrum().unwrap());
+    // The 250 blocks of 8 samples have 6 segments.
+    assert_eq!((spectrum.bins().len(), spectrum.sparse().len()), (28, 28));
+    let course = same.course().unwrap().unwrap();
+    assert_eq!(Some(&course), curve.course().unwrap().as_ref());
+    // 62 blocks of 32 samples are complete.
+    assert_eq!((course.block(), course.blocks()), (32, 62));
+    assert_eq!(course.densities().len(), 61);
 }
 
 #[test]
@@ -100,7 +129,7 @@ fn sums_beyond_64_bits_keep_every_digit() {
 #[test]
 fn impossible_figures_are_refused_with_axis_and_octave() {
     type Change = fn(&mut CurveFile);
-    let cases: [(Change, &str); 24] = [
+    let cases: [(Change, &str); 30] = [
         (|f| f.axes.clear(), "no axes"),
         (
             |f| f.axes[1].axis = "gx".into(),
@@ -188,6 +217,30 @@ fn impossible_figures_are_refused_with_axis_and_octave() {
             |f| f.axes[0].octaves[4].sum = u128::MAX,
             "octave m = 16: a sum of 340282366920938463463374607431768211455 is too large",
         ),
+        (
+            |f| f.axes[0].course.as_mut().unwrap().block = 3,
+            "axis \"gx\": course: a course of 62 blocks of 3 samples, or its densities, are impossible",
+        ),
+        (
+            |f| f.axes[0].course.as_mut().unwrap().blocks = 31,
+            "course: a course of 31 blocks of 16 samples",
+        ),
+        (
+            |f| drop(f.axes[0].course.as_mut().unwrap().densities.pop()),
+            "course: a course of 62 blocks of 16 samples",
+        ),
+        (
+            |f| f.axes[0].course.as_mut().unwrap().densities[3] = -1.0,
+            "course: a course of 62 blocks of 16 samples",
+        ),
+        (
+            |f| f.axes[0].course.as_mut().unwrap().block = 32,
+            "course: the blocks are longer than the record",
+        ),
+        (
+            |f| f.axes[0].course.as_mut().unwrap().densities[3] = 1e300,
+            "course: the densities contradict the octaves",
+        ),
     ];
     assert!(read(&file().to_json().unwrap()).is_ok());
     for (change, expected) in cases {
@@ -216,8 +269,8 @@ fn text_that_is_not_a_curve_file_is_refused_with_its_line() {
         ),
         ("[1, 2]".into(), "c.json:1: not a curve file"),
         (
-            good.replace("\"version\": 3", "\"version\": 4"),
-            "c.json: the format has version 4",
+            good.replace("\"version\": 4", "\"version\": 5"),
+            "c.json: the format has version 5",
         ),
         (
             good.replace(FORMAT, "another"),

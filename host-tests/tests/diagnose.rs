@@ -3,11 +3,11 @@
 
 use allanite::{
     Model,
-    diagnosis::{Diagnosis, Evidence, Options, Step, alternative},
+    diagnosis::{Options, Step, alternative},
     effect::CATALOGUE,
 };
 use host_tests::program::{ADIS16405, json, output, refusal};
-use host_tests::{curve_file::CurveFile, log::OCTAVES};
+use host_tests::{curve_file::CurveFile, diagnosis::diagnose, log::OCTAVES};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -264,12 +264,7 @@ fn text_and_json_agree() {
     for axis in document["axes"].as_array().unwrap() {
         let steps = axis["steps"].as_array().unwrap();
         for (number_of_step, pair) in steps.windows(2).enumerate() {
-            let mut added = pair[0]["added"].as_str().unwrap().to_owned();
-            if let Some(swap) = pair[0]["candidates"][0]["swap"].as_object() {
-                let [taken, dropped] = ["taken", "dropped"].map(|key| swap[key].as_str().unwrap());
-                added += &format!(", {taken} instead of {dropped}");
-            }
-            let added = added.replace('_', " ");
+            let added = pair[0]["added"].as_str().unwrap().replace('_', " ");
             let line = format!(
                 "{}. + {added}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p",
                 number_of_step + 1,
@@ -289,12 +284,7 @@ fn text_and_json_agree() {
             "{name}"
         );
     }
-    for words in [
-        "what it is:",
-        "where it comes from:",
-        "what to check:",
-        "instead of",
-    ] {
+    for words in ["what it is:", "where it comes from:", "what to check:"] {
         assert!(text.contains(words), "{words}");
     }
 }
@@ -377,47 +367,33 @@ fn effects_that_cannot_be_hidden_are_refused() {
 #[test]
 fn alternatives_fitted_in_full_agree_with_the_candidates_of_the_search() {
     let curves = CurveFile::read(Path::new(ADIS16405)).unwrap();
-    let mut compared = 0;
+    let (mut compared, mut others) = (0, 0);
     for axis in &curves.axes {
         let curve = axis.curve().unwrap();
         let mut steps: Vec<Step<OCTAVES>> = Vec::new();
-        let report = |step: &Step<OCTAVES>| steps.push(step.clone());
-        let model = Model::ieee_952();
-        let (evidence, options) = (Evidence::NONE, Options::default());
-        let mut diagnosis = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options);
-        diagnosis.run(report).unwrap();
+        let (model, options) = (Model::ieee_952(), Options::default());
+        diagnose((&curve).into(), &model, &CATALOGUE, options, |step| {
+            steps.push(step.clone());
+        })
+        .unwrap();
         for (at, step) in steps.iter().enumerate() {
-            let before = at.checked_sub(1).map(|before| &steps[before]);
             for (place, candidate) in step.candidates.iter().enumerate() {
-                let other = alternative(&curve, step, before, candidate);
-                let other = other.unwrap();
+                let other = alternative(&curve, step, candidate).unwrap();
                 let chi_squared = other.fit.chi_squared;
-                // The search stops early for candidates whose χ² is more than 60 worse, and for the
-                // others once a round changes χ² by at most 0.5.
-                assert!(candidate.improvement > 0.0);
-                if candidate.improvement > step.candidates[0].improvement - 60.0 {
-                    let change = chi_squared - candidate.chi_squared;
-                    assert!(change.abs() < 1.0 + 0.05 * chi_squared, "{change}");
-                    compared += 1;
+                // The shapes of a candidate are those of the last model, or of another model of the whole record. Fitted
+                // beside the step's model alone, they come no further from the record.
+                let most = candidate.chi_squared + 1.0;
+                assert!(chi_squared < most, "{chi_squared} above {most}");
+                compared += 1;
+                if place > 0 {
+                    others += 1;
+                    continue;
                 }
-                if place == 0 && step.added.is_some() {
-                    let next = &steps[at + 1].fit;
-                    if next.tolerance > 0.0 {
-                        // The accepted candidate in the list equals the next step, to the bit.
-                        assert_eq!(candidate.chi_squared, next.chi_squared);
-                        assert!(
-                            (chi_squared - next.chi_squared).abs() < 1.0,
-                            "{chi_squared}"
-                        );
-                    } else {
-                        // The next step explains the record without the tolerance of the comparison.
-                        assert!(chi_squared < next.chi_squared + 1.0, "{chi_squared}");
-                        assert_eq!(next.is_adequate(), Some(true));
-                    }
-                    assert_eq!(other.fit.degrees_of_freedom, next.degrees_of_freedom);
-                }
+                let next = &steps[at + 1].fit;
+                assert!(chi_squared < next.chi_squared + 1.0, "{chi_squared}");
+                assert_eq!(other.fit.degrees_of_freedom, next.degrees_of_freedom);
             }
         }
     }
-    assert!(compared >= 6, "{compared}");
+    assert!(compared >= 3 && others >= 1, "{compared}, {others}");
 }

@@ -416,14 +416,7 @@ fn two_effects_that_resemble_a_third_are_distinguished_from_it() {
         named.contains(&"sinusoid") && named.contains(&"decimation_filter"),
         "{named:?}"
     );
-    assert_eq!(axis["steps"][0]["added"], "resonance");
-    assert_eq!(
-        axis["steps"][1]["candidates"][0]["swap"]["dropped"],
-        "resonance"
-    );
     assert!(!list(&axis["missing"]).contains(&"resonance"));
-    let text = output(folder.path(), &["diagnose", "curve.json"]);
-    assert!(text.contains(" instead of resonance: χ² "), "{text}");
 }
 
 #[test]

@@ -178,7 +178,7 @@ fn steps_are_selected_by_mouse_and_keyboard_and_show_their_own_error() {
 #[test]
 fn every_candidate_shows_its_own_fit() {
     let folder = TempDir::new().unwrap();
-    // At first, the two effects look like a third one, so that the second step revises the first.
+    // In the octaves alone, other effects look like the two.
     let hidden = [
         "sinusoid:frequency_hz=7.7,amplitude=0.0267",
         "decimation_filter:width_s=0.0235,stages=2",
@@ -188,7 +188,8 @@ fn every_candidate_shows_its_own_fit() {
     measure_without_spectrum(folder.path(), "log.csv");
     let diagnosis = reported(folder.path(), &["curve.json"]);
     let steps = steps(&diagnosis["axes"][0]);
-    assert!(steps[1]["candidates"][0]["swap"].is_object());
+    let several = |step: &Value| step["candidates"].as_array().unwrap().len() > 1;
+    assert!(steps.iter().any(several), "{steps:?}");
     let mut browser = opened(folder.path());
     for (at, step) in steps.iter().enumerate() {
         browser.click(&format!("#axis-0-step-{at}"));

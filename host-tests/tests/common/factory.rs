@@ -4,13 +4,16 @@ use allanite::{
     Accumulator, Axis, Model, Observed, Scale,
     axis::{Gated, Moments, Spectral, Tracked},
     course::events,
-    diagnosis::{Diagnosis, Evidence, Options},
+    diagnosis::Options,
     effect::CATALOGUE,
     storage::{AxisCertificate, Certificate, Conditions, RateUnit},
 };
-use host_tests::demonstration::{
-    AMPLITUDES,
-    simulated::{Disturbance, SimulatedGyro},
+use host_tests::{
+    demonstration::{
+        AMPLITUDES,
+        simulated::{Disturbance, SimulatedGyro},
+    },
+    diagnosis::diagnose,
 };
 
 pub(crate) const SAMPLES: usize = 1 << 16;
@@ -34,10 +37,8 @@ pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisCertifica
     let (mut last, model) = (None, Model::ieee_952());
     let report =
         |step: &allanite::diagnosis::Step<17>| last = Some((step.model.clone(), step.fit.clone()));
-    let (evidence, options) = (Evidence::NONE, Options::default());
-    let verdict = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options)
-        .run(report)
-        .unwrap();
+    let options = Options::default();
+    let verdict = diagnose((&curve).into(), &model, &CATALOGUE, options, report).unwrap();
     let (model, fit) = last.unwrap();
     let mut axis = AxisCertificate::new(&curve, &model, &fit).unwrap();
     axis.verdict = Some(verdict);
@@ -60,17 +61,12 @@ pub(crate) fn followed() -> AxisCertificate {
     let evidence = gyro.evidence(0, scale, [0.01]).unwrap();
     let model = Model::ieee_952();
     let observed = Observed::new(&evidence.curve, &evidence.spectrum);
-    let mut diagnosis = Diagnosis::with_spectrum(
-        evidence.curve.clone(),
-        evidence.spectrum.clone(),
-        evidence.evidence(),
-        &model,
-        &CATALOGUE,
-        Options::default(),
-    );
     let mut axis = AxisCertificate::empty();
     let mut taken = Ok(());
-    let verdict = diagnosis.run(|step| taken = axis.take(observed, step));
+    let (record, options) = (evidence.record(), Options::default());
+    let verdict = diagnose(record, &model, &CATALOGUE, options, |step| {
+        taken = axis.take(observed, step);
+    });
     taken.unwrap();
     axis.verdict = Some(verdict.unwrap());
     let course = gyro.courses()[0].unwrap();

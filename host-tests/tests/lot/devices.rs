@@ -2,11 +2,14 @@
 
 use allanite::{
     Accumulator, Model, Scale,
-    diagnosis::{Diagnosis, Evidence, Options},
+    diagnosis::Options,
     effect::CATALOGUE,
     storage::{AxisCertificate, Certificate, Conditions, RateUnit},
 };
-use host_tests::simulate::{Coefficients, Preset, Random, Simulator};
+use host_tests::{
+    diagnosis::diagnose,
+    simulate::{Coefficients, Preset, Random, Simulator},
+};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use std::fs;
@@ -83,11 +86,12 @@ pub(crate) fn certificate(device: u64, truth: Coefficients, line: f64, seed: u64
         accumulator.push(((rate + line * phase.sin()) / quantum).round() as i32);
     }
     let curve = accumulator.curve(Scale::new(quantum, RATE_HZ).unwrap());
-    let (model, evidence, options) = (Model::ieee_952(), Evidence::NONE, Options::default());
-    let mut diagnosis = Diagnosis::new(curve.clone(), evidence, &model, &CATALOGUE, options);
+    let (model, options) = (Model::ieee_952(), Options::default());
     let mut axis = AxisCertificate::empty();
     let mut taken = Ok(());
-    let verdict = diagnosis.run(|step| taken = axis.take(&curve, step));
+    let verdict = diagnose((&curve).into(), &model, &CATALOGUE, options, |step| {
+        taken = axis.take(&curve, step);
+    });
     taken.unwrap();
     axis.verdict = Some(verdict.unwrap());
     let conditions = Conditions {

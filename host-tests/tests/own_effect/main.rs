@@ -5,11 +5,14 @@ mod second_order;
 
 use allanite::{
     Accumulator, Curve, Model, Scale,
-    diagnosis::{Addition, Diagnosis, Evidence, Options, Step},
+    diagnosis::{Addition, Options, Step},
     effect::{CATALOGUE, Effect, Explain, FIRST_OWN_CODE, SampledShape},
     storage::{AxisCertificate, Certificate, Conditions, EffectCode, RateUnit},
 };
-use host_tests::simulate::{Coefficients, Hidden, Simulator};
+use host_tests::{
+    diagnosis::diagnose,
+    simulate::{Coefficients, Hidden, Simulator},
+};
 use second_order::SecondOrderGaussMarkov;
 
 /// The list of own effects, one per line.
@@ -56,12 +59,12 @@ fn diagnosed(hidden: Hidden) -> (Curve<OCTAVES>, Vec<Step<OCTAVES>>) {
     };
     let curve = curve(gyro, hidden, 1 << 17, 1);
     let mut steps = Vec::new();
-    let evidence = Evidence::NONE;
     let model = Model::ieee_952();
     let (effects, options) = (effects(), Options::default());
-    Diagnosis::new(curve.clone(), evidence, &model, &effects, options)
-        .run(|step| steps.push(step.clone()))
-        .expect("a diagnosis");
+    diagnose((&curve).into(), &model, &effects, options, |step| {
+        steps.push(step.clone());
+    })
+    .expect("a diagnosis");
     (curve, steps)
 }
 

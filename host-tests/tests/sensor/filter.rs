@@ -2,14 +2,17 @@
 
 use allanite::{
     Accumulator, Curve, Model, Scale,
-    diagnosis::{Diagnosis, Evidence, Options, Verdict},
+    diagnosis::{Options, Verdict},
     effect::CATALOGUE as EFFECTS,
     sensor::{
         BMI160, CATALOGUE, Description, ICM_42688_P, ICM_45686, L3GD20, LSM6DSO, LSM6DSV16X,
         MPU_6050, MPU_6500,
     },
 };
-use host_tests::simulate::{Hidden, Preset, Simulator};
+use host_tests::{
+    diagnosis::diagnose,
+    simulate::{Hidden, Preset, Simulator},
+};
 use std::f64::consts::PI;
 
 const OCTAVES: usize = 20;
@@ -167,9 +170,7 @@ fn a_low_pass_that_is_too_wide_is_noticed() {
 /// Counts of a gyro behind a sensor's low pass, and what a diagnosis finds missing in a model of it.
 fn missing(model: &Model, curve: &Curve<OCTAVES>) -> Vec<&'static str> {
     let mut found = Vec::new();
-    let (evidence, options) = (Evidence::NONE, Options::default());
-    let mut diagnosis = Diagnosis::new(curve.clone(), evidence, model, &EFFECTS, options);
-    let verdict = diagnosis.run(|step| {
+    let verdict = diagnose(curve.into(), model, &EFFECTS, Options::default(), |step| {
         let terms = step.model.terms().iter();
         let known = |name: &str| model.position(name).is_some();
         let names = terms.map(|term| term.effect.name());

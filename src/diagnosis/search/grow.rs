@@ -72,6 +72,12 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 self.shapes(effect, &mut candidates)?;
             }
         }
+        for effect in effects.iter().copied().filter(|effect| is_plain(*effect)) {
+            let mut known = self.model.terms().iter().chain(&hypothesis.added);
+            if !known.any(|term| term.effect.name() == effect.name()) {
+                let _ = candidates.push(Term::fitted(effect));
+            }
+        }
         for term in candidates {
             if let Some(with) = hypothesis.with(term, self.limits.effects) {
                 let grown = self.refine(with, 10)?;
@@ -368,6 +374,11 @@ pub(super) fn is_drifting(effect: &dyn Effect) -> bool {
 fn is_resonance(effect: &dyn Effect) -> bool {
     let second = effect.parameters().get(1);
     has_frequency(effect) && second.is_some_and(|second| second.name == "quality")
+}
+
+/// Whether an effect has no shape and takes the place of no other, as most of the five terms.
+fn is_plain(effect: &'static dyn Effect) -> bool {
+    effect.replaces().is_none() && effect.mirror().is_none() && effect.parameters().is_empty()
 }
 
 /// Whether an effect adds to the noise, and a search can find it: it takes the place of none, and has a shape. An effect

@@ -58,6 +58,9 @@ fn usual(term: &Term, interval_s: Real) -> Real {
             _ => SHAPED_FILTER,
         };
     }
+    if effect.parameters().is_empty() {
+        return NOISE;
+    }
     if is_line(effect) {
         return LINE;
     }

@@ -11,7 +11,7 @@ use crate::{
     limits::{MAX_PARAMETERS, MAX_SHAPE},
     list::numbered,
     math,
-    model::Term,
+    model::{Model, Term},
     nnls::{Free, Vector},
     real::{Real, real, single},
 };
@@ -57,6 +57,8 @@ pub(crate) struct Solver<'s, 'a, 'p, const B: usize> {
     pub(super) work: &'s mut Workspace<B>,
     /// The white noise as the model has it; `None` if the model has none that a filter could replace.
     pub(super) white: Option<Term>,
+    /// The model that something is missing from.
+    pub(super) model: &'s Model,
     pub(super) limits: Limits,
     /// The best shape of every filter in the continuum.
     pub(super) shapes: &'s mut Vec<Term, MAX_VARIANTS>,

@@ -131,6 +131,7 @@ impl<const B: usize> Search<B> {
             observation,
             work,
             white,
+            model,
             shapes,
             limits: Limits {
                 effects: limits.effects.min(
@@ -285,6 +286,7 @@ pub(crate) fn best_shape_of<const B: usize>(
         observation,
         work: &mut work,
         white,
+        model,
         shapes: &mut Vec::new(),
         limits: Limits {
             effects: MAX_EFFECTS,
@@ -364,6 +366,7 @@ impl<const B: usize> Search<B> {
             observation,
             work: &mut self.work,
             white,
+            model,
             shapes: &mut self.shapes,
             limits: Limits {
                 effects: 4,
@@ -473,6 +476,7 @@ impl<const B: usize> Search<B> {
             observation,
             work: &mut self.work,
             white,
+            model,
             shapes: &mut self.shapes,
             limits: Limits {
                 effects: 4,

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     effect::Effect,
-    list::{self, numbered},
+    list::numbered,
     math,
     model::Term,
     real::{Real, real, single},
@@ -184,13 +184,17 @@ fn leave_out_peaks<const B: usize>(
 
 /// The median of up to three numbers; the mean of two.
 fn median(numbers: [Option<Real>; 3]) -> Option<Real> {
-    let mut known: heapless::Vec<Real, 3> = list::fill(numbers.into_iter().flatten());
-    known.sort_unstable_by(Real::total_cmp);
-    match known.as_slice() {
-        [] => None,
-        [one] => Some(*one),
-        [one, other] => Some(0.5 * (one + other)),
-        [_, middle, ..] => Some(*middle),
+    let (mut sum, mut low, mut high, mut count) = (0.0, Real::INFINITY, -Real::INFINITY, 0.0);
+    for number in numbers.into_iter().flatten() {
+        sum += number;
+        low = low.min(number);
+        high = high.max(number);
+        count += 1.0;
+    }
+    match count {
+        0.0 => None,
+        3.0 => Some(sum - low - high),
+        _ => Some(sum / count),
     }
 }
 

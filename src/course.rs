@@ -26,7 +26,7 @@ mod response;
 mod stored;
 mod sums;
 
-pub use analysis::{Analysis, analyse, events};
+pub use analysis::{Analysis, analyse, analyse_without, events};
 pub use cosine::CosineTransform;
 pub use event::{Event, Events, Largest, MAX_EVENTS, What};
 pub use response::{allan_variance_of_step, allan_variance_of_warm_up};

@@ -39,7 +39,7 @@ use crate::{
     effect::Explanation,
     error::Error,
     limits::TWO_SIDED_95,
-    list::numbered,
+    list::{self, numbered},
     math,
     octave::Accumulator,
     real::{Real, real},
@@ -108,6 +108,14 @@ impl<const K: usize> CrossCurve<K> {
             });
         }
         Ok(Self { points })
+    }
+
+    /// A cross curve from octaves that were computed elsewhere, shortest averaging time first. They have to be those of
+    /// the gyro's curve. Octaves beyond `K` are left out.
+    pub fn of_points(points: impl IntoIterator<Item = CrossPoint>) -> Self {
+        Self {
+            points: list::fill(points.into_iter()),
+        }
     }
 
     /// The octaves, shortest averaging time first. They are the octaves of the gyro's curve.

@@ -4,6 +4,7 @@ pub mod comb;
 pub mod command;
 pub mod confidence;
 pub mod curve_file;
+pub mod dependence;
 pub mod diagnosis;
 pub mod equivalent;
 pub mod failure;

@@ -88,7 +88,28 @@ pub fn analyse<const K: usize, const COVARIATES: usize>(
     scale: Scale,
     options: Options,
 ) -> Result<Analysis<K>, Error> {
-    let levels = course.levels(scale);
+    analyse_without(curve, model, course, scale, &[], options)
+}
+
+/// As [`analyse`], for a record whose rate follows something that was recorded beside it, such as a temperature. What
+/// follows it is no event. `followed` is its mean in every block of the course, in rate units; blocks that it does not
+/// reach keep their mean. The curve is the one without it, as that of
+/// [`FollowedCovariate::correct`](crate::diagnosis::FollowedCovariate::correct).
+///
+/// # Errors
+/// The same as those of [`fit()`].
+pub fn analyse_without<const K: usize, const COVARIATES: usize>(
+    curve: &Curve<K>,
+    model: &Model,
+    course: &Course<COVARIATES>,
+    scale: Scale,
+    followed: &[Real],
+    options: Options,
+) -> Result<Analysis<K>, Error> {
+    let mut levels = course.levels(scale);
+    for level in &mut levels {
+        level.mean -= followed.get(level.place as usize).copied().unwrap_or(0.0);
+    }
     let interval_s = 1.0 / scale.rate_hz();
     let length = course.block_length();
     let mut analysis = Analysis {

@@ -1,21 +1,29 @@
 //! The covariates that were tried, with what was found of each.
 
 use crate::{
-    command::output::number::{number, rounded_up},
+    command::output::number::{number, rounded_up, two_digits},
+    dependence::{
+        candidates::{Bound, Candidate, Candidates, Form, seconds},
+        lag::Lag,
+    },
     diagnosis::diagnose,
-    log::{BINS, OCTAVES, is_degrees_column},
+    log::{self, BINS, OCTAVES, is_degrees_column},
     unit::Unit,
 };
 use allanite::{
-    Error, Model, Record,
+    Curve, Error, Model,
     covariate::Slope,
     diagnosis::{Options, Step},
+    spectrum::Spectrum,
 };
 use serde::Serialize;
 
 /// A covariate that was tried.
 pub(crate) struct TriedCovariate {
     pub(crate) channel: String,
+    /// The column of the log that it is formed from, and how.
+    column: String,
+    form: Form,
     found: Found,
 }
 
@@ -23,10 +31,14 @@ pub(crate) struct TriedCovariate {
 enum Found {
     /// The rate follows it.
     Acts(Slope),
+    /// The rate follows it with a lag.
+    ActsBehind(Lag),
     /// The rate does not follow it with a slope that stands out.
-    Nothing(Slope),
+    Nothing(Slope, Option<Bound>),
     /// It takes the same course as a covariate that the rate follows.
     SameAs(String),
+    /// What it does is a part of what another covariate of the same column does.
+    PartOf(String),
     /// It never changes.
     Constant,
 }
@@ -42,38 +54,69 @@ pub(crate) struct Document {
     slope_lower: Option<f64>,
     slope_upper: Option<f64>,
     z: Option<f64>,
+    /// The lag with which the rate follows it, with its 95 % interval.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lag_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lag_lower_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lag_upper_s: Option<f64>,
+    /// The largest amplitude of the rate per unit of the covariate that the record does not exclude, whatever the
+    /// phase, where no dependence shows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    most: Option<f64>,
 }
 
-/// What a step of the diagnosis of a record tells of every covariate.
+/// What a step of a diagnosis tells of every covariate that was asked for, and of others that act. `curve` is that of
+/// the record.
 pub(crate) fn tried(
-    record: &Record<'_, OCTAVES, BINS>,
-    names: &[String],
+    curve: &Curve<OCTAVES>,
+    candidates: &Candidates,
     step: &Step<OCTAVES, BINS>,
 ) -> Vec<TriedCovariate> {
     let octaves = &step.comparison.octaves;
     let noise = |k: usize| octaves.get(k).map_or(f64::NAN, |octave| octave.model);
-    let points = record.curve.points();
+    let points = curve.points();
+    let (crosses, pairs) = (&candidates.crosses, &candidates.pairs);
     let followed = step.covariate.as_ref();
-    let one = |at: usize| {
-        let beside = followed.and_then(|followed| followed.beside);
-        if let Some(followed) = followed.filter(|followed| followed.index == at) {
-            return Found::Acts(followed.slope);
+    let beside = followed.and_then(|followed| followed.beside);
+    let acting = |at: usize| {
+        let first = followed.filter(|followed| followed.index == at);
+        let first = first.map(|followed| followed.slope);
+        first.or_else(|| Some(beside.filter(|beside| beside.index == at)?.slope))
+    };
+    let one = |at: usize, candidate: &Candidate| {
+        if let Some(slope) = acting(at) {
+            return match &candidate.form {
+                Form::Behind(lag) if beside.is_none() => Found::ActsBehind(lag.clone()),
+                Form::Behind(lag) => Found::ActsBehind(Lag {
+                    slope,
+                    ..lag.clone()
+                }),
+                _ => Found::Acts(slope),
+            };
         }
-        if let Some(beside) = beside.filter(|beside| beside.index == at) {
-            return Found::Acts(beside.slope);
-        }
+        let others = candidates.all.iter().enumerate();
+        let mut of_column = others.filter(|(at, other)| {
+            other.column == candidate.column && !other.asked && acting(*at).is_some()
+        });
         // What follows the other covariate of a pair is no part of this one's slope.
         let other = followed.and_then(|followed| {
             let both = [followed.index, at];
-            let mut pairs = record.pairs.iter();
+            let mut pairs = pairs.iter();
             let pair = pairs.find(|pair| both.iter().all(|one| pair.covariates.contains(one)))?;
             Some((pair, followed.index))
         });
         let slope = match other {
-            None => Slope::of(&record.covariates[at], points, noise),
+            None => {
+                if let Some((_, acts)) = of_column.next() {
+                    return Found::PartOf(acts.name.clone());
+                }
+                Slope::of(&crosses[at], points, noise)
+            }
             Some((pair, acting)) => {
-                let Some([first, second]) = pair.slopes(record.covariates, points, noise) else {
-                    return Found::SameAs(names[acting].clone());
+                let Some([first, second]) = pair.slopes(crosses, points, noise) else {
+                    return Found::SameAs(candidates.all[acting].name.clone());
                 };
                 Some(if pair.covariates[0] == at {
                     first
@@ -82,15 +125,21 @@ pub(crate) fn tried(
                 })
             }
         };
-        slope.map_or(Found::Constant, Found::Nothing)
+        let bound = || {
+            let is_alone = followed.is_none() && matches!(candidate.form, Form::Itself);
+            is_alone.then(|| candidates.bound(curve, at, noise))?
+        };
+        slope.map_or(Found::Constant, |slope| Found::Nothing(slope, bound()))
     };
-    let named = names.iter().take(record.covariates.len()).enumerate();
-    named
-        .map(|(at, name)| TriedCovariate {
-            channel: name.clone(),
-            found: one(at),
-        })
-        .collect()
+    let all = candidates.all.iter().enumerate();
+    let told = all.filter(|(at, candidate)| candidate.asked || acting(*at).is_some());
+    told.map(|(at, candidate)| TriedCovariate {
+        channel: candidate.name.clone(),
+        column: candidate.column.clone(),
+        form: candidate.form.clone(),
+        found: one(at, candidate),
+    })
+    .collect()
 }
 
 /// What a record tells of every covariate beside a model, without any search for effects.
@@ -98,59 +147,81 @@ pub(crate) fn tried(
 /// # Errors
 /// Those of a fit.
 pub(crate) fn beside_model(
-    record: Record<'_, OCTAVES, BINS>,
-    names: &[String],
+    curve: &Curve<OCTAVES>,
+    spectrum: &Spectrum<BINS>,
+    evidence: &log::Evidence,
     model: &Model,
 ) -> Result<Vec<TriedCovariate>, Error> {
-    if record.covariates.is_empty() || record.invalid.is_some() {
+    if evidence.covariates.is_empty() || evidence.invalid.is_some() {
         return Ok(Vec::new());
     }
+    let candidates = Candidates::new(curve, spectrum, model, evidence)?;
+    let record = candidates.record(curve, spectrum);
     let mut last = None;
     diagnose(record, model, &[], Options::default(), |step| {
         last = Some(step.clone());
     })?;
     let last = last.as_ref();
-    Ok(last.map_or(Vec::new(), |step| tried(&record, names, step)))
+    Ok(last.map_or(Vec::new(), |step| tried(curve, &candidates, step)))
 }
 
 impl TriedCovariate {
     /// Whether the rate follows the covariate.
     pub(crate) const fn acts(&self) -> bool {
-        matches!(self.found, Found::Acts(_))
+        matches!(self.found, Found::Acts(_) | Found::ActsBehind(_))
     }
 
     /// The result in a sentence.
     pub(crate) fn words(&self, unit: Unit) -> String {
-        let Self { channel, found } = self;
-        let per = per(channel, unit);
+        let Self {
+            channel,
+            column,
+            form,
+            found,
+        } = self;
+        let per = per(column, form, unit);
         match found {
             Found::Acts(slope) => {
-                let (lower, upper) = slope.interval();
                 format!(
-                    "{channel}: the rate follows it with {} {per} ({} … {}), 95 % interval",
-                    number(slope.value),
-                    number(lower),
-                    number(upper)
+                    "{channel}: the rate follows it with {}",
+                    interval(slope, &per)
                 )
             }
-            Found::Nothing(slope) => {
+            Found::ActsBehind(lag) => format!(
+                "{column}: the rate follows it with a lag of {} ({} … {}), and with {}",
+                seconds(lag.lag_s),
+                seconds(lag.lower_s),
+                seconds(lag.upper_s),
+                interval(&lag.slope, &per)
+            ),
+            Found::Nothing(slope, bound) => {
                 let (lower, upper) = slope.interval();
-                let most = rounded_up(lower.abs().max(upper.abs()));
-                format!("{channel}: no dependence above {most} {per}")
+                let most = lower.abs().max(upper.abs());
+                match bound {
+                    Some(bound) => format!(
+                        "{channel}: no dependence above {} {per}, with a lag or without, at its main period of {} s",
+                        rounded_up(bound.most),
+                        two_digits(bound.period_s)
+                    ),
+                    None => format!("{channel}: no dependence above {} {per}", rounded_up(most)),
+                }
             }
             Found::SameAs(other) => {
                 format!(
                     "{channel}: takes the same course as {other}, so that the two cannot be told apart"
                 )
             }
+            Found::PartOf(other) => format!("{channel}: the rate follows {other} instead"),
             Found::Constant => format!("{channel}: never changes"),
         }
     }
 
     pub(crate) fn document(&self) -> Document {
-        let slope = match &self.found {
-            Found::Acts(slope) | Found::Nothing(slope) => Some(slope),
-            Found::SameAs(_) | Found::Constant => None,
+        let (slope, lag, bound) = match &self.found {
+            Found::Acts(slope) => (Some(slope), None, None),
+            Found::Nothing(slope, bound) => (Some(slope), None, bound.as_ref()),
+            Found::ActsBehind(lag) => (Some(&lag.slope), Some(lag), None),
+            Found::SameAs(_) | Found::PartOf(_) | Found::Constant => (None, None, None),
         };
         let interval = slope.map(Slope::interval);
         Document {
@@ -160,21 +231,33 @@ impl TriedCovariate {
             slope_lower: interval.map(|(lower, _)| lower),
             slope_upper: interval.map(|(_, upper)| upper),
             z: slope.map(Slope::z),
+            lag_s: lag.map(|lag| lag.lag_s),
+            lag_lower_s: lag.map(|lag| lag.lower_s),
+            lag_upper_s: lag.map(|lag| lag.upper_s),
+            most: bound.map(|bound| bound.most),
         }
     }
 }
 
-/// The unit of a slope: `deg/s/K` for a temperature in degrees Celsius or kelvin, and `deg/s per unit of x` for a
-/// column without a known unit.
-fn per(channel: &str, unit: Unit) -> String {
-    let inner = channel.strip_prefix("rate(");
-    let (column, is_rate) = match inner.and_then(|inner| inner.strip_suffix(')')) {
-        Some(column) => (column, true),
-        None => (channel, false),
-    };
-    match (is_degrees_column(column), is_rate) {
-        (true, false) => format!("{unit}/K"),
-        (true, true) => format!("{unit} per K/s"),
+/// A slope with its unit and its interval.
+fn interval(slope: &Slope, per: &str) -> String {
+    let (lower, upper) = slope.interval();
+    format!(
+        "{} {per} ({} … {}), 95 % interval",
+        number(slope.value),
+        number(lower),
+        number(upper)
+    )
+}
+
+/// The unit of a slope: `deg/s/K` for a temperature in degrees Celsius or kelvin, and `deg/s per unit` for a column
+/// without a known unit.
+pub(crate) fn per(column: &str, form: &Form, unit: Unit) -> String {
+    match (is_degrees_column(column), form) {
+        (true, Form::Itself | Form::Behind(_)) => format!("{unit}/K"),
+        (true, Form::RateOfChange) => format!("{unit} per K/s"),
+        (true, Form::Square { .. }) => format!("{unit}/K²"),
+        (false, Form::Square { .. }) => format!("{unit} per unit²"),
         (false, _) => format!("{unit} per unit"),
     }
 }

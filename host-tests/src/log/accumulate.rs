@@ -14,7 +14,10 @@ use super::{
     watched::SharedSums,
     worker::{Batches, Plan, Totals},
 };
-use crate::failure::{Failure, Place};
+use crate::{
+    dependence::block_means::BlockSums,
+    failure::{Failure, Place},
+};
 use allanite::course::Course;
 use indicatif::ProgressBar;
 use std::path::Path;
@@ -27,6 +30,8 @@ pub(super) struct Measured {
     pub(super) covariates: Vec<CovariateColumn>,
     /// The places of the covariates that may act together, and what they share.
     pub(super) pairs: Vec<([usize; 2], SharedSums)>,
+    /// The block sums of the axes, and behind them those of the columns of the covariates.
+    pub(super) blocks: BlockSums,
     /// The time stamps that were followed, if the log has a time column.
     pub(super) clock: Option<Clock>,
 }
@@ -208,6 +213,7 @@ fn finish(
         axes: sums,
         columns,
         pairs,
+        blocks,
     } = batches.finish();
     if sums.iter().any(|axis| axis.accumulator().samples() == 0) {
         return Err(Place::file(path).failure("no rows", "record some samples"));
@@ -224,6 +230,7 @@ fn finish(
         axes: sums.into_iter().zip(axes.iter().copied()).collect(),
         covariates: quanta.zip(columns).map(beside).collect(),
         pairs,
+        blocks,
         clock,
     })
 }

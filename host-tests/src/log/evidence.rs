@@ -5,9 +5,12 @@ use super::{
     accumulate::{CovariateColumn, Measured},
     watched::{SharedSums, WatchedAxis},
 };
-use crate::failure::{Failure, Place};
+use crate::{
+    dependence::block_means::{BlockMeans, BlockSums},
+    failure::{Failure, Place},
+};
 use allanite::{Scale, covariate::Pair, integrity::Reason};
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 /// A covariate that has been read: its name and the size of its counts, or `None` if it is left out.
 type Named = Option<(String, f64)>;
@@ -19,6 +22,9 @@ pub(super) struct Recorded {
     pairs: Vec<Pair<OCTAVES>>,
     /// The columns, with their means in the blocks of the course.
     columns: Vec<(String, Vec<f64>)>,
+    /// The columns, with their means in many short blocks.
+    short: Arc<[(String, Arc<[f64]>)]>,
+    broken: Arc<[bool]>,
 }
 
 impl Recorded {
@@ -34,11 +40,30 @@ impl Recorded {
             rate_hz,
             pairs: shared(path, &measured.pairs, &named, rate_hz)?,
             columns: block_means(choices, &measured.covariates),
+            short: short_means(choices, measured).into(),
+            broken: measured.blocks.broken().into(),
             named,
         })
     }
 
-    /// The evidence of an axis, without its course.
+    /// The means of an axis and of the columns in many short blocks. `place` is that of the axis among the blocks.
+    pub(super) fn means(
+        &self,
+        blocks: &BlockSums,
+        place: usize,
+        rate_per_count: f64,
+    ) -> Option<BlockMeans> {
+        let mean = |counts: f64| counts * rate_per_count;
+        (!self.short.is_empty()).then(|| BlockMeans {
+            samples: blocks.samples(),
+            block_s: f64::from(blocks.samples()) / self.rate_hz,
+            broken: self.broken.clone(),
+            rate: blocks.means(place).map(mean).collect(),
+            columns: self.short.clone(),
+        })
+    }
+
+    /// The evidence of an axis, without its course and its block means.
     pub(super) fn evidence(
         &self,
         path: &Path,
@@ -62,6 +87,7 @@ impl Recorded {
             invalid: told.invalid,
             course: None,
             columns: self.columns.clone(),
+            means: None,
             motion: told.moved_at.filter(|_| moved).map(|sample| Motion {
                 axis: axis.name.clone(),
                 at_s: sample as f64 / self.rate_hz,
@@ -141,6 +167,21 @@ fn block_means(
         if columns.iter().all(|(name, _)| *name != choice.column) {
             let blocks = column.course.blocks(counts);
             let means = blocks.map(|block| column.quantum.value(block.mean));
+            columns.push((choice.column.clone(), means.collect()));
+        }
+    }
+    columns
+}
+
+/// The columns of the covariates that are not left out, with their means in many short blocks.
+fn short_means(choices: &[CovariateChoice], measured: &Measured) -> Vec<(String, Arc<[f64]>)> {
+    let mut columns: Vec<(String, Arc<[f64]>)> = Vec::new();
+    let all = choices.iter().zip(&measured.covariates);
+    for (place, (choice, column)) in all.enumerate() {
+        let is_new = columns.iter().all(|(name, _)| *name != choice.column);
+        if is_new && !column.flawed {
+            let counts = measured.blocks.means(measured.axes.len() + place);
+            let means = counts.map(|mean| column.quantum.value(mean));
             columns.push((choice.column.clone(), means.collect()));
         }
     }

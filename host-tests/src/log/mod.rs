@@ -123,7 +123,10 @@ mod unit_names;
 mod watched;
 mod worker;
 
-use crate::unit::{Sensor, Unit};
+use crate::{
+    dependence::block_means::BlockMeans,
+    unit::{Sensor, Unit},
+};
 use allanite::{
     Accumulator,
     course::Course,
@@ -249,6 +252,8 @@ pub struct Evidence {
     pub course: Option<Course>,
     /// The columns of the covariates, with their means in the blocks of the course.
     pub columns: Vec<(String, Vec<f64>)>,
+    /// The means of the axis and of the columns of the covariates in many short blocks; `None` without covariates.
+    pub means: Option<BlockMeans>,
     /// The motion that makes the record not valid, if there is one.
     pub motion: Option<Motion>,
 }

@@ -140,7 +140,8 @@ pub(super) fn read_table(
             || matches!(sums, Sums::InTwo { rest, .. } if first.is_some() && is_constant(&rest.accumulator))
     };
     let some_change = measured.axes.iter().any(|(sums, _)| !is_constant(sums));
-    for (column, (sums, quantum)) in axis_columns.into_iter().zip(measured.axes) {
+    let measured_axes = axis_columns.into_iter().zip(measured.axes);
+    for (place, (column, (sums, quantum))) in measured_axes.enumerate() {
         if some_change && is_constant(&sums) {
             let name = column.axis;
             notes.push(format!("axis {name} never changes its value: left out"));
@@ -167,6 +168,7 @@ pub(super) fn read_table(
             let evidence = recorded.evidence(path, &axis, &**watched)?;
             axis.evidence = Some(Evidence {
                 course: Some(*beside.course.clone()),
+                means: recorded.means(&measured.blocks, place, axis.rate_per_count),
                 ..evidence
             });
         }

@@ -8,6 +8,7 @@ use super::{
     sums::{Beside, Part, Sums},
     watched::{self, SharedSums, WatchedAxis},
 };
+use crate::dependence::block_means::BlockSums;
 use allanite::course::Course;
 use std::{
     collections::VecDeque,
@@ -94,6 +95,8 @@ pub(super) struct Totals {
     pub(super) columns: Vec<Course>,
     /// The places of the covariates that may act together, and what they share.
     pub(super) pairs: Vec<([usize; 2], SharedSums)>,
+    /// The block sums of the axes, and behind them those of the columns of the covariates. Empty without covariates.
+    pub(super) blocks: BlockSums,
 }
 
 impl Batches {
@@ -219,6 +222,7 @@ impl Batches {
             axes: axes.collect(),
             columns: worker.columns,
             pairs: worker.pairs,
+            blocks: worker.blocks,
         }
     }
 }
@@ -235,6 +239,7 @@ struct Worker {
     pairs: Vec<([usize; 2], SharedSums)>,
     derived: Vec<Derived>,
     columns: Vec<Course>,
+    blocks: BlockSums,
     /// With covariates, a batch waits until the batches of the other columns with the same rows
     /// arrive.
     waiting: Vec<VecDeque<Vec<i32>>>,
@@ -249,6 +254,7 @@ impl Worker {
                 .collect(),
             derived: plan.covariates().iter().map(Derived::new).collect(),
             columns: plan.covariates().iter().map(|_| Course::new()).collect(),
+            blocks: BlockSums::new(plan.columns()),
             waiting: vec![VecDeque::new(); plan.columns()],
             plan,
         }
@@ -269,6 +275,7 @@ impl Worker {
             .iter_mut()
             .filter_map(VecDeque::pop_front)
             .collect();
+        self.blocks.push(&rows);
         let (axes, covariates) = rows.split_at_mut(self.plan.axes);
         for (course, counts) in self.columns.iter_mut().zip(covariates.iter()) {
             course.push_slice(counts);
@@ -292,6 +299,7 @@ impl Worker {
     }
 
     fn gap(&mut self) {
+        self.blocks.gap();
         for derived in &mut self.derived {
             derived.gap();
         }

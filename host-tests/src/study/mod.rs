@@ -9,6 +9,7 @@ pub mod course;
 pub mod detection;
 pub mod efficiency;
 pub mod hidden_effect;
+pub mod lag;
 pub mod lines;
 pub mod long;
 pub mod measured;

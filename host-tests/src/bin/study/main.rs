@@ -146,6 +146,9 @@ enum Study {
         /// Number of records per case
         #[arg(long, default_value_t = 1000)]
         records: u64,
+        /// Draw the course, the lag and the noise of the temperature at random
+        #[arg(long)]
+        drawn: bool,
     },
     /// Count how often the course of a record tells of a change of noise, of bursts, a step and a warm-up, when there is one and when there is none
     Course {
@@ -266,7 +269,11 @@ fn main() -> Result<()> {
             absent,
             walk,
         } => clean::print(records, preset, absent.as_deref(), walk),
-        Study::Thermal { records } => thermal::print(records),
+        Study::Thermal {
+            records,
+            drawn: true,
+        } => thermal::print_drawn(records),
+        Study::Thermal { records, .. } => thermal::print(records),
         Study::Course {
             records,
             preset,

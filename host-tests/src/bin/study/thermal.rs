@@ -1,6 +1,57 @@
 //! Temperatures that the rate depends on.
 
-use host_tests::study::thermal;
+use host_tests::{
+    simulate::Preset,
+    study::{
+        lag::{self, Course, Dependence},
+        thermal,
+    },
+};
+
+/// Temperatures whose course, noise and lag are drawn at random, with seeds from 0 on.
+pub(crate) fn print_drawn(records: u64) {
+    println!(
+        "20 Hz, {records} records of 2^16 samples a line; lag 10 … 120 s, thermometer noise 0 … 0.2 K, steps of 0.1 K in half of them"
+    );
+    println!(
+        "{:<6} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
+        "preset",
+        "course",
+        "follows",
+        "found",
+        "lagged",
+        "rate",
+        "square",
+        "slope inside",
+        "lag inside",
+        "wrong effect"
+    );
+    for preset in [Preset::Mems, Preset::Fog] {
+        for dependence in [
+            Dependence::Lagged,
+            Dependence::AtOnce,
+            Dependence::Square,
+            Dependence::None,
+        ] {
+            for course in Course::ALL {
+                let tally = lag::study(preset, course, dependence, records);
+                println!(
+                    "{:<6} {:<10} {:<9} {:>6} {:>7} {:>7} {:>7} {:>13} {:>11} {:>13}",
+                    format!("{preset:?}"),
+                    format!("{course:?}"),
+                    format!("{dependence:?}"),
+                    tally.found,
+                    tally.lagged,
+                    tally.rate_of_change,
+                    tally.square,
+                    tally.slope_inside,
+                    tally.lag_inside,
+                    tally.wrong
+                );
+            }
+        }
+    }
+}
 
 pub(crate) fn print(records: u64) {
     println!("mems at 20 Hz, {records} records of 2^16 samples, 0.01 deg/s per kelvin");

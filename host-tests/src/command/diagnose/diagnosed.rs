@@ -14,6 +14,7 @@ use crate::{
         tried::{TriedCovariate, tried},
     },
     curve_file::AxisCurve,
+    dependence::candidates::{Candidate as Series, Candidates},
     diagnosis::{diagnose, go_on},
     failure::Failure,
     log::{BINS, Evidence, Motion, OCTAVES},
@@ -21,8 +22,7 @@ use crate::{
 use allanite::{
     Curve, Error, Model, Observed, Record, Scale, Term,
     course::Course,
-    covariate,
-    covariate::{CrossCurve, Pair},
+    covariate::{self, Slope},
     detection::{Detection, Limit, Ranges},
     diagnosis::{Addition, Candidate, FollowedCovariate, Options, Step, Verdict, alternative},
     effect::CATALOGUE,
@@ -106,18 +106,15 @@ pub(crate) struct Diagnosed {
     pub(crate) tried: Vec<TriedCovariate>,
     /// The options of the search for effects.
     pub(crate) options: Options,
-    /// Names of the covariates.
-    covariates: Vec<String>,
-    /// What the axis has in common with each covariate, octave by octave, and what the covariates share.
-    cross: Vec<CrossCurve<OCTAVES>>,
-    pairs: Vec<Pair<OCTAVES>>,
+    /// The covariates, with what the axis has in common with each of them.
+    candidates: Candidates,
 }
 
 impl Diagnosed {
     /// Diagnoses an axis, from this model on.
     pub(crate) fn new(
         axis: AxisCurve,
-        evidence: Evidence,
+        mut evidence: Evidence,
         model: &Model,
         max_effects: Option<usize>,
     ) -> Result<Self, Error> {
@@ -126,17 +123,18 @@ impl Diagnosed {
             max_effects: max_effects.unwrap_or(default.max_effects),
             ..default
         };
-        let (course, columns, motion) = (evidence.course, evidence.columns, evidence.motion);
-        let (covariates, cross): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
-        let pairs = evidence.pairs;
+        let (course, columns) = (
+            evidence.course.take(),
+            std::mem::take(&mut evidence.columns),
+        );
+        let motion = evidence.motion.take();
         let (curve, spectrum, densities) = (axis.curve()?, axis.spectrum()?, axis.course()?);
+        let candidates = Candidates::new(&curve, &spectrum, model, &evidence)?;
         let record = Record {
             course: densities.as_ref(),
             kurtosis: Some(&evidence.kurtosis),
-            covariates: &cross,
-            pairs: &pairs,
             invalid: evidence.invalid,
-            ..Record::new(&curve, &spectrum)
+            ..candidates.record(&curve, &spectrum)
         };
         let diagnose = |model: &Model, options| {
             let mut steps = Vec::new();
@@ -172,9 +170,7 @@ impl Diagnosed {
             motion,
             tried: Vec::new(),
             options,
-            covariates,
-            cross,
-            pairs,
+            candidates,
         };
         diagnosed.limits = diagnosed.detection_limits()?;
         diagnosed.lines = diagnosed.lines()?;
@@ -195,20 +191,10 @@ impl Diagnosed {
         };
         let scale = Scale::new(self.axis.rate_per_count, self.axis.rate_hz)?;
         let (curve, _) = self.observed_in(last)?;
-        Stationarity::of(course, scale, &curve, &last.model)
-    }
-
-    /// A curve and a spectrum with the covariates of the axis.
-    fn record<'a>(
-        &'a self,
-        curve: &'a Curve<OCTAVES>,
-        spectrum: &'a Spectrum<BINS>,
-    ) -> Record<'a, OCTAVES, BINS> {
-        Record {
-            covariates: &self.cross,
-            pairs: &self.pairs,
-            ..Record::new(curve, spectrum)
-        }
+        let followed = last.covariate.as_ref().map_or(Vec::new(), |followed| {
+            self.candidates.followed(followed, course.block_length())
+        });
+        Stationarity::of(course, scale, &curve, &last.model, &followed)
     }
 
     /// What the last step tells of every covariate.
@@ -217,9 +203,8 @@ impl Diagnosed {
         let Some(last) = self.steps.last().filter(|_| valid) else {
             return Ok(Vec::new());
         };
-        let (curve, spectrum) = (self.axis.curve()?, self.axis.spectrum()?);
-        let record = self.record(&curve, &spectrum);
-        Ok(tried(&record, &self.covariates, last))
+        let curve = self.axis.curve()?;
+        Ok(tried(&curve, &self.candidates, last))
     }
 
     /// The sizes of effects that the record would have shown.
@@ -263,7 +248,7 @@ impl Diagnosed {
         let (curve, spectrum) = (self.axis.curve()?, self.axis.spectrum()?);
         let (mut corrected, mut densities) = (curve.clone(), spectrum.clone());
         if let Some(followed) = &step.covariate {
-            let record = self.record(&curve, &spectrum);
+            let record = self.candidates.record(&curve, &spectrum);
             followed.correct(&record, &mut corrected, &mut densities);
         }
         Ok((corrected, densities))
@@ -371,9 +356,22 @@ impl Diagnosed {
 
     /// The names of the covariates that the rate depends on.
     pub(crate) fn covariate(&self, followed: &FollowedCovariate) -> Vec<&str> {
-        let beside = followed.beside.map(|beside| beside.index);
-        let all = std::iter::once(followed.index).chain(beside);
-        all.map(|at| self.covariates[at].as_str()).collect()
+        let slopes = self.slopes(followed).into_iter();
+        slopes
+            .map(|(_, candidate)| candidate.name.as_str())
+            .collect()
+    }
+
+    /// The slopes with which the rate follows covariates. The error of a slope behind a lag includes that of the lag.
+    pub(crate) fn slopes(&self, followed: &FollowedCovariate) -> Vec<(Slope, &Series)> {
+        let beside = followed.beside.map(|beside| (beside.index, beside.slope));
+        let slope = match self.candidates.lag(followed.index) {
+            Some(lag) if beside.is_none() => lag.slope,
+            _ => followed.slope,
+        };
+        let all = std::iter::once((followed.index, slope)).chain(beside);
+        all.filter_map(|(at, slope)| Some((slope, self.candidates.all.get(at)?)))
+            .collect()
     }
 
     /// Notes on the result, one line each.

@@ -3,7 +3,6 @@
 use super::{
     diagnosed::{Diagnosed, added_name},
     lines::{Line, comb_words},
-    words,
 };
 use crate::{
     comb::Comb,
@@ -232,9 +231,8 @@ fn limits(diagnosed: &Diagnosed) -> Vec<DetectionLimit> {
 
 fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step {
     let covariates = step.covariate.iter().flat_map(|followed| {
-        let slopes = words::slopes(followed);
-        let named = slopes.into_iter().zip(diagnosed.covariate(followed));
-        named.map(|(slope, channel)| model_json::covariate(&slope, channel))
+        let slopes = diagnosed.slopes(followed).into_iter();
+        slopes.map(|(slope, series)| model_json::covariate(&slope, series))
     });
     Step {
         effects: covariates

@@ -7,7 +7,7 @@ use crate::{
 };
 use allanite::{
     Curve, Error, Model, Scale,
-    course::{Course, Event, What, analyse},
+    course::{Course, Event, What, analyse_without},
     fit::{Fit, Options, fit},
 };
 
@@ -37,7 +37,8 @@ pub(crate) struct Shifted {
 }
 
 impl Stationarity {
-    /// Looks for events beside the noise of a model.
+    /// Looks for events beside the noise of a model. `followed` is what follows a covariate, in the blocks of the
+    /// course; the curve is without it.
     ///
     /// # Errors
     /// When the curve cannot be fitted.
@@ -46,9 +47,10 @@ impl Stationarity {
         scale: Scale,
         curve: &Curve<OCTAVES>,
         model: &Model,
+        followed: &[f64],
     ) -> Result<Self, Error> {
         let options = Options::default();
-        let analysis = analyse(curve, model, course, scale, options)?;
+        let analysis = analyse_without(curve, model, course, scale, followed, options)?;
         let events: Vec<Event> = analysis.events.iter().copied().collect();
         let is_shift = |event: &Event| matches!(event.what, What::Step | What::WarmUp { .. });
         let shifted = if events.iter().any(is_shift) {

@@ -9,11 +9,11 @@ use crate::{
             words,
         },
     },
+    dependence::candidates::{Form, seconds},
     log::{BINS, OCTAVES},
 };
 use allanite::{
-    Comparison, Term,
-    covariate::{self, Slope},
+    Comparison, Term, covariate,
     detection::Range,
     diagnosis::{Addition, Candidate, FollowedCovariate, Step, Verdict},
     effect::{Explanation, explanation},
@@ -65,13 +65,23 @@ impl Finding {
 
     fn covariate(diagnosed: &Diagnosed, followed: &FollowedCovariate) -> Self {
         let channels = diagnosed.covariate(followed);
-        let found = slopes(followed).into_iter().zip(&channels);
-        let found = found.map(|(slope, channel)| {
+        let found = diagnosed.slopes(followed).into_iter();
+        let found = found.map(|(slope, series)| {
             let (lower, upper) = slope.interval();
+            let lag = match &series.form {
+                Form::Behind(lag) => format!(
+                    "lag {} ({} … {}); ",
+                    seconds(lag.lag_s),
+                    seconds(lag.lower_s),
+                    seconds(lag.upper_s)
+                ),
+                _ => String::new(),
+            };
             format!(
-                "slope {} {} per unit of {channel} ({} … {}), 95 % interval; {:.1} standard errors",
+                "{lag}slope {} {} per unit of {} ({} … {}), 95 % interval; {:.1} standard errors",
                 number::number(slope.value),
                 diagnosed.axis.unit,
+                series.name,
                 number::number(lower),
                 number::number(upper),
                 slope.z()
@@ -103,12 +113,6 @@ impl Finding {
         let change = change.map(|(label, text)| (*label, text.as_str()));
         explanation.into_iter().flatten().chain(change).collect()
     }
-}
-
-/// The slopes of the covariates that the rate follows, in the order of their names.
-pub(crate) fn slopes(followed: &FollowedCovariate) -> Vec<Slope> {
-    let beside = followed.beside.map(|beside| beside.slope);
-    std::iter::once(followed.slope).chain(beside).collect()
 }
 
 /// The shape and the coefficient of an effect in a step, with their 95 % intervals. Of several effects of one name, it is

@@ -11,7 +11,7 @@ use crate::{
     log::{Evidence, OCTAVES},
 };
 use allanite::{
-    Curve, Model, Observed, Record,
+    Curve, Model, Observed,
     fit::{Fit, Method, Options, fit},
 };
 use clap::ValueEnum;
@@ -117,17 +117,9 @@ impl Fitted {
         let fitted = Self::new(path, axis, model, method)?;
         let name = &fitted.axis.axis;
         let reason = evidence.invalid;
-        let (names, covariates): (Vec<_>, Vec<_>) = evidence.covariates.into_iter().unzip();
         let spectrum = fitted.axis.spectrum();
-        let tried = spectrum.and_then(|spectrum| {
-            let record = Record {
-                covariates: &covariates,
-                pairs: &evidence.pairs,
-                invalid: reason,
-                ..Record::new(&fitted.curve, &spectrum)
-            };
-            tried::beside_model(record, &names, model)
-        });
+        let tried = spectrum
+            .and_then(|spectrum| tried::beside_model(&fitted.curve, &spectrum, &evidence, model));
         let motion = evidence.motion.as_ref();
         Ok(Self {
             invalid: reason.map(|reason| words::invalid(&reason, motion, name)),

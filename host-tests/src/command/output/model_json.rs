@@ -3,6 +3,7 @@
 use super::{units, words};
 use crate::{
     command::fit,
+    dependence::candidates::{Candidate, Form},
     log::{BINS, OCTAVES},
     unit::Unit,
 };
@@ -26,21 +27,27 @@ pub(crate) struct Effect {
     channel: Option<String>,
 }
 
-/// A covariate that the rate depends on: its slope, and the slope's 95 % interval.
-pub(crate) fn covariate(slope: &Slope, channel: &str) -> Effect {
+/// A covariate that the rate depends on: its slope, and its lag if it has one, each with its 95 % interval.
+pub(crate) fn covariate(slope: &Slope, series: &Candidate) -> Effect {
     let (lower, upper) = slope.interval();
     let numbers = [
         ("slope", slope.value),
         ("slope_lower", lower),
         ("slope_upper", upper),
     ];
+    let lag = match &series.form {
+        Form::Behind(lag) => vec![
+            ("lag_s", lag.lag_s),
+            ("lag_lower_s", lag.lower_s),
+            ("lag_upper_s", lag.upper_s),
+        ],
+        _ => Vec::new(),
+    };
+    let numbers = numbers.into_iter().chain(lag);
     Effect {
         name: covariate::NAME,
-        parameters: numbers
-            .map(|(name, x)| (name.into(), x.into()))
-            .into_iter()
-            .collect(),
-        channel: Some(channel.to_owned()),
+        parameters: numbers.map(|(name, x)| (name.into(), x.into())).collect(),
+        channel: Some(series.name.clone()),
     }
 }
 

@@ -114,7 +114,7 @@ impl<const K: usize> CrossCurve<K> {
     /// the gyro's curve. Octaves beyond `K` are left out.
     pub fn of_points(points: impl IntoIterator<Item = CrossPoint>) -> Self {
         Self {
-            points: list::fill(points.into_iter()),
+            points: list::fill(points),
         }
     }
 
@@ -126,18 +126,19 @@ impl<const K: usize> CrossCurve<K> {
     /// The first octave in which the covariate exceeds its sensor's noise. This is octave 0 where the
     /// curve rises from the start. It is octave 0 as well where the curve never rises: then the rate
     /// might follow the noise.
-    pub(crate) fn first_octave(&self) -> usize {
-        let by_variance = |(_, a): &(usize, &CrossPoint), (_, b): &(usize, &CrossPoint)| {
-            a.variance.total_cmp(&b.variance)
-        };
-        let least = numbered(self.points.iter()).min_by(by_variance);
-        let Some((at, least)) = least.filter(|&(at, _)| at > 0) else {
-            return 0;
-        };
-        let mut later = numbered(self.points.iter()).skip(at);
-        later
-            .find(|(_, point)| point.variance > RISEN * least.variance)
-            .map_or(0, |(k, _)| k)
+    ///
+    /// What counts is the least variance so far. A cycle has little of it at its own period, far behind the noise.
+    pub fn first_octave(&self) -> usize {
+        let mut least = (0, Real::INFINITY);
+        for (k, point) in numbered(self.points.iter()) {
+            if point.variance > RISEN * least.1 {
+                return if least.0 > 0 { k } else { 0 };
+            }
+            if point.variance < least.1 {
+                least = (k, point.variance);
+            }
+        }
+        0
     }
 }
 
@@ -190,5 +191,27 @@ impl Slope {
     pub fn interval(&self) -> (Real, Real) {
         let half = real(TWO_SIDED_95) * self.error;
         (self.value - half, self.value + half)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_of_a_sensor_ends_where_the_curve_rises_for_the_first_time() {
+        let first = |variances: &[Real]| {
+            let points = (0..).zip(variances).map(|(k, &variance)| CrossPoint {
+                m: 1 << k,
+                covariance: 0.0,
+                variance,
+            });
+            CrossCurve::<12>::of_points(points).first_octave()
+        };
+        assert_eq!(first(&[1.0, 4.5, 16.0]), 0);
+        assert_eq!(first(&[4.0, 2.0, 1.0, 0.5]), 0);
+        assert_eq!(first(&[4.0, 2.0, 1.0, 1.5, 6.0, 24.0]), 4);
+        // A cycle nearly vanishes at its own period.
+        assert_eq!(first(&[4.0, 2.0, 1.0, 1.5, 6.0, 24.0, 0.1, 0.3]), 4);
     }
 }

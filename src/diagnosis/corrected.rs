@@ -23,8 +23,10 @@ impl FollowedCovariate {
     /// it is noticeable.
     ///
     /// An octave becomes `σ²_g − 2α C_gx + α² σ²_x`. The slope's own error ε takes some of the noise away as well,
-    /// `ε² σ²_x` on average, which is added back. Octaves in which the covariate is its sensor's noise stay as they
-    /// are, because the rate does not follow that noise.
+    /// `ε² σ²_x` on average, which is added back. Where the covariate is its sensor's noise for the most part, `σ²_x` says
+    /// nothing of what the rate follows, but the product `α C_gx` does: it is subtracted there. Noise of the product
+    /// could exceed what follows the covariate, which falls as `τ` at least. So no more is subtracted than what falls
+    /// so from the first octave that is not noise.
     ///
     /// No sums say what a bin has in common with the covariate. A covariate is slow, so that it reaches the levels
     /// with the longest blocks only, and the octaves take the place of these levels. The frequencies of the level of
@@ -81,6 +83,20 @@ impl FollowedCovariate {
             }
             (k >= first).then_some((follows, taken, power))
         };
+        // What of the covariates follows in an octave in which they are noise, and its Allan variance: both are one.
+        let of_first = shares(first).map_or(0.0, |(_, _, power)| power);
+        let first_m = one.points().get(first).map_or(1, |point| point.m);
+        let behind_noise = |k: usize| {
+            let point = one.points().get(k).filter(|_| k < first)?;
+            let own = self.slope.value * point.covariance;
+            let other = beside.and_then(|(beside, other, _)| {
+                Some(beside.slope.value * other.points().get(k)?.covariance)
+            });
+            let most = of_first * real(point.m) / real(first_m);
+            let follows = (own + other.unwrap_or(0.0)).min(most).max(0.0);
+            Some((follows, 0.0, follows))
+        };
+        let shares = |k: usize| shares(k).or_else(|| behind_noise(k));
         curve.change_variances(|k, variance| match shares(k) {
             Some((follows, taken, _)) => {
                 // The rest is a mean square. Only rounding makes it negative.

@@ -85,16 +85,27 @@ pub(crate) fn tried(
         let first = first.map(|followed| followed.slope);
         first.or_else(|| Some(beside.filter(|beside| beside.index == at)?.slope))
     };
+    // The column behind a lag, if the rate follows that.
+    let behind = |column: &str| {
+        let all = candidates.all.iter().enumerate();
+        let mut lagged = all.filter_map(|(at, other)| match &other.form {
+            Form::Behind(lag) if other.column == column => Some((acting(at)?, lag)),
+            _ => None,
+        });
+        let (slope, lag) = lagged.next()?;
+        // The slope of a lag that acts alone has an error that includes that of the lag.
+        let slope = beside.map_or(lag.slope, |_| slope);
+        Some(Lag {
+            slope,
+            ..lag.clone()
+        })
+    };
     let one = |at: usize, candidate: &Candidate| {
         if let Some(slope) = acting(at) {
-            return match &candidate.form {
-                Form::Behind(lag) if beside.is_none() => Found::ActsBehind(lag.clone()),
-                Form::Behind(lag) => Found::ActsBehind(Lag {
-                    slope,
-                    ..lag.clone()
-                }),
-                _ => Found::Acts(slope),
-            };
+            return Found::Acts(slope);
+        }
+        if let (Form::Itself, Some(lag)) = (&candidate.form, behind(&candidate.column)) {
+            return Found::ActsBehind(lag);
         }
         let others = candidates.all.iter().enumerate();
         let mut of_column = others.filter(|(at, other)| {
@@ -132,7 +143,10 @@ pub(crate) fn tried(
         slope.map_or(Found::Constant, |slope| Found::Nothing(slope, bound()))
     };
     let all = candidates.all.iter().enumerate();
-    let told = all.filter(|(at, candidate)| candidate.asked || acting(*at).is_some());
+    let told = all.filter(|(at, candidate)| match candidate.form {
+        Form::Behind(_) => false,
+        _ => candidate.asked || acting(*at).is_some(),
+    });
     told.map(|(at, candidate)| TriedCovariate {
         channel: candidate.name.clone(),
         column: candidate.column.clone(),

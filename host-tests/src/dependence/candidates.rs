@@ -25,7 +25,12 @@ pub enum Form {
     /// The column behind a thermal mass.
     Behind(Lag),
     /// The square of the distance from the column's mean, behind a thermal mass or not.
-    Square { centre: f64, lag_s: Option<f64> },
+    Square {
+        /// The mean, in units of the column.
+        centre: f64,
+        /// The lag in seconds, if there is one.
+        lag_s: Option<f64>,
+    },
 }
 
 /// A series that is tried.
@@ -35,6 +40,7 @@ pub struct Candidate {
     pub name: String,
     /// The column that it is formed from.
     pub column: String,
+    /// How it is formed.
     pub form: Form,
     /// Whether it was asked for, or found by its name.
     pub asked: bool,
@@ -53,8 +59,11 @@ pub struct Bound {
 /// Everything that a diagnosis tries beside an axis.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
+    /// The candidates.
     pub all: Vec<Candidate>,
+    /// What the axis has in common with each of them, octave by octave.
     pub crosses: Vec<CrossCurve<OCTAVES>>,
+    /// Those that may act together.
     pub pairs: Vec<Pair<OCTAVES>>,
     means: Option<BlockMeans>,
 }

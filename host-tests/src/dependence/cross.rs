@@ -85,27 +85,24 @@ pub fn cross_curve(
     CrossCurve::of_points(short.chain(long.iter().copied()))
 }
 
-/// The first octave, by its averaging factor, in which a column changes by far more than the noise of its sensor. `of_column`
-/// is the cross curve of the column at the rate of its samples.
+/// The first octave, by its averaging factor, in which a column changes by far more than the noise of its sensor.
+/// `of_column` is the cross curve of the column at the rate of its samples.
 ///
 /// The noise of a sensor falls as `1/τ` where it is white. Where the curve of the column falls before it rises, the
 /// noise behind the minimum is at most what falls on from there.
 pub fn first_beyond_noise(of_column: &CrossCurve<OCTAVES>) -> u32 {
-    let points = of_column.points();
-    let least = points
+    let (points, risen) = (of_column.points(), of_column.first_octave());
+    let fallen = &points[..risen.min(points.len())];
+    let Some(least) = fallen
         .iter()
-        .enumerate()
-        .min_by(|(_, a), (_, b)| a.variance.total_cmp(&b.variance));
-    let Some((at, least)) = least.filter(|(at, _)| *at > 0) else {
+        .min_by(|a, b| a.variance.total_cmp(&b.variance))
+    else {
         return 1;
     };
     let noise = |m: u32| least.variance * f64::from(least.m) / f64::from(m);
-    let beyond = |times: f64| {
-        let mut later = points[at..].iter();
-        later.find(|point| point.variance > times * noise(point.m))
-    };
-    let first = beyond(FAR).or_else(|| beyond(4.0));
-    first.map_or(1, |first| first.m)
+    let mut later = points[risen..].iter();
+    let far = later.find(|point| point.variance > FAR * noise(point.m));
+    far.unwrap_or(&points[risen]).m
 }
 
 /// How far a column has to exceed the noise of its sensor. Chosen by hand: the noise then takes one per cent from a

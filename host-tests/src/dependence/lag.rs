@@ -46,9 +46,11 @@ const SETTLED: f64 = 0.01;
 /// The lag with which a rate follows a column.
 #[derive(Clone, Debug)]
 pub struct Lag {
-    /// The lag in seconds, with its 95 % interval.
+    /// The lag in seconds.
     pub lag_s: f64,
+    /// Lower end of its 95 % interval.
     pub lower_s: f64,
+    /// Upper end of its 95 % interval.
     pub upper_s: f64,
     /// The slope on the column behind the lag. Its error includes that of the lag.
     pub slope: Slope,
@@ -58,9 +60,13 @@ pub struct Lag {
 
 /// A record whose rate may follow a column.
 pub struct Record<'a> {
+    /// The curve of the record as it is.
     pub curve: &'a Curve<OCTAVES>,
+    /// The spectrum of the record as it is.
     pub spectrum: &'a Spectrum<BINS>,
+    /// The model of the noise.
     pub model: &'a Model,
+    /// The means of the rate and of the columns.
     pub means: &'a BlockMeans,
     /// The differences of the mean rates.
     pub rate: &'a Differences,
@@ -120,6 +126,7 @@ pub struct Found {
 
 /// The search for the lag of one column.
 pub struct Search<'a> {
+    /// The record.
     pub record: &'a Record<'a>,
     /// The means of the column.
     pub column: &'a [f64],

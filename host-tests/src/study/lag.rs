@@ -221,6 +221,20 @@ pub fn diagnose(preset: Preset, course: Course, dependence: Dependence, seed: u6
     diagnosis::diagnose(told, &model, &CATALOGUE, Options::default(), report)
         .expect("a curve to diagnose");
     let last = last.expect("a step");
+    if std::env::var_os("STUDY_DEBUG").is_some() {
+        for (c, cross) in candidates.all.iter().zip(&candidates.crosses) {
+            println!("{}", c.name);
+            for (p, o) in cross.points().iter().zip(&last.comparison.octaves) {
+                println!(
+                    "  m {} ratio {:.5} var {:.3e} noise {:.3e}",
+                    p.m,
+                    p.covariance / p.variance,
+                    p.variance,
+                    o.model
+                );
+            }
+        }
+    }
     let followed = last.covariate;
     let places = followed.iter().flat_map(|followed| {
         let beside = followed.beside.map(|beside| (beside.index, beside.slope));
@@ -306,8 +320,9 @@ pub fn study(preset: Preset, course: Course, dependence: Dependence, records: u6
         lag_inside: a.lag_inside + b.lag_inside,
         wrong: a.wrong + b.wrong,
     };
-    (0..records)
-        .into_par_iter()
-        .map(one)
-        .reduce(Tally::default, add)
+    let only = std::env::var("STUDY_SEED")
+        .ok()
+        .and_then(|s| s.parse().ok());
+    let range = only.map_or(0..records, |s: u64| s..s + 1);
+    range.into_par_iter().map(one).reduce(Tally::default, add)
 }

@@ -35,19 +35,22 @@ pub(crate) fn covariate(slope: &Slope, series: &Candidate) -> Effect {
         ("slope_lower", lower),
         ("slope_upper", upper),
     ];
-    let lag = match &series.form {
-        Form::Behind(lag) => vec![
-            ("lag_s", lag.lag_s),
-            ("lag_lower_s", lag.lower_s),
-            ("lag_upper_s", lag.upper_s),
-        ],
-        _ => Vec::new(),
+    let (lag, channel) = match &series.form {
+        Form::Behind(lag) => {
+            let lag = vec![
+                ("lag_s", lag.lag_s),
+                ("lag_lower_s", lag.lower_s),
+                ("lag_upper_s", lag.upper_s),
+            ];
+            (lag, &series.column)
+        }
+        _ => (Vec::new(), &series.name),
     };
     let numbers = numbers.into_iter().chain(lag);
     Effect {
         name: covariate::NAME,
         parameters: numbers.map(|(name, x)| (name.into(), x.into())).collect(),
-        channel: Some(series.name.clone()),
+        channel: Some(channel.clone()),
     }
 }
 

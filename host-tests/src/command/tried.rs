@@ -4,7 +4,7 @@ use crate::{
     command::output::number::{number, rounded_up, two_digits},
     dependence::{
         candidates::{Bound, Candidate, Candidates, Form, seconds},
-        lag::Lag,
+        lag::{Lag, Unresolved},
     },
     diagnosis::diagnose,
     log::{self, BINS, OCTAVES, is_degrees_column},
@@ -29,8 +29,8 @@ pub(crate) struct TriedCovariate {
 
 /// What was found of a covariate.
 enum Found {
-    /// The rate follows it.
-    Acts(Slope),
+    /// The rate follows it. It may do so with a lag that the record does not tell.
+    Acts(Slope, Option<Unresolved>),
     /// The rate follows it with a lag.
     ActsBehind(Lag),
     /// The rate does not follow it with a slope that stands out.
@@ -79,11 +79,11 @@ pub(crate) fn tried(
     let points = curve.points();
     let (crosses, pairs) = (&candidates.crosses, &candidates.pairs);
     let followed = step.covariate.as_ref();
-    let beside = followed.and_then(|followed| followed.beside);
+    let slopes = followed.map_or(Vec::new(), |followed| candidates.slopes(followed));
     let acting = |at: usize| {
-        let first = followed.filter(|followed| followed.index == at);
-        let first = first.map(|followed| followed.slope);
-        first.or_else(|| Some(beside.filter(|beside| beside.index == at)?.slope))
+        let mut slopes = slopes.iter();
+        let is_it = |candidate: &Candidate| std::ptr::eq(candidate, &raw const candidates.all[at]);
+        slopes.find_map(|(slope, candidate)| is_it(candidate).then_some(*slope))
     };
     // The column behind a lag, if the rate follows that.
     let behind = |column: &str| {
@@ -93,8 +93,6 @@ pub(crate) fn tried(
             _ => None,
         });
         let (slope, lag) = lagged.next()?;
-        // The slope of a lag that acts alone has an error that includes that of the lag.
-        let slope = beside.map_or(lag.slope, |_| slope);
         Some(Lag {
             slope,
             ..lag.clone()
@@ -102,7 +100,7 @@ pub(crate) fn tried(
     };
     let one = |at: usize, candidate: &Candidate| {
         if let Some(slope) = acting(at) {
-            return Found::Acts(slope);
+            return Found::Acts(slope, candidate.unresolved.filter(|_| slopes.len() == 1));
         }
         if let (Form::Itself, Some(lag)) = (&candidate.form, behind(&candidate.column)) {
             return Found::ActsBehind(lag);
@@ -182,7 +180,7 @@ pub(crate) fn beside_model(
 impl TriedCovariate {
     /// Whether the rate follows the covariate.
     pub(crate) const fn acts(&self) -> bool {
-        matches!(self.found, Found::Acts(_) | Found::ActsBehind(_))
+        matches!(self.found, Found::Acts(..) | Found::ActsBehind(_))
     }
 
     /// The result in a sentence.
@@ -195,11 +193,13 @@ impl TriedCovariate {
         } = self;
         let per = per(column, form, unit);
         match found {
-            Found::Acts(slope) => {
-                format!(
-                    "{channel}: the rate follows it with {}",
-                    interval(slope, &per)
-                )
+            Found::Acts(slope, unresolved) => {
+                let slope = interval(slope, &per);
+                let lag = unresolved.map_or(String::new(), |unresolved| {
+                    let longest = seconds(unresolved.longest_s);
+                    format!("; a lag of up to {longest} is not excluded")
+                });
+                format!("{channel}: the rate follows it with {slope}{lag}")
             }
             Found::ActsBehind(lag) => format!(
                 "{column}: the rate follows it with a lag of {} ({} … {}), and with {}",
@@ -232,7 +232,7 @@ impl TriedCovariate {
 
     pub(crate) fn document(&self) -> Document {
         let (slope, lag, bound) = match &self.found {
-            Found::Acts(slope) => (Some(slope), None, None),
+            Found::Acts(slope, _) => (Some(slope), None, None),
             Found::Nothing(slope, bound) => (Some(slope), None, bound.as_ref()),
             Found::ActsBehind(lag) => (Some(&lag.slope), Some(lag), None),
             Found::SameAs(_) | Found::PartOf(_) | Found::Constant => (None, None, None),

@@ -3,7 +3,7 @@
 use super::{
     block_means::BlockMeans,
     cross::{Differences, cross_curve, first_beyond_noise},
-    lag::{Found, Lag, Record, Search},
+    lag::{Found, Lag, Record, Search, Unresolved},
     noise::Noise,
     series::{lagged, mean, rate_of_change, squared},
 };
@@ -44,6 +44,8 @@ pub struct Candidate {
     pub form: Form,
     /// Whether it was asked for, or found by its name.
     pub asked: bool,
+    /// Lags that are not excluded, of a column as it is.
+    pub unresolved: Option<Unresolved>,
 }
 
 /// What bounds a dependence on a column that does not show: the error of the amplitude of the rate per unit of the
@@ -95,6 +97,7 @@ impl Candidates {
                 column: inner.unwrap_or(name).to_owned(),
                 form: inner.map_or(Form::Itself, |_| Form::RateOfChange),
                 asked: true,
+                unresolved: None,
             }
         });
         let crosses = evidence.covariates.iter().map(|(_, cross)| cross.clone());
@@ -140,6 +143,23 @@ impl Candidates {
             Form::Behind(lag) => Some(lag),
             _ => None,
         }
+    }
+
+    /// The slopes with which the rate follows covariates, each with its covariate. The errors include those of a lag,
+    /// whether it is told or not.
+    pub fn slopes(&self, followed: &FollowedCovariate) -> Vec<(Slope, &Candidate)> {
+        let own = |index: usize, slope: Slope| match (self.lag(index), self.all.get(index)) {
+            (Some(lag), _) if followed.beside.is_none() => lag.slope,
+            (_, Some(candidate)) => {
+                let unresolved = candidate.unresolved.filter(|_| followed.beside.is_none());
+                unresolved.map_or(slope, |unresolved| unresolved.widened(slope))
+            }
+            _ => slope,
+        };
+        let beside = followed.beside.map(|beside| (beside.index, beside.slope));
+        let all = std::iter::once((followed.index, followed.slope)).chain(beside);
+        all.filter_map(|(at, slope)| Some((own(at, slope), self.all.get(at)?)))
+            .collect()
     }
 
     /// What follows the covariates, in rate units, as means of groups of `samples` samples.
@@ -210,6 +230,7 @@ impl Candidates {
                     column: column.to_owned(),
                     form: Form::RateOfChange,
                     asked: false,
+                    unresolved: None,
                 };
                 self.add(candidate, of_change)
             }
@@ -226,6 +247,7 @@ impl Candidates {
         let lag = found.and_then(|found| {
             let Found {
                 lag,
+                unresolved,
                 noise,
                 explained,
                 factor,
@@ -234,6 +256,7 @@ impl Candidates {
             let alone = others.alone[0].max(others.alone[1]) / factor;
             let is_better =
                 explained >= alone + LAG_NEEDS && explained >= others.together / factor - PREFERRED;
+            self.all[at].unresolved = unresolved;
             lag.filter(|_| is_better)
         });
         if lag.is_none() {
@@ -247,6 +270,7 @@ impl Candidates {
                 column: column.to_owned(),
                 form: Form::Behind(lag.clone()),
                 asked: false,
+                unresolved: None,
             };
             let behind = self.add(candidate, lag.cross);
             let series = lagged(means, lag_s / record.means.block_s);
@@ -281,6 +305,7 @@ impl Candidates {
             column: column.to_owned(),
             form: Form::Square { centre, lag_s },
             asked: false,
+            unresolved: None,
         };
         let cross = record.cross(&square, 1);
         let square_at = self.add(candidate, cross);

@@ -112,10 +112,31 @@ impl Record<'_> {
     }
 }
 
+/// A lag that a record neither shows nor excludes. A slope without a lag may be wrong by what the lag would change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unresolved {
+    /// The longest lag that is not excluded, in seconds.
+    pub longest_s: f64,
+    /// The most that such a lag changes of the slope, in rate units per unit of the column.
+    pub shift: f64,
+}
+
+impl Unresolved {
+    /// A slope whose interval includes what the lag may change.
+    pub fn widened(&self, slope: Slope) -> Slope {
+        Slope {
+            error: slope.error.hypot(self.shift / TWO_SIDED_95),
+            ..slope
+        }
+    }
+}
+
 /// What was found about a column.
 pub struct Found {
     /// The lag; `None` if no lag is the best one within the range.
     pub lag: Option<Lag>,
+    /// The lags that are not excluded, if the lag is not told.
+    pub unresolved: Option<Unresolved>,
     /// The noise without what follows the column.
     pub noise: Noise,
     /// What the column explains behind its lag, as `z²`.
@@ -139,6 +160,11 @@ impl Search<'_> {
     fn cross(&self, lag_s: f64) -> CrossCurve<OCTAVES> {
         let series = lagged(self.column, lag_s / self.record.means.block_s);
         self.record.cross(&series, self.shortest)
+    }
+
+    /// What the axis has in common with the column itself.
+    fn without_lag(&self) -> CrossCurve<OCTAVES> {
+        self.record.cross(self.column, self.shortest)
     }
 
     /// `b²/a`.
@@ -262,8 +288,24 @@ impl Search<'_> {
                 cross,
             }
         });
+        let not_excluded = || {
+            let upper = match above(longest) < 0.0 {
+                true => Self::zero(log, longest, above),
+                false => longest,
+            };
+            let without = Slope::of(&self.without_lag(), self.record.points(), |k| noise.at(k))?;
+            let shift = [log, upper].map(|log| {
+                let slope = slope_at(log).map_or(without.value, |(_, slope)| slope.value);
+                (slope - without.value).abs()
+            });
+            Some(Unresolved {
+                longest_s: upper.exp(),
+                shift: shift[0].max(shift[1]),
+            })
+        };
         Some(Found {
             lag,
+            unresolved: not_excluded(),
             noise,
             explained,
             factor,

@@ -221,48 +221,26 @@ pub fn diagnose(preset: Preset, course: Course, dependence: Dependence, seed: u6
     diagnosis::diagnose(told, &model, &CATALOGUE, Options::default(), report)
         .expect("a curve to diagnose");
     let last = last.expect("a step");
-    if std::env::var_os("STUDY_DEBUG").is_some() {
-        for (c, cross) in candidates.all.iter().zip(&candidates.crosses) {
-            println!("{}", c.name);
-            for (p, o) in cross.points().iter().zip(&last.comparison.octaves) {
-                println!(
-                    "  m {} ratio {:.5} var {:.3e} noise {:.3e}",
-                    p.m,
-                    p.covariance / p.variance,
-                    p.variance,
-                    o.model
-                );
-            }
-        }
-    }
-    let followed = last.covariate;
-    let places = followed.iter().flat_map(|followed| {
-        let beside = followed.beside.map(|beside| (beside.index, beside.slope));
-        let lag = candidates.lag(followed.index).filter(|_| beside.is_none());
-        let slope = lag.map_or(followed.slope, |lag| lag.slope);
-        std::iter::once((followed.index, slope)).chain(beside)
+    let followed = last.covariate.as_ref();
+    let slopes = followed.map_or(Vec::new(), |followed| candidates.slopes(followed));
+    let has = |is: fn(&Form) -> bool| slopes.iter().any(|(_, one)| is(&one.form));
+    let lag = slopes.iter().find_map(|(_, one)| match &one.form {
+        Form::Behind(lag) => Some((lag.lag_s, lag.lower_s, lag.upper_s)),
+        _ => None,
     });
-    let places: Vec<_> = places.collect();
-    let has = |is: fn(&Form) -> bool| places.iter().any(|(at, _)| is(&candidates.all[*at].form));
-    let lag = places.iter().find_map(|(at, _)| candidates.lag(*at));
-    let base = model.terms().len();
+    let names = last.model.terms().iter().map(|term| term.effect.name());
     Outcome {
         truth: record.truth,
-        follows: places
+        follows: slopes
             .iter()
-            .map(|(at, slope)| (candidates.all[*at].name.clone(), slope.value, slope.error))
+            .map(|(slope, one)| (one.name.clone(), slope.value, slope.error))
             .collect(),
-        lag: lag.map(|lag| (lag.lag_s, lag.lower_s, lag.upper_s)),
+        lag,
         square: has(|form| matches!(form, Form::Square { .. })),
         rate_of_change: has(|form| matches!(form, Form::RateOfChange)),
-        named: {
-            let terms = last.model.terms().iter();
-            let known = |name: &str| model.position(name).is_some();
-            let names = terms.map(|term| term.effect.name());
-            let added: Vec<_> = names.filter(|name| !known(name)).collect();
-            debug_assert!(added.len() <= last.model.terms().len().max(base));
-            added
-        },
+        named: names
+            .filter(|name| model.position(name).is_none())
+            .collect(),
     }
 }
 
@@ -289,40 +267,41 @@ pub struct Tally {
 
 /// Counts over the records of one case.
 pub fn study(preset: Preset, course: Course, dependence: Dependence, records: u64) -> Tally {
-    let one = |seed: u64| {
-        let outcome = diagnose(preset, course, dependence, seed);
-        if std::env::var_os("STUDY_VERBOSE").is_some() {
-            println!("{seed} {preset:?} {outcome:?}");
-        }
-        let inside = |&(_, value, error): &(String, f64, f64)| {
-            (value - outcome.truth.slope).abs() <= TWO_SIDED_95 * error
+    let one = |seed: u64| Tally::of(&diagnose(preset, course, dependence, seed));
+    let outcomes = (0..records).into_par_iter().map(one);
+    outcomes.reduce(Tally::default, Tally::plus)
+}
+
+impl Tally {
+    fn of(outcome: &Outcome) -> Self {
+        let truth = outcome.truth;
+        let slope_inside = |&(_, value, error): &(String, f64, f64)| {
+            (value - truth.slope).abs() <= TWO_SIDED_95 * error
         };
         let lag_inside =
-            |(_, lower, upper): (f64, f64, f64)| (lower..=upper).contains(&outcome.truth.lag_s);
-        Tally {
+            |(_, lower, upper): (f64, f64, f64)| (lower..=upper).contains(&truth.lag_s);
+        Self {
             records: 1,
             found: usize::from(!outcome.follows.is_empty()),
             lagged: usize::from(outcome.lag.is_some()),
             rate_of_change: usize::from(outcome.rate_of_change),
             square: usize::from(outcome.square),
-            slope_inside: usize::from(outcome.follows.first().is_some_and(inside)),
+            slope_inside: usize::from(outcome.follows.first().is_some_and(slope_inside)),
             lag_inside: usize::from(outcome.lag.is_some_and(lag_inside)),
             wrong: usize::from(!outcome.named.is_empty()),
         }
-    };
-    let add = |a: Tally, b: Tally| Tally {
-        records: a.records + b.records,
-        found: a.found + b.found,
-        lagged: a.lagged + b.lagged,
-        rate_of_change: a.rate_of_change + b.rate_of_change,
-        square: a.square + b.square,
-        slope_inside: a.slope_inside + b.slope_inside,
-        lag_inside: a.lag_inside + b.lag_inside,
-        wrong: a.wrong + b.wrong,
-    };
-    let only = std::env::var("STUDY_SEED")
-        .ok()
-        .and_then(|s| s.parse().ok());
-    let range = only.map_or(0..records, |s: u64| s..s + 1);
-    range.into_par_iter().map(one).reduce(Tally::default, add)
+    }
+
+    const fn plus(self, other: Self) -> Self {
+        Self {
+            records: self.records + other.records,
+            found: self.found + other.found,
+            lagged: self.lagged + other.lagged,
+            rate_of_change: self.rate_of_change + other.rate_of_change,
+            square: self.square + other.square,
+            slope_inside: self.slope_inside + other.slope_inside,
+            lag_inside: self.lag_inside + other.lag_inside,
+            wrong: self.wrong + other.wrong,
+        }
+    }
 }

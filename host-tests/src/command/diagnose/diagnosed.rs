@@ -362,16 +362,9 @@ impl Diagnosed {
             .collect()
     }
 
-    /// The slopes with which the rate follows covariates. The error of a slope behind a lag includes that of the lag.
+    /// The slopes with which the rate follows covariates.
     pub(crate) fn slopes(&self, followed: &FollowedCovariate) -> Vec<(Slope, &Series)> {
-        let beside = followed.beside.map(|beside| (beside.index, beside.slope));
-        let slope = match self.candidates.lag(followed.index) {
-            Some(lag) if beside.is_none() => lag.slope,
-            _ => followed.slope,
-        };
-        let all = std::iter::once((followed.index, slope)).chain(beside);
-        all.filter_map(|(at, slope)| Some((slope, self.candidates.all.get(at)?)))
-            .collect()
+        self.candidates.slopes(followed)
     }
 
     /// Notes on the result, one line each.

@@ -139,11 +139,8 @@ fn a_bound_on_a_dependence_holds_for_any_lag() {
         ..record
     };
     let axis = lagged.diagnosed(folder.path());
-    assert_eq!(
-        axis["covariates"][0]["acts"], true,
-        "{}",
-        axis["covariates"]
-    );
+    let tried = axis["covariates"].as_array().unwrap();
+    assert!(tried.iter().any(|tried| tried["acts"] == true), "{tried:?}");
 }
 
 /// A warm-up that the temperature explains is no event, whether the rate follows it at once or late.

@@ -18,15 +18,18 @@ const LEAKED: Real = 0.02;
 /// at most: the ratio of the responses `sin⁴u/u²` at `u = 1/2` and 1. It is a quarter for a ramp.
 const SEEN_BY_HALF: Real = 0.42;
 
+/// The shares of the next octave's variance that an octave has of a smooth change, and of a random walk.
+const SMOOTH: Real = 0.25;
+const WALKING: Real = 0.5;
+
 impl FollowedCovariate {
     /// Subtracts what follows the covariate from the gyro's curve, and leaves out the levels of the spectrum in which
     /// it is noticeable.
     ///
     /// An octave becomes `σ²_g − 2α C_gx + α² σ²_x`. The slope's own error ε takes some of the noise away as well,
-    /// `ε² σ²_x` on average, which is added back. Where the covariate is its sensor's noise for the most part, `σ²_x` says
-    /// nothing of what the rate follows, but the product `α C_gx` does: it is subtracted there. Noise of the product
-    /// could exceed what follows the covariate, which falls as `τ` at least. So no more is subtracted than what falls
-    /// so from the first octave that is not noise.
+    /// `ε² σ²_x` on average, which is added back. Octaves in which the covariate is its sensor's noise tell
+    /// nothing of what the rate follows there. It is taken to fall on towards shorter ones as it does between the first
+    /// two octaves that are no noise: as `τ`, like a random walk, to `τ²`, like a smooth change.
     ///
     /// No sums say what a bin has in common with the covariate. A covariate is slow, so that it reaches the levels
     /// with the longest blocks only, and the octaves take the place of these levels. The frequencies of the level of
@@ -83,17 +86,25 @@ impl FollowedCovariate {
             }
             (k >= first).then_some((follows, taken, power))
         };
-        // What of the covariates follows in an octave in which they are noise, and its Allan variance: both are one.
-        let of_first = shares(first).map_or(0.0, |(_, _, power)| power);
-        let first_m = one.points().get(first).map_or(1, |point| point.m);
-        let behind_noise = |k: usize| {
-            let point = one.points().get(k).filter(|_| k < first)?;
-            let own = self.slope.value * point.covariance;
+        // What follows in the first octave that is no noise, by its product with the rate, and the share of it that an
+        // octave before has of the next one.
+        let product = |k: usize| {
+            let own = one.points().get(k).map_or(0.0, |point| point.covariance);
             let other = beside.and_then(|(beside, other, _)| {
                 Some(beside.slope.value * other.points().get(k)?.covariance)
             });
-            let most = of_first * real(point.m) / real(first_m);
-            let follows = (own + other.unwrap_or(0.0)).min(most).max(0.0);
+            (self.slope.value * own + other.unwrap_or(0.0)).max(0.0)
+        };
+        let of_first = product(first);
+        let of_next = product(first.saturating_add(1));
+        let share = if of_next > 0.0 {
+            (of_first / of_next).clamp(SMOOTH, WALKING)
+        } else {
+            SMOOTH
+        };
+        let behind_noise = |k: usize| {
+            let octaves = first.checked_sub(k).filter(|&octaves| octaves > 0)?;
+            let follows = (0..octaves).fold(of_first, |follows, _| follows * share);
             Some((follows, 0.0, follows))
         };
         let shares = |k: usize| shares(k).or_else(|| behind_noise(k));

@@ -35,6 +35,8 @@ enum Found {
     ActsBehind(Lag),
     /// The rate does not follow it with a slope that stands out.
     Nothing(Slope, Option<Bound>),
+    /// The rate follows another covariate, and not this one beside it.
+    NothingBeside(Slope, String),
     /// It takes the same course as a covariate that the rate follows.
     SameAs(String),
     /// What it does is a part of what another covariate of the same column does.
@@ -124,14 +126,14 @@ pub(crate) fn tried(
                 Slope::of(&crosses[at], points, noise)
             }
             Some((pair, acting)) => {
-                let Some([first, second]) = pair.slopes(crosses, points, noise) else {
-                    return Found::SameAs(candidates.all[acting].name.clone());
+                let other = candidates.all[acting].name.clone();
+                return match pair.slopes(crosses, points, noise) {
+                    None => Found::SameAs(other),
+                    Some([first, _]) if pair.covariates[0] == at => {
+                        Found::NothingBeside(first, other)
+                    }
+                    Some([_, second]) => Found::NothingBeside(second, other),
                 };
-                Some(if pair.covariates[0] == at {
-                    first
-                } else {
-                    second
-                })
             }
         };
         let bound = || {
@@ -208,18 +210,20 @@ impl TriedCovariate {
                 seconds(lag.upper_s),
                 interval(&lag.slope, &per)
             ),
-            Found::Nothing(slope, bound) => {
-                let (lower, upper) = slope.interval();
-                let most = lower.abs().max(upper.abs());
-                match bound {
-                    Some(bound) => format!(
-                        "{channel}: no dependence above {} {per}, with a lag or without, at its main period of {} s",
-                        rounded_up(bound.most),
-                        two_digits(bound.period_s)
-                    ),
-                    None => format!("{channel}: no dependence above {} {per}", rounded_up(most)),
-                }
+            Found::NothingBeside(slope, other) => {
+                format!(
+                    "{channel}: no dependence above {} {per} beside {other}",
+                    most(slope)
+                )
             }
+            Found::Nothing(slope, bound) => match bound {
+                Some(bound) => format!(
+                    "{channel}: no dependence above {} {per}, with a lag or without, at its main period of {} s",
+                    rounded_up(bound.most),
+                    two_digits(bound.period_s)
+                ),
+                None => format!("{channel}: no dependence above {} {per}", most(slope)),
+            },
             Found::SameAs(other) => {
                 format!(
                     "{channel}: takes the same course as {other}, so that the two cannot be told apart"
@@ -234,6 +238,7 @@ impl TriedCovariate {
         let (slope, lag, bound) = match &self.found {
             Found::Acts(slope, _) => (Some(slope), None, None),
             Found::Nothing(slope, bound) => (Some(slope), None, bound.as_ref()),
+            Found::NothingBeside(slope, _) => (Some(slope), None, None),
             Found::ActsBehind(lag) => (Some(&lag.slope), Some(lag), None),
             Found::SameAs(_) | Found::PartOf(_) | Found::Constant => (None, None, None),
         };
@@ -251,6 +256,12 @@ impl TriedCovariate {
             most: bound.map(|bound| bound.most),
         }
     }
+}
+
+/// The largest slope that the interval does not exclude.
+fn most(slope: &Slope) -> String {
+    let (lower, upper) = slope.interval();
+    rounded_up(lower.abs().max(upper.abs()))
 }
 
 /// A slope with its unit and its interval.

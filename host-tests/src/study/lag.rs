@@ -99,7 +99,7 @@ fn simulated(preset: Preset, course: Course, dependence: Dependence, seed: u64) 
     );
     let is_coarse = between(0.0, 1.0) < 0.5;
     let noise = between(0.0, 0.2);
-    // Four times the white noise of one second, as that of the record that the text of `DESIGN` names.
+    // Some times the white noise of one second, so that a change of a few kelvin stands out.
     let slope = between(2.0, 6.0) * base.angle_random_walk;
     let truth = Truth {
         course,

@@ -32,7 +32,7 @@ enum Found {
     /// The rate follows it. It may do so with a lag that the record does not tell.
     Acts(Slope, Option<Unresolved>),
     /// The rate follows it with a lag.
-    ActsBehind(Lag),
+    ActsBehind(Box<Lag>),
     /// The rate does not follow it with a slope that stands out.
     Nothing(Slope, Option<Bound>),
     /// The rate follows another covariate, and not this one beside it.
@@ -97,7 +97,7 @@ pub(crate) fn tried(
         let (slope, lag) = lagged.next()?;
         Some(Lag {
             slope,
-            ..lag.clone()
+            ..lag.as_ref().clone()
         })
     };
     let one = |at: usize, candidate: &Candidate| {
@@ -105,7 +105,7 @@ pub(crate) fn tried(
             return Found::Acts(slope, candidate.unresolved.filter(|_| slopes.len() == 1));
         }
         if let (Form::Itself, Some(lag)) = (&candidate.form, behind(&candidate.column)) {
-            return Found::ActsBehind(lag);
+            return Found::ActsBehind(Box::new(lag));
         }
         let others = candidates.all.iter().enumerate();
         let mut of_column = others.filter(|(at, other)| {
@@ -239,7 +239,7 @@ impl TriedCovariate {
             Found::Acts(slope, _) => (Some(slope), None, None),
             Found::Nothing(slope, bound) => (Some(slope), None, bound.as_ref()),
             Found::NothingBeside(slope, _) => (Some(slope), None, None),
-            Found::ActsBehind(lag) => (Some(&lag.slope), Some(lag), None),
+            Found::ActsBehind(lag) => (Some(&lag.slope), Some(lag.as_ref()), None),
             Found::SameAs(_) | Found::PartOf(_) | Found::Constant => (None, None, None),
         };
         let interval = slope.map(Slope::interval);

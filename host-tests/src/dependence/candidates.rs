@@ -23,7 +23,7 @@ pub enum Form {
     /// Its rate of change, per second.
     RateOfChange,
     /// The column behind a thermal mass.
-    Behind(Lag),
+    Behind(Box<Lag>),
     /// The square of the distance from the column's mean, behind a thermal mass or not.
     Square {
         /// The mean, in units of the column.
@@ -140,7 +140,7 @@ impl Candidates {
     /// The lag of a covariate that has one.
     pub fn lag(&self, index: usize) -> Option<&Lag> {
         match &self.all.get(index)?.form {
-            Form::Behind(lag) => Some(lag),
+            Form::Behind(lag) => Some(lag.as_ref()),
             _ => None,
         }
     }
@@ -268,7 +268,7 @@ impl Candidates {
             let candidate = Candidate {
                 name: format!("{column} behind a lag of {}", seconds(lag_s)),
                 column: column.to_owned(),
-                form: Form::Behind(lag.clone()),
+                form: Form::Behind(Box::new(lag.clone())),
                 asked: false,
                 unresolved: None,
             };

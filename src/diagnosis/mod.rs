@@ -30,20 +30,3 @@ pub use step::{
 };
 pub use verdict::Verdict;
 pub use width::line_width;
-
-/// What a search says, for experiments.
-#[doc(hidden)]
-pub fn lab<const K: usize, const B: usize>(
-    record: crate::Record<'_, K, B>,
-    effects: &[&'static dyn crate::effect::Effect],
-    filter: Option<crate::Term>,
-    added: &[crate::Term],
-    each: &mut dyn FnMut(&[crate::Term], crate::Real, crate::Real),
-) {
-    let observation = search::Observation::new(record.observed(), record.course, |bin| {
-        bin.effective_segments()
-    });
-    let mut search = search::Search::<B>::NEW;
-    let model = crate::Model::ieee_952();
-    search.lab(&observation, &model, effects, filter, added, each);
-}

@@ -25,7 +25,7 @@ use heapless::Vec;
 /// The largest number of effects of a hypothesis.
 const MOST: usize = MAX_ADDED + 1;
 /// The hypotheses of as many effects that grow side by side.
-const BEAM: usize = 6;
+const BEAM: usize = 4;
 /// The best hypotheses of the continuum, narrow peaks left out, which grow too.
 const CONTINUA: usize = 2;
 /// A hypothesis that lags behind the best one of as many effects by more does not grow, and one that lags by more is not
@@ -39,7 +39,7 @@ const WORSE: Real = 8.0;
 /// The sets of additions that are crossed with all filters, for each number of effects.
 const CROSSED: usize = 3;
 /// The hypotheses that are pruned at the end.
-const PRUNED: usize = 10;
+const PRUNED: usize = 5;
 
 /// What a search may do.
 #[derive(Clone, Copy, Debug)]
@@ -63,8 +63,6 @@ pub(crate) const MAX_ALTERNATIVES: usize = 6;
 pub(crate) struct Found {
     pub(crate) best: Hypothesis,
     pub(crate) alternatives: Vec<(Hypothesis, Real), MAX_ALTERNATIVES>,
-    /// The score of the model without filter and additions.
-    pub(crate) plain: Real,
 }
 
 /// A search, with its memory.
@@ -184,19 +182,6 @@ impl<const B: usize> Search<B> {
             let more = of_count.filter(|other| !known.iter().any(|known| known.is_like(other)));
             let parents: Vec<Hypothesis, { BEAM + CONTINUA }> =
                 list::fill(known.iter().chain(more).filter(is_worth).cloned());
-            #[cfg(feature = "lab")]
-            {
-                extern crate std;
-                std::eprintln!("== count {count} best {best:.1} left {left:.1}");
-                for h in &parents {
-                    std::eprintln!(
-                        "  {:.1} {:.1} {:?}",
-                        h.score,
-                        h.cost,
-                        h.terms().collect::<std::vec::Vec<_>>()
-                    );
-                }
-            }
             for parent in parents.iter().filter(|_| count < MOST) {
                 solver.grow(parent, effects, &mut |_, hypothesis| {
                     let of = list::count(hypothesis.terms());
@@ -243,19 +228,6 @@ impl<const B: usize> Search<B> {
             list::rank(&mut cheapest, hypothesis, |other| {
                 other.cost > hypothesis.cost
             });
-        }
-        #[cfg(feature = "lab")]
-        {
-            extern crate std;
-            std::eprintln!("== cheapest");
-            for h in &cheapest {
-                std::eprintln!(
-                    "  {:.1} {:.1} {:?}",
-                    h.score,
-                    h.cost,
-                    h.terms().collect::<std::vec::Vec<_>>()
-                );
-            }
         }
         let mut finals: Vec<Hypothesis, PRUNED> = Vec::new();
         for hypothesis in &cheapest {
@@ -456,41 +428,5 @@ fn chosen(
     Found {
         best: best.clone(),
         alternatives,
-        plain: plain.score,
-    }
-}
-
-impl<const B: usize> Search<B> {
-    pub(crate) fn lab(
-        &mut self,
-        observation: &Observation<'_, B>,
-        model: &Model,
-        effects: &[&'static dyn Effect],
-        filter: Option<Term>,
-        added: &[Term],
-        each: &mut dyn FnMut(&[Term], Real, Real),
-    ) {
-        let white = set_common(&mut self.work, observation, model, effects);
-        let mut pause = || ControlFlow::Continue(());
-        let mut solver = Solver {
-            observation,
-            work: &mut self.work,
-            white,
-            model,
-            shapes: &mut self.shapes,
-            limits: Limits {
-                effects: 4,
-                threshold: 8.0,
-                ambiguity: 6.0,
-            },
-            pause: &mut pause,
-        };
-        for rounds in [0, 1, 2, 3, 5, 10, 20] {
-            let h = Hypothesis::new(filter, list::fill(added.iter().copied()));
-            if let ControlFlow::Continue(h) = solver.refine(h, rounds) {
-                let terms: Vec<Term, 4> = list::fill(h.terms().copied());
-                each(&terms, h.score, h.cost);
-            }
-        }
     }
 }

@@ -15,7 +15,7 @@
 #define ALLANITE_MAX_COEFFICIENTS 8
 
 // The largest number of fitted shape parameters in a model.
-#define ALLANITE_MAX_SHAPES 4
+#define ALLANITE_MAX_SHAPES 6
 
 // The number of axes of a record.
 #define ALLANITE_AXES 3
@@ -42,16 +42,16 @@
 #define ALLANITE_GYRO_WORDS (2160 + (66 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteEvidence`.
-#define ALLANITE_EVIDENCE_WORDS (440 + (7 * ALLANITE_OCTAVES))
+#define ALLANITE_EVIDENCE_WORDS (470 + (7 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteSelfTest`.
 #define ALLANITE_SELF_TEST_WORDS 44
 
 // Words of an `AllaniteLook`.
-#define ALLANITE_LOOK_WORDS (180 + (30 * ALLANITE_OCTAVES))
+#define ALLANITE_LOOK_WORDS (230 + (31 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteDiagnosis`.
-#define ALLANITE_DIAGNOSIS_WORDS (3500 + (42 * ALLANITE_OCTAVES))
+#define ALLANITE_DIAGNOSIS_WORDS (2950 + (38 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteCertificate`.
 #define ALLANITE_CERTIFICATE_WORDS 560
@@ -109,13 +109,13 @@ typedef int32_t AllaniteStatus;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What one piece of a diagnosis has led to.
+// What a diagnosis has led to.
 enum AllaniteProgress
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // There is more to do.
+  // The pause ended the work. There is more to do.
   ALLANITE_PROGRESS_WORKING = 0,
   // A model is judged: `allanite_diagnosis_fit` gives it. There is more to do.
   ALLANITE_PROGRESS_STEP = 1,
@@ -428,14 +428,25 @@ AllaniteStatus allanite_certificate_encode(const AllaniteCertificate *certificat
 // `AllaniteEvidence` that stays there, unchanged, for as long as the diagnosis is used.
 AllaniteStatus allanite_diagnosis_begin(AllaniteDiagnosis *diagnosis, size_t bytes, const AllaniteEvidence *evidence);
 
-// Does one piece of a diagnosis and tells what it has led to. A piece takes at most 2 million instructions on a
-// Cortex-M4F, except for the one that reports a step, which takes as much as a fit for the correlations of a certificate.
-// After the end, it tells the verdict again.
+// Works until the next step of a diagnosis and tells what it has led to. That takes long;
+// `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it tells the verdict again.
 //
 // # Safety
 // `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`.
-AllaniteStatus allanite_diagnosis_advance(AllaniteDiagnosis *diagnosis,
-                                          AllaniteProgress *progress);
+AllaniteStatus allanite_diagnosis_advance(AllaniteDiagnosis *diagnosis, AllaniteProgress *progress);
+
+// Does what `allanite_diagnosis_advance` does, and calls `pause` with `context` between two pieces of work, for the
+// watchdog and the next samples. A piece takes at most 2 million instructions on a Cortex-M4F, except for the one that
+// reports a step, which takes as much as a fit for the correlations of a certificate. If `pause` returns false, the work in
+// progress is given up, `progress` is `ALLANITE_PROGRESS_WORKING`, and the next call begins this work anew.
+//
+// # Safety
+// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`. `pause`
+// is null, or a function that returns, and that uses neither the diagnosis nor its evidence.
+AllaniteStatus allanite_diagnosis_advance_with(AllaniteDiagnosis *diagnosis,
+                                               AllaniteProgress *progress,
+                                               bool (*pause)(void *context),
+                                               void *context);
 
 // The model of the last step, fitted.
 //

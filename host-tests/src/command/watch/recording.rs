@@ -3,10 +3,10 @@
 use crate::{
     curve_file::AxisCurve,
     failure::Failure,
-    log::{Axis, OCTAVES, SpectrumSums},
+    log::{Axis, Evidence, OCTAVES, SpectrumSums},
     unit::Unit,
 };
-use allanite::Axis as Record;
+use allanite::{Axis as Record, course::Course};
 
 /// A longer line, in bytes, is invalid. Chosen by hand.
 const LONGEST_LINE: usize = 4096;
@@ -25,6 +25,8 @@ pub(super) struct Recording {
     axes: Vec<Gyro>,
     /// The spectrum of each axis.
     spectra: Vec<SpectrumSums>,
+    /// The course of each axis.
+    courses: Vec<Course>,
     /// The bytes received of the next line.
     line: Vec<u8>,
     counts: Vec<i32>,
@@ -94,6 +96,7 @@ impl Recording {
             names,
             axes: Vec::new(),
             spectra: Vec::new(),
+            courses: Vec::new(),
             line: Vec::new(),
             counts: Vec::new(),
             garbled: 0,
@@ -170,16 +173,20 @@ impl Recording {
             self.garbled += 1;
             self.axes.iter_mut().for_each(Gyro::gap);
             self.spectra.iter_mut().for_each(SpectrumSums::gap);
+            self.courses.iter_mut().for_each(Course::gap);
             return;
         }
         if self.axes.is_empty() {
             self.axes = vec![Gyro::new(); self.counts.len()];
             self.spectra = vec![SpectrumSums::new(); self.counts.len()];
+            self.courses = vec![Course::new(); self.counts.len()];
         }
-        let axes = self.axes.iter_mut().zip(&mut self.spectra);
-        for ((axis, spectrum), &count) in axes.zip(&self.counts) {
+        let sums = self.spectra.iter_mut().zip(&mut self.courses);
+        let axes = self.axes.iter_mut().zip(sums);
+        for ((axis, (spectrum, course)), &count) in axes.zip(&self.counts) {
             axis.push(count);
             spectrum.push_slice(&[count]);
+            course.push(count, []);
         }
     }
 
@@ -253,7 +260,10 @@ impl Recording {
                 name: self.name(i),
                 rate_per_count: self.rate_per_count,
                 accumulator: accumulator.clone(),
-                evidence: None,
+                evidence: Some(Evidence {
+                    course: Some(self.courses[i].clone()),
+                    ..Evidence::default()
+                }),
             };
             AxisCurve::of(&axis, self.rate_hz, self.unit)
         };

@@ -124,7 +124,8 @@ fn steps_are_selected_by_mouse_and_keyboard_and_show_their_own_error() {
     let diagnosis = reported(folder.path(), &[ADIS16405]);
     let mut browser = opened(folder.path());
     let steps = steps(&diagnosis["axes"][2]);
-    assert_eq!(steps.len(), 4);
+    let last = steps.len() - 1;
+    assert!(last >= 2, "{last}");
     let expect = |browser: &mut Browser, step: usize| {
         assert_eq!(shown_error(browser, 2), error(&steps[step]));
         let tab = browser.text("#axis-2 [role=tab][aria-selected=true] .chi2");
@@ -133,27 +134,24 @@ fn steps_are_selected_by_mouse_and_keyboard_and_show_their_own_error() {
     expect(&mut browser, 0);
     let [previous, next] =
         ["Previous", "Next"].map(|way| format!("#axis-2 [aria-label='{way} step']"));
-    browser.click(&next);
-    expect(&mut browser, 1);
-    browser.click(&next);
-    expect(&mut browser, 2);
-    browser.click(&next);
-    expect(&mut browser, 3);
+    for step in 1..=last {
+        browser.click(&next);
+        expect(&mut browser, step);
+    }
     // There is no step after the last one.
     browser.click(&next);
-    expect(&mut browser, 3);
+    expect(&mut browser, last);
     browser.click(&previous);
-    expect(&mut browser, 2);
+    expect(&mut browser, last - 1);
     browser.click("#axis-2 [role=tab]:first-child");
     expect(&mut browser, 0);
-    for (key, step) in [
-        ("ArrowDown", 1),
-        ("ArrowRight", 2),
-        ("ArrowRight", 3),
-        ("ArrowRight", 3),
-        ("ArrowUp", 2),
-        ("ArrowLeft", 1),
-    ] {
+    let right = (2..=last).map(|step| ("ArrowRight", step));
+    let keys = std::iter::once(("ArrowDown", 1)).chain(right).chain([
+        ("ArrowRight", last),
+        ("ArrowUp", last - 1),
+        ("ArrowLeft", last - 2),
+    ]);
+    for (key, step) in keys {
         browser.press(key);
         expect(&mut browser, step);
         assert_eq!(
@@ -169,7 +167,11 @@ fn steps_are_selected_by_mouse_and_keyboard_and_show_their_own_error() {
         .value("[...document.querySelectorAll('#axis-2 .fill')].map((fill) => fill.clientWidth)");
     let widths: Vec<f64> = widths.as_array().unwrap().iter().map(number).collect();
     assert!(
-        widths[0] > 1.2 * widths[1] && widths[1] > 1.2 * widths[2],
+        widths.is_sorted_by(|before, after| before > after),
+        "{widths:?}"
+    );
+    assert!(
+        widths[0] > 1.2 * widths[1] && widths[1] > 1.2 * widths[last],
         "{widths:?}"
     );
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
@@ -210,15 +212,11 @@ fn every_candidate_shows_its_own_fit() {
                 heading.starts_with("With this candidate") && heading.contains(&name),
                 "{heading}"
             );
-            // The search ends early for candidates whose χ² is more than 60 worse. Candidates that improve the model
-            // by less than 8 would not be accepted, and have several minima that are as good.
+            // The shape in the list is that of another model of the whole record. Beside the step's model alone, the best
+            // one comes no further from the record.
             let chi2: f64 = shown.split(' ').nth(1).unwrap().parse().unwrap();
             let change = chi2 - number(&candidate["chi2"]);
-            let gain = |candidate: &Value| number(&candidate["improvement"]);
-            if gain(candidate) > (gain(&candidates[0]) - 60.0).max(8.0) {
-                // A fit from the start may end in a neighbouring minimum that is nearly as good.
-                assert!(change.abs() < 1.0 + 0.25 * chi2, "{name}: {chi2}, {change}");
-            }
+            assert!(change < 1.0 + 0.25 * chi2, "{name}: {chi2}, {change}");
             assert_ne!(shown, error(step));
         }
         if !candidates.is_empty() {

@@ -1,10 +1,10 @@
 //! Tests `watch`: whatever ends a live record, the curve contains what was received.
 
-use allanite::Accumulator;
+use allanite::{Accumulator, course::Course};
 use host_tests::program::{command, piped, refusal, signal};
 use host_tests::{
     curve_file::CurveFile,
-    log::{Axis, OCTAVES, SpectrumSums},
+    log::{Axis, Evidence, OCTAVES, SpectrumSums},
     unit::Unit,
 };
 use rand::{RngExt, SeedableRng};
@@ -98,19 +98,21 @@ fn saved(folder: &Path) -> CurveFile {
 fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
     let mut accumulators = [(); 2].map(|()| Accumulator::<OCTAVES>::new());
     let mut spectra = [(); 2].map(|()| SpectrumSums::new());
+    let mut courses = [(); 2].map(|()| Course::<0>::new());
     let mut rest = sent.iter();
     while accumulators[0].samples() < samples {
         match rest.next().expect("no more samples than were sent") {
             Sent::Sample(counts) => {
-                let sums = accumulators.iter_mut().zip(&mut spectra);
-                for ((accumulator, spectrum), &count) in sums.zip(counts) {
-                    accumulator.push(count);
-                    spectrum.push_slice(&[count]);
+                for (i, &count) in counts.iter().enumerate() {
+                    accumulators[i].push(count);
+                    spectra[i].push_slice(&[count]);
+                    courses[i].push(count, []);
                 }
             }
             Sent::Garbled => {
                 accumulators.iter_mut().for_each(Accumulator::gap);
                 spectra.iter_mut().for_each(SpectrumSums::gap);
+                courses.iter_mut().for_each(Course::gap);
             }
         }
     }
@@ -119,17 +121,20 @@ fn expected(sent: &[Sent], samples: u64, gaps: u64) -> CurveFile {
         accumulators.iter_mut().for_each(Accumulator::gap);
         spectra.iter_mut().for_each(SpectrumSums::gap);
     }
-    let sums = accumulators.into_iter().zip(spectra);
+    let sums = accumulators.into_iter().zip(spectra).zip(courses);
     let axes = AXES
         .iter()
         .zip(sums)
-        .map(|(name, (accumulator, spectrum))| {
+        .map(|(name, ((accumulator, spectrum), course))| {
             let axis = Axis {
                 spectrum,
                 name: (*name).to_owned(),
                 rate_per_count: 0.01,
                 accumulator,
-                evidence: None,
+                evidence: Some(Evidence {
+                    course: Some(course),
+                    ..Evidence::default()
+                }),
             };
             host_tests::curve_file::AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).unwrap()
         });

@@ -1,6 +1,6 @@
 //! The images on every core and the same computation on this host agree to the bit.
 
-use allanite::{Accumulator, Scale};
+use allanite::{Accumulator, Scale, course::Course};
 use host_tests::{
     curve_file::{AxisCurve, CurveFile},
     demonstration::{
@@ -10,7 +10,7 @@ use host_tests::{
         simulated::SimulatedGyro,
         stream::SEED,
     },
-    log::{Axis, SpectrumSums},
+    log::{Axis, Evidence, SpectrumSums},
     program::command,
     study::precision,
     unit::Unit,
@@ -67,17 +67,21 @@ fn interrupted_watch_of_an_image_saves_the_curve_of_what_the_image_sent() {
         let saved = CurveFile::read(&curve).expect("a curve");
         let samples = saved.axes[0].samples;
         let mut accumulator = Accumulator::new();
-        let mut spectrum = SpectrumSums::new();
+        let (mut spectrum, mut course) = (SpectrumSums::new(), Course::new());
         for count in SimulatedGyro::new(AMPLITUDES, SEED).take(samples as usize) {
             accumulator.push(count);
             spectrum.push_slice(&[count]);
+            course.push(count, []);
         }
         let axis = Axis {
             spectrum,
             name: "image".to_owned(),
             rate_per_count: 1.0,
             accumulator,
-            evidence: None,
+            evidence: Some(Evidence {
+                course: Some(course),
+                ..Evidence::default()
+            }),
         };
         let sent = AxisCurve::of(&axis, 100.0, Unit::DegreesPerSecond).expect("a curve");
         assert!(samples > 100, "{samples}");

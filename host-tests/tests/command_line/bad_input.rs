@@ -28,7 +28,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
     write("LOG00001.BBL", b"H Product:Blackbox\n");
     write(
         "old.json",
-        curve.replace("\"version\": 3", "\"version\": 0").as_bytes(),
+        curve.replace("\"version\": 4", "\"version\": 0").as_bytes(),
     );
     write(
         "odd.json",
@@ -99,7 +99,7 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
     for (input, expected) in [
         (
             "old.json",
-            "old.json: the format has version 0, but this program reads versions 1 to 3; ",
+            "old.json: the format has version 0, but this program reads versions 1 to 4; ",
         ),
         ("odd.json", "odd.json: axis \"gx\": octave m = 3: "),
         ("none.json", "none.json: no such file; "),

@@ -182,6 +182,9 @@ pub(crate) struct Last<'p> {
     receiver: &'p mut Receiver<'static, Sample<3, 1>>,
     /// The number of samples that were taken meanwhile, which belong to no record.
     meanwhile: u32,
+    /// Whether the report is done in one piece, which is longer than the watchdog permits. That is so after the first
+    /// record, if the arguments say so.
+    is_undivided: bool,
 }
 
 impl Product {
@@ -191,6 +194,7 @@ impl Product {
     pub(crate) fn finish<'p>(&'p mut self, evidence: &'p [GyroEvidence; 3]) -> Last<'p> {
         Last {
             report: Report::new(self.recorder.gyro(), self.recorder.self_test(), evidence),
+            is_undivided: core::mem::take(&mut self.stored.undivided),
             stored: self.stored,
             receiver: &mut self.receiver,
             meanwhile: 0,
@@ -206,15 +210,19 @@ impl Last<'_> {
                 self.meanwhile += 1;
                 self.stored.counts.lost += queued.lost;
             }
-            // Otherwise, the first diagnosis is done in one piece, which is longer than the watchdog permits.
-            if !self.stored.undivided {
+            if !self.is_undivided {
                 watchdog.feed();
             }
             ControlFlow::Continue(())
         };
-        let _ = pause();
-        let progress = self.report.step(&mut log, &mut pause);
-        progress.unwrap_or_else(|failure| fail(failure))
+        loop {
+            let _ = pause();
+            let progress = self.report.step(&mut log, &mut pause);
+            let progress = progress.unwrap_or_else(|failure| fail(failure));
+            if progress != Progress::Working || !self.is_undivided {
+                return progress;
+            }
+        }
     }
 
     /// Logs what the watchdog saw, and ends the image.

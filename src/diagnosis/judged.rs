@@ -18,11 +18,8 @@ use crate::{
 /// What the later stages know of a model that was judged.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Judged {
-    /// The model's squared coefficients, and those at which its covariance was taken.
+    /// The model's squared coefficients.
     pub(super) squares: Vector,
-    pub(super) assumed: Vector,
-    /// The model's score, `−2 ln L`.
-    pub(super) score: Real,
     /// Whether the model explains the curve; `None` if the curve is too short for a judgement.
     pub(super) adequate: Option<bool>,
     /// The tolerance that the model was granted.
@@ -35,8 +32,6 @@ impl Judged {
     pub(super) fn none() -> Self {
         Self {
             squares: Vector::zeros(),
-            assumed: Vector::zeros(),
-            score: Real::NAN,
             adequate: None,
             tolerance: 0.0,
         }
@@ -251,8 +246,6 @@ fn only_shape<const K: usize, const B: usize>(
 fn judged<const K: usize, const B: usize>(solver: &Solver<K, B>, fit: &Fit) -> Judged {
     Judged {
         squares: solver.squares,
-        assumed: solver.assumed,
-        score: solver.minus_two_log_likelihood(),
         adequate: fit.is_adequate(),
         tolerance: solver.weights.tolerance,
     }

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     Curve, Model, Term,
     effect::{CATALOGUE, Effect, LowPass, SampledShape, Sinusoid},
-    fit::{Problem, Start, Tolerance, Work},
+    fit::{Start, Tolerance, Work},
     real::{Real, double, real},
 };
 use core::ops::ControlFlow;
@@ -68,27 +68,6 @@ fn judging_finds_whether_a_model_is_adequate() {
     assert_eq!(judged.adequate, Some(false));
     // The scatter does not explain the misfit, so the model is granted the tolerance.
     assert_eq!(judged.tolerance, 0.01);
-    assert_eq!(judged.score, step.fit.minus_two_log_likelihood);
-}
-
-#[test]
-fn solving_again_from_the_assumed_squares_gives_the_same_solution() {
-    let curve = with_sinusoid();
-    let mut work = Work::NEW;
-    let mut step = Step::of(&Model::ieee_952());
-    let judged = judge(&curve, &mut work, &mut step);
-    let tolerance = Tolerance::Fixed(judged.tolerance);
-    work.begin_at(
-        (&curve).into(),
-        &step.model,
-        Start::Once(judged.assumed),
-        tolerance,
-    )
-    .unwrap();
-    let problem = Problem::new((&curve).into(), &step.model, &work.columns);
-    while !work.solver.advance(&problem).unwrap() {}
-    assert_eq!(work.solver.chi_squared, step.fit.chi_squared);
-    assert_eq!(work.solver.squares.as_slice(), judged.squares.as_slice());
 }
 
 /// The diagnosis of a curve by the whole catalogue.

@@ -115,6 +115,7 @@ impl<const K: usize, const B: usize> Factor<K, B> {
     }
 
     /// The product `L'x`.
+    #[cfg(test)]
     pub(super) fn transposed_times(
         &self,
         octaves: usize,

@@ -84,22 +84,6 @@ impl<const K: usize, const B: usize> Weights<K, B> {
         Ok(())
     }
 
-    /// Sets the weights of octaves and bins that are taken for independent. Each octave gets the scatter that Lv,
-    /// Liu, Lai & Huang 2015 give it at its measured variance, and each bin that of its segments. A model that lacks
-    /// an effect knows neither the scatter nor the correlations of the octaves where it fails, so they say nothing
-    /// about the effect.
-    pub(crate) fn set_independent(&mut self, problem: &Problem<'_, K, B>) {
-        self.factor = Factor::ZEROS;
-        for row in problem.rows() {
-            self.model.put(row, problem.measured(row));
-            let diagonal = single(1.0 / problem.relative_accuracy(row));
-            match row.checked_sub(K) {
-                None => self.factor.put_octaves((row, row), diagonal),
-                Some(bin) => self.factor.put_bins(bin, 0, diagonal),
-            }
-        }
-    }
-
     /// Computes one more row of the covariance or a part of it, or factors the covariance when all rows are there.
     /// Returns `true` when the weights are complete.
     ///
@@ -320,29 +304,6 @@ impl<const K: usize, const B: usize> Weights<K, B> {
         let (octaves, bins) = (problem.points.len(), problem.bins.len());
         self.factor.forward(octaves, bins, &mut column);
         (column, unit)
-    }
-
-    /// The variance of the sum of a whitened curve along `direction`, if the octaves do not have the scatter
-    /// that the weights expect. `ratio(row)` is the standard error of a row relative to the expected one,
-    /// and the tolerance, which no record has, is left out.
-    #[inline(never)]
-    pub(crate) fn variance_along(
-        &self,
-        problem: &Problem<'_, K, B>,
-        direction: &Rows<K, B>,
-        ratio: &dyn Fn(usize) -> Real,
-    ) -> Real {
-        // With the factor L, the covariance of the octaves is S (L L' − tolerance²) S, and whitening
-        // multiplies it by the inverse of L from both sides.
-        let (octaves, bins) = (problem.points.len(), problem.bins.len());
-        let mut x = *direction;
-        self.factor.backward(octaves, bins, &mut x);
-        for row in problem.rows() {
-            x.put(row, x[row] * ratio(row));
-        }
-        let tolerance = self.tolerance * self.tolerance;
-        let correlated = self.factor.transposed_times(octaves, bins, &x);
-        correlated.norm_squared() - tolerance * x.norm_squared()
     }
 }
 

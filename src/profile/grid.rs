@@ -78,15 +78,6 @@ impl Grid {
         (self.low * math::exp(self.log_step * real(step))).min(self.high)
     }
 
-    /// The number of steps that reach a value, one beyond it included.
-    pub(super) fn steps_to(&self, value: Real) -> u32 {
-        if value <= self.low || self.log_step <= 0.0 {
-            return self.steps.min(1);
-        }
-        let steps = math::log(value / self.low) / self.log_step;
-        (steps as u32).saturating_add(2).min(self.steps)
-    }
-
     /// A value moved into the grid's range.
     pub(super) fn clamp(&self, value: Real) -> Real {
         value.max(self.low).min(self.high)

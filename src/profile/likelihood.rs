@@ -138,7 +138,6 @@ impl<'a, const K: usize, const B: usize> Evaluation<'a, K, B> {
         Found {
             term,
             chi_squared: curve.norm_squared() - equations.explained(&squares),
-            squares,
         }
     }
 }
@@ -148,8 +147,6 @@ impl<'a, const K: usize, const B: usize> Evaluation<'a, K, B> {
 pub(crate) struct Found {
     pub(crate) term: Term,
     pub(crate) chi_squared: Real,
-    /// The squared coefficients. The effect's own is at its place in the profile.
-    pub(crate) squares: Vector,
 }
 
 impl Found {
@@ -158,7 +155,6 @@ impl Found {
         Self {
             term,
             chi_squared: Real::INFINITY,
-            squares: Vector::ZEROS,
         }
     }
 

@@ -33,12 +33,16 @@ const FOLLOWS: Real = 1.0;
 /// A round of scoring that gains less is the last one.
 const SETTLED: Real = 0.02;
 
+/// The columns that have room: those of the common terms, and those of the white noise and of what is added.
+const COMMON: usize = MAX_EFFECTS;
+const OWN: usize = MAX_EFFECTS;
+
 /// The memory in which hypotheses are solved.
 pub(crate) struct Workspace<const B: usize> {
     /// The columns of the terms that every hypothesis has.
-    pub(super) common: Vec<Values<B>, MAX_EFFECTS>,
+    pub(super) common: Vec<Values<B>, COMMON>,
     /// The columns of the white noise and of what was added.
-    pub(super) own: Vec<Values<B>, MAX_EFFECTS>,
+    pub(super) own: Vec<Values<B>, OWN>,
     /// The factors of these columns.
     pub(super) factors: Vec<Real, MAX_EFFECTS>,
     /// The columns of the shapes: the change of the model with the logarithm of each.

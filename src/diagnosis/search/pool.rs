@@ -11,6 +11,9 @@ const SAME: Real = 0.1;
 const SAME_FILTER: usize = 3;
 const SAME_ADDITIONS: usize = 2;
 
+/// Whether two hypotheses tell similar stories.
+type Alike = fn(&Hypothesis, &Hypothesis) -> bool;
+
 /// The best hypotheses, best first. Few of them share a filter or what they add, so that different stories stay.
 #[derive(Debug)]
 pub(super) struct Pool<const N: usize> {
@@ -43,7 +46,7 @@ impl<const N: usize> Pool<N> {
         }
         let has_filter =
             |one: &Hypothesis, other: &Hypothesis| one.filter.is_some() && one.has_filter_of(other);
-        let groups: [(usize, fn(&Hypothesis, &Hypothesis) -> bool); 2] = [
+        let groups: [(usize, Alike); 2] = [
             (SAME_ADDITIONS, Hypothesis::adds_like),
             (SAME_FILTER, has_filter),
         ];

@@ -85,7 +85,7 @@ impl<'a, const B: usize> Observation<'a, B> {
                 (Low::Octaves(points), points.len().min(LOW))
             }
         };
-        let longest = points.first().map_or(0.0, |point| clusters(point));
+        let longest = points.first().map_or(0.0, clusters);
         let mut observation = Self {
             spectrum,
             low,

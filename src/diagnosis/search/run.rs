@@ -212,7 +212,7 @@ impl<const B: usize> Search<B> {
             for (added, from) in &sets {
                 let is_own = added.len() == from.added.len();
                 solver.cross(added, from, is_own, &mut |hypothesis| {
-                    enter(beams, hypothesis)
+                    enter(beams, hypothesis);
                 })?;
             }
             let next = beams.get(count.saturating_add(1));

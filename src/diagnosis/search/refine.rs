@@ -93,6 +93,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     pub(super) fn deviance(&mut self, hypothesis: &Hypothesis) -> ControlFlow<(), Real> {
         (self.pause)()?;
         self.load(hypothesis);
+        (self.pause)()?;
         ControlFlow::Continue(self.work.solve(self.observation, 10))
     }
 
@@ -117,7 +118,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         for _ in 0..if has_shapes { rounds } else { 0 } {
             (self.pause)()?;
             if shapes.is_none() {
-                shapes = Some(self.work.set_shapes(self.observation, &terms));
+                shapes = Some(self.work.set_shapes(self.observation, &terms, self.pause)?);
+                (self.pause)()?;
             }
             let Some(known) = &shapes else { break };
             let Some(steps) = self.step(known, damping) else {
@@ -131,6 +133,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
             let (before, model) = (self.work.squares, self.work.model);
             self.work.set_own(self.observation, changed.iter());
+            (self.pause)()?;
             let now = self.work.solve(self.observation, 3);
             if now < deviance {
                 let gain = deviance - now;
@@ -218,7 +221,12 @@ impl<const B: usize> Workspace<B> {
 
     /// Sets the derivatives of the model by the logarithms of the shapes.
     #[inline(never)]
-    fn set_shapes(&mut self, observation: &Observation<'_, B>, terms: &[Term]) -> Shapes {
+    fn set_shapes(
+        &mut self,
+        observation: &Observation<'_, B>,
+        terms: &[Term],
+        pause: &mut Pause<'_>,
+    ) -> ControlFlow<(), Shapes> {
         let mut shapes = Shapes::new();
         self.slopes.clear();
         for (i, term) in numbered(terms) {
@@ -228,6 +236,7 @@ impl<const B: usize> Workspace<B> {
                 continue;
             }
             for j in term.fitted_parameters().take(MAX_PARAMETERS) {
+                pause()?;
                 let (stride, step) = match self
                     .resolution(observation, i)
                     .filter(|_| is_line(term.effect))
@@ -272,7 +281,7 @@ impl<const B: usize> Workspace<B> {
                 }
             }
         }
-        shapes
+        ControlFlow::Continue(shapes)
     }
 
     /// Sets the derivatives of the model by the logarithms of the shapes of its own terms.
@@ -283,6 +292,6 @@ impl<const B: usize> Workspace<B> {
         squares: &Vector,
     ) {
         self.squares = *squares;
-        self.set_shapes(observation, terms);
+        let _ = self.set_shapes(observation, terms, &mut || ControlFlow::Continue(()));
     }
 }

@@ -7,7 +7,8 @@ use super::{
 use crate::{
     diagnosis::{
         Options, Step,
-        search::{Observation, Pause, price},
+        pause::Pause,
+        search::{Observation, price},
     },
     effect::{Effect, Span},
     fit::{Columns, Problem},

@@ -11,6 +11,7 @@ mod judged;
 mod mirrored;
 mod narrated;
 mod options;
+pub(crate) mod pause;
 mod polished;
 mod run;
 pub(crate) mod search;

@@ -2,9 +2,9 @@
 
 use super::{
     mirrored::{Mirrored, tell_from_mirror},
+    pause::{Pause, Stop, call},
     polished::{Fitted, Polishing},
-    run::{Stop, call},
-    search::{Found, Hypothesis, MAX_ALTERNATIVES, Observation, Pause, Search},
+    search::{Found, Hypothesis, MAX_ALTERNATIVES, Observation, Search},
     step::{Addition, Candidate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, cost},
 };
 use crate::{
@@ -86,7 +86,7 @@ impl Story {
             return Err(Stop::Paused);
         };
         let mut steps: Vec<Told, MAX_STEPS> = Vec::new();
-        for (term, fall) in ordered {
+        for &(term, fall) in &ordered {
             let mut candidates: Vec<Candidate, MAX_CANDIDATES> = Vec::new();
             let mut ambiguous: Vec<&'static str, MAX_AMBIGUOUS> = Vec::new();
             let improvement = fall - 2.0 * cost(term.effect);

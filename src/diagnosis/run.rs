@@ -6,7 +6,8 @@ use super::{
     judged::{Judged, Judging},
     narrated::{Story, with},
     options::Options,
-    search::{Observation, Pause, Search},
+    pause::{Pause, Stop, call},
+    search::{Observation, Search},
     step::{Addition, Step},
     verdict::Verdict,
 };
@@ -97,26 +98,6 @@ pub enum Progress<'s, const K: usize, const B: usize = 0> {
     Step(&'s Step<K, B>),
     /// The diagnosis is complete.
     Finished(Verdict),
-}
-
-/// Why a piece of work ended before its result.
-pub(super) enum Stop {
-    Paused,
-    Failed(Error),
-}
-
-impl From<Error> for Stop {
-    fn from(error: Error) -> Self {
-        Self::Failed(error)
-    }
-}
-
-/// Calls the pause.
-pub(super) fn call(pause: &mut Pause<'_>) -> Result<(), Stop> {
-    match pause() {
-        ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(Stop::Paused),
-    }
 }
 
 impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {

@@ -2,7 +2,7 @@
 
 use super::{
     hypothesis::{Added, Hypothesis},
-    price::has_frequency,
+    kind::has_frequency,
     refine::Solver,
     rows::Values,
 };
@@ -28,7 +28,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     ) -> ControlFlow<()> {
         let shapes = self.shapes.clone();
         let cutoff_hz = from.filter.and_then(|filter| self.cutoff_hz(&filter));
-        let filters = core::iter::once(None).chain(shapes.into_iter().map(Some));
+        let filters = core::iter::once(None).chain(shapes.iter().copied().map(Some));
         for filter in filters {
             let begun = Hypothesis::new(filter, added.clone());
             let is_known = is_own && from.has_filter_of(&begun);

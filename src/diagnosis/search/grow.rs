@@ -2,10 +2,9 @@
 
 use super::{
     hypothesis::Hypothesis,
-    price::{has_frequency, is_line},
+    kind::{at, has_frequency, is_added, is_drifting, is_line, is_plain, is_resonance},
     refine::Solver,
     rows::Values,
-    start::at,
     variant::Variant,
 };
 use crate::{
@@ -63,7 +62,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 continue;
             }
             if is_line(effect) && self.observation.has_bins() {
-                for peak in self.peaks(effect)? {
+                for peak in &self.peaks(effect)? {
                     let _ = candidates.push(at(effect, &[peak.frequency_hz]));
                 }
             } else if is_resonance(effect) && self.observation.has_bins() {
@@ -78,7 +77,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 let _ = candidates.push(Term::fitted(effect));
             }
         }
-        for term in candidates {
+        for term in candidates.iter().copied() {
             if let Some(with) = hypothesis.with(term, self.limits.effects) {
                 let grown = self.refine(with, 10)?;
                 each(self, &grown)?;
@@ -179,8 +178,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 enter(&mut best, term, gain);
             }
         }
-        for (term, _) in best {
-            let _ = found.push(term);
+        for (term, _) in &best {
+            let _ = found.push(*term);
         }
         ControlFlow::Continue(())
     }
@@ -206,8 +205,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 }
             }
         }
-        for (term, _) in best {
-            let _ = found.push(term);
+        for (term, _) in &best {
+            let _ = found.push(*term);
         }
         ControlFlow::Continue(())
     }
@@ -263,7 +262,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
         }
         let mut found: Vec<Peak, PEAKS> = Vec::new();
-        for (level, b, _) in strongest {
+        for &(level, b, _) in &strongest {
             let Some(mut frequency_hz) = self.between_bins(level, b) else {
                 continue;
             };
@@ -361,28 +360,4 @@ fn enter(best: &mut Vec<(Term, Real), RESONANCES>, term: Term, gain: Real) {
         None => {}
     }
     list::rank(best, (term, gain), |other| other.1 < gain);
-}
-
-/// Whether an effect is an oscillation whose frequency moves over a range: the last of its parameters, beyond those of the
-/// effect that it becomes without a range.
-pub(super) fn is_drifting(effect: &dyn Effect) -> bool {
-    let last = effect.parameters().last();
-    last.is_some_and(|last| last.name == "drift_hz")
-}
-
-/// Whether an effect is a hump around a frequency, with a quality.
-fn is_resonance(effect: &dyn Effect) -> bool {
-    let second = effect.parameters().get(1);
-    has_frequency(effect) && second.is_some_and(|second| second.name == "quality")
-}
-
-/// Whether an effect has no shape and takes the place of no other, as most of the five terms.
-fn is_plain(effect: &'static dyn Effect) -> bool {
-    effect.replaces().is_none() && effect.mirror().is_none() && effect.parameters().is_empty()
-}
-
-/// Whether an effect adds to the noise, and a search can find it: it takes the place of none, and has a shape. An effect
-/// with the same Allan variance as another one is told from it afterwards.
-pub(super) fn is_added(effect: &'static dyn Effect) -> bool {
-    effect.replaces().is_none() && effect.mirror().is_none() && !effect.parameters().is_empty()
 }

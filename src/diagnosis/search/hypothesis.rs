@@ -1,8 +1,7 @@
 //! A hypothesis: what the white noise went through, and what adds to it.
 
-use super::{price::price, rows::Observation, variant::Variant};
+use super::{kind::continuous, price::price, rows::Observation, variant::Variant};
 use crate::{
-    effect::Effect,
     limits::{MAX_EFFECTS, MAX_SHAPE},
     list,
     model::Term,
@@ -29,11 +28,6 @@ pub(crate) struct Hypothesis {
     pub(crate) score: Real,
     /// The score plus the price of each effect.
     pub(crate) cost: Real,
-}
-
-/// The number of an effect's shape parameters that are not whole numbers.
-pub(super) fn continuous(effect: &'static dyn Effect) -> u32 {
-    list::count(Term::fitted(effect).fitted_parameters()) as u32
 }
 
 impl Hypothesis {

@@ -14,7 +14,9 @@
 mod cross;
 mod grow;
 mod hypothesis;
+mod kind;
 mod likelihood;
+mod limits;
 mod pool;
 mod price;
 mod prune;
@@ -26,11 +28,7 @@ mod variant;
 
 pub(crate) use hypothesis::Hypothesis;
 pub(crate) use likelihood::Workspace;
+pub(crate) use limits::Limits;
 pub(crate) use price::price;
 pub(crate) use rows::{Observation, Values};
-pub(crate) use run::{Found, Limits, MAX_ALTERNATIVES, Search, best_shape_of};
-
-use core::ops::ControlFlow;
-
-/// What is called between two pieces of work. It may end the search.
-pub(crate) type Pause<'p> = dyn FnMut() -> ControlFlow<()> + 'p;
+pub(crate) use run::{Found, MAX_ALTERNATIVES, Search, best_shape_of};

@@ -1,11 +1,7 @@
 //! What an effect costs beyond its parameters.
 
-use super::{grow::is_drifting, hypothesis::continuous};
-use crate::{
-    effect::{Distribution, Effect},
-    model::Term,
-    real::Real,
-};
+use super::kind::{continuous, has_frequency, is_drifting, is_line};
+use crate::{model::Term, real::Real};
 
 /// The prices are above what the best effect of each kind gains on clean records by chance, beyond two for each parameter.
 /// `cargo xtask study clean` measures how often that happens.
@@ -27,19 +23,6 @@ const FILTER: Real = 12.0;
 const SPECIAL_FILTER: Real = 13.5;
 /// A filter of two shapes has more places.
 const SHAPED_FILTER: Real = 14.0;
-
-/// Whether a frequency comes first among an effect's parameters.
-pub(super) fn has_frequency(effect: &dyn Effect) -> bool {
-    effect
-        .parameters()
-        .first()
-        .is_some_and(|first| first.unit == "Hz")
-}
-
-/// Whether an effect is a line: deterministic, with a frequency.
-pub(super) fn is_line(effect: &dyn Effect) -> bool {
-    effect.description().distribution == Distribution::Deterministic && has_frequency(effect)
-}
 
 /// The threshold at which the prices are those above. Another threshold changes all of them by as much.
 pub(crate) const THRESHOLD: Real = 8.0;

@@ -1,6 +1,10 @@
 //! What a hypothesis does not need.
 
-use super::{grow::is_drifting, hypothesis::Hypothesis, price::has_frequency, refine::Solver};
+use super::{
+    hypothesis::Hypothesis,
+    kind::{at, has_frequency, is_drifting},
+    refine::Solver,
+};
 use crate::{list, real::Real};
 use core::ops::ControlFlow;
 
@@ -38,7 +42,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                     for parameter in parameters.iter_mut().skip(simpler.parameters().len()) {
                         *parameter = 0.0;
                     }
-                    let line = super::start::at(simpler, &parameters);
+                    let line = at(simpler, &parameters);
                     list::insert(&mut rest, i, line);
                     consider(self, Hypothesis::new(kept.filter, rest))?;
                 }

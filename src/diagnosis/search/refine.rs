@@ -1,13 +1,14 @@
 //! The shapes of a hypothesis, refined together with its coefficients (Levenberg 1944, Marquardt 1963).
 
 use super::{
-    Limits, Pause,
     hypothesis::Hypothesis,
+    kind::is_line,
     likelihood::{Workspace, kept},
-    price::is_line,
+    limits::Limits,
     rows::{Observation, Values},
 };
 use crate::{
+    diagnosis::pause::Pause,
     limits::{MAX_PARAMETERS, MAX_SHAPE},
     list::numbered,
     math,
@@ -126,7 +127,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 break;
             };
             let mut changed = terms.clone();
-            for (shape, step) in known.iter().zip(steps) {
+            for (shape, &step) in known.iter().zip(&steps) {
                 if let Some(term) = changed.get_mut(shape.term) {
                     self.change(term, shape.parameter, step);
                 }

@@ -1,18 +1,18 @@
 //! The whole search.
 
 use super::{
-    Pause,
     cross::suspects,
-    grow::is_added,
     hypothesis::{Added, Hypothesis, MAX_ADDED, is_near},
+    kind::{has_frequency, is_added},
     likelihood::Workspace,
+    limits::Limits,
     pool::Pool,
-    price::has_frequency,
     refine::{MAX_VARIANTS, Solver},
     rows::{Observation, Values},
     variant::Variant,
 };
 use crate::{
+    diagnosis::pause::Pause,
     effect::Effect,
     limits::MAX_EFFECTS,
     list, math,
@@ -40,17 +40,6 @@ const WORSE: Real = 8.0;
 const CROSSED: usize = 3;
 /// The hypotheses that are pruned at the end.
 const PRUNED: usize = 5;
-
-/// What a search may do.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Limits {
-    /// The largest number of effects.
-    pub(crate) effects: usize,
-    /// What an effect has to gain beyond two for each parameter; see [`price`](super::price).
-    pub(crate) threshold: Real,
-    /// Alternatives cost up to this much more than the best hypothesis.
-    pub(crate) ambiguity: Real,
-}
 
 /// A hypothesis of as many effects whose score is less than this above that of the best one is as good.
 const AS_GOOD: Real = 2.0;
@@ -165,7 +154,9 @@ impl<const B: usize> Search<B> {
         let mut crossed: Vec<Added, { CROSSED * (MOST + 1) }> = Vec::new();
         let mut best = plain.score;
         for count in 0..=MOST {
-            let (lower, higher) = beams.split_at_mut(count.saturating_add(1));
+            let Some((lower, higher)) = beams.split_at_mut_checked(count.saturating_add(1)) else {
+                break;
+            };
             let Some(beam) = lower.last_mut() else { break };
             let lead = lowest(beam.as_slice());
             best = best.min(lead);

@@ -11,7 +11,6 @@ use crate::{
     effect::Effect,
     list::numbered,
     math,
-    model::Term,
     real::{Real, real, single},
     spectrum::Bin,
 };
@@ -196,13 +195,4 @@ fn median(numbers: [Option<Real>; 3]) -> Option<Real> {
         3.0 => Some(sum - low - high),
         _ => Some(sum / count),
     }
-}
-
-/// The term of an effect at a shape.
-pub(super) fn at(effect: &'static dyn Effect, parameters: &[Real]) -> Term {
-    let mut term = Term::fitted(effect);
-    for (j, &parameter) in numbered(parameters) {
-        term.set_parameter(j, parameter);
-    }
-    term
 }

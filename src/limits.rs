@@ -9,7 +9,7 @@ pub const MAX_EFFECTS: usize = 8;
 pub const MAX_PARAMETERS: usize = 3;
 
 /// The number of fitted shape parameters that one model has room for.
-pub const MAX_SHAPE: usize = 8;
+pub const MAX_SHAPE: usize = 6;
 
 /// The largest number of blocks in a segment of a spectrum.
 pub const MAX_SEGMENT: usize = 256;

@@ -3,6 +3,7 @@ use super::{
     SearchRange,
     angle_random_walk::AngleRandomWalk,
     filter::{Filter, Output},
+    low_pass::LowPass,
     pole::Pole,
 };
 use crate::real::{
@@ -61,7 +62,7 @@ pub(super) const DESCRIPTION: Description = Description {
     code: 16,
     replaces: Some(&AngleRandomWalk),
     mirror: None,
-    special_case: None,
+    special_case: Some(&LowPass),
     distribution: Distribution::Gaussian,
 };
 

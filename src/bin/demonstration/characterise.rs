@@ -7,7 +7,7 @@ use allanite::{
 };
 
 /// The number of octaves of averaging time.
-pub const OCTAVES: usize = 20;
+pub const OCTAVES: usize = 18;
 
 /// The number of samples in the record: 44 minutes.
 pub const SAMPLES: usize = 1 << 18;

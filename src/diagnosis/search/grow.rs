@@ -322,7 +322,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let mut best = (frequency_hz, 0.0);
         let mut column = Values::<B>::ZEROS;
         let range = effect.search_range(0, &self.observation.span);
-        for step in -steps..=steps {
+        for step in steps.saturating_neg()..=steps {
             (self.pause)()?;
             let share = Real::from(step) / Real::from(steps);
             let mut frequency = frequency_hz + reach_hz * share;

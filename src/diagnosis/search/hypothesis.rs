@@ -69,7 +69,8 @@ impl Hypothesis {
 
     /// The number of parameters beyond the model without filter and additions.
     fn parameters(&self) -> Real {
-        let shapes: u32 = self.terms().map(|term| continuous(term.effect)).sum();
+        let shapes = self.terms().map(|term| continuous(term.effect));
+        let shapes = shapes.fold(0_u32, u32::saturating_add);
         real(shapes) + real(self.added.len() as u32)
     }
 

@@ -111,11 +111,11 @@ impl Axis {
         let octaves = (math::log(range.high.max(range.low) / range.low)).max(0.0)
             / real(core::f64::consts::LN_2);
         let count = match per_octave {
-            Some(per_octave) => 1 + math::ceil(octaves * per_octave) as u32,
-            None => most.min(1 + math::ceil(octaves) as u32),
+            Some(per_octave) => (math::ceil(octaves * per_octave) as u32).saturating_add(1),
+            None => most.min((math::ceil(octaves) as u32).saturating_add(1)),
         };
         let step = if count > 1 {
-            octaves / real(count - 1)
+            octaves / real(count.saturating_sub(1))
         } else {
             0.0
         };

@@ -71,14 +71,20 @@ pub(super) fn densities_from(
     };
     // The cosines of the bins k and P/2 − k agree at even distances, and have opposite signs at odd ones.
     let (pairs, _) = folded.as_chunks::<2>();
+    // One period, so that the sums below look up no symmetries.
+    let mut wave = [0.0; MAX_SEGMENT];
+    for (i, value) in numbered(wave.iter_mut()).take(length) {
+        *value = cosine(i.wrapping_mul(places(length)));
+    }
+    let within = length.wrapping_sub(1);
     for k in 1..=length / 4 {
         let (mut even, mut odd) = (0.0, 0.0);
-        let step = k.wrapping_mul(places(length));
         let mut place = 0_usize;
         for [at_even, at_odd] in pairs.iter().take(length / 4 + 1) {
-            even += at_even * cosine(place);
-            odd += at_odd * cosine(place.wrapping_add(step));
-            place = place.wrapping_add(step.wrapping_mul(2));
+            let near = |place: usize| wave.get(place & within).copied().unwrap_or(0.0);
+            even += at_even * near(place);
+            odd += at_odd * near(place.wrapping_add(k));
+            place = place.wrapping_add(k.wrapping_mul(2));
         }
         set(k, even + odd);
         set((length / 2).wrapping_sub(k), even - odd);

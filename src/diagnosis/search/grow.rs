@@ -24,7 +24,7 @@ const LEAST_GAIN: Real = 6.0;
 const DRIFTED: Real = 4.0;
 /// The peaks of a level, and the candidates of lines and resonances, that are looked at.
 const PEAKS: usize = 3;
-const RESONANCES: usize = 2;
+const RESONANCES: usize = 3;
 /// A peak stands this many standard errors above the hypothesis.
 const PEAK: Real = 3.0;
 /// Two resonances are different if the logarithms of their frequencies are this far apart.
@@ -32,6 +32,8 @@ const APART: Real = 0.25;
 /// The frequencies that are tried for each factor of two, and the values of each other parameter.
 const FREQUENCY_STEPS: Real = 5.0;
 const QUALITIES: u32 = 3;
+/// The same for a line in a record without a spectrum.
+const LINE_STEPS: Real = 24.0;
 /// The shapes of resonances that are tested in one piece of work.
 const TERMS_A_PIECE: usize = 16;
 /// The bins of a segment of 64 up to half the rate of its blocks.
@@ -162,11 +164,14 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     ) -> ControlFlow<()> {
         let mut best: Vec<(Term, Real), RESONANCES> = Vec::new();
         let mut column = Values::<B>::ZEROS;
+        // Octaves show a line at many frequencies, each of them sharply.
+        let steps = if is_line(effect) {
+            LINE_STEPS
+        } else {
+            FREQUENCY_STEPS
+        };
         for variant in Variant::of(effect, &self.observation.span) {
-            for term in variant
-                .grid(self.observation, FREQUENCY_STEPS, QUALITIES)
-                .terms()
-            {
+            for term in variant.grid(self.observation, steps, QUALITIES).terms() {
                 (self.pause)()?;
                 if self.observation.column(&term, None, &mut column) == 0.0 {
                     continue;

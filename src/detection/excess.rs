@@ -59,7 +59,7 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
                 .squares
                 .put(i, square.max(0.0) / factor.max(Real::MIN_POSITIVE));
         }
-        excess.work.set_model(observation, &excess.squares);
+        excess.work.set_model(&excess.squares);
         excess
             .work
             .set_slopes(observation, model.terms(), &excess.squares);
@@ -151,14 +151,14 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
         needed: Real,
         line: impl Fn(&Self, usize) -> Real,
     ) -> Option<[Real; MAX_EFFECTS]> {
-        let (followed, rest) = self.work.followed(self.observation, with)?;
+        let (followed, rest) = self.work.followed(with)?;
         let (mut lambda, mut scatter) = (0.0, 0.0);
         let mut true_rows = rest;
         for row in self.observation.rows() {
             let m = self.work.model()[row];
             true_rows.put(row, (m + rest[row]).max(single(LEAST) * m));
         }
-        let refitted = self.work.refitted(self.observation, &true_rows);
+        let refitted = self.work.refitted(&true_rows);
         for row in self.observation.rows() {
             let m = real(self.work.model()[row]);
             let ratio = (1.0 + real(rest[row]) / m).max(LEAST);

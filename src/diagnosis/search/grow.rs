@@ -176,7 +176,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 if self.observation.column(&term, None, &mut column) == 0.0 {
                     continue;
                 }
-                let gain = self.work.gain(self.observation, &column);
+                let gain = self.work.gain(&column);
                 if gain < LEAST_GAIN {
                     continue;
                 }
@@ -342,7 +342,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             if self.observation.column(&term, None, &mut column) == 0.0 {
                 continue;
             }
-            let gain = self.work.gain(self.observation, &column);
+            let gain = self.work.gain(&column);
             if gain > best.1 {
                 best = (frequency, gain);
             }

@@ -116,9 +116,9 @@ impl<const B: usize> Workspace<B> {
     }
 
     /// Sets the model of these squared coefficients.
-    pub(crate) fn set_model(&mut self, observation: &Observation<'_, B>, squares: &Vector) {
+    pub(crate) fn set_model(&mut self, squares: &Vector) {
         self.squares = *squares;
-        self.model = self.model_of(observation, squares);
+        self.model = self.model_of(squares);
     }
 
     /// The model relative to the measurement.
@@ -144,13 +144,9 @@ impl<const B: usize> Workspace<B> {
     /// What the columns and the slopes follow of expected values: the squares of their best fit, and the rest. The weights
     /// are those of the present model. `None` if the columns cannot be told apart.
     #[inline(never)]
-    pub(crate) fn followed(
-        &mut self,
-        observation: &Observation<'_, B>,
-        with: &Values<B>,
-    ) -> Option<(Vector, Values<B>)> {
+    pub(crate) fn followed(&mut self, with: &Values<B>) -> Option<(Vector, Values<B>)> {
         let shift: Vec<Real, MAX_SHAPE> = crate::list::fill(self.slopes.iter().map(|_| FOLLOWS));
-        if !self.set_equations(observation, Some(with), &shift, 0.0) {
+        if !self.set_equations(Some(with), &shift, 0.0) {
             return None;
         }
         let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
@@ -163,9 +159,7 @@ impl<const B: usize> Workspace<B> {
                 squares[i]
             };
             if let Some(column) = self.column(i) {
-                for row in observation.rows() {
-                    rest.put(row, rest[row] - single(size) * column[row]);
-                }
+                rest.add_scaled(column, -single(size));
             }
         }
         Some((squares, rest))
@@ -173,21 +167,21 @@ impl<const B: usize> Workspace<B> {
 
     /// `−2 ln L` of expected values beside their best fit, less that of the values themselves: `2 Σ ν (x/m − 1 − ln x/m)`.
     #[inline(never)]
-    pub(crate) fn refitted(&mut self, observation: &Observation<'_, B>, with: &Values<B>) -> Real {
+    pub(crate) fn refitted(&mut self, with: &Values<B>) -> Real {
         let (model, mut least) = (self.model, Real::INFINITY);
         for _ in 0..REFITS {
-            if !self.set_equations(observation, Some(with), &[], 0.0) {
+            if !self.set_equations(Some(with), &[], 0.0) {
                 break;
             }
             let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
-            self.model = self.model_of(observation, &squares);
-            let rows = observation.rows().filter(|&row| self.shape[row] > 0.0);
-            let sum: Real = rows
-                .map(|row| {
-                    let ratio = real(with[row]) / real(self.model[row]);
-                    real(self.shape[row]) * (ratio - 1.0 - math::log(ratio))
-                })
-                .sum();
+            self.model = self.model_of(&squares);
+            let mut sum = 0.0;
+            with.each_with(&self.model, &self.shape, |with, model, shape| {
+                if shape > 0.0 {
+                    let ratio = real(with) / real(model);
+                    sum += real(shape) * (ratio - 1.0 - math::log(ratio));
+                }
+            });
             least = least.min(2.0 * sum);
         }
         self.model = model;
@@ -195,33 +189,29 @@ impl<const B: usize> Workspace<B> {
     }
 
     /// `−2 ln L` of a model.
-    pub(super) fn deviance(&self, observation: &Observation<'_, B>, model: &Values<B>) -> Real {
-        let rows = observation.rows().filter(|&row| self.shape[row] > 0.0);
-        let sum: Real = rows
-            .map(|row| {
-                let m = real(model[row]);
-                real(self.shape[row]) * (1.0 / m - 1.0 + math::log(m))
-            })
-            .sum();
+    pub(super) fn deviance(&self, model: &Values<B>) -> Real {
+        let mut sum = 0.0;
+        model.each_with(&self.shape, model, |m, shape, _| {
+            if shape > 0.0 {
+                let m = real(m);
+                sum += real(shape) * (1.0 / m - 1.0 + math::log(m));
+            }
+        });
         2.0 * sum
     }
 
     /// The model of these squared coefficients.
-    pub(super) fn model_of(&self, observation: &Observation<'_, B>, squares: &Vector) -> Values<B> {
+    pub(super) fn model_of(&self, squares: &Vector) -> Values<B> {
         let mut model = Values::ZEROS;
         for i in 0..self.count() {
             let square = single(squares[i]);
             if square > 0.0
                 && let Some(column) = self.column(i)
             {
-                for row in observation.rows() {
-                    model.put(row, model[row] + square * column[row]);
-                }
+                model.add_scaled(column, square);
             }
         }
-        for row in observation.rows() {
-            model.put(row, model[row].max(LEAST));
-        }
+        model.change_by(&Values::ZEROS, |model, _| model.max(LEAST));
         model
     }
 
@@ -229,23 +219,20 @@ impl<const B: usize> Workspace<B> {
     /// `data`, or one in each row, what was measured, plus `shift` times each slope.
     pub(crate) fn set_equations(
         &mut self,
-        observation: &Observation<'_, B>,
         data: Option<&Values<B>>,
         shift: &[Real],
         damping: Real,
     ) -> bool {
         let slopes = shift.len();
-        let mut weighted = Values::<B>::ZEROS;
+        let mut weighted = self.shape;
+        weighted.change_by(&self.model, |shape, m| shape / (m * m));
         let count = self.count().saturating_add(slopes);
-        let mut target = Values::<B>::ZEROS;
-        for row in observation.rows() {
-            let m = self.model[row];
-            weighted.put(row, self.shape[row] / (m * m));
-            let mut sum = data.map_or(1.0, |data| data[row]);
-            for (slope, shift) in self.slopes.iter().take(slopes).zip(shift) {
-                sum += slope[row] * single(*shift);
-            }
-            target.put(row, sum);
+        let mut target = match data {
+            Some(data) => *data,
+            None => Values::ZEROS.map(|_: f32| 1.0),
+        };
+        for (slope, shift) in self.slopes.iter().take(slopes).zip(shift) {
+            target.add_scaled(slope, single(*shift));
         }
         let first_slope = self.count();
         let mut equations = core::mem::replace(&mut self.equations, NormalEquations::EMPTY);
@@ -253,10 +240,8 @@ impl<const B: usize> Workspace<B> {
             let Some(column) = self.column(i) else {
                 return 0.0;
             };
-            let mut product = Values::<B>::ZEROS;
-            for row in observation.rows() {
-                product.put(row, column[row] * weighted[row]);
-            }
+            let mut product = *column;
+            product.change_by(&weighted, |column, weight| column * weight);
             for j in 0..=i {
                 own.put(
                     j,
@@ -278,16 +263,16 @@ impl<const B: usize> Workspace<B> {
     /// Fits the squared coefficients by Fisher scoring from the present model on. Returns `−2 ln L` of the best round, whose
     /// model and squares are kept.
     #[inline(never)]
-    pub(super) fn solve(&mut self, observation: &Observation<'_, B>, rounds: u8) -> Real {
+    pub(super) fn solve(&mut self, rounds: u8) -> Real {
         let mut best: Option<(Real, Values<B>, Vector)> = None;
         let mut last: Option<Real> = None;
         for _ in 0..rounds {
-            if !self.set_equations(observation, None, &[], 0.0) {
+            if !self.set_equations(None, &[], 0.0) {
                 break;
             }
             let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
-            let model = self.model_of(observation, &squares);
-            let deviance = self.deviance(observation, &model);
+            let model = self.model_of(&squares);
+            let deviance = self.deviance(&model);
             self.model = model;
             if best.as_ref().is_none_or(|(least, ..)| deviance < *least) {
                 best = Some((deviance, model, squares));
@@ -309,17 +294,16 @@ impl<const B: usize> Workspace<B> {
 
     /// By how much `−2 ln L` falls if a column is added at its best size, with all else fixed.
     #[inline(never)]
-    pub(super) fn gain(&self, observation: &Observation<'_, B>, column: &Values<B>) -> Real {
+    pub(super) fn gain(&self, column: &Values<B>) -> Real {
         let mut square: f32 = 0.0;
         for _ in 0..7 {
             let (mut along, mut own) = (0.0, 0.0);
-            for row in observation.rows() {
-                let (c, m) = (column[row], self.model[row]);
+            column.each_with(&self.model, &self.shape, |c, m, shape| {
                 let whole = m + square * c;
-                let weight = self.shape[row] * c / (whole * whole);
+                let weight = shape * c / (whole * whole);
                 along += weight * (1.0 - m);
                 own += weight * c;
-            }
+            });
             square = if own > 0.0 {
                 (along / own).max(0.0)
             } else {
@@ -329,14 +313,13 @@ impl<const B: usize> Workspace<B> {
         if square == 0.0 {
             return 0.0;
         }
-        let rows = observation.rows().filter(|&row| self.shape[row] > 0.0);
-        let sum: Real = rows
-            .map(|row| {
-                let m = real(self.model[row]);
-                let whole = m + real(square * column[row]);
-                real(self.shape[row]) * (1.0 / m - 1.0 / whole - math::log(whole / m))
-            })
-            .sum();
+        let mut sum = 0.0;
+        column.each_with(&self.model, &self.shape, |c, m, shape| {
+            if shape > 0.0 {
+                let (m, whole) = (real(m), real(m + square * c));
+                sum += real(shape) * (1.0 / m - 1.0 / whole - math::log(whole / m));
+            }
+        });
         2.0 * sum
     }
 }

@@ -86,7 +86,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         self.work.model = if hypothesis.squares.iter().all(|&square| square == 0.0) {
             self.observation.start
         } else {
-            self.work.model_of(self.observation, &squares)
+            self.work.model_of(&squares)
         };
     }
 
@@ -95,7 +95,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         (self.pause)()?;
         self.load(hypothesis);
         (self.pause)()?;
-        ControlFlow::Continue(self.work.solve(self.observation, 10))
+        ControlFlow::Continue(self.work.solve(10))
     }
 
     /// Refines all shapes of a hypothesis together with its coefficients, in at most this number of rounds.
@@ -108,7 +108,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let mut hypothesis = hypothesis;
         self.load(&hypothesis);
         (self.pause)()?;
-        let mut deviance = self.work.solve(self.observation, 10);
+        let mut deviance = self.work.solve(10);
         let mut terms = self.own_terms(&hypothesis);
         let mut damping = DAMPING;
         let mut small = 0_u8;
@@ -135,7 +135,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             let (before, model) = (self.work.squares, self.work.model);
             self.work.set_own(self.observation, changed.iter());
             (self.pause)()?;
-            let now = self.work.solve(self.observation, 3);
+            let now = self.work.solve(3);
             if now < deviance {
                 let gain = deviance - now;
                 small = if gain < SMALL {
@@ -190,10 +190,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let strides: Vec<Real, MAX_SHAPE> =
             crate::list::fill(shapes.iter().map(|shape| shape.stride));
         let count = self.work.count();
-        if !self
-            .work
-            .set_equations(self.observation, None, &strides, damping)
-        {
+        if !self.work.set_equations(None, &strides, damping) {
             return None;
         }
         let (solution, _) = self.work.equations.solve_non_negative(&Free::NONE);
@@ -267,11 +264,10 @@ impl<const B: usize> Workspace<B> {
                 };
                 let scale = square / single(step);
                 let mut size = 0.0;
-                for row in observation.rows() {
-                    let change = (slope[row] - column[row]) * scale;
-                    slope.put(row, change);
-                    size += change * change * self.shape[row];
-                }
+                slope.change_by(column, |near, own| (near - own) * scale);
+                slope.each_with(&self.shape, &slope, |change, shape, _| {
+                    size += change * change * shape;
+                });
                 // A shape that changes nothing has no place in the equations.
                 if size > 0.0 && size.is_finite() && self.slopes.push(slope).is_ok() {
                     let _ = shapes.push(Shape {

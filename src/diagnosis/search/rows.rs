@@ -95,7 +95,8 @@ impl<'a, const B: usize> Observation<'a, B> {
             span: observed.span(),
             duration_s: longest * observed.interval_s(),
             shape: Values::ZEROS,
-            start: Values::ZEROS,
+            // Rows that there are not weigh nothing, and divide by one.
+            start: Values::ZEROS.map(|_: f32| 1.0),
             per_measured: Values::ZEROS,
         };
         observation.measure(all, degrees);

@@ -102,7 +102,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             {
                 *factor = self.observation.column(&term, None, own);
             }
-            let deviance = self.work.solve(self.observation, 3);
+            let deviance = self.work.solve(3);
             if deviance < least {
                 least = deviance;
                 best.filter = Some(term);
@@ -136,7 +136,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 self.work.own.truncate(own);
                 self.work.factors.truncate(own);
                 self.work.add_own(self.observation, &term);
-                let deviance = self.work.solve(self.observation, 3);
+                let deviance = self.work.solve(3);
                 if deviance < least {
                     least = deviance;
                     let squares = kept(&self.work.squares);

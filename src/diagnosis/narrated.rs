@@ -184,6 +184,7 @@ fn polish<const K: usize, const B: usize>(
     work: &mut Work<K, B>,
     pause: &mut Pause<'_>,
 ) -> Result<Fitted, Stop> {
+    call(pause)?;
     let granted = Tolerance::IfNeeded(tolerance);
     work.begin_at(observed, &model, Start::Independent, granted)?;
     loop {

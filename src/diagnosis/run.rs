@@ -210,6 +210,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         tolerance: Tolerance,
         pause: &mut Pause<'_>,
     ) -> Result<(), Stop> {
+        call(pause)?;
         let observed = Observed::new(&self.curve, &self.spectrum);
         self.work
             .begin_at(observed, &self.step.model, start, tolerance)?;
@@ -344,6 +345,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         let observed = Observed::new(&self.curve, &self.spectrum);
         let unit = self.curve.variance_unit();
         for candidate in &mut self.step.candidates {
+            call(pause)?;
             let model = with(&self.step.model, &[candidate.term])?;
             let tolerance = Tolerance::Fixed(self.judged.tolerance);
             // A candidate that cannot be fitted keeps an unknown χ².

@@ -54,6 +54,8 @@ pub(crate) struct Workspace<const B: usize> {
     pub(super) equations: NormalEquations,
     /// The squared coefficients in units of their columns.
     pub(super) squares: Vector,
+    /// Those above zero in the last solution, with which the next one begins.
+    pub(super) free: Free,
 }
 
 impl<const B: usize> Workspace<B> {
@@ -68,6 +70,7 @@ impl<const B: usize> Workspace<B> {
         shape: Values::ZEROS,
         equations: NormalEquations::EMPTY,
         squares: Vector::ZEROS,
+        free: Free::NONE,
     };
 
     /// The number of columns, slopes left out.
@@ -270,7 +273,10 @@ impl<const B: usize> Workspace<B> {
             if !self.set_equations(None, &[], 0.0) {
                 break;
             }
-            let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
+            let (squares, free) = self
+                .equations
+                .solve_non_negative_near(&self.free, &Free::NONE);
+            self.free = free;
             let model = self.model_of(&squares);
             let deviance = self.deviance(&model);
             self.model = model;

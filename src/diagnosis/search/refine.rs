@@ -193,7 +193,14 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         if !self.work.set_equations(None, &strides, damping) {
             return None;
         }
-        let (solution, _) = self.work.equations.solve_non_negative(&Free::NONE);
+        let shapes_too = |i: usize| {
+            self.work.free.has(i) || (count..count.saturating_add(shapes.len())).contains(&i)
+        };
+        let guess = Free::of(shapes_too);
+        let (solution, _) = self
+            .work
+            .equations
+            .solve_non_negative_near(&guess, &Free::NONE);
         let steps = numbered(strides.iter()).map(|(at, &stride)| {
             let shifted = solution[count.saturating_add(at)];
             (shifted - stride).min(stride)

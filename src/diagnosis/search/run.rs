@@ -101,7 +101,9 @@ impl<const B: usize> Search<B> {
             beams,
             shapes,
         } = self;
+        pause()?;
         let white = set_common(work, observation, model, effects);
+        pause()?;
         let filters = || {
             let has_white = white.is_some();
             let filters = effects
@@ -324,7 +326,9 @@ impl<const B: usize> Search<B> {
         hypothesis: &Hypothesis,
         pause: &mut Pause<'_>,
     ) -> ControlFlow<(), Vec<(Term, Real), 4>> {
+        pause()?;
         let white = set_common(&mut self.work, observation, model, effects);
+        pause()?;
         let mut solver = Solver {
             observation,
             work: &mut self.work,

@@ -167,7 +167,8 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
             let share = (line(self, row) / (m * ratio)).min(1.0);
             // A line of share s in a row beats with the noise beside it: its scatter is √(1 − s²) of that of noise.
             let noise = 1.0 - share * share;
-            scatter += 4.0 * shape * (ratio - 1.0) * (ratio - 1.0) * noise;
+            let together = self.observation.overlap(row);
+            scatter += 4.0 * shape * (ratio - 1.0) * (ratio - 1.0) * noise * together;
         }
         // Where the effect is large, the coefficients follow it further than the weights of the model say.
         let lambda = lambda.min(refitted);

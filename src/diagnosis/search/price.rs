@@ -14,7 +14,7 @@ const NARROW: Real = 25.0;
 const DRIFTING: Real = 17.0;
 const NOISE: Real = 8.0;
 /// Noise of another kind, such as a power law, competes with all of the five terms.
-const OTHER_NOISE: Real = 14.0;
+const OTHER_NOISE: Real = 9.0;
 /// Noise that is correlated over fewer than [`FAST`] samples competes with every filter.
 const FAST_NOISE: Real = 15.5;
 const FAST: Real = 20.0;

@@ -25,6 +25,9 @@ const BINS_AS_ONE: Real = 1.944;
 /// together. Chosen by hand, near the mean of white noise and random walks.
 const PER_CLUSTER: Real = 0.75;
 
+/// Neighbouring octaves scatter together: `1 + 2 (0.6 + 0.2)` of them count as one, for noise between white and flicker.
+const OCTAVES_TOGETHER: Real = 2.6;
+
 /// The share of a density by which no model is believed to be true, which is added to its relative error. Chosen by hand:
 /// a third of the tolerance of a fit.
 const TOLERANCE: Real = 0.003;
@@ -212,6 +215,14 @@ impl<'a, const B: usize> Observation<'a, B> {
     /// What a density would be in a row, relative to the measurement.
     pub(super) fn relative(&self, row: usize, density: Real) -> f32 {
         single(density * real(self.per_measured[row]))
+    }
+
+    /// The variance of a sum over rows beside a row, relative to that of rows that are independent.
+    pub(crate) fn overlap(&self, row: usize) -> Real {
+        match &self.low {
+            Low::Octaves(_) if row < LOW => OCTAVES_TOGETHER,
+            _ => 1.0,
+        }
     }
 
     /// Whether there are bins.

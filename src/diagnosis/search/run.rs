@@ -44,6 +44,9 @@ const PRUNED: usize = 5;
 /// A hypothesis of as many effects whose score is less than this above that of the best one is as good.
 const AS_GOOD: Real = 2.0;
 
+/// The lead in cost that an effect needs over its own special case.
+const OVER_SPECIAL_CASE: Real = 5.0;
+
 /// The alternatives that are told.
 pub(crate) const MAX_ALTERNATIVES: usize = 6;
 
@@ -394,6 +397,13 @@ fn chosen(
     let best = leading
         .min_by(|a, b| a.cost.total_cmp(&b.cost))
         .unwrap_or(plain);
+    // An effect that leads little over its own special case, which it can imitate, is that one.
+    let special = finals.iter().filter(|other| {
+        best.is_general_form_of(other) && other.cost < best.cost + OVER_SPECIAL_CASE
+    });
+    let best = special
+        .min_by(|a, b| a.cost.total_cmp(&b.cost))
+        .unwrap_or(best);
     let mut alternatives: Vec<(Hypothesis, Real), MAX_ALTERNATIVES> = Vec::new();
     for other in finals.iter().chain(cheapest.iter().copied()) {
         let beyond = other.cost - best.cost;

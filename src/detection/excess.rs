@@ -81,6 +81,11 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
         self.term = Some(*term);
     }
 
+    /// What every effect costs more on this record.
+    pub(super) const fn surcharge(&self) -> Real {
+        self.observation.surcharge()
+    }
+
     /// The largest size that is tried.
     pub(super) const fn most(&self) -> Real {
         MOST

@@ -229,7 +229,7 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
             &term,
             self.record.curve.interval_s(),
             self.options.threshold,
-        );
+        ) + excess.surcharge();
         if is_of_shape(term.effect) {
             self.of_filter(term, needed, excess, pause)
         } else {

@@ -211,8 +211,8 @@ fn a_known_filter_is_part_of_the_model_and_not_found() {
             "{}: {named:?}",
             description.name
         );
-        // So near half the rate, the ICM-42688-P's filter changes the octaves by less than their scatter.
-        let is_seen = cutoff_hz < 0.4 * rate_hz;
-        assert_eq!(!named.is_empty(), is_seen, "{}", description.name);
+        // So near half the rate, the ICM-42688-P's filter changes the octaves by little more than their scatter.
+        let is_plain = cutoff_hz < 0.4 * rate_hz;
+        assert!(!named.is_empty() || !is_plain, "{}", description.name);
     }
 }

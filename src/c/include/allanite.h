@@ -48,10 +48,10 @@
 #define ALLANITE_SELF_TEST_WORDS 44
 
 // Words of an `AllaniteLook`.
-#define ALLANITE_LOOK_WORDS (230 + (31 * ALLANITE_OCTAVES))
+#define ALLANITE_LOOK_WORDS (285 + (31 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteDiagnosis`.
-#define ALLANITE_DIAGNOSIS_WORDS (2950 + (38 * ALLANITE_OCTAVES))
+#define ALLANITE_DIAGNOSIS_WORDS (3100 + (38 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteCertificate`.
 #define ALLANITE_CERTIFICATE_WORDS 560

@@ -85,7 +85,8 @@ impl Hypothesis {
         let prices = self
             .terms()
             .map(|term| price(term, observation.interval_s, threshold));
-        self.cost = self.score + prices.sum::<Real>();
+        let surcharge = observation.surcharge() * real(list::count(self.terms()) as u32);
+        self.cost = self.score + prices.sum::<Real>() + surcharge;
     }
 
     /// Whether both have filters of the same variant, or none.

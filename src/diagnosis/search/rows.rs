@@ -21,12 +21,15 @@ pub(crate) type Values<const B: usize> = Rows<LOW, B, f32>;
 /// Neighbouring bins of Hann's window scatter together: `1 + 2 (4/9 + 1/36)` of them count as one.
 const BINS_AS_ONE: Real = 1.944;
 
-/// The degrees of freedom of an octave for each of its clusters, less than one because neighbouring octaves scatter
-/// together. Chosen by hand, near the mean of white noise and random walks.
-const PER_CLUSTER: Real = 0.75;
+/// The degrees of freedom of an octave for each of its clusters. Chosen by hand, between those of white noise, 1.4, and of
+/// random walks.
+const PER_CLUSTER: Real = 1.2;
 
 /// Neighbouring octaves scatter together: `1 + 2 (0.6 + 0.2)` of them count as one, for noise between white and flicker.
 const OCTAVES_TOGETHER: Real = 2.6;
+
+/// The surcharge of octaves alone: with it, one in 200 clean records is told of an effect.
+const OCTAVES_ALONE: Real = 4.0;
 
 /// The share of a density by which no model is believed to be true, which is added to its relative error. Chosen by hand:
 /// a third of the tolerance of a fit.
@@ -215,6 +218,11 @@ impl<'a, const B: usize> Observation<'a, B> {
     /// What a density would be in a row, relative to the measurement.
     pub(super) fn relative(&self, row: usize, density: Real) -> f32 {
         single(density * real(self.per_measured[row]))
+    }
+
+    /// What every effect costs more where the rows are octaves, which scatter together more than they are taken to.
+    pub(crate) const fn surcharge(&self) -> Real {
+        if self.has_bins() { 0.0 } else { OCTAVES_ALONE }
     }
 
     /// The variance of a sum over rows beside a row, relative to that of rows that are independent.

@@ -413,7 +413,8 @@ fn two_effects_that_resemble_a_third_are_distinguished_from_it() {
     let axis = &document["axes"][0];
     let named = [list(&axis["missing"]), list(&axis["ambiguous"])].concat();
     assert!(
-        named.contains(&"sinusoid") && named.contains(&"decimation_filter"),
+        named.contains(&"sinusoid")
+            && (named.contains(&"decimation_filter") || named.contains(&"low_pass")),
         "{named:?}"
     );
     assert!(!list(&axis["missing"]).contains(&"resonance"));

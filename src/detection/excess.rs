@@ -81,6 +81,11 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
         self.term = Some(*term);
     }
 
+    /// The number of periods of a frequency in the record.
+    pub(super) fn periods(&self, frequency_hz: Real) -> Real {
+        frequency_hz * self.observation.duration_s
+    }
+
     /// What every effect costs more on this record.
     pub(super) const fn surcharge(&self) -> Real {
         self.observation.surcharge()

@@ -26,6 +26,9 @@ use core::ops::ControlFlow;
 /// sinusoid changes by up to 10 %, because an octave grid sees some frequencies better than others.
 const STEPS_AN_OCTAVE: Real = 4.0;
 
+/// The periods that a record needs for a limit of an oscillation. Chosen by hand.
+const PERIODS: Real = 8.0;
+
 /// How often the limit of a coefficient, and that of a shape, is halved at most.
 const COEFFICIENT_STEPS: u8 = 24;
 const SHAPE_STEPS: u8 = 12;
@@ -230,6 +233,12 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
             self.record.curve.interval_s(),
             self.options.threshold,
         ) + excess.surcharge();
+        // What a record shows of few periods depends on their phase.
+        let first = term.effect.parameters().first();
+        let has_frequency = first.is_some_and(|first| first.unit == "Hz");
+        if has_frequency && excess.periods(term.parameter(0)) < PERIODS {
+            return ControlFlow::Continue(None);
+        }
         if is_of_shape(term.effect) {
             self.of_filter(term, needed, excess, pause)
         } else {

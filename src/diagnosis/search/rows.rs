@@ -56,7 +56,7 @@ pub(crate) struct Observation<'a, const B: usize> {
     pub(super) interval_s: Real,
     pub(super) span: Span,
     /// The length of the record in seconds.
-    pub(super) duration_s: Real,
+    pub(crate) duration_s: Real,
     /// The shape of each row's gamma distribution: half of its degrees of freedom.
     pub(super) shape: Values<B>,
     /// Where a solution starts: the measurement, smoothed where it is sparse, relative to itself.

@@ -9,7 +9,7 @@
 //! 4. *Prune*: what is not worth its parameters goes.
 //!
 //! Hypotheses are judged by `−2 ln L` of the [gamma likelihood](likelihood), which sees deficits as well as excesses, plus
-//! two for each parameter and a [price](price) for each effect, which is what clean records reach by chance.
+//! two for each parameter and a [price](price::price) for each effect, which is what clean records reach by chance.
 
 mod cross;
 mod grow;

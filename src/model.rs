@@ -38,7 +38,7 @@ impl Term {
     }
 
     /// An effect whose shape is known, such as the filter of a sensor's data sheet. The parameters come in the order
-    /// in which the effect names them. There may be up to [`MAX_PARAMETERS`](crate::effect::MAX_PARAMETERS) of them.
+    /// in which the effect names them. There may be up to [`MAX_PARAMETERS`] of them.
     pub fn known<const N: usize>(effect: &'static dyn Effect, parameters: [Real; N]) -> Self {
         Self {
             parameters: padded(parameters),

@@ -161,7 +161,7 @@ mod tests {
         assert_eq!((sums.samples(), sums.broken().len()), (32, 4));
         assert_eq!(sums.broken(), [false, true, false, false]);
         for (column, all) in whole.iter().enumerate() {
-            let mean = |block: &[i32]| block.iter().sum::<i32>() as f64 / 32.0;
+            let mean = |block: &[i32]| f64::from(block.iter().sum::<i32>()) / 32.0;
             let expected: Vec<f64> = all.chunks_exact(32).map(mean).collect();
             assert_eq!(sums.means(column).collect::<Vec<_>>(), expected);
         }

@@ -33,18 +33,19 @@ const FOLLOWS: Real = 1.0;
 /// A round of scoring that gains less is the last one.
 const SETTLED: Real = 0.02;
 
-/// The columns that have room: those of the common terms, and those of the white noise and of what is added.
-const COMMON: usize = MAX_EFFECTS;
-const OWN: usize = MAX_EFFECTS;
+/// The columns that a step of the shapes may change.
+const CHANGED: usize = 4;
 
 /// The memory in which hypotheses are solved.
 pub(crate) struct Workspace<const B: usize> {
-    /// The columns of the terms that every hypothesis has.
-    pub(super) common: Vec<Values<B>, COMMON>,
-    /// The columns of the white noise and of what was added.
-    pub(super) own: Vec<Values<B>, OWN>,
-    /// The factors of these columns.
-    pub(super) factors: Vec<Real, MAX_EFFECTS>,
+    /// The columns of the terms that every hypothesis has, then the own ones, those of the white noise and of what was added.
+    columns: Vec<Values<B>, MAX_EFFECTS>,
+    /// The number of the columns that every hypothesis has.
+    common: usize,
+    /// The factors of the own columns.
+    factors: Vec<Real, MAX_EFFECTS>,
+    /// What a step of the shapes replaced: places among the own columns, columns and factors.
+    replaced: Vec<(usize, Values<B>, Real), CHANGED>,
     /// The columns of the shapes: the change of the model with the logarithm of each.
     pub(super) slopes: Vec<Values<B>, MAX_SHAPE>,
     /// The model relative to the measurement.
@@ -62,9 +63,10 @@ impl<const B: usize> Workspace<B> {
     /// No columns yet.
     // All zero, so that it is set where it stays and not moved there.
     pub(crate) const NEW: Self = Self {
-        common: Vec::new(),
-        own: Vec::new(),
+        columns: Vec::new(),
+        common: 0,
         factors: Vec::new(),
+        replaced: Vec::new(),
         slopes: Vec::new(),
         model: Values::ZEROS,
         shape: Values::ZEROS,
@@ -75,19 +77,52 @@ impl<const B: usize> Workspace<B> {
 
     /// The number of columns, slopes left out.
     pub(super) fn count(&self) -> usize {
-        self.common.len().saturating_add(self.own.len())
+        self.columns.len()
+    }
+
+    /// The number of the columns that every hypothesis has.
+    pub(super) const fn common(&self) -> usize {
+        self.common
+    }
+
+    /// The number of the own columns.
+    pub(super) fn own(&self) -> usize {
+        self.factors.len()
     }
 
     /// A column: the common ones first, then the own ones, then the slopes.
     pub(super) fn column(&self, i: usize) -> Option<&Values<B>> {
-        let own = i.checked_sub(self.common.len());
-        let Some(own) = own else {
-            return self.common.get(i);
-        };
-        match own.checked_sub(self.own.len()) {
-            None => self.own.get(own),
+        match i.checked_sub(self.columns.len()) {
+            None => self.columns.get(i),
             Some(slope) => self.slopes.get(slope),
         }
+    }
+
+    /// Sets the columns of the terms that every hypothesis has.
+    pub(super) fn set_common<'t>(
+        &mut self,
+        observation: &Observation<'_, B>,
+        terms: impl Iterator<Item = &'t Term>,
+    ) {
+        self.columns.clear();
+        self.factors.clear();
+        for term in terms {
+            self.push_column(observation, term);
+        }
+        self.common = self.columns.len();
+    }
+
+    /// Adds a column and returns its factor.
+    fn push_column(&mut self, observation: &Observation<'_, B>, term: &Term) -> Option<Real> {
+        self.columns.push(Values::ZEROS).ok()?;
+        let values = self.columns.last_mut()?;
+        Some(observation.column(term, None, values))
+    }
+
+    /// Keeps this number of own columns.
+    pub(super) fn keep_own(&mut self, count: usize) {
+        self.columns.truncate(self.common.saturating_add(count));
+        self.factors.truncate(count);
     }
 
     /// Sets the columns of the white noise and of what was added.
@@ -96,8 +131,7 @@ impl<const B: usize> Workspace<B> {
         observation: &Observation<'_, B>,
         terms: impl Iterator<Item = &'t Term>,
     ) {
-        self.own.clear();
-        self.factors.clear();
+        self.keep_own(0);
         for term in terms {
             self.add_own(observation, term);
         }
@@ -105,11 +139,49 @@ impl<const B: usize> Workspace<B> {
 
     /// Adds the column of one more term.
     pub(crate) fn add_own(&mut self, observation: &Observation<'_, B>, term: &Term) {
-        if self.own.push(Values::ZEROS).is_ok()
-            && let Some(values) = self.own.last_mut()
-        {
-            let factor = observation.column(term, None, values);
+        if let Some(factor) = self.push_column(observation, term) {
             let _ = self.factors.push(factor);
+        }
+    }
+
+    /// Sets an own column anew.
+    pub(super) fn change_own(&mut self, observation: &Observation<'_, B>, i: usize, term: &Term) {
+        let place = self.common.saturating_add(i);
+        if let (Some(values), Some(factor)) = (self.columns.get_mut(place), self.factors.get_mut(i))
+        {
+            *factor = observation.column(term, None, values);
+        }
+    }
+
+    /// Sets the own columns anew whose terms have changed. What was there is kept for [`put_back`](Self::put_back).
+    #[inline(never)]
+    pub(super) fn exchange_own(
+        &mut self,
+        observation: &Observation<'_, B>,
+        before: &[Term],
+        after: &[Term],
+    ) {
+        self.replaced.clear();
+        for (i, (before, after)) in numbered(before.iter().zip(after)) {
+            if before.parameters == after.parameters {
+                continue;
+            }
+            if let (Some(column), Some(factor)) = (self.own_column(i), self.factors.get(i)) {
+                let _ = self.replaced.push((i, *column, *factor));
+            }
+            self.change_own(observation, i, after);
+        }
+    }
+
+    /// Takes the last exchange back.
+    pub(super) fn put_back(&mut self) {
+        for (i, column, factor) in &self.replaced {
+            let place = self.common.saturating_add(*i);
+            if let (Some(own), Some(own_factor)) =
+                (self.columns.get_mut(place), self.factors.get_mut(*i))
+            {
+                (*own, *own_factor) = (*column, *factor);
+            }
         }
     }
 
@@ -141,7 +213,7 @@ impl<const B: usize> Workspace<B> {
 
     /// An own column.
     pub(crate) fn own_column(&self, i: usize) -> Option<&Values<B>> {
-        self.own.get(i)
+        self.columns.get(self.common.saturating_add(i))
     }
 
     /// What the columns and the slopes follow of expected values: the squares of their best fit, and the rest. The weights

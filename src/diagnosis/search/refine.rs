@@ -133,7 +133,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 }
             }
             let (before, model) = (self.work.squares, self.work.model);
-            self.work.set_own(self.observation, changed.iter());
+            self.work.exchange_own(self.observation, &terms, &changed);
             (self.pause)()?;
             let now = self.work.solve(3);
             if now < deviance {
@@ -151,7 +151,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 }
             } else {
                 damping *= RISES;
-                self.work.set_own(self.observation, terms.iter());
+                self.work.put_back();
                 (self.work.squares, self.work.model) = (before, model);
                 if damping > HOPELESS {
                     break;
@@ -212,8 +212,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
 impl<const B: usize> Workspace<B> {
     /// The finest level that shows a term, by the width of its bins in Hz.
     fn resolution(&self, observation: &Observation<'_, B>, term: usize) -> Option<Real> {
-        let column = self.own.get(term)?;
-        let square = single(self.squares[self.common.len().saturating_add(term)]);
+        let column = self.own_column(term)?;
+        let square = single(self.squares[self.common().saturating_add(term)]);
         let levels = observation.levels();
         let shown = levels.filter(|(first, bins)| {
             let rows = *first..first.saturating_add(bins.len());
@@ -235,7 +235,7 @@ impl<const B: usize> Workspace<B> {
         let mut shapes = Shapes::new();
         self.slopes.clear();
         for (i, term) in numbered(terms) {
-            let place = self.common.len().saturating_add(i);
+            let place = self.common().saturating_add(i);
             let square = single(self.squares[place]);
             if square <= 0.0 {
                 continue;
@@ -264,9 +264,9 @@ impl<const B: usize> Workspace<B> {
                 };
                 near.scale_parameter(j, math::exp(step));
                 let mut slope = Values::<B>::ZEROS;
-                let factor = self.factors.get(i).copied();
+                let factor = Some(self.factor(i));
                 observation.column(&near, factor, &mut slope);
-                let Some(column) = self.own.get(i) else {
+                let Some(column) = self.own_column(i) else {
                     continue;
                 };
                 let scale = square / single(step);

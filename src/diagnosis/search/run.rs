@@ -8,7 +8,7 @@ use super::{
     limits::Limits,
     pool::Pool,
     refine::{MAX_VARIANTS, Solver},
-    rows::{Observation, Values},
+    rows::Observation,
     variant::Variant,
 };
 use crate::{
@@ -307,14 +307,8 @@ fn set_common<const B: usize>(
         replaced.is_some_and(|white| term.effect.name() == white.name() && !term.fitted)
     };
     let white = model.terms().iter().find(is_white).copied();
-    work.common.clear();
-    for term in model.terms().iter().filter(|term| !is_white(term)) {
-        if work.common.push(Values::ZEROS).is_ok()
-            && let Some(values) = work.common.last_mut()
-        {
-            observation.column(term, None, values);
-        }
-    }
+    let common = model.terms().iter().filter(|term| !is_white(term));
+    work.set_common(observation, common);
     work.shape = observation.shape;
     white
 }

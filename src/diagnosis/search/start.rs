@@ -97,11 +97,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             .terms()
         {
             (self.pause)()?;
-            if let (Some(own), Some(factor)) =
-                (self.work.own.first_mut(), self.work.factors.first_mut())
-            {
-                *factor = self.observation.column(&term, None, own);
-            }
+            self.work.change_own(self.observation, 0, &term);
             let deviance = self.work.solve(3);
             if deviance < least {
                 least = deviance;
@@ -123,7 +119,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         self.load(hypothesis);
         let mut best: Option<Hypothesis> = None;
         let mut least = Real::INFINITY;
-        let own = self.work.own.len();
+        let own = self.work.own();
         for variant in Variant::of(effect, &self.observation.span) {
             for term in variant
                 .grid(self.observation, NOISE_STEPS, NOISE_OTHERS)
@@ -133,8 +129,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 let Some(with) = hypothesis.with(term, self.limits.effects) else {
                     return ControlFlow::Continue(None);
                 };
-                self.work.own.truncate(own);
-                self.work.factors.truncate(own);
+                self.work.keep_own(own);
                 self.work.add_own(self.observation, &term);
                 let deviance = self.work.solve(3);
                 if deviance < least {

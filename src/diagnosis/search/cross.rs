@@ -16,7 +16,7 @@ const BROAD: Real = 2.5;
 const NEAR: [Real; 5] = [0.7, 0.85, 1.0, 1.2, 1.4];
 
 impl<const B: usize> Solver<'_, '_, '_, B> {
-    /// Hands additions behind each filter to `each`, beginning at its best shape in the continuum, or at the one with the
+    /// Hands additions behind each filter to `each`, which returns the score that others have to beat, beginning at its best shape in the continuum, or at the one with the
     /// cut-off frequency of the filter in the hypothesis that they come from. If they are all that it adds, its own filter
     /// is left out.
     pub(super) fn cross(
@@ -24,7 +24,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         added: &Added,
         from: &Hypothesis,
         is_own: bool,
-        each: &mut dyn FnMut(&Hypothesis),
+        each: &mut dyn FnMut(&Hypothesis) -> Real,
     ) -> ControlFlow<()> {
         let shapes = self.shapes.clone();
         let cutoff_hz = from.filter.and_then(|filter| self.cutoff_hz(&filter));
@@ -55,7 +55,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
             let (begun, _) = best;
             let refined = self.refine(begun, 8)?;
-            each(&refined);
+            let bar = each(&refined);
+            self.raise(&refined, bar);
         }
         ControlFlow::Continue(())
     }

@@ -49,13 +49,13 @@ struct Peak {
 }
 
 impl<const B: usize> Solver<'_, '_, '_, B> {
-    /// Hands the hypothesis with one more effect to `each`, for every effect of the list that may be missing. All shapes
+    /// Hands the hypothesis with one more effect to `each`, which returns the score that others have to beat, for every effect of the list that may be missing. All shapes
     /// are refined together.
     pub(super) fn grow(
         &mut self,
         hypothesis: &Hypothesis,
         effects: &[&'static dyn Effect],
-        each: &mut dyn FnMut(&mut Self, &Hypothesis) -> ControlFlow<()>,
+        each: &mut dyn FnMut(&Hypothesis) -> Real,
     ) -> ControlFlow<()> {
         let mut candidates: Vec<Term, 12> = Vec::new();
         self.load(hypothesis);
@@ -82,7 +82,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         for term in candidates.iter().copied() {
             if let Some(with) = hypothesis.with(term, self.limits.effects) {
                 let grown = self.refine(with, 10)?;
-                each(self, &grown)?;
+                let bar = each(&grown);
+                self.raise(&grown, bar);
             }
         }
         for effect in effects
@@ -100,7 +101,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                         let grown = self.refine(begun, 12)?;
                         // One that the data do not ask for would take the place of another story.
                         if grown.score < hypothesis.score - DRIFTED {
-                            each(self, &grown)?;
+                            let bar = each(&grown);
+                            self.raise(&grown, bar);
                         }
                     }
                 }
@@ -116,7 +118,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
             if let Some(with) = self.scan_noise(effect, hypothesis)? {
                 let grown = self.refine(with, 10)?;
-                each(self, &grown)?;
+                let bar = each(&grown);
+                self.raise(&grown, bar);
             }
         }
         ControlFlow::Continue(())

@@ -68,7 +68,7 @@ impl Hypothesis {
     }
 
     /// The number of parameters beyond the model without filter and additions.
-    fn parameters(&self) -> Real {
+    pub(super) fn parameters(&self) -> Real {
         let shapes = self.terms().map(|term| continuous(term.effect));
         let shapes = shapes.fold(0_u32, u32::saturating_add);
         real(shapes) + real(self.added.len() as u32)

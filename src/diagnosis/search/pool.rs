@@ -27,6 +27,14 @@ impl<const N: usize> Pool<N> {
         &self.list
     }
 
+    /// The score that a hypothesis has to beat.
+    pub(super) fn bar(&self) -> Real {
+        match self.list.last() {
+            Some(worst) if self.list.is_full() => worst.score,
+            _ => Real::INFINITY,
+        }
+    }
+
     pub(super) fn clear(&mut self) {
         self.list.clear();
     }

@@ -1,7 +1,7 @@
 //! The shapes of a hypothesis, refined together with its coefficients (Levenberg 1944, Marquardt 1963).
 
 use super::{
-    hypothesis::Hypothesis,
+    hypothesis::{Hypothesis, MAX_ADDED},
     kind::is_line,
     likelihood::{Workspace, kept},
     limits::Limits,
@@ -10,7 +10,7 @@ use super::{
 use crate::{
     diagnosis::pause::Pause,
     limits::{MAX_PARAMETERS, MAX_SHAPE},
-    list::numbered,
+    list::{self, numbered},
     math,
     model::{Model, Term},
     nnls::{Free, Vector},
@@ -34,8 +34,10 @@ const FALLS: Real = 6.0;
 const RISES: Real = 12.0;
 const HOPELESS: Real = 1e3;
 /// A round that gains less is small, and two of these are the last ones; one that gains even less is the last one.
-const SMALL: Real = 0.1;
-const SETTLED: Real = 0.003;
+const SMALL: Real = 0.3;
+const SETTLED: Real = 0.05;
+/// A hypothesis is given up if this multiple of what the last round gained would not lift it over the bar.
+const HOPE: Real = 4.0;
 
 /// A shape of a hypothesis: the place of its term among the own columns, and its parameter.
 #[derive(Clone, Copy)]
@@ -63,14 +65,22 @@ pub(crate) struct Solver<'s, 'a, 'p, const B: usize> {
     pub(super) limits: Limits,
     /// The best shape of every filter in the continuum.
     pub(super) shapes: &'s mut Vec<Term, MAX_VARIANTS>,
+    /// The scores that hypotheses of no effect, of one effect and so on have to beat.
+    pub(super) bars: Bars,
     pub(super) pause: &'s mut Pause<'p>,
 }
+
+/// A score for each number of effects.
+pub(super) type Bars = [Real; MAX_ADDED + 2];
+
+/// No hypothesis fails at these.
+pub(super) const NO_BARS: Bars = [Real::INFINITY; MAX_ADDED + 2];
 
 impl<const B: usize> Solver<'_, '_, '_, B> {
     /// The terms of a hypothesis that are not common: the white noise or its filter, then what was added.
     pub(super) fn own_terms(&self, hypothesis: &Hypothesis) -> Terms {
         let white = hypothesis.filter.or(self.white);
-        crate::list::fill(white.into_iter().chain(hypothesis.added.iter().copied()))
+        list::fill(white.into_iter().chain(hypothesis.added.iter().copied()))
     }
 
     /// Sets the columns of a hypothesis, and the model at its squares, or at the measurement if it has none yet.
@@ -98,13 +108,28 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         ControlFlow::Continue(self.work.solve(10))
     }
 
-    /// Refines all shapes of a hypothesis together with its coefficients, in at most this number of rounds.
+    /// The score that a hypothesis has to beat.
+    fn bar(&self, hypothesis: &Hypothesis) -> Real {
+        let bar = self.bars.get(list::count(hypothesis.terms()));
+        bar.copied().unwrap_or(Real::INFINITY)
+    }
+
+    /// Sets the score that hypotheses of as many effects have to beat.
+    pub(super) fn raise(&mut self, hypothesis: &Hypothesis, bar: Real) {
+        if let Some(own) = self.bars.get_mut(list::count(hypothesis.terms())) {
+            *own = bar;
+        }
+    }
+
+    /// Refines all shapes of a hypothesis together with its coefficients, in at most this number of rounds. One that will
+    /// not beat its bar is given up early.
     #[inline(never)]
     pub(super) fn refine(
         &mut self,
         hypothesis: Hypothesis,
         rounds: u8,
     ) -> ControlFlow<(), Hypothesis> {
+        let bar = self.bar(&hypothesis) - 2.0 * hypothesis.parameters();
         let mut hypothesis = hypothesis;
         self.load(&hypothesis);
         (self.pause)()?;
@@ -146,7 +171,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 (terms, deviance) = (changed, now);
                 shapes = None;
                 damping = (damping / FALLS).max(1e-6);
-                if small > 1 || gain < SETTLED {
+                if small > 1 || gain < SETTLED || deviance - HOPE * gain > bar {
                     break;
                 }
             } else {
@@ -187,8 +212,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     /// and neither can a step plus its largest size, so that one solver serves both.
     #[inline(never)]
     fn step(&mut self, shapes: &Shapes, damping: Real) -> Option<Vec<Real, MAX_SHAPE>> {
-        let strides: Vec<Real, MAX_SHAPE> =
-            crate::list::fill(shapes.iter().map(|shape| shape.stride));
+        let strides: Vec<Real, MAX_SHAPE> = list::fill(shapes.iter().map(|shape| shape.stride));
         let count = self.work.count();
         if !self.work.set_equations(None, &strides, damping) {
             return None;
@@ -205,7 +229,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             let shifted = solution[count.saturating_add(at)];
             (shifted - stride).min(stride)
         });
-        Some(crate::list::fill(steps))
+        Some(list::fill(steps))
     }
 }
 

@@ -7,7 +7,7 @@ use super::{
     likelihood::Workspace,
     limits::Limits,
     pool::Pool,
-    refine::{MAX_VARIANTS, Solver},
+    refine::{MAX_VARIANTS, NO_BARS, Solver},
     rows::Observation,
     variant::Variant,
 };
@@ -65,10 +65,14 @@ pub(crate) struct Search<const B: usize> {
     shapes: Vec<Term, MAX_VARIANTS>,
 }
 
-/// Keeps a hypothesis among those of as many effects.
-fn enter(beams: &mut [Pool<BEAM>], hypothesis: &Hypothesis) {
-    if let Some(beam) = beams.get_mut(list::count(hypothesis.terms())) {
-        beam.enter(hypothesis);
+/// Keeps a hypothesis among those of as many effects. Returns the score that others have to beat.
+fn enter(beams: &mut [Pool<BEAM>], hypothesis: &Hypothesis) -> Real {
+    match beams.get_mut(list::count(hypothesis.terms())) {
+        Some(beam) => {
+            beam.enter(hypothesis);
+            beam.bar()
+        }
+        None => Real::INFINITY,
     }
 }
 
@@ -133,6 +137,7 @@ impl<const B: usize> Search<B> {
                 ),
                 ..limits
             },
+            bars: NO_BARS,
             pause,
         };
         for beam in beams.iter_mut() {
@@ -149,7 +154,7 @@ impl<const B: usize> Search<B> {
             list::rank(&mut continua, (whole.clone(), continuum), |other| {
                 other.1 > continuum
             });
-            enter(beams, whole);
+            enter(beams, whole)
         })?;
         let Some(plain) = plain else {
             return ControlFlow::Break(());
@@ -179,16 +184,17 @@ impl<const B: usize> Search<B> {
             let parents: Vec<Hypothesis, { BEAM + CONTINUA }> =
                 list::fill(known.iter().chain(more).filter(is_worth).cloned());
             for parent in parents.iter().filter(|_| count < MOST) {
-                solver.grow(parent, effects, &mut |_, hypothesis| {
+                solver.grow(parent, effects, &mut |hypothesis| {
                     let of = list::count(hypothesis.terms());
                     let later = of.checked_sub(count.saturating_add(1));
-                    match later.and_then(|later| higher.get_mut(later)) {
-                        Some(beam) => beam.enter(hypothesis),
+                    let pool = match later.and_then(|later| higher.get_mut(later)) {
+                        Some(pool) => pool,
                         // A more general effect in the place of one of the parent's.
-                        None if of == count => beam.enter(hypothesis),
-                        None => {}
-                    }
-                    ControlFlow::Continue(())
+                        None if of == count => &mut *beam,
+                        None => return Real::INFINITY,
+                    };
+                    pool.enter(hypothesis);
+                    pool.bar()
                 })?;
             }
             // The best sets of additions behind the other filters.
@@ -208,7 +214,7 @@ impl<const B: usize> Search<B> {
             for (added, from) in &sets {
                 let is_own = added.len() == from.added.len();
                 solver.cross(added, from, is_own, &mut |hypothesis| {
-                    enter(beams, hypothesis);
+                    enter(beams, hypothesis)
                 })?;
             }
             let next = beams.get(count.saturating_add(1));
@@ -226,6 +232,7 @@ impl<const B: usize> Search<B> {
             });
         }
         let mut finals: Vec<Hypothesis, PRUNED> = Vec::new();
+        solver.bars = NO_BARS;
         for hypothesis in &cheapest {
             let pruned = solver.prune((*hypothesis).clone())?;
             match finals.iter_mut().find(|other| other.is_like(&pruned)) {
@@ -261,6 +268,7 @@ pub(crate) fn best_shape_of<const B: usize>(
             threshold: 0.0,
             ambiguity: 0.0,
         },
+        bars: NO_BARS,
         pause: &mut go_on,
     };
     let ControlFlow::Continue(plain) = solver.refine(Hypothesis::new(None, Added::new()), 0) else {
@@ -285,9 +293,9 @@ pub(crate) fn best_shape_of<const B: usize>(
             }
         }
     } else {
-        let _ = solver.grow(&plain, &[effect], &mut |_, found| {
+        let _ = solver.grow(&plain, &[effect], &mut |found| {
             keep(found);
-            ControlFlow::Continue(())
+            Real::INFINITY
         });
     }
     best?.terms().next().copied()
@@ -337,6 +345,7 @@ impl<const B: usize> Search<B> {
                 threshold: 0.0,
                 ambiguity: 0.0,
             },
+            bars: NO_BARS,
             pause,
         };
         let mut ordered: Vec<(Term, Real), 4> = Vec::new();

@@ -3,7 +3,7 @@
 use super::{
     hypothesis::{Added, Hypothesis},
     likelihood::kept,
-    refine::Solver,
+    refine::{Bars, Solver},
     rows::Observation,
     variant::Variant,
 };
@@ -37,9 +37,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         &mut self,
         variants: &mut dyn Iterator<Item = Variant>,
         noises: &[&'static dyn Effect],
-        each: &mut dyn FnMut(&Hypothesis, Real),
+        each: &mut dyn FnMut(&Hypothesis, Real) -> Real,
     ) -> ControlFlow<()> {
         self.shapes.clear();
+        // Scores in the continuum compare with no others.
+        let mut bars = self.bars;
         let mut next = Some(None);
         while let Some(variant) = next {
             leave_out_peaks(self.observation, &mut self.work.shape);
@@ -54,16 +56,17 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                     found
                 }
             };
-            self.whole(found.clone(), each)?;
+            self.whole(found.clone(), &mut bars, each)?;
             for noise in noises {
                 leave_out_peaks(self.observation, &mut self.work.shape);
                 if let Some(with) = self.scan_noise(*noise, &found)? {
                     let with = self.refine(with, 10)?;
-                    self.whole(with, each)?;
+                    self.whole(with, &mut bars, each)?;
                 }
             }
             next = variants.next().map(Some);
         }
+        self.bars = bars;
         self.work.shape = self.observation.shape;
         ControlFlow::Continue(())
     }
@@ -72,12 +75,16 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     fn whole(
         &mut self,
         hypothesis: Hypothesis,
-        each: &mut dyn FnMut(&Hypothesis, Real),
+        bars: &mut Bars,
+        each: &mut dyn FnMut(&Hypothesis, Real) -> Real,
     ) -> ControlFlow<()> {
         let masked = hypothesis.score;
+        core::mem::swap(&mut self.bars, bars);
         self.work.shape = self.observation.shape;
         let whole = self.refine(hypothesis, 6)?;
-        each(&whole, masked);
+        let bar = each(&whole, masked);
+        self.raise(&whole, bar);
+        core::mem::swap(&mut self.bars, bars);
         ControlFlow::Continue(())
     }
 

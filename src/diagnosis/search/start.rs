@@ -17,7 +17,7 @@ use crate::{
 use core::ops::ControlFlow;
 
 /// The shapes of a filter that are tried for each factor of two of its first parameter, and of each other one.
-pub(super) const FILTER_STEPS: Real = 3.0;
+pub(super) const FILTER_STEPS: Real = 1.5;
 pub(super) const FILTER_OTHERS: u32 = 3;
 
 /// The correlation times that are tried for each factor of two.
@@ -81,7 +81,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let masked = hypothesis.score;
         core::mem::swap(&mut self.bars, bars);
         self.work.shape = self.observation.shape;
-        let whole = self.refine(hypothesis, 6)?;
+        let whole = self.refine(hypothesis, 3)?;
         let bar = each(&whole, masked);
         self.raise(&whole, bar);
         core::mem::swap(&mut self.bars, bars);

@@ -48,7 +48,7 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
             squares: Vector::ZEROS,
             coefficients: *squares,
             term: None,
-            column: Values::ZEROS,
+            column: Values::NONE,
             square: 0.0,
         };
         excess.work.set_shape(observation);
@@ -75,7 +75,9 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
             largest = largest.max(real(self.column[row]) / real(self.work.model()[row]));
         }
         let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
-        self.column = self.column.map(|value| value * single(scale));
+        let column = self.column;
+        self.column
+            .change_by(&column, |value, _| value * single(scale));
         // The column is `factor` times what a coefficient of one adds.
         self.square = factor * scale;
         self.term = Some(*term);

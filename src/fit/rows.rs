@@ -46,47 +46,6 @@ impl<const K: usize, const B: usize, E: Number> Rows<K, B, E> {
         }
     }
 
-    /// Adds a multiple of other rows.
-    pub(crate) fn add_scaled(&mut self, other: &Self, factor: E) {
-        let add = |own: &mut [E], other: &[E]| {
-            for (own, &other) in own.iter_mut().zip(other) {
-                *own += other * factor;
-            }
-        };
-        add(self.octaves.as_mut_slice(), other.octaves.as_slice());
-        add(self.bins.as_mut_slice(), other.bins.as_slice());
-    }
-
-    /// Changes every number, used or not, by those of other rows.
-    pub(crate) fn change_by(&mut self, other: &Self, change: impl Fn(E, E) -> E) {
-        let work = |own: &mut [E], other: &[E]| {
-            for (own, &other) in own.iter_mut().zip(other) {
-                *own = change(*own, other);
-            }
-        };
-        work(self.octaves.as_mut_slice(), other.octaves.as_slice());
-        work(self.bins.as_mut_slice(), other.bins.as_slice());
-    }
-
-    /// Hands the numbers of three rows to `each`, used or not, row by row.
-    pub(crate) fn each_with(&self, second: &Self, third: &Self, mut each: impl FnMut(E, E, E)) {
-        let mut work = |first: &[E], second: &[E], third: &[E]| {
-            for ((&first, &second), &third) in first.iter().zip(second).zip(third) {
-                each(first, second, third);
-            }
-        };
-        work(
-            self.octaves.as_slice(),
-            second.octaves.as_slice(),
-            third.octaves.as_slice(),
-        );
-        work(
-            self.bins.as_slice(),
-            second.bins.as_slice(),
-            third.bins.as_slice(),
-        );
-    }
-
     /// The sum of the products of rows.
     pub(crate) fn dot(&self, other: &Self) -> E {
         self.octaves.dot(&other.octaves) + self.bins.dot(&other.bins)

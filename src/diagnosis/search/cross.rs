@@ -4,7 +4,7 @@ use super::{
     hypothesis::{Added, Hypothesis},
     kind::has_frequency,
     refine::Solver,
-    rows::Values,
+    values::Values,
 };
 use crate::{list, model::Term, real::Real};
 use core::ops::ControlFlow;
@@ -64,7 +64,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     /// The lowest frequency at which a filter passes less than half of the white noise, in Hz.
     fn cutoff_hz(&self, filter: &Term) -> Option<Real> {
         let white = self.white?;
-        let (mut passed, mut all) = (Values::<B>::ZEROS, Values::<B>::ZEROS);
+        let (mut passed, mut all) = (Values::<B>::NONE, Values::<B>::NONE);
         self.observation.column(&white, Some(1.0), &mut all);
         self.observation.column(filter, Some(1.0), &mut passed);
         let rows = self.observation.rows();

@@ -4,7 +4,7 @@ use super::{
     hypothesis::Hypothesis,
     kind::{at, has_frequency, is_added, is_drifting, is_line, is_plain, is_resonance},
     refine::Solver,
-    rows::Values,
+    values::Values,
     variant::Variant,
 };
 use crate::{
@@ -166,7 +166,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         found: &mut Vec<Term, 12>,
     ) -> ControlFlow<()> {
         let mut best: Vec<(Term, Real), RESONANCES> = Vec::new();
-        let mut column = Values::<B>::ZEROS;
+        let mut column = Values::<B>::NONE;
         // Octaves show a line at many frequencies, each of them sharply.
         let steps = if is_line(effect) {
             LINE_STEPS
@@ -328,7 +328,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         steps: i16,
     ) -> ControlFlow<(), (Real, Real)> {
         let mut best = (frequency_hz, 0.0);
-        let mut column = Values::<B>::ZEROS;
+        let mut column = Values::<B>::NONE;
         let range = effect.search_range(0, &self.observation.span);
         for step in steps.saturating_neg()..=steps {
             (self.pause)()?;

@@ -10,7 +10,7 @@
 //! up to a constant (McCullagh & Nelder 1989, ch. 8). A row that a model puts 20 times too high adds 2ν (ln 20 − 0.95), four
 //! times what it adds to χ² at the model's own covariance: deficits are seen as well as excesses.
 
-use super::rows::{Observation, Values};
+use super::{rows::Observation, values::Values};
 use crate::{
     limits::{MAX_EFFECTS, MAX_SHAPE},
     list::numbered,
@@ -68,8 +68,8 @@ impl<const B: usize> Workspace<B> {
         factors: Vec::new(),
         replaced: Vec::new(),
         slopes: Vec::new(),
-        model: Values::ZEROS,
-        shape: Values::ZEROS,
+        model: Values::NONE,
+        shape: Values::NONE,
         equations: NormalEquations::EMPTY,
         squares: Vector::ZEROS,
         free: Free::NONE,
@@ -114,7 +114,7 @@ impl<const B: usize> Workspace<B> {
 
     /// Adds a column and returns its factor.
     fn push_column(&mut self, observation: &Observation<'_, B>, term: &Term) -> Option<Real> {
-        self.columns.push(Values::ZEROS).ok()?;
+        self.columns.push(Values::NONE).ok()?;
         let values = self.columns.last_mut()?;
         Some(observation.column(term, None, values))
     }
@@ -277,7 +277,7 @@ impl<const B: usize> Workspace<B> {
 
     /// The model of these squared coefficients.
     pub(super) fn model_of(&self, squares: &Vector) -> Values<B> {
-        let mut model = Values::ZEROS;
+        let mut model = Values::zeros(self.shape.lows());
         for i in 0..self.count() {
             let square = single(squares[i]);
             if square > 0.0
@@ -286,7 +286,7 @@ impl<const B: usize> Workspace<B> {
                 model.add_scaled(column, square);
             }
         }
-        model.change_by(&Values::ZEROS, |model, _| model.max(LEAST));
+        model.change_by(&self.shape, |model, _| model.max(LEAST));
         model
     }
 
@@ -304,7 +304,7 @@ impl<const B: usize> Workspace<B> {
         let count = self.count().saturating_add(slopes);
         let mut target = match data {
             Some(data) => *data,
-            None => Values::ZEROS.map(|_: f32| 1.0),
+            None => Values::constant(self.shape.lows(), 1.0),
         };
         for (slope, shift) in self.slopes.iter().take(slopes).zip(shift) {
             target.add_scaled(slope, single(*shift));

@@ -24,11 +24,13 @@ mod refine;
 mod rows;
 mod run;
 mod start;
+mod values;
 mod variant;
 
 pub(crate) use hypothesis::Hypothesis;
 pub(crate) use likelihood::Workspace;
 pub(crate) use limits::Limits;
 pub(crate) use price::price;
-pub(crate) use rows::{Observation, Values};
+pub(crate) use rows::Observation;
 pub(crate) use run::{Found, MAX_ALTERNATIVES, Search, best_shape_of};
+pub(crate) use values::Values;

@@ -5,7 +5,8 @@ use super::{
     kind::is_line,
     likelihood::{Workspace, kept},
     limits::Limits,
-    rows::{Observation, Values},
+    rows::Observation,
+    values::Values,
 };
 use crate::{
     diagnosis::pause::Pause,
@@ -287,7 +288,7 @@ impl<const B: usize> Workspace<B> {
                     _ => step,
                 };
                 near.scale_parameter(j, math::exp(step));
-                let mut slope = Values::<B>::ZEROS;
+                let mut slope = Values::<B>::NONE;
                 let factor = Some(self.factor(i));
                 observation.column(&near, factor, &mut slope);
                 let Some(column) = self.own_column(i) else {

@@ -1,5 +1,6 @@
 //! What a search compares with its hypotheses: the densities of all bins and, below them, the course or the octaves.
 
+use super::values::{LOW, Values};
 use crate::{
     course::CosineTransform,
     curve::{Point, clusters},
@@ -11,12 +12,6 @@ use crate::{
     real::{Real, real, single},
     spectrum::{Spectrum, levels_of},
 };
-
-/// The largest number of rows below the bins.
-pub(crate) const LOW: usize = 56;
-
-/// One number for every row. All of them are relative to what was measured, so that single precision is enough.
-pub(crate) type Values<const B: usize> = Rows<LOW, B, f32>;
 
 /// Neighbouring bins of Hann's window scatter together: `1 + 2 (4/9 + 1/36)` of them count as one.
 const BINS_AS_ONE: Real = 1.944;
@@ -100,10 +95,10 @@ impl<'a, const B: usize> Observation<'a, B> {
             interval_s: observed.interval_s(),
             span: observed.span(),
             duration_s: longest * observed.interval_s(),
-            shape: Values::ZEROS,
-            // Rows that there are not weigh nothing, and divide by one.
-            start: Values::ZEROS.map(|_: f32| 1.0),
-            per_measured: Values::ZEROS,
+            shape: Values::zeros(lows),
+            // Bins that there are not weigh nothing, and divide by one.
+            start: Values::constant(lows, 1.0),
+            per_measured: Values::zeros(lows),
         };
         observation.measure(all, degrees);
         observation
@@ -276,7 +271,10 @@ impl<'a, const B: usize> Observation<'a, B> {
         } else {
             0.0
         });
-        *values = raw.map(|value| single(value * factor));
+        *values = Values::zeros(self.lows);
+        for row in self.rows() {
+            values.put(row, single(raw[row] * factor));
+        }
         factor
     }
 }

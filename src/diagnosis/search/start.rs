@@ -155,7 +155,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
 #[inline(never)]
 fn leave_out_peaks<const B: usize>(
     observation: &Observation<'_, B>,
-    shape: &mut super::rows::Values<B>,
+    shape: &mut super::values::Values<B>,
 ) {
     *shape = observation.shape;
     for (first, bins) in observation.levels() {

@@ -30,8 +30,8 @@ const BEAM: usize = 4;
 const CONTINUA: usize = 2;
 /// A hypothesis that lags behind the best one of as many effects by more does not grow, and one that lags by more is not
 /// crossed. Where the best one is far from explaining the record, others may lag by as much as is left.
-const LAGS: Real = 60.0;
-const LAGS_CROSSED: Real = 40.0;
+const LAGS: Real = 25.0;
+const LAGS_CROSSED: Real = 15.0;
 /// A hypothesis that is not better than the plain model by this much does not grow.
 const EVIDENCE: Real = 4.0;
 /// The growth ends when the best hypothesis of one more effect is worse than the best one by more.
@@ -177,12 +177,24 @@ impl<const B: usize> Search<B> {
                     || (hypothesis.score < plain.score - EVIDENCE
                         && hypothesis.score < lead + LAGS + left)
             };
+            // A general form that gains little over its special case tells the same story.
+            let is_told = |hypothesis: &Hypothesis, known: &[Hypothesis]| {
+                known.iter().any(|other| {
+                    hypothesis.is_general_form_of(other)
+                        && other.score < hypothesis.score + OVER_SPECIAL_CASE
+                })
+            };
             let others = continua.iter().map(|(hypothesis, _)| hypothesis);
             let of_count = others.filter(|other| list::count(other.terms()) == count);
             let known = beam.as_slice();
             let more = of_count.filter(|other| !known.iter().any(|known| known.is_like(other)));
-            let parents: Vec<Hypothesis, { BEAM + CONTINUA }> =
-                list::fill(known.iter().chain(more).filter(is_worth).cloned());
+            let parents: Vec<Hypothesis, { BEAM + CONTINUA }> = list::fill(
+                known
+                    .iter()
+                    .chain(more)
+                    .filter(|hypothesis| is_worth(hypothesis) && !is_told(hypothesis, known))
+                    .cloned(),
+            );
             for parent in parents.iter().filter(|_| count < MOST) {
                 solver.grow(parent, effects, &mut |hypothesis| {
                     let of = list::count(hypothesis.terms());
@@ -201,6 +213,9 @@ impl<const B: usize> Search<B> {
             let mut sets: Vec<(Added, Hypothesis), CROSSED> = Vec::new();
             let top = lowest(beam.as_slice());
             for hypothesis in beam.as_slice() {
+                if is_told(hypothesis, beam.as_slice()) {
+                    continue;
+                }
                 let broad = suspects(&hypothesis.added, observation.interval_s);
                 for added in [hypothesis.added.clone(), broad] {
                     let is_known = crossed.iter().any(|known| is_near(known, &added));

@@ -24,6 +24,9 @@ pub(super) const FILTER_OTHERS: u32 = 3;
 const NOISE_STEPS: Real = 1.0;
 const NOISE_OTHERS: u32 = 3;
 
+/// What a filter gains in the continuum before it is taken further.
+const ASKED_FOR: Real = 2.0;
+
 /// How far a peak stands above the neighbourhood before it is left out: by this much, and by this many standard errors.
 const ABOVE: Real = 0.12;
 const STANDARD_ERRORS: Real = 4.5;
@@ -42,6 +45,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         self.shapes.clear();
         // Scores in the continuum compare with no others.
         let mut bars = self.bars;
+        let mut plain: Option<Real> = None;
         let mut next = Some(None);
         while let Some(variant) = next {
             leave_out_peaks(self.observation, &mut self.work.shape);
@@ -56,6 +60,13 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                     found
                 }
             };
+            // A filter that the continuum does not ask for tells no other story. Additions may ask for it later.
+            let plain = *plain.get_or_insert(found.score);
+            let is_asked_for = found.filter.is_none() || found.score < plain - ASKED_FOR;
+            next = variants.next().map(Some);
+            if !is_asked_for {
+                continue;
+            }
             self.whole(found.clone(), &mut bars, each)?;
             for noise in noises {
                 leave_out_peaks(self.observation, &mut self.work.shape);
@@ -64,7 +75,6 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                     self.whole(with, &mut bars, each)?;
                 }
             }
-            next = variants.next().map(Some);
         }
         self.bars = bars;
         self.work.shape = self.observation.shape;

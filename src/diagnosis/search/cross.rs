@@ -27,6 +27,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         each: &mut dyn FnMut(&Hypothesis) -> Real,
     ) -> ControlFlow<()> {
         let shapes = self.shapes.clone();
+        let narrow = suspects(added, self.observation.interval_s);
+        let is_narrow = is_own && from.filter.is_none() && narrow.len() == added.len();
         let cutoff_hz = from.filter.and_then(|filter| self.cutoff_hz(&filter));
         let filters = core::iter::once(None).chain(shapes.iter().copied().map(Some));
         for filter in filters {
@@ -53,7 +55,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                     }
                 }
             }
-            let (begun, _) = best;
+            let (begun, deviance) = best;
+            // Narrow additions leave the continuum as it was, so that such a filter shows before all is refined.
+            if is_narrow && deviance + 2.0 * begun.parameters() > from.score {
+                continue;
+            }
             let refined = self.refine(begun, 8)?;
             let bar = each(&refined);
             self.raise(&refined, bar);

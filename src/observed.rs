@@ -77,6 +77,22 @@ impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
         self.spectrum.filter(|spectrum| !spectrum.bins().is_empty())
     }
 
+    /// The number of independent segments that would scatter as much as those of a bin. In a record with gaps, fewer
+    /// segments overlap than [`Bin::effective_segments`] takes for granted: the first one of each stretch has none before
+    /// it. As many stretches have segments as have differences that span a segment.
+    pub(crate) fn effective_segments(&self, bin: &Bin) -> Real {
+        let spectrum = self.spectrum();
+        let segment = spectrum.map_or(0, |spectrum| spectrum.segment());
+        let half = bin.block.saturating_mul(segment / 2);
+        let points = self.curve.points();
+        let as_long = points
+            .iter()
+            .find(|point| point.m >= half)
+            .or(points.last());
+        let stretches = as_long.map_or(1, |point| point.stretches);
+        bin.effective_segments_of(stretches)
+    }
+
     /// The bins of the spectrum.
     pub fn bins(&self) -> &'a [Bin] {
         // Known to the compiler, which leaves out what works on bins.

@@ -11,7 +11,6 @@ use crate::{
         search::{Observation, price},
     },
     effect::{Effect, Span},
-    fit::{Columns, Problem},
     limits::MAX_PARAMETERS,
     list, math,
     model::Term,
@@ -145,9 +144,7 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
         }
         let observed: Observed<'a, K, B> = self.record.observed();
         let course = self.record.course.filter(|_| self.step.covariate.is_none());
-        let columns = Columns::EMPTY;
-        let problem = Problem::new(observed, &self.step.model, &columns);
-        let observation = Observation::new(observed, course, |bin| problem.effective_segments(bin));
+        let observation = Observation::new(observed, course);
         let squares = self.step.fit.squares();
         let mut excess = Excess::new(&observation, &self.step.model, &squares)?;
         Some(work(&mut excess))

@@ -3,7 +3,7 @@
 use super::polished::Fitted;
 use crate::{
     effect::Effect,
-    fit::{Problem, Work},
+    fit::{Columns, Problem},
     kurtosis::Kurtosis,
     observed::Observed,
 };
@@ -18,13 +18,12 @@ pub(super) enum Mirrored {
     Unknown(&'static dyn Effect),
 }
 
-/// Asks the kurtosis whether the effect at a place of a model is its mirror. The memory of `work` is used.
+/// Asks the kurtosis whether the effect at a place of a model is its mirror.
 #[inline(never)]
 pub(super) fn tell_from_mirror<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     kurtosis: Option<&Kurtosis<K>>,
     effects: &[&'static dyn Effect],
-    work: &mut Work<K, B>,
     fitted: &Fitted,
     place: usize,
 ) -> Mirrored {
@@ -36,8 +35,9 @@ pub(super) fn tell_from_mirror<const K: usize, const B: usize>(
     };
     // The kurtosis is known by octaves, and not only by those that are fitted.
     let octaves = observed.octaves();
-    work.columns.set(octaves, &fitted.model);
-    let problem = Problem::new(octaves, &fitted.model, &work.columns);
+    let mut columns = Columns::<K, B>::EMPTY;
+    columns.set(octaves, &fitted.model);
+    let problem = Problem::new(octaves, &fitted.model, &columns);
     let share = |k: usize| problem.share(k, place, &fitted.squares);
     let correlation_time_s = term.parameter(0);
     let jumps =

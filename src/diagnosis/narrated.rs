@@ -4,7 +4,7 @@ use super::{
     mirrored::{Mirrored, tell_from_mirror},
     pause::{Pause, Stop, call},
     polished::{Fitted, Polishing},
-    search::{Found, Hypothesis, MAX_ALTERNATIVES, Observation, Search},
+    search::{Found, Hypothesis, MAX_ALTERNATIVES, Observation, ordered},
     step::{Addition, Candidate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, cost},
 };
 use crate::{
@@ -56,7 +56,6 @@ impl Story {
     #[allow(clippy::too_many_arguments)]
     #[inline(never)]
     pub(super) fn new<const K: usize, const B: usize>(
-        search: &mut Search<B>,
         observation: &Observation<'_, B>,
         observed: Observed<'_, K, B>,
         model: &Model,
@@ -64,7 +63,6 @@ impl Story {
         effects: &[&'static dyn Effect],
         found: Found,
         tolerance: Real,
-        work: &mut Work<K, B>,
         pause: &mut Pause<'_>,
     ) -> Result<Self, Stop> {
         let mut best = found.best;
@@ -73,15 +71,14 @@ impl Story {
             return Ok(Self::NOTHING);
         }
         let whole = with(model, &terms)?;
-        let fitted = polish(observed, whole, tolerance, work, pause)?;
+        let fitted = polish(observed, whole, tolerance, pause)?;
         // The effects that were added are the last ones of the model, in the order of the hypothesis.
         let first = fitted.model.terms().len().saturating_sub(terms.len());
         let polished = fitted.model.terms().iter().skip(first);
         for (term, polished) in best.filter.iter_mut().chain(&mut best.added).zip(polished) {
             *term = *polished;
         }
-        let ControlFlow::Continue(ordered) =
-            search.ordered(observation, model, effects, &best, pause)
+        let ControlFlow::Continue(ordered) = ordered(observation, model, effects, &best, pause)
         else {
             return Err(Stop::Paused);
         };
@@ -123,7 +120,7 @@ impl Story {
             let Some(place) = place(&first.term) else {
                 continue;
             };
-            match tell_from_mirror(observed, kurtosis, effects, work, &fitted, place) {
+            match tell_from_mirror(observed, kurtosis, effects, &fitted, place) {
                 Mirrored::Same => {}
                 Mirrored::Other(effect) => first.term.effect = effect,
                 Mirrored::Unknown(effect) => {
@@ -181,10 +178,10 @@ fn polish<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     model: Model,
     tolerance: Real,
-    work: &mut Work<K, B>,
     pause: &mut Pause<'_>,
 ) -> Result<Fitted, Stop> {
     call(pause)?;
+    let mut work = Work::<K, B>::NEW;
     let granted = Tolerance::IfNeeded(tolerance);
     work.begin_at(observed, &model, Start::Independent, granted)?;
     loop {
@@ -199,7 +196,7 @@ fn polish<const K: usize, const B: usize>(
     let mut polishing = Polishing::new(Fitted { model, squares });
     loop {
         call(pause)?;
-        if let Some(polished) = polishing.advance(observed, &span, tolerance, work)? {
+        if let Some(polished) = polishing.advance(observed, &span, tolerance, &mut work)? {
             return Ok(polished);
         }
     }

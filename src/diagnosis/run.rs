@@ -7,7 +7,7 @@ use super::{
     narrated::{Story, with},
     options::Options,
     pause::{Pause, Stop, call},
-    search::{Observation, Search},
+    search::{Found, Limits, Observation, Search},
     step::{Addition, Step},
     verdict::Verdict,
 };
@@ -69,7 +69,6 @@ pub struct Diagnosis<'a, const K: usize, const B: usize = 0> {
     /// The present model, and what is reported about it.
     step: Step<K, B>,
     judged: Judged,
-    work: Work<K, B>,
     /// What was found and is told; `None` before the search.
     story: Option<Story>,
     next: Next,
@@ -119,7 +118,6 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             options,
             step: Step::of(model),
             judged: Judged::none(),
-            work: Work::NEW,
             story: None,
             next: Next::Judging,
         }
@@ -212,13 +210,13 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
     ) -> Result<(), Stop> {
         call(pause)?;
         let observed = Observed::new(&self.curve, &self.spectrum);
-        self.work
-            .begin_at(observed, &self.step.model, start, tolerance)?;
+        let mut work = Work::<K, B>::NEW;
+        work.begin_at(observed, &self.step.model, start, tolerance)?;
         let span = self.curve.span();
         let mut judging = Judging::new();
         loop {
             call(pause)?;
-            let judged = judging.advance(observed, &span, &mut self.work, &mut self.step)?;
+            let judged = judging.advance(observed, &span, &mut work, &mut self.step)?;
             if let Some(judged) = judged {
                 self.judged = judged;
                 return Ok(());
@@ -230,19 +228,14 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
     #[inline(never)]
     fn follow(&mut self, pause: &mut Pause<'_>) -> Result<(), Stop> {
         let observed = Observed::new(&self.curve, &self.spectrum);
+        let mut work = Work::<K, B>::NEW;
         let mut following = Following::new(&self.curve, self.judged.squares);
         let least_z = self.options.covariate_z;
         loop {
             call(pause)?;
             let (model, judged) = (&self.step.model, &self.judged);
-            let complete = following.advance(
-                observed,
-                &self.record,
-                model,
-                judged,
-                least_z,
-                &mut self.work,
-            )?;
+            let complete =
+                following.advance(observed, &self.record, model, judged, least_z, &mut work)?;
             if let Some(followed) = complete {
                 self.step.added = followed.map(Addition::Covariate);
                 return Ok(());
@@ -279,20 +272,17 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         let observed = Observed::new(&self.curve, &self.spectrum);
         // The course is the one of the record with what follows a covariate.
         let course = self.record.course.filter(|_| self.step.covariate.is_none());
-        let problem = Problem::new(observed, &self.step.model, &self.work.columns);
-        let observation = Observation::new(observed, course, |bin| problem.effective_segments(bin));
-        let mut search = Search::<B>::NEW;
-        let limits = super::search::Limits {
+        let observation = Observation::new(observed, course);
+        let limits = Limits {
             effects: self.left(),
             threshold: self.options.threshold,
             ambiguity: self.options.ambiguity,
         };
-        let found = search.run(&observation, &self.model, self.effects, limits, pause);
+        let found = look(&observation, &self.model, self.effects, limits, pause);
         let ControlFlow::Continue(found) = found else {
             return Err(Stop::Paused);
         };
         let told = Story::new(
-            &mut search,
             &observation,
             observed,
             &self.model,
@@ -300,7 +290,6 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             self.effects,
             found,
             self.step.fit.tolerance,
-            &mut self.work,
             pause,
         )?;
         self.story = Some(told);
@@ -344,13 +333,13 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
     fn measure_candidates(&mut self, pause: &mut Pause<'_>) -> Result<(), Stop> {
         let observed = Observed::new(&self.curve, &self.spectrum);
         let unit = self.curve.variance_unit();
+        let mut work = Work::<K, B>::NEW;
         for candidate in &mut self.step.candidates {
             call(pause)?;
             let model = with(&self.step.model, &[candidate.term])?;
             let tolerance = Tolerance::Fixed(self.judged.tolerance);
             // A candidate that cannot be fitted keeps an unknown χ².
-            if self
-                .work
+            if work
                 .begin_at(observed, &model, Start::Independent, tolerance)
                 .is_err()
             {
@@ -358,14 +347,14 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             }
             loop {
                 call(pause)?;
-                let problem = Problem::new(observed, &model, &self.work.columns);
-                match self.work.solver.advance(&problem) {
+                let problem = Problem::new(observed, &model, &work.columns);
+                match work.solver.advance(&problem) {
                     Ok(false) => {}
                     Ok(true) => {
                         let place = model.terms().len().saturating_sub(1);
-                        let square = self.work.solver.squares[place].max(0.0);
+                        let square = work.solver.squares[place].max(0.0);
                         candidate.coefficient = math::sqrt(square * unit);
-                        candidate.chi_squared = self.work.solver.chi_squared;
+                        candidate.chi_squared = work.solver.chi_squared;
                         break;
                     }
                     Err(_) => break,
@@ -387,4 +376,17 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             _ => Verdict::Incomplete,
         }
     }
+}
+
+/// Runs a search in memory that is free again afterwards.
+#[inline(never)]
+fn look<const B: usize>(
+    observation: &Observation<'_, B>,
+    model: &Model,
+    effects: &[&'static dyn Effect],
+    limits: Limits,
+    pause: &mut Pause<'_>,
+) -> ControlFlow<(), Found> {
+    let mut search = Search::<B>::NEW;
+    search.run(observation, model, effects, limits, pause)
 }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     error::Error,
-    fit::{Columns, Problem, Start, Tolerance, Work},
+    fit::{Problem, Start, Tolerance, Work},
     limits::MAX_PARAMETERS,
     model::{Model, Term},
     observed::Observed,
@@ -134,9 +134,7 @@ fn best_shape<const K: usize, const B: usize>(
     model: &Model,
     term: &Term,
 ) -> Result<[Real; MAX_PARAMETERS], Error> {
-    let columns = Columns::EMPTY;
-    let problem = Problem::new(observed, model, &columns);
-    let observation = Observation::new(observed, None, |bin| problem.effective_segments(bin));
+    let observation = Observation::new(observed, None);
     let found = best_shape_of(&observation, model, term);
     found.map(|found| found.parameters).ok_or(Error::Singular)
 }

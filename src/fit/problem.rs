@@ -144,16 +144,7 @@ impl<'a, const K: usize, const B: usize> Problem<'a, K, B> {
     /// segments overlap than [`Bin::effective_segments`] takes for granted: the first one of each stretch has none before
     /// it. As many stretches have segments as have differences that span a segment.
     pub(crate) fn effective_segments(&self, bin: &Bin) -> Real {
-        let spectrum = self.observed.spectrum();
-        let segment = spectrum.map_or(0, |spectrum| spectrum.segment());
-        let half = bin.block.saturating_mul(segment / 2);
-        let points = self.observed.curve().points();
-        let as_long = points
-            .iter()
-            .find(|point| point.m >= half)
-            .or(points.last());
-        let stretches = as_long.map_or(1, |point| point.stretches);
-        bin.effective_segments_of(stretches)
+        self.observed.effective_segments(bin)
     }
 
     /// The squared coefficients of a fit.

@@ -66,7 +66,6 @@ impl<'a, const B: usize> Observation<'a, B> {
     pub(crate) fn new<const K: usize>(
         observed: Observed<'a, K, B>,
         course: Option<&'a CosineTransform>,
-        degrees: impl Fn(&crate::spectrum::Bin) -> Real,
     ) -> Self {
         let spectrum = observed.spectrum();
         let all = spectrum.map_or(&[][..], |spectrum| spectrum.all());
@@ -100,7 +99,7 @@ impl<'a, const B: usize> Observation<'a, B> {
             start: Values::constant(lows, 1.0),
             per_measured: Values::zeros(lows),
         };
-        observation.measure(all, degrees);
+        observation.measure(all, &|bin| observed.effective_segments(bin));
         observation
     }
 
@@ -109,7 +108,7 @@ impl<'a, const B: usize> Observation<'a, B> {
     fn measure(
         &mut self,
         all: &[crate::spectrum::Bin],
-        degrees: impl Fn(&crate::spectrum::Bin) -> Real,
+        degrees: &dyn Fn(&crate::spectrum::Bin) -> Real,
     ) {
         for row in 0..self.lows {
             let (measured, shape) = match &self.low {

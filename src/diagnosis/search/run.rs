@@ -319,7 +319,7 @@ pub(crate) fn best_shape_of<const B: usize>(
 /// Sets the columns of the terms that every hypothesis has. Returns the term of the white noise, which is what the filters
 /// of the list replace.
 #[inline(never)]
-fn set_common<const B: usize>(
+pub(super) fn set_common<const B: usize>(
     work: &mut Workspace<B>,
     observation: &Observation<'_, B>,
     model: &Model,
@@ -334,65 +334,6 @@ fn set_common<const B: usize>(
     work.set_common(observation, common);
     work.shape = observation.shape;
     white
-}
-
-impl<const B: usize> Search<B> {
-    /// The effects of a hypothesis in the order in which they lower `−2 ln L` most, each with its fall. The shapes stay.
-    pub(crate) fn ordered(
-        &mut self,
-        observation: &Observation<'_, B>,
-        model: &Model,
-        effects: &[&'static dyn Effect],
-        hypothesis: &Hypothesis,
-        pause: &mut Pause<'_>,
-    ) -> ControlFlow<(), Vec<(Term, Real), 4>> {
-        pause()?;
-        let white = set_common(&mut self.work, observation, model, effects);
-        pause()?;
-        let mut solver = Solver {
-            observation,
-            work: &mut self.work,
-            white,
-            model,
-            shapes: &mut self.shapes,
-            limits: Limits {
-                effects: 4,
-                threshold: 0.0,
-                ambiguity: 0.0,
-            },
-            bars: NO_BARS,
-            pause,
-        };
-        let mut ordered: Vec<(Term, Real), 4> = Vec::new();
-        let mut present = Hypothesis::new(None, Added::new());
-        let mut before = solver.deviance(&present)?;
-        loop {
-            let mut best: Option<(Hypothesis, Term, Real)> = None;
-            for term in hypothesis.terms() {
-                let is_told = ordered.iter().any(|(told, _)| {
-                    told.effect.name() == term.effect.name() && told.parameters == term.parameters
-                });
-                if is_told {
-                    continue;
-                }
-                let mut more = present.clone();
-                if term.effect.replaces().is_some() {
-                    more.filter = Some(*term);
-                } else {
-                    let _ = more.added.push(*term);
-                }
-                let deviance = solver.deviance(&more)?;
-                if best.as_ref().is_none_or(|(_, _, least)| deviance < *least) {
-                    best = Some((more, *term, deviance));
-                }
-            }
-            let Some((more, term, deviance)) = best else {
-                return ControlFlow::Continue(ordered);
-            };
-            let _ = ordered.push((term, before - deviance));
-            (present, before) = (more, deviance);
-        }
-    }
 }
 
 /// The hypothesis whose names have the largest weight, the sum of `exp(−Δ/2)` over those that share them: six low passes

@@ -33,7 +33,7 @@ const APART: Real = 0.25;
 const FREQUENCY_STEPS: Real = 5.0;
 const QUALITIES: u32 = 3;
 /// The same for a line in a record without a spectrum.
-const LINE_STEPS: Real = 24.0;
+const LINE_STEPS: Real = 48.0;
 /// The shapes of resonances that are tested in one piece of work.
 const TERMS_A_PIECE: usize = 16;
 /// The bins of a segment of 64 up to half the rate of its blocks.

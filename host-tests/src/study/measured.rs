@@ -1,6 +1,6 @@
 //! Everything that the studies keep of a simulated record.
 
-use super::{OCTAVES, RATE_HZ, quantum, record};
+use super::{OCTAVES, RATE_HZ, quantum, record_at};
 use crate::{
     log::{BINS, SpectrumSums},
     simulate::{Coefficients, Simulator},
@@ -84,11 +84,21 @@ pub struct Measured {
 impl Measured {
     /// The next `samples` of a simulator. The size of a count is that of a gyro with these coefficients.
     pub fn of(simulator: &mut Simulator, coefficients: Coefficients, samples: usize) -> Self {
+        Self::at(RATE_HZ, simulator, coefficients, samples)
+    }
+
+    /// The same for a simulator that has this rate.
+    pub fn at(
+        rate_hz: f64,
+        simulator: &mut Simulator,
+        coefficients: Coefficients,
+        samples: usize,
+    ) -> Self {
         let mut sums = Sums::new();
-        record(simulator, coefficients, samples, |counts| {
+        record_at(rate_hz, simulator, coefficients, samples, |counts| {
             sums.push_slice(counts);
         });
-        sums.measured(Scale::new(quantum(coefficients, RATE_HZ), RATE_HZ).expect("positive"))
+        sums.measured(Scale::new(quantum(coefficients, rate_hz), rate_hz).expect("positive"))
     }
 
     /// The record that a diagnosis takes.

@@ -12,11 +12,14 @@ mod lines;
 mod long;
 mod origin;
 mod own;
+mod pairs;
 mod paper;
 mod peers;
 mod precision;
 mod self_test;
+mod slow;
 mod speed;
+mod strange;
 mod theory;
 mod thermal;
 
@@ -26,7 +29,7 @@ use clap::{Parser, Subcommand};
 use host_tests::{
     command::CommandLine,
     simulate::Preset,
-    study::{detection::Judged, long::Program},
+    study::{detection::Judged, long::Program, pairs::Kinds},
 };
 use std::{ffi::OsString, path::PathBuf};
 
@@ -84,6 +87,36 @@ enum Study {
         /// Study only this preset
         #[arg(long)]
         preset: Option<Preset>,
+    },
+    /// Count what is named where two and three effects of random kinds, sizes and shapes are hidden
+    Pairs {
+        /// Number of records per preset and number of effects
+        #[arg(long, default_value_t = 300)]
+        records: u64,
+        /// Study only this preset
+        #[arg(long)]
+        preset: Option<Preset>,
+        /// Hide every kind of the catalogue, rare ones too
+        #[arg(long)]
+        every_kind: bool,
+    },
+    /// Count what is said of slow Gauss–Markov noise: a published benchmark, and noise of a size near its ideal limit
+    Slow {
+        /// Number of records of the benchmark
+        #[arg(long, default_value_t = 100)]
+        records: u64,
+        /// Number of records near the limit
+        #[arg(long, default_value_t = 100)]
+        limits: u64,
+        /// Multiply the limits
+        #[arg(long, default_value_t = 2.0)]
+        factor: f64,
+    },
+    /// Count what is said of noise that the catalogue does not have, or has only nearly
+    Strange {
+        /// Number of records per kind
+        #[arg(long, default_value_t = 60)]
+        records: u64,
     },
     /// Count how often an effect shows that is as large as its limit of detection
     Detection {
@@ -242,6 +275,24 @@ fn main() -> Result<()> {
             effect,
         } => hidden_effect::print(records, clean, preset, effect.as_deref()),
         Study::Confusion { records, preset } => confusion::print(records, preset),
+        Study::Pairs {
+            records,
+            preset,
+            every_kind,
+        } => {
+            let kinds = if every_kind {
+                Kinds::Every
+            } else {
+                Kinds::Usual
+            };
+            pairs::print(records, preset, kinds);
+        }
+        Study::Slow {
+            records,
+            limits,
+            factor,
+        } => slow::print(records, limits, factor),
+        Study::Strange { records } => strange::print(records),
         Study::Detection {
             records,
             effect,

@@ -1,0 +1,21 @@
+//! What is said of noise that the catalogue does not have.
+
+use host_tests::study::strange::{KINDS, study};
+
+pub(crate) fn print(records: u64) {
+    println!("records of 2^17 samples at 100 Hz; counts of records");
+    println!(
+        "{:<68} {:>7} {:>6} {:>6} {:>6} {:>6} {:>6} {:>9}",
+        "kind", "records", "right", "honest", "wrong", "beside", "silent", "N covered"
+    );
+    for kind in KINDS {
+        let t = study(kind, records);
+        println!(
+            "{:<68} {:>7} {:>6} {:>6} {:>6} {:>6} {:>6} {:>9}",
+            kind.name, t.records, t.right, t.honest, t.wrong, t.beside, t.silent, t.covered
+        );
+        for said in &t.words {
+            println!("         said: {said}");
+        }
+    }
+}

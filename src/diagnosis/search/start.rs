@@ -17,7 +17,7 @@ use crate::{
 use core::ops::ControlFlow;
 
 /// The shapes of a filter that are tried for each factor of two of its first parameter, and of each other one.
-pub(super) const FILTER_STEPS: Real = 1.5;
+pub(super) const FILTER_STEPS: Real = 1.0;
 pub(super) const FILTER_OTHERS: u32 = 3;
 
 /// The correlation times that are tried for each factor of two.

@@ -115,7 +115,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         {
             (self.pause)()?;
             self.work.change_own(self.observation, 0, &term);
-            let deviance = self.work.solve(3);
+            let deviance = self.work.solve(2);
             if deviance < least {
                 least = deviance;
                 best.filter = Some(term);

@@ -1,7 +1,16 @@
 //! Studies records with two or three hidden effects of random kinds, sizes and shapes.
 
-use super::{RATE_HZ, measured::Measured, said::Said};
-use crate::simulate::{Coefficients, Hidden, Preset, Random, Simulator};
+use super::{OCTAVES, RATE_HZ, hidden_effect::steps, measured::Measured, said::Said};
+use crate::{
+    log::BINS,
+    simulate::{Coefficients, Hidden, Preset, Random, Simulator},
+};
+use allanite::{
+    Term,
+    detection::Detection,
+    diagnosis::{Options, Step},
+    effect::CATALOGUE,
+};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rayon::prelude::*;
 
@@ -23,6 +32,9 @@ const FILTERS_TOO: [&str; 2] = ["cascade", "notch"];
 
 /// The share of records with a filter.
 const FILTERED: f64 = 0.6;
+
+/// Every effect alone is this multiple of its limit of detection.
+const OF_LIMIT: f64 = 2.0;
 
 /// The logarithms of two frequencies in a record are this far apart.
 const APART: f64 = 0.2;
@@ -57,9 +69,52 @@ pub struct Tally {
     pub others: Vec<(String, String)>,
 }
 
-/// Draws the effects of a record. Sizes are those of effects that show: a line of 0.12 to 2 standard deviations of a sample's
-/// white noise, for instance.
-pub fn draw(base: Coefficients, count: usize, kinds: Kinds, seed: u64) -> Vec<Hidden> {
+/// A record of a gyro without hidden effects, from which limits of detection are taken.
+pub struct Clean {
+    measured: Measured,
+    step: Step<OCTAVES, BINS>,
+}
+
+impl Clean {
+    /// A record of a preset.
+    pub fn of(base: Coefficients) -> Self {
+        let mut simulator = Simulator::new(base, RATE_HZ, 1);
+        let measured = Measured::of(&mut simulator, base, SAMPLES);
+        let (steps, _) = steps(&measured, Options::default());
+        let step = steps.into_iter().last().expect("one step at least");
+        Self { measured, step }
+    }
+
+    /// Whether the record would have shown an effect of half its size.
+    fn shows(&self, hidden: &Hidden) -> bool {
+        // An effect with the spectrum of another one has the limit of that one.
+        let effect = hidden.effect.mirror().unwrap_or(hidden.effect);
+        let mut term = Term::new(effect);
+        term.fitted = true;
+        term.parameters = hidden.parameters;
+        let options = Options::default();
+        let detection = Detection::new(self.measured.record(), &self.step, &CATALOGUE, options);
+        let Some(limit) = detection.limit_of(term) else {
+            return false;
+        };
+        let first = hidden.effect.parameters().first();
+        match (limit.is_of_shape(), first.map(|first| first.unit)) {
+            // The size of a notch is its width, which has no limit of its own.
+            (true, Some("Hz")) => true,
+            (true, _) => hidden.parameters[0] >= OF_LIMIT * limit.size(),
+            (false, _) => hidden.coefficient >= OF_LIMIT * limit.size(),
+        }
+    }
+}
+
+/// Draws the effects of a record, each of which the gyro would show alone at half its size.
+pub fn draw(
+    base: Coefficients,
+    clean: &Clean,
+    count: usize,
+    kinds: Kinds,
+    seed: u64,
+) -> Vec<Hidden> {
     let mut random = Random::seed_from_u64(seed ^ 0x7061_6972);
     let with = |usual: &[&'static str], more: &[&'static str]| -> Vec<&'static str> {
         let more = more.iter().filter(|_| kinds == Kinds::Every);
@@ -88,7 +143,8 @@ pub fn draw(base: Coefficients, count: usize, kinds: Kinds, seed: u64) -> Vec<Hi
             .map(|hidden| hidden.parameters[0].ln())
             .collect();
         let is_near = |(i, a): (usize, &f64)| logs.iter().take(i).any(|b| (a - b).abs() < APART);
-        if !logs.iter().enumerate().any(is_near) {
+        let is_apart = !logs.iter().enumerate().any(is_near);
+        if is_apart && drawn.iter().all(|hidden| clean.shows(hidden)) {
             return drawn;
         }
     }
@@ -132,10 +188,11 @@ fn one(base: Coefficients, name: &str, random: &mut Random) -> Hidden {
 /// Diagnoses records of a preset with so many effects.
 pub fn study(preset: Preset, count: usize, kinds: Kinds, records: u64) -> Tally {
     let base = preset.coefficients();
+    let clean = Clean::of(base);
     let said: Vec<(Vec<Hidden>, Said)> = (0..records)
         .into_par_iter()
         .map(|seed| {
-            let hidden = draw(base, count, kinds, seed);
+            let hidden = draw(base, &clean, count, kinds, seed);
             let mut simulator = Simulator::with_hidden(base, &hidden, RATE_HZ, seed);
             let measured = Measured::of(&mut simulator, base, SAMPLES);
             (hidden, Said::of(&measured))

@@ -18,6 +18,8 @@ pub struct Kind {
     pub name: &'static str,
     /// The words that are right; none where *nothing* is right.
     pub right: &'static [&'static str],
+    /// Whether the coefficient of white noise is still that of the gyro.
+    keeps_white_noise: bool,
     make: fn(Coefficients, &mut Random, u64) -> Vec<f64>,
 }
 
@@ -26,29 +28,35 @@ pub const KINDS: [Kind; 14] = [
     Kind {
         name: "moving average of the whole signal",
         right: &["decimation_filter"],
+        keeps_white_noise: true,
         make: averaged,
     },
     Kind {
         name: "second-order low pass of the whole signal",
         right: &["low_pass"],
+        keeps_white_noise: true,
         make: low_passed,
     },
     Kind {
         name: "notch of quality 0.7 to 1.3",
         right: &["notch"],
+        keeps_white_noise: true,
         make: |c, random, seed| {
             let shape = [log(random, 8.0, 35.0), log(random, 0.7, 1.3)];
             hidden(c, "notch", shape, 1.0, seed)
         },
     },
     Kind {
+        // White noise of the angle is quantization to the eye of Allan.
         name: "white noise that rises with the square of the frequency",
-        right: &["mode_split"],
+        right: &[],
+        keeps_white_noise: true,
         make: rising,
     },
     Kind {
         name: "resonance of quality 0.5 to 1.5",
         right: &["resonance"],
+        keeps_white_noise: true,
         make: |c, random, seed| {
             let shape = [log(random, 0.5, 20.0), log(random, 0.5, 1.5)];
             hidden(c, "resonance", shape, log(random, 0.5, 2.0), seed)
@@ -57,6 +65,7 @@ pub const KINDS: [Kind; 14] = [
     Kind {
         name: "Gauss–Markov noise of 0.1 to 1 s that dominates",
         right: &["gauss_markov", "low_pass"],
+        keeps_white_noise: true,
         make: |c, random, seed| {
             let time_s = log(random, 0.1, 1.0);
             hidden(
@@ -71,6 +80,7 @@ pub const KINDS: [Kind; 14] = [
     Kind {
         name: "rate random walk and ramp",
         right: &[],
+        keeps_white_noise: true,
         make: |c, random, seed| {
             let c = Coefficients {
                 rate_random_walk: c.angle_random_walk * log(random, 0.01, 0.3),
@@ -88,6 +98,7 @@ pub const KINDS: [Kind; 14] = [
             "drifting_sinusoid",
             "drifting_resonance",
         ],
+        keeps_white_noise: true,
         make: |c, random, seed| {
             let (frequency_hz, size) = (log(random, 0.5, 45.0), log(random, 0.2, 2.0));
             let period_s = log(random, 20.0, 300.0);
@@ -99,6 +110,7 @@ pub const KINDS: [Kind; 14] = [
     Kind {
         name: "line that runs from one frequency to another",
         right: &["drifting_sinusoid", "drifting_resonance"],
+        keeps_white_noise: true,
         make: |c, random, seed| {
             let frequency_hz = log(random, 3.0, 40.0);
             let rate = frequency_hz * log(random, 0.03, 0.15) / (SAMPLES as f64 / RATE_HZ);
@@ -110,6 +122,7 @@ pub const KINDS: [Kind; 14] = [
     Kind {
         name: "mains of 50 Hz, off by up to 0.05 Hz",
         right: &["sinusoid"],
+        keeps_white_noise: true,
         make: |c, random, seed| {
             let frequency_hz = 50.0 - log(random, 0.002, 0.05);
             with(c, seed, log(random, 0.2, 2.0), |time_s| {
@@ -120,6 +133,7 @@ pub const KINDS: [Kind; 14] = [
     Kind {
         name: "flicker with a slope of 0.7 to 1.4",
         right: &["power_law"],
+        keeps_white_noise: true,
         make: |c, random, seed| {
             let exponent = log(random, 0.7, 1.4);
             hidden(
@@ -134,11 +148,13 @@ pub const KINDS: [Kind; 14] = [
     Kind {
         name: "white noise with heavy tails",
         right: &[],
+        keeps_white_noise: true,
         make: heavy,
     },
     Kind {
         name: "counts of 0.5 to 2 standard deviations",
         right: &[],
+        keeps_white_noise: false,
         make: |c, random, seed| {
             let step = log(random, 0.5, 2.0) * white(c);
             let rates = Simulator::new(c, RATE_HZ, seed).take(SAMPLES);
@@ -148,8 +164,9 @@ pub const KINDS: [Kind; 14] = [
     Kind {
         name: "digital Butterworth filter of 1 to 4 poles, 4 % to 42 % of the rate",
         right: &["low_pass"],
+        keeps_white_noise: true,
         make: |c, random, seed| {
-            let poles = f64::from(random.random_range(1..=4_u32));
+            let poles = drawn_poles(random);
             let time_s = 1.0 / (TAU * log(random, 4.0, 42.0));
             hidden(c, "digital_low_pass", [time_s, poles], 1.0, seed)
         },
@@ -171,28 +188,42 @@ pub struct Tally {
     pub beside: usize,
     /// Nothing was said, where something is hidden.
     pub silent: usize,
-    /// The interval of N contains its true value.
-    pub covered: usize,
+    /// The interval of N contains its true value; `None` where the gyro's N is not what there is.
+    pub covered: Option<usize>,
+    /// The right word came with the number of poles that the filter has; `None` where there is no filter.
+    pub order: Option<usize>,
     /// What was said wrong.
     pub words: Vec<String>,
 }
 
 /// Diagnoses records of a kind of mems and fog in turn.
 pub fn study(kind: Kind, records: u64) -> Tally {
-    let said: Vec<(Coefficients, Said)> = (0..records)
+    let said: Vec<(Coefficients, Option<f64>, Said)> = (0..records)
         .into_par_iter()
         .map(|seed| {
             let preset = [Preset::Mems, Preset::Fog][usize::from(seed % 2 == 1)];
             let base = preset.coefficients();
             let mut random = Random::seed_from_u64(seed ^ 0x6f64_6400);
             let rates = (kind.make)(base, &mut random, seed);
-            (base, diagnose(base, &rates))
+            // The number of poles is drawn first.
+            let mut again = Random::seed_from_u64(seed ^ 0x6f64_6400);
+            let poles = kind.name.contains("poles").then(|| drawn_poles(&mut again));
+            (base, poles, diagnose(base, &rates))
         })
         .collect();
     let mut tally = Tally::default();
-    for (base, said) in &said {
+    for (base, poles, said) in &said {
         tally.records += 1;
-        tally.covered += usize::from(said.covers("N", base.angle_random_walk));
+        if kind.keeps_white_noise {
+            let covered = usize::from(said.covers("N", base.angle_random_walk));
+            *tally.covered.get_or_insert(0) += covered;
+        }
+        if let Some(poles) = poles {
+            let names = said.named.iter().zip(&said.shapes);
+            let mut filters = names.filter(|((name, _), _)| super::said::word(name) == "low_pass");
+            let is_right = filters.any(|(_, shape)| shape.get(1) == Some(poles));
+            *tally.order.get_or_insert(0) += usize::from(is_right);
+        }
         let is_right = |name: &str| kind.right.contains(&super::said::word(name));
         let right = said.named.iter().filter(|(name, _)| is_right(name)).count();
         let place = if said.named.is_empty() {
@@ -234,6 +265,10 @@ fn diagnose(base: Coefficients, rates: &[f64]) -> Said {
 /// A number between two, uniform in its logarithm.
 fn log(random: &mut Random, low: f64, high: f64) -> f64 {
     low * (high / low).powf(random.random::<f64>())
+}
+
+fn drawn_poles(random: &mut Random) -> f64 {
+    f64::from(random.random_range(1..=4_u32))
 }
 
 /// The standard deviation of the white noise of a sample.

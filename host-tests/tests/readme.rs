@@ -254,8 +254,16 @@ fn promised(way: Way) {
         most(precision, "flash_bytes_accumulator", 4);
         most(precision, "stack_bytes_fit_20", 15);
     }
-    most(Precision::Single, "ram_bytes_three_axes_20_with_diagnosis", 33);
-    most(Precision::Double, "ram_bytes_three_axes_20_with_diagnosis", 45);
+    most(
+        Precision::Single,
+        "ram_bytes_three_axes_20_with_diagnosis",
+        33,
+    );
+    most(
+        Precision::Double,
+        "ram_bytes_three_axes_20_with_diagnosis",
+        45,
+    );
     most(Precision::Single, "flash_bytes_with_fit", 40);
     most(Precision::Single, "flash_bytes_with_diagnosis", 116);
 }

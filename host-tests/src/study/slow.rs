@@ -155,7 +155,7 @@ const LIMIT: f64 = 6.6;
 /// The largest size that is tried, relative to the white noise of a sample.
 const LARGEST: f64 = 30.0;
 
-/// The root mean square at which the likelihood ratio of the whole periodogram (Whittle 1953) is expected to be [`LIMIT`],
+/// The root mean square at which the likelihood ratio of the whole periodogram (Whittle 1953) is expected to be 6.6,
 /// beside the best fit of quantization, angle random walk, flicker and rate random walk. `None` if it never is.
 pub fn ideal_limit(base: Coefficients, samples: usize, correlation_time_s: f64) -> Option<f64> {
     let rows = rows(base, samples, correlation_time_s);

@@ -51,7 +51,7 @@
 #define ALLANITE_LOOK_WORDS (285 + (31 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteDiagnosis`.
-#define ALLANITE_DIAGNOSIS_WORDS (3100 + (38 * ALLANITE_OCTAVES))
+#define ALLANITE_DIAGNOSIS_WORDS (1650 + (10 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteCertificate`.
 #define ALLANITE_CERTIFICATE_WORDS 560

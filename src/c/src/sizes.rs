@@ -25,7 +25,7 @@ pub const ALLANITE_SELF_TEST_WORDS: usize = 44;
 /// Words of an `AllaniteLook`.
 pub const ALLANITE_LOOK_WORDS: usize = 285 + 31 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteDiagnosis`.
-pub const ALLANITE_DIAGNOSIS_WORDS: usize = 3100 + 38 * ALLANITE_OCTAVES;
+pub const ALLANITE_DIAGNOSIS_WORDS: usize = 1650 + 10 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteCertificate`.
 pub const ALLANITE_CERTIFICATE_WORDS: usize = 560;
 /// Bytes of a buffer for any snapshot of a record and a self-test.

@@ -4,7 +4,7 @@ use super::{
     mirrored::{Mirrored, tell_from_mirror},
     pause::{Pause, Stop, call},
     polished::{Fitted, Polishing},
-    search::{Found, Hypothesis, MAX_ALTERNATIVES, Observation, ordered},
+    search::{Found, Hypothesis, MAX_ALTERNATIVES, Observation, is_filter, ordered},
     step::{Addition, Candidate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, cost},
 };
 use crate::{
@@ -212,15 +212,15 @@ fn instead(best: &Hypothesis, other: &Hypothesis, term: &Term) -> Option<Term> {
         return None;
     }
     // A filter stands for a filter if both have one.
-    let is_filter = term.effect.replaces().is_some();
-    if is_filter && let Some(filter) = other.filter {
+    let replaces_white = is_filter(term.effect);
+    if replaces_white && let Some(filter) = other.filter {
         return Some(filter);
     }
     let mut more = other.terms().filter(|other_term| {
         let name = other_term.effect.name();
-        let is_other_filter = other_term.effect.replaces().is_some();
+        let is_other_filter = is_filter(other_term.effect);
         count(other, name) > count(best, name)
-            && (is_filter || !is_other_filter || best.filter.is_none())
+            && (replaces_white || !is_other_filter || best.filter.is_none())
     });
     more.next().copied()
 }

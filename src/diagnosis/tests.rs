@@ -185,26 +185,21 @@ fn a_curve_of_two_octaves_is_too_short() {
 }
 
 #[test]
-fn a_strong_line_is_found_alone_at_any_frequency() {
-    for i in 0..12 {
-        // Of 240 frequencies in this range, octaves alone show 235. Most of the others lie near a quarter or a third of
-        // the rate.
-        let frequency = 0.14 * 1.63_f64.powi(i);
+fn a_strong_line_is_found_alone_at_nearly_any_frequency() {
+    // Octaves alone hardly tell some frequencies from others with the same alias.
+    let (most, mut others) = (3, Vec::new());
+    for i in 0..60 {
+        let frequency = 0.14 * 1.63_f64.powf(f64::from(i) / 5.0);
         let curve = curve(&Sinusoid, [real(frequency), 0.0], 1.0);
-        let (verdict, steps) = diagnosed(&curve);
-        let last = steps.last().unwrap();
-        let added: Vec<_> = last
-            .model
-            .terms()
-            .iter()
-            .filter(|term| term.fitted)
-            .collect();
-        let [line] = added.as_slice() else {
-            panic!("{frequency} Hz: {verdict:?} {added:?}");
-        };
-        let off = double(line.parameters[0]) / frequency - 1.0;
-        assert!(off.abs() < 1e-3, "{frequency} Hz: {off:e}");
+        let (_, steps) = diagnosed(&curve);
+        let terms = steps.last().unwrap().model.terms().iter();
+        let added: Vec<_> = terms.filter(|term| term.fitted).collect();
+        let is_right = |line: &Term| (double(line.parameters[0]) / frequency - 1.0).abs() < 1e-3;
+        if !matches!(added.as_slice(), [line] if is_right(line)) {
+            others.push(frequency);
+        }
     }
+    assert!(others.len() <= most, "{others:?}");
 }
 
 #[test]

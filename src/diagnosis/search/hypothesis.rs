@@ -1,6 +1,11 @@
 //! A hypothesis: what the white noise went through, and what adds to it.
 
-use super::{kind::continuous, price::price, rows::Observation, variant::Variant};
+use super::{
+    kind::{continuous, is_filter},
+    price::price,
+    rows::Observation,
+    variant::Variant,
+};
 use crate::{
     limits::{MAX_EFFECTS, MAX_SHAPE},
     list,
@@ -113,8 +118,7 @@ impl Hypothesis {
     pub(super) fn is_general_form_of(&self, other: &Self) -> bool {
         let special = |term: &Term| {
             let special = term.effect.description().special_case?;
-            (special.replaces().is_some() == term.effect.replaces().is_some())
-                .then(|| special.name())
+            (is_filter(special) == is_filter(term.effect)).then(|| special.name())
         };
         let times = |terms: &Self, name: &str| {
             list::count(terms.terms().filter(|term| term.effect.name() == name))

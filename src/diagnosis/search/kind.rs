@@ -1,7 +1,7 @@
 //! The kinds of effects, as their descriptions tell them.
 
 use crate::{
-    effect::{Distribution, Effect},
+    effect::{AngleRandomWalk, Distribution, Effect},
     list::{self, numbered},
     model::Term,
     real::Real,
@@ -38,10 +38,19 @@ pub(super) fn is_plain(effect: &'static dyn Effect) -> bool {
     effect.replaces().is_none() && effect.mirror().is_none() && effect.parameters().is_empty()
 }
 
-/// Whether an effect adds to the noise, and a search can find it: it takes the place of none, and has a shape. An effect
-/// with the same Allan variance as another one is told from it afterwards.
+/// The white noise that filters work on.
+pub(super) const WHITE: &dyn Effect = &AngleRandomWalk;
+
+/// Whether an effect takes the place of the white noise, as what filters it does.
+pub(crate) fn is_filter(effect: &dyn Effect) -> bool {
+    let replaced = effect.replaces();
+    replaced.is_some_and(|replaced| replaced.name() == WHITE.name())
+}
+
+/// Whether an effect adds to the noise, and a search can find it: it is no filter, and has a shape. One that takes the
+/// place of another term, as a power law that of flicker noise, is sought beside that term. An effect with the same Allan variance as another one is told from it afterwards.
 pub(super) fn is_added(effect: &'static dyn Effect) -> bool {
-    effect.replaces().is_none() && effect.mirror().is_none() && !effect.parameters().is_empty()
+    !is_filter(effect) && effect.mirror().is_none() && !effect.parameters().is_empty()
 }
 
 /// The number of an effect's shape parameters that are not whole numbers.

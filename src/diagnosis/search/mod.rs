@@ -29,6 +29,7 @@ mod values;
 mod variant;
 
 pub(crate) use hypothesis::Hypothesis;
+pub(crate) use kind::is_filter;
 pub(crate) use likelihood::Workspace;
 pub(crate) use limits::Limits;
 pub(crate) use order::ordered;

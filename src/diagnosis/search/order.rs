@@ -2,6 +2,7 @@
 
 use super::{
     hypothesis::{Added, Hypothesis, MAX_ADDED},
+    kind::is_filter,
     likelihood::Workspace,
     limits::Limits,
     refine::{NO_BARS, Solver},
@@ -60,7 +61,7 @@ pub(crate) fn ordered<const B: usize>(
                 continue;
             }
             let mut more = present.clone();
-            if term.effect.replaces().is_some() {
+            if is_filter(term.effect) {
                 more.filter = Some(*term);
             } else {
                 let _ = more.added.push(*term);

@@ -1,6 +1,6 @@
 //! What an effect costs beyond its parameters.
 
-use super::kind::{continuous, has_frequency, is_drifting, is_line};
+use super::kind::{continuous, has_frequency, is_drifting, is_filter, is_line};
 use crate::{model::Term, real::Real};
 
 /// The prices are above what the best effect of each kind gains on clean records by chance, beyond two for each parameter.
@@ -34,7 +34,7 @@ pub(crate) fn price(term: &Term, interval_s: Real, threshold: Real) -> Real {
 
 fn usual(term: &Term, interval_s: Real) -> Real {
     let effect = term.effect;
-    if effect.replaces().is_some() {
+    if is_filter(effect) {
         return match (continuous(effect), effect.description().special_case) {
             (0 | 1, None) => FILTER,
             (0 | 1, Some(_)) => SPECIAL_FILTER,

@@ -3,7 +3,7 @@
 use super::{
     cross::suspects,
     hypothesis::{Added, Hypothesis, MAX_ADDED, is_near},
-    kind::{has_frequency, is_added},
+    kind::{WHITE, is_added, is_filter},
     likelihood::Workspace,
     limits::Limits,
     pool::Pool,
@@ -34,8 +34,10 @@ const LAGS: Real = 25.0;
 const LAGS_CROSSED: Real = 15.0;
 /// A hypothesis that is not better than the plain model by this much does not grow.
 const EVIDENCE: Real = 4.0;
-/// The growth ends when the best hypothesis of one more effect is worse than the best one by more.
-const WORSE: Real = 8.0;
+/// The growth ends when the best hypothesis of one more effect is worse than the best one by more. Octaves alone show two
+/// effects less well one by one.
+const WORSE: Real = 2.5;
+const WORSE_IN_OCTAVES: Real = 5.0;
 /// The sets of additions that are crossed with all filters, for each number of effects.
 const CROSSED: usize = 3;
 /// The hypotheses that are pruned at the end.
@@ -116,13 +118,19 @@ impl<const B: usize> Search<B> {
             let filters = effects
                 .iter()
                 .copied()
-                .filter(move |effect| has_white && effect.replaces().is_some());
+                .filter(move |effect| has_white && is_filter(*effect));
             filters.flat_map(|effect| Variant::of(effect, &observation.span))
         };
-        let noises: Vec<&'static dyn Effect, 4> =
-            list::fill(effects.iter().copied().filter(|effect| {
-                is_added(*effect) && !has_frequency(*effect) && effect.parameters().len() == 1
-            }));
+        let is_slow = |effect: &dyn Effect| {
+            let first = effect.parameters().first();
+            first.is_some_and(|first| first.unit == "s") && effect.parameters().len() == 1
+        };
+        let noises: Vec<&'static dyn Effect, 4> = list::fill(
+            effects
+                .iter()
+                .copied()
+                .filter(|effect| is_added(*effect) && is_slow(*effect)),
+        );
         let mut solver = Solver {
             observation,
             work,
@@ -234,7 +242,12 @@ impl<const B: usize> Search<B> {
             }
             let next = beams.get(count.saturating_add(1));
             let next = next.map_or(Real::INFINITY, |beam| lowest(beam.as_slice()));
-            if next > best + WORSE {
+            let worse = if observation.has_bins() {
+                WORSE
+            } else {
+                WORSE_IN_OCTAVES
+            };
+            if next > best + worse {
                 break;
             }
         }
@@ -299,7 +312,7 @@ pub(crate) fn best_shape_of<const B: usize>(
             best = Some(found.clone());
         }
     };
-    if effect.replaces().is_some() {
+    if is_filter(effect) {
         for variant in Variant::of(effect, &observation.span).filter(wanted) {
             if let ControlFlow::Continue(found) = solver.best_filter(variant, &plain)
                 && let ControlFlow::Continue(found) = solver.refine(found, 10)
@@ -325,10 +338,8 @@ pub(super) fn set_common<const B: usize>(
     model: &Model,
     effects: &[&'static dyn Effect],
 ) -> Option<Term> {
-    let replaced = effects.iter().find_map(|effect| effect.replaces());
-    let is_white = |term: &&Term| {
-        replaced.is_some_and(|white| term.effect.name() == white.name() && !term.fitted)
-    };
+    let has_filters = effects.iter().any(|effect| is_filter(*effect));
+    let is_white = |term: &&Term| has_filters && term.effect.name() == WHITE.name() && !term.fitted;
     let white = model.terms().iter().find(is_white).copied();
     let common = model.terms().iter().filter(|term| !is_white(term));
     work.set_common(observation, common);

@@ -92,6 +92,10 @@ impl Variant {
     }
 }
 
+/// A range of less than an octave or two, such as that of an exponent, has this many values. Between two whole exponents of
+/// other terms lie two or three, so that no mixture of these hides them all.
+const FEWEST: u32 = 7;
+
 /// The values of one parameter, from a low one on, each by a factor higher than the one before.
 #[derive(Clone, Copy)]
 struct Axis {
@@ -111,7 +115,9 @@ impl Axis {
         let octaves = (math::log(range.high.max(range.low) / range.low)).max(0.0)
             / real(core::f64::consts::LN_2);
         let count = match per_octave {
-            Some(per_octave) => (math::ceil(octaves * per_octave) as u32).saturating_add(1),
+            Some(per_octave) => (math::ceil(octaves * per_octave) as u32)
+                .saturating_add(1)
+                .max(FEWEST),
             None => most.min((math::ceil(octaves) as u32).saturating_add(1)),
         };
         let step = if count > 1 {

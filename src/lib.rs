@@ -105,7 +105,7 @@
 //! | RAM of a spectrum, for an axis | 3928 bytes |
 //! | a sample into a spectrum | 25 instructions in the interrupt, 216 in the main loop |
 //! | flash with diagnosis and spectrum | 128 000 bytes |
-//! | a diagnosis with a spectrum | 314 million instructions, 51 000 bytes of stack |
+//! | a diagnosis with a spectrum | 268 million instructions, 51 000 bytes of stack |
 //!
 //! A sample always takes a bounded number of instructions, whatever the input and however long the record. The
 //! library does not allocate and has no `unsafe` code, and no input makes it panic. [`Axes`] names its own cost,

@@ -2,7 +2,7 @@
 
 use super::{
     Random, Source, deterministic::Deterministic, filtered::Filtered, gaussian::Gaussian,
-    swept::Swept, two_levels::TwoLevels,
+    markov::Markov, swept::Swept, two_levels::TwoLevels,
 };
 use allanite::effect::{
     AngleRandomWalk, CATALOGUE, Distribution, Effect, MAX_PARAMETERS, SampledShape, padded,
@@ -56,6 +56,9 @@ impl Hidden {
         }
         if let Some(filtered) = Filtered::new(effect, &shape, coefficient, random) {
             return Box::new(filtered);
+        }
+        if let Some(markov) = Markov::new(effect, &shape, coefficient, random) {
+            return Box::new(markov);
         }
         let distribution = effect.description().distribution;
         if distribution == Distribution::TwoLevels {

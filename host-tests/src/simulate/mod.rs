@@ -7,6 +7,7 @@ mod gaussian;
 mod hidden;
 mod ieee_952;
 mod kernel;
+mod markov;
 mod preset;
 mod random;
 mod simulator;

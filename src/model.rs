@@ -76,6 +76,11 @@ impl Term {
         self.set_parameter(j, self.parameter(j) * factor);
     }
 
+    /// Goes from a shape at which the effect no longer changes with a parameter to the nearest one at which it does.
+    pub(crate) fn make_distinct(&mut self, interval_s: Real) {
+        self.parameters = self.effect.distinct(&self.sampled_shape(interval_s));
+    }
+
     pub(crate) fn parameter_name(&self, j: usize) -> &'static str {
         let parameters = self.effect.parameters();
         parameters.get(j).map_or("", |parameter| parameter.name)

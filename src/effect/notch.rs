@@ -82,7 +82,7 @@ pub(super) const DESCRIPTION: Description = Description {
             unit: "",
             is_whole: false,
             search_range: |_| SearchRange {
-                low: 1.0,
+                low: 0.5,
                 high: 16.0,
                 steps_per_octave: 0.5,
             },

@@ -42,7 +42,7 @@ pub(super) const QUALITY: Parameter = Parameter {
     unit: "",
     is_whole: false,
     search_range: |_| SearchRange {
-        low: 1.0,
+        low: 0.5,
         high: 32.0,
         steps_per_octave: 0.5,
     },

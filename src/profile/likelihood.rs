@@ -115,9 +115,7 @@ impl<'a, const K: usize, const B: usize> Evaluation<'a, K, B> {
             weights,
         } = self;
         let mut term = term;
-        term.parameters = term
-            .effect
-            .distinct(&term.sampled_shape(problem.interval_s));
+        term.make_distinct(problem.interval_s);
         let unit = problem.column(&term);
         let (column, size) = weights.whiten_trial(problem, &|k| unit[k]);
         let column = column.map(|x| real(x) * size);

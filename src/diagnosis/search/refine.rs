@@ -207,6 +207,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             None => changed,
         };
         term.set_parameter(parameter, changed);
+        term.make_distinct(self.observation.interval_s);
     }
 
     /// The steps of the shapes' logarithms that lead towards the largest likelihood. The coefficients cannot be negative,

@@ -88,6 +88,7 @@ impl Variant {
         Grid {
             variant: self,
             axes,
+            interval_s: observation.interval_s,
         }
     }
 }
@@ -146,6 +147,7 @@ impl Axis {
 pub(super) struct Grid {
     variant: Variant,
     axes: [Axis; MAX_PARAMETERS],
+    interval_s: Real,
 }
 
 impl Grid {
@@ -158,11 +160,13 @@ impl Grid {
             .fold(1_u32, |n, axis| n.saturating_mul(axis.count));
         (0..count).map(move |place| {
             let mut rest = place;
-            grid.variant.term(grid.axes.map(|axis| {
+            let mut term = grid.variant.term(grid.axes.map(|axis| {
                 let value = axis.at(rest % axis.count.max(1));
                 rest /= axis.count.max(1);
                 value
-            }))
+            }));
+            term.make_distinct(grid.interval_s);
+            term
         })
     }
 }

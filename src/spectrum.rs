@@ -24,6 +24,7 @@ mod expected;
 mod fine;
 mod level;
 mod line;
+mod lobe;
 mod overlap;
 #[cfg(target_pointer_width = "64")]
 mod several;
@@ -40,6 +41,7 @@ pub use expected::expected_densities;
 
 pub(crate) use density::levels_of;
 pub(crate) use fine::{Fine, Sum};
+pub(crate) use lobe::Lobe;
 pub(crate) use overlap::{Lags, octave_lag};
 
 #[cfg(test)]

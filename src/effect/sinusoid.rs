@@ -100,7 +100,7 @@ impl Explain for Sinusoid {
     fn explanation(&self) -> Explanation {
         Explanation {
             what: "a sinusoid: a steady oscillation of one frequency",
-            origin: "mains hum, a fan or a turntable's drive, the dither of a laser gyro, an alias of the drive frequency",
+            origin: "a supply or wires nearby, a fan or a turntable's drive, the dither of a laser gyro, an alias of the drive frequency",
             check: "switch off motors and supplies one by one; change the sample rate a little: an alias moves, a true oscillation stays",
         }
     }
@@ -116,7 +116,7 @@ impl Explain for Sinusoid {
 pub(super) fn frequencies(span: &Span) -> SearchRange {
     SearchRange {
         low: 0.33 / span.longest_tau_s,
-        high: 0.4999 / span.interval_s,
+        high: span.highest_hz(),
         steps_per_octave: 24.0,
     }
 }

@@ -16,12 +16,18 @@ use super::{problem::Problem, rows::Rows};
 use crate::{
     limits::MAX_EFFECTS,
     list::numbered,
-    math,
     model::Term,
     nnls::{Free, Vector},
     real::{Real, real},
-    spectrum::{BAND, Bin, Fine, Lags, Sum, octave_lag, relative_covariance},
+    spectrum::{BAND, Bin, Fine, Lags, Lobe, Sum, octave_lag, relative_covariance},
 };
+
+/// The power of a line in a bin, relative to that in a bin at the line, from which on it tells the power in other bins.
+/// Chosen by hand: further off, only the leakage of the window is left.
+const SHOWN: Real = 1e-3;
+
+/// The sum of a line's powers over all bins, relative to that in a bin at the line: that of the Hann window.
+const SQUARES: Real = 1.5;
 
 /// A solved model, with what its weights leave out.
 pub(super) struct Overlap<'a, const K: usize, const B: usize> {
@@ -179,35 +185,57 @@ impl<'a, const K: usize, const B: usize> Overlap<'a, K, B> {
         }
         let segments = real(level.bins.first()?.segments);
         let noise = self.random[level.row(best)];
-        (sum > 0.0).then_some((best, 4.0 * noise / ((segments + 1.0) * sum)))
+        if sum <= 0.0 {
+            return None;
+        }
+        // The bins that a level does not have show the line as well, such as those from half the rate of its blocks on.
+        let lobe = self.lobe(level, i)?;
+        let index = level.bins.get(best)?.index;
+        let shown = lobe.power(index);
+        let all = if shown > SHOWN {
+            highest / shown * SQUARES
+        } else {
+            sum
+        };
+        Some((best, 4.0 * noise / ((segments + 1.0) * all)))
+    }
+
+    /// The place of a line among the bins of a level.
+    fn lobe(&self, level: &Level<'_>, i: usize) -> Option<Lobe> {
+        let block = level.bins.first()?.block;
+        let term = self.problem.model.terms().get(i)?;
+        let shape = term.sampled_shape(self.problem.interval_s);
+        let response = term.effect.response(1.0, &shape)?;
+        Some(Lobe::new(response, self.segment(), block))
     }
 
     /// The variance that the beats of a line against the noise give the sum of a level's bins.
     ///
     /// The mean over segments that overlap by half lets the line beat against the noise at its own frequency and at those
     /// two bins beside it. The two ends of the record, which a single segment sees, add those one bin beside it. With the
-    /// bins' factors `a` and the line's densities `g`,
+    /// bins' factors `a`, the line's densities `g = Σg h²/Σh²` and the amplitudes `h(k)` that it has in all bins, whether
+    /// the level has these or not,
     ///
     /// ```text
-    /// (4c/((n + 1) Σg)) [(Σ a_k g_k)² + b_2 + b_1/2n],    b_d = (Σ a_k √(g_k g_{k+d}))² + (Σ a_{k+d} √(g_k g_{k+d}))²
+    /// (4c/((n + 1) Σg)) [(Σ a_k g_k)² + b_2 + b_1/2n],    b_d = Σ_± (Σ_k a_k g_k h(k ± d)/h(k))²
     /// ```
     ///
     /// Of the sums in `b`, those bins count that are in the main lobe of the line.
     fn beats(&self, level: &Level<'_>, i: usize, factors: &Rows<K, B>) -> Real {
-        let Some((best, variance)) = self.shown(level, i) else {
+        let (Some((best, variance)), Some(lobe)) = (self.shown(level, i), self.lobe(level, i))
+        else {
             return 0.0;
         };
-        let beside = |distance: usize| {
+        let beside = |distance: i32| {
             let (mut above, mut below) = (0.0, 0.0);
-            let last = best.saturating_add(2).saturating_sub(distance);
-            for b in best.saturating_sub(2)..=last {
-                let other = b.saturating_add(distance);
-                if other < level.bins.len() {
-                    let (row, later) = (level.row(b), level.row(other));
-                    let both = math::sqrt(self.value(i, row) * self.value(i, later));
-                    above += factors[row] * both;
-                    below += factors[later] * both;
-                }
+            for b in best.saturating_sub(2)..=best.saturating_add(2) {
+                let Some(bin) = level.bins.get(b) else {
+                    continue;
+                };
+                let here = self.value(i, level.row(b)) / lobe.power(bin.index).max(SHOWN);
+                let row = factors[level.row(b)] * here;
+                above += row * lobe.product(bin.index, distance);
+                below += row * lobe.product(bin.index, distance.wrapping_neg());
             }
             above * above + below * below
         };

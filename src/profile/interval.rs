@@ -57,13 +57,19 @@ impl End {
     ) -> Option<Real> {
         let value = best.term.parameter(j);
         let at = |distance: Real| value * math::exp(self.direction * distance);
-        if self.halvings.is_none() && !(grid.low..=grid.high).contains(&at(self.inside + self.step))
-        {
-            return Some(if self.direction < 0.0 {
+        if self.halvings.is_none() {
+            // The end of the range is tried before it is taken for the end of the interval.
+            let last = if self.direction < 0.0 {
                 grid.low.min(value)
             } else {
                 grid.high.max(value)
-            });
+            };
+            let room = self.direction * math::log(last / value) - self.inside;
+            if room >= SMALLEST {
+                self.step = self.step.min(room);
+            } else {
+                return Some(last);
+            }
         }
         let mut halvings = self.halvings;
         if let Some(halvings) = &mut halvings {
@@ -179,6 +185,9 @@ impl JointInterval {
                             *upper = true;
                         }
                         (Some(reached), true) => {
+                            let is_end = reached >= self.grid.high;
+                            let end = span.end_of(self.grid.high);
+                            let reached = if is_end { reached.max(end) } else { reached };
                             self.upper = self.upper.max(reached);
                             self.stage = Stage::Choosing;
                         }

@@ -1,4 +1,5 @@
-//! Studies whether a line of any frequency and size is found, and whether anything is named beside it.
+//! Studies whether a line of any frequency and size is found, whether anything is named beside it, and whether the interval
+//! of a frequency near half the sample rate holds it.
 
 use super::{OCTAVES, RATE_HZ, measured::Measured};
 use crate::{
@@ -130,23 +131,8 @@ pub fn draw(preset: Preset, seed: u64) -> Line {
 
 /// Diagnoses a record with a line, and returns the effects that are named, too.
 pub fn diagnose(preset: Preset, line: Line, seed: u64) -> (Said, Vec<Term>) {
-    let base = preset.coefficients();
-    let hidden = Hidden {
-        effect: &Sinusoid,
-        parameters: [line.frequency_hz, 0.0, 0.0],
-        coefficient: line.amplitude,
-    };
-    let mut simulator = Simulator::with_hidden(base, &[hidden], RATE_HZ, seed);
-    let measured = Measured::of(&mut simulator, base, SAMPLES);
-    let (model, options) = (Model::ieee_952(), Options::default());
-    if fit(&measured.curve, &model, allanite::fit::Options::default()).is_err() {
-        return (Said::Aborted, Vec::new());
-    }
-    let mut steps: Vec<Step<OCTAVES, BINS>> = Vec::new();
-    let verdict = diagnosis::diagnose(measured.record(), &model, &CATALOGUE, options, |step| {
-        steps.push(step.clone());
-    });
-    let (Ok(_), Some(last)) = (verdict, steps.last()) else {
+    let (is_complete, steps) = steps(preset, line, seed);
+    let (true, Some(last)) = (is_complete, steps.last()) else {
         return (Said::Aborted, Vec::new());
     };
     let terms = last.model.terms().iter();
@@ -164,6 +150,88 @@ pub fn diagnose(preset: Preset, line: Line, seed: u64) -> (Said, Vec<Term>) {
         _ => Said::Others,
     };
     (said, added)
+}
+
+/// The steps of the diagnosis of a record with a line, and whether it ends without an error.
+fn steps(preset: Preset, line: Line, seed: u64) -> (bool, Vec<Step<OCTAVES, BINS>>) {
+    let base = preset.coefficients();
+    let hidden = Hidden {
+        effect: &Sinusoid,
+        parameters: [line.frequency_hz, 0.0, 0.0],
+        coefficient: line.amplitude,
+    };
+    let mut simulator = Simulator::with_hidden(base, &[hidden], RATE_HZ, seed);
+    let measured = Measured::of(&mut simulator, base, SAMPLES);
+    let (model, options) = (Model::ieee_952(), Options::default());
+    let mut steps = Vec::new();
+    if fit(&measured.curve, &model, allanite::fit::Options::default()).is_err() {
+        return (false, steps);
+    }
+    let verdict = diagnosis::diagnose(measured.record(), &model, &CATALOGUE, options, |step| {
+        steps.push(step.clone());
+    });
+    (verdict.is_ok(), steps)
+}
+
+/// The frequencies near half the sample rate, relative to it, and the amplitudes of their lines, relative to the standard
+/// deviation of the white noise of a sample.
+const NEAR_HALF: (f64, f64) = (0.97, 0.9999);
+const AMPLITUDES_NEAR_HALF: (f64, f64) = (0.3, 2.0);
+
+/// The number of records with a line near half the sample rate.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NearHalf {
+    /// The number of records.
+    pub records: usize,
+    /// Those in which a line is found.
+    pub found: usize,
+    /// Those in which the 95 % interval of its frequency holds the true one.
+    pub covered: usize,
+    /// The sum of the errors of the frequencies in Hz.
+    pub error_hz: f64,
+}
+
+/// Diagnoses records of a gyro with a line near half the sample rate. The frequency is uniform and the amplitude is so in
+/// its logarithm.
+pub fn near_half(preset: Preset, records: u64) -> NearHalf {
+    let one = |seed: u64| {
+        let mut random = Random::seed_from_u64(seed ^ 0x6e79_7175);
+        let share = |random: &mut Random, (low, high): (f64, f64)| {
+            low + (high - low) * random.random::<f64>()
+        };
+        let white = preset.coefficients().angle_random_walk * RATE_HZ.sqrt();
+        let (low, high) = AMPLITUDES_NEAR_HALF;
+        let line = Line {
+            frequency_hz: 0.5 * RATE_HZ * share(&mut random, NEAR_HALF),
+            amplitude: white * share(&mut random, (low.ln(), high.ln())).exp(),
+        };
+        (line.frequency_hz, interval(preset, line, seed))
+    };
+    let found: Vec<(f64, Option<[f64; 3]>)> = (0..records).into_par_iter().map(one).collect();
+    let mut tally = NearHalf::default();
+    for (frequency_hz, interval) in found {
+        tally.records += 1;
+        if let Some([lower, value, upper]) = interval {
+            tally.found += 1;
+            tally.covered += usize::from((lower..=upper).contains(&frequency_hz));
+            tally.error_hz += value - frequency_hz;
+        }
+    }
+    tally
+}
+
+/// The frequency of the line in the last model of a diagnosis, between the ends of its interval.
+fn interval(preset: Preset, line: Line, seed: u64) -> Option<[f64; 3]> {
+    let (_, steps) = steps(preset, line, seed);
+    let last = steps.last()?;
+    let is_line = |at: usize| {
+        last.model
+            .terms()
+            .get(at)
+            .is_some_and(|term| same(&Sinusoid, term))
+    };
+    let shape = last.fit.shape.iter().find(|shape| is_line(shape.term))?;
+    Some([shape.lower, shape.value, shape.upper])
 }
 
 fn same(effect: &dyn Effect, term: &Term) -> bool {

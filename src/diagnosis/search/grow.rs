@@ -282,7 +282,16 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 };
                 let Some(bin) = bins.first() else { break };
                 let width_hz = bin.frequency_hz / real(bin.index);
-                let (reach, steps) = if finer == 0 { (0.36, 6) } else { (0.6, 8) };
+                // No bin lies above the last one, so that it sees a line anywhere up to half the rate of its blocks.
+                let is_last = b.saturating_add(1) >= bins.len();
+                let (reach, steps) = match finer {
+                    0 if is_last => (0.7, 11),
+                    0 => (0.36, 6),
+                    _ => (0.6, 8),
+                };
+                if finer == 0 && is_last {
+                    frequency_hz += 0.35 * width_hz;
+                }
                 (frequency_hz, gain) =
                     self.sharpened(effect, frequency_hz, reach * width_hz, steps)?;
             }

@@ -48,4 +48,18 @@ pub(crate) fn print(records: u64) {
             );
         }
     }
+    println!(
+        "lines at 0.97 to 0.9999 of half the rate, 0.3 to 2 times the white noise of a sample:"
+    );
+    for preset in Preset::TYPICAL {
+        let t = lines::near_half(preset, records);
+        println!(
+            "{:<8} {} records, {} found, {} within the interval, mean error {:+.3} Hz",
+            format!("{preset:?}").to_lowercase(),
+            t.records,
+            t.found,
+            t.covered,
+            t.error_hz / t.found.max(1) as f64
+        );
+    }
 }

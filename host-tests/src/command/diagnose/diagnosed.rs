@@ -2,7 +2,7 @@
 
 use super::{
     given_filter::Better,
-    lines::{self, Line, comb_notes},
+    lines::{self, Line, comb_notes, half_rate_notes},
     stationarity::Stationarity,
 };
 use crate::{
@@ -391,6 +391,7 @@ impl Diagnosed {
             ));
         }
         notes.extend(comb_notes(&self.lines, &self.combs));
+        notes.extend(half_rate_notes(&self.lines, self.axis.rate_hz));
         if self.added().next().is_some() && self.verdict == Verdict::Improved {
             notes.push(SELECTED.into());
         }

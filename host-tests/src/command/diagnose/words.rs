@@ -191,7 +191,13 @@ fn missing(diagnosed: &Diagnosed) -> Vec<String> {
         places.any(|place| std::ptr::eq(term, &last.model.terms()[place]))
     };
     let combs = diagnosed.combs.iter();
-    let combs = combs.map(|comb| format!("sinusoids ({})", comb_words(comb)));
+    let combs = combs.map(|comb| {
+        let lines = match comb.members.len() {
+            1 => "sinusoid",
+            _ => "sinusoids",
+        };
+        format!("{lines} ({})", comb_words(comb))
+    });
     let single = diagnosed.added().filter(|term| !in_a_comb(term));
     let single = single.map(|term| words::plain(term.effect.name()));
     covariate.into_iter().chain(combs).chain(single).collect()
@@ -264,7 +270,7 @@ fn verdict_on_curve(diagnosed: &Diagnosed) -> String {
         _ => {
             let names = missing(diagnosed);
             let effects = match names.len() {
-                1 if diagnosed.combs.is_empty() => "missing effect",
+                1 if diagnosed.combs.iter().all(|comb| comb.members.len() == 1) => "missing effect",
                 _ => "missing effects",
             };
             let names = words::list_of(names);

@@ -51,6 +51,16 @@ pub struct Coefficient {
 }
 
 impl Coefficient {
+    /// Lets the interval of a measured coefficient hold values from `least` to `largest`, each with an interval that is
+    /// as wide relative to it.
+    pub(crate) fn widen(&mut self, least: Real, largest: Real) {
+        if self.state == State::Measured && self.value > 0.0 {
+            let (below, above) = (self.lower / self.value, self.upper / self.value);
+            self.lower = self.lower.min(least * below);
+            self.upper = self.upper.max(largest * above);
+        }
+    }
+
     /// A coefficient from its square and the interval of the square. The interval is `None` where the fit
     /// cannot tell the effect from others.
     pub(crate) fn new(effect: &dyn Effect, square: Real, interval: Option<Interval>) -> Self {

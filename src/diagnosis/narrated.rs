@@ -4,7 +4,9 @@ use super::{
     mirrored::{Mirrored, tell_from_mirror},
     pause::{Pause, Stop, call},
     polished::{Fitted, Polishing},
-    search::{Found, Hypothesis, MAX_ALTERNATIVES, Observation, is_filter, ordered},
+    search::{
+        Found, Hypothesis, MAX_ALTERNATIVES, Observation, WhiteRange, is_filter, is_white, ordered,
+    },
     step::{Addition, Candidate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, cost},
 };
 use crate::{
@@ -37,6 +39,8 @@ pub(super) struct Story {
     steps: Vec<Told, MAX_STEPS>,
     /// The number of steps that have been told.
     told: usize,
+    /// What the white noise is in this story and in those that explain the record as well.
+    white: Option<WhiteRange>,
 }
 
 impl Story {
@@ -44,6 +48,7 @@ impl Story {
     pub(super) const NOTHING: Self = Self {
         steps: Vec::new(),
         told: 0,
+        white: None,
     };
 
     pub(super) fn is_empty(&self) -> bool {
@@ -129,7 +134,11 @@ impl Story {
             }
             mirrors(&mut told.ambiguous, effects);
         }
-        Ok(Self { steps, told: 0 })
+        Ok(Self {
+            steps,
+            told: 0,
+            white: found.white,
+        })
     }
 
     /// The model of the present step.
@@ -140,9 +149,23 @@ impl Story {
         with(model, &terms)
     }
 
+    /// Lets the interval of the white noise hold what it is in the stories that explain the record as well.
+    fn widen<const K: usize, const B: usize>(&self, step: &mut Step<K, B>) {
+        let Some(range) = self.white else { return };
+        let terms = step.model.terms().iter();
+        for (term, found) in terms.zip(&mut step.fit.coefficients) {
+            if is_white(term.effect) || is_filter(term.effect) {
+                found.widen(range.least, range.largest);
+            }
+        }
+    }
+
     /// Writes what the present step adds. Returns whether it adds anything.
     pub(super) fn tell<const K: usize, const B: usize>(&self, step: &mut Step<K, B>) -> bool {
         let Some(told) = self.steps.get(self.told) else {
+            if !self.is_empty() {
+                self.widen(step);
+            }
             return false;
         };
         step.candidates = told.candidates.clone();

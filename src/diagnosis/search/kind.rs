@@ -41,10 +41,15 @@ pub(super) fn is_plain(effect: &'static dyn Effect) -> bool {
 /// The white noise that filters work on.
 pub(super) const WHITE: &dyn Effect = &AngleRandomWalk;
 
+/// Whether an effect is that white noise.
+pub(crate) fn is_white(effect: &dyn Effect) -> bool {
+    effect.name() == WHITE.name()
+}
+
 /// Whether an effect takes the place of the white noise, as what filters it does.
 pub(crate) fn is_filter(effect: &dyn Effect) -> bool {
     let replaced = effect.replaces();
-    replaced.is_some_and(|replaced| replaced.name() == WHITE.name())
+    replaced.is_some_and(is_white)
 }
 
 /// Whether an effect adds to the noise, and a search can find it: it is no filter, and has a shape. One that takes the

@@ -27,9 +27,10 @@ mod run;
 mod start;
 mod values;
 mod variant;
+mod white;
 
 pub(crate) use hypothesis::Hypothesis;
-pub(crate) use kind::is_filter;
+pub(crate) use kind::{is_filter, is_white};
 pub(crate) use likelihood::Workspace;
 pub(crate) use limits::Limits;
 pub(crate) use order::ordered;
@@ -37,3 +38,4 @@ pub(crate) use price::price;
 pub(crate) use rows::Observation;
 pub(crate) use run::{Found, MAX_ALTERNATIVES, Search, best_shape_of};
 pub(crate) use values::Values;
+pub(crate) use white::WhiteRange;

@@ -10,6 +10,7 @@ use super::{
     refine::{MAX_VARIANTS, NO_BARS, Solver},
     rows::Observation,
     variant::Variant,
+    white::WhiteRange,
 };
 use crate::{
     diagnosis::pause::Pause,
@@ -44,7 +45,7 @@ const CROSSED: usize = 3;
 const PRUNED: usize = 5;
 
 /// A hypothesis of as many effects whose score is less than this above that of the best one is as good.
-const AS_GOOD: Real = 2.0;
+pub(super) const AS_GOOD: Real = 2.0;
 
 /// The lead in cost that an effect needs over its own special case.
 const OVER_SPECIAL_CASE: Real = 5.0;
@@ -57,6 +58,8 @@ pub(crate) const MAX_ALTERNATIVES: usize = 6;
 pub(crate) struct Found {
     pub(crate) best: Hypothesis,
     pub(crate) alternatives: Vec<(Hypothesis, Real), MAX_ALTERNATIVES>,
+    /// What the white noise is in all of them.
+    pub(crate) white: Option<WhiteRange>,
 }
 
 /// A search, with its memory.
@@ -271,7 +274,9 @@ impl<const B: usize> Search<B> {
                 }
             }
         }
-        ControlFlow::Continue(chosen(&finals, &cheapest, &plain, limits.ambiguity))
+        let mut found = chosen(&finals, &cheapest, &plain, limits.ambiguity);
+        found.white = solver.range_of_white(&found)?;
+        ControlFlow::Continue(found)
     }
 }
 
@@ -403,5 +408,6 @@ fn chosen(
     Found {
         best: best.clone(),
         alternatives,
+        white: None,
     }
 }

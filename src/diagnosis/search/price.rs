@@ -10,6 +10,9 @@ const RESONANCE: Real = 13.0;
 /// A resonance of a quality above [`NARROW`] has as many places as a line.
 const NARROW_RESONANCE: Real = 17.0;
 const NARROW: Real = 25.0;
+/// A resonance of a quality below one has no peak, and with other noise imitates every filter.
+const BROAD_RESONANCE: Real = 19.0;
+const BROAD: Real = 1.0;
 /// An oscillation whose frequency moved has to lead over one that stayed.
 const DRIFTING: Real = 17.0;
 /// Of 2000 clean records, three gain more with slow noise.
@@ -22,8 +25,9 @@ const FAST: Real = 20.0;
 const FILTER: Real = 12.0;
 /// A filter that has another one as its special case has to lead over it.
 const SPECIAL_FILTER: Real = 13.5;
-/// A filter of two shapes has more places.
+/// A filter of two shapes has more places, and one that imitates others has to lead over them.
 const SHAPED_FILTER: Real = 14.0;
+const SHAPED_SPECIAL_FILTER: Real = 18.0;
 
 /// The threshold at which the prices are those above. Another threshold changes all of them by as much.
 pub(crate) const THRESHOLD: Real = 8.0;
@@ -39,7 +43,8 @@ fn usual(term: &Term, interval_s: Real) -> Real {
         return match (continuous(effect), effect.description().special_case) {
             (0 | 1, None) => FILTER,
             (0 | 1, Some(_)) => SPECIAL_FILTER,
-            _ => SHAPED_FILTER,
+            (_, None) => SHAPED_FILTER,
+            (_, Some(_)) => SHAPED_SPECIAL_FILTER,
         };
     }
     if effect.parameters().is_empty() {
@@ -54,6 +59,8 @@ fn usual(term: &Term, interval_s: Real) -> Real {
     if has_frequency(effect) {
         return if term.parameter(1) > NARROW {
             NARROW_RESONANCE
+        } else if term.parameter(1) < BROAD {
+            BROAD_RESONANCE
         } else {
             RESONANCE
         };

@@ -1,0 +1,143 @@
+//! Records of one, two and three effects, as other people's were: what is said of each, word by word.
+
+use host_tests::{
+    simulate::{Coefficients, Hidden, Preset, Simulator},
+    study::{measured::Measured, said::Said},
+};
+
+const RATE_HZ: f64 = 100.0;
+const SAMPLES: usize = 1 << 16;
+const SEEDS: u64 = 3;
+/// The white noise of a sample, in deg/s.
+const WHITE: f64 = 0.05;
+
+/// The angle random walk.
+const N: f64 = 0.005;
+
+/// A gyro with Q 2e-4, N 0.005, B 0.004 and K 3e-4, in deg and s.
+const GYRO: Coefficients = Coefficients {
+    quantization: 2e-4,
+    angle_random_walk: N,
+    bias_instability: 0.004,
+    rate_random_walk: 3e-4,
+    rate_ramp: 0.0,
+};
+
+/// An effect with its shape and its size.
+type Effect = (&'static str, [f64; 3], f64);
+
+fn said(effects: &[Effect], seed: u64) -> Said {
+    let hidden: Vec<Hidden> = effects
+        .iter()
+        .map(|&(name, shape, size)| Hidden::new(name, shape, size).expect("of the catalogue"))
+        .collect();
+    let mut simulator = Simulator::with_hidden(GYRO, &hidden, RATE_HZ, seed);
+    Said::of(&Measured::of(&mut simulator, GYRO, SAMPLES))
+}
+
+/// Demands that all effects are named and nothing else, with a first parameter as near as given, and that N is in its
+/// interval.
+fn told(effects: &[Effect], within: f64) {
+    let names: Vec<&str> = effects.iter().map(|(name, ..)| *name).collect();
+    for seed in 0..SEEDS {
+        let said = said(effects, seed);
+        let words = said.words();
+        assert!(
+            said.compared(&names).exact,
+            "{names:?}, seed {seed}: {words}"
+        );
+        assert!(!said.is_unexplained(), "{names:?}, seed {seed}: {words}");
+        let covered = said.covers("N", N);
+        let white = said.coefficient("N");
+        assert!(covered, "{names:?}, seed {seed}: {words}, {white:?}");
+        for (name, [first, ..], _) in effects {
+            let mut found = said.named.iter().zip(&said.shapes);
+            let is_near = found.any(|((found, _), shape)| {
+                found == name && (shape[0] / first - 1.0).abs() < within
+            });
+            assert!(is_near, "{name}, seed {seed}: {words}");
+        }
+    }
+}
+
+#[test]
+fn slow_gauss_markov_noise_is_no_random_walk() {
+    told(&[("gauss_markov", [7.0, 0.0, 0.0], 0.1)], 0.6);
+}
+
+#[test]
+fn two_strong_lines_side_by_side_are_two_lines() {
+    let lines = [
+        ("sinusoid", [9.78, 0.0, 0.0], 3.0 * WHITE),
+        ("sinusoid", [11.43, 0.0, 0.0], 2.8 * WHITE),
+    ];
+    told(&lines, 1e-3);
+}
+
+#[test]
+fn a_filter_at_the_sample_rate_has_nothing_beside_it() {
+    let time_s = 1.0 / (std::f64::consts::TAU * 30.0);
+    told(&[("digital_low_pass", [time_s, 4.0, 0.0], N)], 0.05);
+}
+
+#[test]
+fn a_line_below_the_edge_of_a_low_pass_is_told_from_it() {
+    let line = ("sinusoid", [1.362, 0.0, 0.0], 3.9 * WHITE);
+    told(&[line, ("low_pass", [0.0134, 4.0, 0.0], N)], 0.05);
+}
+
+#[test]
+fn a_line_above_the_edge_of_a_low_pass_is_told_from_it() {
+    let line = ("sinusoid", [20.0, 0.0, 0.0], 0.4 * WHITE);
+    let time_s = 1.0 / (std::f64::consts::TAU * 8.0);
+    told(&[line, ("low_pass", [time_s, 2.0, 0.0], N)], 0.05);
+}
+
+#[test]
+fn a_resonance_and_a_line_beside_it_are_told() {
+    let resonance = ("resonance", [17.0, 6.0, 0.0], 0.8 * WHITE);
+    told(
+        &[resonance, ("sinusoid", [6.3, 0.0, 0.0], 0.7 * WHITE)],
+        0.05,
+    );
+}
+
+#[test]
+fn a_resonance_that_hardly_rings_is_one_resonance() {
+    told(&[("resonance", [4.0, 0.7, 0.0], WHITE)], 0.2);
+}
+
+#[test]
+fn a_notch_as_wide_as_its_frequency_is_one_notch() {
+    told(&[("notch", [14.0, 0.9, 0.0], N)], 0.1);
+}
+
+#[test]
+fn white_noise_that_rises_keeps_the_coefficient_of_its_plateau() {
+    // A resonance that hardly rings is as good.
+    let effects = [("mode_split", [10.0, 30.0, 0.0], N)];
+    for seed in 0..SEEDS {
+        let said = said(&effects, seed);
+        let words = said.words();
+        assert!(said.compared(&["mode_split"]).among, "{seed}: {words}");
+        assert!(said.covers("N", N), "{seed}: {words}");
+    }
+}
+
+#[test]
+fn a_filter_and_noise_that_can_exchange_their_times_leave_n_open() {
+    // Both densities are Lorentzians, so that either may be the white noise.
+    let effects = [
+        ("low_pass", [0.03, 1.0, 0.0], N),
+        ("gauss_markov", [0.43, 0.0, 0.0], 0.8 * WHITE),
+    ];
+    for seed in 0..SEEDS {
+        let said = said(&effects, seed);
+        let white = said.coefficient("N").expect("white noise").value;
+        let words = said.words();
+        assert!(said.covers("N", N), "{seed}: {words}, {white}");
+        // The plateau below both edges: N² of the gyro, and 2 s² T of the process.
+        let plateau = (N.powi(2) + 2.0 * (0.8 * WHITE).powi(2) * 0.43).sqrt();
+        assert!(said.covers("N", 0.98 * plateau), "{seed}: {words}, {white}");
+    }
+}

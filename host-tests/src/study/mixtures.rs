@@ -11,12 +11,13 @@ use allanite::{
     Model, Scale,
     course::What,
     diagnosis::Options,
-    effect::{CATALOGUE, Effect, IEEE_952},
+    effect::{CATALOGUE, IEEE_952},
 };
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
+use std::f64::consts::{LN_2, PI};
 
-/// The terms of which a gyro may have, beside its white noise, a random share.
+/// The terms that a gyro has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Terms {
     /// All five terms.
@@ -59,19 +60,12 @@ struct Said {
     is_improbable: bool,
 }
 
-/// Diagnoses `records` records of every length of [`LENGTHS`], from the seed `first` on, with the effects of
-/// `catalogue`. The records of a seed have the same coefficients at every length, relative to the length.
-pub fn study(
-    terms: Terms,
-    stored: Stored,
-    first: u64,
-    records: u64,
-    effects: &[&'static dyn Effect],
-) -> [Tally; LENGTHS.len()] {
+/// Diagnoses `records` records of every length of [`LENGTHS`], from the seed `first` on.
+pub fn study(terms: Terms, stored: Stored, first: u64, records: u64) -> [Tally; LENGTHS.len()] {
     LENGTHS.map(|length| {
         let seeds = (first..first.saturating_add(records)).into_par_iter();
         let said: Vec<(u64, Option<Said>)> = seeds
-            .map(|seed| (seed, said(terms, stored, length, seed, effects)))
+            .map(|seed| (seed, said(terms, stored, length, seed)))
             .collect();
         let mut tally = Tally::default();
         for (seed, said) in said {
@@ -93,9 +87,6 @@ pub fn study(
     })
 }
 
-/// Every effect that a diagnosis looks for.
-pub const ALL_EFFECTS: &[&dyn Effect] = &CATALOGUE;
-
 /// The coefficients of a gyro whose white noise has the coefficient 1.
 ///
 /// Each other term is as large as the white noise at an averaging time that is drawn log-uniformly: quantization
@@ -113,8 +104,7 @@ pub fn coefficients(terms: Terms, samples: u64, random: &mut Random) -> Coeffici
     let all = Coefficients {
         quantization: (quantization_s / 3.0).sqrt(),
         angle_random_walk: 1.0,
-        bias_instability: (std::f64::consts::PI / (2.0 * std::f64::consts::LN_2 * flicker_s))
-            .sqrt(),
+        bias_instability: (PI / (2.0 * LN_2 * flicker_s)).sqrt(),
         rate_random_walk: 3f64.sqrt() / walk_s,
         rate_ramp: 2f64.sqrt() / (ramp_s * ramp_s.sqrt()),
     };
@@ -129,13 +119,7 @@ pub fn coefficients(terms: Terms, samples: u64, random: &mut Random) -> Coeffici
 }
 
 /// Simulates a record and diagnoses it as the program does.
-fn said(
-    terms: Terms,
-    stored: Stored,
-    length: u32,
-    seed: u64,
-    effects: &[&'static dyn Effect],
-) -> Option<Said> {
+fn said(terms: Terms, stored: Stored, length: u32, seed: u64) -> Option<Said> {
     let samples = 1_u64 << length;
     let mut random = Random::seed_from_u64(seed ^ 0x316C_5000);
     let coefficients = coefficients(terms, samples, &mut random);
@@ -155,7 +139,7 @@ fn said(
     let (mut five_terms, mut last, mut told) = (None, None, None);
     let model = Model::ieee_952();
     let options = Options::default();
-    diagnosis::diagnose(measured.record(), &model, effects, options, |step| {
+    diagnosis::diagnose(measured.record(), &model, &CATALOGUE, options, |step| {
         five_terms.get_or_insert(step.fit.p_value);
         let is_own = |name: &str| IEEE_952.iter().any(|effect| effect.name() == name);
         let mut terms = step.model.terms().iter();

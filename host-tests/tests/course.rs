@@ -8,7 +8,7 @@ use allanite::{
     fit::{Options, fit},
 };
 use host_tests::{
-    simulate::{Preset, Simulator},
+    simulate::{Coefficients, Preset, Simulator},
     study::course::{CASES, Case, Tally, study},
 };
 
@@ -140,6 +140,53 @@ fn a_step_is_underestimated_until_the_noise_is_fitted_without_it() {
     assert!(first > 2.0 * settled, "{first} → {settled}");
     assert!(walks[0] > 4.0 * walks[1], "{walks:?}");
     assert!(walks[2] < 0.01, "{walks:?}");
+}
+
+/// What is told of a record of 11 minutes in which a rate random walk hides beside a rate ramp, and the rate steps by
+/// `step` at 200 s. The white noise of a sample is 0.05 °/s.
+fn told_beside_walk_and_ramp(step: f64, seed: u64) -> allanite::course::Events {
+    let scale = Scale::new(1e-5, 100.0).unwrap();
+    let coefficients = Coefficients {
+        angle_random_walk: 0.005,
+        rate_random_walk: 3.96e-4,
+        rate_ramp: 4.5e-4,
+        ..Coefficients::default()
+    };
+    let (mut accumulator, mut course) = (Accumulator::<24>::new(), Course::<0>::new());
+    let gyro = Simulator::new(coefficients, 100.0, seed).take(1 << 16);
+    for (n, rate) in gyro.enumerate() {
+        let rate = rate + if n >= 20_000 { step } else { 0.0 };
+        let count = (rate / 1e-5).round() as i32;
+        accumulator.push(count);
+        course.push(count, []);
+    }
+    let curve = accumulator.curve(scale);
+    let model = Model::ieee_952();
+    let analysis = analyse(&curve, &model, &course, scale, Options::default()).unwrap();
+    analysis.events
+}
+
+#[test]
+fn a_walk_that_the_curve_does_not_resolve_beside_a_ramp_is_no_step() {
+    for seed in 0..60 {
+        let events = told_beside_walk_and_ramp(0.0, seed);
+        assert!(events.is_empty(), "seed {seed}: {events:?}");
+    }
+}
+
+#[test]
+fn a_step_beside_a_walk_and_a_ramp_is_told() {
+    const SEEDS: u64 = 20;
+    let (mut told, mut covered) = (0, 0);
+    for seed in 0..SEEDS {
+        let events = told_beside_walk_and_ramp(0.05, seed);
+        let mut steps = events.iter().filter(|event| event.what == What::Step);
+        let near = steps.find(|step| (step.at_s - 200.0).abs() <= 10.24);
+        told += u64::from(near.is_some());
+        covered += u64::from(near.is_some_and(|step| step.lower < 0.05 && 0.05 < step.upper));
+    }
+    assert!(told >= SEEDS - 1, "{told}");
+    assert!(covered * 4 >= told * 3, "{covered} of {told}");
 }
 
 #[test]

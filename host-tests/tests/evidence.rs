@@ -138,6 +138,26 @@ fn noise_below_half_a_count_is_invalid() {
 }
 
 #[test]
+fn floats_that_were_rounded_more_coarsely_than_their_noise_are_invalid() {
+    let folder = TempDir::new().unwrap();
+    simulate(folder.path(), &[]);
+    // Steps of 0.15 °/s, three times the white noise of a sample, and an offset between two of them.
+    change(folder.path(), |_, rate: f64| {
+        ((rate + 0.04) / 0.15).round() * 0.15
+    });
+    let diagnosed = json(folder.path(), &["diagnose", "log.csv"]);
+    let axis = &diagnosed["axes"][0];
+    assert_eq!(axis["verdict"], "invalid");
+    let notes = list(&axis["notes"]);
+    assert!(notes[0].contains("below half a count"), "{notes:?}");
+    let fitted = output(folder.path(), &["fit", "log.csv"]);
+    assert!(
+        fitted.contains("The curve is not valid: the noise is below half a count"),
+        "{fitted}"
+    );
+}
+
+#[test]
 fn a_temperature_is_found_and_printed_with_its_slope() {
     let folder = TempDir::new().unwrap();
     simulate(

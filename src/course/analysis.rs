@@ -3,10 +3,12 @@
 use super::{
     BLOCKS, Course, Level,
     baseline::median,
-    contrasts::{Contrasts, Form, LargestShift, Shift, Shifts},
+    contrasts::BlockMeans,
     correction,
     event::{Event, Events, Largest, What},
+    form::Form,
     noise,
+    shifts::{LargestShift, MAX_SHIFTS, Shift, shifts},
 };
 use crate::{
     curve::{Curve, Scale},
@@ -53,15 +55,13 @@ pub fn events<const COVARIATES: usize>(
 ) -> Events {
     let levels = course.levels(scale);
     let interval_s = 1.0 / scale.rate_hz();
-    let mut largest = Largest::default();
-    let shifts = shifts(
-        course.block_length(),
-        &levels,
-        interval_s,
+    let means = BlockMeans {
+        levels: &levels,
         model,
-        squares,
-        &mut largest,
-    );
+        length: course.block_length(),
+        interval_s,
+    };
+    let shifts = shifts(&means, squares, &mut LargestShift::default());
     let shifts = shifts.map(|shifts| shifts.shifts).unwrap_or_default();
     told(
         course.block_length(),
@@ -70,7 +70,7 @@ pub fn events<const COVARIATES: usize>(
         interval_s,
         model,
         squares,
-        &mut largest,
+        &mut Largest::default(),
     )
 }
 
@@ -118,15 +118,21 @@ pub fn analyse_without<const K: usize, const COVARIATES: usize>(
         curve: curve.clone(),
         fit: fit(curve, model, options)?,
     };
-    let mut known: Vec<Shift, { super::contrasts::MAX_SHIFTS }> = Vec::new();
+    let mut known: Vec<Shift, MAX_SHIFTS> = Vec::new();
     for round in 0..ROUNDS {
-        let mut largest = Largest::default();
-        let squares = analysis.fit.squares();
-        let found = shifts(length, &levels, interval_s, model, &squares, &mut largest);
+        let mut largest = LargestShift::default();
+        let means = BlockMeans {
+            levels: &levels,
+            model,
+            length,
+            interval_s,
+        };
+        let found = shifts(&means, &analysis.fit.squares(), &mut largest);
         if round == 0 {
-            analysis.largest = largest;
+            analysis.largest.step = largest.step;
+            analysis.largest.warm_up = largest.warm_up;
         }
-        let Some(found) = found.filter(|found| !found.shifts.is_empty()) else {
+        let Some(found) = found else {
             break;
         };
         analysis.curve = curve.clone();
@@ -158,24 +164,6 @@ fn has_settled(known: &[Shift], found: &[Shift]) -> bool {
             let change = (known.size - found.size) / found.error;
             change * change < SETTLED * SETTLED
         })
-}
-
-/// The shifts of the mean against a model; `None` if there are too few blocks.
-#[inline(never)]
-fn shifts(
-    block_length: u32,
-    levels: &[Level],
-    interval_s: Real,
-    model: &Model,
-    squares: &[Real],
-    largest: &mut Largest,
-) -> Option<Shifts> {
-    let mut contrasts = Contrasts::new(levels, model, squares, block_length, interval_s)?;
-    let mut of_shifts = LargestShift::default();
-    let shifts = contrasts.shifts(&mut of_shifts);
-    largest.step = of_shifts.step;
-    largest.warm_up = of_shifts.warm_up;
-    Some(shifts)
 }
 
 /// The events: the given shifts, and what the noise tells.
@@ -219,7 +207,7 @@ fn event(shift: &Shift, block_s: Real) -> Event {
         size: shift.size,
         lower: shift.size - half,
         upper: shift.size + half,
-        z: shift.z,
+        z: shift.size / shift.error,
     }
 }
 

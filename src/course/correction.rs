@@ -2,8 +2,10 @@
 
 use super::{
     BLOCKS, Level,
-    contrasts::{COLUMNS, Form, MAX_SHIFTS, Shift, Shifts, is_complete},
+    contrasts::is_complete,
+    form::Form,
     response::{Starts, allan_variance_of_step, allan_variance_of_warm_up, warm_up_response},
+    shifts::{COLUMNS, MAX_SHIFTS, Shift, Shifts},
 };
 use crate::{
     algebra::Vector,

@@ -3,7 +3,7 @@
 mod compare;
 mod completions;
 mod decode;
-mod diagnose;
+pub(crate) mod diagnose;
 mod effect_argument;
 mod examples;
 pub mod explore;

@@ -18,7 +18,7 @@ use crate::{
     dependence::block_means::BlockSums,
     failure::{Failure, Place},
 };
-use allanite::course::Course;
+use allanite::{course::Course, integrity::Reason};
 use indicatif::ProgressBar;
 use std::path::Path;
 
@@ -26,6 +26,8 @@ use std::path::Path;
 pub(super) struct Measured {
     /// The sums of each axis, and the quantum that its counts are in.
     pub(super) axes: Vec<(Sums, Quantum)>,
+    /// Why the numbers of each axis are too coarse for their noise. Empty for counts, which tell it themselves.
+    pub(super) coarse: Vec<Option<Reason>>,
     /// The columns of the covariates.
     pub(super) covariates: Vec<CovariateColumn>,
     /// The places of the covariates that may act together, and what they share.
@@ -169,7 +171,7 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
             ));
         }
     }
-    let measured = finish(
+    let mut measured = finish(
         path,
         rounded.batches,
         &rounded.quanta,
@@ -187,6 +189,9 @@ pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measu
             ));
         }
     }
+    let steps = rounded.steps.iter().zip(&measured.axes);
+    let coarse = steps.map(|(steps, (sums, _))| steps.coarse(sums.accumulator()));
+    measured.coarse = coarse.collect();
     Ok(measured)
 }
 
@@ -228,6 +233,7 @@ fn finish(
     };
     Ok(Measured {
         axes: sums.into_iter().zip(axes.iter().copied()).collect(),
+        coarse: Vec::new(),
         covariates: quanta.zip(columns).map(beside).collect(),
         pairs,
         blocks,

@@ -63,12 +63,14 @@ impl Recorded {
         })
     }
 
-    /// The evidence of an axis, without its course and its block means.
+    /// The evidence of an axis, without its course and its block means. `coarse` is why its numbers are too coarse, if they
+    /// are.
     pub(super) fn evidence(
         &self,
         path: &Path,
         axis: &Axis,
         watched: &dyn WatchedAxis,
+        coarse: Option<Reason>,
     ) -> Result<Evidence, Failure> {
         let fail = |error: allanite::Error| {
             Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
@@ -77,14 +79,21 @@ impl Recorded {
         let unit = |named: &Named| named.as_ref().map_or(1.0, |(_, unit)| *unit);
         let units: Vec<f64> = self.named.iter().map(unit).collect();
         let told = watched.evidence(scale, &units).map_err(fail)?;
-        let moved = matches!(told.invalid, Some(Reason::Moved { .. }));
+        // The order of the reasons is that of counts, where coarse numbers come before the jumps that they seem to make.
+        let invalid = match told.invalid {
+            Some(Reason::Railed { .. } | Reason::Repeated { .. } | Reason::Stuck { .. }) => {
+                told.invalid
+            }
+            other => coarse.or(other),
+        };
+        let moved = matches!(invalid, Some(Reason::Moved { .. }));
         let named = self.named.iter().zip(told.covariates);
         let named = named.filter_map(|(named, cross)| Some((named.as_ref()?.0.clone(), cross)));
         Ok(Evidence {
             kurtosis: told.kurtosis,
             covariates: named.collect(),
             pairs: self.pairs.clone(),
-            invalid: told.invalid,
+            invalid,
             course: None,
             columns: self.columns.clone(),
             means: None,

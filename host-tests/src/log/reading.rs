@@ -165,7 +165,8 @@ pub(super) fn read_table(
         }
         check_axis(path, &axis)?;
         if let Sums::Watched(watched, beside) = &sums {
-            let evidence = recorded.evidence(path, &axis, &**watched)?;
+            let coarse = measured.coarse.get(place).copied().flatten();
+            let evidence = recorded.evidence(path, &axis, &**watched, coarse)?;
             axis.evidence = Some(Evidence {
                 course: Some(*beside.course.clone()),
                 means: recorded.means(&measured.blocks, place, axis.rate_per_count),

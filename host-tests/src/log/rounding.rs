@@ -1,11 +1,22 @@
 //! Finds the range of many floats and rounds them to counts, in loops that the compiler spreads over vectors. The results
 //! are those of the same floats one by one.
 
-use super::quantum::{LARGE, Quantum, Range};
+use super::{
+    OCTAVES,
+    quantum::{LARGE, Quantum, Range},
+};
+use allanite::{
+    Accumulator,
+    integrity::{Limits, Reason},
+};
+use std::num::NonZeroU32;
 
 /// The number of floats that are compared side by side. Vectors of two floats then have enough of them to hide how
 /// long a comparison takes.
 const LANES: usize = 8;
+
+/// The differences that are needed to tell whether numbers are too coarse for their noise, as many as for counts.
+const JUDGED: u64 = 1000;
 
 /// The range of floats, or `None` if some of them are not finite.
 pub(super) fn range_of(floats: &[f64]) -> Option<Range> {
@@ -75,6 +86,8 @@ pub(super) struct Steps {
     pub(super) changes: u64,
     /// The number of these that are zero as counts.
     pub(super) lost: u64,
+    /// The smallest difference of counts that is not zero.
+    least: Option<NonZeroU32>,
 }
 
 impl Steps {
@@ -84,6 +97,7 @@ impl Steps {
             let changes = number != last;
             self.changes += u64::from(changes);
             self.lost += u64::from(changes && count == last_count);
+            self.include(count.abs_diff(last_count));
         }
         self.last = Some((number, count));
     }
@@ -101,6 +115,11 @@ impl Steps {
             let end = (at + PAIRS).min(numbers.len());
             if differ {
                 self.changes += PAIRS as u64;
+                let pairs = at..at + PAIRS;
+                let least = pairs.fold(u32::MAX, |least, i| {
+                    least.min(counts[i].abs_diff(counts[i - 1]))
+                });
+                self.include(least);
                 self.last = Some((numbers[end - 1], counts[end - 1]));
             } else {
                 for i in at..end {
@@ -109,6 +128,31 @@ impl Steps {
             }
             at = end;
         }
+    }
+
+    /// Takes account of a difference of counts.
+    fn include(&mut self, difference: u32) {
+        let least = NonZeroU32::new(difference).into_iter();
+        self.least = least.chain(self.least).min();
+    }
+
+    /// Why the numbers are too coarse for their noise; `None` if they are not. `sums` are those of their counts.
+    ///
+    /// Numbers that were rounded before they were written are multiples of a step that is many counts long. No
+    /// difference of neighbours but zero is then smaller than the step. If their mean square is below the limit that
+    /// holds for whole numbers, most neighbours are equal, which noise that is not rounded never shows.
+    pub(super) fn coarse(&self, sums: &Accumulator<OCTAVES>) -> Option<Reason> {
+        let limits = Limits::DEFAULT;
+        let step = f64::from(self.least?.get());
+        let octave = sums.octave(0)?;
+        let mean = octave.sum.to_real() / octave.differences as f64;
+        let per_mille = 1000.0 * mean / (step * step);
+        let is_judged = octave.differences >= JUDGED;
+        (is_judged && per_mille < f64::from(limits.difference_per_mille)).then_some(
+            Reason::Coarse {
+                per_mille: per_mille as u16,
+            },
+        )
     }
 
     /// Tells that samples are missing before the next number.

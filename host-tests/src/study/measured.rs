@@ -56,6 +56,11 @@ impl Sums {
         accumulator.samples()
     }
 
+    /// The blocks of the record over time.
+    pub const fn course(&self) -> &Course {
+        &self.course
+    }
+
     /// What the sums tell in this scale.
     pub fn measured(&self, scale: Scale) -> Measured {
         let evidence = self.gyro.evidence(0, scale, []).expect("one axis");

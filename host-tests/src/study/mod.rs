@@ -13,6 +13,7 @@ pub mod lag;
 pub mod lines;
 pub mod long;
 pub mod measured;
+pub mod mixtures;
 pub mod pairs;
 pub mod paper;
 pub mod peers;

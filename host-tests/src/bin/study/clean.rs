@@ -3,7 +3,10 @@
 use super::SYMBOLS;
 use host_tests::{
     simulate::Preset,
-    study::clean::{self, Absent},
+    study::{
+        clean::{self, Absent},
+        mixtures::{self, Stored, Terms},
+    },
 };
 use std::collections::BTreeMap;
 
@@ -64,6 +67,48 @@ pub(crate) fn print(records: u64, only: Option<Preset>, symbol: Option<&str>, wa
                     print!(" {:>6.1}", percent(count));
                 }
                 println!("  {:?}", counted(&tally.claimed));
+            }
+        }
+    }
+}
+
+pub(crate) fn print_mixtures(records: u64, seed: u64) {
+    println!("{records} records of each length from seed {seed} on; shares in %");
+    println!(
+        "{:>14} {:>7} {:>8} {:>7} {:>5} {:>14} | {:>5} {:>6} {:>5} {:>5} | {:>7}",
+        "terms",
+        "stored",
+        "samples",
+        "aborted",
+        "told",
+        "not stationary",
+        "noise",
+        "bursts",
+        "step",
+        "warm",
+        "p < 5 %"
+    );
+    for (terms, name) in [(Terms::All, "all five"), (Terms::WalkAndRamp, "N, K and R")] {
+        for (stored, kind) in [(Stored::Floats, "floats"), (Stored::Counts, "counts")] {
+            let tallies = mixtures::study(terms, stored, seed, records);
+            for (tally, length) in tallies.iter().zip(clean::LENGTHS) {
+                let percent = |count: usize| 100.0 * count as f64 / tally.records as f64;
+                print!(
+                    "{name:>14} {kind:>7} {:>8} {:>7.2} {:>5.2} {:>14.2} |",
+                    format!("2^{length}"),
+                    percent(tally.aborted),
+                    percent(tally.told.len()),
+                    percent(tally.not_stationary.len()),
+                );
+                for (width, count) in [5, 6, 5, 5].into_iter().zip(tally.events) {
+                    print!(" {:>width$.2}", percent(count));
+                }
+                println!(
+                    " | {:>7.1}  {:?}, seeds {:?}",
+                    percent(tally.improbable),
+                    counted(&tally.told),
+                    tally.not_stationary
+                );
             }
         }
     }

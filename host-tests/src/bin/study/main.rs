@@ -173,6 +173,12 @@ enum Study {
         /// Multiply the rate random walk
         #[arg(long, default_value_t = 1.0)]
         walk: f64,
+        /// Study records whose five terms have random sizes, as floats and as counts, instead of the presets
+        #[arg(long, conflicts_with_all = ["preset", "absent", "walk"])]
+        mixtures: bool,
+        /// Seed of the first of these records
+        #[arg(long, default_value_t = 0, requires = "mixtures")]
+        seed: u64,
     },
     /// Count how often a temperature that the rate depends on is found, and another one is blamed
     Thermal {
@@ -319,7 +325,10 @@ fn main() -> Result<()> {
             preset,
             absent,
             walk,
+            mixtures: false,
+            ..
         } => clean::print(records, preset, absent.as_deref(), walk),
+        Study::Clean { records, seed, .. } => clean::print_mixtures(records, seed),
         Study::Thermal {
             records,
             drawn: true,

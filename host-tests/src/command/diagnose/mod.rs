@@ -6,7 +6,7 @@ mod given_filter;
 pub(super) mod json;
 pub(super) mod lines;
 pub(super) mod pictures;
-pub(super) mod stationarity;
+pub(crate) mod stationarity;
 pub(super) mod text;
 pub(super) mod words;
 

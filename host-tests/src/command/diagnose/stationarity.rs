@@ -2,7 +2,6 @@
 
 use crate::{
     command::output::words::{self, damage},
-    log::OCTAVES,
     unit::Unit,
 };
 use allanite::{
@@ -42,10 +41,10 @@ impl Stationarity {
     ///
     /// # Errors
     /// When the curve cannot be fitted.
-    pub(super) fn of(
+    pub(crate) fn of<const K: usize>(
         course: &Course,
         scale: Scale,
-        curve: &Curve<OCTAVES>,
+        curve: &Curve<K>,
         model: &Model,
         followed: &[f64],
     ) -> Result<Self, Error> {

@@ -1,7 +1,7 @@
 //! Records of one, two and three effects, as other people's were: what is said of each, word by word.
 
 use host_tests::{
-    simulate::{Coefficients, Hidden, Preset, Simulator},
+    simulate::{Coefficients, Hidden, Simulator},
     study::{measured::Measured, said::Said},
 };
 

@@ -51,13 +51,11 @@ pub struct Coefficient {
 }
 
 impl Coefficient {
-    /// Lets the interval of a measured coefficient hold values from `least` to `largest`, each with an interval that is
-    /// as wide relative to it.
-    pub(crate) fn widen(&mut self, least: Real, largest: Real) {
-        if self.state == State::Measured && self.value > 0.0 {
-            let (below, above) = (self.lower / self.value, self.upper / self.value);
-            self.lower = self.lower.min(least * below);
-            self.upper = self.upper.max(largest * above);
+    /// Lets the interval of a measured coefficient hold another one too.
+    pub(crate) fn widen(&mut self, lower: Real, upper: Real) {
+        if self.state == State::Measured {
+            self.lower = self.lower.min(lower);
+            self.upper = self.upper.max(upper);
         }
     }
 

@@ -155,7 +155,7 @@ impl Story {
         let terms = step.model.terms().iter();
         for (term, found) in terms.zip(&mut step.fit.coefficients) {
             if is_white(term.effect) || is_filter(term.effect) {
-                found.widen(range.least, range.largest);
+                found.widen(range.lower, range.upper);
             }
         }
     }

@@ -42,7 +42,7 @@ const HOPE: Real = 4.0;
 
 /// A shape of a hypothesis: the place of its term among the own columns, and its parameter.
 #[derive(Clone, Copy)]
-struct Shape {
+pub(super) struct Shape {
     term: usize,
     parameter: usize,
     /// The largest step of its logarithm.
@@ -252,7 +252,7 @@ impl<const B: usize> Workspace<B> {
 
     /// Sets the derivatives of the model by the logarithms of the shapes.
     #[inline(never)]
-    fn set_shapes(
+    pub(super) fn set_shapes(
         &mut self,
         observation: &Observation<'_, B>,
         terms: &[Term],

@@ -7,40 +7,32 @@ use super::{
     run::{AS_GOOD, Found},
     variant::Variant,
 };
-use crate::{model::Term, real::Real};
+use crate::{
+    limits::{MAX_SHAPE, TWO_SIDED_95},
+    list, math,
+    model::Term,
+    nnls::Free,
+    real::{Real, real},
+};
 use core::ops::ControlFlow;
+use heapless::Vec;
 
 /// The rounds of refinement of an exchange, which begins next to its place.
 const ROUNDS: u8 = 4;
 
-/// The least and the largest coefficient of the white noise, in front of what it went through.
+/// The interval that holds the 95 % intervals of the white noise's coefficient, in front of what it went through.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WhiteRange {
-    pub(crate) least: Real,
-    pub(crate) largest: Real,
-}
-
-impl WhiteRange {
-    /// Lets the range hold a coefficient. A hypothesis without white noise says nothing about it.
-    fn hold(&mut self, coefficient: Real) {
-        if coefficient > 0.0 && coefficient.is_finite() {
-            self.least = self.least.min(coefficient);
-            self.largest = self.largest.max(coefficient);
-        }
-    }
+    pub(crate) lower: Real,
+    pub(crate) upper: Real,
 }
 
 impl<const B: usize> Solver<'_, '_, '_, B> {
-    /// The range over what was found. `None` if no hypothesis has white noise.
+    /// The range over the alternatives to the best hypothesis. `None` if there are none with white noise.
     pub(super) fn range_of_white(&mut self, found: &Found) -> ControlFlow<(), Option<WhiteRange>> {
-        let mut range = WhiteRange {
-            least: Real::INFINITY,
-            largest: 0.0,
-        };
-        range.hold(self.white_of(&found.best));
+        let mut range: Option<WhiteRange> = None;
         for (other, _) in &found.alternatives {
-            (self.pause)()?;
-            range.hold(self.white_of(other));
+            self.hold_white_of(other, &mut range)?;
         }
         for place in 0..found.best.added.len() {
             let Some(exchanged) = exchanged(&found.best, place) else {
@@ -48,22 +40,47 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             };
             let refined = self.refine(exchanged, ROUNDS)?;
             if refined.score < found.best.score + AS_GOOD {
-                range.hold(self.white_of(&refined));
+                self.hold_white_of(&refined, &mut range)?;
             }
         }
-        ControlFlow::Continue((range.largest > 0.0).then_some(range))
+        ControlFlow::Continue(range)
     }
 
-    /// The coefficient of the white noise of a hypothesis.
-    fn white_of(&mut self, hypothesis: &Hypothesis) -> Real {
-        let Some(term) = hypothesis.filter.or(self.white) else {
-            return 0.0;
+    /// Lets a range hold the interval of the white noise in a hypothesis, whose shapes are as uncertain as its coefficients.
+    /// A hypothesis without white noise says nothing about it.
+    #[inline(never)]
+    fn hold_white_of(
+        &mut self,
+        hypothesis: &Hypothesis,
+        range: &mut Option<WhiteRange>,
+    ) -> ControlFlow<()> {
+        (self.pause)()?;
+        self.load(hypothesis);
+        let place = self.work.common();
+        let square = self.work.squares[place];
+        let per_column = self.work.factor(0);
+        if hypothesis.filter.or(self.white).is_none() || square <= 0.0 || per_column <= 0.0 {
+            return ControlFlow::Continue(());
+        }
+        let terms = self.own_terms(hypothesis);
+        self.work.set_shapes(self.observation, &terms, self.pause)?;
+        (self.pause)()?;
+        let shift: Vec<Real, MAX_SHAPE> = list::fill(self.work.slopes.iter().map(|_| 0.0));
+        let count = self.work.count();
+        let slopes = count..count.saturating_add(shift.len());
+        let free = Free::of(|i| slopes.contains(&i) || (i < count && self.work.squares[i] > 0.0));
+        let variance = if self.work.set_equations(None, &shift, 0.0) {
+            self.work.equations.variance(place, &free)
+        } else {
+            None
         };
-        let mut column = super::values::Values::<B>::NONE;
-        let factor = self.observation.column(&term, None, &mut column);
-        let square = hypothesis.squares.get(self.work.common());
-        let square = square.map_or(0.0, |&square| Real::from(square));
-        crate::math::sqrt((square * factor).max(0.0))
+        let reach = real(TWO_SIDED_95) * math::sqrt(variance.unwrap_or(0.0).max(0.0));
+        let root = |square: Real| math::sqrt(square.max(0.0) * per_column);
+        let (lower, upper) = (root(square - reach), root(square + reach));
+        let known = range.get_or_insert(WhiteRange { lower, upper });
+        known.lower = known.lower.min(lower);
+        known.upper = known.upper.max(upper);
+        ControlFlow::Continue(())
     }
 }
 

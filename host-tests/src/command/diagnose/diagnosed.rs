@@ -390,6 +390,9 @@ impl Diagnosed {
                 words::alternatives(others.iter().copied())
             ));
         }
+        if self.added().next().is_some() {
+            notes.extend(words::open_white_noise(&last.fit, self.axis.unit));
+        }
         notes.extend(comb_notes(&self.lines, &self.combs));
         notes.extend(half_rate_notes(&self.lines, self.axis.rate_hz));
         if self.added().next().is_some() && self.verdict == Verdict::Improved {

@@ -272,6 +272,19 @@ pub(crate) fn widened(fit: &Fit) -> Option<String> {
     })
 }
 
+/// An interval of the angle random walk whose ends are further apart than by this factor is explained.
+const WIDE: f64 = 2.0;
+
+/// That a diagnosis leaves the angle random walk open, because explanations that fit as well have another one.
+pub(crate) fn open_white_noise(fit: &Fit, unit: Unit) -> Option<String> {
+    let mut coefficients = fit.coefficients.iter();
+    let white = coefficients.find(|one| one.symbol == "N" && one.state == State::Measured)?;
+    (white.upper > WIDE * white.lower).then(|| {
+        let [lower, upper] = [white.lower, white.upper].map(number);
+        format!("angle random walk is anything from {lower} to {upper} {unit}/√Hz: explanations that fit as well have another one")
+    })
+}
+
 /// What is added to the square of the angle random walk where flicker noise ends at half the sample rate, instead of being
 /// averaged over each sample interval: this times `B²τ₀`. Measured in the records of an independent simulator.
 const UNSEEN_FLICKER: f64 = 0.09;

@@ -266,6 +266,7 @@ fn text_and_json_agree() {
         let steps = axis["steps"].as_array().unwrap();
         for (number_of_step, pair) in steps.windows(2).enumerate() {
             let added = pair[0]["added"].as_str().unwrap().replace('_', " ");
+            let added = added.replace("gauss markov", "Gauss–Markov");
             let line = format!(
                 "{}. + {added}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p",
                 number_of_step + 1,

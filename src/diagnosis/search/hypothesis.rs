@@ -17,6 +17,9 @@ use heapless::Vec;
 /// The largest number of effects beside a filter.
 pub(crate) const MAX_ADDED: usize = 3;
 
+/// A hypothesis of as many effects whose score is less than this above that of the best one is as good.
+pub(super) const AS_GOOD: Real = 2.0;
+
 /// The effects beside a filter.
 pub(crate) type Added = Vec<Term, MAX_ADDED>;
 

@@ -2,7 +2,7 @@
 
 use super::{
     cross::suspects,
-    hypothesis::{Added, Hypothesis, MAX_ADDED, is_near},
+    hypothesis::{AS_GOOD, Added, Hypothesis, MAX_ADDED, is_near},
     kind::{WHITE, is_added, is_filter},
     likelihood::Workspace,
     limits::Limits,
@@ -43,9 +43,6 @@ const WORSE_IN_OCTAVES: Real = 5.0;
 const CROSSED: usize = 3;
 /// The hypotheses that are pruned at the end.
 const PRUNED: usize = 5;
-
-/// A hypothesis of as many effects whose score is less than this above that of the best one is as good.
-pub(super) const AS_GOOD: Real = 2.0;
 
 /// The lead in cost that an effect needs over its own special case.
 const OVER_SPECIAL_CASE: Real = 5.0;
@@ -275,7 +272,7 @@ impl<const B: usize> Search<B> {
             }
         }
         let mut found = chosen(&finals, &cheapest, &plain, limits.ambiguity);
-        found.white = solver.range_of_white(&found)?;
+        found.white = solver.range_of_white(&found.best, &found.alternatives)?;
         ControlFlow::Continue(found)
     }
 }

@@ -1,10 +1,9 @@
 //! What the white noise is in the hypotheses that explain a record as well as the best one.
 
 use super::{
-    hypothesis::Hypothesis,
+    hypothesis::{AS_GOOD, Hypothesis},
     kind::is_filter,
     refine::Solver,
-    run::{AS_GOOD, Found},
     variant::Variant,
 };
 use crate::{
@@ -29,17 +28,21 @@ pub(crate) struct WhiteRange {
 
 impl<const B: usize> Solver<'_, '_, '_, B> {
     /// The range over the alternatives to the best hypothesis. `None` if there are none with white noise.
-    pub(super) fn range_of_white(&mut self, found: &Found) -> ControlFlow<(), Option<WhiteRange>> {
+    pub(super) fn range_of_white(
+        &mut self,
+        best: &Hypothesis,
+        alternatives: &[(Hypothesis, Real)],
+    ) -> ControlFlow<(), Option<WhiteRange>> {
         let mut range: Option<WhiteRange> = None;
-        for (other, _) in &found.alternatives {
+        for (other, _) in alternatives {
             self.hold_white_of(other, &mut range)?;
         }
-        for place in 0..found.best.added.len() {
-            let Some(exchanged) = exchanged(&found.best, place) else {
+        for place in 0..best.added.len() {
+            let Some(exchanged) = exchanged(best, place) else {
                 continue;
             };
             let refined = self.refine(exchanged, ROUNDS)?;
-            if refined.score < found.best.score + AS_GOOD {
+            if refined.score < best.score + AS_GOOD {
                 self.hold_white_of(&refined, &mut range)?;
             }
         }

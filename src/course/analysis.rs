@@ -6,9 +6,9 @@ use super::{
     contrasts::BlockMeans,
     correction,
     event::{Event, Events, Largest, What},
-    form::Form,
+    form::{Form, MAX_SHIFTS},
     noise,
-    shifts::{LargestShift, MAX_SHIFTS, Shift, shifts},
+    shifts::{LargestShift, Shift, shifts},
 };
 use crate::{
     curve::{Curve, Scale},

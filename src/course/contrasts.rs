@@ -1,6 +1,9 @@
 //! The contrasts of the means of blocks, whitened with the covariance of a model.
 
-use super::{BLOCKS, Level, form::Form, shifts::COLUMNS};
+use super::{
+    BLOCKS, Level,
+    form::{COLUMNS, Form},
+};
 use crate::{
     algebra::{Triangle, Vector},
     cholesky,

@@ -3,9 +3,9 @@
 use super::{
     BLOCKS, Level,
     contrasts::is_complete,
-    form::Form,
+    form::{COLUMNS, Form, MAX_SHIFTS},
     response::{Starts, allan_variance_of_step, allan_variance_of_warm_up, warm_up_response},
-    shifts::{COLUMNS, MAX_SHIFTS, Shift, Shifts},
+    shifts::{Shift, Shifts},
 };
 use crate::{
     algebra::Vector,

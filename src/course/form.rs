@@ -6,6 +6,15 @@ use crate::{
     real::{Real, real},
 };
 
+/// The number of steps and warm-ups that are told at most.
+pub(super) const MAX_SHIFTS: usize = 4;
+
+/// The number of columns of a shift: its form, and the derivative of the form by its time or its time constant.
+pub(super) const PER_SHIFT: usize = 2;
+
+/// The number of columns of all shifts.
+pub(super) const COLUMNS: usize = PER_SHIFT * MAX_SHIFTS;
+
 /// A step is told from this standardised size on. `cargo xtask study course` measures how often it is exceeded in
 /// clean records.
 const STEP: f64 = 5.0;

@@ -3,7 +3,7 @@
 use super::{
     BLOCKS,
     contrasts::{BlockMeans, Contrasts, EXPLAINED},
-    form::Form,
+    form::{COLUMNS, Form, MAX_SHIFTS, PER_SHIFT},
     slow_noise::{Needed, needed},
 };
 use crate::{
@@ -14,15 +14,6 @@ use crate::{
     real::{Real, consts::SQRT_2, real},
 };
 use heapless::Vec;
-
-/// The number of steps and warm-ups that are told at most.
-pub(super) const MAX_SHIFTS: usize = 4;
-
-/// The number of columns of a shift: its form, and the derivative of the form by its time or its time constant.
-const PER_SHIFT: usize = 2;
-
-/// The number of columns of all shifts.
-pub(super) const COLUMNS: usize = PER_SHIFT * MAX_SHIFTS;
 
 /// The number of places within a block at which a step is tried.
 const FRACTIONS: u32 = 8;

@@ -7,8 +7,7 @@
 
 use super::{
     contrasts::{BlockMeans, is_complete},
-    form::Form,
-    shifts::MAX_SHIFTS,
+    form::{Form, MAX_SHIFTS},
 };
 use crate::{
     effect::{BiasInstability, Effect, RateRamp, RateRandomWalk},

@@ -93,6 +93,11 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
         self.observation.surcharge()
     }
 
+    /// Whether there are bins.
+    pub(super) const fn has_bins(&self) -> bool {
+        self.observation.has_bins()
+    }
+
     /// The largest size that is tried.
     pub(super) const fn most(&self) -> Real {
         MOST

@@ -229,6 +229,7 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
             &term,
             self.record.curve.interval_s(),
             self.options.threshold,
+            excess.has_bins(),
         ) + excess.surcharge();
         // What a record shows of few periods depends on their phase.
         let first = term.effect.parameters().first();

@@ -90,9 +90,14 @@ impl Hypothesis {
         threshold: Real,
     ) {
         self.score = deviance + 2.0 * self.parameters();
-        let prices = self
-            .terms()
-            .map(|term| price(term, observation.interval_s, threshold));
+        let prices = self.terms().map(|term| {
+            price(
+                term,
+                observation.interval_s,
+                threshold,
+                observation.has_bins(),
+            )
+        });
         let surcharge = observation.surcharge() * real(list::count(self.terms()) as u32);
         self.cost = self.score + prices.sum::<Real>() + surcharge;
     }

@@ -17,6 +17,8 @@ const BROAD: Real = 1.0;
 const DRIFTING: Real = 17.0;
 /// Of 2000 clean records, three gain more with slow noise.
 const NOISE: Real = 6.6;
+/// Octaves alone show slow noise by a few numbers, which scatter together.
+const NOISE_IN_OCTAVES: Real = 8.0;
 /// Noise of another kind, such as a power law, competes with all of the five terms.
 const OTHER_NOISE: Real = 9.0;
 /// Noise that is correlated over fewer than [`FAST`] samples competes with every filter.
@@ -32,12 +34,12 @@ const SHAPED_SPECIAL_FILTER: Real = 18.0;
 /// The threshold at which the prices are those above. Another threshold changes all of them by as much.
 pub(crate) const THRESHOLD: Real = 8.0;
 
-/// The price of an effect, beside samples that lie `interval_s` seconds apart.
-pub(crate) fn price(term: &Term, interval_s: Real, threshold: Real) -> Real {
-    usual(term, interval_s) + threshold - THRESHOLD
+/// The price of an effect, beside samples that lie `interval_s` seconds apart, in a record with a spectrum or without.
+pub(crate) fn price(term: &Term, interval_s: Real, threshold: Real, has_bins: bool) -> Real {
+    usual(term, interval_s, has_bins) + threshold - THRESHOLD
 }
 
-fn usual(term: &Term, interval_s: Real) -> Real {
+fn usual(term: &Term, interval_s: Real, has_bins: bool) -> Real {
     let effect = term.effect;
     if is_filter(effect) {
         return match (continuous(effect), effect.description().special_case) {
@@ -47,8 +49,9 @@ fn usual(term: &Term, interval_s: Real) -> Real {
             (_, Some(_)) => SHAPED_SPECIAL_FILTER,
         };
     }
+    let noise = if has_bins { NOISE } else { NOISE_IN_OCTAVES };
     if effect.parameters().is_empty() {
-        return NOISE;
+        return noise;
     }
     if is_line(effect) {
         return LINE;
@@ -75,6 +78,6 @@ fn usual(term: &Term, interval_s: Real) -> Real {
     if term.parameter(0) < FAST * interval_s {
         FAST_NOISE
     } else {
-        NOISE
+        noise
     }
 }

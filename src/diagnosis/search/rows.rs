@@ -228,7 +228,7 @@ impl<'a, const B: usize> Observation<'a, B> {
     }
 
     /// Whether there are bins.
-    pub(super) const fn has_bins(&self) -> bool {
+    pub(crate) const fn has_bins(&self) -> bool {
         self.bins > 0
     }
 

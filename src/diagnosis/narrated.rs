@@ -39,7 +39,7 @@ pub(super) struct Story {
     steps: Vec<Told, MAX_STEPS>,
     /// The number of steps that have been told.
     told: usize,
-    /// What the white noise is in this story and in those that explain the record as well.
+    /// What the white noise is in other stories that explain the record as well.
     white: Option<WhiteRange>,
 }
 

@@ -39,7 +39,7 @@ pub(super) fn is_plain(effect: &'static dyn Effect) -> bool {
 }
 
 /// The white noise that filters work on.
-pub(super) const WHITE: &dyn Effect = &AngleRandomWalk;
+const WHITE: &dyn Effect = &AngleRandomWalk;
 
 /// Whether an effect is that white noise.
 pub(crate) fn is_white(effect: &dyn Effect) -> bool {

@@ -3,7 +3,7 @@
 use super::{
     cross::suspects,
     hypothesis::{AS_GOOD, Added, Hypothesis, MAX_ADDED, is_near},
-    kind::{WHITE, is_added, is_filter},
+    kind::{is_added, is_filter, is_white},
     likelihood::Workspace,
     limits::Limits,
     pool::Pool,
@@ -55,7 +55,7 @@ pub(crate) const MAX_ALTERNATIVES: usize = 6;
 pub(crate) struct Found {
     pub(crate) best: Hypothesis,
     pub(crate) alternatives: Vec<(Hypothesis, Real), MAX_ALTERNATIVES>,
-    /// What the white noise is in all of them.
+    /// What the white noise is in the alternatives; `None` if there are none that say it.
     pub(crate) white: Option<WhiteRange>,
 }
 
@@ -341,9 +341,9 @@ pub(super) fn set_common<const B: usize>(
     effects: &[&'static dyn Effect],
 ) -> Option<Term> {
     let has_filters = effects.iter().any(|effect| is_filter(*effect));
-    let is_white = |term: &&Term| has_filters && term.effect.name() == WHITE.name() && !term.fitted;
-    let white = model.terms().iter().find(is_white).copied();
-    let common = model.terms().iter().filter(|term| !is_white(term));
+    let is_replaceable = |term: &&Term| has_filters && is_white(term.effect) && !term.fitted;
+    let white = model.terms().iter().find(is_replaceable).copied();
+    let common = model.terms().iter().filter(|term| !is_replaceable(term));
     work.set_common(observation, common);
     work.shape = observation.shape;
     white

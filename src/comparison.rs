@@ -299,14 +299,14 @@ fn compare_short<const K: usize, const B: usize>(
 ) -> ComparedOctave {
     let mut shares = [0.0; MAX_EFFECTS];
     let mut model = 0.0;
-    let terms = problem.model.terms().iter();
-    for ((i, term), share) in numbered(terms).zip(&mut shares) {
-        let shape = term.sampled_shape(problem.interval_s);
+    for (i, share) in numbered(shares.iter_mut()).take(problem.count()) {
         // Rounding may leave less than zero of an effect far beyond what a record can tell.
-        *share = squares[i] * term.effect.variance(real(point.m), &shape).max(0.0);
+        let unit = problem.model.unit_variance(i, real(point.m), problem.interval_s);
+        *share = squares[i] * unit.max(0.0);
         model += *share;
     }
     let mut relative = tolerance * tolerance;
+    let squares = problem.squares_at(real(point.m), squares);
     let squares = squares.as_slice();
     covariance_row(
         core::slice::from_ref(point),

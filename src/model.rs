@@ -1,7 +1,7 @@
 //! A model: the effects that make up a curve.
 
 use crate::{
-    effect::{Effect, IEEE_952, SampledShape, padded},
+    effect::{Behind, Distribution, Effect, IEEE_952, SampledShape, padded},
     error::Error,
     limits::MAX_PARAMETERS,
     list,
@@ -218,6 +218,42 @@ impl Model {
         &mut self.terms
     }
 
+    /// The filter that all noise without a shape passes, with its place; `None` if there is none.
+    pub(crate) fn passing(&self) -> Option<(usize, &Term)> {
+        let mut terms = self.terms.iter().enumerate();
+        terms.find(|(_, term)| term.effect.passes_all())
+    }
+
+    /// The filter of all noise that effect `i` [passes](Effect::passes_all), if the model has one: the effect is noise, and
+    /// has no shape.
+    pub fn filter_of(&self, i: usize) -> Option<&Term> {
+        let (_, filter) = self.passing()?;
+        self.terms.get(i).is_some_and(is_passed).then_some(filter)
+    }
+
+    /// What effect `i` contributes to the model's Allan variance at the averaging factor `m`, for a coefficient of one: that
+    /// behind the filter, if all noise [passes](Effect::passes_all) one. `interval_s` is the sample interval in seconds. It is
+    /// 0 for an effect beyond the model.
+    pub fn unit_variance(&self, i: usize, m: Real, interval_s: Real) -> Real {
+        let Some(term) = self.terms.get(i) else {
+            return 0.0;
+        };
+        match self.filter_of(i) {
+            Some(filter) => {
+                let shape = filter.sampled_shape(interval_s);
+                match Behind::new(term.effect, filter.effect, &shape) {
+                    Some(behind) => behind.variance(m, &shape),
+                    None => {
+                        let white = 1.0 / (m * interval_s);
+                        let passed = filter.effect.variance(m, &shape) / white;
+                        term.effect.variance(m, &shape) * passed
+                    }
+                }
+            }
+            None => term.effect.variance(m, &term.sampled_shape(interval_s)),
+        }
+    }
+
     /// The effects, in the order in which they were added.
     pub fn terms(&self) -> &[Term] {
         &self.terms
@@ -227,16 +263,17 @@ impl Model {
     /// the squared coefficients in the order of the effects, and `interval_s` is the sample interval in
     /// seconds.
     pub fn variance(&self, squares: &[Real], m: u32, interval_s: Real) -> Real {
-        let shares = self.terms.iter().zip(squares);
+        let shares = list::numbered(squares).take(self.terms.len());
         shares
-            .map(|(term, square)| {
-                square
-                    * term
-                        .effect
-                        .variance(real(m), &term.sampled_shape(interval_s))
-            })
+            .map(|(i, square)| square * self.unit_variance(i, real(m), interval_s))
             .sum()
     }
+}
+
+/// Whether a term passes a filter that all noise passes: it is noise, and has no shape.
+pub(crate) fn is_passed(term: &Term) -> bool {
+    let description = term.effect.description();
+    description.parameters.is_empty() && description.distribution == Distribution::Gaussian
 }
 
 #[cfg(test)]

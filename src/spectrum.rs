@@ -39,6 +39,9 @@ pub use covariance::{BAND, covariance_rows, relative_covariance};
 pub use density::{Bin, Spectrum};
 pub use expected::expected_densities;
 
+/// The one-sided density of white noise with a coefficient of one.
+pub const WHITE_DENSITY: f32 = 2.0;
+
 pub(crate) use density::levels_of;
 pub(crate) use fine::{Fine, Sum};
 pub(crate) use lobe::Lobe;

@@ -188,6 +188,21 @@ pub trait Effect: Sync {
         shape.parameters
     }
 
+    /// Whether all noise without a shape passes what the effect describes, and not only the effect that it
+    /// [replaces](Description::replaces): quantization, flicker noise and random walks are filtered as the white noise is.
+    /// The default is `false`.
+    fn passes_all(&self) -> bool {
+        false
+    }
+
+    /// The [`kernel`](Self::kernel) of this effect, which has no shape, behind an effect of this shape that
+    /// [passes all noise](Self::passes_all), if it has a closed form. The default is `None`: the share that the filter leaves
+    /// of the effect is then taken for the one that it leaves of white noise, in each octave and bin.
+    fn kernel_behind(&self, filter: &dyn Effect, lag: Real, shape: &SampledShape) -> Option<Real> {
+        let _ = (filter, lag, shape);
+        None
+    }
+
     /// The generalised covariance `G(n)` of the angle, for `lag = n ≥ 0` samples, in s² times the
     /// rate unit squared per coefficient squared. A constant and a multiple of `n²` are free.
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real;

@@ -18,6 +18,9 @@ pub(super) trait Filter: Sync {
     /// Whether only a spectrum shows the effect.
     const NEEDS_SPECTRUM: bool = false;
 
+    /// Whether all noise passes the filter.
+    const PASSES_ALL: bool = false;
+
     /// The decay of the slowest pole at which the autocovariance of several poles is as good as gone, as an exponent. A
     /// thousandth is left of poles that lie apart.
     const GONE: Real = 7.0;
@@ -136,6 +139,10 @@ impl<F: Filter> Effect for F {
 
     fn needs_spectrum(&self) -> bool {
         F::NEEDS_SPECTRUM
+    }
+
+    fn passes_all(&self) -> bool {
+        F::PASSES_ALL
     }
 
     fn distinct(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {

@@ -11,6 +11,7 @@
 //! an effect of its own in the same way, in any file, and add it to the list that it gives to
 //! [`Diagnosis`](crate::diagnosis::Diagnosis).
 
+mod behind;
 mod definition;
 mod drift;
 mod explanation;
@@ -20,6 +21,7 @@ mod sampled_shape;
 mod search_range;
 
 pub use crate::{lattice::SecondDifferences, limits::MAX_PARAMETERS};
+pub use behind::Behind;
 pub use definition::{
     Decay, Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Reciprocal, Response, Tail,
 };
@@ -71,6 +73,8 @@ catalogue! {
     high_pass::HighPass,
     drifting_resonance::DriftingResonance,
     drifting_sinusoid::DriftingSinusoid,
+    output_low_pass::OutputLowPass,
+    moving_average::MovingAverage,
 }
 
 /// The five terms of IEEE Std 952-1997, annex C, in the order of their slopes.

@@ -9,6 +9,10 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct Quantization;
 
+/// The lag in samples beyond which a filter is taken to have forgotten: what is left of it is small beside the variance, and
+/// rounding would be larger.
+const FORGOTTEN: Real = 256.0;
+
 pub(super) const DESCRIPTION: Description = Description {
     name: "quantization",
     symbol: "Q",
@@ -30,6 +34,17 @@ impl Effect for Quantization {
 
     fn kernel(&self, lag: Real, _: &SampledShape) -> Real {
         if lag == 0.0 { 1.0 } else { 0.0 }
+    }
+
+    /// The error of the angle is white, so that the filter gives it its own autocovariance, which is the second difference of
+    /// its kernel.
+    fn kernel_behind(&self, filter: &dyn Effect, lag: Real, shape: &SampledShape) -> Option<Real> {
+        if lag > FORGOTTEN {
+            return Some(0.0);
+        }
+        let kernel = |lag: Real| filter.kernel(lag.max(-lag), shape);
+        let second = kernel(lag + 1.0) - 2.0 * kernel(lag) + kernel(lag - 1.0);
+        Some(-second / shape.interval_s)
     }
 
     fn add_second_differences(

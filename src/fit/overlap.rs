@@ -16,6 +16,7 @@ use super::{problem::Problem, rows::Rows};
 use crate::{
     limits::MAX_EFFECTS,
     list::numbered,
+    effect::Behind,
     model::Term,
     nnls::{Free, Vector},
     real::{Real, real},
@@ -95,11 +96,42 @@ impl<'a, const K: usize, const B: usize> Overlap<'a, K, B> {
     /// The density of the noise between the bins of a level.
     #[inline(never)]
     pub(super) fn fine(&self, level: &Level<'_>) -> Fine {
+        let block = level.bins.first().map_or(1, |bin| bin.block);
+        let model = self.problem.model;
+        let Some((_, filter)) = model.passing() else {
+            return self.noise(block, None);
+        };
+        let mut fine = self.noise(block, Some(false));
+        let mut alone = Fine::new(self.segment());
+        let shape = filter.sampled_shape(self.problem.interval_s);
+        alone.add(filter.effect, &shape, block, 1.0);
+        let mut behind = self.noise(block, Some(true));
+        behind.pass(&alone);
+        fine.add_all(&behind);
+        for (i, term) in numbered(model.terms().iter()) {
+            let through = model.filter_of(i).is_some();
+            let exact = Behind::new(term.effect, filter.effect, &shape).filter(|_| through);
+            if let Some(exact) = exact.filter(|_| self.squares[i] > 0.0) {
+                fine.add(&exact, &shape, block, self.squares[i]);
+            }
+        }
+        fine
+    }
+
+    /// The density of the model's noise without the filter that all noise passes. Of a model with such a filter, it is the
+    /// noise that passes it, as far as it has no closed form behind it, or the noise that does not.
+    fn noise(&self, block: u32, passes: Option<bool>) -> Fine {
         let mut fine = Fine::new(self.segment());
         let deterministic = self.problem.deterministic();
-        let block = level.bins.first().map_or(1, |bin| bin.block);
-        for (i, term) in numbered(self.problem.model.terms().iter()) {
-            if !deterministic.has(i) && self.squares[i] > 0.0 {
+        let model = self.problem.model;
+        for (i, term) in numbered(model.terms().iter()) {
+            let through = model.filter_of(i);
+            let has_closed_form = through.is_some_and(|filter| {
+                let shape = filter.sampled_shape(self.problem.interval_s);
+                Behind::new(term.effect, filter.effect, &shape).is_some()
+            });
+            let is_wanted = passes.is_none_or(|passes| passes == through.is_some());
+            if !deterministic.has(i) && self.squares[i] > 0.0 && is_wanted && !has_closed_form {
                 let shape = term.sampled_shape(self.problem.interval_s);
                 fine.add(term.effect, &shape, block, self.squares[i]);
             }

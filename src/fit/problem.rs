@@ -3,14 +3,16 @@
 use super::{result::Fit, rows::Rows};
 use crate::{
     curve::{Point, clusters},
+    effect::{Behind, Effect},
     error::Error,
     limits::MAX_EFFECTS,
-    list, math,
-    model::{Model, Term},
+    list::{self, numbered},
+    math,
+    model::{Model, Term, is_passed},
     nnls::{Free, Vector},
     observed::Observed,
     real::{Real, real, single},
-    spectrum::Bin,
+    spectrum::{Bin, WHITE_DENSITY},
 };
 use heapless::Vec;
 
@@ -36,23 +38,61 @@ impl<const K: usize, const B: usize> Columns<K, B> {
     pub(crate) fn set(&mut self, observed: Observed<'_, K, B>, model: &Model) {
         let terms = model.terms().iter();
         self.0 = list::fill(terms.map(|term| column(observed, term).map(single)));
+        if let Some((place, _)) = model.passing() {
+            self.pass(observed, model, place);
+        }
+    }
+
+    /// Lets all noise without a shape pass the filter at a place of the model.
+    #[inline(never)]
+    fn pass(&mut self, observed: Observed<'_, K, B>, model: &Model, place: usize) {
+        let Some(filter) = self.0.get(place).copied() else {
+            return;
+        };
+        let interval_s = observed.interval_s();
+        for ((i, term), column) in numbered(model.terms()).zip(self.0.iter_mut()) {
+            let Some(through) = model.filter_of(i) else {
+                continue;
+            };
+            let shape = through.sampled_shape(interval_s);
+            if let Some(behind) = Behind::new(term.effect, through.effect, &shape) {
+                *column = column_of(observed, &behind, through).map(single);
+                continue;
+            }
+            for (row, point) in numbered(observed.points()) {
+                let passed = model.unit_variance(i, real(point.m), interval_s);
+                column.put(row, single(passed.max(0.0)));
+            }
+            for b in 0..observed.bins().len().min(B) {
+                let row = K.saturating_add(b);
+                column.put(row, column[row] * filter[row] / WHITE_DENSITY);
+            }
+        }
     }
 }
 
 /// The Allan variances and densities of one effect, for a coefficient of one.
 fn column<const K: usize, const B: usize>(observed: Observed<'_, K, B>, term: &Term) -> Rows<K, B> {
+    column_of(observed, term.effect, term)
+}
+
+/// The same of an effect with the shape of a term.
+fn column_of<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
+    effect: &dyn Effect,
+    term: &Term,
+) -> Rows<K, B> {
     let mut column = Rows::ZEROS;
     let mut row = 0_usize;
     let mut factors = observed.points().iter().map(|point| real(point.m));
     let shape = term.sampled_shape(observed.interval_s());
-    term.effect
-        .variances(&mut factors, &shape, &mut |variance| {
-            // Where a shape lies far beyond what a record can tell, rounding may leave less than zero.
-            column.put(row, variance.max(0.0));
-            row = row.saturating_add(1);
-        });
+    effect.variances(&mut factors, &shape, &mut |variance| {
+        // Where a shape lies far beyond what a record can tell, rounding may leave less than zero.
+        column.put(row, variance.max(0.0));
+        row = row.saturating_add(1);
+    });
     if let Some(spectrum) = observed.spectrum() {
-        let expected = spectrum.expected(term.effect, term.parameters);
+        let expected = spectrum.expected(effect, term.parameters);
         for (row, &expected) in (K..usize::MAX).zip(&expected) {
             column.put(row, expected.max(0.0));
         }
@@ -179,6 +219,38 @@ impl<'a, const K: usize, const B: usize> Problem<'a, K, B> {
     /// The number of coefficients.
     pub(crate) fn count(&self) -> usize {
         self.model.terms().len()
+    }
+
+    /// What passes the filter at a place of the model in a row, the white noise and all other noise, relative to the white
+    /// noise alone. It is one for a filter that the white noise alone passes.
+    pub(crate) fn passed(&self, place: usize, row: usize, squares: &Vector) -> Real {
+        let own = self.unit(place, row) * squares[place];
+        match self.model.passing() {
+            Some((filter, _)) if filter == place && own > 0.0 => {
+                let terms = numbered(self.model.terms().iter());
+                let others = terms.filter(|(_, term)| is_passed(term));
+                let others: Real = others.map(|(i, _)| self.unit(i, row) * squares[i]).sum();
+                1.0 + others / own
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// The squared coefficients that give a model without the filter that all noise passes the variances that this model has
+    /// at an averaging factor.
+    pub(crate) fn squares_at(&self, m: Real, squares: &Vector) -> Vector {
+        if self.model.passing().is_none() {
+            return *squares;
+        }
+        let mut passed = *squares;
+        for (i, term) in numbered(self.model.terms().iter()) {
+            if is_passed(term) {
+                let plain = term.effect.variance(m, &term.sampled_shape(self.interval_s));
+                let behind = self.model.unit_variance(i, m, self.interval_s);
+                passed.put(i, squares[i] * (behind / plain).max(0.0));
+            }
+        }
+        passed
     }
 
     /// The deterministic effects.

@@ -31,13 +31,11 @@ const SMALLER_TIMES: u8 = 4;
 /// hand. That of a line's frequency is a third, since neighbouring bins beat together less than the weights say.
 const MOST_LESS: Real = -0.75;
 
-/// The change of a term's variances with the logarithm of its parameter `j`, for a squared coefficient of
-/// `square`.
+/// The change of the model's variances with the logarithm of parameter `j` of the term at a place.
 pub(crate) fn derivative<const K: usize, const B: usize>(
     problem: &Problem<'_, K, B>,
-    term: Term,
-    j: usize,
-    square: Real,
+    (place, j, term): (usize, usize, Term),
+    squares: &Vector,
 ) -> Rows<K, B, f32> {
     let column = |factor: Real| {
         let mut term = term;
@@ -49,10 +47,11 @@ pub(crate) fn derivative<const K: usize, const B: usize>(
     loop {
         let (above, below) = (column(math::exp(step)), column(math::exp(-step)));
         if left == 0 || is_smooth(problem, &above, &below) {
-            let scale = 0.5 * square / step;
+            let scale = 0.5 * squares[place] / step;
             let mut derivative = Rows::ZEROS;
             for row in problem.rows() {
-                derivative.put(row, single((above[row] - below[row]) * scale));
+                let passed = problem.passed(place, row, squares);
+                derivative.put(row, single((above[row] - below[row]) * scale * passed));
             }
             return derivative;
         }
@@ -119,10 +118,10 @@ impl<const K: usize, const B: usize> Derivatives<K, B> {
     pub(crate) fn advance(&mut self, problem: &Problem<'_, K, B>, squares: &Vector) -> bool {
         let shapes = fitted_shapes(problem, squares);
         let next = shapes.and_then(|shapes| shapes.get(self.columns.len()).copied());
-        let Some((i, j, term)) = next else {
+        let Some(shape) = next else {
             return true;
         };
-        let column = derivative(problem, term, j, squares[i]);
+        let column = derivative(problem, shape, squares);
         // There is a place for every parameter.
         self.columns.push(column).is_err()
     }

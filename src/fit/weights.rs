@@ -157,6 +157,8 @@ impl<const K: usize, const B: usize> Weights<K, B> {
         let (row, model, tolerance) = (self.row, &self.model, self.tolerance);
         let factor = &mut self.factor;
         let own = 1.0 / model[row];
+        let m = problem.points.get(row).map_or(1.0, |point| real(point.m));
+        let squares = problem.squares_at(m, squares);
         covariance_row(
             problem.points,
             problem.model,

@@ -1,6 +1,6 @@
 //! The density of the noise between the bins of a level, and how far sums of bins scatter.
 
-use super::{density::Bin, expected::densities_from, overlap::Lags, window::places};
+use super::{WHITE_DENSITY, density::Bin, expected::densities_from, overlap::Lags, window::places};
 use crate::{
     effect::{Effect, SampledShape},
     limits::MAX_SEGMENT,
@@ -74,6 +74,20 @@ impl Fine {
             let (k, share) = (place / ratio, real(place % ratio));
             let (one, next) = (at(k), at(k.saturating_add(1)));
             *density += square * (one + (next - one) * share / real(ratio.max(1)));
+        }
+    }
+
+    /// Lets the noise pass a filter, which leaves this density of white noise with a coefficient of one.
+    pub(crate) fn pass(&mut self, filter: &Self) {
+        for (density, filter) in self.densities.iter_mut().zip(&filter.densities) {
+            *density *= filter / Real::from(WHITE_DENSITY);
+        }
+    }
+
+    /// Adds other noise of the same level.
+    pub(crate) fn add_all(&mut self, other: &Self) {
+        for (density, other) in self.densities.iter_mut().zip(&other.densities) {
+            *density += other;
         }
     }
 

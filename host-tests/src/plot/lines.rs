@@ -3,8 +3,8 @@
 use crate::log::BINS;
 use allanite::{
     Model, Term,
-    effect::{Effect, SampledShape},
-    spectrum::Spectrum,
+    effect::{Behind, Effect, SampledShape},
+    spectrum::{Spectrum, WHITE_DENSITY},
 };
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -73,8 +73,8 @@ impl Weighted<'_> {
         let factors: Vec<f64> = (0..=octaves * PER_OCTAVE)
             .map(|step| f64::from(first) * (f64::from(step) / f64::from(PER_OCTAVE)).exp2())
             .collect();
-        let effects = self.terms().map(|(term, square, shape)| {
-            let at = |m: f64| square * term.effect.variance(m, &shape);
+        let effects = self.terms().enumerate().map(|(i, (term, square, shape))| {
+            let at = |m: f64| square * self.model.unit_variance(i, m, self.interval_s);
             if is_random(term.effect, &shape) {
                 return factors.iter().map(|m| at(*m)).collect();
             }
@@ -112,8 +112,8 @@ impl Weighted<'_> {
             let indices: Vec<f64> = (0..=places)
                 .map(|step| f64::from(first.index) + f64::from(step) / f64::from(PER_BIN))
                 .collect();
-            let effects = self.terms().zip(&expected);
-            let effects = effects.map(|((term, square, shape), expected)| {
+            let effects = self.terms().zip(&expected).enumerate();
+            let effects = effects.map(|(i, ((term, square, shape), expected))| {
                 let mut line = between(&expected[bins.clone()], PER_BIN);
                 // The density of a ramp exists at whole numbers of periods only: elsewhere the window shows the jump
                 // from the ramp's end to its start.
@@ -127,6 +127,22 @@ impl Weighted<'_> {
                         // Far from a sinusoid nothing remains but rounding and leakage.
                         if exact > 0.0 {
                             *density = exact;
+                        }
+                    }
+                }
+                if let Some(filter) = self.model.filter_of(i) {
+                    let shape = filter.sampled_shape(self.interval_s);
+                    let window = |effect: &dyn Effect| {
+                        Window::new(effect, &shape, spectrum.segment(), first.block)
+                    };
+                    if let Some(behind) = Behind::new(term.effect, filter.effect, &shape) {
+                        let window = window(&behind);
+                        let densities = indices.iter().map(|index| window.density(*index));
+                        line = densities.map(|density| square * density.max(0.0)).collect();
+                    } else {
+                        let window = window(filter.effect);
+                        for (density, index) in line.iter_mut().zip(&indices) {
+                            *density *= window.density(*index).max(0.0) / f64::from(WHITE_DENSITY);
                         }
                     }
                 }

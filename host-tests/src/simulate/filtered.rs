@@ -8,7 +8,7 @@ use allanite::effect::{Effect, SampledShape};
 use std::f64::consts::PI;
 
 /// The number of time constants after which a filter has forgotten how it began: e⁻²⁵ is left of the slowest pole.
-const FORGOTTEN: f64 = 64.0;
+pub(super) const FORGOTTEN: f64 = 64.0;
 
 /// White noise behind sections of first and second order.
 pub(super) struct Filtered {
@@ -47,7 +47,7 @@ impl Source for Filtered {
 
 /// The filter `y_n = Σ b_k x_(n−k) − Σ a_k y_(n−k)`, with `k` from 0 for `b` and from 1 for `a`.
 #[derive(Clone, Copy)]
-struct Section {
+pub(super) struct Section {
     b: [f64; 3],
     a: [f64; 2],
     inputs: [f64; 2],
@@ -64,7 +64,7 @@ impl Section {
         }
     }
 
-    fn output(&mut self, x: f64) -> f64 {
+    pub(super) fn output(&mut self, x: f64) -> f64 {
         let ([b0, b1, b2], [a1, a2]) = (self.b, self.a);
         let ([x1, x2], [y1, y2]) = (self.inputs, self.outputs);
         let y = b0 * x + b1 * x1 + b2 * x2 - a1 * y1 - a2 * y2;
@@ -75,11 +75,11 @@ impl Section {
 }
 
 /// The sections of an effect that is a digital filter at the sample rate.
-fn sections(effect: &dyn Effect, shape: &SampledShape) -> Option<Vec<Section>> {
+pub(super) fn sections(effect: &dyn Effect, shape: &SampledShape) -> Option<Vec<Section>> {
     let [time_s, number, _] = shape.parameters;
     let decay = (-shape.interval_s / time_s).exp();
     match effect.name() {
-        "digital_low_pass" => Some(butterworth(shape.interval_s / time_s, number)),
+        "digital_low_pass" | "output_low_pass" => Some(butterworth(shape.interval_s / time_s, number)),
         "cascade" => {
             let stage = Section::new([1.0 - decay, 0.0, 0.0], [-decay, 0.0]);
             Some(vec![stage; number as usize])

@@ -11,6 +11,7 @@ mod markov;
 mod preset;
 mod random;
 mod simulator;
+mod smoothed;
 mod swept;
 mod thermal;
 mod two_levels;

@@ -1,6 +1,6 @@
 //! A gyro at rest, composed of sources of noise.
 
-use super::{Coefficients, Hidden, Random, Source, ieee_952};
+use super::{Coefficients, Hidden, Random, Source, ieee_952, smoothed::Smoothed};
 use allanite::effect::BiasInstability;
 use rand::SeedableRng;
 
@@ -43,16 +43,25 @@ impl Simulator {
         sweep_s: f64,
         seed: u64,
     ) -> Self {
+        let smoothing = hidden.iter().find(|hidden| hidden.effect.passes_all());
         for hidden in hidden {
             if hidden.replaces_white_noise() {
-                coefficients.angle_random_walk = 0.0;
+                // The terms pass a filter of all noise together.
+                let passes = hidden.effect.passes_all();
+                coefficients.angle_random_walk = if passes { hidden.coefficient } else { 0.0 };
             }
             if hidden.replaces(&BiasInstability) {
                 coefficients.bias_instability = 0.0;
             }
         }
         let mut simulator = Self::new(coefficients, rate_hz, seed);
-        for effect in hidden {
+        if let Some(smoothing) = smoothing {
+            let terms = core::mem::take(&mut simulator.sources);
+            let random = &mut simulator.random;
+            let smoothed = Smoothed::new(terms, smoothing, 1.0 / rate_hz, random);
+            simulator.sources.push(Box::new(smoothed));
+        }
+        for effect in hidden.iter().filter(|hidden| !hidden.effect.passes_all()) {
             let source = effect.source(1.0 / rate_hz, sweep_s, &mut simulator.random);
             simulator.sources.push(source);
         }

@@ -11,7 +11,7 @@ use allanite::{
 };
 
 /// Effects that are told by the same word: filters that pass the same band.
-const LOW_PASSES: [&str; 3] = ["low_pass", "digital_low_pass", "cascade"];
+const LOW_PASSES: [&str; 4] = ["low_pass", "digital_low_pass", "cascade", "output_low_pass"];
 
 /// What is said of a record.
 #[derive(Clone, Debug)]

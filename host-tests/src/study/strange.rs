@@ -27,7 +27,7 @@ pub struct Kind {
 pub const KINDS: [Kind; 14] = [
     Kind {
         name: "moving average of the whole signal",
-        right: &["decimation_filter"],
+        right: &["moving_average", "decimation_filter"],
         keeps_white_noise: true,
         make: averaged,
     },

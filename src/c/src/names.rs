@@ -26,7 +26,7 @@ fn effect(code: i32) -> Named {
 }
 
 /// The effects of the catalogue and the five terms of IEEE Std 952. A test compares them with the library.
-const EFFECTS: [Named; 19] = [
+const EFFECTS: [Named; 21] = [
     (1, c"quantization", &[]),
     (2, c"angle_random_walk", &[]),
     (3, c"bias_instability", &[]),
@@ -50,6 +50,8 @@ const EFFECTS: [Named; 19] = [
         &[c"frequency_hz", c"quality", c"drift_hz"],
     ),
     (19, c"drifting_sinusoid", &[c"frequency_hz", c"drift_hz"]),
+    (20, c"output_low_pass", &[c"time_constant_s", c"poles"]),
+    (21, c"moving_average", &[c"samples"]),
 ];
 
 #[cfg(test)]

@@ -15,7 +15,8 @@ use crate::{
     limits::{MAX_EFFECTS, MAX_SHAPE},
     list::numbered,
     math,
-    model::Term,
+    effect::Behind,
+    model::{Term, is_passed},
     nnls::{Free, NormalEquations, Vector},
     real::{Real, real, single},
 };
@@ -26,6 +27,9 @@ const LEAST: f32 = 1e-4;
 
 /// The rounds in which coefficients are fitted to expected values.
 const REFITS: u8 = 4;
+
+/// The least that a filter leaves of noise, so that the noise can be told from what passed.
+const LEAST_PASSED: f32 = 1e-7;
 
 /// How far the logarithm of a shape may follow an effect that is added.
 const FOLLOWS: Real = 1.0;
@@ -40,8 +44,12 @@ const CHANGED: usize = 4;
 pub(crate) struct Workspace<const B: usize> {
     /// The columns of the terms that every hypothesis has, then the own ones, those of the white noise and of what was added.
     columns: Vec<Values<B>, MAX_EFFECTS>,
-    /// The number of the columns that every hypothesis has.
+    /// The number of the columns that every hypothesis has, their terms and factors.
     common: usize,
+    terms: Vec<(Term, Real), MAX_EFFECTS>,
+    /// What the filter that all noise passes leaves of the common columns, and of the others nothing; `None` if there is no
+    /// such filter.
+    passed: Option<Values<B>>,
     /// The factors of the own columns.
     factors: Vec<Real, MAX_EFFECTS>,
     /// What a step of the shapes replaced: places among the own columns, columns and factors.
@@ -65,6 +73,8 @@ impl<const B: usize> Workspace<B> {
     pub(crate) const NEW: Self = Self {
         columns: Vec::new(),
         common: 0,
+        terms: Vec::new(),
+        passed: None,
         factors: Vec::new(),
         replaced: Vec::new(),
         slopes: Vec::new(),
@@ -106,10 +116,75 @@ impl<const B: usize> Workspace<B> {
     ) {
         self.columns.clear();
         self.factors.clear();
+        self.terms.clear();
+        self.passed = None;
         for term in terms {
-            self.push_column(observation, term);
+            if let Some(factor) = self.push_column(observation, term) {
+                let _ = self.terms.push((*term, factor));
+            }
         }
         self.common = self.columns.len();
+    }
+
+    /// Lets the common columns pass the filter of the first own one, or no filter any more.
+    #[inline(never)]
+    pub(crate) fn pass(&mut self, observation: &Observation<'_, B>, filter: Option<&Term>) {
+        let filter = filter.filter(|filter| filter.effect.passes_all());
+        let passed = filter.map(|_| {
+            let scale = 1.0 / single(self.factor(0).max(Real::MIN_POSITIVE));
+            let mut passed = Values::zeros(self.shape.lows());
+            if let Some(column) = self.own_column(0) {
+                for row in observation.rows() {
+                    passed.put(row, observation.of_white(row, column[row] * scale).max(LEAST_PASSED));
+                }
+            }
+            passed
+        });
+        if passed.is_none() && self.passed.is_none() {
+            return;
+        }
+        for (column, (term, factor)) in self.columns.iter_mut().zip(&self.terms) {
+            if !is_passed(term) {
+                continue;
+            }
+            let closed = filter.and_then(|filter| {
+                let shape = filter.sampled_shape(observation.interval_s);
+                let behind = Behind::new(term.effect, filter.effect, &shape)?;
+                Some(observation.column_of(&behind, filter, Some(*factor), column))
+            });
+            if closed.is_some() {
+                continue;
+            }
+            observation.column(term, Some(*factor), column);
+            if let Some(passed) = &passed {
+                column.change_by(passed, |own, passed| own * passed);
+            }
+        }
+        self.passed = passed;
+    }
+
+    /// Lets a derivative by a shape of the first own term change what passes it by the same share, if all noise does.
+    pub(super) fn pass_slope(&self, slope: &mut Values<B>) {
+        if self.passed.is_none() {
+            return;
+        }
+        let Some(own) = self.own_column(0) else {
+            return;
+        };
+        let mut all = Values::zeros(self.shape.lows());
+        let passing = |i: usize| match self.terms.get(i) {
+            Some((term, _)) => is_passed(term),
+            None => i == self.common,
+        };
+        for (i, column) in numbered(&self.columns).filter(|(i, _)| passing(*i)) {
+            all.add_scaled(column, single(self.squares[i]));
+        }
+        let square = single(self.squares[self.common]);
+        all.change_by(own, |all, own| {
+            let own = own * square;
+            if own > 0.0 { all / own } else { 0.0 }
+        });
+        slope.change_by(&all, |slope, all| slope * all);
     }
 
     /// Adds a column and returns its factor.

@@ -89,6 +89,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     pub(super) fn load(&mut self, hypothesis: &Hypothesis) {
         let terms = self.own_terms(hypothesis);
         self.work.set_own(self.observation, terms.iter());
+        self.work.pass(self.observation, hypothesis.filter.as_ref());
         let mut squares = Vector::ZEROS;
         for (i, square) in numbered(hypothesis.squares) {
             squares.put(i, real(square));
@@ -160,6 +161,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
             let (before, model) = (self.work.squares, self.work.model);
             self.work.exchange_own(self.observation, &terms, &changed);
+            self.work.pass(self.observation, changed.first());
             (self.pause)()?;
             let now = self.work.solve(3);
             if now < deviance {
@@ -178,6 +180,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             } else {
                 damping *= RISES;
                 self.work.put_back();
+                self.work.pass(self.observation, terms.first());
                 (self.work.squares, self.work.model) = (before, model);
                 if damping > HOPELESS {
                     break;
@@ -298,6 +301,9 @@ impl<const B: usize> Workspace<B> {
                 let scale = square / single(step);
                 let mut size = 0.0;
                 slope.change_by(column, |near, own| (near - own) * scale);
+                if i == 0 {
+                    self.pass_slope(&mut slope);
+                }
                 slope.each_with(&self.shape, &slope, |change, shape, _| {
                     size += change * change * shape;
                 });

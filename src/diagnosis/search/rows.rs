@@ -4,13 +4,13 @@ use super::values::{LOW, Values};
 use crate::{
     course::CosineTransform,
     curve::{Point, clusters},
-    effect::Span,
+    effect::{Effect, Span},
     fit::Rows,
     list::numbered,
     model::Term,
     observed::Observed,
     real::{Real, real, single},
-    spectrum::{Spectrum, levels_of},
+    spectrum::{Spectrum, WHITE_DENSITY, levels_of},
 };
 
 /// Neighbouring bins of Hann's window scatter together: `1 + 2 (4/9 + 1/36)` of them count as one.
@@ -214,6 +214,23 @@ impl<'a, const B: usize> Observation<'a, B> {
         single(density * real(self.per_measured[row]))
     }
 
+    /// A number relative to what was measured, as a share of what white noise with a coefficient of one would be there.
+    pub(super) fn of_white(&self, row: usize, relative: f32) -> f32 {
+        let per_measured = self.per_measured[row];
+        let white = match &self.low {
+            Low::Octaves(points) if row < LOW => {
+                let m = points.get(row).map_or(1.0, |point| real(point.m));
+                single(1.0 / (m * self.interval_s))
+            }
+            _ => WHITE_DENSITY,
+        };
+        if per_measured > 0.0 {
+            relative / (per_measured * white)
+        } else {
+            1.0
+        }
+    }
+
     /// What every effect costs more where the rows are octaves, which scatter together more than they are taken to.
     pub(crate) const fn surcharge(&self) -> Real {
         if self.has_bins() { 0.0 } else { OCTAVES_ALONE }
@@ -234,8 +251,19 @@ impl<'a, const B: usize> Observation<'a, B> {
 
     /// What a term would add to each row, relative to the measurement, times a factor. Without a factor, the largest
     /// number is one. Returns the factor, or zero if the term adds nothing.
-    #[inline(never)]
     pub(crate) fn column(&self, term: &Term, factor: Option<Real>, values: &mut Values<B>) -> Real {
+        self.column_of(term.effect, term, factor, values)
+    }
+
+    /// The same of an effect with the shape of a term.
+    #[inline(never)]
+    pub(super) fn column_of(
+        &self,
+        effect: &dyn Effect,
+        term: &Term,
+        factor: Option<Real>,
+        values: &mut Values<B>,
+    ) -> Real {
         let shape = term.sampled_shape(self.interval_s);
         let mut largest: Real = 0.0;
         // The range of single precision holds no square of a ramp at the longest times, so that numbers are scaled first.
@@ -249,16 +277,16 @@ impl<'a, const B: usize> Observation<'a, B> {
         };
         match &self.low {
             Low::Course(course) => {
-                course.each_expected(term.effect, term.parameters, self.lows, &mut low);
+                course.each_expected(effect, term.parameters, self.lows, &mut low);
             }
             Low::Octaves(points) => {
                 let mut factors = points.iter().take(self.lows).map(|point| real(point.m));
-                term.effect.variances(&mut factors, &shape, &mut low);
+                effect.variances(&mut factors, &shape, &mut low);
             }
         }
         if let Some(spectrum) = self.spectrum {
             let mut row = LOW;
-            spectrum.each_expected(term.effect, term.parameters, &mut |value| {
+            spectrum.each_expected(effect, term.parameters, &mut |value| {
                 let value = (value * real(self.per_measured[row])).max(0.0);
                 largest = largest.max(value);
                 raw.put(row, value);

@@ -118,7 +118,7 @@ impl<const B: usize> Search<B> {
             let filters = effects
                 .iter()
                 .copied()
-                .filter(move |effect| has_white && is_filter(*effect));
+                .filter(move |effect| has_white && is_filter(*effect) && !effect.passes_all());
             filters.flat_map(|effect| Variant::of(effect, &observation.span))
         };
         let is_slow = |effect: &dyn Effect| {
@@ -155,7 +155,7 @@ impl<const B: usize> Search<B> {
         // The filters of the continuum, and the best continua.
         let mut plain: Option<Hypothesis> = None;
         let mut continua: Vec<(Hypothesis, Real), CONTINUA> = Vec::new();
-        solver.start(&mut filters(), &noises, &mut |whole, continuum| {
+        solver.start(&mut filters(), &noises, effects, &mut |whole, continuum| {
             if plain.is_none() {
                 plain = Some(whole.clone());
             }
@@ -176,6 +176,7 @@ impl<const B: usize> Search<B> {
                 break;
             };
             let Some(beam) = lower.last_mut() else { break };
+            solver.pass_all(beam, effects)?;
             let lead = lowest(beam.as_slice());
             best = best.min(lead);
             let left = (best - observation.expected_deviance()).max(0.0);
@@ -274,6 +275,24 @@ impl<const B: usize> Search<B> {
         let mut found = chosen(&finals, &cheapest, &plain, limits.ambiguity);
         found.white = solver.range_of_white(&found.best, &found.alternatives)?;
         ControlFlow::Continue(found)
+    }
+}
+
+impl<const B: usize> Solver<'_, '_, '_, B> {
+    /// Lets all noise pass the filters of the best hypotheses of as many effects.
+    fn pass_all(&mut self, beam: &mut Pool<BEAM>, effects: &[&'static dyn Effect]) -> ControlFlow<()> {
+        let known: Vec<Hypothesis, BEAM> = list::fill(beam.as_slice().iter().cloned());
+        for hypothesis in known.iter().filter(|hypothesis| !hypothesis.added.is_empty()) {
+            let Some(filter) = &hypothesis.filter else {
+                continue;
+            };
+            for of_all in Variant::passing(effects, filter, self.observation.interval_s) {
+                let begun = Hypothesis::new(Some(of_all), hypothesis.added.clone());
+                let refined = self.refine(begun, 8)?;
+                beam.enter(&refined);
+            }
+        }
+        ControlFlow::Continue(())
     }
 }
 

@@ -40,6 +40,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         &mut self,
         variants: &mut dyn Iterator<Item = Variant>,
         noises: &[&'static dyn Effect],
+        effects: &[&'static dyn Effect],
         each: &mut dyn FnMut(&Hypothesis, Real) -> Real,
     ) -> ControlFlow<()> {
         self.shapes.clear();
@@ -68,6 +69,14 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 continue;
             }
             self.whole(found.clone(), &mut bars, each)?;
+            if let Some(filter) = &found.filter {
+                for of_all in Variant::passing(effects, filter, self.observation.interval_s) {
+                    leave_out_peaks(self.observation, &mut self.work.shape);
+                    let of_all = Hypothesis::new(Some(of_all), found.added.clone());
+                    let of_all = self.refine(of_all, 8)?;
+                    self.whole(of_all, &mut bars, each)?;
+                }
+            }
             for noise in noises {
                 leave_out_peaks(self.observation, &mut self.work.shape);
                 if let Some(with) = self.scan_noise(*noise, &found)? {
@@ -115,6 +124,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         {
             (self.pause)()?;
             self.work.change_own(self.observation, 0, &term);
+            self.work.pass(self.observation, Some(&term));
             let deviance = self.work.solve(2);
             if deviance < least {
                 least = deviance;

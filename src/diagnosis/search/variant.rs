@@ -38,6 +38,36 @@ impl Variant {
         }
     }
 
+    /// The filters of the list that all noise passes and that are nearest to one that the white noise alone passes: the
+    /// effect that has this one as its special case, at the same shape. A mean over samples is tried with one more and one
+    /// less.
+    pub(super) fn passing(
+        effects: &[&'static dyn Effect],
+        filter: &Term,
+        interval_s: Real,
+    ) -> impl Iterator<Item = Term> + use<> {
+        let is_general = |effect: &&'static dyn Effect| {
+            let special = effect.description().special_case;
+            effect.passes_all() && special.is_some_and(|s| s.name() == filter.effect.name())
+        };
+        let general = effects.iter().copied().find(is_general);
+        let filter = *filter;
+        general.into_iter().flat_map(move |effect| {
+            let is_counted = effect.is_whole(0);
+            let around: &[Real] = if is_counted { &[0.0, -1.0, 1.0] } else { &[0.0] };
+            around.iter().map(move |more| {
+                let mut term = Term::fitted(effect);
+                if is_counted {
+                    let samples = (filter.parameter(0) / interval_s + 0.5) as u32;
+                    term.set_parameter(0, (real(samples) + more).max(2.0));
+                } else {
+                    term.parameters = filter.parameters;
+                }
+                term
+            })
+        })
+    }
+
     /// Whether two variants are the same.
     pub(super) fn is(&self, other: &Self) -> bool {
         self.effect.name() == other.effect.name() && self.whole == other.whole

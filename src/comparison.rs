@@ -301,7 +301,9 @@ fn compare_short<const K: usize, const B: usize>(
     let mut model = 0.0;
     for (i, share) in numbered(shares.iter_mut()).take(problem.count()) {
         // Rounding may leave less than zero of an effect far beyond what a record can tell.
-        let unit = problem.model.unit_variance(i, real(point.m), problem.interval_s);
+        let unit = problem
+            .model
+            .unit_variance(i, real(point.m), problem.interval_s);
         *share = squares[i] * unit.max(0.0);
         model += *share;
     }

@@ -11,7 +11,11 @@ pub struct Behind<'a> {
 
 impl<'a> Behind<'a> {
     /// The effect behind the filter; `None` if its kernel has no [closed form](Effect::kernel_behind) there.
-    pub fn new(effect: &'a dyn Effect, filter: &'a dyn Effect, shape: &SampledShape) -> Option<Self> {
+    pub fn new(
+        effect: &'a dyn Effect,
+        filter: &'a dyn Effect,
+        shape: &SampledShape,
+    ) -> Option<Self> {
         effect.kernel_behind(filter, 0.0, shape)?;
         Some(Self { effect, filter })
     }

@@ -115,6 +115,10 @@ impl Filter {
         if x >= m + self.support {
             return 0.0;
         }
+        if m == 1.0 {
+            // Nothing cancels in the autocovariance itself.
+            return 2.0 * self.at(x);
+        }
         let apart = if x < m { m - x } else { x - m };
         self.sum(x + m) - 2.0 * self.sum(x) + self.sum(apart)
     }

@@ -42,9 +42,7 @@ impl Effect for Quantization {
         if lag > FORGOTTEN {
             return Some(0.0);
         }
-        let kernel = |lag: Real| filter.kernel(lag.max(-lag), shape);
-        let second = kernel(lag + 1.0) - 2.0 * kernel(lag) + kernel(lag - 1.0);
-        Some(-second / shape.interval_s)
+        Some(-filter.second_difference(lag, 1.0, shape) / shape.interval_s)
     }
 
     fn add_second_differences(

@@ -14,9 +14,9 @@
 
 use super::{problem::Problem, rows::Rows};
 use crate::{
+    effect::Behind,
     limits::MAX_EFFECTS,
     list::numbered,
-    effect::Behind,
     model::Term,
     nnls::{Free, Vector},
     real::{Real, real},

@@ -245,7 +245,9 @@ impl<'a, const K: usize, const B: usize> Problem<'a, K, B> {
         let mut passed = *squares;
         for (i, term) in numbered(self.model.terms().iter()) {
             if is_passed(term) {
-                let plain = term.effect.variance(m, &term.sampled_shape(self.interval_s));
+                let plain = term
+                    .effect
+                    .variance(m, &term.sampled_shape(self.interval_s));
                 let behind = self.model.unit_variance(i, m, self.interval_s);
                 passed.put(i, squares[i] * (behind / plain).max(0.0));
             }

@@ -79,7 +79,9 @@ pub(super) fn sections(effect: &dyn Effect, shape: &SampledShape) -> Option<Vec<
     let [time_s, number, _] = shape.parameters;
     let decay = (-shape.interval_s / time_s).exp();
     match effect.name() {
-        "digital_low_pass" | "output_low_pass" => Some(butterworth(shape.interval_s / time_s, number)),
+        "digital_low_pass" | "output_low_pass" => {
+            Some(butterworth(shape.interval_s / time_s, number))
+        }
         "cascade" => {
             let stage = Section::new([1.0 - decay, 0.0, 0.0], [-decay, 0.0]);
             Some(vec![stage; number as usize])

@@ -3,8 +3,8 @@
 use super::{PI, std, std::vec::Vec, window};
 use crate::{
     effect::{
-        CATALOGUE, DriftingResonance, DriftingSinusoid, Effect, MAX_PARAMETERS, Resonance,
-        SampledShape, Sinusoid,
+        Behind, CATALOGUE, DriftingResonance, DriftingSinusoid, Effect, MAX_PARAMETERS,
+        MovingAverage, OutputLowPass, Quantization, Resonance, SampledShape, Sinusoid,
     },
     real::{by_precision, double, real},
     spectrum::expected_densities,
@@ -96,7 +96,11 @@ fn filtered(name: &str, [first, second, _]: [f64; 3]) -> Option<Vec<f64>> {
     }
     let response = match name {
         "notch" => notch(first, second),
-        "digital_low_pass" => digital_low_pass(first, second),
+        "digital_low_pass" | "output_low_pass" => digital_low_pass(first, second),
+        "moving_average" => averaged(first),
+        // The rate is the difference of neighbouring angles.
+        "quantization behind output_low_pass" => differences(&digital_low_pass(first, second)),
+        "quantization behind moving_average" => differences(&averaged(first)),
         "cascade" => cascade(first, second),
         "high_pass" => high_pass(first),
         _ => return None,
@@ -106,6 +110,25 @@ fn filtered(name: &str, [first, second, _]: [f64; 3]) -> Option<Vec<f64>> {
         pairs.map(|(one, other)| one * other).sum::<f64>() / INTERVAL_S
     };
     Some((0..response.len()).map(at).collect())
+}
+
+/// The impulse response of a mean over some samples, with zeros behind it.
+fn averaged(samples: f64) -> Vec<f64> {
+    let mut response = std::vec![0.0; 100];
+    response[..samples as usize].fill(1.0 / samples);
+    response
+}
+
+/// The rates of a sequence of angles, in the unit in which [`filtered`] takes the rates that follow white noise.
+fn differences(angles: &[f64]) -> Vec<f64> {
+    let unit = 1.0 / libm::sqrt(INTERVAL_S);
+    let before = [0.0].iter().chain(angles);
+    let last = [0.0];
+    let angles = angles.iter().chain(&last);
+    angles
+        .zip(before)
+        .map(|(now, before)| (now - before) * unit)
+        .collect()
 }
 
 /// The impulse response of `y_n = Σ b_k x_(n−k) − Σ a_k y_(n−k)` with `k` from 0 and from 1, applied to an input.
@@ -318,7 +341,8 @@ fn shapes(name: &str) -> &'static [[f64; MAX_PARAMETERS]] {
             [1.5, 0.0, 0.0],
             [1.9, 0.0, 0.0],
         ],
-        "digital_low_pass" => &[
+        "moving_average" => &[[2.0, 0.0, 0.0], [5.0, 0.0, 0.0], [16.0, 0.0, 0.0]],
+        "digital_low_pass" | "output_low_pass" => &[
             [0.02, 1.0, 0.0],
             [0.0045, 1.0, 0.0],
             [0.006_366, 1.0, 0.0],
@@ -386,9 +410,13 @@ fn shape(parameters: [f64; MAX_PARAMETERS]) -> SampledShape {
 fn approximation(name: &str) -> [f64; 3] {
     let [own, largest, white] = match name {
         // Only where the cut-off is a quarter of the sample rate, the pole on the real axis is not exact.
-        "digital_low_pass" => [0.0, by_precision(2e-6, 4e-4), by_precision(1e-13, 5e-6)],
+        "digital_low_pass" | "output_low_pass" => {
+            [0.0, by_precision(2e-6, 4e-4), by_precision(1e-13, 5e-6)]
+        }
         "cascade" => [1e-3, 0.0, by_precision(1e-10, 2e-4)],
         "drifting_resonance" | "drifting_sinusoid" => [0.0, 0.01, 5e-6],
+        // The density of the differences of smooth angles is small beside their variance.
+        _ if name.starts_with("quantization behind") => [0.0, 0.0, by_precision(1e-12, 1e-5)],
         _ => [0.0; 3],
     };
     [own, largest, white].map(double)
@@ -407,47 +435,85 @@ fn is_rounding(off: f64, density: f64, largest: f64, length: usize) -> bool {
     off.abs() < double(own) * density + double(shared) * largest
 }
 
+/// Compares the densities of an effect with the sums over the window, and returns how many.
+fn compare(name: &str, effect: &dyn Effect, parameters: [f64; MAX_PARAMETERS]) -> usize {
+    let mut compared = 0;
+    let sizes = [
+        (64, 1),
+        (64, 8),
+        (64, 64),
+        (256, 1),
+        (256, 8),
+        (32, 8),
+        (64, 512),
+    ];
+    let is_drifting = name.starts_with("drifting");
+    let variance = filtered(name, parameters).map_or(1.0, |covariance| covariance[0]);
+    for (length, block) in sizes.into_iter().take(if is_drifting { 7 } else { 6 }) {
+        let expected = direct(name, parameters, length, block as usize);
+        let mut found = std::vec![-1.0; expected.len() + 1];
+        expected_densities(effect, &shape(parameters), length, block, &mut found);
+        assert_eq!(found.pop(), Some(-1.0), "beyond the bins");
+        let largest = expected.iter().copied().fold(0.0, f64::max);
+        for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
+            let off = double(*found) - expected;
+            let [own, shared, white] = approximation(name);
+            let white = white * 2.0 * f64::from(block) * INTERVAL_S * variance;
+            let off = (off.abs() - own * expected - shared * largest - white).max(0.0);
+            assert!(
+                is_rounding(off, expected, largest, length),
+                "{name} {parameters:?}, {length}, {block}, bin {k}: {:e} of {expected:e}, {:e} of the \
+                 largest",
+                off / expected,
+                off / largest
+            );
+            compared += 1;
+        }
+    }
+    compared
+}
+
 #[test]
 fn densities_are_those_of_sums_over_single_samples() {
     let mut compared = 0;
     for effect in CATALOGUE {
-        let name = effect.name();
-        for &parameters in shapes(name) {
-            let sizes = [
-                (64, 1),
-                (64, 8),
-                (64, 64),
-                (256, 1),
-                (256, 8),
-                (32, 8),
-                (64, 512),
-            ];
-            let is_drifting = name.starts_with("drifting");
-            let variance = filtered(name, parameters).map_or(1.0, |covariance| covariance[0]);
-            for (length, block) in sizes.into_iter().take(if is_drifting { 7 } else { 6 }) {
-                let expected = direct(name, parameters, length, block as usize);
-                let mut found = std::vec![-1.0; expected.len() + 1];
-                expected_densities(effect, &shape(parameters), length, block, &mut found);
-                assert_eq!(found.pop(), Some(-1.0), "beyond the bins");
-                let largest = expected.iter().copied().fold(0.0, f64::max);
-                for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
-                    let off = double(*found) - expected;
-                    let [own, shared, white] = approximation(name);
-                    let white = white * 2.0 * f64::from(block) * INTERVAL_S * variance;
-                    let off = (off.abs() - own * expected - shared * largest - white).max(0.0);
-                    assert!(
-                        is_rounding(off, expected, largest, length),
-                        "{name} {parameters:?}, {length}, {block}, bin {k}: {:e} of {expected:e}, {:e} of the \
-                         largest",
-                        off / expected,
-                        off / largest
-                    );
-                    compared += 1;
-                }
-            }
+        for &parameters in shapes(effect.name()) {
+            compared += compare(effect.name(), effect, parameters);
         }
     }
     assert!(compared >= 5000, "{compared}");
+}
+
+/// Quantization behind a filter has the densities of the filtered angles.
+#[test]
+fn densities_of_quantization_behind_a_filter_are_exact() {
+    let filters: [(&str, &dyn Effect, [f64; 3]); 4] = [
+        (
+            "quantization behind moving_average",
+            &MovingAverage,
+            [2.0, 0.0, 0.0],
+        ),
+        (
+            "quantization behind moving_average",
+            &MovingAverage,
+            [9.0, 0.0, 0.0],
+        ),
+        (
+            "quantization behind output_low_pass",
+            &OutputLowPass,
+            [0.008, 2.0, 0.0],
+        ),
+        (
+            "quantization behind output_low_pass",
+            &OutputLowPass,
+            [0.03, 1.0, 0.0],
+        ),
+    ];
+    for (name, filter, parameters) in filters {
+        let behind = Behind::new(&Quantization, filter, &shape(parameters));
+        let behind = behind.expect("quantization has a kernel behind a filter");
+        assert!(compare(name, &behind, parameters) > 100, "{name}");
+    }
 }
 
 /// The densities of a drifting oscillation are the average of those of a steady one over the range.

@@ -162,7 +162,7 @@ fn what_is_no_filter_is_refused() {
         (
             "sinusoid:frequency_hz=1",
             "is no filter on white noise; choose from low_pass, decimation_filter, notch, \
-             digital_low_pass, cascade, mode_split, high_pass",
+             digital_low_pass, cascade, mode_split, high_pass, output_low_pass, moving_average",
         ),
         (
             "low_pass:poles=2",

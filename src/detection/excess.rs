@@ -59,6 +59,7 @@ impl<'o, 'a, const B: usize> Excess<'o, 'a, B> {
                 .squares
                 .put(i, square.max(0.0) / factor.max(Real::MIN_POSITIVE));
         }
+        excess.work.pass_own(observation, model);
         excess.work.set_model(&excess.squares);
         excess
             .work

@@ -12,11 +12,11 @@
 
 use super::{rows::Observation, values::Values};
 use crate::{
+    effect::Behind,
     limits::{MAX_EFFECTS, MAX_SHAPE},
     list::numbered,
     math,
-    effect::Behind,
-    model::{Term, is_passed},
+    model::{Model, Term, is_passed},
     nnls::{Free, NormalEquations, Vector},
     real::{Real, real, single},
 };
@@ -27,9 +27,6 @@ const LEAST: f32 = 1e-4;
 
 /// The rounds in which coefficients are fitted to expected values.
 const REFITS: u8 = 4;
-
-/// The least that a filter leaves of noise, so that the noise can be told from what passed.
-const LEAST_PASSED: f32 = 1e-7;
 
 /// How far the logarithm of a shape may follow an effect that is added.
 const FOLLOWS: Real = 1.0;
@@ -47,9 +44,8 @@ pub(crate) struct Workspace<const B: usize> {
     /// The number of the columns that every hypothesis has, their terms and factors.
     common: usize,
     terms: Vec<(Term, Real), MAX_EFFECTS>,
-    /// What the filter that all noise passes leaves of the common columns, and of the others nothing; `None` if there is no
-    /// such filter.
-    passed: Option<Values<B>>,
+    /// Whether the common columns are those behind a filter of all noise.
+    is_passed: bool,
     /// The factors of the own columns.
     factors: Vec<Real, MAX_EFFECTS>,
     /// What a step of the shapes replaced: places among the own columns, columns and factors.
@@ -74,7 +70,7 @@ impl<const B: usize> Workspace<B> {
         columns: Vec::new(),
         common: 0,
         terms: Vec::new(),
-        passed: None,
+        is_passed: false,
         factors: Vec::new(),
         replaced: Vec::new(),
         slopes: Vec::new(),
@@ -117,7 +113,7 @@ impl<const B: usize> Workspace<B> {
         self.columns.clear();
         self.factors.clear();
         self.terms.clear();
-        self.passed = None;
+        self.is_passed = false;
         for term in terms {
             if let Some(factor) = self.push_column(observation, term) {
                 let _ = self.terms.push((*term, factor));
@@ -126,46 +122,79 @@ impl<const B: usize> Workspace<B> {
         self.common = self.columns.len();
     }
 
-    /// Lets the common columns pass the filter of the first own one, or no filter any more.
+    /// Lets the common columns pass a filter of all noise: that of the first own column, or one that is common itself. Without
+    /// such a filter they pass none any more.
     #[inline(never)]
     pub(crate) fn pass(&mut self, observation: &Observation<'_, B>, filter: Option<&Term>) {
-        let filter = filter.filter(|filter| filter.effect.passes_all());
-        let passed = filter.map(|_| {
-            let scale = 1.0 / single(self.factor(0).max(Real::MIN_POSITIVE));
-            let mut passed = Values::zeros(self.shape.lows());
-            if let Some(column) = self.own_column(0) {
-                for row in observation.rows() {
-                    passed.put(row, observation.of_white(row, column[row] * scale).max(LEAST_PASSED));
+        let own = filter.filter(|filter| filter.effect.passes_all());
+        let known = || {
+            let mut terms = numbered(self.terms.iter());
+            terms.find(|(_, (term, _))| term.effect.passes_all())
+        };
+        let (filter, place, factor) = match (own, known()) {
+            (Some(filter), _) => (*filter, self.common, self.factor(0)),
+            // A known filter stays as it is.
+            (None, Some(_)) if self.is_passed => return,
+            (None, Some((place, (filter, factor)))) => (*filter, place, *factor),
+            (None, None) => {
+                if core::mem::take(&mut self.is_passed) {
+                    for (column, (term, factor)) in self.columns.iter_mut().zip(&self.terms) {
+                        if is_passed(term) {
+                            observation.column(term, Some(*factor), column);
+                        }
+                    }
                 }
+                return;
             }
-            passed
-        });
-        if passed.is_none() && self.passed.is_none() {
+        };
+        let Some(passed) = self.passed_by(observation, place, factor) else {
             return;
-        }
+        };
         for (column, (term, factor)) in self.columns.iter_mut().zip(&self.terms) {
-            if !is_passed(term) {
-                continue;
-            }
-            let closed = filter.and_then(|filter| {
-                let shape = filter.sampled_shape(observation.interval_s);
-                let behind = Behind::new(term.effect, filter.effect, &shape)?;
-                Some(observation.column_of(&behind, filter, Some(*factor), column))
-            });
-            if closed.is_some() {
-                continue;
-            }
-            observation.column(term, Some(*factor), column);
-            if let Some(passed) = &passed {
-                column.change_by(passed, |own, passed| own * passed);
+            if is_passed(term) {
+                set_behind(observation, term, &filter, &passed, *factor, column);
             }
         }
-        self.passed = passed;
+        self.is_passed = true;
+    }
+
+    /// Lets all columns of a model pass its filter of all noise, if it has one. All of them are own columns.
+    #[inline(never)]
+    pub(crate) fn pass_own(&mut self, observation: &Observation<'_, B>, model: &Model) {
+        let Some((place, filter)) = model.passing() else {
+            return;
+        };
+        let Some(passed) = self.passed_by(observation, place, self.factor(place)) else {
+            return;
+        };
+        let columns = self.columns.iter_mut().zip(&self.factors);
+        for (term, (column, factor)) in model.terms().iter().zip(columns) {
+            if is_passed(term) {
+                set_behind(observation, term, filter, &passed, *factor, column);
+            }
+        }
+    }
+
+    /// What the filter of a column leaves of white noise in each row. The column is that of a coefficient of one, divided by
+    /// the factor.
+    fn passed_by(
+        &self,
+        observation: &Observation<'_, B>,
+        place: usize,
+        factor: Real,
+    ) -> Option<Values<B>> {
+        let column = self.columns.get(place)?;
+        let scale = 1.0 / single(factor.max(Real::MIN_POSITIVE));
+        let mut passed = Values::zeros(self.shape.lows());
+        for row in observation.rows() {
+            passed.put(row, observation.of_white(row, column[row] * scale));
+        }
+        Some(passed)
     }
 
     /// Lets a derivative by a shape of the first own term change what passes it by the same share, if all noise does.
     pub(super) fn pass_slope(&self, slope: &mut Values<B>) {
-        if self.passed.is_none() {
+        if !self.is_passed {
             return;
         }
         let Some(own) = self.own_column(0) else {
@@ -474,6 +503,24 @@ impl<const B: usize> Workspace<B> {
             }
         });
         2.0 * sum
+    }
+}
+
+/// Sets the column of a term behind a filter of all noise. `passed` is what the filter leaves of white noise.
+fn set_behind<const B: usize>(
+    observation: &Observation<'_, B>,
+    term: &Term,
+    filter: &Term,
+    passed: &Values<B>,
+    factor: Real,
+    column: &mut Values<B>,
+) {
+    let shape = filter.sampled_shape(observation.interval_s);
+    if let Some(behind) = Behind::new(term.effect, filter.effect, &shape) {
+        observation.column_of(&behind, filter, Some(factor), column);
+    } else {
+        observation.column(term, Some(factor), column);
+        column.change_by(passed, |own, passed| own * passed);
     }
 }
 

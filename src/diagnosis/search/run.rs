@@ -280,9 +280,16 @@ impl<const B: usize> Search<B> {
 
 impl<const B: usize> Solver<'_, '_, '_, B> {
     /// Lets all noise pass the filters of the best hypotheses of as many effects.
-    fn pass_all(&mut self, beam: &mut Pool<BEAM>, effects: &[&'static dyn Effect]) -> ControlFlow<()> {
+    fn pass_all(
+        &mut self,
+        beam: &mut Pool<BEAM>,
+        effects: &[&'static dyn Effect],
+    ) -> ControlFlow<()> {
         let known: Vec<Hypothesis, BEAM> = list::fill(beam.as_slice().iter().cloned());
-        for hypothesis in known.iter().filter(|hypothesis| !hypothesis.added.is_empty()) {
+        for hypothesis in known
+            .iter()
+            .filter(|hypothesis| !hypothesis.added.is_empty())
+        {
             let Some(filter) = &hypothesis.filter else {
                 continue;
             };
@@ -365,6 +372,7 @@ pub(super) fn set_common<const B: usize>(
     let common = model.terms().iter().filter(|term| !is_replaceable(term));
     work.set_common(observation, common);
     work.shape = observation.shape;
+    work.pass(observation, None);
     white
 }
 

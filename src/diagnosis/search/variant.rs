@@ -50,11 +50,18 @@ impl Variant {
             let special = effect.description().special_case;
             effect.passes_all() && special.is_some_and(|s| s.name() == filter.effect.name())
         };
+        // A mean over samples is a filter of one stage.
+        let is_one = Self::of_term(filter).whole < 2;
         let general = effects.iter().copied().find(is_general);
+        let general = general.filter(|effect| is_one || !effect.is_whole(0));
         let filter = *filter;
         general.into_iter().flat_map(move |effect| {
             let is_counted = effect.is_whole(0);
-            let around: &[Real] = if is_counted { &[0.0, -1.0, 1.0] } else { &[0.0] };
+            let around: &[Real] = if is_counted {
+                &[0.0, -1.0, 1.0]
+            } else {
+                &[0.0]
+            };
             around.iter().map(move |more| {
                 let mut term = Term::fitted(effect);
                 if is_counted {

@@ -1,7 +1,7 @@
 //! A model: the effects that make up a curve.
 
 use crate::{
-    effect::{Behind, Distribution, Effect, IEEE_952, SampledShape, padded},
+    effect::{AngleRandomWalk, Behind, Distribution, Effect, IEEE_952, SampledShape, padded},
     error::Error,
     limits::MAX_PARAMETERS,
     list,
@@ -270,10 +270,21 @@ impl Model {
     }
 }
 
-/// Whether a term passes a filter that all noise passes: it is noise, and has no shape.
+/// Whether a term passes a filter that all noise passes: it is noise, and has no shape. The white noise in front of the filter
+/// is that of the filter itself, so that other white noise comes from behind it, such as the rounding of its output.
 pub(crate) fn is_passed(term: &Term) -> bool {
     let description = term.effect.description();
-    description.parameters.is_empty() && description.distribution == Distribution::Gaussian
+    description.parameters.is_empty()
+        && description.distribution == Distribution::Gaussian
+        && !is_white(term.effect)
+}
+
+/// The white noise that filters work on.
+const WHITE: &dyn Effect = &AngleRandomWalk;
+
+/// Whether an effect is that white noise.
+pub(crate) fn is_white(effect: &dyn Effect) -> bool {
+    effect.name() == WHITE.name()
 }
 
 #[cfg(test)]

@@ -152,11 +152,12 @@ impl Story {
     /// Lets the interval of the white noise hold what it is in the stories that explain the record as well.
     fn widen<const K: usize, const B: usize>(&self, step: &mut Step<K, B>) {
         let Some(range) = self.white else { return };
-        let terms = step.model.terms().iter();
-        for (term, found) in terms.zip(&mut step.fit.coefficients) {
-            if is_white(term.effect) || is_filter(term.effect) {
-                found.widen(range.lower, range.upper);
-            }
+        let terms = step.model.terms();
+        let filter = terms.iter().position(|term| is_filter(term.effect));
+        let white = || terms.iter().position(|term| is_white(term.effect));
+        let found = filter.or_else(white);
+        if let Some(found) = found.and_then(|at| step.fit.coefficients.get_mut(at)) {
+            found.widen(range.lower, range.upper);
         }
     }
 

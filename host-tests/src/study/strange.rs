@@ -32,8 +32,9 @@ pub const KINDS: [Kind; 14] = [
         make: averaged,
     },
     Kind {
+        // The counts are rounded behind the filter.
         name: "second-order low pass of the whole signal",
-        right: &["low_pass"],
+        right: &["low_pass", "angle_random_walk"],
         keeps_white_noise: true,
         make: low_passed,
     },

@@ -2,7 +2,7 @@
 
 use super::{
     hypothesis::Hypothesis,
-    kind::{at, has_frequency, is_added, is_drifting, is_line, is_plain, is_resonance},
+    kind::{at, has_frequency, is_added, is_drifting, is_line, is_plain, is_resonance, is_white},
     refine::Solver,
     values::Values,
     variant::Variant,
@@ -74,7 +74,13 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
         }
         for effect in effects.iter().copied().filter(|effect| is_plain(*effect)) {
-            let mut known = self.model.terms().iter().chain(&hypothesis.added);
+            // White noise that comes from behind a filter of all noise, such as rounding, has no other name.
+            let is_behind = is_white(effect)
+                && hypothesis
+                    .filter
+                    .is_some_and(|filter| filter.effect.passes_all());
+            let known = self.model.terms().iter().filter(|_| !is_behind);
+            let mut known = known.chain(&hypothesis.added);
             if !known.any(|term| term.effect.name() == effect.name()) {
                 let _ = candidates.push(Term::fitted(effect));
             }

@@ -1,7 +1,9 @@
 //! The kinds of effects, as their descriptions tell them.
 
+pub(crate) use crate::model::is_white;
+
 use crate::{
-    effect::{AngleRandomWalk, Distribution, Effect},
+    effect::{Distribution, Effect},
     list::{self, numbered},
     model::Term,
     real::Real,
@@ -36,14 +38,6 @@ pub(super) fn is_resonance(effect: &dyn Effect) -> bool {
 /// Whether an effect has no shape and takes the place of no other, as most of the five terms.
 pub(super) fn is_plain(effect: &'static dyn Effect) -> bool {
     effect.replaces().is_none() && effect.mirror().is_none() && effect.parameters().is_empty()
-}
-
-/// The white noise that filters work on.
-const WHITE: &dyn Effect = &AngleRandomWalk;
-
-/// Whether an effect is that white noise.
-pub(crate) fn is_white(effect: &dyn Effect) -> bool {
-    effect.name() == WHITE.name()
 }
 
 /// Whether an effect takes the place of the white noise, as what filters it does.

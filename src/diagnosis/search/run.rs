@@ -286,17 +286,9 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         effects: &[&'static dyn Effect],
     ) -> ControlFlow<()> {
         let known: Vec<Hypothesis, BEAM> = list::fill(beam.as_slice().iter().cloned());
-        for hypothesis in known
-            .iter()
-            .filter(|hypothesis| !hypothesis.added.is_empty())
-        {
-            let Some(filter) = &hypothesis.filter else {
-                continue;
-            };
-            for of_all in Variant::passing(effects, filter, self.observation.interval_s) {
-                let begun = Hypothesis::new(Some(of_all), hypothesis.added.clone());
-                let refined = self.refine(begun, 8)?;
-                beam.enter(&refined);
+        for hypothesis in known.iter().filter(|known| !known.added.is_empty()) {
+            if let Some(of_all) = self.passing(effects, hypothesis)? {
+                beam.enter(&of_all);
             }
         }
         ControlFlow::Continue(())

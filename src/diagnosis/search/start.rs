@@ -69,13 +69,9 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 continue;
             }
             self.whole(found.clone(), &mut bars, each)?;
-            if let Some(filter) = &found.filter {
-                for of_all in Variant::passing(effects, filter, self.observation.interval_s) {
-                    leave_out_peaks(self.observation, &mut self.work.shape);
-                    let of_all = Hypothesis::new(Some(of_all), found.added.clone());
-                    let of_all = self.refine(of_all, 8)?;
-                    self.whole(of_all, &mut bars, each)?;
-                }
+            leave_out_peaks(self.observation, &mut self.work.shape);
+            if let Some(of_all) = self.passing(effects, &found)? {
+                self.whole(of_all, &mut bars, each)?;
             }
             for noise in noises {
                 leave_out_peaks(self.observation, &mut self.work.shape);
@@ -88,6 +84,29 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         self.bars = bars;
         self.work.shape = self.observation.shape;
         ControlFlow::Continue(())
+    }
+
+    /// The hypothesis in which all noise passes the filter; `None` if the list has no such filter.
+    pub(super) fn passing(
+        &mut self,
+        effects: &[&'static dyn Effect],
+        hypothesis: &Hypothesis,
+    ) -> ControlFlow<(), Option<Hypothesis>> {
+        let mut best: Option<(Hypothesis, Real)> = None;
+        let observation = self.observation;
+        if let Some(filter) = &hypothesis.filter {
+            for of_all in Variant::passing(effects, filter, observation) {
+                let tried = Hypothesis::new(Some(of_all), hypothesis.added.clone());
+                let deviance = self.deviance(&tried)?;
+                if best.as_ref().is_none_or(|(_, least)| deviance < *least) {
+                    best = Some((tried, deviance));
+                }
+            }
+        }
+        match best {
+            Some((begun, _)) => ControlFlow::Continue(Some(self.refine(begun, 8)?)),
+            None => ControlFlow::Continue(None),
+        }
     }
 
     /// Refines a hypothesis of the continuum on the whole record.

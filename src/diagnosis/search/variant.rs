@@ -38,41 +38,32 @@ impl Variant {
         }
     }
 
-    /// The filters of the list that all noise passes and that are nearest to one that the white noise alone passes: the
-    /// effect that has this one as its special case, at the same shape. A mean over samples is tried with one more and one
-    /// less.
-    pub(super) fn passing(
+    /// The filters of the list that all noise passes and that are like one that the white noise alone passes: the effect
+    /// that has this one as its special case, at the same shape. Means over any number of samples are like a filter of one
+    /// stage, because that one need not be at its best at the same width.
+    pub(super) fn passing<const B: usize>(
         effects: &[&'static dyn Effect],
         filter: &Term,
-        interval_s: Real,
-    ) -> impl Iterator<Item = Term> + use<> {
+        observation: &Observation<'_, B>,
+    ) -> impl Iterator<Item = Term> {
         let is_general = |effect: &&'static dyn Effect| {
             let special = effect.description().special_case;
             effect.passes_all() && special.is_some_and(|s| s.name() == filter.effect.name())
         };
-        // A mean over samples is a filter of one stage.
-        let is_one = Self::of_term(filter).whole < 2;
         let general = effects.iter().copied().find(is_general);
-        let general = general.filter(|effect| is_one || !effect.is_whole(0));
+        let is_counted = general.is_some_and(|effect| effect.is_whole(0));
+        let is_one = Self::of_term(filter).whole < 2;
         let filter = *filter;
-        general.into_iter().flat_map(move |effect| {
-            let is_counted = effect.is_whole(0);
-            let around: &[Real] = if is_counted {
-                &[0.0, -1.0, 1.0]
-            } else {
-                &[0.0]
-            };
-            around.iter().map(move |more| {
-                let mut term = Term::fitted(effect);
-                if is_counted {
-                    let samples = (filter.parameter(0) / interval_s + 0.5) as u32;
-                    term.set_parameter(0, (real(samples) + more).max(2.0));
-                } else {
-                    term.parameters = filter.parameters;
-                }
-                term
-            })
-        })
+        let same = general.filter(|_| !is_counted).map(|effect| {
+            let mut term = Term::fitted(effect);
+            term.parameters = filter.parameters;
+            term
+        });
+        let counted = general.filter(|_| is_counted && is_one);
+        let variants = counted.map(|effect| Self::of(effect, &observation.span));
+        let counted = variants.into_iter().flatten();
+        same.into_iter()
+            .chain(counted.map(|variant| variant.term([0.0; MAX_PARAMETERS])))
     }
 
     /// Whether two variants are the same.

@@ -17,11 +17,11 @@ use heapless::Vec;
 
 /// A noise change is told from this standardised ratio on. `cargo xtask study course` measures how often it is
 /// exceeded in clean records: in 0.1 % of those of white noise, whatever their length.
-const CHANGE: f64 = 4.1;
+const CHANGE: f64 = 4.3;
 
 /// A burst is told from this standardised ratio on. `cargo xtask study course` measures how often it is exceeded in
 /// clean records.
-const BURST: f64 = 4.6;
+const BURST: f64 = 4.85;
 
 /// Bursts are told as well if the noise is not the same in all blocks between two changes, with this p-value or less.
 const HOMOGENEOUS: f64 = 1e-5;

@@ -14,7 +14,7 @@ use allanite::{
     Model, Scale,
     diagnosis::Options,
     effect::{CATALOGUE, IEEE_952},
-    fit::State,
+    fit::{Fit, State},
 };
 use rayon::prelude::*;
 
@@ -127,14 +127,19 @@ fn diagnose(coefficients: Coefficients, measured: &Measured) -> Option<Said> {
     });
     verdict.ok()?;
     let fit = first?;
-    let truth = super::theory::squares(coefficients).map(f64::sqrt);
     Some(Said {
         adequate: fit.is_adequate(),
         claimed,
         measured: std::array::from_fn(|i| fit.coefficients[i].state == State::Measured),
-        covered: std::array::from_fn(|i| {
-            let found = &fit.coefficients[i];
-            (found.lower..=found.upper).contains(&truth[i])
-        }),
+        covered: covered(coefficients, &fit),
+    })
+}
+
+/// Whether the interval or the bound of each of the five terms contains its true value.
+pub(super) fn covered(coefficients: Coefficients, fit: &Fit) -> [bool; 5] {
+    let truth = super::theory::squares(coefficients).map(f64::sqrt);
+    std::array::from_fn(|i| {
+        let found = &fit.coefficients[i];
+        (found.lower..=found.upper).contains(&truth[i])
     })
 }

@@ -1,7 +1,12 @@
 //! Studies stationary records whose five terms have random sizes: how often an effect, a step, a warm-up or a change
 //! of the noise is told that is not there.
 
-use super::{RATE_HZ, clean::LENGTHS, measured::Sums, quantum};
+use super::{
+    RATE_HZ,
+    clean::{LENGTHS, covered},
+    measured::Sums,
+    quantum,
+};
 use crate::{
     command::diagnose::stationarity::Stationarity,
     diagnosis,
@@ -50,6 +55,8 @@ pub struct Tally {
     pub events: [usize; 4],
     /// Records in which the p-value of the five terms is below 5 %.
     pub improbable: usize,
+    /// Records in which the interval or the bound of each of the five terms contains its true value.
+    pub covered: [usize; 5],
 }
 
 /// What is said about one record.
@@ -58,6 +65,7 @@ struct Said {
     is_disturbed: bool,
     events: [bool; 4],
     is_improbable: bool,
+    covered: [bool; 5],
 }
 
 /// Diagnoses `records` records of every length of [`LENGTHS`], from the seed `first` on.
@@ -82,6 +90,9 @@ pub fn study(terms: Terms, stored: Stored, first: u64, records: u64) -> [Tally; 
                 *count += usize::from(is_told);
             }
             tally.improbable += usize::from(said.is_improbable);
+            for (count, covers) in tally.covered.iter_mut().zip(said.covered) {
+                *count += usize::from(covers);
+            }
         }
         tally
     })
@@ -140,7 +151,7 @@ fn said(terms: Terms, stored: Stored, length: u32, seed: u64) -> Option<Said> {
     let model = Model::ieee_952();
     let options = Options::default();
     diagnosis::diagnose(measured.record(), &model, &CATALOGUE, options, |step| {
-        five_terms.get_or_insert(step.fit.p_value);
+        five_terms.get_or_insert_with(|| step.fit.clone());
         let is_own = |name: &str| IEEE_952.iter().any(|effect| effect.name() == name);
         let mut terms = step.model.terms().iter();
         let added = terms.find(|term| !is_own(term.effect.name()));
@@ -159,6 +170,7 @@ fn said(terms: Terms, stored: Stored, length: u32, seed: u64) -> Option<Said> {
             has(|what| matches!(what, What::Step)),
             has(|what| matches!(what, What::WarmUp { .. })),
         ],
-        is_improbable: five_terms? < 0.05,
+        is_improbable: five_terms.as_ref()?.p_value < 0.05,
+        covered: covered(coefficients, five_terms.as_ref()?),
     })
 }

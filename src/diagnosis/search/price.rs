@@ -27,6 +27,8 @@ const FAST: Real = 20.0;
 const FILTER: Real = 12.0;
 /// A filter that has another one as its special case has to lead over it.
 const SPECIAL_FILTER: Real = 13.5;
+/// Several equal stages imitate one pole at the sample rate, which is told first.
+const STAGES: Real = 15.0;
 /// A filter of two shapes has more places, and one that imitates others has to lead over them.
 const SHAPED_FILTER: Real = 14.0;
 const SHAPED_SPECIAL_FILTER: Real = 18.0;
@@ -42,6 +44,10 @@ pub(crate) fn price(term: &Term, interval_s: Real, threshold: Real, has_bins: bo
 fn usual(term: &Term, interval_s: Real, has_bins: bool) -> Real {
     let effect = term.effect;
     if is_filter(effect) {
+        let last = effect.parameters().last();
+        if effect.description().special_case.is_some() && last.is_some_and(|p| p.name == "stages") {
+            return STAGES;
+        }
         return match (continuous(effect), effect.description().special_case) {
             (0 | 1, None) => FILTER,
             (0 | 1, Some(_)) => SPECIAL_FILTER,

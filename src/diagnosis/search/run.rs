@@ -368,6 +368,17 @@ pub(super) fn set_common<const B: usize>(
     white
 }
 
+/// The lead in cost that a hypothesis needs over its special case. A filter at the sample rate is as likely as one before
+/// sampling, which it becomes where it is slow, and has no more shapes.
+fn lead_over(general: &Hypothesis, special: &Hypothesis) -> Real {
+    let passes_all = general.terms().any(|term| term.effect.passes_all());
+    if general.parameters() > special.parameters() || passes_all {
+        OVER_SPECIAL_CASE
+    } else {
+        0.0
+    }
+}
+
 /// The hypothesis whose names have the largest weight, the sum of `exp(−Δ/2)` over those that share them: six low passes
 /// near one boxcar are a low pass. Alternatives are those of other kinds that cost little more.
 fn chosen(
@@ -390,7 +401,7 @@ fn chosen(
         .unwrap_or(plain);
     // An effect that leads little over its own special case, which it can imitate, is that one.
     let special = finals.iter().filter(|other| {
-        best.is_general_form_of(other) && other.cost < best.cost + OVER_SPECIAL_CASE
+        best.is_general_form_of(other) && other.cost < best.cost + lead_over(best, other)
     });
     let best = special
         .min_by(|a, b| a.cost.total_cmp(&b.cost))

@@ -75,7 +75,7 @@ pub(crate) fn print(records: u64, only: Option<Preset>, symbol: Option<&str>, wa
 pub(crate) fn print_mixtures(records: u64, seed: u64) {
     println!("{records} records of each length from seed {seed} on; shares in %");
     println!(
-        "{:>14} {:>7} {:>8} {:>7} {:>5} {:>14} | {:>5} {:>6} {:>5} {:>5} | {:>7}",
+        "{:>14} {:>7} {:>8} {:>7} {:>5} {:>14} | {:>5} {:>6} {:>5} {:>5} | {:>7} | Q, N, B, K, R covered",
         "terms",
         "stored",
         "samples",
@@ -103,9 +103,12 @@ pub(crate) fn print_mixtures(records: u64, seed: u64) {
                 for (width, count) in [5, 6, 5, 5].into_iter().zip(tally.events) {
                     print!(" {:>width$.2}", percent(count));
                 }
+                print!(" | {:>7.1} |", percent(tally.improbable));
+                for count in tally.covered {
+                    print!(" {:.1}", percent(count));
+                }
                 println!(
-                    " | {:>7.1}  {:?}, seeds {:?}",
-                    percent(tally.improbable),
+                    "  {:?}, seeds {:?}",
                     counted(&tally.told),
                     tally.not_stationary
                 );

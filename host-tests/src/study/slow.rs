@@ -5,6 +5,7 @@ use crate::simulate::{Coefficients, Hidden, Preset, Random, Simulator};
 use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
 use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF as _, Normal};
 use std::f64::consts::PI;
 
 /// The benchmark of Nikolic (2016): white noise and Gauss–Markov noise, in rad and s, for 12 h at 400 Hz.
@@ -106,10 +107,20 @@ pub struct Limited {
     pub correlation_time_s: f64,
     /// The root mean square.
     pub rms: f64,
+    /// How far `−2 ln L` of the whole periodogram is expected to fall with noise of this size.
+    pub fall: f64,
     /// Whether the noise was told, alone or as an alternative.
     pub told: bool,
     /// What was said.
     pub said: String,
+}
+
+impl Limited {
+    /// The probability with which the ideal test, which knows the correlation time, finds the noise: that of a noncentral χ²
+    /// of one degree of freedom on one side.
+    pub fn ideal(&self) -> f64 {
+        Normal::standard().cdf(self.fall.sqrt() - LIMIT.sqrt())
+    }
 }
 
 /// The numbers of samples of a record.
@@ -141,6 +152,7 @@ pub fn limited(factor: f64, records: u64) -> Vec<Limited> {
                 samples,
                 correlation_time_s,
                 rms,
+                fall: rows(base, samples, correlation_time_s).ratio(rms * rms),
                 told: said.compared(&["gauss_markov"]).among,
                 said: said.words(),
             })

@@ -1,6 +1,9 @@
 //! Slow Gauss–Markov noise.
 
-use host_tests::study::slow::{BENCHMARK, benchmark, limited};
+use host_tests::study::slow::{BENCHMARK, Limited, benchmark, limited};
+
+/// The probability of the ideal test from which on noise is told surely.
+const SURE: f64 = 0.99;
 
 pub(crate) fn print(records: u64, limits: u64, factor: f64) {
     let t = benchmark(records);
@@ -27,10 +30,19 @@ pub(crate) fn print(records: u64, limits: u64, factor: f64) {
         "\n{factor} times the ideal limit, correlation time 3 s to a tenth of the record: told in {told} of {} records",
         all.len()
     );
+    let ideal: f64 = all.iter().map(Limited::ideal).sum();
+    println!("the ideal test, which knows the correlation time, would tell {ideal:.1}");
+    let clear: Vec<&Limited> = all.iter().filter(|one| one.ideal() > SURE).collect();
+    let told = clear.iter().filter(|one| one.told).count();
+    println!(
+        "where it would tell more than {:.0} %: told in {told} of {}",
+        100.0 * SURE,
+        clear.len()
+    );
     for one in all.iter().filter(|one| !one.told) {
         println!(
-            "  {:?}, {} samples, {:.3} s, rms {:.4}: {}",
-            one.preset, one.samples, one.correlation_time_s, one.rms, one.said
+            "  {:?}, {} samples, {:.3} s, rms {:.4}, an expected fall of {:.1}: {}",
+            one.preset, one.samples, one.correlation_time_s, one.rms, one.fall, one.said
         );
     }
 }

@@ -125,7 +125,7 @@ fn shape(hidden: &Hidden, interval_s: f64) -> SampledShape {
 }
 
 /// Whether the effect is a sinusoid.
-fn is_line(hidden: &Hidden, interval_s: f64) -> bool {
+pub(super) fn is_line(hidden: &Hidden, interval_s: f64) -> bool {
     let shape = shape(hidden, interval_s);
     hidden.effect.response(1.0, &shape).is_some()
 }
@@ -139,6 +139,28 @@ fn line(hidden: &Hidden, c: Coefficients, samples: usize, interval_s: f64) -> [f
     let ratio = density / hidden.coefficient.powi(2);
     let frequency = (24.0 * ratio / n.powi(3)).sqrt() / (TAU * x);
     [density, (2.0 * ratio / n).sqrt(), frequency]
+}
+
+/// The density of an effect, as a variance.
+pub(super) struct Density(Vec<f64>);
+
+impl Density {
+    /// That of an effect in a record with this sample interval.
+    pub(super) fn new(hidden: &Hidden, interval_s: f64) -> Self {
+        Self(density(hidden, interval_s))
+    }
+
+    /// The density at a frequency in periods per sample.
+    pub(super) fn at(&self, x: f64) -> f64 {
+        between(&self.0, x)
+    }
+}
+
+/// The value of a grid at a frequency in periods per sample.
+fn between(grid: &[f64], x: f64) -> f64 {
+    let place = x * (2 * LAGS) as f64;
+    let (i, share) = (place as usize, place.fract());
+    (1.0 - share) * grid[i] + share * grid[i + 1]
 }
 
 /// The density of an effect and its derivatives by the logarithms of its shape parameters, at evenly spaced
@@ -170,11 +192,7 @@ impl Grids {
 
     /// The three at a frequency in periods per sample.
     fn at(&self, x: f64) -> [f64; 3] {
-        let place = x * (2 * LAGS) as f64;
-        let (i, share) = (place as usize, place.fract());
-        self.0
-            .each_ref()
-            .map(|grid| (1.0 - share) * grid[i] + share * grid[i + 1])
+        self.0.each_ref().map(|grid| between(grid, x))
     }
 }
 

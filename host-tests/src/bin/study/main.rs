@@ -18,6 +18,7 @@ mod peers;
 mod precision;
 mod self_test;
 mod slow;
+mod smallest;
 mod speed;
 mod strange;
 mod theory;
@@ -111,6 +112,12 @@ enum Study {
         /// Multiply the limits
         #[arg(long, default_value_t = 2.0)]
         factor: f64,
+    },
+    /// Count how many records tell an effect of the size that the whole periodogram would show, and of larger ones
+    Smallest {
+        /// Number of records per effect
+        #[arg(long, default_value_t = 100)]
+        records: u64,
     },
     /// Count what is said of noise that the catalogue does not have, or has only nearly
     Strange {
@@ -298,6 +305,7 @@ fn main() -> Result<()> {
             limits,
             factor,
         } => slow::print(records, limits, factor),
+        Study::Smallest { records } => smallest::print(records),
         Study::Strange { records } => strange::print(records),
         Study::Detection {
             records,

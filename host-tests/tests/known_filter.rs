@@ -155,6 +155,33 @@ fn every_command_that_fits_a_model_takes_a_filter() {
     assert!(page.contains("five terms behind the given low pass are adequate"));
 }
 
+/// A moving average that the program of the log took lets everything pass, quantization included. Known, it leaves the five
+/// terms; unknown, it is named alone.
+#[test]
+fn a_moving_average_of_the_whole_output_can_be_known() {
+    let folder = TempDir::new().unwrap();
+    let average = "moving_average:samples=5";
+    let simulate = ["simulate", "mems", "--duration", "655.36", "--effect"];
+    output(
+        folder.path(),
+        &[&simulate[..], &[average, "--output", "log.csv"]].concat(),
+    );
+    let known = diagnosed(folder.path(), &["--filter", average]);
+    assert_eq!(known["verdict"], "adequate", "{known}");
+    assert_eq!(known["filter"]["fits"], true);
+    let fitted = json(folder.path(), &["fit", "log.csv", "--filter", average]);
+    let coefficients = fitted["axes"][0]["coefficients"].as_array().unwrap();
+    for (symbol, truth) in [("Q", 2e-4), ("N", 5e-3)] {
+        let mut found = coefficients.iter();
+        let found = found.find(|found| found["symbol"] == symbol).unwrap();
+        assert_near(&found["value"], truth, 0.05);
+    }
+    let unknown = diagnosed(folder.path(), &[]);
+    let missing = unknown["missing"].as_array().unwrap();
+    assert_eq!(missing.len(), 1, "{missing:?}");
+    assert_eq!(missing[0]["effect"], "moving_average", "{missing:?}");
+}
+
 #[test]
 fn what_is_no_filter_is_refused() {
     let folder = TempDir::new().unwrap();

@@ -89,6 +89,28 @@ fn a_filter_at_the_sample_rate_has_nothing_beside_it() {
     told(&[("digital_low_pass", [time_s, 4.0, 0.0], N)], 0.05);
 }
 
+/// Software that smooths a log smooths its quantization and flicker noise too. They are no resonances and lines.
+#[test]
+fn a_mean_over_samples_of_the_whole_output_has_nothing_beside_it() {
+    for samples in [3.0, 5.0, 9.0] {
+        told(&[("moving_average", [samples, 0.0, 0.0], N)], 1e-6);
+    }
+}
+
+#[test]
+fn a_line_behind_a_moving_average_is_told_from_it() {
+    let line = ("sinusoid", [7.7, 0.0, 0.0], 0.3 * WHITE);
+    told(&[line, ("moving_average", [4.0, 0.0, 0.0], N)], 1e-3);
+}
+
+#[test]
+fn a_low_pass_of_the_whole_output_has_nothing_beside_it() {
+    for cutoff_hz in [12.0, 25.0] {
+        let time_s = 1.0 / (std::f64::consts::TAU * cutoff_hz);
+        told(&[("output_low_pass", [time_s, 2.0, 0.0], N)], 0.05);
+    }
+}
+
 #[test]
 fn a_line_below_the_edge_of_a_low_pass_is_told_from_it() {
     let line = ("sinusoid", [1.362, 0.0, 0.0], 3.9 * WHITE);

@@ -94,6 +94,10 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     ) -> ControlFlow<(), Option<Hypothesis>> {
         let mut best: Option<(Hypothesis, Real)> = None;
         let observation = self.observation;
+        // Octaves hardly show the other noise behind a filter. Without room for bins, none of this is compiled.
+        if B == 0 || !observation.has_bins() {
+            return ControlFlow::Continue(None);
+        }
         if let Some(filter) = &hypothesis.filter {
             for of_all in Variant::passing(effects, filter, observation) {
                 let tried = Hypothesis::new(Some(of_all), hypothesis.added.clone());

@@ -30,4 +30,19 @@ impl Effect for Behind<'_> {
         let kernel = self.effect.kernel_behind(self.filter, lag, shape);
         kernel.unwrap_or(0.0)
     }
+
+    /// Each distance leads to the next one, so that the filter is asked once for each.
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        let tau_s = m * shape.interval_s;
+        let per_square = 1.0 / (tau_s * tau_s);
+        let (mut before, mut here) = (self.kernel(0.0, shape), self.kernel(m, shape));
+        let at_zero = 2.0 * (here - before);
+        let mut x = m;
+        for value in values {
+            x += m;
+            let next = self.kernel(x, shape);
+            *value = per_square * (next - 2.0 * here + before - at_zero);
+            (before, here) = (here, next);
+        }
+    }
 }

@@ -68,7 +68,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     }
 
     /// The lowest frequency at which a filter passes less than half of the white noise, in Hz.
-    fn cutoff_hz(&self, filter: &Term) -> Option<Real> {
+    pub(super) fn cutoff_hz(&self, filter: &Term) -> Option<Real> {
         let white = self.white?;
         let (mut passed, mut all) = (Values::<B>::NONE, Values::<B>::NONE);
         self.observation.column(&white, Some(1.0), &mut all);

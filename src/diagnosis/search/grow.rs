@@ -58,7 +58,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         each: &mut dyn FnMut(&Hypothesis) -> Real,
     ) -> ControlFlow<()> {
         let mut candidates: Vec<Term, 12> = Vec::new();
-        self.load(hypothesis);
+        self.load(hypothesis)?;
         for effect in effects.iter().copied().filter(|effect| is_added(*effect)) {
             if is_drifting(effect) {
                 continue;

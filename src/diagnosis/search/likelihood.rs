@@ -12,7 +12,7 @@
 
 use super::{rows::Observation, values::Values};
 use crate::{
-    effect::Behind,
+    effect::{Behind, Effect},
     limits::{MAX_EFFECTS, MAX_SHAPE},
     list::numbered,
     math,
@@ -41,9 +41,11 @@ const CHANGED: usize = 4;
 pub(crate) struct Workspace<const B: usize> {
     /// The columns of the terms that every hypothesis has, then the own ones, those of the white noise and of what was added.
     columns: Vec<Values<B>, MAX_EFFECTS>,
-    /// The number of the columns that every hypothesis has, their terms and factors.
+    /// The number of the columns that every hypothesis has, their effects and factors.
     common: usize,
-    terms: Vec<(Term, Real), MAX_EFFECTS>,
+    effects: Vec<(&'static dyn Effect, Real), MAX_EFFECTS>,
+    /// The filter among them that all noise passes, and its place.
+    known: Option<(usize, Term)>,
     /// Whether the common columns are those behind a filter of all noise.
     is_passed: bool,
     /// The factors of the own columns.
@@ -69,7 +71,8 @@ impl<const B: usize> Workspace<B> {
     pub(crate) const NEW: Self = Self {
         columns: Vec::new(),
         common: 0,
-        terms: Vec::new(),
+        effects: Vec::new(),
+        known: None,
         is_passed: false,
         factors: Vec::new(),
         replaced: Vec::new(),
@@ -112,11 +115,15 @@ impl<const B: usize> Workspace<B> {
     ) {
         self.columns.clear();
         self.factors.clear();
-        self.terms.clear();
+        self.effects.clear();
+        self.known = None;
         self.is_passed = false;
         for term in terms {
             if let Some(factor) = self.push_column(observation, term) {
-                let _ = self.terms.push((*term, factor));
+                if term.effect.passes_all() {
+                    self.known = Some((self.effects.len(), *term));
+                }
+                let _ = self.effects.push((term.effect, factor));
             }
         }
         self.common = self.columns.len();
@@ -127,35 +134,29 @@ impl<const B: usize> Workspace<B> {
     #[inline(never)]
     pub(crate) fn pass(&mut self, observation: &Observation<'_, B>, filter: Option<&Term>) {
         let own = filter.filter(|filter| filter.effect.passes_all());
-        let known = || {
-            let mut terms = numbered(self.terms.iter());
-            terms.find(|(_, (term, _))| term.effect.passes_all())
-        };
-        let (filter, place, factor) = match (own, known()) {
-            (Some(filter), _) => (*filter, self.common, self.factor(0)),
+        let filter = match (own, &self.known) {
+            (Some(filter), _) => Some((*filter, self.common, self.factor(0))),
             // A known filter stays as it is.
             (None, Some(_)) if self.is_passed => return,
-            (None, Some((place, (filter, factor)))) => (*filter, place, *factor),
-            (None, None) => {
-                if core::mem::take(&mut self.is_passed) {
-                    for (column, (term, factor)) in self.columns.iter_mut().zip(&self.terms) {
-                        if is_passed(term) {
-                            observation.column(term, Some(*factor), column);
-                        }
-                    }
-                }
-                return;
+            (None, Some((place, filter))) => {
+                let factor = self.effects.get(*place).map_or(0.0, |(_, factor)| *factor);
+                Some((*filter, *place, factor))
             }
+            (None, None) => None,
         };
-        let Some(passed) = self.passed_by(observation, place, factor) else {
+        if filter.is_none() && !self.is_passed {
             return;
-        };
-        for (column, (term, factor)) in self.columns.iter_mut().zip(&self.terms) {
-            if is_passed(term) {
-                set_behind(observation, term, &filter, &passed, *factor, column);
+        }
+        let passed = filter.and_then(|(filter, place, factor)| {
+            Some((filter, self.passed_by(observation, place, factor)?))
+        });
+        for (column, (effect, factor)) in self.columns.iter_mut().zip(&self.effects) {
+            let term = Term::new(*effect);
+            if is_passed(&term) {
+                set_behind(observation, &term, passed.as_ref(), *factor, column);
             }
         }
-        self.is_passed = true;
+        self.is_passed = passed.is_some();
     }
 
     /// Lets all columns of a model pass its filter of all noise, if it has one. All of them are own columns.
@@ -167,10 +168,11 @@ impl<const B: usize> Workspace<B> {
         let Some(passed) = self.passed_by(observation, place, self.factor(place)) else {
             return;
         };
+        let passed = Some((*filter, passed));
         let columns = self.columns.iter_mut().zip(&self.factors);
         for (term, (column, factor)) in model.terms().iter().zip(columns) {
             if is_passed(term) {
-                set_behind(observation, term, filter, &passed, *factor, column);
+                set_behind(observation, term, passed.as_ref(), *factor, column);
             }
         }
     }
@@ -201,8 +203,8 @@ impl<const B: usize> Workspace<B> {
             return;
         };
         let mut all = Values::zeros(self.shape.lows());
-        let passing = |i: usize| match self.terms.get(i) {
-            Some((term, _)) => is_passed(term),
+        let passing = |i: usize| match self.effects.get(i) {
+            Some((effect, _)) => is_passed(&Term::new(*effect)),
             None => i == self.common,
         };
         for (i, column) in numbered(&self.columns).filter(|(i, _)| passing(*i)) {
@@ -506,21 +508,24 @@ impl<const B: usize> Workspace<B> {
     }
 }
 
-/// Sets the column of a term behind a filter of all noise. `passed` is what the filter leaves of white noise.
+/// Sets the column of a term behind a filter of all noise, which comes with what it leaves of white noise, or behind none.
 fn set_behind<const B: usize>(
     observation: &Observation<'_, B>,
     term: &Term,
-    filter: &Term,
-    passed: &Values<B>,
+    passed: Option<&(Term, Values<B>)>,
     factor: Real,
     column: &mut Values<B>,
 ) {
-    let shape = filter.sampled_shape(observation.interval_s);
-    if let Some(behind) = Behind::new(term.effect, filter.effect, &shape) {
-        observation.column_of(&behind, filter, Some(factor), column);
-    } else {
+    let exact = passed.and_then(|(filter, _)| {
+        let shape = filter.sampled_shape(observation.interval_s);
+        let behind = Behind::new(term.effect, filter.effect, &shape)?;
+        Some(observation.column_of(&behind, filter, Some(factor), column))
+    });
+    if exact.is_none() {
         observation.column(term, Some(factor), column);
-        column.change_by(passed, |own, passed| own * passed);
+        if let Some((_, passed)) = passed {
+            column.change_by(passed, |own, passed| own * passed);
+        }
     }
 }
 

@@ -86,9 +86,10 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
 
     /// Sets the columns of a hypothesis, and the model at its squares, or at the measurement if it has none yet.
     #[inline(never)]
-    pub(super) fn load(&mut self, hypothesis: &Hypothesis) {
+    pub(super) fn load(&mut self, hypothesis: &Hypothesis) -> ControlFlow<()> {
         let terms = self.own_terms(hypothesis);
         self.work.set_own(self.observation, terms.iter());
+        (self.pause)()?;
         self.work.pass(self.observation, hypothesis.filter.as_ref());
         let mut squares = Vector::ZEROS;
         for (i, square) in numbered(hypothesis.squares) {
@@ -100,12 +101,13 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         } else {
             self.work.model_of(&squares)
         };
+        ControlFlow::Continue(())
     }
 
     /// `−2 ln L` of a hypothesis whose shapes stay.
     pub(super) fn deviance(&mut self, hypothesis: &Hypothesis) -> ControlFlow<(), Real> {
         (self.pause)()?;
-        self.load(hypothesis);
+        self.load(hypothesis)?;
         (self.pause)()?;
         ControlFlow::Continue(self.work.solve(10))
     }
@@ -133,7 +135,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     ) -> ControlFlow<(), Hypothesis> {
         let bar = self.bar(&hypothesis) - 2.0 * hypothesis.parameters();
         let mut hypothesis = hypothesis;
-        self.load(&hypothesis);
+        self.load(&hypothesis)?;
         (self.pause)()?;
         let mut deviance = self.work.solve(10);
         let mut terms = self.own_terms(&hypothesis);
@@ -161,6 +163,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             }
             let (before, model) = (self.work.squares, self.work.model);
             self.work.exchange_own(self.observation, &terms, &changed);
+            (self.pause)()?;
             self.work.pass(self.observation, changed.first());
             (self.pause)()?;
             let now = self.work.solve(3);

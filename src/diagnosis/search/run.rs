@@ -369,13 +369,13 @@ pub(super) fn set_common<const B: usize>(
 }
 
 /// The lead in cost that a hypothesis needs over its special case. A filter at the sample rate is as likely as one before
-/// sampling, which it becomes where it is slow, and has no more shapes.
+/// sampling, which it becomes where it is slow, and has no more shapes: it has to explain the record better at all.
 fn lead_over(general: &Hypothesis, special: &Hypothesis) -> Real {
     let passes_all = general.terms().any(|term| term.effect.passes_all());
     if general.parameters() > special.parameters() || passes_all {
         OVER_SPECIAL_CASE
     } else {
-        0.0
+        AS_GOOD
     }
 }
 

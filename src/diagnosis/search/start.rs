@@ -11,6 +11,7 @@ use crate::{
     effect::Effect,
     list::numbered,
     math,
+    model::Term,
     real::{Real, real, single},
     spectrum::Bin,
 };
@@ -19,6 +20,9 @@ use core::ops::ControlFlow;
 /// The shapes of a filter that are tried for each factor of two of its first parameter, and of each other one.
 pub(super) const FILTER_STEPS: Real = 1.0;
 pub(super) const FILTER_OTHERS: u32 = 3;
+
+/// The frequency at which a mean passes half of the white noise, times its length.
+const HALF_OF_MEAN: Real = 0.443;
 
 /// The correlation times that are tried for each factor of two.
 const NOISE_STEPS: Real = 1.0;
@@ -47,6 +51,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         // Scores in the continuum compare with no others.
         let mut bars = self.bars;
         let mut plain: Option<Real> = None;
+        let mut best: Option<(Term, Real)> = None;
         let mut next = Some(None);
         while let Some(variant) = next {
             leave_out_peaks(self.observation, &mut self.work.shape);
@@ -68,6 +73,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
             if !is_asked_for {
                 continue;
             }
+            if let Some(filter) = &found.filter
+                && best.as_ref().is_none_or(|(_, least)| found.score < *least)
+            {
+                best = Some((*filter, found.score));
+            }
             self.whole(found.clone(), &mut bars, each)?;
             leave_out_peaks(self.observation, &mut self.work.shape);
             if let Some(of_all) = self.passing(effects, &found)? {
@@ -81,6 +91,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 }
             }
         }
+        if let Some((filter, _)) = best.filter(|_| B > 0 && self.observation.has_bins()) {
+            if let Some(mean) = self.mean_like(effects, &filter)? {
+                self.whole(mean, &mut bars, each)?;
+            }
+        }
         self.bars = bars;
         self.work.shape = self.observation.shape;
         ControlFlow::Continue(())
@@ -92,19 +107,48 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         effects: &[&'static dyn Effect],
         hypothesis: &Hypothesis,
     ) -> ControlFlow<(), Option<Hypothesis>> {
-        let mut best: Option<(Hypothesis, Real)> = None;
-        let observation = self.observation;
         // Octaves hardly show the other noise behind a filter. Without room for bins, none of this is compiled.
-        if B == 0 || !observation.has_bins() {
+        if B == 0 || !self.observation.has_bins() {
             return ControlFlow::Continue(None);
         }
-        if let Some(filter) = &hypothesis.filter {
-            for of_all in Variant::passing(effects, filter, observation) {
-                let tried = Hypothesis::new(Some(of_all), hypothesis.added.clone());
-                let deviance = self.deviance(&tried)?;
-                if best.as_ref().is_none_or(|(_, least)| deviance < *least) {
-                    best = Some((tried, deviance));
-                }
+        let Some(filter) = &hypothesis.filter else {
+            return ControlFlow::Continue(None);
+        };
+        let filters = Variant::passing(effects, filter, self.observation.interval_s);
+        // Means alone are looked for once, on the whole record.
+        let is_alone = hypothesis.added.is_empty();
+        let mut filters = filters.filter(|filter| !(is_alone && filter.effect.is_whole(0)));
+        self.best_of(&mut filters, &hypothesis.added)
+    }
+
+    /// The means over samples that pass about what a filter passes, the best one of them; `None` if the list has none.
+    fn mean_like(
+        &mut self,
+        effects: &[&'static dyn Effect],
+        filter: &Term,
+    ) -> ControlFlow<(), Option<Hypothesis>> {
+        let Some(cutoff_hz) = self.cutoff_hz(filter) else {
+            return ControlFlow::Continue(None);
+        };
+        let samples = HALF_OF_MEAN / (cutoff_hz * self.observation.interval_s);
+        // What lies between the zeros of a mean looks like peaks, and tells how many samples there are.
+        self.work.shape = self.observation.shape;
+        let mut filters = Variant::means(effects, samples);
+        self.best_of(&mut filters, &Added::new())
+    }
+
+    /// The best of these filters, beside what is added.
+    fn best_of(
+        &mut self,
+        filters: &mut dyn Iterator<Item = Term>,
+        added: &Added,
+    ) -> ControlFlow<(), Option<Hypothesis>> {
+        let mut best: Option<(Hypothesis, Real)> = None;
+        for filter in filters {
+            let tried = Hypothesis::new(Some(filter), added.clone());
+            let deviance = self.deviance(&tried)?;
+            if best.as_ref().is_none_or(|(_, least)| deviance < *least) {
+                best = Some((tried, deviance));
             }
         }
         match best {
@@ -139,7 +183,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
     ) -> ControlFlow<(), Hypothesis> {
         let mut best = hypothesis.clone();
         best.filter = None;
-        self.load(&best);
+        self.load(&best)?;
         let mut least = Real::INFINITY;
         for term in variant
             .grid(self.observation, FILTER_STEPS, FILTER_OTHERS)
@@ -166,7 +210,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         effect: &'static dyn Effect,
         hypothesis: &Hypothesis,
     ) -> ControlFlow<(), Option<Hypothesis>> {
-        self.load(hypothesis);
+        self.load(hypothesis)?;
         let mut best: Option<Hypothesis> = None;
         let mut least = Real::INFINITY;
         let own = self.work.own();

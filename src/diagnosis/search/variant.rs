@@ -2,12 +2,16 @@
 
 use super::rows::Observation;
 use crate::{
-    effect::{Effect, SearchRange},
+    effect::{DecimationFilter, Effect, SearchRange, Span},
     limits::MAX_PARAMETERS,
     math,
     model::Term,
     real::{Real, real},
 };
+
+/// Means over so many times the number of samples are tried.
+const NEARLY_LOW: Real = 0.7;
+const NEARLY_HIGH: Real = 1.4;
 
 /// An effect, with its whole number if it has one.
 #[derive(Clone, Copy)]
@@ -21,7 +25,7 @@ impl Variant {
     /// The variants of an effect, one after the other.
     pub(super) fn of(
         effect: &'static dyn Effect,
-        observation_span: &crate::effect::Span,
+        observation_span: &Span,
     ) -> impl Iterator<Item = Self> {
         let whole = (0..MAX_PARAMETERS).find(|&j| effect.is_whole(j));
         let range = whole.and_then(|j| effect.search_range(j, observation_span));
@@ -39,31 +43,61 @@ impl Variant {
     }
 
     /// The filters of the list that all noise passes and that are like one that the white noise alone passes: the effect
-    /// that has this one as its special case, at the same shape. Means over any number of samples are like a filter of one
-    /// stage, because that one need not be at its best at the same width.
-    pub(super) fn passing<const B: usize>(
+    /// that has this one as its special case, at the same shape. Like a filter of one stage are means over nearly as many
+    /// samples.
+    pub(super) fn passing(
         effects: &[&'static dyn Effect],
         filter: &Term,
-        observation: &Observation<'_, B>,
+        interval_s: Real,
     ) -> impl Iterator<Item = Term> {
         let is_general = |effect: &&'static dyn Effect| {
             let special = effect.description().special_case;
-            effect.passes_all() && special.is_some_and(|s| s.name() == filter.effect.name())
+            let is_special = special.is_some_and(|s| s.name() == filter.effect.name());
+            effect.passes_all() && is_special && !effect.is_whole(0)
         };
         let general = effects.iter().copied().find(is_general);
-        let is_counted = general.is_some_and(|effect| effect.is_whole(0));
-        let is_one = Self::of_term(filter).whole < 2;
-        let filter = *filter;
-        let same = general.filter(|_| !is_counted).map(|effect| {
+        let parameters = filter.parameters;
+        let same = general.map(|effect| {
             let mut term = Term::fitted(effect);
-            term.parameters = filter.parameters;
+            term.parameters = parameters;
             term
         });
-        let counted = general.filter(|_| is_counted && is_one);
-        let variants = counted.map(|effect| Self::of(effect, &observation.span));
-        let counted = variants.into_iter().flatten();
-        same.into_iter()
-            .chain(counted.map(|variant| variant.term([0.0; MAX_PARAMETERS])))
+        let is_mean = filter.effect.name() == DecimationFilter.description().name
+            && Self::of_term(filter).whole < 2;
+        let samples = if is_mean {
+            filter.parameter(0) / interval_s
+        } else {
+            0.0
+        };
+        same.into_iter().chain(Self::means(effects, samples))
+    }
+
+    /// The means of the list over nearly this number of samples, which all noise passes.
+    pub(super) fn means(
+        effects: &[&'static dyn Effect],
+        samples: Real,
+    ) -> impl Iterator<Item = Term> {
+        let (low, high) = (
+            math::floor(NEARLY_LOW * samples),
+            math::ceil(NEARLY_HIGH * samples),
+        );
+        let counted = |effect: &&'static dyn Effect| effect.passes_all() && effect.is_whole(0);
+        let counted = effects.iter().copied().filter(counted);
+        counted.flat_map(move |effect| {
+            let parameter = effect.parameters().first();
+            let span = Span {
+                interval_s: 1.0,
+                longest_tau_s: high,
+            };
+            let range = parameter.map(|parameter| (parameter.search_range)(&span));
+            let (least, most) = range.map_or((1.0, 0.0), |range| (range.low, range.high));
+            let (first, last) = (low.max(least) as u32, high.min(most) as u32);
+            (first..=last).map(move |count| {
+                let mut term = Term::fitted(effect);
+                term.set_parameter(0, real(count));
+                term
+            })
+        })
     }
 
     /// Whether two variants are the same.

@@ -58,7 +58,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         range: &mut Option<WhiteRange>,
     ) -> ControlFlow<()> {
         (self.pause)()?;
-        self.load(hypothesis);
+        self.load(hypothesis)?;
         let place = self.work.common();
         let square = self.work.squares[place];
         let per_column = self.work.factor(0);

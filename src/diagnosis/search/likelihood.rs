@@ -44,8 +44,8 @@ pub(crate) struct Workspace<const B: usize> {
     /// The number of the columns that every hypothesis has, their effects and factors.
     common: usize,
     effects: Vec<(&'static dyn Effect, Real), MAX_EFFECTS>,
-    /// The filter among them that all noise passes, and its place.
-    known: Option<(usize, Term)>,
+    /// The filter among them that all noise passes, and its place. It is a list because an empty one is all zero.
+    known: Vec<(usize, Term), 1>,
     /// Whether the common columns are those behind a filter of all noise.
     is_passed: bool,
     /// The factors of the own columns.
@@ -72,7 +72,7 @@ impl<const B: usize> Workspace<B> {
         columns: Vec::new(),
         common: 0,
         effects: Vec::new(),
-        known: None,
+        known: Vec::new(),
         is_passed: false,
         factors: Vec::new(),
         replaced: Vec::new(),
@@ -116,12 +116,12 @@ impl<const B: usize> Workspace<B> {
         self.columns.clear();
         self.factors.clear();
         self.effects.clear();
-        self.known = None;
+        self.known.clear();
         self.is_passed = false;
         for term in terms {
             if let Some(factor) = self.push_column(observation, term) {
                 if term.effect.passes_all() {
-                    self.known = Some((self.effects.len(), *term));
+                    let _ = self.known.push((self.effects.len(), *term));
                 }
                 let _ = self.effects.push((term.effect, factor));
             }
@@ -134,7 +134,7 @@ impl<const B: usize> Workspace<B> {
     #[inline(never)]
     pub(crate) fn pass(&mut self, observation: &Observation<'_, B>, filter: Option<&Term>) {
         let own = filter.filter(|filter| filter.effect.passes_all());
-        let filter = match (own, &self.known) {
+        let filter = match (own, self.known.first()) {
             (Some(filter), _) => Some((*filter, self.common, self.factor(0))),
             // A known filter stays as it is.
             (None, Some(_)) if self.is_passed => return,

@@ -91,10 +91,10 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
                 }
             }
         }
-        if let Some((filter, _)) = best.filter(|_| B > 0 && self.observation.has_bins()) {
-            if let Some(mean) = self.mean_like(effects, &filter)? {
-                self.whole(mean, &mut bars, each)?;
-            }
+        if let Some((filter, _)) = best.filter(|_| B > 0 && self.observation.has_bins())
+            && let Some(mean) = self.mean_like(effects, &filter)?
+        {
+            self.whole(mean, &mut bars, each)?;
         }
         self.bars = bars;
         self.work.shape = self.observation.shape;

@@ -2,9 +2,12 @@
 
 use allanite::Coefficient;
 use host_tests::{
+    program::json,
     simulate::{Coefficients, Hidden, Simulator},
     study::{measured::Measured, said::Said},
 };
+use std::fs;
+use tempfile::TempDir;
 
 const RATE_HZ: f64 = 100.0;
 const SAMPLES: usize = 1 << 16;
@@ -179,4 +182,74 @@ fn a_filter_and_noise_that_can_exchange_their_times_leave_n_open() {
         assert!(holds(white, 0.98 * plateau), "{seed}: {words}, {white:?}");
     }
     assert!(named >= 2 * SEEDS, "{named}");
+}
+
+/// The taps of a filter whose gain has the square `(1 + (f/10 Hz)²)/(1 + (f/30 Hz)⁴)` up to half the sample rate.
+fn rise(taps: usize) -> Vec<f64> {
+    const STEPS: usize = 4096;
+    let gain = |hz: f64| ((1.0 + (hz / 10.0).powi(2)) / (1.0 + (hz / 30.0).powi(4))).sqrt();
+    let tap = |n: usize| {
+        let lag = n as f64 - (taps / 2) as f64;
+        let at = |step: usize| {
+            let cycles = 0.5 * (step as f64 + 0.5) / STEPS as f64;
+            gain(cycles * RATE_HZ) * (std::f64::consts::TAU * cycles * lag).cos()
+        };
+        (0..STEPS).map(at).sum::<f64>() / STEPS as f64
+    };
+    (0..taps).map(tap).collect()
+}
+
+/// A sensor that filters before it lowers its rate folds nothing back. The catalogue's rising noise is folded, so that the
+/// diagnosis takes another effect for the difference, and tells what it adds to the plateau that everybody reads off the curve.
+#[test]
+fn a_rise_that_the_catalogue_has_nearly_leaves_the_plateau_to_read() {
+    const TAPS: usize = 129;
+    let white = Coefficients {
+        angle_random_walk: N,
+        ..Coefficients::default()
+    };
+    let rest = Coefficients {
+        angle_random_walk: 0.0,
+        ..GYRO
+    };
+    let record = |coefficients, seed| {
+        let simulator = Simulator::with_hidden(coefficients, &[], RATE_HZ, seed);
+        simulator.take(SAMPLES + TAPS).collect::<Vec<f64>>()
+    };
+    let taps = rise(TAPS);
+    let mut read = Vec::new();
+    for seed in 0..SEEDS {
+        let folder = TempDir::new().unwrap();
+        let (white, rest) = (record(white, seed), record(rest, seed + 1000));
+        let passed = white.windows(TAPS).map(|window| {
+            window
+                .iter()
+                .zip(&taps)
+                .map(|(x, tap)| x * tap)
+                .sum::<f64>()
+        });
+        let rows = passed.zip(rest).map(|(x, y)| format!("{}\n", x + y));
+        let text = format!(
+            "# rate_hz={RATE_HZ}\n# unit=deg/s\ngx\n{}",
+            rows.collect::<String>()
+        );
+        fs::write(folder.path().join("log.csv"), text).unwrap();
+        let document = json(folder.path(), &["diagnose", "log.csv"]);
+        let axis = &document["axes"][0];
+        assert_ne!(axis["verdict"], "adequate", "{axis}");
+        let notes = axis["notes"].as_array().unwrap().iter();
+        let words = notes.filter_map(|note| {
+            note.as_str()?
+                .split_once("the curve reads ")?
+                .1
+                .split(' ')
+                .next()
+        });
+        read.extend(words.map(|number| number.parse::<f64>().unwrap()));
+    }
+    assert!(!read.is_empty());
+    assert!(
+        read.iter().all(|plateau| (plateau / N - 1.0).abs() < 0.05),
+        "{read:?}"
+    );
 }

@@ -392,6 +392,15 @@ impl Diagnosed {
         }
         if self.added().next().is_some() {
             notes.extend(words::open_white_noise(&last.fit, self.axis.unit));
+            let octaves = last.comparison.octaves.len();
+            let (rate_hz, unit) = (self.axis.rate_hz, self.axis.unit);
+            notes.extend(words::shared_plateau(
+                &last.model,
+                &last.fit,
+                rate_hz,
+                octaves,
+                unit,
+            ));
         }
         notes.extend(comb_notes(&self.lines, &self.combs));
         notes.extend(half_rate_notes(&self.lines, self.axis.rate_hz));

@@ -285,6 +285,58 @@ pub(crate) fn open_white_noise(fit: &Fit, unit: Unit) -> Option<String> {
     })
 }
 
+/// An effect is told if it adds more than this share to the square of the plateau. Chosen by hand: it is 5 % of the root.
+const SHARED: f64 = 0.1;
+/// The Allan variance of white noise halves from one octave to the next. What falls by a factor between these looks like it.
+const LIKE_WHITE: std::ops::Range<f64> = 0.4..0.6;
+
+/// That the curve reads more than the angle random walk at its plateau, the octave in which it has its largest share, because
+/// another effect is flat there as well.
+pub(crate) fn shared_plateau(
+    model: &Model,
+    fit: &Fit,
+    rate_hz: f64,
+    octaves: usize,
+    unit: Unit,
+) -> Option<String> {
+    let interval_s = rate_hz.recip();
+    let symbols = fit.coefficients.iter().map(|one| one.symbol);
+    let white = symbols.clone().position(|symbol| symbol == "N")?;
+    let variance = |i: usize, m: f64| {
+        let square = fit.coefficients.get(i).map_or(0.0, |one| one.square);
+        square * model.unit_variance(i, m, interval_s)
+    };
+    let terms = 0..model.terms().len();
+    let share = |m: f64| variance(white, m) / terms.clone().map(|i| variance(i, m)).sum::<f64>();
+    let plateau = fit.coefficients.get(white).map_or(0.0, |one| one.square);
+    let factors = (0..octaves).map(|k| (k as f64).exp2());
+    // A filter or a rise has changed the white noise of shorter octaves.
+    let factors = factors.filter(|m| {
+        let square = variance(white, *m) * m * interval_s;
+        (square - plateau).abs() <= SHARED * plateau
+    });
+    let m = factors.max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
+    let tau_s = m * interval_s;
+    let own = variance(white, m) * tau_s;
+    let beside: Vec<(usize, f64)> = terms
+        .filter(|i| *i != white && !model.terms()[*i].effect.parameters().is_empty())
+        .filter(|i| LIKE_WHITE.contains(&(variance(*i, 2.0 * m) / variance(*i, m))))
+        .map(|i| (i, variance(i, m) * tau_s))
+        .filter(|(_, square)| *square > SHARED * own)
+        .collect();
+    let sum = own + beside.iter().map(|(_, square)| square).sum::<f64>();
+    let names = beside.iter().map(|(i, _)| model.terms()[*i].effect.name());
+    (!beside.is_empty()).then(|| {
+        format!(
+            "at its plateau, τ = {}, the curve reads {} {unit}/√Hz: angle random walk is {} of it, and the rest is {}",
+            duration(tau_s),
+            number(sum.sqrt()),
+            number(own.sqrt()),
+            names.map(plain).collect::<Vec<_>>().join(" and "),
+        )
+    })
+}
+
 /// What is added to the square of the angle random walk where flicker noise ends at half the sample rate, instead of being
 /// averaged over each sample interval: this times `B²τ₀`. Measured in the records of an independent simulator.
 const UNSEEN_FLICKER: f64 = 0.09;

@@ -1,10 +1,7 @@
 //! Covariate stage: whether the rate follows a covariate, or two that act together. This comes before the search for
 //! effects, because a covariate carries its own record.
 
-use super::{
-    judged::Judged,
-    step::{Beside, FollowedCovariate},
-};
+use super::step::{Beside, FollowedCovariate};
 use crate::{
     covariate::{Slope, Slopes},
     curve::Curve,
@@ -73,7 +70,7 @@ impl<const K: usize, const B: usize> Following<K, B> {
         observed: Observed<'_, K, B>,
         record: &Record<'_, K, B>,
         model: &Model,
-        judged: &Judged,
+        tolerance: Real,
         least_z: Real,
         work: &mut Work<K, B>,
     ) -> Result<Option<Option<FollowedCovariate>>, Error> {
@@ -109,7 +106,7 @@ impl<const K: usize, const B: usize> Following<K, B> {
                 };
                 found.correct_up_to(most, record, &mut self.corrected, &mut self.spectrum);
                 let start = Start::From(self.squares);
-                let tolerance = Tolerance::Fixed(judged.tolerance);
+                let tolerance = Tolerance::Fixed(tolerance);
                 let corrected = Observed::new(&self.corrected, &self.spectrum);
                 work.begin_at(corrected, model, start, tolerance)?;
                 self.solving = true;

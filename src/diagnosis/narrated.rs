@@ -143,7 +143,17 @@ impl Story {
 
     /// The model of the present step.
     pub(super) fn model(&self, model: &Model) -> Result<Model, Error> {
-        let told = self.steps.iter().take(self.told);
+        self.first(self.told, model)
+    }
+
+    /// The model of the last step.
+    pub(super) fn whole(&self, model: &Model) -> Result<Model, Error> {
+        self.first(self.steps.len(), model)
+    }
+
+    /// The model with what these many steps add.
+    fn first(&self, steps: usize, model: &Model) -> Result<Model, Error> {
+        let told = self.steps.iter().take(steps);
         let terms: Vec<Term, MAX_STEPS> =
             list::fill(told.filter_map(|told| Some(told.candidates.first()?.term)));
         with(model, &terms)

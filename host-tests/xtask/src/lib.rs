@@ -7,6 +7,7 @@ mod c;
 pub mod cost;
 mod fuzz;
 mod miri;
+mod results;
 mod setup;
 mod soak;
 mod step;
@@ -18,6 +19,7 @@ pub use setup::CHROMIUM;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use firmware::cargo;
+use std::path::PathBuf;
 
 /// Tasks of the project.
 #[derive(Debug, Parser)]
@@ -98,7 +100,18 @@ enum Task {
         octaves: String,
         /// Folder to write to, with a folder for every target in it.
         #[arg(long, value_name = "FOLDER", default_value = "target/c")]
-        output: std::path::PathBuf,
+        output: PathBuf,
+    },
+    /// Ask the command line everything about some 70 records, and compare the answers with those of an earlier run: for
+    /// changes that should change no result.
+    Results {
+        /// The folder to write records and answers to.
+        folder: PathBuf,
+        /// The folder of an earlier run.
+        #[arg(long, value_name = "FOLDER")]
+        against: Option<PathBuf>,
+        /// Logs and curve files to ask about as well.
+        files: Vec<PathBuf>,
     },
     /// Add up what a product costs on a core, by the figures of `bench`, and say whether it fits.
     Cost(cost::Product),
@@ -148,6 +161,11 @@ impl CommandLine {
                 update_budgets,
             } => bench::run(json, update_budgets),
             Task::C { octaves, output } => c::run(octaves.parse().unwrap_or(20), &output),
+            Task::Results {
+                folder,
+                against,
+                files,
+            } => results::run_all(&folder, against.as_deref(), &files),
             Task::Cost(product) => cost::run(&product),
         }
     }

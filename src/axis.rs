@@ -1,19 +1,19 @@
 //! One axis, or several axes that are recorded together: one `push` feeds everything that is kept of a
 //! record.
 
-mod evidence;
 mod gate;
 mod kept;
 mod moments;
+mod record;
 mod sample;
 #[cfg(feature = "storage")]
 pub mod snapshot;
 mod spectra;
 mod track;
 
-pub use evidence::AxisEvidence;
 pub use gate::{GatePart, Gated};
 pub use moments::{MomentPart, Moments};
+pub use record::{AxisRecord, Units};
 pub use sample::Sample;
 pub use spectra::{Spectral, SpectrumPart};
 pub use track::{TrackPart, Tracked};
@@ -91,14 +91,13 @@ pub type Axis<
 ///     let spike = if n == 5000 { 20_000 } else { 0 };
 ///     axes.push(([noise() + spike, noise(), noise()], [n / 100]));
 /// }
-/// axes.release();
-/// assert_eq!((axes.left_out(), axes.samples()), (1, 9999));
 ///
 /// // The gyro gives 131 counts per °/s at 100 Hz; the thermometer gives 100 counts per kelvin.
-/// let x = axes.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [0.01])?;
+/// let x = axes.record(0, (Scale::new(1.0 / 131.0, 100.0)?, [0.01]))?;
+/// assert_eq!((axes.left_out(), axes.samples()), (1, 9999));
 /// assert_eq!(x.invalid, None);
 /// let (model, options) = (Model::ieee_952(), Options::default());
-/// let mut diagnosis = Diagnosis::new(x.record(), &model, &CATALOGUE, options);
+/// let mut diagnosis = Diagnosis::new(&x, &model, &CATALOGUE, options);
 /// let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
 /// diagnosis.run(|step| println!("{}", step.comparison), &mut pause)?;
 /// assert_eq!(x.spectrum.bins().len(), 2 * 28); // a third level needs 35 000 samples
@@ -189,7 +188,7 @@ where
     }
 
     /// Keeps the samples that the gate still holds back, up to 128, as if they were known to be at
-    /// rest, and does all the work that waits. Call it at the end of a record. It is not a gap.
+    /// rest, and does all the work that waits. [`record`](Self::record) does so at the end of a record. It is not a gap.
     pub fn release(&mut self) {
         loop {
             let passed = self.gate.release();

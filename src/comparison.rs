@@ -17,6 +17,7 @@ use crate::{
     nnls::Vector,
     observed::Observed,
     real::{Real, real, single},
+    record::Record,
     spectrum::Bin,
 };
 use heapless::Vec;
@@ -107,11 +108,11 @@ impl<const K: usize, const B: usize> Comparison<K, B> {
     /// # Errors
     /// The same as those of [`fit`](crate::fit::fit()).
     pub fn new<'a>(
-        observed: impl Into<Observed<'a, K, B>>,
+        record: impl Into<Record<'a, K, B>>,
         model: &Model,
         fit: &Fit,
     ) -> Result<Self, Error> {
-        let observed = observed.into();
+        let observed = record.into().observed();
         let unknowns = observed.rows().saturating_sub(fit.degrees_of_freedom);
         let mut comparison = Self::with_unknowns(observed, model, fit, fit.tolerance, unknowns)?;
         if !fit.chi_squared.is_nan() {
@@ -129,12 +130,12 @@ impl<const K: usize, const B: usize> Comparison<K, B> {
     /// # Errors
     /// The same as those of [`fit`](crate::fit::fit()).
     pub fn held_out<'a>(
-        observed: impl Into<Observed<'a, K, B>>,
+        record: impl Into<Record<'a, K, B>>,
         model: &Model,
         fit: &Fit,
         tolerance: Real,
     ) -> Result<Self, Error> {
-        Self::with_unknowns(observed.into(), model, fit, tolerance, 0)
+        Self::with_unknowns(record.into().observed(), model, fit, tolerance, 0)
     }
 
     fn with_unknowns(

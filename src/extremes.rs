@@ -42,7 +42,7 @@ fn fitted(curve: &Curve<OCTAVES>) -> Fit {
 
 fn verdict(curve: &Curve<OCTAVES>) -> (Verdict, Vec<&'static str>) {
     let (model, options) = (Model::ieee_952(), Options::default());
-    let mut diagnosis = Diagnosis::new(curve.into(), &model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(curve, &model, &CATALOGUE, options);
     let mut names = Vec::new();
     let report = |step: &Step<OCTAVES>| {
         let terms = step.model.terms().iter();

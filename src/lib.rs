@@ -16,12 +16,11 @@
 //! for _ in 0..100_000 {
 //!     gyro.push(read_gyro()); // counts of the driver, in integers only
 //! }
-//! gyro.release(); // the record ends here
 //!
 //! // 131 counts per °/s, 100 samples per second.
-//! let record = gyro.evidence(0, Scale::new(1.0 / 131.0, 100.0)?, [])?;
+//! let record = gyro.record(0, Scale::new(1.0 / 131.0, 100.0)?)?;
 //! assert_eq!(record.invalid, None); // the gyro was at rest, and its counts are not stuck
-//! let fit = fit(&record.curve, &Model::ieee_952(), Options::default())?;
+//! let fit = fit(&record, &Model::ieee_952(), Options::default())?;
 //! let white = &fit.coefficients[1];
 //! assert_eq!((white.name, white.state), ("angle_random_walk", State::Measured));
 //! assert!(white.lower < white.value && white.value < white.upper); // 95 %, in °/s/√Hz
@@ -209,7 +208,7 @@
 //! let curve = gyro.curve(Scale::new(0.01, 1000.0)?);
 //! let effects: [&dyn Effect; 2] = [&MainsHum, CATALOGUE[0]]; // or all of the catalogue
 //! let (model, options) = (Model::ieee_952(), Options::default());
-//! let mut diagnosis = Diagnosis::new((&curve).into(), &model, &effects, options);
+//! let mut diagnosis = Diagnosis::new(&curve, &model, &effects, options);
 //! let report = |step: &Step<16>| match step.added {
 //!     Some(Addition::Effect(term)) => assert_eq!(term.effect.name(), "mains_hum"),
 //!     _ => assert_eq!(step.fit.is_adequate(), Some(true)),
@@ -270,7 +269,6 @@ pub use curve::{Curve, Scale};
 pub use error::Error;
 pub use heapless;
 pub use model::{Model, Term};
-pub use observed::Observed;
 pub use octave::Accumulator;
 pub use real::Real;
 pub use record::Record;

@@ -17,7 +17,7 @@ const OCTAVES_FROM: u32 = 8;
 /// say nothing that the bins do not say, so that they are compared with the model but not fitted. Only the coefficients
 /// of a model without shapes that explains the record come from all octaves, which tell them better than bins do.
 #[derive(Debug)]
-pub struct Observed<'a, const K: usize, const B: usize = 0> {
+pub(crate) struct Observed<'a, const K: usize, const B: usize = 0> {
     curve: &'a Curve<K>,
     spectrum: Option<&'a Spectrum<B>>,
 }
@@ -32,16 +32,13 @@ impl<const K: usize, const B: usize> Copy for Observed<'_, K, B> {}
 
 impl<'a, const K: usize> From<&'a Curve<K>> for Observed<'a, K> {
     fn from(curve: &'a Curve<K>) -> Self {
-        Self {
-            curve,
-            spectrum: None,
-        }
+        Self::of_curve(curve)
     }
 }
 
 impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
     /// A curve and the spectrum of the same record. A spectrum without bins changes nothing.
-    pub const fn new(curve: &'a Curve<K>, spectrum: &'a Spectrum<B>) -> Self {
+    pub(crate) const fn new(curve: &'a Curve<K>, spectrum: &'a Spectrum<B>) -> Self {
         Self {
             curve,
             spectrum: Some(spectrum),
@@ -57,7 +54,7 @@ impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
     }
 
     /// The curve.
-    pub const fn curve(&self) -> &'a Curve<K> {
+    pub(crate) const fn curve(&self) -> &'a Curve<K> {
         self.curve
     }
 
@@ -94,7 +91,7 @@ impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
     }
 
     /// The bins of the spectrum.
-    pub fn bins(&self) -> &'a [Bin] {
+    pub(crate) fn bins(&self) -> &'a [Bin] {
         // Known to the compiler, which leaves out what works on bins.
         if B == 0 {
             return &[];
@@ -103,7 +100,7 @@ impl<'a, const K: usize, const B: usize> Observed<'a, K, B> {
     }
 
     /// The octaves that are fitted.
-    pub fn points(&self) -> &'a [Point] {
+    pub(crate) fn points(&self) -> &'a [Point] {
         let points = self.curve.points();
         let Some(last) = self.bins().last() else {
             return points;

@@ -51,11 +51,17 @@ impl<'a, const K: usize, const B: usize> Record<'a, K, B> {
     }
 
     /// What a fit works on: the curve and the spectrum.
-    pub fn observed(&self) -> Observed<'a, K, B> {
+    pub(crate) fn observed(&self) -> Observed<'a, K, B> {
         match self.spectrum {
             Some(spectrum) => Observed::new(self.curve, spectrum),
             None => Observed::of_curve(self.curve),
         }
+    }
+}
+
+impl<'a, const K: usize, const B: usize> From<&Record<'a, K, B>> for Record<'a, K, B> {
+    fn from(record: &Self) -> Self {
+        *record
     }
 }
 

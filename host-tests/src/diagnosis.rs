@@ -16,10 +16,10 @@ pub fn go_on() -> ControlFlow<()> {
 ///
 /// # Errors
 /// As of [`Diagnosis::run`].
-pub fn diagnose<const K: usize, const B: usize>(
-    record: Record<'_, K, B>,
+pub fn diagnose<'a, const K: usize, const B: usize>(
+    record: impl Into<Record<'a, K, B>>,
     model: &Model,
-    effects: &[&'static dyn Effect],
+    effects: &'a [&'static dyn Effect],
     options: Options,
     mut report: impl FnMut(&Step<K, B>),
 ) -> Result<Verdict, Error> {

@@ -52,7 +52,7 @@ proptest! {
         }
         let (per_count, kelvin) = (0.01, 1.0 / 256.0);
         let scale = Scale::new(per_count, 100.0).unwrap();
-        let record = gyro.evidence(0, scale, [kelvin]).unwrap();
+        let record = gyro.record_so_far(0, (scale, [kelvin])).unwrap();
         let [curve] = &record.covariates[..] else { panic!("one covariate") };
         prop_assert_eq!(curve.points().len(), record.curve.points().len());
         for point in curve.points() {
@@ -85,10 +85,10 @@ fn impossible_units_and_axes_are_refused() {
     let scale = Scale::new(1.0, 100.0).unwrap();
     let units = [0.0, -1.0, f64::NAN, f64::INFINITY];
     for unit in units {
-        let refused = gyro.evidence(0, scale, [unit]).unwrap_err();
+        let refused = gyro.record_so_far(0, (scale, [unit])).unwrap_err();
         assert!(matches!(refused, Error::InvalidScale { .. }), "{unit}");
     }
-    let refused = gyro.evidence(1, scale, [1.0]).unwrap_err();
+    let refused = gyro.record_so_far(1, (scale, [1.0])).unwrap_err();
     assert_eq!(refused, Error::UnknownAxis { axis: 1, axes: 1 });
 }
 
@@ -133,9 +133,11 @@ fn claimed(
         }
         let scale = Scale::new(COUNT, RATE_HZ).expect("positive");
         let units = [KELVIN, KELVIN * RATE_HZ];
-        let record = gyro.evidence(0, scale, units).expect("one axis");
+        let record = gyro.record_so_far(0, (scale, units)).expect("one axis");
         let own = Scale::new(KELVIN, RATE_HZ).expect("positive");
-        let shared = temperature.evidence(0, own, [units[1]]).expect("one axis");
+        let shared = temperature
+            .record_so_far(0, (own, [units[1]]))
+            .expect("one axis");
         let pair = Pair {
             covariates: [0, 1],
             shared: shared.covariates[0].clone(),
@@ -304,7 +306,7 @@ fn a_spectrum_is_explained_when_what_follows_a_strong_temperature_is_subtracted(
                 spectrum.push_slice(&[count]);
             }
             let scale = Scale::new(COUNT, RATE_HZ).expect("positive");
-            let evidence = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
+            let evidence = gyro.record_so_far(0, (scale, [KELVIN])).expect("one axis");
             let (model, options) = (Model::ieee_952(), Options::default());
             let bins: Spectrum<140> = spectrum.spectrum(scale);
             let all = bins.bins().len();

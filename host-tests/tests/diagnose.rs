@@ -374,7 +374,7 @@ fn alternatives_fitted_in_full_agree_with_the_candidates_of_the_search() {
         let curve = axis.curve().unwrap();
         let mut steps: Vec<Step<OCTAVES>> = Vec::new();
         let (model, options) = (Model::ieee_952(), Options::default());
-        diagnose((&curve).into(), &model, &CATALOGUE, options, |step| {
+        diagnose(&curve, &model, &CATALOGUE, options, |step| {
             steps.push(step.clone());
         })
         .unwrap();

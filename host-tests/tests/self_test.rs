@@ -36,7 +36,7 @@ fn look(test: &mut SelfTest<16>, gyro: &Gyro) -> Status {
     if !test.is_due(gyro.samples()) {
         return test.status(gyro.samples());
     }
-    let record = gyro.evidence(0, scale(), []).unwrap();
+    let record = gyro.record_so_far(0, scale()).unwrap();
     test.look(record.samples, &record.curve, record.invalid)
 }
 
@@ -324,7 +324,7 @@ fn a_look_in_pieces_judges_the_record_that_it_began_with() {
         if !whole.is_due(gyro.samples()) {
             continue;
         }
-        let record = gyro.evidence(0, scale(), []).unwrap();
+        let record = gyro.record_so_far(0, scale()).unwrap();
         let expected = whole.look(record.samples, &record.curve, record.invalid);
         let mut look = pieces.begin_look(record.samples, record.curve, record.invalid);
         let mut calls = 1;
@@ -349,7 +349,7 @@ fn a_look_that_is_not_complete_or_belongs_to_another_test_decides_nothing() {
     for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7).take(1000) {
         gyro.push((rate / UNIT).round() as i32);
     }
-    let record = gyro.evidence(0, scale(), []).unwrap();
+    let record = gyro.record_so_far(0, scale()).unwrap();
     let begin =
         |test: &SelfTest<16>| test.begin_look(record.samples, record.curve.clone(), record.invalid);
     let mut look = begin(&new(0.02));

@@ -66,12 +66,12 @@ const AGREES: Real = 0.004;
 /// let (model, options) = (Model::ieee_952(), Options::default());
 /// let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
 /// let mut last = None;
-/// Diagnosis::new((&curve).into(), &model, &CATALOGUE, options)
+/// Diagnosis::new(&curve, &model, &CATALOGUE, options)
 ///     .run(|step| last = Some(step.clone()), &mut pause)?;
 /// let Some(step) = last else { return Ok(()) };
 ///
 /// let mut ranges = Ranges::default();
-/// Detection::new((&curve).into(), &step, &CATALOGUE, options)
+/// Detection::new(&curve, &step, &CATALOGUE, options)
 ///     .run(|limit| ranges.push(&limit), &mut pause);
 /// let mut ranges = ranges.as_slice().iter();
 /// let sinusoid = ranges.find(|range| range.effect.name() == "sinusoid");
@@ -92,14 +92,14 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
     /// diagnosis.
     ///
     /// There are no limits if the model is not adequate.
-    pub const fn new(
-        record: Record<'a, K, B>,
+    pub fn new(
+        record: impl Into<Record<'a, K, B>>,
         step: &'a Step<K, B>,
         effects: &'a [&'static dyn Effect],
         options: Options,
     ) -> Self {
         Self {
-            record,
+            record: record.into(),
             step,
             effects,
             options,

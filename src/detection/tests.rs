@@ -41,7 +41,7 @@ fn go_on() -> ControlFlow<()> {
 fn diagnosed(curve: &Curve<20>) -> (Step<20>, Verdict) {
     let (model, options) = (Model::ieee_952(), Options::default());
     let mut last = None;
-    let verdict = Diagnosis::new(curve.into(), &model, &CATALOGUE, options)
+    let verdict = Diagnosis::new(curve, &model, &CATALOGUE, options)
         .run(|step| last = Some(step.clone()), &mut go_on)
         .expect("a diagnosis");
     (last.expect("a step"), verdict.expect("no end by a pause"))
@@ -55,7 +55,7 @@ fn adequate(curve: &Curve<20>) -> Step<20> {
 }
 
 fn detection<'a>(curve: &'a Curve<20>, step: &'a Step<20>) -> Detection<'a, 20> {
-    Detection::new(curve.into(), step, &CATALOGUE, Options::default())
+    Detection::new(curve, step, &CATALOGUE, Options::default())
 }
 
 fn term(effect: &'static dyn Effect, parameters: [Real; 2]) -> Term {

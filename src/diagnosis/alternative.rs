@@ -11,6 +11,7 @@ use crate::{
     model::Model,
     observed::Observed,
     real::Real,
+    record::Record,
 };
 
 /// The step that would have followed `step` if another one of its candidates had been added: the model
@@ -23,11 +24,11 @@ use crate::{
 /// The same as those of [`fit`](crate::fit::fit()), and [`Error::TooManyEffects`] if the model has no
 /// room.
 pub fn alternative<'a, const K: usize, const B: usize>(
-    observed: impl Into<Observed<'a, K, B>>,
+    record: impl Into<Record<'a, K, B>>,
     step: &Step<K, B>,
     candidate: &Candidate,
 ) -> Result<Step<K, B>, Error> {
-    let observed = observed.into();
+    let observed = record.into().observed();
     let mut model = step.model.clone();
     if let Some(replaced) = candidate.term.effect.replaces() {
         model.remove(replaced.name());

@@ -58,7 +58,7 @@ const COVARIATE_DOUBT: Real = 6.0;
 /// }
 /// let curve = gyro.curve(Scale::new(0.01, 100.0)?);
 /// let (model, options) = (Model::ieee_952(), Options::default());
-/// let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+/// let mut diagnosis = Diagnosis::new(&curve, &model, &CATALOGUE, options);
 /// let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
 /// let verdict = diagnosis.run(|step| assert!(step.fit.p_value > 0.01), &mut pause)?;
 /// assert_eq!(verdict, Some(Verdict::Adequate));
@@ -111,11 +111,12 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
     // Inlined, so that some kilobytes are built where they stay and not moved there.
     #[inline(always)]
     pub fn new(
-        record: Record<'a, K, B>,
+        record: impl Into<Record<'a, K, B>>,
         model: &Model,
         effects: &'a [&'static dyn Effect],
         options: Options,
     ) -> Self {
+        let record = record.into();
         Self {
             curve: record.curve.clone(),
             spectrum: record.spectrum.cloned().unwrap_or(Spectrum::EMPTY),

@@ -11,6 +11,7 @@ use crate::{
     model::{Model, Term},
     observed::Observed,
     real::Real,
+    record::Record,
 };
 
 /// How often the shapes are polished at most. One time ends after ten rounds, or when half a step leads too far, and
@@ -52,11 +53,11 @@ const SETTLED: Real = 1e-4;
 /// # Errors
 /// The same as those of [`fit`](crate::fit::fit()), and [`Error::Singular`] if no shape in its range can be fitted.
 pub fn fit_shapes<'a, const K: usize, const B: usize>(
-    observed: impl Into<Observed<'a, K, B>>,
+    record: impl Into<Record<'a, K, B>>,
     model: &Model,
     tolerance: Real,
 ) -> Result<Model, Error> {
-    let observed = observed.into();
+    let observed = record.into().observed();
     let mut shaped = model.clone();
     while let Some((place, term)) = first_unknown(&shaped) {
         let found = best_shape(observed, &with_known_shapes(&shaped)?, &term)?;

@@ -75,7 +75,7 @@ fn diagnosed(curve: &Curve<OCTAVES>) -> (Verdict, Vec<Step<OCTAVES>>) {
     let (model, options) = (Model::ieee_952(), Options::default());
     let mut steps = Vec::new();
     let mut go_on = || ControlFlow::Continue(());
-    let verdict = Diagnosis::new(curve.into(), &model, &CATALOGUE, options)
+    let verdict = Diagnosis::new(curve, &model, &CATALOGUE, options)
         .run(|step| steps.push(step.clone()), &mut go_on)
         .unwrap();
     (verdict.unwrap(), steps)
@@ -94,7 +94,7 @@ fn a_diagnosis_step_by_step_reports_the_same_as_a_diagnosis_in_one_go() {
     assert_eq!(verdict, Verdict::Improved);
 
     let (model, options) = (Model::ieee_952(), Options::default());
-    let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(&curve, &model, &CATALOGUE, options);
     let (mut at, mut pauses) = (0, 0);
     let mut pause = || {
         pauses += 1;
@@ -123,7 +123,7 @@ fn a_diagnosis_that_pauses_ended_reports_the_same_as_one_in_one_go() {
     let curve = with_sinusoid();
     let (expected, whole) = diagnosed(&curve);
     let (model, options) = (Model::ieee_952(), Options::default());
-    let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(&curve, &model, &CATALOGUE, options);
     let (mut steps, mut ended) = (Vec::new(), 0);
     let verdict = loop {
         let mut left = 1_u32 << ended;
@@ -211,7 +211,7 @@ fn a_known_filter_is_neither_missed_nor_named_twice() {
     let known = Term::known(&LowPass, filter);
     model.put(known).unwrap();
     let options = Options::default();
-    let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(&curve, &model, &CATALOGUE, options);
     let mut named = Vec::new();
     let report = |step: &Step<OCTAVES>| {
         let same = |term: &Term| term.effect.name() == "low_pass";

@@ -7,8 +7,8 @@ use crate::{
     limits::ONE_SIDED_95,
     math,
     model::{Model, Term},
-    observed::Observed,
     real::{Real, real},
+    record::Record,
 };
 
 /// The narrowest resonance that is tried, in widths of the line that the whole record resolves. Chosen by hand: it is
@@ -32,13 +32,13 @@ const HALVINGS: u8 = 4;
 /// # Errors
 /// The same as those of [`fit`](crate::fit::fit()).
 pub fn line_width<'a, const K: usize, const B: usize>(
-    observed: impl Into<Observed<'a, K, B>>,
+    record: impl Into<Record<'a, K, B>>,
     model: &Model,
     place: usize,
     resonance: &'static dyn Effect,
     tolerance: Real,
 ) -> Result<Option<Real>, Error> {
-    let observed = observed.into();
+    let observed = record.into().observed();
     let special = resonance.description().special_case;
     let lines = model
         .terms()

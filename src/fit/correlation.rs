@@ -13,8 +13,8 @@ use crate::{
     math,
     model::Model,
     nnls::{Free, NormalEquations, Vector},
-    observed::Observed,
     real::{Real, real, single},
+    record::Record,
 };
 
 /// Correlations of the squared coefficients of a fit, in which the fit is linear. The covariance of two
@@ -80,7 +80,7 @@ impl Fit {
     /// [`Error::Singular`] if the model or the curve is not that of the fit.
     pub fn correlations<'a, const K: usize, const B: usize>(
         &self,
-        observed: impl Into<Observed<'a, K, B>>,
+        record: impl Into<Record<'a, K, B>>,
         model: &Model,
     ) -> Result<Correlations, Error> {
         let mut correlations = Correlations::UNKNOWN;
@@ -91,7 +91,7 @@ impl Fit {
         if count != self.coefficients.len() {
             return Err(Error::Singular);
         }
-        let observed = observed.into();
+        let observed = record.into().observed();
         let columns = Columns::new(observed, model);
         let problem = Problem::new(observed, model, &columns);
         let squares = problem.squares_of(self);

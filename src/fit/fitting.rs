@@ -10,7 +10,10 @@ use super::{
     solver::{Solver, Start, Tolerance},
     work::Work,
 };
-use crate::{curve::Curve, error::Error, model::Model, observed::Observed, spectrum::Spectrum};
+use crate::{
+    curve::Curve, error::Error, model::Model, observed::Observed, record::Record,
+    spectrum::Spectrum,
+};
 
 /// Fits a model's coefficients to a curve.
 ///
@@ -32,11 +35,11 @@ use crate::{curve::Curve, error::Error, model::Model, observed::Observed, spectr
 /// # Ok::<(), allanite::Error>(())
 /// ```
 pub fn fit<'a, const K: usize, const B: usize>(
-    observed: impl Into<Observed<'a, K, B>>,
+    record: impl Into<Record<'a, K, B>>,
     model: &Model,
     options: Options,
 ) -> Result<Fit, Error> {
-    let observed = observed.into();
+    let observed = record.into().observed();
     let mut fit = Fit::EMPTY;
     let mut work = Work::NEW;
     let mut stage = Stage::Beginning;
@@ -55,7 +58,7 @@ pub fn fit<'a, const K: usize, const B: usize>(
 ///
 /// let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1 << k) as Real));
 /// let curve = Curve::<10>::new(100.0, white)?;
-/// let mut fitting = Fitting::new(curve, Model::ieee_952(), Options::default());
+/// let mut fitting = Fitting::new(&curve, Model::ieee_952(), Options::default());
 /// let fit = loop {
 ///     if let Some(fit) = fitting.advance()? {
 ///         break fit;
@@ -75,20 +78,20 @@ pub struct Fitting<const K: usize, const B: usize = 0> {
     stage: Stage,
 }
 
-impl<const K: usize> Fitting<K> {
-    /// A fit of a model to a curve. It does not begin before it is advanced.
-    // Inlined, so that some kilobytes are built where they stay and not moved there.
-    #[inline(always)]
-    pub fn new(curve: Curve<K>, model: Model, options: Options) -> Self {
-        Self::with_spectrum(curve, Spectrum::EMPTY, model, options)
-    }
-}
-
 impl<const K: usize, const B: usize> Fitting<K, B> {
-    /// A fit of a model to a curve and to the density of the same record. It does not begin before it is advanced.
+    /// A fit of a model to the curve and the spectrum of a record, of which it keeps a copy. It does not begin before it is
+    /// advanced.
     // Inlined, so that some kilobytes are built where they stay and not moved there.
     #[inline(always)]
-    pub fn with_spectrum(
+    pub fn new<'a>(record: impl Into<Record<'a, K, B>>, model: Model, options: Options) -> Self {
+        let record = record.into();
+        let spectrum = record.spectrum.cloned().unwrap_or(Spectrum::EMPTY);
+        Self::of(record.curve.clone(), spectrum, model, options)
+    }
+
+    /// A fit of a model to a curve and to the spectrum of the same record.
+    #[inline(always)]
+    pub(crate) fn of(
         curve: Curve<K>,
         spectrum: Spectrum<B>,
         model: Model,

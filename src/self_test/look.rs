@@ -10,6 +10,7 @@ use crate::{
     list,
     model::Model,
     real::Real,
+    spectrum::Spectrum,
 };
 use heapless::Vec;
 
@@ -42,7 +43,7 @@ use heapless::Vec;
 /// while !test.is_due(gyro.samples()) {
 ///     gyro.push(sample());
 /// }
-/// let record = gyro.evidence(0, scale, [])?;
+/// let record = gyro.record_so_far(0, scale)?;
 /// let mut look = test.begin_look(record.samples, record.curve, record.invalid);
 /// while !look.advance() {
 ///     gyro.push(sample()); // feed the watchdog, take the next samples
@@ -98,7 +99,12 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
     ) -> Self {
         let fitting = match invalid {
             Some(_) => None,
-            None => Some(Fitting::new(curve, Model::ieee_952(), Options::default())),
+            None => Some(Fitting::of(
+                curve,
+                Spectrum::EMPTY,
+                Model::ieee_952(),
+                Options::default(),
+            )),
         };
         Self {
             samples,

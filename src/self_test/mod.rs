@@ -123,7 +123,7 @@ pub enum Failure {
 ///     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
 ///     gyro.push((random >> 28) as i32);
 ///     if test.is_due(gyro.samples()) {
-///         let record = gyro.evidence(0, scale, [])?;
+///         let record = gyro.record_so_far(0, scale)?;
 ///         match test.look(record.samples, &record.curve, record.invalid) {
 ///             Status::Running { .. } => continue,
 ///             verdict => break verdict,

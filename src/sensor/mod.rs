@@ -28,7 +28,7 @@
 //!         if let Ok(Some(reading)) = &mut outcome {
 //!             reading.loss = reading.loss.or(Loss::of_intervals(pace.stamp(micros())));
 //!         }
-//!         axes.record(&outcome, |_| []); // a sample, or a gap if the bus failed
+//!         axes.record_outcome(&outcome, |_| []); // a sample, or a gap if the bus failed
 //!         if pace.check().is_err() {
 //!             break; // not the rate that the curve would be drawn with
 //!         }

@@ -22,15 +22,15 @@ where
     /// let temperature = |reading: &Reading| [reading.temperature.unwrap_or(0).into()];
     /// let (gyro, loss) = ([3, -1, 0], Loss::Nothing);
     /// let reading = Reading { gyro, temperature: Some(25), loss, ticks: None };
-    /// axes.record::<()>(&Ok(Some(reading)), temperature);
-    /// axes.record::<()>(&Ok(None), temperature); // no sample was ready: nothing happens
+    /// axes.record_outcome::<()>(&Ok(Some(reading)), temperature);
+    /// axes.record_outcome::<()>(&Ok(None), temperature); // no sample was ready: nothing happens
     /// let failed = Err(Error::Bus { register: 0x43, error: "no acknowledge" });
-    /// axes.record(&failed, temperature);
+    /// axes.record_outcome(&failed, temperature);
     /// assert_eq!(axes.losses(), 1);
     /// let [x, _, _] = axes.accumulators();
     /// assert_eq!((x.samples(), x.gaps()), (1, 1));
     /// ```
-    pub fn record<E>(
+    pub fn record_outcome<E>(
         &mut self,
         outcome: &Result<Option<Reading>, Error<E>>,
         covariates: impl FnOnce(&Reading) -> [i32; COVARIATES],

@@ -321,8 +321,8 @@ impl Record {
             let seen = without_missing(ours.seen()[axis].tally());
             assert_eq!(seen, without_missing(self.seen[axis].tally()));
             let scale = Scale::new(0.5, 100.0).unwrap();
-            let ours = ours.evidence(axis, scale, [0.25]).unwrap();
-            let ungated = self.ungated.evidence(axis, scale, [0.25]).unwrap();
+            let ours = ours.record_so_far(axis, (scale, [0.25])).unwrap();
+            let ungated = self.ungated.record_so_far(axis, (scale, [0.25])).unwrap();
             // Numbers that are not known are NaN, which equals nothing. Their texts tell all digits of the others.
             let texts = |one: String, other: String| assert_eq!(one, other, "axis {axis}");
             texts(format!("{:?}", ours.curve), format!("{:?}", ungated.curve));

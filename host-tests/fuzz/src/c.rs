@@ -20,7 +20,7 @@ fn zeroed<T>() -> Box<T> {
 /// All that a program has.
 struct Program {
     gyros: [Box<AllaniteGyro>; 2],
-    evidence: Box<AllaniteEvidence>,
+    evidence: Box<AllaniteRecord>,
     test: Box<AllaniteSelfTest>,
     look: Box<AllaniteLook>,
     diagnosis: Box<AllaniteDiagnosis>,
@@ -111,7 +111,7 @@ impl Program {
         let gyro: *mut AllaniteGyro = &raw mut *self.gyros[which];
         let other: *mut AllaniteGyro = &raw mut *self.gyros[1 - which];
         let gyro = bytes.or_null(gyro);
-        let evidence: *mut AllaniteEvidence = &raw mut *self.evidence;
+        let evidence: *mut AllaniteRecord = &raw mut *self.evidence;
         let test: *mut AllaniteSelfTest = &raw mut *self.test;
         let look: *mut AllaniteLook = &raw mut *self.look;
         let diagnosis: *mut AllaniteDiagnosis = &raw mut *self.diagnosis;
@@ -163,14 +163,14 @@ impl Program {
                 13 | 14 => {
                     self.is_stale = true;
                     let axis = usize::from(bytes.next() % 4);
-                    let size = bytes.size::<AllaniteEvidence>();
+                    let size = bytes.size::<AllaniteRecord>();
                     let [count, rate, kelvin] = [(); 3].map(|()| bytes.number());
-                    allanite_evidence_take(evidence, size, gyro, axis, count, rate, kelvin)
+                    allanite_record_take(evidence, size, gyro, axis, count, rate, kelvin)
                 }
                 15 => {
                     let mut reason: Box<AllaniteReason> = zeroed();
                     let reason = bytes.or_null(&raw mut *reason);
-                    allanite_evidence_summary(evidence, bytes.or_null(&raw mut one), reason)
+                    allanite_record_summary(evidence, bytes.or_null(&raw mut one), reason)
                 }
                 16 => {
                     let mut fit: Box<AllaniteFit> = zeroed();

@@ -3,7 +3,7 @@
 
 use crate::diagnosis::{BINS, OCTAVES, measured};
 use allanite::{
-    Comparison, Model, Observed, Term,
+    Comparison, Model, Record, Term,
     effect::{CATALOGUE, MAX_PARAMETERS},
     fit::{Fit, Fitting, Method, Options},
 };
@@ -46,9 +46,8 @@ pub fn check(bytes: &[u8]) {
         method: METHODS[usize::from(options) % METHODS.len()],
         tolerance: [0.0, 0.01, 1.0, 100.0][usize::from(options >> 3) % 4],
     };
-    let observed = Observed::new(&curve, &spectrum);
-    let mut fitting =
-        Fitting::with_spectrum(curve.clone(), spectrum.clone(), model.clone(), options);
+    let observed = Record::new(&curve, &spectrum);
+    let mut fitting = Fitting::new(observed, model.clone(), options);
     for _ in 0..MOST_STEPS {
         match fitting.advance() {
             Ok(None) => {}
@@ -66,7 +65,7 @@ pub fn check(bytes: &[u8]) {
 }
 
 /// Every number of a fit and of its comparisons is finite.
-fn judge(observed: Observed<'_, OCTAVES, BINS>, model: &Model, fit: &Fit) {
+fn judge(observed: Record<'_, OCTAVES, BINS>, model: &Model, fit: &Fit) {
     assert_eq!(fit.coefficients.len(), model.terms().len());
     for coefficient in &fit.coefficients {
         let numbers = [coefficient.value, coefficient.lower, coefficient.square];
@@ -84,7 +83,7 @@ fn judge(observed: Observed<'_, OCTAVES, BINS>, model: &Model, fit: &Fit) {
     let own = Comparison::new(observed, model, fit);
     let held_out = Comparison::held_out(observed, model, fit, 0.01);
     for comparison in [own, held_out].into_iter().flatten() {
-        assert_eq!(comparison.octaves.len(), observed.curve().points().len());
+        assert_eq!(comparison.octaves.len(), observed.curve.points().len());
         for octave in &comparison.octaves {
             assert!(octave.model.is_finite(), "{octave:?}");
             // Other methods let squares be negative.

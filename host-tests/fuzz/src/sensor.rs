@@ -232,7 +232,7 @@ fn read<B: Registers<Error = Fault>>(bus: B, world: &World, description: &'stati
             Err(other) => panic!("{other:?}"),
         }
         let before = axes.losses();
-        axes.record(&outcome, temperature);
+        axes.record_outcome(&outcome, temperature);
         assert!(axes.losses() - before <= 1);
         assert!(outcome.is_ok() || axes.losses() > before);
     }
@@ -277,7 +277,7 @@ fn burst<B: Registers<Error = Fault>>(
                         let ticks = reading.ticks.expect("a FIFO has times");
                         assert!(last.is_none_or(|last| ticks > last), "a sample came twice");
                         last = Some(ticks);
-                        axes.record::<Fault>(&Ok(Some(reading)), temperature);
+                        axes.record_outcome::<Fault>(&Ok(Some(reading)), temperature);
                         samples += 1;
                     }
                 }

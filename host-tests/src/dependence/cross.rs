@@ -124,7 +124,7 @@ mod tests {
             axis.push((count, [covariate]));
         }
         let scale = Scale::new(0.5, 10.0).unwrap();
-        let expected = axis.evidence(0, scale, [0.25]).unwrap();
+        let expected = axis.record_so_far(0, (scale, [0.25])).unwrap();
         let means = |value: &dyn Fn(&(i32, i32)) -> f64| -> Vec<f64> {
             let blocks = counts.chunks_exact(8);
             blocks

@@ -2,7 +2,7 @@
 
 use crate::log::{BINS, OCTAVES};
 use allanite::{
-    Curve, Error, Model, Observed,
+    Curve, Error, Model, Record,
     covariate::CrossCurve,
     curve::Point,
     fit::{Options, fit},
@@ -23,7 +23,7 @@ impl Noise {
         spectrum: &Spectrum<BINS>,
         model: &Model,
     ) -> Result<Self, Error> {
-        let fit = fit(Observed::new(curve, spectrum), model, Options::default())?;
+        let fit = fit(Record::new(curve, spectrum), model, Options::default())?;
         let squares = fit.squares();
         let variance = |point: &Point| model.variance(&squares, point.m, curve.interval_s());
         Ok(Self(curve.points().iter().map(variance).collect()))

@@ -141,7 +141,7 @@ fn shared(
             return Ok(None);
         };
         let scale = Scale::new(*unit, rate_hz);
-        let told = scale.and_then(|scale| sums.evidence(0, scale, [*other_unit]));
+        let told = scale.and_then(|scale| sums.record_so_far(0, (scale, [*other_unit])));
         let told = told.map_err(|error| {
             let what = format!("covariate {name}: {error}");
             Place::file(path).failure(what, "check the values of its column")

@@ -97,7 +97,7 @@ where
     fn evidence(&self, scale: Scale, units: &[f64]) -> Result<Told, Error> {
         let told = self
             .axis
-            .evidence(0, scale, std::array::from_fn(|i| units[i]))?;
+            .record_so_far(0, (scale, std::array::from_fn(|i| units[i])))?;
         Ok(Told {
             kurtosis: told.kurtosis.unwrap_or_default(),
             covariates: told.covariates.into_iter().collect(),

@@ -13,7 +13,7 @@ use crate::{
     simulate::{Hidden, Preset, Random, Simulator},
 };
 use allanite::{
-    Model, Observed,
+    Model, Record,
     fit::{Fit, Method, Options, fit},
 };
 use rand::{RngExt as _, SeedableRng as _};
@@ -112,7 +112,7 @@ pub fn coefficients(preset: Preset, samples: usize, records: u64) -> Vec<Row> {
                     method,
                     ..Options::default()
                 };
-                let observed = Observed::new(&curve, &spectrum);
+                let observed = Record::new(&curve, &spectrum);
                 let fitted = match with_spectrum {
                     true => fit::<OCTAVES, BINS>(observed, &Model::ieee_952(), options),
                     false => fit(&curve, &Model::ieee_952(), options),

@@ -8,7 +8,7 @@ use crate::{
     simulate::{Coefficients, Hidden, Preset, Simulator},
 };
 use allanite::{
-    Comparison, Model, Observed, Term,
+    Comparison, Model, Record, Term,
     diagnosis::{Addition, Step, Verdict},
     effect::{BiasInstability, CATALOGUE, EXPLAINED, Effect, IEEE_952, MAX_PARAMETERS},
     fit::{Fit, Options, fit},
@@ -156,7 +156,7 @@ pub fn diagnose_with(
     let (first, last) = (&steps[0], &steps[steps.len() - 1]);
     let on_other = |step: &Step<OCTAVES, BINS>| {
         let tolerance = Options::default().tolerance;
-        let other = Observed::new(&other.curve, &other.spectrum);
+        let other = Record::new(&other.curve, &other.spectrum);
         let comparison = Comparison::held_out(other, &step.model, &step.fit, tolerance);
         comparison.map_or((f64::NAN, f64::NAN), |c| (c.rms_percent, c.chi_squared))
     };

@@ -162,7 +162,7 @@ fn simulated(preset: Preset, course: Course, dependence: Dependence, seed: u64) 
     let mut blocks = BlockSums::new(2);
     blocks.push(&[counts, kelvins]);
     let scale = Scale::new(unit, RATE_HZ).expect("positive");
-    let told = axis.evidence(0, scale, [KELVIN]).expect("one axis");
+    let told = axis.record_so_far(0, (scale, [KELVIN])).expect("one axis");
     let means = BlockMeans {
         samples: blocks.samples(),
         block_s: f64::from(blocks.samples()) / RATE_HZ,

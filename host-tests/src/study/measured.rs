@@ -63,7 +63,7 @@ impl Sums {
 
     /// What the sums tell in this scale.
     pub fn measured(&self, scale: Scale) -> Measured {
-        let evidence = self.gyro.evidence(0, scale, []).expect("one axis");
+        let evidence = self.gyro.record_so_far(0, scale).expect("one axis");
         Measured {
             curve: evidence.curve,
             spectrum: self.spectrum.spectrum(scale),

@@ -77,7 +77,7 @@ pub fn diagnose(
         course.push(count, []);
     }
     let scale = Scale::new(unit, RATE_HZ).expect("positive");
-    let evidence = gyro.evidence(0, scale, [KELVIN]).expect("one axis");
+    let evidence = gyro.record_so_far(0, (scale, [KELVIN])).expect("one axis");
     let course = course.cosine_transform(scale);
     let record = Record {
         course: course.as_ref(),

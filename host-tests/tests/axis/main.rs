@@ -144,7 +144,7 @@ fn look<G: GatePart, M: MomentPart, S: SpectrumPart, T: TrackPart>(
     looks: &mut Vec<(u64, Status)>,
 ) {
     if test.is_due(axes.samples()) {
-        let x = axes.evidence(0, scale(), [0.01]).unwrap();
+        let x = axes.record_so_far(0, (scale(), [0.01])).unwrap();
         looks.push((x.samples, test.look(x.samples, &x.curve, x.invalid)));
     }
 }
@@ -198,8 +198,8 @@ fn spikes_a_motion_and_a_power_loss_give_the_same_result_as_the_cleaned_record()
     assert_eq!(gyro.integrity(), clean.integrity());
     for axis in 0..3 {
         let [one, other] = [
-            gyro.evidence(axis, scale(), [0.01]),
-            clean.evidence(axis, scale(), [0.01]),
+            gyro.record_so_far(axis, (scale(), [0.01])),
+            clean.record_so_far(axis, (scale(), [0.01])),
         ];
         let one = one.unwrap();
         assert_eq!((one.invalid, one.kurtosis.is_some()), (None, true));
@@ -250,7 +250,7 @@ fn motions_and_shocks_now_and_then_do_not_change_the_measured_noise() {
     let left_out = gated.left_out();
     assert!((1502..8000).contains(&left_out), "{left_out}");
     assert_eq!(gated.samples() + left_out, SAMPLES as u64);
-    let record = gated.evidence(0, scale(), []).unwrap();
+    let record = gated.record_so_far(0, scale()).unwrap();
     let fit = fit(&record.curve, &Model::ieee_952(), Options::default()).unwrap();
     assert!(fit.p_value > 1e-3, "{}", fit.p_value);
     let value = fit.coefficients[1].value;
@@ -321,8 +321,8 @@ fn three_axes_at_rest_are_three_single_axes() {
     for (i, axis) in single.iter_mut().enumerate() {
         axis.release();
         assert_eq!(
-            axes.evidence(i, scale(), [0.01]),
-            axis.evidence(0, scale(), [0.01])
+            axes.record_so_far(i, (scale(), [0.01])),
+            axis.record_so_far(0, (scale(), [0.01]))
         );
     }
 }

@@ -134,13 +134,13 @@ fn merge_and_restore<G: GatePart>(stretches: &[Vec<Counts>]) -> Result<(), TestC
     prop_assert_eq!(restored.left_out(), batch.left_out());
     prop_assert_eq!(restored.courses(), batch.courses());
     for axis in 0..3 {
-        let expected = batch.evidence(axis, scale(), [0.01]).unwrap();
-        let after = restored.evidence(axis, scale(), [0.01]).unwrap();
+        let expected = batch.record_so_far(axis, (scale(), [0.01])).unwrap();
+        let after = restored.record_so_far(axis, (scale(), [0.01])).unwrap();
         prop_assert_eq!(&after, &expected);
         // The noise level that a merged record has learnt reaches the other record late, so that
         // their gates may decide differently.
         if std::mem::size_of::<G>() == 0 && merged.left_out() == batch.left_out() {
-            let merged = merged.evidence(axis, scale(), [0.01]).unwrap();
+            let merged = merged.record_so_far(axis, (scale(), [0.01])).unwrap();
             if merged.samples == expected.samples {
                 prop_assert_eq!(merged.curve, expected.curve);
                 prop_assert_eq!(merged.covariates, expected.covariates);

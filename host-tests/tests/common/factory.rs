@@ -1,7 +1,7 @@
 //! Records of simulated gyros, like those that a factory would write.
 
 use allanite::{
-    Accumulator, Axis, Model, Observed, Scale,
+    Accumulator, Axis, Model, Scale,
     axis::{Gated, Moments, Spectral, Tracked},
     course::events,
     diagnosis::Options,
@@ -38,7 +38,7 @@ pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisCertifica
     let report =
         |step: &allanite::diagnosis::Step<17>| last = Some((step.model.clone(), step.fit.clone()));
     let options = Options::default();
-    let verdict = diagnose((&curve).into(), &model, &CATALOGUE, options, report).unwrap();
+    let verdict = diagnose(&curve, &model, &CATALOGUE, options, report).unwrap();
     let (model, fit) = last.unwrap();
     let mut axis = AxisCertificate::new(&curve, &model, &fit).unwrap();
     axis.verdict = Some(verdict);
@@ -57,15 +57,13 @@ pub(crate) fn followed() -> AxisCertificate {
         gyro.push(([count + temperature / 5], [temperature]));
         while gyro.advance() {}
     }
-    gyro.release();
-    let evidence = gyro.evidence(0, scale, [0.01]).unwrap();
+    let record = gyro.record(0, (scale, [0.01])).unwrap();
     let model = Model::ieee_952();
-    let observed = Observed::new(&evidence.curve, &evidence.spectrum);
     let mut axis = AxisCertificate::empty();
     let mut taken = Ok(());
-    let (record, options) = (evidence.record(), Options::default());
-    let verdict = diagnose(record, &model, &CATALOGUE, options, |step| {
-        taken = axis.take(observed, step);
+    let options = Options::default();
+    let verdict = diagnose(&record, &model, &CATALOGUE, options, |step| {
+        taken = axis.take(&record, step);
     });
     taken.unwrap();
     axis.verdict = Some(verdict.unwrap());

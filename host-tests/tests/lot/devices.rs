@@ -89,7 +89,7 @@ pub(crate) fn certificate(device: u64, truth: Coefficients, line: f64, seed: u64
     let (model, options) = (Model::ieee_952(), Options::default());
     let mut axis = AxisCertificate::empty();
     let mut taken = Ok(());
-    let verdict = diagnose((&curve).into(), &model, &CATALOGUE, options, |step| {
+    let verdict = diagnose(&curve, &model, &CATALOGUE, options, |step| {
         taken = axis.take(&curve, step);
     });
     taken.unwrap();

@@ -61,7 +61,7 @@ fn diagnosed(hidden: Hidden) -> (Curve<OCTAVES>, Vec<Step<OCTAVES>>) {
     let mut steps = Vec::new();
     let model = Model::ieee_952();
     let (effects, options) = (effects(), Options::default());
-    diagnose((&curve).into(), &model, &effects, options, |step| {
+    diagnose(&curve, &model, &effects, options, |step| {
         steps.push(step.clone());
     })
     .expect("a diagnosis");

@@ -170,7 +170,7 @@ fn a_low_pass_that_is_too_wide_is_noticed() {
 /// Counts of a gyro behind a sensor's low pass, and what a diagnosis finds missing in a model of it.
 fn missing(model: &Model, curve: &Curve<OCTAVES>) -> Vec<&'static str> {
     let mut found = Vec::new();
-    let verdict = diagnose(curve.into(), model, &EFFECTS, Options::default(), |step| {
+    let verdict = diagnose(curve, model, &EFFECTS, Options::default(), |step| {
         let terms = step.model.terms().iter();
         let known = |name: &str| model.position(name).is_some();
         let names = terms.map(|term| term.effect.name());

@@ -95,7 +95,7 @@ proptest! {
                     let mut imu = Imu::start($bus, description, &mut NoDelay).unwrap();
                     for _ in &times {
                         let outcome = imu.read();
-                        axes.record(&outcome, |_| [0]);
+                        axes.record_outcome(&outcome, |_| [0]);
                     }
                 }};
             }

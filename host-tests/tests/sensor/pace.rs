@@ -132,7 +132,7 @@ fn samples_that_were_read_too_late_become_a_gap() {
         if let Ok(Some(reading)) = &mut outcome {
             reading.loss = Loss::of_intervals(pace.stamp(late(n) * 10_000));
         }
-        axes.record(&outcome, |_| []);
+        axes.record_outcome(&outcome, |_| []);
     }
     mock.done();
     let [x, _, _] = axes.accumulators();

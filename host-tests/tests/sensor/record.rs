@@ -18,7 +18,7 @@ fn no_sample_is_read_before_the_flag_is_up() {
     let outcome = imu.read();
     assert_eq!(outcome, Ok(None));
     let mut axes = Three::new();
-    assert!(!axes.record(&outcome, |_| []));
+    assert!(!axes.record_outcome(&outcome, |_| []));
     assert_eq!(axes, Three::new());
     mock.done();
 }
@@ -31,7 +31,7 @@ fn an_overrun_is_a_gap_before_the_sample() {
     let (mut imu, mut mock) = start(sheet, turns.into_iter().flatten());
     let (mut axes, mut expected) = (Three::new(), Accumulator::<8>::new());
     for (flags, count) in samples {
-        assert!(axes.record(&imu.read(), |_| []));
+        assert!(axes.record_outcome(&imu.read(), |_| []));
         if flags & 0x80 != 0 {
             expected.gap();
         }
@@ -70,7 +70,7 @@ fn a_bus_error_within_a_record_only_causes_a_gap() {
             40 | 41 => Some((0x41, ErrorKind::Bus)),
             _ => None,
         };
-        assert_eq!(axes.record(&outcome, |_| []), failed.is_none());
+        assert_eq!(axes.record_outcome(&outcome, |_| []), failed.is_none());
         if let Some((register, error)) = failed {
             assert_eq!(outcome, Err(Error::Bus { register, error }));
             for (now, before) in axes.accumulators().into_iter().zip(&before) {

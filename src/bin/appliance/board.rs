@@ -12,7 +12,7 @@ use cortex_m::{
 };
 use defmt_semihosting as _;
 use demonstration::appliance::{
-    BUFFER, BURST, Failure, Gyro, GyroEvidence, Plan, Progress, Recorder, Report, Source, Stored,
+    BUFFER, BURST, Failure, Gyro, GyroRecord, Plan, Progress, Recorder, Report, Source, Stored,
     World,
 };
 use heapless::spsc::Queue;
@@ -166,11 +166,11 @@ impl Product {
         });
     }
 
-    /// The evidence about every axis, when the record is complete.
-    pub(crate) fn evidence(&self) -> [GyroEvidence; 3] {
+    /// The record of every axis, when the record is complete.
+    pub(crate) fn records(&self) -> [GyroRecord; 3] {
         [0, 1, 2].map(|axis| {
-            let evidence = self.recorder.evidence(axis);
-            evidence.unwrap_or_else(|failure| fail(failure))
+            let records = self.recorder.record(axis);
+            records.unwrap_or_else(|failure| fail(failure))
         })
     }
 }
@@ -191,9 +191,9 @@ impl Product {
     /// Begins the report on the complete record.
     // Inlined, so that the diagnosis is built where it stays.
     #[inline(always)]
-    pub(crate) fn finish<'p>(&'p mut self, evidence: &'p [GyroEvidence; 3]) -> Last<'p> {
+    pub(crate) fn finish<'p>(&'p mut self, records: &'p [GyroRecord; 3]) -> Last<'p> {
         Last {
-            report: Report::new(self.recorder.gyro(), self.recorder.self_test(), evidence),
+            report: Report::new(self.recorder.gyro(), self.recorder.self_test(), records),
             is_undivided: core::mem::take(&mut self.stored.undivided),
             stored: self.stored,
             receiver: &mut self.receiver,

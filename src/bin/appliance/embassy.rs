@@ -74,8 +74,8 @@ mod image {
             watchdog.feed();
             embassy_futures::yield_now().await;
         }
-        let evidence = product.evidence();
-        let mut last = product.finish(&evidence);
+        let records = product.records();
+        let mut last = product.finish(&records);
         while last.pass(&mut watchdog) != Progress::Complete {
             watchdog.feed();
             embassy_futures::yield_now().await;

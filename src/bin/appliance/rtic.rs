@@ -67,8 +67,8 @@ mod image {
         while product.pass() != Progress::Complete {
             watchdog.feed();
         }
-        let evidence = product.evidence();
-        let mut last = product.finish(&evidence);
+        let records = product.records();
+        let mut last = product.finish(&records);
         while last.pass(watchdog) != Progress::Complete {
             watchdog.feed();
         }

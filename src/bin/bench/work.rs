@@ -286,7 +286,7 @@ pub(crate) fn characterise<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Resu
 #[inline(never)]
 pub(crate) fn diagnose<const OCTAVES: usize>(curve: &Curve<OCTAVES>, model: &Model) -> bool {
     let options = diagnosis::Options::default();
-    let mut diagnosis = Diagnosis::new(curve.into(), model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(curve, model, &CATALOGUE, options);
     let report = |step: &_| {
         black_box(step);
     };
@@ -350,7 +350,7 @@ pub(crate) fn longest_stretch_of_fit<const OCTAVES: usize>(
     curve: &Curve<OCTAVES>,
     model: &Model,
 ) -> Option<f64> {
-    let mut fitting = Fitting::new(curve.clone(), model.clone(), Options::default());
+    let mut fitting = Fitting::new(curve, model.clone(), Options::default());
     let mut longest = 0.0_f64;
     loop {
         let mut outcome = None;

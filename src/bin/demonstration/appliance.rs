@@ -19,7 +19,7 @@ mod world;
 pub use flash::Flash;
 pub use recorder::{Counts, Recorder, Restart};
 pub use replay::replay;
-pub use report::{GyroEvidence, Report};
+pub use report::{GyroRecord, Report};
 pub use world::{CUTS, Cut, Plan, Source, Stored, World};
 
 pub use super::product::{Failure, Gyro};

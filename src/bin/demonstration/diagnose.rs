@@ -7,7 +7,7 @@ use super::{
 };
 use allanite::{
     Axis, Error, Model, Real, Scale,
-    axis::{AxisEvidence, Gated, Moments, Spectral},
+    axis::{AxisRecord, Gated, Moments, Spectral},
     diagnosis::{Diagnosis, Options, Step, Verdict},
     effect::CATALOGUE,
     spectrum::Spectrum,
@@ -111,7 +111,7 @@ pub fn diagnose(
 ) -> Result<Verdict, Error> {
     let record = recorded(disturbance, seed)?;
     let (model, options) = (Model::ieee_952(), Options::default());
-    let mut diagnosis = Diagnosis::new(record.record(), &model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(&record, &model, &CATALOGUE, options);
     loop {
         // A pause that never ends the work leads to a verdict.
         let mut pause = || ControlFlow::Continue(());
@@ -122,7 +122,7 @@ pub fn diagnose(
 }
 
 /// The curve, the spectrum and the kurtosis.
-type Recorded = AxisEvidence<OCTAVES, 0, Spectrum<BINS>>;
+type Recorded = AxisRecord<OCTAVES, 0, Spectrum<BINS>>;
 
 /// Records in a separate call, so that the gyro and the record leave the stack before the diagnosis.
 #[inline(never)]
@@ -131,8 +131,7 @@ fn recorded(disturbance: Option<Disturbance>, seed: u64) -> Result<Recorded, Err
     for count in SimulatedGyro::disturbed(AMPLITUDES, disturbance, seed).take(SAMPLES) {
         gyro.push(count);
     }
-    gyro.release();
-    gyro.evidence(0, Scale::new(1.0 / 131.0, RATE_HZ)?, [])
+    gyro.record(0, Scale::new(1.0 / 131.0, RATE_HZ)?)
 }
 
 /// The default seed of the noise.

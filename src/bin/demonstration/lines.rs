@@ -4,7 +4,7 @@
 use super::{characterise::Characterised, double};
 use allanite::{
     Curve, Real,
-    axis::AxisEvidence,
+    axis::AxisRecord,
     course::Block,
     diagnosis::{Addition, Step},
     spectrum::Spectrum,
@@ -32,9 +32,9 @@ pub fn curve<const K: usize>(curve: &Curve<K>, mut line: impl FnMut(Arguments<'_
     }
 }
 
-/// Prints the curve of an axis and the other evidence for a diagnosis.
-pub fn evidence<const K: usize, const C: usize, const B: usize>(
-    axis: &AxisEvidence<K, C, Spectrum<B>>,
+/// Prints the curve of an axis and what else a diagnosis takes.
+pub fn record<const K: usize, const C: usize, const B: usize>(
+    axis: &AxisRecord<K, C, Spectrum<B>>,
     mut line: impl FnMut(Arguments<'_>),
 ) {
     curve(&axis.curve, &mut line);

@@ -168,7 +168,7 @@ pub fn run(
         // The main loop has nothing else to do.
         while gyro.advance() {}
         if tests[0].is_due(gyro.samples()) {
-            let x = gyro.evidence(0, scale, [KELVIN])?;
+            let x = gyro.record_so_far(0, (scale, [KELVIN]))?;
             let status = tests[0].look(x.samples, &x.curve, x.invalid);
             line(format_args!("look samples {} {status:?}", x.samples));
         }
@@ -198,11 +198,11 @@ pub fn run(
     ));
     for (axis, seen) in gyro.seen().into_iter().enumerate() {
         line(format_args!("axis {axis} seen {:?}", seen.tally()));
-        lines::evidence(&gyro.evidence(axis, scale, [KELVIN])?, &mut line);
+        lines::record(&gyro.record_so_far(axis, (scale, [KELVIN]))?, &mut line);
     }
-    let x = gyro.evidence(0, scale, [KELVIN])?;
+    let x = gyro.record_so_far(0, (scale, [KELVIN]))?;
     let (model, options) = (Model::ieee_952(), Options::default());
-    let mut diagnosis = Diagnosis::new(x.record(), &model, &CATALOGUE, options);
+    let mut diagnosis = Diagnosis::new(&x, &model, &CATALOGUE, options);
     // A product feeds its watchdog here, and takes the next samples.
     let mut pause = || ControlFlow::Continue(());
     if let Some(verdict) = diagnosis.run(|step| lines::step(step, &mut line), &mut pause)? {
@@ -221,7 +221,7 @@ fn course(gyro: &Gyro, scale: Scale, line: &mut impl FnMut(Arguments<'_>)) -> Re
     for block in course.blocks(scale) {
         lines::block(&block, &mut *line);
     }
-    let y = gyro.evidence(1, scale, [KELVIN])?;
+    let y = gyro.record_so_far(1, (scale, [KELVIN]))?;
     let analysis = analyse(
         &y.curve,
         &Model::ieee_952(),

@@ -29,7 +29,7 @@ mod image {
             };
             let mut pause = || black_box(ControlFlow::Continue(()));
             let options = Options::default();
-            Diagnosis::new((&curve).into(), &model, &CATALOGUE, options).run(report, &mut pause)
+            Diagnosis::new(&curve, &model, &CATALOGUE, options).run(report, &mut pause)
         });
         black_box(&verdict);
         semihosting::process::exit(0)

@@ -55,7 +55,7 @@ mod image {
                 gyro.push((sample, [black_box(0)]));
             }
             if test.is_due(gyro.samples())
-                && let Ok(x) = gyro.evidence(0, scale, [0.01])
+                && let Ok(x) = gyro.record_so_far(0, (scale, [0.01]))
             {
                 black_box(test.look(x.samples, &x.curve, x.invalid));
             }
@@ -70,7 +70,7 @@ mod image {
         let mut slices = black_box(Accumulator::<20>::new());
         slices.push_slice(black_box(&[0; 4]));
         black_box(&slices);
-        let Ok(x) = records.evidence(black_box(0), scale, [0.01]) else {
+        let Ok(x) = records.record_so_far(black_box(0), (scale, [0.01])) else {
             return;
         };
         let model = Model::ieee_952();
@@ -79,8 +79,7 @@ mod image {
         };
         let mut pause = || black_box(ControlFlow::Continue(()));
         let options = diagnosis::Options::default();
-        let verdict =
-            Diagnosis::new(x.record(), &model, &CATALOGUE, options).run(report, &mut pause);
+        let verdict = Diagnosis::new(&x, &model, &CATALOGUE, options).run(report, &mut pause);
         let _ = black_box(verdict);
         if let [Some(course), ..] = records.courses() {
             let analysis = analyse(&x.curve, &model, course, scale, Options::default());

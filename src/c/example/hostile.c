@@ -15,7 +15,7 @@ void product(void);
 static AllaniteGyro gyro, other;
 static AllaniteSelfTest test;
 static AllaniteLook look;
-static AllaniteEvidence evidence;
+static AllaniteRecord record;
 static AllaniteDiagnosis diagnosis;
 static AllaniteCertificate certificate;
 static uint8_t stored[ALLANITE_SNAPSHOT_BYTES], damaged[ALLANITE_SNAPSHOT_BYTES];
@@ -40,7 +40,7 @@ static AllaniteStatus make_test(AllaniteSelfTest *to, const AllanitePlan *by, co
 }
 
 static AllaniteStatus take(size_t axis, float scale, float rate, float kelvin) {
-    return allanite_evidence_take(&evidence, sizeof evidence, &gyro, axis, scale, rate, kelvin);
+    return allanite_record_take(&record, sizeof record, &gyro, axis, scale, rate, kelvin);
 }
 
 /* A pause that ends the work. */
@@ -73,14 +73,14 @@ static void without_values(void) {
     EXPECT(NOT_INITIALISED, allanite_gyro_snapshot(&gyro, NULL, stored, sizeof stored, &length));
     EXPECT(NOT_INITIALISED, allanite_gyro_restore(&gyro, NULL, stored, sizeof stored));
     EXPECT(NOT_INITIALISED, take(0, 1.0f, 100.0f, 1.0f));
-    EXPECT(NOT_INITIALISED, allanite_evidence_summary(&evidence, &samples, NULL));
-    EXPECT(NOT_INITIALISED, allanite_fit(&evidence, &fit));
+    EXPECT(NOT_INITIALISED, allanite_record_summary(&record, &samples, NULL));
+    EXPECT(NOT_INITIALISED, allanite_fit(&record, &fit));
     EXPECT(NOT_INITIALISED, allanite_self_test_is_due(&test, 1, &flag));
     EXPECT(NOT_INITIALISED, allanite_self_test_status(&test, 1, &status));
-    EXPECT(NOT_INITIALISED, allanite_look_begin(&look, sizeof look, &test, &evidence));
+    EXPECT(NOT_INITIALISED, allanite_look_begin(&look, sizeof look, &test, &record));
     EXPECT(NOT_INITIALISED, allanite_look_advance(&look, &flag));
     EXPECT(NOT_INITIALISED, allanite_look_conclude(&test, &look, &status));
-    EXPECT(NOT_INITIALISED, allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &evidence));
+    EXPECT(NOT_INITIALISED, allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &record));
     EXPECT(NOT_INITIALISED, allanite_diagnosis_advance(&diagnosis, &progress));
     EXPECT(NOT_INITIALISED, allanite_diagnosis_advance_with(&diagnosis, &progress, end, NULL));
     EXPECT(NOT_INITIALISED, allanite_diagnosis_fit(&diagnosis, &fit));
@@ -110,7 +110,7 @@ static void with_values(void) {
     EXPECT(OK, allanite_gyro_missing(&gyro, UINT64_MAX));
     EXPECT(OK, allanite_gyro_init(&gyro, sizeof gyro));
     EXPECT(UNKNOWN_AXIS, take(3, 1.0f, 100.0f, 1.0f));
-    EXPECT(NOT_INITIALISED, allanite_fit(&evidence, &fit));
+    EXPECT(NOT_INITIALISED, allanite_fit(&record, &fit));
     EXPECT(UNKNOWN_AXIS, take(SIZE_MAX, 1.0f, 100.0f, 1.0f));
     const float bad[] = {0.0f, -1.0f, NAN, INFINITY};
     for (int i = 0; i < 4; i++) {
@@ -123,8 +123,8 @@ static void with_values(void) {
     }
     /* An empty record. */
     EXPECT(OK, take(0, 1.0f, 100.0f, 1.0f));
-    EXPECT(TOO_SHORT, allanite_fit(&evidence, &fit));
-    EXPECT(OK, allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &evidence));
+    EXPECT(TOO_SHORT, allanite_fit(&record, &fit));
+    EXPECT(OK, allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &record));
     EXPECT(TOO_SHORT, allanite_diagnosis_advance(&diagnosis, &progress));
     EXPECT(OK, allanite_certificate_init(&certificate, sizeof certificate, NULL, 0, &conditions));
     EXPECT(INVALID_ARGUMENT, allanite_certificate_add(&certificate, &diagnosis));
@@ -136,7 +136,7 @@ static void with_values(void) {
     }
     EXPECT(OK, allanite_gyro_release(&gyro));
     EXPECT(OK, take(0, 1.0f, 100.0f, 1.0f));
-    AllaniteStatus constant = allanite_fit(&evidence, &fit);
+    AllaniteStatus constant = allanite_fit(&record, &fit);
     if (constant != ALLANITE_STATUS_NO_NOISE && constant != ALLANITE_STATUS_TOO_SHORT) {
         EXPECT(NO_NOISE, constant);
     }
@@ -151,7 +151,7 @@ static void with_values(void) {
     EXPECT(OK, make_test(&test, &plan, limits, 1));
     EXPECT(NULL_POINTER, allanite_self_test_is_due(&test, 1, NULL));
     /* A look that is not complete decides nothing. */
-    EXPECT(OK, allanite_look_begin(&look, sizeof look, &test, &evidence));
+    EXPECT(OK, allanite_look_begin(&look, sizeof look, &test, &record));
     EXPECT(OK, allanite_look_conclude(&test, &look, &status));
     EXPECT(NULL_POINTER, allanite_look_conclude(&test, &look, NULL));
     /* Buffers. */

@@ -13,7 +13,7 @@ void leave(int status);
 static AllaniteGyro gyro;
 static AllaniteSelfTest test;
 static AllaniteLook look;
-static AllaniteEvidence evidence;
+static AllaniteRecord record;
 static AllaniteDiagnosis diagnosis;
 static AllaniteCertificate certificate;
 static uint8_t stored[ALLANITE_SNAPSHOT_BYTES];
@@ -83,8 +83,8 @@ static void make_test(void) {
     check(allanite_self_test_init(&test, sizeof test, &plan, limits, 2, 1.0f / 131.0f, 100.0f), "self-test");
 }
 
-static void take_evidence(void) {
-    check(allanite_evidence_take(&evidence, sizeof evidence, &gyro, 0, 1.0f / 131.0f, 100.0f, 0.01f), "evidence");
+static void take_record(void) {
+    check(allanite_record_take(&record, sizeof record, &gyro, 0, 1.0f / 131.0f, 100.0f, 0.01f), "record");
 }
 
 static void print_status(const AllaniteTestStatus *status) {
@@ -107,8 +107,8 @@ static void test_if_due(void) {
     }
     AllaniteTestStatus status;
     bool complete = false;
-    take_evidence();
-    check(allanite_look_begin(&look, sizeof look, &test, &evidence), "look");
+    take_record();
+    check(allanite_look_begin(&look, sizeof look, &test, &record), "look");
     while (!complete) {
         check(allanite_look_advance(&look, &complete), "look");
     }
@@ -204,10 +204,10 @@ void product(void) {
 
     AllaniteFit fit;
     AllaniteProgress progress;
-    take_evidence();
-    check(allanite_fit(&evidence, &fit), "fit");
+    take_record();
+    check(allanite_fit(&record, &fit), "fit");
     print_fit(&fit);
-    check(allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &evidence), "diagnosis");
+    check(allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &record), "diagnosis");
     uint32_t pauses = 0;
     do {
         check(allanite_diagnosis_advance_with(&diagnosis, &progress, count, &pauses), "advance");

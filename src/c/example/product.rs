@@ -4,8 +4,8 @@
 #![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
 
 use allanite::{
-    Axes, Model, Observed, Real, Scale,
-    axis::{AxisEvidence, Gated, Moments, Spectral},
+    Axes, Model, Real, Scale,
+    axis::{AxisRecord, Gated, Moments, Spectral},
     diagnosis::{Diagnosis, Options, Progress, Verdict},
     effect::CATALOGUE,
     fit::{self, Fit, State, fit},
@@ -21,7 +21,7 @@ const SNAPSHOT: u32 = 40_000;
 const POWER_LOSS: u32 = 41_000;
 
 type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 140>>;
-type Evidence = AxisEvidence<OCTAVES, 1, Spectrum<140>>;
+type Record = AxisRecord<OCTAVES, 1, Spectrum<140>>;
 
 /// White noise, an oscillation, and a temperature that the first axis follows.
 struct Sensor {
@@ -150,7 +150,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         gyro.push((counts, [temperature]));
         while gyro.advance() {}
         if tests[0].is_due(gyro.samples()) {
-            let x = gyro.evidence(0, scale, kelvin)?;
+            let x = gyro.record_so_far(0, (scale, kelvin))?;
             print_status(tests[0].look(x.samples, &x.curve, x.invalid));
         }
         if n == SNAPSHOT {
@@ -167,11 +167,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     gyro.release();
     println!("kept {} left out {}", gyro.samples(), gyro.left_out());
 
-    let x: Evidence = gyro.evidence(0, scale, kelvin)?;
+    let x: Record = gyro.record_so_far(0, (scale, kelvin))?;
     let model = Model::ieee_952();
-    let observed = Observed::new(&x.curve, &x.spectrum);
-    print_fit(&model, &fit(observed, &model, fit::Options::default())?);
-    let mut diagnosis = Diagnosis::new(x.record(), &model, &CATALOGUE, Options::default());
+    print_fit(&model, &fit(&x, &model, fit::Options::default())?);
+    let mut diagnosis = Diagnosis::new(&x, &model, &CATALOGUE, Options::default());
     let mut axis = AxisCertificate::empty();
     let mut pauses = 0;
     let mut count = || {
@@ -183,7 +182,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Progress::Paused => {}
             Progress::Step(step) => {
                 print_fit(&step.model, &step.fit);
-                axis.take(observed, step)?;
+                axis.take(&x, step)?;
             }
             Progress::Finished(verdict) => break verdict,
         }

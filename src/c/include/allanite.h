@@ -41,8 +41,8 @@
 // Words of an `AllaniteGyro`.
 #define ALLANITE_GYRO_WORDS (2160 + (66 * ALLANITE_OCTAVES))
 
-// Words of an `AllaniteEvidence`.
-#define ALLANITE_EVIDENCE_WORDS (470 + (7 * ALLANITE_OCTAVES))
+// Words of an `AllaniteRecord`.
+#define ALLANITE_RECORD_WORDS (470 + (7 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteSelfTest`.
 #define ALLANITE_SELF_TEST_WORDS 44
@@ -280,8 +280,8 @@ typedef struct {
 // it.
 typedef struct {
   // Nothing for the caller to read.
-  uint64_t words[ALLANITE_EVIDENCE_WORDS];
-} AllaniteEvidence;
+  uint64_t words[ALLANITE_RECORD_WORDS];
+} AllaniteRecord;
 
 // A coefficient, in the unit rate · s^(half_seconds/2).
 typedef struct {
@@ -424,9 +424,9 @@ AllaniteStatus allanite_certificate_encode(const AllaniteCertificate *certificat
 // Begins a diagnosis of an axis: what do the five terms lack? `bytes` is `sizeof(AllaniteDiagnosis)`.
 //
 // # Safety
-// `diagnosis` is null, or points to an `AllaniteDiagnosis` that nothing else uses; `evidence` is null, or points to an
-// `AllaniteEvidence` that stays there, unchanged, for as long as the diagnosis is used.
-AllaniteStatus allanite_diagnosis_begin(AllaniteDiagnosis *diagnosis, size_t bytes, const AllaniteEvidence *evidence);
+// `diagnosis` is null, or points to an `AllaniteDiagnosis` that nothing else uses; `record` is null, or points to an
+// `AllaniteRecord` that stays there, unchanged, for as long as the diagnosis is used.
+AllaniteStatus allanite_diagnosis_begin(AllaniteDiagnosis *diagnosis, size_t bytes, const AllaniteRecord *record);
 
 // Works until the next step of a diagnosis and tells what it has led to. That takes long;
 // `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it tells the verdict again.
@@ -442,7 +442,7 @@ AllaniteStatus allanite_diagnosis_advance(AllaniteDiagnosis *diagnosis, Allanite
 //
 // # Safety
 // `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`. `pause`
-// is null, or a function that returns, and that uses neither the diagnosis nor its evidence.
+// is null, or a function that returns, and that uses neither the diagnosis nor its record.
 AllaniteStatus allanite_diagnosis_advance_with(AllaniteDiagnosis *diagnosis,
                                                AllaniteProgress *progress,
                                                bool (*pause)(void *context),
@@ -454,14 +454,14 @@ AllaniteStatus allanite_diagnosis_advance_with(AllaniteDiagnosis *diagnosis,
 // `diagnosis` is null, or points to an `AllaniteDiagnosis`; `to` is null, or points to an `AllaniteFit`.
 AllaniteStatus allanite_diagnosis_fit(const AllaniteDiagnosis *diagnosis, AllaniteFit *to);
 
-// Takes the evidence about an axis from a record, to which it does not belong afterwards. `bytes` is
-// `sizeof(AllaniteEvidence)`. `rate_per_count` is the rate of one count, `rate_hz` the number of samples per second, and
+// Takes the record of an axis from a gyro, to which it does not belong afterwards. `bytes` is
+// `sizeof(AllaniteRecord)`. `rate_per_count` is the rate of one count, `rate_hz` the number of samples per second, and
 // `kelvin_per_count` the temperature of one count of the thermometer.
 //
 // # Safety
-// `evidence` is null, or points to an `AllaniteEvidence` that nothing else uses; `gyro` is null, or points to an
+// `record` is null, or points to an `AllaniteRecord` that nothing else uses; `gyro` is null, or points to an
 // `AllaniteGyro`.
-AllaniteStatus allanite_evidence_take(AllaniteEvidence *evidence,
+AllaniteStatus allanite_record_take(AllaniteRecord *record,
                                       size_t bytes,
                                       const AllaniteGyro *gyro,
                                       size_t axis,
@@ -472,15 +472,15 @@ AllaniteStatus allanite_evidence_take(AllaniteEvidence *evidence,
 // The number of samples of the record, and whether it is that of a gyro at rest. Either pointer may be null.
 //
 // # Safety
-// `evidence` is null, or points to an `AllaniteEvidence`; the others are null, or point to what they say.
-AllaniteStatus allanite_evidence_summary(const AllaniteEvidence *evidence, uint64_t *samples, AllaniteReason *reason);
+// `record` is null, or points to an `AllaniteRecord`; the others are null, or point to what they say.
+AllaniteStatus allanite_record_summary(const AllaniteRecord *record, uint64_t *samples, AllaniteReason *reason);
 
 // Fits the five terms of IEEE Std 952 to the curve and to the spectrum of an axis, in one go: some 20 million
 // instructions on a Cortex-M4F. A diagnosis begins with the same fit and does it in pieces.
 //
 // # Safety
-// `evidence` is null, or points to an `AllaniteEvidence`; `to` is null, or points to an `AllaniteFit`.
-AllaniteStatus allanite_fit(const AllaniteEvidence *evidence, AllaniteFit *to);
+// `record` is null, or points to an `AllaniteRecord`; `to` is null, or points to an `AllaniteFit`.
+AllaniteStatus allanite_fit(const AllaniteRecord *record, AllaniteFit *to);
 
 // Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`.
 //
@@ -563,7 +563,7 @@ AllaniteStatus allanite_self_test_is_due(const AllaniteSelfTest *test, uint64_t 
 // `test` is null, or points to an `AllaniteSelfTest`; `to` is null, or points to an `AllaniteTestStatus`.
 AllaniteStatus allanite_self_test_status(const AllaniteSelfTest *test, uint64_t samples, AllaniteTestStatus *to);
 
-// Begins a look of a self-test at the evidence about its axis. `bytes` is `sizeof(AllaniteLook)`. The evidence may change
+// Begins a look of a self-test at the record of its axis. `bytes` is `sizeof(AllaniteLook)`. The record may change
 // afterwards.
 //
 // # Safety
@@ -571,7 +571,7 @@ AllaniteStatus allanite_self_test_status(const AllaniteSelfTest *test, uint64_t 
 AllaniteStatus allanite_look_begin(AllaniteLook *look,
                                    size_t bytes,
                                    const AllaniteSelfTest *test,
-                                   const AllaniteEvidence *evidence);
+                                   const AllaniteRecord *record);
 
 // Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` tells whether it was the last.
 //
@@ -619,7 +619,7 @@ const char *allanite_status_text(int32_t status);
 
 #ifndef __cplusplus
 _Static_assert(sizeof(AllaniteGyro) == 8 * ALLANITE_GYRO_WORDS, "AllaniteGyro has padding");
-_Static_assert(sizeof(AllaniteEvidence) == 8 * ALLANITE_EVIDENCE_WORDS, "AllaniteEvidence has padding");
+_Static_assert(sizeof(AllaniteRecord) == 8 * ALLANITE_RECORD_WORDS, "AllaniteRecord has padding");
 _Static_assert(sizeof(AllaniteSelfTest) == 8 * ALLANITE_SELF_TEST_WORDS, "AllaniteSelfTest has padding");
 _Static_assert(sizeof(AllaniteLook) == 8 * ALLANITE_LOOK_WORDS, "AllaniteLook has padding");
 _Static_assert(sizeof(AllaniteDiagnosis) == 8 * ALLANITE_DIAGNOSIS_WORDS, "AllaniteDiagnosis has padding");

@@ -3,14 +3,14 @@
 use crate::{
     certificate::AllaniteCertificate,
     diagnosis::AllaniteDiagnosis,
-    fit::AllaniteEvidence,
+    fit::AllaniteRecord,
     gyro::{AllaniteGyro, Gyro},
     memory::Memory,
     self_test::{AllaniteLook, AllaniteSelfTest},
     sizes::{
         ALLANITE_CERTIFICATE_BYTES, ALLANITE_CERTIFICATE_WORDS, ALLANITE_DIAGNOSIS_WORDS,
-        ALLANITE_EVIDENCE_WORDS, ALLANITE_GYRO_WORDS, ALLANITE_LOOK_WORDS,
-        ALLANITE_SELF_TEST_WORDS, ALLANITE_SNAPSHOT_BYTES,
+        ALLANITE_GYRO_WORDS, ALLANITE_LOOK_WORDS, ALLANITE_RECORD_WORDS, ALLANITE_SELF_TEST_WORDS,
+        ALLANITE_SNAPSHOT_BYTES,
     },
 };
 use allanite::{Real, storage::Certificate};
@@ -30,7 +30,7 @@ const _: () = assert!(
     size_of::<Real>() > 4
         || size_of::<usize>() < 8
         || (suits(ALLANITE_GYRO_WORDS, words::<AllaniteGyro>())
-            && suits(ALLANITE_EVIDENCE_WORDS, words::<AllaniteEvidence>())
+            && suits(ALLANITE_RECORD_WORDS, words::<AllaniteRecord>())
             && suits(ALLANITE_SELF_TEST_WORDS, words::<AllaniteSelfTest>())
             && suits(ALLANITE_LOOK_WORDS, words::<AllaniteLook>())
             && suits(ALLANITE_DIAGNOSIS_WORDS, words::<AllaniteDiagnosis>())
@@ -40,7 +40,7 @@ const _: () = assert!(
 const _: () = assert!(
     size_of::<Real>() > 4
         || (ALLANITE_GYRO_WORDS >= words::<AllaniteGyro>()
-            && ALLANITE_EVIDENCE_WORDS >= words::<AllaniteEvidence>()
+            && ALLANITE_RECORD_WORDS >= words::<AllaniteRecord>()
             && ALLANITE_SELF_TEST_WORDS >= words::<AllaniteSelfTest>()
             && ALLANITE_LOOK_WORDS >= words::<AllaniteLook>()
             && ALLANITE_DIAGNOSIS_WORDS >= words::<AllaniteDiagnosis>()

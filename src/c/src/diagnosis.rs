@@ -1,14 +1,14 @@
 //! The diagnosis of an axis, step by step.
 
 use crate::{
-    fit::{AllaniteEvidence, AllaniteFit, Evidence},
+    fit::{AllaniteFit, AllaniteRecord, Record},
     gyro::BINS,
     memory::{self, Memory, get, get_mut, put, status},
     sizes::{ALLANITE_DIAGNOSIS_WORDS, ALLANITE_OCTAVES},
     status::AllaniteStatus,
 };
 use allanite::{
-    Model, Observed,
+    Model,
     diagnosis::{Diagnosis, Options, Progress, Verdict},
     effect::CATALOGUE,
     storage::AxisCertificate,
@@ -17,7 +17,7 @@ use core::{ffi::c_void, ops::ControlFlow};
 
 /// A diagnosis in progress, and what it has found.
 pub(crate) struct Diagnosing {
-    evidence: &'static Evidence,
+    record: &'static Record,
     diagnosis: Diagnosis<'static, ALLANITE_OCTAVES, BINS>,
     fit: AllaniteFit,
     pub(crate) certificate: AxisCertificate,
@@ -78,24 +78,24 @@ impl AllaniteProgress {
 /// Begins a diagnosis of an axis: what do the five terms lack? `bytes` is `sizeof(AllaniteDiagnosis)`.
 ///
 /// # Safety
-/// `diagnosis` is null, or points to an `AllaniteDiagnosis` that nothing else uses; `evidence` is null, or points to an
-/// `AllaniteEvidence` that stays there, unchanged, for as long as the diagnosis is used.
+/// `diagnosis` is null, or points to an `AllaniteDiagnosis` that nothing else uses; `record` is null, or points to an
+/// `AllaniteRecord` that stays there, unchanged, for as long as the diagnosis is used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn allanite_diagnosis_begin(
     diagnosis: *mut AllaniteDiagnosis,
     bytes: usize,
-    evidence: *const AllaniteEvidence,
+    record: *const AllaniteRecord,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants, for as long as the diagnosis is used.
-    let evidence: &'static Evidence = match unsafe { get(evidence) } {
-        Ok(evidence) => evidence,
+    let record: &'static Record = match unsafe { get(record) } {
+        Ok(record) => record,
         Err(error) => return error,
     };
     let begun = || {
         let (model, options) = (Model::ieee_952(), Options::default());
         Ok(Diagnosing {
-            evidence,
-            diagnosis: Diagnosis::new(evidence.record(), &model, &CATALOGUE, options),
+            record,
+            diagnosis: Diagnosis::new(record, &model, &CATALOGUE, options),
             fit: AllaniteFit::EMPTY,
             certificate: AxisCertificate::empty(),
             verdict: None,
@@ -126,7 +126,7 @@ pub unsafe extern "C" fn allanite_diagnosis_advance(
 ///
 /// # Safety
 /// `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`. `pause`
-/// is null, or a function that returns, and that uses neither the diagnosis nor its evidence.
+/// is null, or a function that returns, and that uses neither the diagnosis nor its record.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn allanite_diagnosis_advance_with(
     diagnosis: *mut AllaniteDiagnosis,
@@ -163,7 +163,7 @@ unsafe fn advance(
         Err(error) => return error,
     };
     let Diagnosing {
-        evidence,
+        record,
         diagnosis,
         fit,
         certificate,
@@ -174,8 +174,7 @@ unsafe fn advance(
         Ok(Progress::Paused) => AllaniteProgress::Working,
         Ok(Progress::Step(step)) => {
             *fit = AllaniteFit::of(&step.model, &step.fit);
-            let observed = Observed::new(&evidence.curve, &evidence.spectrum);
-            if let Err(error) = certificate.take(observed, step) {
+            if let Err(error) = certificate.take(*record, step) {
                 return error.into();
             }
             AllaniteProgress::Step

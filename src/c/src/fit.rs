@@ -1,45 +1,45 @@
-//! Evidence about an axis, and fits of models to it.
+//! The record of an axis, and fits of models to it.
 
 use crate::{
     gyro::{AllaniteGyro, BINS},
     memory::{self, Memory, get, put, status},
-    sizes::{ALLANITE_EVIDENCE_WORDS, ALLANITE_OCTAVES},
+    sizes::{ALLANITE_OCTAVES, ALLANITE_RECORD_WORDS},
     status::{AllaniteReason, AllaniteStatus},
 };
 use allanite::{
-    Model, Observed, Real, Scale,
-    axis::AxisEvidence,
+    Model, Real, Scale,
+    axis::AxisRecord,
     fit::{Fit, Options, State, fit},
     spectrum::Spectrum,
     storage::EffectCode,
 };
 
-pub(crate) type Evidence = AxisEvidence<ALLANITE_OCTAVES, 1, Spectrum<BINS>>;
+pub(crate) type Record = AxisRecord<ALLANITE_OCTAVES, 1, Spectrum<BINS>>;
 
 /// What a record says about one axis at a moment. It must stay where it is, unchanged, while a look or a diagnosis uses
 /// it.
 #[repr(C)]
-pub struct AllaniteEvidence {
+pub struct AllaniteRecord {
     /// Nothing for the caller to read.
-    words: [u64; ALLANITE_EVIDENCE_WORDS],
+    words: [u64; ALLANITE_RECORD_WORDS],
 }
 
 // SAFETY: the type is words, and the mark is its own.
-unsafe impl Memory for AllaniteEvidence {
-    type Value = Evidence;
+unsafe impl Memory for AllaniteRecord {
+    type Value = Record;
     const MARK: u64 = 0x6779_726f_0000_0002 + ALLANITE_OCTAVES as u64 * 0x100;
 }
 
-/// Takes the evidence about an axis from a record, to which it does not belong afterwards. `bytes` is
-/// `sizeof(AllaniteEvidence)`. `rate_per_count` is the rate of one count, `rate_hz` the number of samples per second, and
+/// Takes the record of an axis from a gyro, to which it does not belong afterwards. `bytes` is
+/// `sizeof(AllaniteRecord)`. `rate_per_count` is the rate of one count, `rate_hz` the number of samples per second, and
 /// `kelvin_per_count` the temperature of one count of the thermometer.
 ///
 /// # Safety
-/// `evidence` is null, or points to an `AllaniteEvidence` that nothing else uses; `gyro` is null, or points to an
+/// `record` is null, or points to an `AllaniteRecord` that nothing else uses; `gyro` is null, or points to an
 /// `AllaniteGyro`.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn allanite_evidence_take(
-    evidence: *mut AllaniteEvidence,
+pub unsafe extern "C" fn allanite_record_take(
+    record: *mut AllaniteRecord,
     bytes: usize,
     gyro: *const AllaniteGyro,
     axis: usize,
@@ -54,30 +54,30 @@ pub unsafe extern "C" fn allanite_evidence_take(
     };
     let taken = || {
         let scale = Scale::new(Real::from(rate_per_count), Real::from(rate_hz))?;
-        Ok(gyro.evidence(axis, scale, [Real::from(kelvin_per_count)])?)
+        Ok(gyro.record_so_far(axis, (scale, [Real::from(kelvin_per_count)]))?)
     };
     // SAFETY: the caller promises what `make` wants.
-    status(unsafe { memory::make(evidence, bytes, taken) })
+    status(unsafe { memory::make(record, bytes, taken) })
 }
 
 /// The number of samples of the record, and whether it is that of a gyro at rest. Either pointer may be null.
 ///
 /// # Safety
-/// `evidence` is null, or points to an `AllaniteEvidence`; the others are null, or point to what they say.
+/// `record` is null, or points to an `AllaniteRecord`; the others are null, or point to what they say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn allanite_evidence_summary(
-    evidence: *const AllaniteEvidence,
+pub unsafe extern "C" fn allanite_record_summary(
+    record: *const AllaniteRecord,
     samples: *mut u64,
     reason: *mut AllaniteReason,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants.
-    let evidence = match unsafe { get(evidence) } {
-        Ok(evidence) => evidence,
+    let record = match unsafe { get(record) } {
+        Ok(record) => record,
         Err(error) => return error,
     };
     if !samples.is_null() {
         // SAFETY: the caller promises what `put` wants.
-        if let Err(error) = unsafe { put(samples, evidence.samples) } {
+        if let Err(error) = unsafe { put(samples, record.samples) } {
             return error;
         }
     }
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn allanite_evidence_summary(
         return AllaniteStatus::Ok;
     }
     // SAFETY: the caller promises what `put` wants.
-    status(unsafe { put(reason, AllaniteReason::of(evidence.invalid)) })
+    status(unsafe { put(reason, AllaniteReason::of(record.invalid)) })
 }
 
 /// The largest number of effects in a model.
@@ -252,20 +252,19 @@ impl AllaniteFit {
 /// instructions on a Cortex-M4F. A diagnosis begins with the same fit and does it in pieces.
 ///
 /// # Safety
-/// `evidence` is null, or points to an `AllaniteEvidence`; `to` is null, or points to an `AllaniteFit`.
+/// `record` is null, or points to an `AllaniteRecord`; `to` is null, or points to an `AllaniteFit`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn allanite_fit(
-    evidence: *const AllaniteEvidence,
+    record: *const AllaniteRecord,
     to: *mut AllaniteFit,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants.
-    let evidence = match unsafe { get(evidence) } {
-        Ok(evidence) => evidence,
+    let record = match unsafe { get(record) } {
+        Ok(record) => record,
         Err(error) => return error,
     };
     let model = Model::ieee_952();
-    let observed = Observed::new(&evidence.curve, &evidence.spectrum);
-    match fit(observed, &model, Options::default()) {
+    match fit(record, &model, Options::default()) {
         Err(error) => error.into(),
         // SAFETY: the caller promises what `put` wants.
         Ok(fit) => status(unsafe { put(to, AllaniteFit::of(&model, &fit)) }),

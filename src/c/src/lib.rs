@@ -1,4 +1,4 @@
-//! allanite for C: the record of a three-axis gyro with a temperature, its evidence, fit, diagnosis, self-test, snapshots
+//! allanite for C: the record of a three-axis gyro with a temperature, its record, fit, diagnosis, self-test, snapshots
 //! and certificates.
 //!
 //! `include/allanite.h` declares all of it, and `cargo xtask c` builds a static library for every core. All memory belongs
@@ -8,7 +8,7 @@
 //! #include "allanite.h"
 //!
 //! static AllaniteGyro gyro;
-//! static AllaniteEvidence evidence;
+//! static AllaniteRecord record;
 //! static AllaniteDiagnosis diagnosis;
 //!
 //! static bool pause(void *context) { feed_watchdog(); return true; }
@@ -16,8 +16,8 @@
 //! allanite_gyro_init(&gyro, sizeof gyro);
 //! while (recording) allanite_gyro_push(&gyro, counts, temperature);
 //! allanite_gyro_release(&gyro);
-//! allanite_evidence_take(&evidence, sizeof evidence, &gyro, 0, 1.0f / 131, 100.0f, 0.01f);
-//! allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &evidence);
+//! allanite_record_take(&record, sizeof record, &gyro, 0, 1.0f / 131, 100.0f, 0.01f);
+//! allanite_diagnosis_begin(&diagnosis, sizeof diagnosis, &record);
 //! AllaniteProgress progress;
 //! do {
 //!     allanite_diagnosis_advance_with(&diagnosis, &progress, pause, NULL);

@@ -1,7 +1,7 @@
 //! The self-test of an axis, in pieces.
 
 use crate::{
-    fit::AllaniteEvidence,
+    fit::AllaniteRecord,
     memory::{self, Memory, get, get_mut, put, slice, status},
     sizes::{ALLANITE_LOOK_WORDS, ALLANITE_OCTAVES, ALLANITE_SELF_TEST_WORDS},
     status::{AllaniteReason, AllaniteStatus},
@@ -253,7 +253,7 @@ pub unsafe extern "C" fn allanite_self_test_status(
     }
 }
 
-/// Begins a look of a self-test at the evidence about its axis. `bytes` is `sizeof(AllaniteLook)`. The evidence may change
+/// Begins a look of a self-test at the record of its axis. `bytes` is `sizeof(AllaniteLook)`. The record may change
 /// afterwards.
 ///
 /// # Safety
@@ -263,7 +263,7 @@ pub unsafe extern "C" fn allanite_look_begin(
     look: *mut AllaniteLook,
     bytes: usize,
     test: *const AllaniteSelfTest,
-    evidence: *const AllaniteEvidence,
+    record: *const AllaniteRecord,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get` wants.
     let test = match unsafe { get(test) } {
@@ -271,12 +271,12 @@ pub unsafe extern "C" fn allanite_look_begin(
         Err(error) => return error,
     };
     // SAFETY: the caller promises what `get` wants.
-    let evidence = match unsafe { get(evidence) } {
-        Ok(evidence) => evidence,
+    let record = match unsafe { get(record) } {
+        Ok(record) => record,
         Err(error) => return error,
     };
-    let (samples, invalid) = (evidence.samples, evidence.invalid);
-    let begun = || Ok(test.begin_look(samples, evidence.curve.clone(), invalid));
+    let (samples, invalid) = (record.samples, record.invalid);
+    let begun = || Ok(test.begin_look(samples, record.curve.clone(), invalid));
     // SAFETY: the caller promises what `make` wants.
     status(unsafe { memory::make(look, bytes, begun) })
 }

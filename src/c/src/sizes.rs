@@ -18,8 +18,8 @@ pub const ALLANITE_OCTAVES: usize = 20;
 
 /// Words of an `AllaniteGyro`.
 pub const ALLANITE_GYRO_WORDS: usize = 2160 + 66 * ALLANITE_OCTAVES;
-/// Words of an `AllaniteEvidence`.
-pub const ALLANITE_EVIDENCE_WORDS: usize = 470 + 7 * ALLANITE_OCTAVES;
+/// Words of an `AllaniteRecord`.
+pub const ALLANITE_RECORD_WORDS: usize = 470 + 7 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteSelfTest`.
 pub const ALLANITE_SELF_TEST_WORDS: usize = 44;
 /// Words of an `AllaniteLook`.

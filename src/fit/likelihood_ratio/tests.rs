@@ -30,7 +30,7 @@ fn curve(random: &mut Random) -> Curve<OCTAVES> {
 
 /// The statistic of the test, advanced until it is known.
 fn tested(curve: &Curve<OCTAVES>, place: usize, limit: f64) -> Result<Real, crate::Error> {
-    let mut fitting = Fitting::new(curve.clone(), Model::ieee_952(), Options::default());
+    let mut fitting = Fitting::new(curve, Model::ieee_952(), Options::default());
     while fitting.advance()?.is_none() {}
     let (problem, solver, fit) = fitting.parts();
     let mut ratio = LikelihoodRatio::begin(&problem, solver, fit, place, real(limit))?;

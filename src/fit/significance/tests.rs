@@ -103,7 +103,7 @@ fn the_skewness_is_that_of_a_sum_of_independent_octaves() {
         let effect: &'static dyn Effect = IEEE_952[place];
         let model = Model::new(&[IEEE_952[1], IEEE_952[3]]).unwrap();
         let own = usize::from(place == 3);
-        let mut fitting = Fitting::new(curve.clone(), model.clone(), Options::default());
+        let mut fitting = Fitting::new(&curve, model.clone(), Options::default());
         while fitting.advance().unwrap().is_none() {}
         // The solver keeps the weights of the last solution.
         let (problem, solver, _) = fitting.parts();

@@ -2,7 +2,7 @@
 
 use super::{EffectCode, Findings};
 use crate::{
-    Error, Model, Observed,
+    Error, Model, Record,
     detection::{MAX_RANGES, Range, is_of_shape},
     diagnosis::{Step, Verdict},
     effect::IEEE_952,
@@ -150,12 +150,12 @@ impl AxisCertificate {
     /// # Errors
     /// The errors of [`Fit::correlations`].
     pub fn new<'a, const K: usize, const B: usize>(
-        observed: impl Into<Observed<'a, K, B>>,
+        record: impl Into<Record<'a, K, B>>,
         model: &Model,
         fit: &Fit,
     ) -> Result<Self, Error> {
         let mut axis = Self::empty();
-        axis.set(observed.into(), model, fit)?;
+        axis.set(record.into(), model, fit)?;
         Ok(axis)
     }
 
@@ -179,7 +179,7 @@ impl AxisCertificate {
     /// let octaves = (0..12).map(|k| (1 << k, (160_000 >> k) - 7, (1.0 - 0.4 / (1 << k) as Real) / (1 << k) as Real));
     /// let curve = Curve::<12>::new(100.0, octaves)?;
     /// let (model, options) = (Model::ieee_952(), Options::default());
-    /// let mut diagnosis = Diagnosis::new((&curve).into(), &model, &CATALOGUE, options);
+    /// let mut diagnosis = Diagnosis::new(&curve, &model, &CATALOGUE, options);
     /// let mut pause = || ControlFlow::Continue(()); // feed the watchdog, take the next samples
     /// let mut axis = AxisCertificate::empty();
     /// let mut taken = Ok(());
@@ -191,10 +191,10 @@ impl AxisCertificate {
     /// ```
     pub fn take<'a, const K: usize, const B: usize>(
         &mut self,
-        observed: impl Into<Observed<'a, K, B>>,
+        record: impl Into<Record<'a, K, B>>,
         step: &Step<K, B>,
     ) -> Result<(), Error> {
-        self.set(observed.into(), &step.model, &step.fit)?;
+        self.set(record.into(), &step.model, &step.fit)?;
         let terms = &self.terms;
         let holds = |code: EffectCode| terms.iter().any(|term| term.effect == code);
         self.findings.take(step, holds);
@@ -203,11 +203,11 @@ impl AxisCertificate {
 
     fn set<const K: usize, const B: usize>(
         &mut self,
-        observed: Observed<'_, K, B>,
+        record: Record<'_, K, B>,
         model: &Model,
         fit: &Fit,
     ) -> Result<(), Error> {
-        self.correlations = fit.correlations(observed, model)?;
+        self.correlations = fit.correlations(record, model)?;
         let terms = (0..fit.coefficients.len()).filter_map(|i| term(model, fit, i));
         self.terms = list::fill(terms);
         self.chi_squared = double(fit.chi_squared);

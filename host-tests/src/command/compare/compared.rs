@@ -5,7 +5,7 @@ use crate::{
     log::{BINS, OCTAVES},
 };
 use allanite::{
-    Comparison, Error, Model, Observed,
+    Comparison, Error, Model, Record,
     diagnosis::fit_shapes,
     fit::{Fit, Options, fit},
     spectrum::Spectrum,
@@ -40,7 +40,7 @@ impl Compared {
     ) -> Result<Self, Error> {
         let options = Options::default();
         let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
-        let observed = Observed::new(&curve, &spectrum);
+        let observed = Record::new(&curve, &spectrum);
         let model = &fit_shapes(observed, model, options.tolerance)?;
         let fit = fit(observed, model, options)?;
         let fitted = Comparison::new(observed, model, &fit)?;
@@ -49,7 +49,7 @@ impl Compared {
             Some(axis) => {
                 let tolerance = options.tolerance;
                 let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
-                let observed = Observed::new(&curve, &spectrum);
+                let observed = Record::new(&curve, &spectrum);
                 let comparison = Comparison::held_out(observed, model, &fit, tolerance)?;
                 let held_out = HeldOut {
                     axis,

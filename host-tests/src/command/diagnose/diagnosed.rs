@@ -20,7 +20,7 @@ use crate::{
     log::{BINS, Evidence, Motion, OCTAVES},
 };
 use allanite::{
-    Curve, Error, Model, Observed, Record, Scale, Term,
+    Curve, Error, Model, Record, Scale, Term,
     course::Course,
     covariate::{self, Slope},
     detection::{Detection, Limit, Ranges},
@@ -230,7 +230,7 @@ impl Diagnosed {
             return Ok(Vec::new());
         };
         let (curve, spectrum) = self.observed_in(last)?;
-        lines::lines(Observed::new(&curve, &spectrum), last)
+        lines::lines(Record::new(&curve, &spectrum), last)
     }
 
     /// The limits of detection as ranges of shapes.
@@ -315,7 +315,7 @@ impl Diagnosed {
     ) -> Result<Step<OCTAVES, BINS>, Error> {
         let step = &self.steps[step];
         let (curve, spectrum) = self.observed_in(step)?;
-        alternative(Observed::new(&curve, &spectrum), step, candidate)
+        alternative(Record::new(&curve, &spectrum), step, candidate)
     }
 
     /// The effects that were added, as in the last model. Covariates are not among them.

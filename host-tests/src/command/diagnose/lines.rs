@@ -6,7 +6,7 @@ use crate::{
     log::{BINS, OCTAVES},
 };
 use allanite::{
-    Error, Observed,
+    Error, Record,
     diagnosis::{Step, line_width},
     effect::{Effect, Resonance, Sinusoid},
 };
@@ -38,7 +38,7 @@ const NEAR: f64 = 0.05;
 
 /// The fitted sinusoids of a step, in the order of the model.
 pub(super) fn lines(
-    observed: Observed<'_, OCTAVES, BINS>,
+    observed: Record<'_, OCTAVES, BINS>,
     step: &Step<OCTAVES, BINS>,
 ) -> Result<Vec<Line>, Error> {
     let name = Sinusoid.description().name;

@@ -1,6 +1,6 @@
 //! What the diagnosis thinks of a record, in JSON.
 
-use super::{question::with, record::Record};
+use super::{question::with, record::LoadedRecord};
 use crate::command::{
     diagnose::{
         diagnosed::Diagnosed,
@@ -29,12 +29,12 @@ struct Thought {
 ///
 /// # Errors
 /// When the record cannot be fitted, in a line.
-pub(super) fn diagnosis(record: &Record) -> Result<&Value, String> {
+pub(super) fn diagnosis(record: &LoadedRecord) -> Result<&Value, String> {
     let thought = record.diagnosed.get_or_init(|| think(record));
     thought.as_ref().map_err(Clone::clone)
 }
 
-fn think(record: &Record) -> Result<Value, String> {
+fn think(record: &LoadedRecord) -> Result<Value, String> {
     let (axis, evidence) = (record.axis.clone(), record.evidence.clone());
     let diagnosed = Diagnosed::new(axis, evidence, &Model::ieee_952(), None)
         .map_err(|error| library_failure(&record.path, &record.axis.axis, error).to_string())?;

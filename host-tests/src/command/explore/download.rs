@@ -1,6 +1,6 @@
 //! What the page shows as files: a drawing and a table.
 
-use super::{fitted::Fitted, question::Question, record::Record};
+use super::{fitted::Fitted, question::Question, record::LoadedRecord};
 use crate::{
     command::{diagnose::words::shown_p, output::words},
     confidence::relative_errors,
@@ -12,7 +12,7 @@ use allanite::Comparison;
 /// A drawing of the record, and of each record that judges the model, in the form of `plot`.
 pub(super) fn drawing(fitted: &Fitted, question: &Question) -> String {
     let frames = fitted.frames();
-    let draw = |record: &Record,
+    let draw = |record: &LoadedRecord,
                 comparison: &Comparison<OCTAVES, BINS>,
                 figures: Vec<Figure>,
                 role: &str| {

@@ -1,6 +1,6 @@
 //! A model fitted to one record and judged by others.
 
-use super::{question::Question, record::Record};
+use super::{question::Question, record::LoadedRecord};
 use crate::{
     command::{
         compare::{check_visible, compared::Compared},
@@ -12,16 +12,16 @@ use crate::{
     plot::{Figure, Frame, Quantity, View},
 };
 use allanite::{
-    Comparison, Observed,
+    Comparison,
     fit::{Fit, Options},
 };
 
 /// A model, its fit to a record, and the records that judge it.
 pub(super) struct Fitted<'a> {
-    pub(super) record: &'a Record,
+    pub(super) record: &'a LoadedRecord,
     pub(super) compared: Compared,
     /// The other records, each with its number and its comparison with the model.
-    pub(super) judged: Vec<(usize, &'a Record, Comparison<OCTAVES, BINS>)>,
+    pub(super) judged: Vec<(usize, &'a LoadedRecord, Comparison<OCTAVES, BINS>)>,
 }
 
 impl<'a> Fitted<'a> {
@@ -29,9 +29,10 @@ impl<'a> Fitted<'a> {
     ///
     /// # Errors
     /// Those of `compare`, and when records of different units are to be compared.
-    pub(super) fn of(records: &'a [Record], question: &Question) -> Result<Self, Failure> {
+    pub(super) fn of(records: &'a [LoadedRecord], question: &Question) -> Result<Self, Failure> {
         let record = &records[question.record];
-        let fail = |record: &Record, error| library_failure(&record.path, &record.axis.axis, error);
+        let fail =
+            |record: &LoadedRecord, error| library_failure(&record.path, &record.axis.axis, error);
         let model = question.model()?;
         check_visible(&model, &record.curve)?;
         let compared = Compared::new(record.axis.clone(), &model, None);
@@ -47,7 +48,7 @@ impl<'a> Fitted<'a> {
                 );
                 return Err(Place::file(&other.path).failure(what, "compare records of one unit"));
             }
-            let observed = Observed::new(&other.curve, &other.spectrum);
+            let observed = allanite::Record::new(&other.curve, &other.spectrum);
             let (model, fit) = (&compared.model, &compared.fit);
             let tolerance = Options::default().tolerance;
             let comparison = Comparison::held_out(observed, model, fit, tolerance);
@@ -104,7 +105,7 @@ impl<'a> Fitted<'a> {
 
     fn view(
         &self,
-        record: &Record,
+        record: &LoadedRecord,
         comparison: &Comparison<OCTAVES, BINS>,
         spectrum: &allanite::spectrum::Spectrum<BINS>,
         frames: &[Frame],

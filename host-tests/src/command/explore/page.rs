@@ -2,7 +2,7 @@
 
 use super::{
     catalogue::{Listed, catalogue},
-    record::Record,
+    record::LoadedRecord,
 };
 use crate::plot;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -40,7 +40,7 @@ struct ListedRecord<'a> {
 }
 
 /// The page as HTML. Its scripts and styles have this nonce, so that a browser runs no others.
-pub(super) fn page(records: &[Record], nonce: &str) -> String {
+pub(super) fn page(records: &[LoadedRecord], nonce: &str) -> String {
     let data = Data {
         catalogue: catalogue(records),
         records: records

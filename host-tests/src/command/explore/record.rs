@@ -20,7 +20,7 @@ use std::{
 };
 
 /// An axis of an input.
-pub(super) struct Record {
+pub(super) struct LoadedRecord {
     pub(super) path: PathBuf,
     pub(super) axis: AxisCurve,
     pub(super) curve: Curve<OCTAVES>,
@@ -34,7 +34,7 @@ pub(super) struct Record {
     pub(super) diagnosed: OnceLock<Result<Value, String>>,
 }
 
-impl Record {
+impl LoadedRecord {
     /// Reads the axes of all inputs.
     ///
     /// # Errors

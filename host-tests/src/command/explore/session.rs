@@ -2,14 +2,14 @@
 
 use super::{
     answer::answer, arguments::Arguments, diagnosis::diagnosis, download, fitted::Fitted, page,
-    question::Question, record::Record, shell,
+    question::Question, record::LoadedRecord, shell,
 };
 use crate::failure::Failure;
 use serde::Serialize;
 
 /// The records, and the options with which they were read.
 pub(super) struct Session {
-    records: Vec<Record>,
+    records: Vec<LoadedRecord>,
     about_log: Vec<String>,
 }
 
@@ -38,7 +38,7 @@ impl Session {
     /// When one of them cannot be read or fitted.
     pub(super) fn read(arguments: &Arguments) -> Result<Self, Failure> {
         Ok(Self {
-            records: Record::read(arguments)?,
+            records: LoadedRecord::read(arguments)?,
             about_log: shell::about_log(std::env::args_os(), &arguments.inputs),
         })
     }

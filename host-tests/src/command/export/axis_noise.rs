@@ -11,7 +11,7 @@ use crate::{
     plot::relative_error,
 };
 use allanite::{
-    Coefficient, Comparison, Curve, Model, Observed, Scale,
+    Coefficient, Comparison, Curve, Model, Record, Scale,
     course::Course,
     fit::{Fit, State},
 };
@@ -70,7 +70,7 @@ pub(super) struct Octave {
 /// The bins of an axis beside the fit of its five terms, in order of their frequencies.
 fn bins(axis: &AxisCurve, curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Option<Vec<Bin>> {
     let spectrum = axis.spectrum().ok()?;
-    let observed = Observed::<OCTAVES, BINS>::new(curve, &spectrum);
+    let observed = Record::<OCTAVES, BINS>::new(curve, &spectrum);
     let comparison = Comparison::new(observed, model, fit).ok()?;
     let radians = axis.unit.in_si();
     let bins = comparison.bins.iter().map(|compared| {

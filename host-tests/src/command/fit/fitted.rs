@@ -11,7 +11,7 @@ use crate::{
     log::{Evidence, OCTAVES},
 };
 use allanite::{
-    Curve, Model, Observed,
+    Curve, Model, Record,
     fit::{Fit, Method, Options, fit},
 };
 use clap::ValueEnum;
@@ -85,7 +85,7 @@ impl Fitted {
         };
         let fitted = axis.curve().and_then(|curve| {
             let spectrum = axis.spectrum()?;
-            let observed = Observed::new(&curve, &spectrum);
+            let observed = Record::new(&curve, &spectrum);
             let fit = fit(observed, model, options)?;
             Ok((curve, fit))
         });

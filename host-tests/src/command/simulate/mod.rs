@@ -97,14 +97,14 @@ pub(super) struct Arguments {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let record = Record::new(arguments)?;
+    let record = SimulatedRecord::new(arguments)?;
     let Some(path) = &arguments.output else {
         return record
             .write_csv(output)
             .map_err(|error| record.failure(&error, || Failure::standard_output(&error)));
     };
     let name = path.to_string_lossy().to_lowercase();
-    let write = |record: &Record, file: &mut BufWriter<OutputFile>| -> io::Result<()> {
+    let write = |record: &SimulatedRecord, file: &mut BufWriter<OutputFile>| -> io::Result<()> {
         if name.ends_with(".npy") {
             record.write_npy(file)
         } else if name.ends_with(".gz") {
@@ -155,7 +155,7 @@ fn path_is_kept(path: &Path) -> bool {
 }
 
 /// A record to be simulated.
-struct Record {
+struct SimulatedRecord {
     coefficients: Coefficients,
     effects: HiddenEffects,
     /// The effects as the options give them.
@@ -168,7 +168,7 @@ struct Record {
     scale: Option<f64>,
 }
 
-impl Record {
+impl SimulatedRecord {
     fn new(arguments: &Arguments) -> Result<Self, Failure> {
         for (option, value) in [
             ("--rate", Some(arguments.rate)),

@@ -16,7 +16,7 @@ use crate::{
     log::{BINS, OCTAVES},
 };
 use allanite::{
-    Coefficient, Comparison, Model, Observed,
+    Coefficient, Comparison, Model, Record,
     fit::{Fit, State},
 };
 use std::path::Path;
@@ -62,7 +62,7 @@ impl Status {
                 };
             let comparison = fitted.as_ref().and_then(|fitted| {
                 let spectrum = fitted.axis.spectrum().ok()?;
-                let observed = Observed::new(&fitted.curve, &spectrum);
+                let observed = Record::new(&fitted.curve, &spectrum);
                 Comparison::new(observed, &fitted.model, &fitted.fit).ok()
             });
             let found = diagnoser.found(&name).cloned();

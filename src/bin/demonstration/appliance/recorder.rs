@@ -1,8 +1,8 @@
 //! The product while it records: it takes samples, saves snapshots and tests itself.
 
 use super::{
-    EVERY, Failure, Gyro, GyroEvidence, KELVIN, Progress, SAMPLES, flash::Flash, saver,
-    saver::Saver, scale,
+    EVERY, Failure, Gyro, GyroRecord, KELVIN, Progress, SAMPLES, flash::Flash, saver, saver::Saver,
+    scale,
 };
 use crate::product::{OCTAVES, self_test};
 use allanite::{
@@ -154,7 +154,7 @@ impl<'a> Recorder<'a> {
             self.tests[0].conclude(&look);
         }
         if self.look.is_none() && !self.has_ended() && self.tests[0].is_due(self.gyro.samples()) {
-            let x = self.evidence(0)?;
+            let x = self.record(0)?;
             let look = self.tests[0].begin_look(x.samples, x.curve, x.invalid);
             self.look = Some((look, false, taken + LOOK));
         }
@@ -193,12 +193,12 @@ impl<'a> Recorder<'a> {
         Progress::Idle
     }
 
-    /// The evidence about an axis.
+    /// the record of an axis.
     ///
     /// # Errors
     /// [`Failure::Record`] if there is no such axis.
-    pub fn evidence(&self, axis: usize) -> Result<GyroEvidence, Failure> {
-        Ok(self.gyro.evidence(axis, self.scale, [KELVIN])?)
+    pub fn record(&self, axis: usize) -> Result<GyroRecord, Failure> {
+        Ok(self.gyro.record_so_far(axis, (self.scale, [KELVIN]))?)
     }
 
     /// The record.

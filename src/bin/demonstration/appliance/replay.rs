@@ -36,12 +36,12 @@ pub fn replay(
             recorder.push(Queued { sample, lost: 0 })?;
         }
         let Some(cut) = cut else {
-            let evidence = [
-                recorder.evidence(0)?,
-                recorder.evidence(1)?,
-                recorder.evidence(2)?,
+            let records = [
+                recorder.record(0)?,
+                recorder.record(1)?,
+                recorder.record(2)?,
             ];
-            let mut report = Report::new(recorder.gyro(), recorder.self_test(), &evidence);
+            let mut report = Report::new(recorder.gyro(), recorder.self_test(), &records);
             let mut pause = || ControlFlow::Continue(());
             while report.step(&mut line, &mut pause)? == Progress::Working {}
             return Ok(());

@@ -3,8 +3,8 @@
 use super::{Failure, Gyro, Progress, recorder::accounted};
 use crate::{lines, product::OCTAVES};
 use allanite::{
-    Model, Observed,
-    axis::AxisEvidence,
+    Model,
+    axis::AxisRecord,
     diagnosis::{self, Diagnosis, Options, Verdict},
     effect::CATALOGUE,
     self_test::Status,
@@ -16,14 +16,14 @@ use core::{fmt::Arguments, ops::ControlFlow};
 /// The largest number of bins of a spectrum.
 const BINS: usize = 84;
 
-/// The evidence about an axis of the product's gyro.
-pub type GyroEvidence = AxisEvidence<OCTAVES, 1, Spectrum<BINS>>;
+/// the record of an axis of the product's gyro.
+pub type GyroRecord = AxisRecord<OCTAVES, 1, Spectrum<BINS>>;
 
 /// A report in progress.
 pub struct Report<'r> {
     gyro: &'r Gyro,
     self_test: Status,
-    evidence: &'r [GyroEvidence; 3],
+    records: &'r [GyroRecord; 3],
     diagnosis: Diagnosis<'r, OCTAVES, BINS>,
     certificate: AxisCertificate,
     next: Next,
@@ -40,21 +40,16 @@ enum Next {
 }
 
 impl<'r> Report<'r> {
-    /// A report on a complete record, with the evidence about its axes.
+    /// A report on a complete record, with those of its axes.
     // Inlined, so that the diagnosis is built where it stays.
     #[inline(always)]
-    pub fn new(gyro: &'r Gyro, self_test: Status, evidence: &'r [GyroEvidence; 3]) -> Self {
-        let [x, ..] = evidence;
+    pub fn new(gyro: &'r Gyro, self_test: Status, records: &'r [GyroRecord; 3]) -> Self {
+        let [x, ..] = records;
         Self {
             gyro,
             self_test,
-            evidence,
-            diagnosis: Diagnosis::new(
-                x.record(),
-                &Model::ieee_952(),
-                &CATALOGUE,
-                Options::default(),
-            ),
+            records,
+            diagnosis: Diagnosis::new(x, &Model::ieee_952(), &CATALOGUE, Options::default()),
             certificate: AxisCertificate::empty(),
             next: Next::Record,
         }
@@ -75,10 +70,10 @@ impl<'r> Report<'r> {
                 self.record(line);
                 Next::Axis(0)
             }
-            Next::Axis(axis) => match self.evidence.get(axis) {
-                Some(evidence) => {
+            Next::Axis(axis) => match self.records.get(axis) {
+                Some(records) => {
                     line(format_args!("axis {axis}"));
-                    lines::evidence(evidence, line);
+                    lines::record(records, line);
                     Next::Axis(axis + 1)
                 }
                 None => Next::Diagnosis,
@@ -86,9 +81,8 @@ impl<'r> Report<'r> {
             Next::Diagnosis => match self.diagnosis.advance(pause)? {
                 diagnosis::Progress::Paused => Next::Diagnosis,
                 diagnosis::Progress::Step(step) => {
-                    let [x, ..] = self.evidence;
-                    let observed = Observed::new(&x.curve, &x.spectrum);
-                    self.certificate.take(observed, step)?;
+                    let [x, ..] = self.records;
+                    self.certificate.take(x, step)?;
                     lines::step(step, line);
                     Next::Diagnosis
                 }

@@ -1,4 +1,4 @@
-//! The evidence that a record gives about one axis: its curve, and the other inputs of a diagnosis.
+//! What is kept of a record of one axis: its curve, and the other inputs of a diagnosis.
 
 use super::{
     Axes,
@@ -20,11 +20,11 @@ use crate::{
 };
 use heapless::Vec;
 
-/// The evidence that a record gives about one axis. `D` is the type of its spectrum.
+/// What is kept of a record of one axis: a [`Record`] that owns its parts. `D` is the type of its spectrum.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct AxisEvidence<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spectrum<0>> {
+pub struct AxisRecord<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spectrum<0>> {
     /// The number of samples that are kept.
     pub samples: u64,
     /// The Allan curve.
@@ -42,20 +42,43 @@ pub struct AxisEvidence<const OCTAVES: usize, const COVARIATES: usize = 0, D = S
     pub invalid: Option<Reason>,
 }
 
-impl<const OCTAVES: usize, const COVARIATES: usize, const B: usize>
-    AxisEvidence<OCTAVES, COVARIATES, Spectrum<B>>
+impl<'a, const OCTAVES: usize, const COVARIATES: usize, const B: usize>
+    From<&'a AxisRecord<OCTAVES, COVARIATES, Spectrum<B>>> for Record<'a, OCTAVES, B>
 {
-    /// The record that a diagnosis takes.
-    pub fn record(&self) -> Record<'_, OCTAVES, B> {
-        Record {
-            curve: &self.curve,
-            spectrum: Some(&self.spectrum),
-            course: self.course.as_ref(),
-            kurtosis: self.kurtosis.as_ref(),
-            covariates: &self.covariates,
+    fn from(record: &'a AxisRecord<OCTAVES, COVARIATES, Spectrum<B>>) -> Self {
+        Self {
+            curve: &record.curve,
+            spectrum: Some(&record.spectrum),
+            course: record.course.as_ref(),
+            kurtosis: record.kurtosis.as_ref(),
+            covariates: &record.covariates,
             pairs: &[],
-            invalid: self.invalid,
+            invalid: record.invalid,
         }
+    }
+}
+
+/// The units of an axis and of its covariates: a [`Scale`], or, with covariates, a scale and the unit per count of each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units<const COVARIATES: usize = 0> {
+    /// The unit and the rate of the gyro.
+    pub scale: Scale,
+    /// The unit per count of each covariate.
+    pub per_count: [Real; COVARIATES],
+}
+
+impl From<Scale> for Units {
+    fn from(scale: Scale) -> Self {
+        Self {
+            scale,
+            per_count: [],
+        }
+    }
+}
+
+impl<const COVARIATES: usize> From<(Scale, [Real; COVARIATES])> for Units<COVARIATES> {
+    fn from((scale, per_count): (Scale, [Real; COVARIATES])) -> Self {
+        Self { scale, per_count }
     }
 }
 
@@ -67,19 +90,32 @@ where
     S: SpectrumPart,
     T: TrackPart,
 {
-    /// The evidence about an axis at this moment, without the samples that the gate holds back. The spectrum
-    /// also lacks up to `P` samples that wait for [`advance`](Self::advance).
-    /// `per_count` gives, for each covariate, its unit per count.
+    /// The record of an axis at its end: [releases](Self::release) the samples that the gate still holds back. `units` is
+    /// the [`Scale`], or, with covariates, `(scale, [unit per count of each])`.
     ///
     /// # Errors
     /// [`Error::InvalidScale`] if a unit is not positive and finite; [`Error::UnknownAxis`] if there is no
     /// such axis.
-    pub fn evidence(
+    pub fn record(
+        &mut self,
+        axis: usize,
+        units: impl Into<Units<COVARIATES>>,
+    ) -> Result<AxisRecord<OCTAVES, COVARIATES, S::Spectrum>, Error> {
+        self.release();
+        self.record_so_far(axis, units)
+    }
+
+    /// The record of an axis at this moment, which goes on: without the samples that the gate holds back. The spectrum
+    /// also lacks up to `P` samples that wait for [`advance`](Self::advance).
+    ///
+    /// # Errors
+    /// As of [`record`](Self::record).
+    pub fn record_so_far(
         &self,
         axis: usize,
-        scale: Scale,
-        per_count: [Real; COVARIATES],
-    ) -> Result<AxisEvidence<OCTAVES, COVARIATES, S::Spectrum>, Error> {
+        units: impl Into<Units<COVARIATES>>,
+    ) -> Result<AxisRecord<OCTAVES, COVARIATES, S::Spectrum>, Error> {
+        let Units { scale, per_count } = units.into();
         let sums = self.kept.axes.get(axis);
         let sums = sums.ok_or(Error::UnknownAxis { axis, axes: AXES })?;
         let mut covariates = Vec::new();
@@ -91,7 +127,7 @@ where
             let _ = covariates.push(cross);
         }
         let moments = sums.moments.moments();
-        Ok(AxisEvidence {
+        Ok(AxisRecord {
             samples: sums.accumulator.samples(),
             curve: sums.accumulator.curve(scale),
             spectrum: sums.spectrum.spectrum(scale),

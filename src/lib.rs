@@ -249,6 +249,7 @@ mod nnls;
 mod observability;
 mod observed;
 pub mod octave;
+mod pause;
 mod profile;
 pub mod queue;
 mod real;

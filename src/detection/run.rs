@@ -7,7 +7,6 @@ use super::{
 use crate::{
     diagnosis::{
         Options, Step,
-        pause::Pause,
         search::{Observation, price},
     },
     effect::{Effect, Span},
@@ -15,6 +14,7 @@ use crate::{
     list, math,
     model::Term,
     observed::Observed,
+    pause::Pause,
     profile::Grid,
     real::Real,
     record::Record,

@@ -1,15 +1,16 @@
 //! The step that would have followed if another candidate had been added.
 
 use super::{
-    judged::{Judged, Judging},
-    polished::{Fitted, Polishing},
+    judged::judge,
+    polished::{Fitted, polish},
     step::{Candidate, Step},
 };
 use crate::{
     error::Error,
-    fit::{Problem, Start, Tolerance, Work},
+    fit::{Start, Tolerance, Work},
     model::Model,
     observed::Observed,
+    pause::unpaused,
     real::Real,
     record::Record,
 };
@@ -37,7 +38,19 @@ pub fn alternative<'a, const K: usize, const B: usize>(
     let fitted = polished(observed, model, step.fit.tolerance)?;
     let mut alternative = Step::of(&fitted.model);
     alternative.covariate = step.covariate;
-    judged(observed, &fitted, step.fit.tolerance, &mut alternative)?;
+    let start = Start::Once(fitted.squares);
+    let tolerance = Tolerance::Fixed(step.fit.tolerance);
+    let mut work = Work::NEW;
+    unpaused(|pause| {
+        judge(
+            observed,
+            start,
+            tolerance,
+            &mut work,
+            &mut alternative,
+            pause,
+        )
+    })?;
     Ok(alternative)
 }
 
@@ -48,38 +61,16 @@ pub(super) fn polished<const K: usize, const B: usize>(
     tolerance: Real,
 ) -> Result<Fitted, Error> {
     let mut work = Work::NEW;
-    work.begin_at(
-        observed,
-        &model,
-        Start::Independent,
-        Tolerance::Fixed(tolerance),
-    )?;
-    let problem = Problem::new(observed, &model, &work.columns);
-    while !work.solver.advance(&problem)? {}
-    let squares = work.solver.squares;
-    let mut polishing = Polishing::new(Fitted { model, squares });
-    let span = observed.span();
-    loop {
-        if let Some(polished) = polishing.advance(observed, &span, tolerance, &mut work)? {
-            return Ok(polished);
-        }
-    }
-}
-
-/// Compares a fitted model with the curve.
-fn judged<const K: usize, const B: usize>(
-    observed: Observed<'_, K, B>,
-    fitted: &Fitted,
-    tolerance: Real,
-    step: &mut Step<K, B>,
-) -> Result<Judged, Error> {
-    let mut work = Work::NEW;
-    let start = Start::Once(fitted.squares);
-    work.begin_at(observed, &step.model, start, Tolerance::Fixed(tolerance))?;
-    let mut judging = Judging::new();
-    loop {
-        if let Some(judged) = judging.advance(observed, &observed.span(), &mut work, step)? {
-            return Ok(judged);
-        }
-    }
+    let granted = Tolerance::Fixed(tolerance);
+    unpaused(|pause| {
+        work.solve(observed, &model, Start::Independent, granted, pause)?;
+        let squares = work.solver.squares;
+        polish(
+            observed,
+            Fitted { model, squares },
+            tolerance,
+            &mut work,
+            pause,
+        )
+    })
 }

@@ -5,12 +5,12 @@ use super::step::{Beside, FollowedCovariate};
 use crate::{
     covariate::{Slope, Slopes},
     curve::Curve,
-    error::Error,
-    fit::{Problem, Start, Tolerance, Work},
+    fit::{Start, Tolerance, Work},
     math,
     model::Model,
     nnls::Vector,
     observed::Observed,
+    pause::{Pause, Stop, call},
     real::{Real, real},
     record::Record,
     spectrum::Spectrum,
@@ -27,117 +27,118 @@ const ROUNDS: u8 = 5;
 /// it.
 const CAUTIOUS_ROUNDS: u8 = 2;
 
-/// The search in progress for the covariate with the surest slope, and for a pair of covariates.
-pub(super) struct Following<const K: usize, const B: usize> {
-    /// The curve and the spectrum without what follows the covariate.
-    corrected: Curve<K>,
-    spectrum: Spectrum<B>,
-    /// The squares of the step's model, and those of the fit to the corrected curve.
-    first: Vector,
+/// The search for the covariate with the surest slope, and for a pair of covariates.
+struct Search<'s, 'a, const K: usize, const B: usize> {
+    observed: Observed<'a, K, B>,
+    record: &'s Record<'a, K, B>,
+    model: &'s Model,
+    /// The squares of the model beside which covariates are tried.
     squares: Vector,
-    found: Option<FollowedCovariate>,
-    /// The covariate that is tried; behind the last covariate, the pair.
-    place: usize,
-    round: u8,
-    solving: bool,
-    best: Option<FollowedCovariate>,
+    tolerance: Real,
 }
 
-impl<const K: usize, const B: usize> Following<K, B> {
-    /// Begins with a model that was fitted to the curve.
-    pub(super) fn new(curve: &Curve<K>, squares: Vector) -> Self {
-        Self {
-            corrected: curve.clone(),
-            spectrum: Spectrum::EMPTY,
-            first: squares,
-            squares,
-            found: None,
-            place: 0,
-            round: 0,
-            solving: false,
-            best: None,
+/// Tests whether the rate follows a covariate, or two of them, beside the noise of a model with these squared coefficients.
+/// Returns what has the surest slopes, if that is more than `least_z` standard errors.
+///
+/// # Errors
+/// The same as those of a fit, and the end of the pause.
+#[inline(never)]
+pub(super) fn followed<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
+    record: &Record<'_, K, B>,
+    (model, squares): (&Model, Vector),
+    tolerance: Real,
+    least_z: Real,
+    pause: &mut Pause<'_>,
+) -> Result<Option<FollowedCovariate>, Stop> {
+    let search = Search {
+        observed,
+        record,
+        model,
+        squares,
+        tolerance,
+    };
+    let mut work = Work::<K, B>::NEW;
+    // The curve and the spectrum without what follows the covariate.
+    let mut corrected = observed.curve().clone();
+    let mut spectrum = Spectrum::EMPTY;
+    let tried = record.covariates.len().saturating_add(record.pairs.len());
+    let tried_log = math::log(real(u32::try_from(tried).unwrap_or(u32::MAX).max(1)));
+    let least_square = least_z * least_z + 2.0 * tried_log;
+    let mut best: Option<FollowedCovariate> = None;
+    for place in 0..tried {
+        call(pause)?;
+        let found = search.rounds(place, &mut corrected, &mut spectrum, &mut work, pause)?;
+        let Some(found) = found else { continue };
+        // A pair needs both of its slopes.
+        let is_needed = found.beside.is_none() || found.least_square() > least_square;
+        let surest = best.map_or(0.0, |best| best.chi_squared());
+        if is_needed && found.chi_squared() > surest {
+            best = Some(found);
         }
     }
+    Ok(best.filter(|best| best.least_square() > least_square))
+}
 
-    /// Does one piece of work. When all covariates and pairs have been tried, returns what has the surest slopes, if
-    /// that is more than `least_z` standard errors.
-    ///
-    /// # Errors
-    /// The same as those of a fit.
-    #[inline(never)]
-    pub(super) fn advance(
-        &mut self,
-        observed: Observed<'_, K, B>,
-        record: &Record<'_, K, B>,
-        model: &Model,
-        tolerance: Real,
-        least_z: Real,
+impl<const K: usize, const B: usize> Search<'_, '_, K, B> {
+    /// The slopes of a covariate, or, behind the last covariate, of a pair. They and the noise that remains when what
+    /// follows is subtracted are estimated in turn.
+    fn rounds(
+        &self,
+        place: usize,
+        corrected: &mut Curve<K>,
+        spectrum: &mut Spectrum<B>,
         work: &mut Work<K, B>,
-    ) -> Result<Option<Option<FollowedCovariate>>, Error> {
-        let tried = record.covariates.len().saturating_add(record.pairs.len());
-        let tried_log = math::log(real(u32::try_from(tried).unwrap_or(u32::MAX).max(1)));
-        let least_square = least_z * least_z + 2.0 * tried_log;
-        if self.place >= tried {
-            let sure = |followed: &FollowedCovariate| followed.least_square() > least_square;
-            return Ok(Some(self.best.filter(sure)));
-        }
-        if self.solving {
-            let corrected = Observed::new(&self.corrected, &self.spectrum);
-            let problem = Problem::new(corrected, model, &work.columns);
-            if !work.solver.advance(&problem)? {
-                return Ok(None);
+        pause: &mut Pause<'_>,
+    ) -> Result<Option<FollowedCovariate>, Stop> {
+        let mut squares = self.squares;
+        let mut found = self.estimate(place, &squares);
+        for round in 1..ROUNDS {
+            let Some(followed) = found else { break };
+            call(pause)?;
+            corrected.clone_from(self.observed.curve());
+            match self.observed.spectrum() {
+                Some(whole) => spectrum.clone_from(whole),
+                None => *spectrum = Spectrum::EMPTY,
             }
-            self.squares = work.solver.squares;
-            self.solving = false;
+            let most = if round > CAUTIOUS_ROUNDS {
+                Real::INFINITY
+            } else {
+                1.0
+            };
+            followed.correct_up_to(most, self.record, corrected, spectrum);
+            let start = Start::From(squares);
+            let tolerance = Tolerance::Fixed(self.tolerance);
+            work.solve(
+                Observed::new(corrected, spectrum),
+                self.model,
+                start,
+                tolerance,
+                pause,
+            )?;
+            squares = work.solver.squares;
+            found = self.estimate(place, &squares);
         }
-        self.found = self.estimate(observed.curve(), record, model);
-        self.round = self.round.saturating_add(1);
-        match self.found.filter(|_| self.round < ROUNDS) {
-            Some(found) => {
-                self.corrected.clone_from(observed.curve());
-                match observed.spectrum() {
-                    Some(spectrum) => self.spectrum.clone_from(spectrum),
-                    None => self.spectrum = Spectrum::EMPTY,
-                }
-                let most = if self.round > CAUTIOUS_ROUNDS {
-                    Real::INFINITY
-                } else {
-                    1.0
-                };
-                found.correct_up_to(most, record, &mut self.corrected, &mut self.spectrum);
-                let start = Start::From(self.squares);
-                let tolerance = Tolerance::Fixed(tolerance);
-                let corrected = Observed::new(&self.corrected, &self.spectrum);
-                work.begin_at(corrected, model, start, tolerance)?;
-                self.solving = true;
-            }
-            None => self.next(least_square),
-        }
-        Ok(None)
+        Ok(found)
     }
 
     /// The slopes beside the noise of the present fit. `None` if a covariate does not change, or if the covariates of
     /// a pair take the same course.
-    fn estimate(
-        &self,
-        curve: &Curve<K>,
-        record: &Record<'_, K, B>,
-        model: &Model,
-    ) -> Option<FollowedCovariate> {
+    fn estimate(&self, place: usize, squares: &Vector) -> Option<FollowedCovariate> {
+        let (curve, record, model) = (self.observed.curve(), self.record, self.model);
         let octaves = curve.points();
         let noise = |k: usize| {
             let m = octaves.get(k).map_or(1, |point| point.m);
-            let squares = self.squares.as_slice();
-            model.variance(squares, m, curve.interval_s()) * curve.variance_unit()
+            model.variance(squares.as_slice(), m, curve.interval_s()) * curve.variance_unit()
         };
-        if let Some(cross) = record.covariates.get(self.place) {
+        if let Some(cross) = record.covariates.get(place) {
             return Some(FollowedCovariate {
-                index: self.place,
+                index: place,
                 slope: Slope::of(cross, octaves, noise)?,
                 beside: None,
             });
         }
-        let at = self.place.checked_sub(record.covariates.len())?;
+        let at = place.checked_sub(record.covariates.len())?;
         let pair = record.pairs.get(at)?;
         let [index, other] = pair.covariates;
         let crosses = [record.covariates.get(index)?, record.covariates.get(other)?];
@@ -155,19 +156,5 @@ impl<const K: usize, const B: usize> Following<K, B> {
                 pair: at,
             }),
         })
-    }
-
-    /// Keeps what was found if it is surer than what was found before. A pair needs both of its slopes.
-    fn next(&mut self, least_square: Real) {
-        if let Some(found) = self.found.take() {
-            let surest = self.best.map_or(0.0, |best| best.chi_squared());
-            let is_needed = found.beside.is_none() || found.least_square() > least_square;
-            if is_needed && found.chi_squared() > surest {
-                self.best = Some(found);
-            }
-        }
-        self.place = self.place.saturating_add(1);
-        self.round = 0;
-        self.squares = self.first;
     }
 }

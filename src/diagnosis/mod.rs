@@ -11,7 +11,6 @@ mod judged;
 mod mirrored;
 mod narrated;
 mod options;
-pub(crate) mod pause;
 mod polished;
 mod run;
 pub(crate) mod search;

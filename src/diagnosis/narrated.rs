@@ -2,8 +2,7 @@
 
 use super::{
     mirrored::{Mirrored, tell_from_mirror},
-    pause::{Pause, Stop, call},
-    polished::{Fitted, Polishing},
+    polished::{Fitted, polish},
     search::{
         Found, Hypothesis, MAX_ALTERNATIVES, Observation, WhiteRange, is_filter, is_white, ordered,
     },
@@ -12,11 +11,12 @@ use super::{
 use crate::{
     effect::Effect,
     error::Error,
-    fit::{Problem, Start, Tolerance, Work},
+    fit::{Start, Tolerance, Work},
     kurtosis::Kurtosis,
     list,
     model::{Model, Term},
     observed::Observed,
+    pause::{Pause, Stop, call},
     real::Real,
 };
 use core::ops::ControlFlow;
@@ -76,7 +76,7 @@ impl Story {
             return Ok(Self::NOTHING);
         }
         let whole = with(model, &terms)?;
-        let fitted = polish(observed, whole, tolerance, pause)?;
+        let fitted = polished(observed, whole, tolerance, pause)?;
         // The effects that were added are the last ones of the model, in the order of the hypothesis.
         let first = fitted.model.terms().len().saturating_sub(terms.len());
         let polished = fitted.model.terms().iter().skip(first);
@@ -208,7 +208,7 @@ pub(super) fn with(model: &Model, terms: &[Term]) -> Result<Model, Error> {
 
 /// Refines the shapes of a model by the likelihood of a fit.
 #[inline(never)]
-fn polish<const K: usize, const B: usize>(
+fn polished<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     model: Model,
     tolerance: Real,
@@ -217,23 +217,15 @@ fn polish<const K: usize, const B: usize>(
     call(pause)?;
     let mut work = Work::<K, B>::NEW;
     let granted = Tolerance::IfNeeded(tolerance);
-    work.begin_at(observed, &model, Start::Independent, granted)?;
-    loop {
-        call(pause)?;
-        let problem = Problem::new(observed, &model, &work.columns);
-        if work.solver.advance(&problem)? {
-            break;
-        }
-    }
+    work.solve(observed, &model, Start::Independent, granted, pause)?;
     let (squares, tolerance) = (work.solver.squares, work.solver.weights.tolerance);
-    let span = observed.span();
-    let mut polishing = Polishing::new(Fitted { model, squares });
-    loop {
-        call(pause)?;
-        if let Some(polished) = polishing.advance(observed, &span, tolerance, &mut work)? {
-            return Ok(polished);
-        }
-    }
+    polish(
+        observed,
+        Fitted { model, squares },
+        tolerance,
+        &mut work,
+        pause,
+    )
 }
 
 /// The term that another hypothesis has in the place of one of the best hypothesis; `None` if it has the same one, or none.

@@ -9,6 +9,7 @@ use crate::{
     model::Model,
     nnls::Vector,
     observed::Observed,
+    pause::{Pause, Stop, call},
     real::{Real, real, single},
 };
 use heapless::Vec;
@@ -54,116 +55,77 @@ impl Fitted {
     }
 }
 
-/// The polishing of a model, in progress. Each round takes the covariance, fits the coefficients, and changes the shapes by
-/// the method of Gauss and Newton. At last, the coefficients are fitted with fixed shapes.
-pub(super) struct Polishing {
+/// The rounds of polishing a model. Each takes the covariance, fits the coefficients, and changes the shapes by the method of
+/// Gauss and Newton.
+struct Rounds {
     present: Fitted,
     /// The best model so far, and its score.
     kept: Option<(Fitted, Real)>,
     before: Real,
     steps: Steps,
     halvings: u8,
-    round: u8,
-    stage: Stage,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Stage {
-    /// A round begins.
-    Begin,
-    /// The coefficients of a round are fitted.
-    Round,
-    /// The shapes are changed.
-    Polishing,
-    /// The last fit begins.
-    BeginLast,
-    /// The best round is fitted again, with fixed shapes.
-    Last,
-}
-
-impl Polishing {
-    /// Begins with a model.
-    pub(super) fn new(fitted: Fitted) -> Self {
-        Self {
-            present: fitted,
-            kept: None,
-            before: Real::INFINITY,
-            steps: Steps::new(),
-            halvings: 0,
-            round: 0,
-            stage: Stage::Begin,
-        }
-    }
-
-    /// Does one piece of work. Returns the model when it is polished, with the squares at which its covariance was taken.
-    ///
-    /// # Errors
-    /// An error means that the model cannot be fitted.
-    #[inline(never)]
-    pub(super) fn advance<const K: usize, const B: usize>(
-        &mut self,
-        observed: Observed<'_, K, B>,
-        span: &Span,
-        tolerance: Real,
-        work: &mut Work<K, B>,
-    ) -> Result<Option<Fitted>, Error> {
-        match self.stage {
-            Stage::Begin => {
-                let squares = self.present.squares;
-                self.begin(
-                    Stage::Round,
-                    Start::Once(squares),
-                    observed,
-                    tolerance,
-                    work,
-                )?;
-                return Ok(None);
-            }
-            Stage::BeginLast => {
-                let (fitted, _) = self.kept.take().ok_or(Error::Singular)?;
-                self.present = fitted;
-                let squares = self.present.squares;
-                self.begin(Stage::Last, Start::From(squares), observed, tolerance, work)?;
-                return Ok(None);
-            }
-            _ => {}
-        }
-        let problem = Problem::new(observed, &self.present.model, &work.columns);
-        if self.stage == Stage::Polishing {
-            let squares = &work.solver.squares;
-            if work.derivatives.advance(&problem, squares) {
-                self.end_round(observed, span, work);
-            }
-            return Ok(None);
-        }
-        if !work.solver.advance(&problem)? {
-            return Ok(None);
-        }
-        if self.stage == Stage::Last {
-            return Ok(Some(Fitted {
-                model: self.present.model.clone(),
-                squares: work.solver.assumed,
-            }));
-        }
+/// Polishes the shapes of a model. Returns it with the squares at which its covariance was taken, and leaves its solution, with
+/// fixed shapes, in the memory.
+///
+/// # Errors
+/// An error means that the model cannot be fitted.
+#[inline(never)]
+pub(super) fn polish<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
+    fitted: Fitted,
+    tolerance: Real,
+    work: &mut Work<K, B>,
+    pause: &mut Pause<'_>,
+) -> Result<Fitted, Stop> {
+    let span = observed.span();
+    let tolerance = Tolerance::Fixed(tolerance);
+    let mut rounds = Rounds {
+        present: fitted,
+        kept: None,
+        before: Real::INFINITY,
+        steps: Steps::new(),
+        halvings: 0,
+    };
+    for _ in 0..ROUNDS {
+        let present = &rounds.present;
+        let start = Start::Once(present.squares);
+        work.solve(observed, &present.model, start, tolerance, pause)?;
+        let problem = Problem::new(observed, &present.model, &work.columns);
         work.derivatives.clear();
-        self.stage = Stage::Polishing;
-        Ok(None)
+        loop {
+            call(pause)?;
+            if work.derivatives.advance(&problem, &work.solver.squares) {
+                break;
+            }
+        }
+        if !rounds.end(observed, &span, work) {
+            break;
+        }
     }
+    let (mut fitted, _) = rounds.kept.ok_or(Error::Singular)?;
+    let start = Start::From(fitted.squares);
+    work.solve(observed, &fitted.model, start, tolerance, pause)?;
+    fitted.squares = work.solver.assumed;
+    Ok(fitted)
+}
 
-    /// Ends a round whose coefficients are fitted: changes the shapes and decides what comes next.
+impl Rounds {
+    /// Ends a round whose coefficients are fitted: changes the shapes. Returns whether there is a next round.
     #[inline(never)]
-    fn end_round<const K: usize, const B: usize>(
+    fn end<const K: usize, const B: usize>(
         &mut self,
         observed: Observed<'_, K, B>,
         span: &Span,
         work: &Work<K, B>,
-    ) {
+    ) -> bool {
         let problem = Problem::new(observed, &self.present.model, &work.columns);
         let mut next = Steps::new();
-        let confused = polish(&problem, work, &mut next);
+        let confused = changes(&problem, work, &mut next);
         self.present.squares = work.solver.squares;
         let now = work.solver.minus_two_log_likelihood();
-        let goes_on = match confused {
+        match confused {
             Some(confused) => {
                 // This is another model, whose scores cannot be compared with the earlier ones.
                 if let Some(term) = self.present.model.terms_mut().get_mut(confused) {
@@ -174,27 +136,7 @@ impl Polishing {
                 true
             }
             None => self.step(now, next, span),
-        };
-        self.round = self.round.saturating_add(1);
-        self.stage = if goes_on && self.round < ROUNDS {
-            Stage::Begin
-        } else {
-            Stage::BeginLast
-        };
-    }
-
-    /// Begins the fit of a stage.
-    fn begin<const K: usize, const B: usize>(
-        &mut self,
-        stage: Stage,
-        start: Start,
-        observed: Observed<'_, K, B>,
-        tolerance: Real,
-        work: &mut Work<K, B>,
-    ) -> Result<(), Error> {
-        self.stage = stage;
-        let tolerance = Tolerance::Fixed(tolerance);
-        work.begin_at(observed, &self.present.model, start, tolerance)
+        }
     }
 
     /// Keeps a round that is the best so far, and changes the shapes for the next round. Returns
@@ -233,7 +175,7 @@ impl Polishing {
 /// Finds how the shapes should change. Returns the effect that must be held at zero before the shapes
 /// are determined, if there is one.
 #[inline(never)]
-fn polish<const K: usize, const B: usize>(
+fn changes<const K: usize, const B: usize>(
     problem: &Problem<'_, K, B>,
     work: &Work<K, B>,
     steps: &mut Steps,

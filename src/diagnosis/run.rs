@@ -2,11 +2,10 @@
 //! step by step.
 
 use super::{
-    followed::Following,
-    judged::{Judged, Judging},
+    followed::followed,
+    judged::{Judged, judge},
     narrated::{Story, with},
     options::Options,
-    pause::{Pause, Stop, call},
     search::{Found, Limits, Observation, Search},
     step::{Addition, Step},
     verdict::Verdict,
@@ -15,11 +14,12 @@ use crate::{
     curve::Curve,
     effect::Effect,
     error::Error,
-    fit::{Problem, Start, Tolerance, Work, check},
+    fit::{Start, Tolerance, Work, check},
     math,
     model::Model,
     nnls::Vector,
     observed::Observed,
+    pause::{Pause, Stop, call},
     real::Real,
     record::Record,
     spectrum::Spectrum,
@@ -222,20 +222,10 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         tolerance: Tolerance,
         pause: &mut Pause<'_>,
     ) -> Result<(), Stop> {
-        call(pause)?;
         let observed = Observed::new(&self.curve, &self.spectrum);
         let mut work = Work::<K, B>::NEW;
-        work.begin_at(observed, &self.step.model, start, tolerance)?;
-        let span = self.curve.span();
-        let mut judging = Judging::new();
-        loop {
-            call(pause)?;
-            let judged = judging.advance(observed, &span, &mut work, &mut self.step)?;
-            if let Some(judged) = judged {
-                self.judged = judged;
-                return Ok(());
-            }
-        }
+        self.judged = judge(observed, start, tolerance, &mut work, &mut self.step, pause)?;
+        Ok(())
     }
 
     /// Tests the covariates again beside the noise of what was found, if they were not seen beside that of the first model,
@@ -259,14 +249,8 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         let observed = Observed::new(&self.curve, &self.spectrum);
         let mut work = Work::<K, B>::NEW;
         let tolerance = Tolerance::Fixed(self.judged.tolerance);
-        work.begin_at(observed, model, Start::Independent, tolerance)?;
-        loop {
-            call(pause)?;
-            let problem = Problem::new(observed, model, &work.columns);
-            if work.solver.advance(&problem)? {
-                return Ok(work.solver.squares);
-            }
-        }
+        work.solve(observed, model, Start::Independent, tolerance, pause)?;
+        Ok(work.solver.squares)
     }
 
     /// Tests the covariates for whether the rate follows them, beside the noise of a model.
@@ -278,18 +262,11 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         pause: &mut Pause<'_>,
     ) -> Result<(), Stop> {
         let observed = Observed::new(&self.curve, &self.spectrum);
-        let mut work = Work::<K, B>::NEW;
-        let mut following = Following::new(&self.curve, squares);
         let (tolerance, least_z) = (self.judged.tolerance, self.options.covariate_z);
-        loop {
-            call(pause)?;
-            let complete =
-                following.advance(observed, &self.record, model, tolerance, least_z, &mut work)?;
-            if let Some(followed) = complete {
-                self.step.added = followed.map(Addition::Covariate);
-                return Ok(());
-            }
-        }
+        let noise = (model, squares);
+        let followed = followed(observed, &self.record, noise, tolerance, least_z, pause)?;
+        self.step.added = followed.map(Addition::Covariate);
+        Ok(())
     }
 
     /// Takes what follows the covariate from the curve and the spectrum.
@@ -392,27 +369,16 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             call(pause)?;
             let model = with(&self.step.model, &[candidate.term])?;
             let tolerance = Tolerance::Fixed(self.judged.tolerance);
-            // A candidate that cannot be fitted keeps an unknown χ².
-            if work
-                .begin_at(observed, &model, Start::Independent, tolerance)
-                .is_err()
-            {
-                continue;
-            }
-            loop {
-                call(pause)?;
-                let problem = Problem::new(observed, &model, &work.columns);
-                match work.solver.advance(&problem) {
-                    Ok(false) => {}
-                    Ok(true) => {
-                        let place = model.terms().len().saturating_sub(1);
-                        let square = work.solver.squares[place].max(0.0);
-                        candidate.coefficient = math::sqrt(square * unit);
-                        candidate.chi_squared = work.solver.chi_squared;
-                        break;
-                    }
-                    Err(_) => break,
+            match work.solve(observed, &model, Start::Independent, tolerance, pause) {
+                Ok(()) => {
+                    let place = model.terms().len().saturating_sub(1);
+                    let square = work.solver.squares[place].max(0.0);
+                    candidate.coefficient = math::sqrt(square * unit);
+                    candidate.chi_squared = work.solver.chi_squared;
                 }
+                // A candidate that cannot be fitted keeps an unknown χ².
+                Err(Stop::Failed(_)) => {}
+                Err(Stop::Paused) => return Err(Stop::Paused),
             }
         }
         Ok(())

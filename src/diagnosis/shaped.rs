@@ -6,10 +6,11 @@ use super::{
 };
 use crate::{
     error::Error,
-    fit::{Problem, Start, Tolerance, Work},
+    fit::{Start, Tolerance, Work},
     limits::MAX_PARAMETERS,
     model::{Model, Term},
     observed::Observed,
+    pause::unpaused,
     real::Real,
     record::Record,
 };
@@ -123,9 +124,7 @@ fn granted<const K: usize, const B: usize>(
 ) -> Result<Real, Error> {
     let mut work = Work::NEW;
     let tolerance = Tolerance::IfNeeded(tolerance);
-    work.begin_at(observed, model, Start::Independent, tolerance)?;
-    let problem = Problem::new(observed, model, &work.columns);
-    while !work.solver.advance(&problem)? {}
+    unpaused(|pause| work.solve(observed, model, Start::Independent, tolerance, pause))?;
     Ok(work.solver.weights.tolerance)
 }
 

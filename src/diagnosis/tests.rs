@@ -2,14 +2,12 @@
 
 extern crate std;
 
-use super::{
-    judged::{Judged, Judging},
-    *,
-};
+use super::{judged::Judged, *};
 use crate::{
     Curve, Model, Term,
     effect::{CATALOGUE, Effect, LowPass, SampledShape, Sinusoid},
     fit::{Start, Tolerance, Work},
+    pause::unpaused,
     real::{Real, double, real},
 };
 use core::ops::ControlFlow;
@@ -44,15 +42,9 @@ fn without() -> Curve<OCTAVES> {
 
 fn judge(curve: &Curve<OCTAVES>, work: &mut Work<OCTAVES>, step: &mut Step<OCTAVES>) -> Judged {
     let tolerance = Tolerance::IfNeeded(0.01);
-    work.begin_at(curve.into(), &step.model, Start::Independent, tolerance)
-        .unwrap();
-    let mut judging = Judging::new();
-    loop {
-        let judged = judging.advance(curve.into(), &curve.span(), work, step);
-        if let Some(judged) = judged.unwrap() {
-            return judged;
-        }
-    }
+    let start = Start::Independent;
+    unpaused(|pause| super::judged::judge(curve.into(), start, tolerance, work, step, pause))
+        .unwrap()
 }
 
 #[test]

@@ -3,10 +3,11 @@
 use crate::{
     effect::Effect,
     error::Error,
-    fit::{Problem, Start, Tolerance, Work},
+    fit::{Start, Tolerance, Work},
     limits::ONE_SIDED_95,
     math,
     model::{Model, Term},
+    pause::unpaused,
     real::{Real, real},
     record::Record,
 };
@@ -54,9 +55,7 @@ pub fn line_width<'a, const K: usize, const B: usize>(
             *term = Term::known(resonance, [frequency_hz, frequency_hz / width_hz]);
         }
         let tolerance = Tolerance::Fixed(tolerance);
-        work.begin_at(observed, &model, Start::Independent, tolerance)?;
-        let problem = Problem::new(observed, &model, &work.columns);
-        while !work.solver.advance(&problem)? {}
+        unpaused(|pause| work.solve(observed, &model, Start::Independent, tolerance, pause))?;
         Ok(work.solver.minus_two_log_likelihood())
     };
     let samples = observed.curve().points().first();

@@ -42,8 +42,9 @@ pub fn fit<'a, const K: usize, const B: usize>(
     let observed = record.into().observed();
     let mut fit = Fit::EMPTY;
     let mut work = Work::NEW;
-    let mut stage = Stage::Beginning;
-    while !stage.advance(observed, model, options, &mut work, &mut fit)? {}
+    let mut stage = Stage::Solving;
+    stage.begin(observed, model, options, &mut work, &mut fit)?;
+    while !stage.advance(observed, model, &mut work, &mut fit)? {}
     Ok(fit)
 }
 
@@ -75,6 +76,7 @@ pub struct Fitting<const K: usize, const B: usize = 0> {
     work: Work<K, B>,
     fit: Fit,
     options: Options,
+    has_begun: bool,
     stage: Stage,
 }
 
@@ -104,7 +106,8 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
             work: Work::NEW,
             fit: Fit::EMPTY,
             options,
-            stage: Stage::Beginning,
+            has_begun: false,
+            stage: Stage::Solving,
         }
     }
 
@@ -120,10 +123,16 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
             work,
             fit,
             options,
+            has_begun,
             stage,
         } = self;
         let observed = Observed::new(curve, spectrum);
-        let complete = stage.advance(observed, model, *options, work, fit)?;
+        if !*has_begun {
+            stage.begin(observed, model, *options, work, fit)?;
+            *has_begun = true;
+            return Ok(stage.is_complete().then_some(&self.fit));
+        }
+        let complete = stage.advance(observed, model, work, fit)?;
         Ok(complete.then_some(&self.fit))
     }
 
@@ -151,21 +160,25 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
     }
 }
 
-/// The stage of a fit by the covariance.
+/// How far a fit by the covariance has come. It solves a model, estimates its coefficients from the solution, and refines
+/// them. Both a [`Fitting`] and a diagnosis go this way.
 // The smaller variant wastes a few hundred bytes of a fit, which takes some thousands.
 #[allow(clippy::large_enum_variant)]
-enum Stage {
-    Beginning,
+pub(crate) enum Stage {
+    /// The memory has begun to solve the model.
     Solving,
     Solved,
-    Estimating(Estimator),
+    /// At the end, the coefficients are those of the solution, which is still in the memory.
+    Estimating {
+        estimator: Estimator,
+        is_complete: bool,
+    },
     Refining(Refinement),
     Complete,
 }
 
 impl Stage {
-    /// Begins a fit. Returns `None` if the fit is already complete, as it is with the methods that take
-    /// octaves for independent.
+    /// Begins a fit.
     #[inline(never)]
     fn begin<const K: usize, const B: usize>(
         &mut self,
@@ -180,11 +193,11 @@ impl Stage {
             _ => model.terms().len(),
         };
         check(observed.curve().points(), needed)?;
-        *self = match options.method {
+        match options.method {
             Method::Covariance => {
                 let tolerance = Tolerance::IfNeeded(options.tolerance);
-                work.begin_at(observed, model, Start::Independent, tolerance)?;
-                Self::Solving
+                *self = Self::Solving;
+                work.begin_at(observed, model, Start::Independent, tolerance)
             }
             method => {
                 // These methods are for curves only.
@@ -192,10 +205,10 @@ impl Stage {
                 work.columns.set(octaves, model);
                 let problem = Problem::new(octaves, model, &work.columns);
                 *fit = independent::fit(&problem, method)?;
-                Self::Complete
+                *self = Self::Complete;
+                Ok(())
             }
-        };
-        Ok(())
+        }
     }
 
     // Apart from what goes on with it: its temporaries do not lie on the stack below the deepest calls.
@@ -206,12 +219,16 @@ impl Stage {
         solver: &Solver<K, B>,
         fit: &mut Fit,
     ) {
-        *self = Self::Estimating(Estimator::NEW);
-        if let Self::Estimating(estimator) = self {
+        *self = Self::Estimating {
+            estimator: Estimator::NEW,
+            is_complete: false,
+        };
+        if let Self::Estimating { estimator, .. } = self {
             estimator.begin(problem, solver, fit);
         }
     }
 
+    /// Begins to refine the coefficients, if the fit allows it.
     #[inline(never)]
     fn begin_refining<const K: usize, const B: usize>(
         &mut self,
@@ -220,6 +237,10 @@ impl Stage {
         work: &mut Work<K, B>,
         fit: &Fit,
     ) -> Result<(), Error> {
+        if !Refinement::applies(model, fit) {
+            *self = Self::Complete;
+            return Ok(());
+        }
         *self = Self::Refining(Refinement::NEW);
         match self {
             Self::Refining(refining) => refining.begin(observed, model, fit, work),
@@ -228,35 +249,28 @@ impl Stage {
     }
 
     /// Does one piece of work, and returns whether the fit is complete.
-    fn advance<const K: usize, const B: usize>(
+    pub(crate) fn advance<const K: usize, const B: usize>(
         &mut self,
         observed: Observed<'_, K, B>,
         model: &Model,
-        options: Options,
         work: &mut Work<K, B>,
         fit: &mut Fit,
     ) -> Result<bool, Error> {
+        let problem = Problem::new(observed, model, &work.columns);
         match self {
-            Self::Beginning => self.begin(observed, model, options, work, fit)?,
             Self::Solving => {
-                let problem = Problem::new(observed, model, &work.columns);
                 if work.solver.advance(&problem)? {
                     *self = Self::Solved;
                 }
             }
-            Self::Solved => {
-                let problem = Problem::new(observed, model, &work.columns);
-                self.begin_estimating(&problem, &work.solver, fit);
-            }
-            Self::Estimating(estimator) => {
-                let problem = Problem::new(observed, model, &work.columns);
-                if estimator.advance(&problem, &work.solver, fit) {
-                    *self = Self::Complete;
-                    if Refinement::applies(model, fit) {
-                        self.begin_refining(observed, model, work, fit)?;
-                    }
-                }
-            }
+            Self::Solved => self.begin_estimating(&problem, &work.solver, fit),
+            Self::Estimating {
+                is_complete: true, ..
+            } => self.begin_refining(observed, model, work, fit)?,
+            Self::Estimating {
+                estimator,
+                is_complete,
+            } => *is_complete = estimator.advance(&problem, &work.solver, fit),
             Self::Refining(refining) => {
                 if refining.advance(observed, model, work, fit)? {
                     // What follows a fit finds the columns of all rows.
@@ -266,6 +280,21 @@ impl Stage {
             }
             Self::Complete => {}
         }
-        Ok(matches!(self, Self::Complete))
+        Ok(self.is_complete())
+    }
+
+    const fn is_complete(&self) -> bool {
+        matches!(self, Self::Complete)
+    }
+
+    /// The estimator at its end, before the coefficients are refined.
+    pub(crate) const fn estimated(&self) -> Option<&Estimator> {
+        match self {
+            Self::Estimating {
+                estimator,
+                is_complete: true,
+            } => Some(estimator),
+            _ => None,
+        }
     }
 }

@@ -40,7 +40,7 @@ pub use method::{ADEQUATE_P, Method, Options};
 pub use peak::Peak;
 pub use result::{Fit, ShapeEstimate};
 
-pub(crate) use estimate::Estimator;
+pub(crate) use fitting::Stage;
 pub(crate) use likelihood_ratio::LikelihoodRatio;
 pub(crate) use problem::{Columns, Problem, check};
 pub(crate) use refinement::Refinement;

@@ -5,7 +5,12 @@ use super::{
     shape::Derivatives,
     solver::{Solver, Start, Tolerance},
 };
-use crate::{error::Error, model::Model, observed::Observed};
+use crate::{
+    error::Error,
+    model::Model,
+    observed::Observed,
+    pause::{Pause, Stop, call},
+};
 
 /// The memory of a fit by the covariance: the columns of the model, their solution, and their derivatives by the shapes.
 pub(crate) struct Work<const K: usize, const B: usize = 0> {
@@ -38,5 +43,28 @@ impl<const K: usize, const B: usize> Work<K, B> {
         self.columns.set(observed, model);
         let problem = Problem::new(observed, model, &self.columns);
         self.solver.begin(&problem, start, tolerance)
+    }
+
+    /// Solves a model, and calls the pause between two pieces.
+    ///
+    /// # Errors
+    /// [`Error::Singular`], and the end of the pause.
+    #[inline(never)]
+    pub(crate) fn solve(
+        &mut self,
+        observed: Observed<'_, K, B>,
+        model: &Model,
+        start: Start,
+        tolerance: Tolerance,
+        pause: &mut Pause<'_>,
+    ) -> Result<(), Stop> {
+        self.begin_at(observed, model, start, tolerance)?;
+        let problem = Problem::new(observed, model, &self.columns);
+        loop {
+            call(pause)?;
+            if self.solver.advance(&problem)? {
+                return Ok(());
+            }
+        }
     }
 }

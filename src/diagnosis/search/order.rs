@@ -10,9 +10,9 @@ use super::{
     run::set_common,
 };
 use crate::{
-    diagnosis::pause::Pause,
     effect::Effect,
     model::{Model, Term},
+    pause::Pause,
     real::Real,
 };
 use core::ops::ControlFlow;

@@ -9,12 +9,12 @@ use super::{
     values::Values,
 };
 use crate::{
-    diagnosis::pause::Pause,
     limits::{MAX_PARAMETERS, MAX_SHAPE},
     list::{self, numbered},
     math,
     model::{Model, Term},
     nnls::{Free, Vector},
+    pause::Pause,
     real::{Real, real, single},
 };
 use core::ops::ControlFlow;

@@ -13,11 +13,11 @@ use super::{
     white::WhiteRange,
 };
 use crate::{
-    diagnosis::pause::Pause,
     effect::Effect,
     limits::MAX_EFFECTS,
     list, math,
     model::{Model, Term},
+    pause::Pause,
     real::Real,
 };
 use core::ops::ControlFlow;

@@ -5,7 +5,7 @@ use crate::{
     coefficient::{Coefficient, State},
     covariance::curve_covariance,
     effect::{Effect, IEEE_952},
-    fit::{Estimator, Fit, Fitting, Options, Problem, Start, Tolerance, Work},
+    fit::{Fit, Fitting, Options, Problem, Start, Tolerance, Work, estimate::Estimator},
     math::erfc,
     observed::Observed,
     real::{double, real},

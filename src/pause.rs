@@ -7,7 +7,7 @@ use core::ops::ControlFlow;
 pub(crate) type Pause<'p> = dyn FnMut() -> ControlFlow<()> + 'p;
 
 /// Why a piece of work ended before its result.
-pub(super) enum Stop {
+pub(crate) enum Stop {
     Paused,
     Failed(Error),
 }
@@ -19,9 +19,20 @@ impl From<Error> for Stop {
 }
 
 /// Calls the pause.
-pub(super) fn call(pause: &mut Pause<'_>) -> Result<(), Stop> {
+pub(crate) fn call(pause: &mut Pause<'_>) -> Result<(), Stop> {
     match pause() {
         ControlFlow::Continue(()) => Ok(()),
         ControlFlow::Break(()) => Err(Stop::Paused),
     }
+}
+
+/// Does work that nothing pauses.
+pub(crate) fn unpaused<T>(
+    work: impl FnOnce(&mut Pause<'_>) -> Result<T, Stop>,
+) -> Result<T, Error> {
+    work(&mut || ControlFlow::Continue(())).map_err(|stop| match stop {
+        Stop::Failed(error) => error,
+        // This pause never ends the work.
+        Stop::Paused => Error::Singular,
+    })
 }

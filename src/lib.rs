@@ -91,7 +91,7 @@
 //! # Cost
 //!
 //! These are rounded figures of a Cortex-M4F in single precision, built for size. `cargo xtask bench` in the
-//! repository measures them. It counts instructions in QEMU, not cycles. Its `host-tests/README.md` has the
+//! repository measures them. It counts instructions in QEMU, not cycles. Its `host-tests/doc/firmware.md` has the
 //! exact figures of seven cores in both precisions.
 //!
 //! | what | about |

@@ -130,7 +130,7 @@ fn bounds_of_effects_follow_closed_forms() {
     assert!((time_constant / (own / determinant).sqrt() - 1.0).abs() < 1e-3);
 }
 
-/// The smallest errors of the MEMS gyro are those that `host-tests/README.md` compares with.
+/// The smallest errors of the MEMS gyro are those that `host-tests/doc/studies/coefficients.md` compares with.
 #[test]
 fn a_record_of_22_minutes_gives_the_bounds_of_the_manual() {
     let bounds = bounds(Preset::Mems.coefficients(), None, 1 << 17, INTERVAL_S);

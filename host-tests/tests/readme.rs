@@ -17,8 +17,14 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 /// The project's page.
 const README: &str = "README.md";
 
-/// The manual of the command line, with the figures.
-const MANUAL: &str = "host-tests/README.md";
+/// The pages of the manual that print commands with what they say.
+const WITH_COMMANDS: [(&str, usize); 2] = [
+    ("host-tests/doc/tour.md", 6),
+    ("host-tests/doc/commands.md", 1),
+];
+
+/// The page with the figures.
+const FIGURES: &str = "host-tests/doc/firmware.md";
 
 /// The crate's page is the documentation of this file.
 const CRATE_PAGE: &str = "src/lib.rs";
@@ -91,7 +97,9 @@ fn commands_of_the_readme_print_what_is_shown() {
 
 #[test]
 fn commands_of_the_manual_print_what_is_shown() {
-    commands_print_what_is_shown(MANUAL, 4);
+    for (page, least) in WITH_COMMANDS {
+        commands_print_what_is_shown(page, least);
+    }
 }
 
 #[test]
@@ -103,11 +111,16 @@ fn the_readme_has_at_most_150_lines() {
 #[test]
 fn pictures_of_the_manual_are_those_that_plot_draws() {
     let folder = tempfile::TempDir::new().expect("a folder");
-    for (step, picture) in [("0", "adis16405-gz-0.svg"), ("9", "adis16405-gz-last.svg")] {
+    for (axis, what, step, picture) in [
+        ("gx", "deviation", "0", "adis16405-gx-0.svg"),
+        ("gx", "deviation", "9", "adis16405-gx-last.svg"),
+        ("gz", "spectrum", "0", "adis16405-gz-0.svg"),
+        ("gz", "spectrum", "9", "adis16405-gz-last.svg"),
+    ] {
         let input = "host-tests/data/adis16405.json";
         let drawn = folder.path().join(picture);
         let file = drawn.to_string_lossy().into_owned();
-        let what = ["--axis", "gz", "--what", "spectrum", "--step", step];
+        let what = ["--axis", axis, "--what", what, "--step", step];
         let arguments = [&["plot", input, "--output", &file], &what[..]].concat();
         output(Path::new(ROOT), &arguments);
         let shown = text(&format!("host-tests/pictures/{picture}"));
@@ -122,26 +135,87 @@ fn pictures_of_the_manual_are_those_that_plot_draws() {
     }
 }
 
-/// Files that a page links to or draws, without the place in them.
-fn links(page: &str) -> impl Iterator<Item = &str> {
+/// All pages: the project's, the manual's, and those of the studies.
+fn pages() -> Vec<String> {
+    let mut pages = vec![
+        README.to_owned(),
+        "host-tests/README.md".to_owned(),
+        "host-tests/CONTRIBUTING.md".to_owned(),
+    ];
+    for folder in ["host-tests/doc", "host-tests/doc/studies"] {
+        let files = fs::read_dir(Path::new(ROOT).join(folder)).expect("a folder");
+        let names = files.map(|file| file.expect("a file").file_name());
+        let names = names.map(|name| name.to_string_lossy().into_owned());
+        let names = names.filter(|name| name.ends_with(".md"));
+        pages.extend(names.map(|name| format!("{folder}/{name}")));
+    }
+    pages
+}
+
+/// What a page links to or draws: a file, and a place in it or nothing.
+fn links(page: &str) -> impl Iterator<Item = (&str, &str)> {
     let targets = page.split("](").skip(1);
-    let targets = targets.filter_map(|rest| rest.split([')', '#']).next());
-    targets.filter(|target| !target.is_empty() && !target.contains("://"))
+    let targets = targets.filter_map(|rest| rest.split(')').next());
+    let targets = targets.filter(|target| !target.contains("://"));
+    targets.map(|target| target.split_once('#').unwrap_or((target, "")))
+}
+
+/// The names by which links find the headings of a page.
+fn places(page: &str) -> impl Iterator<Item = String> {
+    let headings = page.lines().filter(|line| line.starts_with('#'));
+    headings.map(|line| {
+        let heading = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = heading
+            .chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    })
 }
 
 #[test]
-fn files_that_are_linked_exist() {
-    for (path, least) in [(README, 5), (MANUAL, 1)] {
+fn what_is_linked_exists() {
+    let pages = pages();
+    assert!(pages.len() > 25, "{pages:?}");
+    for path in &pages {
         let page = text(path);
         let folder = Path::new(ROOT).join(path);
         let folder = folder.parent().expect("a file in a folder");
-        assert!(links(&page).count() >= least, "{path}");
-        for link in links(&page) {
+        for (file, place) in links(&page) {
             assert!(
-                folder.join(link).exists(),
-                "{path} links to {link}, which is missing"
+                folder.join(file).exists(),
+                "{path} links to {file}, which is missing"
             );
+            if !place.is_empty() && (file.is_empty() || file.ends_with(".md")) {
+                let linked = match file {
+                    "" => page.clone(),
+                    file => fs::read_to_string(folder.join(file)).expect("a page"),
+                };
+                assert!(
+                    places(&linked).any(|heading| heading == place),
+                    "{path} links to {file}#{place}, which is missing"
+                );
+            }
         }
+    }
+}
+
+#[test]
+fn every_page_is_linked() {
+    let pages = pages();
+    let linked: Vec<_> = pages
+        .iter()
+        .flat_map(|path| {
+            let page = text(path);
+            let folder = Path::new(ROOT).join(path);
+            let folder = folder.parent().expect("a file in a folder").to_owned();
+            let files: Vec<_> = links(&page).map(|(file, _)| folder.join(file)).collect();
+            files
+        })
+        .filter_map(|file| file.canonicalize().ok())
+        .collect();
+    for path in pages.iter().filter(|path| *path != README) {
+        let file = Path::new(ROOT).join(path).canonicalize().expect("a page");
+        assert!(linked.contains(&file), "no page links to {path}");
     }
 }
 
@@ -149,12 +223,12 @@ fn files_that_are_linked_exist() {
 fn figures_are_those_of_the_budgets() {
     let shown = figures::readme(&budgets::committed(Way::Rustup).unwrap()).unwrap();
     assert!(shown.lines().count() > 20);
-    assert!(text(MANUAL).contains(&shown), "{MANUAL} lacks:\n{shown}");
+    assert!(text(FIGURES).contains(&shown), "{FIGURES} lacks:\n{shown}");
 }
 
 #[test]
 fn the_cost_of_a_product_is_what_the_calculator_says() {
-    let page = text(MANUAL);
+    let page = text(FIGURES);
     let mut commands = page
         .lines()
         .filter_map(|line| line.strip_prefix("$ cargo xtask cost "));
@@ -167,7 +241,7 @@ fn the_cost_of_a_product_is_what_the_calculator_says() {
     let table = cost::table(&product.expect("a product"), &budgets).unwrap();
     assert!(
         table.lines().count() > 8 && page.contains(&table),
-        "{MANUAL} lacks:\n{table}"
+        "{FIGURES} lacks:\n{table}"
     );
 }
 
@@ -230,7 +304,7 @@ fn rounded_figures_of_the_crates_page_are_near_the_budgets() {
 
 #[test]
 fn memory_that_is_promised_is_enough() {
-    let promise = "fit into 122 KiB of flash and 34 KiB of RAM of a Cortex-M4F";
+    let promise = "fit into 123 KiB of flash and 34 KiB of RAM of a Cortex-M4F";
     assert!(text(README).contains(promise), "{README} lacks: {promise}");
     for way in Way::ALL {
         promised(way);
@@ -265,5 +339,5 @@ fn promised(way: Way) {
         46,
     );
     most(Precision::Single, "flash_bytes_with_fit", 42);
-    most(Precision::Single, "flash_bytes_with_diagnosis", 122);
+    most(Precision::Single, "flash_bytes_with_diagnosis", 123);
 }

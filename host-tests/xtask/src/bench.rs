@@ -117,7 +117,7 @@ pub(crate) fn run(json: bool, update_budgets: bool) -> Result<()> {
         );
         if way == Way::Rustup {
             println!(
-                "for host-tests/README.md:\n\n{}",
+                "for host-tests/doc/firmware.md:\n\n{}",
                 figures::readme(&measured)?
             );
         }

@@ -86,93 +86,110 @@ pub enum Error {
     Singular,
 }
 
+impl Error {
+    /// What to do about it, as the last words of the message.
+    pub const fn remedy(&self) -> &'static str {
+        match self {
+            Self::InvalidRate(_) | Self::InvalidScale(_) => "pass a positive, finite number",
+            Self::InvalidPoint { .. } => {
+                "give ascending powers of two up to 2^29, each with differences and a finite variance that is not negative"
+            }
+            Self::TooManyOctaves { .. } => "use a curve of larger capacity",
+            Self::InvalidSegment { .. } => "give a power of two from 32 to 256",
+            Self::InvalidBin { .. } => {
+                "give ascending bins of powers of 8 up to 8^9, each with segments and a finite density that is not negative"
+            }
+            Self::TooManyBins { .. } => "use a spectrum of larger capacity",
+            Self::InvalidCourse { .. } => {
+                "give 32 to 64 blocks of a power of two, and one finite density less that is not negative"
+            }
+            Self::TooFewOctaves { .. } => "record longer",
+            Self::NoNoise { .. } => "check the sensor",
+            Self::TooManyEffects { .. } | Self::Singular => "remove one",
+            Self::UnknownAxis { .. } => "count them from 0",
+            Self::RateContradicted { .. } => {
+                "pass the measured rate, or check the output rate and that every sample is read"
+            }
+        }
+    }
+}
+
 impl core::fmt::Display for Error {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::InvalidRate(rate) => {
-                write!(
-                    f,
-                    "a sampling rate of {rate} Hz is impossible: pass a positive, finite number"
-                )
-            }
-            Self::InvalidScale(scale) => {
-                write!(
-                    f,
-                    "a rate per count of {scale} is impossible: pass a positive, finite number"
-                )
-            }
-            Self::InvalidPoint { m } => write!(
-                f,
-                "the octave at m = {m} is impossible: give ascending powers of two up to 2^29, each \
-                 with differences and a finite variance that is not negative"
-            ),
+            Self::InvalidRate(rate) => write!(f, "a sampling rate of {rate} Hz is impossible"),
+            Self::InvalidScale(scale) => write!(f, "a rate per count of {scale} is impossible"),
+            Self::InvalidPoint { m } => write!(f, "the octave at m = {m} is impossible"),
             Self::TooManyOctaves { capacity } => {
-                write!(
-                    f,
-                    "there are more than {capacity} octaves: use a curve of larger capacity"
-                )
+                write!(f, "there are more than {capacity} octaves")
             }
-            Self::InvalidSegment { length } => write!(
-                f,
-                "segments of {length} blocks are impossible: give a power of two from 32 to 256"
-            ),
+            Self::InvalidSegment { length } => {
+                write!(f, "segments of {length} blocks are impossible")
+            }
             Self::InvalidBin { block, index } => write!(
                 f,
-                "the bin {index} of blocks of {block} samples is impossible: give ascending bins of \
-                 powers of 8 up to 8^9, each with segments and a finite density that is not negative"
+                "the bin {index} of blocks of {block} samples is impossible"
             ),
-            Self::TooManyBins { capacity } => {
-                write!(
-                    f,
-                    "there are more than {capacity} bins: use a spectrum of larger capacity"
-                )
-            }
+            Self::TooManyBins { capacity } => write!(f, "there are more than {capacity} bins"),
             Self::InvalidCourse { block, blocks } => write!(
                 f,
-                "a course of {blocks} blocks of {block} samples, or its densities, are impossible: give \
-                 32 to 64 blocks of a power of two, and one finite density less that is not negative"
+                "a course of {blocks} blocks of {block} samples, or its densities, are impossible"
             ),
             Self::TooFewOctaves { found, needed } => write!(
                 f,
-                "only {found} of the {needed} octaves that a fit needs have enough differences: \
-                 record longer"
+                "only {found} of the {needed} octaves that a fit needs have enough differences"
             ),
             Self::NoNoise { m: 1 } => write!(
                 f,
-                "there is no noise at m = 1, because the counts never change: check the sensor"
+                "there is no noise at m = 1, because the counts never change"
             ),
             Self::NoNoise { m } => write!(
                 f,
-                "there is no noise at m = {m}, because the counts repeat in a cycle: check the sensor"
+                "there is no noise at m = {m}, because the counts repeat in a cycle"
             ),
             Self::TooManyEffects { capacity } => {
-                write!(
-                    f,
-                    "the model would have more than {capacity} effects: remove one"
-                )
+                write!(f, "the model would have more than {capacity} effects")
             }
             Self::UnknownAxis { axis, axes } => {
-                write!(
-                    f,
-                    "there is no axis {axis} among {axes} axes: count them from 0"
-                )
+                write!(f, "there is no axis {axis} among {axes} axes")
             }
             Self::RateContradicted {
                 configured_hz,
                 measured_hz,
             } => write!(
                 f,
-                "samples come at {measured_hz:.2} Hz, but {configured_hz:.2} Hz are configured: pass \
-                 the measured rate, or check the output rate and that every sample is read"
+                "samples come at {measured_hz:.2} Hz, but {configured_hz:.2} Hz are configured"
             ),
-            Self::Singular => {
-                write!(
-                    f,
-                    "the model's effects cannot be told apart on this curve: remove one"
-                )
-            }
-        }
+            Self::Singular => write!(f, "the model's effects cannot be told apart on this curve"),
+        }?;
+        write!(f, ": {}", self.remedy())
     }
 }
 
 impl core::error::Error for Error {}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::Error;
+    use std::string::ToString as _;
+
+    #[test]
+    fn messages_end_with_their_remedies() {
+        for error in [
+            Error::InvalidRate(-1.0),
+            Error::TooFewOctaves {
+                found: 1,
+                needed: 2,
+            },
+            Error::NoNoise { m: 1 },
+            Error::NoNoise { m: 4 },
+            Error::Singular,
+        ] {
+            let text = error.to_string();
+            let what = text.strip_suffix(error.remedy());
+            assert!(what.is_some_and(|what| what.ends_with(": ")), "{text}");
+        }
+    }
+}

@@ -58,25 +58,43 @@ pub enum Error {
     Impossible,
 }
 
+impl Error {
+    /// What to do about it, as the last words of the message.
+    pub const fn remedy(&self) -> &'static str {
+        match self {
+            Self::BufferTooSmall { .. } => "give it as many",
+            Self::UnknownMagic => "read the place where it stored one",
+            Self::WrongLength { .. } => "read exactly these",
+            Self::Corrupt => "read them again or take an older copy",
+            Self::WrongKind { .. } => "give the bytes of what is expected",
+            Self::UnknownVersion { .. } => "use the allanite that stored them",
+            Self::WrongOctaves { .. } => {
+                "restore it into an accumulator of as many octaves as the snapshot has"
+            }
+            Self::OtherParts => "restore it into the type that stored it",
+            Self::OtherPlan => "start the test again",
+            Self::DeviceTooLong { .. } => "shorten it",
+            Self::Impossible => "store them again from the gyro",
+        }
+    }
+}
+
 impl core::fmt::Display for Error {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::BufferTooSmall { needed } => {
-                write!(f, "the buffer is too small: give it {needed} bytes")
+                write!(f, "the buffer is too small for {needed} bytes")
             }
             Self::UnknownMagic => write!(
                 f,
-                "the bytes are neither a snapshot nor a certificate of allanite: read the place \
-                 where it stored one"
+                "the bytes are neither a snapshot nor a certificate of allanite"
             ),
-            Self::WrongLength { found, stored } => write!(
-                f,
-                "{found} bytes were given, but {stored} were stored: read exactly these"
-            ),
+            Self::WrongLength { found, stored } => {
+                write!(f, "{found} bytes were given, but {stored} were stored")
+            }
             Self::Corrupt => write!(
                 f,
-                "the checksum is wrong, because the bytes have changed since they were stored: read \
-                 them again or take an older copy"
+                "the checksum is wrong, because the bytes have changed since they were stored"
             ),
             Self::WrongKind { found, wanted } => {
                 let name = |kind: &u8| match kind {
@@ -85,40 +103,31 @@ impl core::fmt::Display for Error {
                     _ => "something unknown",
                 };
                 let (found, wanted) = (name(found), name(wanted));
-                write!(
-                    f,
-                    "the bytes hold {found} where {wanted} is expected: give the bytes of {wanted}"
-                )
+                write!(f, "the bytes hold {found} where {wanted} is expected")
             }
             Self::UnknownVersion { found, known } => write!(
                 f,
-                "the bytes have version {found} of the format, but this allanite reads version \
-                 {known}: use the allanite that stored them"
+                "the bytes have version {found} of the format, but this allanite reads version {known}"
             ),
             Self::WrongOctaves { found, wanted } => write!(
                 f,
-                "the snapshot has {found} octaves, but the accumulator has {wanted}: restore it into \
-                 an accumulator of {found} octaves"
+                "the snapshot has {found} octaves, but the accumulator has {wanted}"
             ),
             Self::OtherParts => write!(
                 f,
-                "the snapshot has other axes, covariates, parts or self-tests: restore it into the \
-                 type that stored it"
+                "the snapshot has other axes, covariates, parts or self-tests"
             ),
-            Self::OtherPlan => write!(
-                f,
-                "the snapshot holds a self-test with another plan: start the test again"
-            ),
+            Self::OtherPlan => write!(f, "the snapshot holds a self-test with another plan"),
             Self::DeviceTooLong { length, capacity } => write!(
                 f,
-                "the device's identity has {length} bytes: shorten it to {capacity}"
+                "the device's identity has {length} bytes, but there is room for {capacity}"
             ),
             Self::Impossible => write!(
                 f,
-                "the checksum is right, but no gyro can have stored these contents: store them again \
-                 from the gyro"
+                "the checksum is right, but no gyro can have stored these contents"
             ),
-        }
+        }?;
+        write!(f, ": {}", self.remedy())
     }
 }
 

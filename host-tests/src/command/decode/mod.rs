@@ -89,9 +89,8 @@ fn decode(path: &Path) -> Result<Stored, Failure> {
         Err(error) => Err(error),
     };
     stored.map_err(|error| {
-        // The library's errors read `what: remedy`.
-        let text = error.to_string();
-        let (what, remedy) = text.rsplit_once(": ").unwrap_or((&text, "store it again"));
+        let (text, remedy) = (error.to_string(), error.remedy());
+        let what = text.trim_end_matches(remedy).trim_end_matches(": ");
         Place::file(path).failure(what, remedy)
     })
 }

@@ -199,9 +199,9 @@ pub(crate) fn is_curve(path: &Path) -> bool {
         .is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
 }
 
-/// The failure for an error of the library about an axis. The library's errors read `what: remedy`.
+/// The failure for an error of the library about an axis.
 pub(crate) fn library_failure(path: &Path, axis: &str, error: allanite::Error) -> Failure {
-    let text = error.to_string();
-    let (what, remedy) = text.rsplit_once(": ").unwrap_or((&text, "record longer"));
+    let (text, remedy) = (error.to_string(), error.remedy());
+    let what = text.trim_end_matches(remedy).trim_end_matches(": ");
     Place::file(path).failure(format!("axis {axis}: {what}"), remedy)
 }

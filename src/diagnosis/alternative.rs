@@ -1,8 +1,8 @@
 //! The step that would have followed if another candidate had been added.
 
 use super::{
-    judged::judge,
-    polished::{Fitted, polish},
+    assessment::assess,
+    polish::{Fitted, polish},
     step::{Candidate, Step},
 };
 use crate::{
@@ -42,7 +42,7 @@ pub fn alternative<'a, const K: usize, const B: usize>(
     let tolerance = Tolerance::Fixed(step.fit.tolerance);
     let mut work = Work::NEW;
     unpaused(|pause| {
-        judge(
+        assess(
             observed,
             start,
             tolerance,

@@ -5,17 +5,17 @@
 //! found is narrated step by step, the largest fall of the error first.
 
 mod alternative;
-mod corrected;
-mod followed;
-mod judged;
-mod mirrored;
-mod narrated;
+mod assessment;
+mod correction;
+mod covariate_regression;
+mod mirror;
 mod options;
-mod polished;
+mod polish;
 mod run;
 pub(crate) mod search;
-mod shaped;
+mod shapes;
 mod step;
+mod story;
 #[cfg(test)]
 mod tests;
 mod verdict;
@@ -24,7 +24,7 @@ mod width;
 pub use alternative::alternative;
 pub use options::Options;
 pub use run::{Diagnosis, Progress};
-pub use shaped::fit_shapes;
+pub use shapes::fit_shapes;
 pub use step::{
     Addition, Beside, Candidate, FollowedCovariate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step,
 };

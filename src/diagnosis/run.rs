@@ -2,12 +2,12 @@
 //! step by step.
 
 use super::{
-    followed::followed,
-    judged::{Judged, judge},
-    narrated::{Story, with},
+    assessment::{Assessment, assess},
+    covariate_regression::followed,
     options::Options,
     search::{Found, Limits, Observation, Search},
     step::{Addition, Step},
+    story::{Story, with},
     verdict::Verdict,
 };
 use crate::{
@@ -75,7 +75,7 @@ pub struct Diagnosis<'a, const K: usize, const B: usize = 0> {
     options: Options,
     /// The present model, and what is reported about it.
     step: Step<K, B>,
-    judged: Judged,
+    assessment: Assessment,
     /// What was found and is told; `None` before the search.
     story: Option<Story>,
     next: Next,
@@ -125,7 +125,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             effects,
             options,
             step: Step::of(model),
-            judged: Judged::none(),
+            assessment: Assessment::none(),
             story: None,
             next: Next::Judging,
         }
@@ -177,10 +177,10 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             Next::Judging => {
                 check(self.curve.points(), 2)?;
                 let tolerance = Tolerance::IfNeeded(self.options.tolerance);
-                self.judge(Start::Independent, tolerance, pause)?;
+                self.assess(Start::Independent, tolerance, pause)?;
                 self.step.begin_report();
                 if self.has_room() && !self.record.covariates.is_empty() {
-                    let (model, judged) = (self.model.clone(), self.judged);
+                    let (model, judged) = (self.model.clone(), self.assessment);
                     self.follow(&model, judged.squares, pause)?;
                 }
                 self.next = Next::Searching;
@@ -192,7 +192,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
             Next::JudgingAgain => {
                 self.correct();
                 let tolerance = Tolerance::IfNeeded(self.options.tolerance);
-                self.judge(Start::From(self.judged.squares), tolerance, pause)?;
+                self.assess(Start::From(self.assessment.squares), tolerance, pause)?;
                 self.step.begin_report();
                 self.next = Next::Searching;
             }
@@ -216,7 +216,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
 
     /// Judges the step's model.
     #[inline(never)]
-    fn judge(
+    fn assess(
         &mut self,
         start: Start,
         tolerance: Tolerance,
@@ -224,7 +224,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
     ) -> Result<(), Stop> {
         let observed = Observed::new(&self.curve, &self.spectrum);
         let mut work = Work::<K, B>::NEW;
-        self.judged = judge(observed, start, tolerance, &mut work, &mut self.step, pause)?;
+        self.assessment = assess(observed, start, tolerance, &mut work, &mut self.step, pause)?;
         Ok(())
     }
 
@@ -248,7 +248,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
     fn solve(&self, model: &Model, pause: &mut Pause<'_>) -> Result<Vector, Stop> {
         let observed = Observed::new(&self.curve, &self.spectrum);
         let mut work = Work::<K, B>::NEW;
-        let tolerance = Tolerance::Fixed(self.judged.tolerance);
+        let tolerance = Tolerance::Fixed(self.assessment.tolerance);
         work.solve(observed, model, Start::Independent, tolerance, pause)?;
         Ok(work.solver.squares)
     }
@@ -262,7 +262,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         pause: &mut Pause<'_>,
     ) -> Result<(), Stop> {
         let observed = Observed::new(&self.curve, &self.spectrum);
-        let (tolerance, least_z) = (self.judged.tolerance, self.options.covariate_z);
+        let (tolerance, least_z) = (self.assessment.tolerance, self.options.covariate_z);
         let noise = (model, squares);
         let followed = followed(observed, &self.record, noise, tolerance, least_z, pause)?;
         self.step.added = followed.map(Addition::Covariate);
@@ -336,7 +336,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         self.step = Step::of(&story.model(&self.model)?);
         self.step.covariate = covariate;
         let tolerance = Tolerance::IfNeeded(self.options.tolerance);
-        self.judge(Start::Independent, tolerance, pause)?;
+        self.assess(Start::Independent, tolerance, pause)?;
         self.step.begin_report();
         Ok(())
     }
@@ -368,7 +368,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
         for candidate in &mut self.step.candidates {
             call(pause)?;
             let model = with(&self.step.model, &[candidate.term])?;
-            let tolerance = Tolerance::Fixed(self.judged.tolerance);
+            let tolerance = Tolerance::Fixed(self.assessment.tolerance);
             match work.solve(observed, &model, Start::Independent, tolerance, pause) {
                 Ok(()) => {
                     let place = model.terms().len().saturating_sub(1);
@@ -387,7 +387,7 @@ impl<'a, const K: usize, const B: usize> Diagnosis<'a, K, B> {
     fn verdict(&self) -> Verdict {
         let has_story = self.story.as_ref().is_some_and(|story| !story.is_empty());
         let has_added = has_story || self.step.covariate.is_some();
-        match (self.record.invalid, has_added, self.judged.adequate) {
+        match (self.record.invalid, has_added, self.assessment.adequate) {
             (Some(reason), ..) => Verdict::Invalid(reason),
             (_, false, Some(true)) => Verdict::Adequate,
             (_, false, Some(false)) => Verdict::Unexplained,

@@ -2,7 +2,7 @@
 
 extern crate std;
 
-use super::{judged::Judged, *};
+use super::{assessment::Assessment, *};
 use crate::{
     Curve, Model, Term,
     effect::{CATALOGUE, Effect, LowPass, SampledShape, Sinusoid},
@@ -40,10 +40,14 @@ fn without() -> Curve<OCTAVES> {
     curve(&Sinusoid, [7.7, 0.0], 0.0)
 }
 
-fn judge(curve: &Curve<OCTAVES>, work: &mut Work<OCTAVES>, step: &mut Step<OCTAVES>) -> Judged {
+fn assess(
+    curve: &Curve<OCTAVES>,
+    work: &mut Work<OCTAVES>,
+    step: &mut Step<OCTAVES>,
+) -> Assessment {
     let tolerance = Tolerance::IfNeeded(0.01);
     let start = Start::Independent;
-    unpaused(|pause| super::judged::judge(curve.into(), start, tolerance, work, step, pause))
+    unpaused(|pause| super::assessment::assess(curve.into(), start, tolerance, work, step, pause))
         .unwrap()
 }
 
@@ -51,12 +55,12 @@ fn judge(curve: &Curve<OCTAVES>, work: &mut Work<OCTAVES>, step: &mut Step<OCTAV
 fn judging_finds_whether_a_model_is_adequate() {
     let mut work = Work::NEW;
     let mut step = Step::of(&Model::ieee_952());
-    let judged = judge(&without(), &mut work, &mut step);
+    let judged = assess(&without(), &mut work, &mut step);
     assert_eq!(judged.adequate, Some(true));
     assert_eq!(judged.tolerance, 0.0);
     assert_eq!(step.fit.chi_squared, step.comparison.chi_squared);
 
-    let judged = judge(&with_sinusoid(), &mut work, &mut step);
+    let judged = assess(&with_sinusoid(), &mut work, &mut step);
     assert_eq!(judged.adequate, Some(false));
     // The scatter does not explain the misfit, so the model is granted the tolerance.
     assert_eq!(judged.tolerance, 0.01);

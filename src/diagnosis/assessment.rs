@@ -15,7 +15,7 @@ use crate::{
 
 /// What the later stages know of a model that was judged.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Judged {
+pub(super) struct Assessment {
     /// The model's squared coefficients.
     pub(super) squares: Vector,
     /// Whether the model explains the curve; `None` if the curve is too short for a judgement.
@@ -24,7 +24,7 @@ pub(super) struct Judged {
     pub(super) tolerance: Real,
 }
 
-impl Judged {
+impl Assessment {
     /// No judgement yet.
     #[inline(always)]
     pub(super) fn none() -> Self {
@@ -42,14 +42,14 @@ impl Judged {
 /// # Errors
 /// The same as those of a fit, and the end of the pause.
 #[inline(never)]
-pub(super) fn judge<const K: usize, const B: usize>(
+pub(super) fn assess<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     start: Start,
     tolerance: Tolerance,
     work: &mut Work<K, B>,
     step: &mut Step<K, B>,
     pause: &mut Pause<'_>,
-) -> Result<Judged, Stop> {
+) -> Result<Assessment, Stop> {
     call(pause)?;
     work.begin_at(observed, &step.model, start, tolerance)?;
     let mut stage = Stage::Solving;
@@ -60,7 +60,7 @@ pub(super) fn judge<const K: usize, const B: usize>(
             break estimator.widening_of_shapes();
         }
     };
-    let judged = Judged {
+    let judged = Assessment {
         squares: work.solver.squares,
         adequate: step.fit.is_adequate(),
         tolerance: work.solver.weights.tolerance,

@@ -1,8 +1,8 @@
 //! The way from the first model to the one that was found: one effect a step, the largest fall of the error first.
 
 use super::{
-    mirrored::{Mirrored, tell_from_mirror},
-    polished::{Fitted, polish},
+    mirror::{Mirrored, tell_from_mirror},
+    polish::{Fitted, polish},
     search::{
         Found, Hypothesis, MAX_ALTERNATIVES, Observation, WhiteRange, is_filter, is_white, ordered,
     },

@@ -1,6 +1,6 @@
 //! The kurtosis tells an effect from another one that has the same Allan variance. If it cannot, both are named.
 
-use super::polished::Fitted;
+use super::polish::Fitted;
 use crate::{
     effect::Effect,
     fit::{Columns, Problem},

@@ -462,12 +462,12 @@ AllaniteStatus allanite_diagnosis_fit(const AllaniteDiagnosis *diagnosis, Allani
 // `record` is null, or points to an `AllaniteRecord` that nothing else uses; `gyro` is null, or points to an
 // `AllaniteGyro`.
 AllaniteStatus allanite_record_take(AllaniteRecord *record,
-                                      size_t bytes,
-                                      const AllaniteGyro *gyro,
-                                      size_t axis,
-                                      float rate_per_count,
-                                      float rate_hz,
-                                      float kelvin_per_count);
+                                    size_t bytes,
+                                    const AllaniteGyro *gyro,
+                                    size_t axis,
+                                    float rate_per_count,
+                                    float rate_hz,
+                                    float kelvin_per_count);
 
 // The number of samples of the record, and whether it is that of a gyro at rest. Either pointer may be null.
 //

@@ -18,7 +18,7 @@ struct Origin {
 
 /// The rows of the table in the manual.
 fn table() -> Vec<Origin> {
-    let manual = std::fs::read_to_string(Path::new(MANIFEST).join("README.md")).unwrap();
+    let manual = std::fs::read_to_string(Path::new(MANIFEST).join("doc/logs.md")).unwrap();
     let rows = manual
         .lines()
         .skip_while(|line| !line.starts_with("| written by | file |"));

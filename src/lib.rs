@@ -218,6 +218,8 @@
 //! # Ok::<(), allanite::Error>(())
 //! ```
 
+// The page names what the features `storage` and `flash` add. Without them there is nothing to link to.
+#![cfg_attr(not(feature = "flash"), allow(rustdoc::broken_intra_doc_links))]
 #![no_std]
 #![forbid(unsafe_code)]
 

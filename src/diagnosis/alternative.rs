@@ -2,16 +2,13 @@
 
 use super::{
     assessment::assess,
-    polish::{Fitted, polish},
+    polish::polished,
     step::{Candidate, Step},
 };
 use crate::{
     error::Error,
     fit::{Start, Tolerance, Work},
-    model::Model,
-    observed::Observed,
     pause::unpaused,
-    real::Real,
     record::Record,
 };
 
@@ -35,42 +32,12 @@ pub fn alternative<'a, const K: usize, const B: usize>(
         model.remove(replaced.name());
     }
     model.add(candidate.term)?;
-    let fitted = polished(observed, model, step.fit.tolerance)?;
+    let granted = Tolerance::Fixed(step.fit.tolerance);
+    let fitted = unpaused(|pause| polished(observed, model, granted, pause))?;
     let mut alternative = Step::of(&fitted.model);
     alternative.covariate = step.covariate;
     let start = Start::Once(fitted.squares);
-    let tolerance = Tolerance::Fixed(step.fit.tolerance);
     let mut work = Work::NEW;
-    unpaused(|pause| {
-        assess(
-            observed,
-            start,
-            tolerance,
-            &mut work,
-            &mut alternative,
-            pause,
-        )
-    })?;
+    unpaused(|pause| assess(observed, start, granted, &mut work, &mut alternative, pause))?;
     Ok(alternative)
-}
-
-/// Fits the model and polishes its shapes.
-pub(super) fn polished<const K: usize, const B: usize>(
-    observed: Observed<'_, K, B>,
-    model: Model,
-    tolerance: Real,
-) -> Result<Fitted, Error> {
-    let mut work = Work::NEW;
-    let granted = Tolerance::Fixed(tolerance);
-    unpaused(|pause| {
-        work.solve(observed, &model, Start::Independent, granted, pause)?;
-        let squares = work.solver.squares;
-        polish(
-            observed,
-            Fitted { model, squares },
-            tolerance,
-            &mut work,
-            pause,
-        )
-    })
 }

@@ -66,13 +66,37 @@ struct Rounds {
     halvings: u8,
 }
 
+/// Fits a model, and polishes its shapes.
+///
+/// # Errors
+/// As of [`polish`].
+#[inline(never)]
+pub(super) fn polished<const K: usize, const B: usize>(
+    observed: Observed<'_, K, B>,
+    model: Model,
+    granted: Tolerance,
+    pause: &mut Pause<'_>,
+) -> Result<Fitted, Stop> {
+    call(pause)?;
+    let mut work = Work::<K, B>::NEW;
+    work.solve(observed, &model, Start::Independent, granted, pause)?;
+    let (squares, tolerance) = (work.solver.squares, work.solver.weights.tolerance);
+    polish(
+        observed,
+        Fitted { model, squares },
+        tolerance,
+        &mut work,
+        pause,
+    )
+}
+
 /// Polishes the shapes of a model. Returns it with the squares at which its covariance was taken, and leaves its solution, with
 /// fixed shapes, in the memory.
 ///
 /// # Errors
 /// An error means that the model cannot be fitted.
 #[inline(never)]
-pub(super) fn polish<const K: usize, const B: usize>(
+fn polish<const K: usize, const B: usize>(
     observed: Observed<'_, K, B>,
     fitted: Fitted,
     tolerance: Real,

@@ -1,7 +1,7 @@
 //! The shapes of effects that are known to be in a model, fitted to a record.
 
 use super::{
-    alternative::polished,
+    polish::polished,
     search::{Observation, best_shape_of},
 };
 use crate::{
@@ -71,7 +71,8 @@ pub fn fit_shapes<'a, const K: usize, const B: usize>(
     }
     for _ in 0..POLISHES {
         let granted = granted(observed, &shaped, tolerance)?;
-        let polished = polished(observed, shaped.clone(), granted)?.model;
+        let granted = Tolerance::Fixed(granted);
+        let polished = unpaused(|pause| polished(observed, shaped.clone(), granted, pause))?.model;
         let settled = are_settled(&shaped, &polished);
         shaped = polished;
         if settled {

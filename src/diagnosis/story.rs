@@ -2,7 +2,7 @@
 
 use super::{
     mirror::{Mirrored, tell_from_mirror},
-    polish::{Fitted, polish},
+    polish::polished,
     search::{
         Found, Hypothesis, MAX_ALTERNATIVES, Observation, WhiteRange, is_filter, is_white, ordered,
     },
@@ -11,12 +11,12 @@ use super::{
 use crate::{
     effect::Effect,
     error::Error,
-    fit::{Start, Tolerance, Work},
+    fit::Tolerance,
     kurtosis::Kurtosis,
     list,
     model::{Model, Term},
     observed::Observed,
-    pause::{Pause, Stop, call},
+    pause::{Pause, Stop},
     real::Real,
 };
 use core::ops::ControlFlow;
@@ -76,7 +76,7 @@ impl Story {
             return Ok(Self::NOTHING);
         }
         let whole = with(model, &terms)?;
-        let fitted = polished(observed, whole, tolerance, pause)?;
+        let fitted = polished(observed, whole, Tolerance::IfNeeded(tolerance), pause)?;
         // The effects that were added are the last ones of the model, in the order of the hypothesis.
         let first = fitted.model.terms().len().saturating_sub(terms.len());
         let polished = fitted.model.terms().iter().skip(first);
@@ -204,28 +204,6 @@ pub(super) fn with(model: &Model, terms: &[Term]) -> Result<Model, Error> {
         whole.add(*term)?;
     }
     Ok(whole)
-}
-
-/// Refines the shapes of a model by the likelihood of a fit.
-#[inline(never)]
-fn polished<const K: usize, const B: usize>(
-    observed: Observed<'_, K, B>,
-    model: Model,
-    tolerance: Real,
-    pause: &mut Pause<'_>,
-) -> Result<Fitted, Stop> {
-    call(pause)?;
-    let mut work = Work::<K, B>::NEW;
-    let granted = Tolerance::IfNeeded(tolerance);
-    work.solve(observed, &model, Start::Independent, granted, pause)?;
-    let (squares, tolerance) = (work.solver.squares, work.solver.weights.tolerance);
-    polish(
-        observed,
-        Fitted { model, squares },
-        tolerance,
-        &mut work,
-        pause,
-    )
 }
 
 /// The term that another hypothesis has in the place of one of the best hypothesis; `None` if it has the same one, or none.

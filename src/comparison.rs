@@ -5,20 +5,20 @@ mod band;
 pub use band::{Band, MAX_BANDS};
 
 use crate::{
-    chi_squared::chi_squared_tail,
-    covariance::covariance_row,
     curve::Point,
     error::Error,
+    evidence::{observed::Observed, record::Record},
     fit::{Columns, Fit, Problem, Weights},
     limits::MAX_EFFECTS,
     list::{self, numbered},
-    math,
-    model::Model,
-    nnls::Vector,
-    observed::Observed,
-    real::{Real, real, single},
-    record::Record,
+    numerics::{
+        chi_squared::chi_squared_tail,
+        math,
+        nnls::Vector,
+        real::{Real, real, single},
+    },
     spectrum::Bin,
+    theory::{covariance::covariance_row, model::Model},
 };
 use heapless::Vec;
 

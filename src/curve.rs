@@ -1,14 +1,29 @@
 //! The Allan curve, which is what remains of the samples.
 
+mod sums;
+
+pub(crate) use sums::LIMB;
+
 use crate::{
-    effect::Span,
     error::Error,
     list::numbered,
-    math,
-    octave::Accumulator,
-    real::{Real, real},
+    numerics::{
+        math,
+        real::{Real, real},
+    },
+    record::octave::Accumulator,
 };
 use heapless::Vec;
+
+/// The time that a curve spans.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Span {
+    /// The sample interval τ₀, in seconds.
+    pub interval_s: Real,
+    /// The averaging time of the longest octave, in seconds.
+    pub longest_tau_s: Real,
+}
 
 /// The scale that turns counts and sample numbers into rates and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! What can be wrong with an input.
 
-use crate::real::Real;
+use crate::numerics::real::Real;
 
 /// Why a curve could not be made or fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]

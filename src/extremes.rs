@@ -5,11 +5,13 @@ extern crate std;
 use crate::{
     Accumulator, Curve, Error, Model, Scale,
     diagnosis::{Diagnosis, Options, Step, Verdict},
-    effect::CATALOGUE,
     fit::{self, Fit, State, fit},
-    integrity::{Integrity, Reason},
-    real::{double, real},
-    test_random::Random,
+    numerics::{
+        real::{double, real},
+        test_random::Random,
+    },
+    record::integrity::{Integrity, Reason},
+    theory::effect::CATALOGUE,
 };
 use core::ops::ControlFlow;
 use std::vec::Vec;
@@ -171,14 +173,14 @@ fn two_to_thirty_octaves_are_fitted() {
 #[test]
 fn variances_below_the_least_normal_number_end_with_a_result_or_an_error() {
     let counts = counts(20_000);
-    let least = crate::real::Real::MIN_POSITIVE;
+    let least = crate::numerics::real::Real::MIN_POSITIVE;
     for below in 0..60 {
         // Down to where every variance is rounded to zero.
-        let scale = crate::math::sqrt(least) * real(0.5_f64.powi(below));
+        let scale = crate::numerics::math::sqrt(least) * real(0.5_f64.powi(below));
         let curve = curve_of(&counts, Scale::new(scale, 100.0).unwrap());
         assert!(curve.variance_unit() >= least);
         let _ = fit(&curve, &Model::ieee_952(), fit::Options::default());
-        let smallest = least * crate::real::Real::EPSILON;
+        let smallest = least * crate::numerics::real::Real::EPSILON;
         let octaves = curve.points().iter().map(|point| (point.m, 9, smallest));
         let curve = Curve::<OCTAVES>::new(100.0, octaves).unwrap();
         assert!(curve.variance_unit() >= least);

@@ -155,7 +155,7 @@
 //! verdict. `cargo allanite decode FILE…` prints certificates and snapshots on a workstation.
 //!
 //! The formats are documented byte by byte: [`storage::envelope`] surrounds everything that is stored,
-//! [`storage::snapshot`] and [`axis::snapshot`] are the two versions of a snapshot, and
+//! [`storage::snapshot`] and [`storage::axes`] are the two versions of a snapshot, and
 //! [`storage::certificate`] is the factory calibration.
 //!
 //! # An effect of your own
@@ -223,58 +223,48 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-mod algebra;
-pub mod axis;
-mod chi_squared;
-mod cholesky;
-mod coefficient;
 pub mod comparison;
 pub mod course;
-mod covariance;
-pub mod covariate;
 pub mod curve;
 pub mod detection;
 pub mod diagnosis;
-pub mod effect;
 mod error;
+mod evidence;
 #[cfg(test)]
 mod extremes;
 pub mod fit;
-pub mod integrity;
-pub mod kurtosis;
-mod lattice;
 mod limits;
 mod list;
-mod math;
-pub mod model;
-mod nnls;
-mod observability;
-mod observed;
-pub mod octave;
+mod numerics;
 mod pause;
-mod profile;
-pub mod queue;
-mod real;
 mod record;
 pub mod self_test;
 pub mod sensor;
 pub mod spectrum;
-mod square_sum;
 #[cfg(feature = "storage")]
 pub mod storage;
-#[cfg(test)]
-mod test_random;
+mod theory;
 
-pub use axis::{Axes, Axis};
-pub use coefficient::Coefficient;
 pub use comparison::Comparison;
 pub use curve::{Curve, Scale};
 pub use error::Error;
+pub use evidence::{
+    axis::{self, Axes, Axis},
+    covariate, kurtosis,
+    record::Record,
+};
+pub use fit::coefficient::Coefficient;
 pub use heapless;
-pub use model::{Model, Term};
-pub use octave::Accumulator;
-pub use real::Real;
-pub use record::Record;
+pub use numerics::real::Real;
+pub use record::{
+    integrity,
+    octave::{self, Accumulator},
+    queue,
+};
+pub use theory::{
+    effect,
+    model::{self, Model, Term},
+};
 
 /// The example in the README, so that it is compiled.
 #[cfg(doctest)]

@@ -41,7 +41,7 @@ pub(crate) const ADEQUATE_P: f64 = 0.01;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{chi_squared::chi_squared_tail, real::real};
+    use crate::numerics::{chi_squared::chi_squared_tail, real::real};
 
     #[test]
     fn quantiles_leave_five_per_cent() {

@@ -73,7 +73,7 @@ pub(crate) fn rank<T, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_random::Random;
+    use crate::numerics::test_random::Random;
 
     #[test]
     fn filling_a_list_stops_at_its_capacity() {

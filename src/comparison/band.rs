@@ -2,8 +2,11 @@
 
 use super::{ComparedBin, Comparison};
 use crate::{
-    list, math,
-    real::{Real, real},
+    list,
+    numerics::{
+        math,
+        real::{Real, real},
+    },
 };
 use heapless::Vec;
 

@@ -1,7 +1,7 @@
 //! All tests of a course, and their turns with the fit of the noise.
 
 use super::{
-    BLOCKS, Course, Level,
+    BLOCKS, Course,
     baseline::median,
     contrasts::BlockMeans,
     correction,
@@ -13,11 +13,12 @@ use super::{
 use crate::{
     curve::{Curve, Scale},
     error::Error,
+    evidence::course::Level,
     fit::{Fit, Options, fit},
     limits::TWO_SIDED_95,
     list,
-    model::Model,
-    real::{Real, real},
+    numerics::real::{Real, real},
+    theory::model::Model,
 };
 use heapless::Vec;
 

@@ -1,6 +1,6 @@
 //! Comparison of mean squares, and the median of a neighbourhood.
 
-use crate::{
+use crate::numerics::{
     math,
     real::{Real, real},
 };

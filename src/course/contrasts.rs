@@ -1,17 +1,21 @@
 //! The contrasts of the means of blocks, whitened with the covariance of a model.
 
 use super::{
-    BLOCKS, Level,
+    BLOCKS,
     form::{COLUMNS, Form},
 };
 use crate::{
-    algebra::{Triangle, Vector},
-    cholesky,
-    effect::{Effect, RateRamp},
+    evidence::course::{Level, is_complete},
     list::{self, numbered},
-    math,
-    model::{Model, Term},
-    real::{Real, by_precision, real},
+    numerics::{
+        algebra::{Triangle, Vector},
+        cholesky, math,
+        real::{Real, by_precision, real},
+    },
+    theory::{
+        effect::{Effect, RateRamp},
+        model::{Model, Term},
+    },
 };
 use heapless::Vec;
 
@@ -174,11 +178,6 @@ impl Contrasts {
         let diagonal = (0..self.count()).map(|i| math::log(self.factor[(i, i)]));
         self.data.norm_squared() - 2.0 * diagonal.sum::<Real>()
     }
-}
-
-/// Whether a block has ended, and holds at least half of its samples.
-pub(super) fn is_complete(level: &Level, block_length: u32) -> bool {
-    level.filled >= 1.0 && 2.0 * level.samples >= real(block_length)
 }
 
 /// The covariance of two block means at every distance, up to a constant.

@@ -1,17 +1,19 @@
 //! Takes from an Allan curve what steps and a warm-up add to it.
 
 use super::{
-    BLOCKS, Level,
-    contrasts::is_complete,
+    BLOCKS,
     form::{COLUMNS, Form, MAX_SHIFTS},
     response::{Starts, allan_variance_of_step, allan_variance_of_warm_up, warm_up_response},
     shifts::{Shift, Shifts},
 };
 use crate::{
-    algebra::Vector,
     curve::{Curve, Point},
-    math,
-    real::{Real, real},
+    evidence::course::{Level, is_complete},
+    numerics::{
+        algebra::Vector,
+        math,
+        real::{Real, real},
+    },
 };
 
 /// The share of an octave's variance that a correction leaves at least.

@@ -1,6 +1,6 @@
 //! What a course can tell about a record.
 
-use crate::real::Real;
+use crate::numerics::real::Real;
 use heapless::Vec;
 
 /// The number of events that are told at most.

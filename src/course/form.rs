@@ -1,7 +1,7 @@
 //! The forms of a shift of the mean: a step, and a warm-up.
 
 use super::response::decayed;
-use crate::{
+use crate::numerics::{
     math,
     real::{Real, real},
 };

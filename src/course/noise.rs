@@ -1,17 +1,20 @@
 //! Changes of the noise, and bursts.
 
 use super::{
-    BLOCKS, Level,
+    BLOCKS,
     baseline::{deviation_of_median, median, standardised_ratio},
     event::{Event, Largest, What},
 };
 use crate::{
-    chi_squared::chi_squared_tail,
+    evidence::course::Level,
     limits::TWO_SIDED_95,
     list::{self, numbered},
-    math,
-    model::{Model, Term},
-    real::{Real, consts::PI, real},
+    numerics::{
+        chi_squared::chi_squared_tail,
+        math,
+        real::{Real, consts::PI, real},
+    },
+    theory::model::{Model, Term},
 };
 use heapless::Vec;
 

@@ -1,6 +1,6 @@
 //! The contribution of a step or a warm-up to an Allan variance.
 
-use crate::{
+use crate::numerics::{
     math,
     real::{Real, real},
 };

@@ -7,11 +7,12 @@ use super::{
     slow_noise::{Needed, needed},
 };
 use crate::{
-    algebra::{Triangle, Vector},
-    cholesky,
     list::{self, numbered},
-    math,
-    real::{Real, consts::SQRT_2, real},
+    numerics::{
+        algebra::{Triangle, Vector},
+        cholesky, math,
+        real::{Real, consts::SQRT_2, real},
+    },
 };
 use heapless::Vec;
 

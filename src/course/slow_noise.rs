@@ -6,15 +6,18 @@
 //! more and with fewer shifts are compared by their likelihood, each with the slow noise that suits it best.
 
 use super::{
-    contrasts::{BlockMeans, is_complete},
+    contrasts::BlockMeans,
     form::{Form, MAX_SHIFTS},
 };
 use crate::{
-    effect::{BiasInstability, Effect, RateRamp, RateRandomWalk},
+    evidence::course::is_complete,
     limits::MAX_EFFECTS,
     list::numbered,
-    model::Model,
-    real::{Real, real},
+    numerics::real::{Real, real},
+    theory::{
+        effect::{BiasInstability, Effect, RateRamp, RateRandomWalk},
+        model::Model,
+    },
 };
 
 /// The squared coefficients of a model.

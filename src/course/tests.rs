@@ -4,8 +4,12 @@ extern crate std;
 
 use super::*;
 use crate::{
-    real::{by_precision, double},
-    test_random::Random,
+    curve::Scale,
+    numerics::{
+        real::{Real, by_precision, double},
+        test_random::Random,
+    },
+    record::course::LONGEST,
 };
 use std::vec::Vec as List;
 

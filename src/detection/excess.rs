@@ -3,13 +3,17 @@
 use super::limit::Limit;
 use crate::{
     diagnosis::search::{Observation, Values, Workspace},
-    effect::Distribution,
     limits::{MAX_EFFECTS, ONE_SIDED_95},
     list::{count, numbered},
-    math,
-    model::{Model, Term},
-    nnls::Vector,
-    real::{Real, real, single},
+    numerics::{
+        math,
+        nnls::Vector,
+        real::{Real, real, single},
+    },
+    theory::{
+        effect::Distribution,
+        model::{Model, Term},
+    },
 };
 
 /// An effect is tried up to this multiple of the model in the row where it shows most.

@@ -1,6 +1,10 @@
 //! The size of an effect that a record would have shown.
 
-use crate::{effect::Effect, limits::MAX_EFFECTS, model::Term, real::Real};
+use crate::{
+    limits::MAX_EFFECTS,
+    numerics::real::Real,
+    theory::{effect::Effect, model::Term},
+};
 
 /// The size of an effect of one shape that a record would have shown with a probability of 95 %.
 ///

@@ -1,7 +1,7 @@
 //! Limits of neighbouring shapes, put together.
 
 use super::limit::Limit;
-use crate::{effect::Effect, real::Real};
+use crate::{numerics::real::Real, theory::effect::Effect};
 use heapless::Vec;
 
 /// The number of ranges that [`Ranges`] has room for: three of each of six effects.

@@ -9,15 +9,16 @@ use crate::{
         Options, Step,
         search::{Observation, price},
     },
-    effect::{Effect, Span},
+    evidence::{observed::Observed, record::Record},
+    fit::profile::Grid,
     limits::MAX_PARAMETERS,
-    list, math,
-    model::Term,
-    observed::Observed,
+    list,
+    numerics::{math, real::Real},
     pause::Pause,
-    profile::Grid,
-    real::Real,
-    record::Record,
+    theory::{
+        effect::{Effect, Span},
+        model::Term,
+    },
 };
 use core::ops::ControlFlow;
 

@@ -2,9 +2,9 @@ use super::*;
 use crate::{
     Curve, Model, Real, Term,
     diagnosis::{Diagnosis, Options, Step, Verdict},
-    effect::{CATALOGUE, DecimationFilter, Effect, GaussMarkov, LowPass, Sinusoid},
     fit,
-    real::real,
+    numerics::real::real,
+    theory::effect::{CATALOGUE, DecimationFilter, Effect, GaussMarkov, LowPass, Sinusoid},
 };
 use core::ops::ControlFlow;
 use heapless::Vec;

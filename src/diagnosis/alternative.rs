@@ -7,9 +7,9 @@ use super::{
 };
 use crate::{
     error::Error,
+    evidence::record::Record,
     fit::{Start, Tolerance, Work},
     pause::unpaused,
-    record::Record,
 };
 
 /// The step that would have followed `step` if another one of its candidates had been added: the model

@@ -2,15 +2,15 @@
 
 use super::step::Step;
 use crate::{
-    fit::{Fit, Problem, Refinement, Solver, Stage, Start, Tolerance, Work},
+    evidence::observed::Observed,
+    fit::{
+        Fit, Problem, Refinement, Solver, Stage, Start, Tolerance, Work,
+        profile::{Evaluation, JointInterval, Profile},
+    },
     limits::MAX_SHAPE,
-    math,
-    model::Term,
-    nnls::Vector,
-    observed::Observed,
+    numerics::{math, nnls::Vector, real::Real},
     pause::{Pause, Stop, call},
-    profile::{Evaluation, JointInterval, Profile},
-    real::Real,
+    theory::model::Term,
 };
 
 /// What the later stages know of a model that was judged.

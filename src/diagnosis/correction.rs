@@ -2,7 +2,9 @@
 
 use super::step::FollowedCovariate;
 use crate::{
-    covariate::CrossCurve, curve::Curve, math, real::Real, real::real, record::Record,
+    curve::Curve,
+    evidence::{covariate::CrossCurve, record::Record},
+    numerics::{math, real::Real, real::real},
     spectrum::Spectrum,
 };
 

@@ -3,17 +3,21 @@
 
 use super::step::{Beside, FollowedCovariate};
 use crate::{
-    covariate::{Slope, Slopes},
     curve::Curve,
+    evidence::{
+        covariate::{Slope, Slopes},
+        observed::Observed,
+        record::Record,
+    },
     fit::{Start, Tolerance, Work},
-    math,
-    model::Model,
-    nnls::Vector,
-    observed::Observed,
+    numerics::{
+        math,
+        nnls::Vector,
+        real::{Real, real},
+    },
     pause::{Pause, Stop, call},
-    real::{Real, real},
-    record::Record,
     spectrum::Spectrum,
+    theory::model::Model,
 };
 
 /// The number of rounds that alternate between the slope and the noise that remains when what follows

@@ -2,10 +2,9 @@
 
 use super::polish::Fitted;
 use crate::{
-    effect::Effect,
+    evidence::{kurtosis::Kurtosis, observed::Observed},
     fit::{Columns, Problem},
-    kurtosis::Kurtosis,
-    observed::Observed,
+    theory::effect::Effect,
 };
 
 /// What the kurtosis says of an effect.

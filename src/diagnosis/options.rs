@@ -1,6 +1,6 @@
 //! The options of the search for missing effects.
 
-use crate::real::Real;
+use crate::numerics::real::Real;
 
 /// The options of the search for missing effects. `cargo xtask study hidden-effect` calibrates the
 /// defaults: with them, an effect is claimed in less than 1 % of the records that have none.

@@ -1,16 +1,17 @@
 //! The shapes of a model, polished by the likelihood of a fit: the covariance follows the model.
 
 use crate::{
-    effect::Span,
     error::Error,
+    evidence::observed::Observed,
     fit::{Problem, ShapeEquations, Start, Tolerance, Work},
     limits::MAX_SHAPE,
-    math,
-    model::Model,
-    nnls::Vector,
-    observed::Observed,
+    numerics::{
+        math,
+        nnls::Vector,
+        real::{Real, real, single},
+    },
     pause::{Pause, Stop, call},
-    real::{Real, real, single},
+    theory::{effect::Span, model::Model},
 };
 use heapless::Vec;
 

@@ -12,17 +12,13 @@ use super::{
 };
 use crate::{
     curve::Curve,
-    effect::Effect,
     error::Error,
+    evidence::{observed::Observed, record::Record},
     fit::{Start, Tolerance, Work, check},
-    math,
-    model::Model,
-    nnls::Vector,
-    observed::Observed,
+    numerics::{math, nnls::Vector, real::Real},
     pause::{Pause, Stop, call},
-    real::Real,
-    record::Record,
     spectrum::Spectrum,
+    theory::{effect::Effect, model::Model},
 };
 use core::ops::ControlFlow;
 

@@ -6,13 +6,12 @@ use super::{
 };
 use crate::{
     error::Error,
+    evidence::{observed::Observed, record::Record},
     fit::{Start, Tolerance, Work},
     limits::MAX_PARAMETERS,
-    model::{Model, Term},
-    observed::Observed,
+    numerics::real::Real,
     pause::unpaused,
-    real::Real,
-    record::Record,
+    theory::model::{Model, Term},
 };
 
 /// How often the shapes are polished at most. One time ends after ten rounds, or when half a step leads too far, and

@@ -2,11 +2,13 @@
 
 use crate::{
     comparison::Comparison,
-    covariate::Slope,
-    effect::Effect,
+    evidence::covariate::Slope,
     fit::Fit,
-    model::{Model, Term},
-    real::Real,
+    numerics::real::Real,
+    theory::{
+        effect::Effect,
+        model::{Model, Term},
+    },
 };
 use heapless::Vec;
 

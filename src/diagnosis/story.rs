@@ -9,15 +9,16 @@ use super::{
     step::{Addition, Candidate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step, cost},
 };
 use crate::{
-    effect::Effect,
     error::Error,
+    evidence::{kurtosis::Kurtosis, observed::Observed},
     fit::Tolerance,
-    kurtosis::Kurtosis,
     list,
-    model::{Model, Term},
-    observed::Observed,
+    numerics::real::Real,
     pause::{Pause, Stop},
-    real::Real,
+    theory::{
+        effect::Effect,
+        model::{Model, Term},
+    },
 };
 use core::ops::ControlFlow;
 use heapless::Vec;

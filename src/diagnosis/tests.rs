@@ -5,10 +5,10 @@ extern crate std;
 use super::{assessment::Assessment, *};
 use crate::{
     Curve, Model, Term,
-    effect::{CATALOGUE, Effect, LowPass, SampledShape, Sinusoid},
     fit::{Start, Tolerance, Work},
+    numerics::real::{Real, double, real},
     pause::unpaused,
-    real::{Real, double, real},
+    theory::effect::{CATALOGUE, Effect, LowPass, SampledShape, Sinusoid},
 };
 use core::ops::ControlFlow;
 use std::vec::Vec;

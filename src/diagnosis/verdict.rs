@@ -1,6 +1,6 @@
 //! How a diagnosis ends.
 
-use crate::integrity::Reason;
+use crate::record::integrity::Reason;
 
 /// How a diagnosis ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,15 +1,19 @@
 //! How wide a line may be: the resonances that explain a record as well as a sinusoid does.
 
 use crate::{
-    effect::Effect,
     error::Error,
+    evidence::record::Record,
     fit::{Start, Tolerance, Work},
     limits::ONE_SIDED_95,
-    math,
-    model::{Model, Term},
+    numerics::{
+        math,
+        real::{Real, real},
+    },
     pause::unpaused,
-    real::{Real, real},
-    record::Record,
+    theory::{
+        effect::Effect,
+        model::{Model, Term},
+    },
 };
 
 /// The narrowest resonance that is tried, in widths of the line that the whole record resolves. Chosen by hand: it is

@@ -9,12 +9,14 @@ use super::{
 };
 use crate::{
     error::Error,
+    evidence::record::Record,
     limits::{MAX_EFFECTS, PAIRS},
-    math,
-    model::Model,
-    nnls::{Free, NormalEquations, Vector},
-    real::{Real, real, single},
-    record::Record,
+    numerics::{
+        math,
+        nnls::{Free, NormalEquations, Vector},
+        real::{Real, real, single},
+    },
+    theory::model::Model,
 };
 
 /// Correlations of the squared coefficients of a fit, in which the fit is linear. The covariance of two

@@ -6,14 +6,18 @@ use super::{
     solver::Solver, weights::Weights,
 };
 use crate::{
-    coefficient::{Coefficient, State},
     curve::clusters,
+    fit::{
+        coefficient::{Coefficient, State},
+        observability::record_length_s,
+    },
     limits::{CHI_SQUARED_95, MAX_SHAPE},
-    math,
-    model::Term,
-    nnls::{Interval, NormalEquations, Vector},
-    observability::record_length_s,
-    real::{Real, consts::FRAC_1_SQRT_2, real},
+    numerics::{
+        math,
+        nnls::{Interval, NormalEquations, Vector},
+        real::{Real, consts::FRAC_1_SQRT_2, real},
+    },
+    theory::model::Term,
 };
 
 /// The number of rounds in which a bound and the covariance that it implies are computed in turn.

@@ -2,9 +2,11 @@
 
 use super::rows::Rows;
 use crate::{
-    algebra::{Number, Triangle, Vector},
-    cholesky, math,
-    real::{Real, real, single},
+    numerics::{
+        algebra::{Number, Triangle, Vector},
+        cholesky, math,
+        real::{Real, real, single},
+    },
     spectrum::BAND,
 };
 use num_traits::AsPrimitive;

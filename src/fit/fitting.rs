@@ -11,8 +11,11 @@ use super::{
     work::Work,
 };
 use crate::{
-    curve::Curve, error::Error, model::Model, observed::Observed, record::Record,
+    curve::Curve,
+    error::Error,
+    evidence::{observed::Observed, record::Record},
     spectrum::Spectrum,
+    theory::model::Model,
 };
 
 /// Fits a model's coefficients to a curve.

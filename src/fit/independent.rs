@@ -7,13 +7,15 @@ use super::{
     result::Fit,
 };
 use crate::{
-    chi_squared::chi_squared_tail,
-    coefficient::Coefficient,
     curve::Point,
     error::Error,
+    fit::coefficient::Coefficient,
     list::{self, numbered},
-    nnls::{Free, Interval, NormalEquations},
-    real::Real,
+    numerics::{
+        chi_squared::chi_squared_tail,
+        nnls::{Free, Interval, NormalEquations},
+        real::Real,
+    },
 };
 
 /// Sets the normal equations of weighted octaves and bins that are taken for independent.

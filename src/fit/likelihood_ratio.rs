@@ -5,7 +5,10 @@ use super::{
     result::Fit,
     solver::{CONVERGED, Rounds, Solver},
 };
-use crate::{error::Error, math, nnls::Vector, real::Real};
+use crate::{
+    error::Error,
+    numerics::{math, nnls::Vector, real::Real},
+};
 
 /// A limit at which the effect alone would be this many times the curve in every octave is replaced by
 /// the lowest limit for which this is so. The curve is as far below the one as below the other, and the

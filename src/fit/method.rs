@@ -1,6 +1,6 @@
 //! The methods and options of a fit.
 
-use crate::{limits, real::Real};
+use crate::{limits, numerics::real::Real};
 
 /// A model with a lower p-value is not adequate: if it were true, a χ² as large would come out in one
 /// of a hundred records. Fit, comparison and diagnosis share this threshold.

@@ -11,6 +11,7 @@
 //! effect has a shape, the coefficients come from octaves and bins, and their intervals are up to a third too short. With
 //! the feature `overlap`, which takes 3.6 KB of flash, the intervals count the shared samples. Nothing else changes.
 
+pub(crate) mod coefficient;
 mod correlation;
 mod estimate;
 mod factor;
@@ -18,9 +19,11 @@ mod fitting;
 mod independent;
 mod likelihood_ratio;
 mod method;
+pub(crate) mod observability;
 mod overlap;
 mod peak;
 mod problem;
+pub(crate) mod profile;
 mod refinement;
 mod result;
 mod rows;
@@ -31,9 +34,10 @@ mod weights;
 mod work;
 
 pub use crate::{
-    chi_squared::chi_squared_tail, coefficient::State, covariance::curve_covariance,
-    limits::MAX_SHAPE,
+    limits::MAX_SHAPE, numerics::chi_squared::chi_squared_tail,
+    theory::covariance::curve_covariance,
 };
+pub use coefficient::State;
 pub use correlation::Correlations;
 pub use fitting::{Fitting, fit};
 pub use method::{ADEQUATE_P, Method, Options};

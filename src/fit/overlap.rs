@@ -14,13 +14,14 @@
 
 use super::{problem::Problem, rows::Rows};
 use crate::{
-    effect::Behind,
     limits::MAX_EFFECTS,
     list::numbered,
-    model::Term,
-    nnls::{Free, Vector},
-    real::{Real, real},
+    numerics::{
+        nnls::{Free, Vector},
+        real::{Real, real},
+    },
     spectrum::{BAND, Bin, Fine, Lags, Lobe, Sum, octave_lag, relative_covariance},
+    theory::{effect::Behind, model::Term},
 };
 
 /// The power of a line in a bin, relative to that in a bin at the line, from which on it tells the power in other bins.

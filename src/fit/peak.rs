@@ -1,6 +1,6 @@
 //! The largest peak of a spectrum above a model.
 
-use crate::real::Real;
+use crate::numerics::real::Real;
 
 /// A model is not adequate if the probability of its peak is below this, whatever its χ² is. A line adds little to a
 /// χ² of a hundred bins. Chosen by hand: true models are then called inadequate in one more of 1000 records.

@@ -3,16 +3,20 @@
 use super::{result::Fit, rows::Rows};
 use crate::{
     curve::{Point, clusters},
-    effect::{Behind, Effect},
     error::Error,
+    evidence::observed::Observed,
     limits::MAX_EFFECTS,
     list::{self, numbered},
-    math,
-    model::{Model, Term, is_passed},
-    nnls::{Free, Vector},
-    observed::Observed,
-    real::{Real, real, single},
+    numerics::{
+        math,
+        nnls::{Free, Vector},
+        real::{Real, real, single},
+    },
     spectrum::{Bin, WHITE_DENSITY},
+    theory::{
+        effect::{Behind, Effect},
+        model::{Model, Term, is_passed},
+    },
 };
 use heapless::Vec;
 

@@ -16,8 +16,8 @@ use super::{
 };
 use crate::{
     error::Error,
-    model::{Model, Term},
-    observed::Observed,
+    evidence::observed::Observed,
+    theory::model::{Model, Term},
 };
 
 /// The refinement of a complete fit, in progress. It needs the memory of that fit.

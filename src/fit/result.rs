@@ -5,9 +5,9 @@ use super::{
     peak::Peak,
 };
 use crate::{
-    coefficient::Coefficient,
+    fit::coefficient::Coefficient,
     limits::{MAX_EFFECTS, MAX_SHAPE},
-    real::Real,
+    numerics::real::Real,
 };
 use heapless::Vec;
 

@@ -1,6 +1,6 @@
 //! Numbers of the octaves and bins that a fit works on.
 
-use crate::{
+use crate::numerics::{
     algebra::{Number, Vector},
     real::Real,
 };

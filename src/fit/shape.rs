@@ -6,10 +6,12 @@ use super::{
 use crate::{
     limits::{MAX_SHAPE, TWO_SIDED_95},
     list::{self, numbered},
-    math,
-    model::Term,
-    nnls::{Free, NormalEquations, Vector},
-    real::{Real, real, single},
+    numerics::{
+        math,
+        nnls::{Free, NormalEquations, Vector},
+        real::{Real, real, single},
+    },
+    theory::model::Term,
 };
 use heapless::Vec;
 

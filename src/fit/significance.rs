@@ -8,10 +8,12 @@
 
 use super::{likelihood_ratio::LikelihoodRatio, problem::Problem, result::Fit, solver::Solver};
 use crate::{
-    coefficient::State,
+    fit::coefficient::State,
     limits::TWO_SIDED_95,
-    math,
-    real::{Real, real},
+    numerics::{
+        math,
+        real::{Real, real},
+    },
 };
 
 /// A coefficient is tested if the lower end of its interval is below this share of its value. The square then has

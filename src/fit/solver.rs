@@ -7,11 +7,13 @@ use super::{
     weights::Weights,
 };
 use crate::{
-    chi_squared::chi_squared_tail,
     error::Error,
     list::numbered,
-    nnls::{Free, NormalEquations, Vector},
-    real::Real,
+    numerics::{
+        chi_squared::chi_squared_tail,
+        nnls::{Free, NormalEquations, Vector},
+        real::Real,
+    },
 };
 
 /// The limit of the rounds of covariance and solution. Two to four bring the model to within 0.1 %, and

@@ -2,14 +2,16 @@
 
 use super::{factor::Factor, problem::Problem, rows::Rows};
 use crate::{
-    covariance::covariance_row,
     error::Error,
     limits::MAX_EFFECTS,
     list::numbered,
-    math,
-    nnls::{NormalEquations, Vector},
-    real::{Real, real, single},
+    numerics::{
+        math,
+        nnls::{NormalEquations, Vector},
+        real::{Real, real, single},
+    },
     spectrum::{BAND, relative_covariance},
+    theory::covariance::covariance_row,
 };
 use heapless::Vec;
 

@@ -7,9 +7,9 @@ use super::{
 };
 use crate::{
     error::Error,
-    model::Model,
-    observed::Observed,
+    evidence::observed::Observed,
     pause::{Pause, Stop, call},
+    theory::model::Model,
 };
 
 /// The memory of a fit by the covariance: the columns of the model, their solution, and their derivatives by the shapes.

@@ -3,14 +3,13 @@
 use super::plan::Limit;
 use crate::{
     curve::Curve,
-    effect::IEEE_952,
     fit::{Fitting, LikelihoodRatio, Options},
-    integrity::Reason,
     limits::MAX_EFFECTS,
     list,
-    model::Model,
-    real::Real,
+    numerics::real::Real,
+    record::integrity::Reason,
     spectrum::Spectrum,
+    theory::{effect::IEEE_952, model::Model},
 };
 use heapless::Vec;
 

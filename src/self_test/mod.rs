@@ -13,12 +13,14 @@ pub use look::Look;
 pub use plan::{InvalidPlan, Limit, Plan};
 
 use crate::{
-    algebra::Choice,
-    coefficient::{Coefficient, State},
     curve::{Curve, Scale},
-    integrity::Reason,
+    fit::coefficient::{Coefficient, State},
     list::numbered,
-    real::{Real, real, single},
+    numerics::{
+        algebra::Choice,
+        real::{Real, real, single},
+    },
+    record::integrity::Reason,
 };
 use look::Compared;
 use quantile::quantile;

@@ -2,9 +2,9 @@
 
 use crate::{
     curve::{Curve, Scale},
-    effect::IEEE_952,
     limits::MAX_EFFECTS,
-    real::Real,
+    numerics::real::Real,
+    theory::effect::IEEE_952,
 };
 use heapless::Vec;
 

@@ -1,6 +1,6 @@
 //! The quantile of the normal distribution that decides whether a coefficient is above or below a limit.
 
-use crate::{
+use crate::numerics::{
     math,
     real::{Real, consts::FRAC_1_SQRT_2},
 };

@@ -2,8 +2,10 @@
 
 use super::{Failure, Limit, Plan, Progress, SelfTest, Status};
 use crate::{
-    algebra::Choice,
-    real::{double, real},
+    numerics::{
+        algebra::Choice,
+        real::{double, real},
+    },
     storage::Error,
     storage::{certificate::WireReason, envelope::CRC},
 };

@@ -1,7 +1,7 @@
 use super::Description;
 use crate::{
     Error,
-    real::{Real, real},
+    numerics::real::{Real, real},
 };
 
 /// The number of sample intervals before the clock is judged. The time of a burst is uncertain by one interval, so

@@ -1,5 +1,5 @@
 use super::{Description, Filter};
-use crate::real::Real;
+use crate::numerics::real::Real;
 use core::fmt;
 
 /// What a user chooses of a sensor: rate, range, low pass, and when its FIFO signals.

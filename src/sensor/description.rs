@@ -1,12 +1,12 @@
 use super::{Fifo, Signal, Writes};
 use crate::{
     Error, Scale, Term,
-    effect::LowPass,
-    real::{
+    numerics::real::{
         Real, by_precision,
         consts::{FRAC_PI_2, FRAC_PI_3, PI},
         real,
     },
+    theory::effect::LowPass,
 };
 
 /// The largest number of registers that are read in one transaction.

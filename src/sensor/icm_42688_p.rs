@@ -3,7 +3,7 @@ use super::{
     Signal, Status, Temperature, Write, Writes,
     configuration::{LowPass, Offer, checked},
 };
-use crate::real::Real;
+use crate::numerics::real::Real;
 
 /// The rates and ranges (14.37) with their codes, and the sensitivities (section 3.1, table 1). From 2 kHz on, the
 /// anti-alias filter shapes the spectrum as well; at 12.5 Hz and below, no low pass is narrow enough.

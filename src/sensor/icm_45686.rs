@@ -3,7 +3,7 @@ use super::{
     Signal, Status, Temperature, Write, Writes,
     configuration::{LowPass, Offer, checked},
 };
-use crate::real::{Real, consts::FRAC_PI_2};
+use crate::numerics::real::{Real, consts::FRAC_PI_2};
 
 /// The rates and ranges (GYRO_CONFIG0) with their codes, and the sensitivities.
 const OFFER: Offer<7, 9> = Offer {

@@ -3,7 +3,7 @@ use super::{
     Signal, Status, Temperature, Write, Writes,
     configuration::{LowPass, Offer, checked},
 };
-use crate::real::Real;
+use crate::numerics::real::Real;
 
 /// The rates and ranges (9.13) with their codes, and the table "Mechanical characteristics". At 833 Hz and above,
 /// the cut-off of LPF2 is no longer 0.319 of the rate.

@@ -3,7 +3,7 @@ use super::{
     Signal, Status, Temperature, Write, Writes,
     configuration::{LowPass, Offer, checked},
 };
-use crate::real::Real;
+use crate::numerics::real::Real;
 
 /// The rates (CTRL2) and ranges (CTRL6) with their codes, and the sensitivities. At 960 Hz and above, nothing is known
 /// of LPF2.

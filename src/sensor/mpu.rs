@@ -4,7 +4,7 @@ use super::{
     Configuration, ConfigurationError, Filter,
     configuration::{Chosen, LowPass, Offer},
 };
-use crate::real::{Real, consts::FRAC_PI_2};
+use crate::numerics::real::{Real, consts::FRAC_PI_2};
 
 /// Folded noise raises N by less than 2 % if the cut-off of a first order is below this fraction of the rate.
 const TIGHT: u16 = 9;

@@ -2,7 +2,7 @@ use super::{
     ByteOrder, Configuration, ConfigurationError, Description, Interface, Signal, Status,
     Temperature, Write, Writes, configuration::checked, mpu,
 };
-use crate::real::Real;
+use crate::numerics::real::Real;
 
 /// The description of an MPU-6500 with another configuration than that of [`MPU_6500`], whose documentation lists the
 /// registers. The FIFO is not used, so that the watermark is of no consequence.

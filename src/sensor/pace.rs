@@ -1,5 +1,7 @@
-use crate::Error;
-use crate::real::{Real, real};
+use crate::{
+    Error,
+    numerics::real::{Real, real},
+};
 use core::num::NonZeroU64;
 
 /// The number of intervals in a window. A timestamp that is late by a whole interval changes the

@@ -1,7 +1,7 @@
 //! Records what a sensor's driver returns.
 
 use super::{Burst, Error, Loss, Malformed, Reading};
-use crate::axis::{Axes, GatePart, MomentPart, SpectrumPart, TrackPart};
+use crate::record::axis::{Axes, GatePart, MomentPart, SpectrumPart, TrackPart};
 
 impl<const OCTAVES: usize, const COVARIATES: usize, G, M, S, T>
     Axes<OCTAVES, COVARIATES, G, M, 3, S, T>

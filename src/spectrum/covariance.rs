@@ -1,7 +1,7 @@
 //! How the bins of a spectrum scatter together.
 
 use super::density::Bin;
-use crate::{
+use crate::numerics::{
     math,
     real::{Real, consts::PI},
 };

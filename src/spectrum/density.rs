@@ -8,9 +8,9 @@ use super::{
 };
 use crate::{
     curve::Scale,
-    effect::{Effect, SampledShape},
     error::Error,
-    real::{Real, real},
+    numerics::real::{Real, real},
+    theory::effect::{Effect, SampledShape},
 };
 use heapless::Vec;
 

@@ -5,10 +5,10 @@ use super::{
     window::{Products, cosine, first_bin, is_possible, places, sum_of_squares},
 };
 use crate::{
-    effect::{Effect, SampledShape},
     limits::MAX_SEGMENT,
     list::numbered,
-    real::{Real, real},
+    numerics::real::{Real, real},
+    theory::effect::{Effect, SampledShape},
 };
 
 /// Writes the expected densities of an effect with a coefficient of one, for segments of `length` blocks of

@@ -2,10 +2,10 @@
 
 use super::{WHITE_DENSITY, density::Bin, expected::densities_from, overlap::Lags, window::places};
 use crate::{
-    effect::{Effect, SampledShape},
     limits::MAX_SEGMENT,
     list::numbered,
-    real::{Real, real},
+    numerics::real::{Real, real},
+    theory::effect::{Effect, SampledShape},
 };
 
 /// The number of places between a bin and the next one.
@@ -188,7 +188,7 @@ impl Sum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{effect::AngleRandomWalk, limits::MAX_PARAMETERS, real::double};
+    use crate::{limits::MAX_PARAMETERS, numerics::real::double, theory::effect::AngleRandomWalk};
 
     const SHAPE: SampledShape = SampledShape {
         interval_s: 0.01,

@@ -2,9 +2,11 @@
 
 use super::window::{half_cosine_and_sine, sum_of_squares};
 use crate::{
-    effect::Response,
-    math,
-    real::{Real, consts::PI, real},
+    numerics::{
+        math,
+        real::{Real, consts::PI, real},
+    },
+    theory::effect::Response,
 };
 
 /// A ramp or a sinusoid as means over blocks see it, in segments of `length` blocks.

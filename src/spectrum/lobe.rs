@@ -1,9 +1,11 @@
 //! The amplitudes of a sinusoid in the bins around it.
 
 use crate::{
-    effect::Response,
-    math,
-    real::{Real, consts::PI, real},
+    numerics::{
+        math,
+        real::{Real, consts::PI, real},
+    },
+    theory::effect::Response,
 };
 
 /// The distance from a bin to a line is at least this many bins. Chosen by hand: the amplitudes change by a millionth with it,
@@ -71,7 +73,7 @@ impl Lobe {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::real::double;
+    use crate::numerics::real::double;
     use core::f64::consts::PI;
 
     /// The amplitude in a bin of a complex wave of so many periods in a segment, by a direct sum, without its phase.

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     limits::MAX_SEGMENT,
     list::numbered,
-    real::{Real, real},
+    numerics::real::{Real, real},
 };
 
 /// A weighted sum of quadratic estimates, as a function of the distance of the two samples that it multiplies. Of bins,

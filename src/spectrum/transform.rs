@@ -1,7 +1,7 @@
 //! The windowed transform of one segment.
 
 use super::window::{cosine_and_sine, first_bin, places};
-use crate::real::single;
+use crate::numerics::real::single;
 use core::ops::{Add, Mul, Neg, Sub};
 
 /// What a transform computes with: a number, or the same place of several segments.
@@ -215,8 +215,8 @@ fn twiddle(i: usize, length: usize) -> (f32, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::test_random::Random;
     use crate::spectrum::window::bins;
-    use crate::test_random::Random;
     use core::f64::consts::PI;
 
     fn compare<const P: usize>() {

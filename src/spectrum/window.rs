@@ -1,7 +1,7 @@
 //! The Hann window, and the angles of the transform.
 
-use crate::real::{Real, real};
-use crate::{limits::MAX_SEGMENT, math};
+use crate::numerics::real::{Real, real};
+use crate::{limits::MAX_SEGMENT, numerics::math};
 
 /// The number of angles in a turn, which the table of sines divides evenly.
 const TURN: usize = MAX_SEGMENT;
@@ -129,7 +129,7 @@ impl Products {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::real::{by_precision, double};
+    use crate::numerics::real::{by_precision, double};
     use core::f64::consts::PI;
 
     #[test]

@@ -1,7 +1,7 @@
 //! Snapshots in flash.
 
 use super::error::Error;
-use crate::octave::Accumulator;
+use crate::record::octave::Accumulator;
 use core::ops::Range;
 use embedded_storage_async::nor_flash::NorFlash;
 use sequential_storage::{

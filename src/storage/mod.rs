@@ -1,6 +1,7 @@
 //! Data that survive a loss of power: snapshots of a record in progress, certificates of a finished record,
 //! and a store in flash for them. Everything is stored in an [`envelope`] with a checksum.
 
+pub mod axes;
 pub mod certificate;
 pub mod envelope;
 mod error;

@@ -2,7 +2,7 @@
 //!
 //! This table describes version 1 of the payload of the [`envelope`]. The payload is
 //! in postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits
-//! first. [`Axes`](crate::Axes) writes a [later version](crate::axis::snapshot).
+//! first. [`Axes`](crate::Axes) writes a [later version](super::axes).
 //!
 //! | content | type |
 //! |---|---|
@@ -14,8 +14,10 @@
 
 use super::envelope::{self, Kind, OVERHEAD, Writer};
 use crate::{
-    octave::{Accumulator, OctaveSum},
-    square_sum::SquareSum,
+    record::{
+        octave::{Accumulator, OctaveSum},
+        square_sum::SquareSum,
+    },
     storage::Error,
 };
 use serde::{Deserialize, Serialize};

@@ -7,7 +7,7 @@ mod stored;
 
 use allanite::{
     Axes, Axis, Model, Scale,
-    axis::{GatePart, Gated, MomentPart, Moments, Spectral, SpectrumPart, TrackPart, Tracked},
+    axis::{GatePart, Gated, MomentPart, Moments, Spectral, SpectrumReading, TrackPart, Tracked},
     course::Course,
     fit::{Options, fit},
     integrity::{Integrity, Reason},
@@ -138,7 +138,7 @@ fn plan() -> Plan {
 }
 
 /// Takes a look at the first axis if one is due.
-fn look<G: GatePart, M: MomentPart, S: SpectrumPart, T: TrackPart>(
+fn look<G: GatePart, M: MomentPart, S: SpectrumReading, T: TrackPart>(
     axes: &Axes<OCTAVES, 1, G, M, 3, S, T>,
     test: &mut SelfTest<OCTAVES>,
     looks: &mut Vec<(u64, Status)>,

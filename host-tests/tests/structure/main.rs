@@ -1,4 +1,5 @@
-//! No two files of a crate import each other, not even through other files.
+//! No two files of a crate import each other, not even through other files, and what runs for every sample knows no
+//! floating-point number.
 //!
 //! A node of the graph is a file. An edge leads from a file to every file whose items it names, in
 //! a `use` declaration or anywhere else. It ends at the file that defines the item, even if the
@@ -9,6 +10,7 @@
 
 mod cycle;
 mod import;
+mod seam;
 mod source;
 
 use source::Crate;
@@ -53,6 +55,46 @@ fn the_host_tools_have_no_import_cycles() {
 fn the_library_has_no_import_cycles() {
     assert_no_cycles(&Path::new(HOST).join("../src"), 60);
     assert_no_cycles(&Path::new(HOST).join("../src/c/src"), 10);
+}
+
+/// What runs for every sample is in `record`: it has no floating-point number, and names nothing that has one.
+#[test]
+fn what_runs_for_every_sample_has_no_floats() {
+    let of = Crate::read(&Path::new(HOST).join("../src"));
+    let below: Vec<_> = (of.files.iter())
+        .filter(|(name, _)| name.starts_with("record/"))
+        .collect();
+    assert!(below.len() >= 20, "{} files in record", below.len());
+    for (name, file) in below {
+        assert_eq!(seam::floats(file), [""; 0], "{name}");
+    }
+    let allowed = [
+        "record/",
+        "list.rs",
+        "storage/envelope.rs",
+        "storage/snapshot.rs",
+    ];
+    for (name, imported) in import::graph(&of) {
+        let outside = imported
+            .iter()
+            .find(|other| !allowed.iter().any(|file| other.starts_with(file)));
+        if let Some(other) = outside.filter(|_| name.starts_with("record/")) {
+            panic!("{name} names what is in {other}");
+        }
+    }
+}
+
+#[test]
+fn floats_are_found_wherever_they_stand() {
+    let text = "fn f(x: Real) -> f32 { assert!(x < 2.5); 1e3 } #[cfg(test)] mod tests { fn g() -> f64 { 0.5 } }";
+    let of = Crate::of([("lib.rs", text)].into_iter());
+    assert_eq!(
+        seam::floats(&of.files["lib.rs"]),
+        ["Real", "f32", "2.5", "1e3"]
+    );
+    let text = "fn f(x: i32) -> u64 { assert!(x < 2); 1_000 }";
+    let of = Crate::of([("lib.rs", text)].into_iter());
+    assert_eq!(seam::floats(&of.files["lib.rs"]), [""; 0]);
 }
 
 /// The cycles of a crate that consists of these files.

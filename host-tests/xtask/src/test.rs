@@ -150,7 +150,7 @@ fn publishing() -> Result<()> {
 /// The source files of the effects. A macro declares these modules, so the formatter does not find
 /// them.
 fn effects() -> Result<Vec<PathBuf>> {
-    let folder = workspace().join("src/effect");
+    let folder = workspace().join("src/theory/effect");
     let files =
         std::fs::read_dir(&folder).and_then(|files| files.map(|file| Ok(file?.path())).collect());
     files.with_context(|| format!("reading {}", folder.display()))

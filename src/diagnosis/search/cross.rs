@@ -6,7 +6,7 @@ use super::{
     refine::Solver,
     values::Values,
 };
-use crate::{list, model::Term, real::Real};
+use crate::{list, numerics::real::Real, theory::model::Term};
 use core::ops::ControlFlow;
 
 /// Noise that is correlated over fewer samples imitates a filter, and so does a resonance of lower quality.
@@ -99,7 +99,7 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
 
 /// The additions less those that a filter may imitate.
 pub(super) fn suspects(added: &Added, interval_s: Real) -> Added {
-    let is_kept = |term: &&crate::model::Term| {
+    let is_kept = |term: &&crate::theory::model::Term| {
         if has_frequency(term.effect) {
             term.effect.parameters().len() < 2 || term.parameter(1) >= BROAD
         } else {

@@ -8,12 +8,13 @@ use super::{
     variant::Variant,
 };
 use crate::{
-    effect::Effect,
     limits::MAX_PARAMETERS,
     list::{self, numbered},
-    math,
-    model::Term,
-    real::{Real, real},
+    numerics::{
+        math,
+        real::{Real, real},
+    },
+    theory::{effect::Effect, model::Term},
 };
 use core::ops::ControlFlow;
 use heapless::Vec;

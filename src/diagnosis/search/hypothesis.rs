@@ -9,8 +9,8 @@ use super::{
 use crate::{
     limits::{MAX_EFFECTS, MAX_SHAPE},
     list,
-    model::Term,
-    real::{Real, real},
+    numerics::real::{Real, real},
+    theory::model::Term,
 };
 use heapless::Vec;
 

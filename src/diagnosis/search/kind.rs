@@ -1,12 +1,14 @@
 //! The kinds of effects, as their descriptions tell them.
 
-pub(crate) use crate::model::is_white;
+pub(crate) use crate::theory::model::is_white;
 
 use crate::{
-    effect::{Distribution, Effect},
     list::{self, numbered},
-    model::Term,
-    real::Real,
+    numerics::real::Real,
+    theory::{
+        effect::{Distribution, Effect},
+        model::Term,
+    },
 };
 
 /// Whether a frequency comes first among an effect's parameters.

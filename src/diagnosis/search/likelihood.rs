@@ -14,13 +14,14 @@ mod passing;
 
 use super::{rows::Observation, values::Values};
 use crate::{
-    effect::Effect,
     limits::{MAX_EFFECTS, MAX_SHAPE},
     list::numbered,
-    math,
-    model::Term,
-    nnls::{Free, NormalEquations, Vector},
-    real::{Real, real, single},
+    numerics::{
+        math,
+        nnls::{Free, NormalEquations, Vector},
+        real::{Real, real, single},
+    },
+    theory::{effect::Effect, model::Term},
 };
 use heapless::Vec;
 

@@ -1,6 +1,6 @@
 //! The limits of a search.
 
-use crate::real::Real;
+use crate::numerics::real::Real;
 
 /// What a search may do.
 #[derive(Clone, Copy, Debug)]

@@ -10,10 +10,12 @@ use super::{
     run::set_common,
 };
 use crate::{
-    effect::Effect,
-    model::{Model, Term},
+    numerics::real::Real,
     pause::Pause,
-    real::Real,
+    theory::{
+        effect::Effect,
+        model::{Model, Term},
+    },
 };
 use core::ops::ControlFlow;
 use heapless::Vec;

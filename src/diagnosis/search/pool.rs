@@ -1,7 +1,7 @@
 //! The hypotheses that are kept side by side.
 
 use super::hypothesis::Hypothesis;
-use crate::{list, real::Real};
+use crate::{list, numerics::real::Real};
 use heapless::Vec;
 
 /// Two hypotheses of the same kinds whose scores differ by less are the same.

@@ -1,7 +1,7 @@
 //! What an effect costs beyond its parameters.
 
 use super::kind::{continuous, has_frequency, is_drifting, is_filter, is_line};
-use crate::{model::Term, real::Real};
+use crate::{numerics::real::Real, theory::model::Term};
 
 /// The prices are above what the best effect of each kind gains on clean records by chance, beyond two for each parameter.
 /// `cargo xtask study clean` measures how often that happens.

@@ -5,7 +5,7 @@ use super::{
     kind::{at, has_frequency, is_drifting},
     refine::Solver,
 };
-use crate::{list, real::Real};
+use crate::{list, numerics::real::Real};
 use core::ops::ControlFlow;
 
 /// A resonance of a higher quality is tried as a line.

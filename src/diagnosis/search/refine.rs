@@ -11,11 +11,13 @@ use super::{
 use crate::{
     limits::{MAX_PARAMETERS, MAX_SHAPE},
     list::{self, numbered},
-    math,
-    model::{Model, Term},
-    nnls::{Free, Vector},
+    numerics::{
+        math,
+        nnls::{Free, Vector},
+        real::{Real, real, single},
+    },
     pause::Pause,
-    real::{Real, real, single},
+    theory::model::{Model, Term},
 };
 use core::ops::ControlFlow;
 use heapless::Vec;

@@ -2,15 +2,16 @@
 
 use super::values::{LOW, Values};
 use crate::{
-    course::CosineTransform,
     curve::{Point, clusters},
-    effect::{Effect, Span},
+    evidence::{course::CosineTransform, observed::Observed},
     fit::Rows,
     list::numbered,
-    model::Term,
-    observed::Observed,
-    real::{Real, real, single},
+    numerics::real::{Real, real, single},
     spectrum::{Spectrum, WHITE_DENSITY, levels_of},
+    theory::{
+        effect::{Effect, Span},
+        model::Term,
+    },
 };
 
 /// Neighbouring bins of Hann's window scatter together: `1 + 2 (4/9 + 1/36)` of them count as one.

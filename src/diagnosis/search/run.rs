@@ -13,12 +13,14 @@ use super::{
     white::WhiteRange,
 };
 use crate::{
-    effect::Effect,
     limits::MAX_EFFECTS,
-    list, math,
-    model::{Model, Term},
+    list,
+    numerics::{math, real::Real},
     pause::Pause,
-    real::Real,
+    theory::{
+        effect::Effect,
+        model::{Model, Term},
+    },
 };
 use core::ops::ControlFlow;
 use heapless::Vec;

@@ -8,12 +8,13 @@ use super::{
     variant::Variant,
 };
 use crate::{
-    effect::Effect,
     list::numbered,
-    math,
-    model::Term,
-    real::{Real, real, single},
+    numerics::{
+        math,
+        real::{Real, real, single},
+    },
     spectrum::Bin,
+    theory::{effect::Effect, model::Term},
 };
 use core::ops::ControlFlow;
 

@@ -1,6 +1,6 @@
 //! One number for every row of a search.
 
-use crate::algebra::Vector;
+use crate::numerics::algebra::Vector;
 use core::ops::Index;
 
 /// The largest number of rows below the bins.

@@ -2,11 +2,15 @@
 
 use super::rows::Observation;
 use crate::{
-    effect::{DecimationFilter, Effect, SearchRange, Span},
     limits::MAX_PARAMETERS,
-    math,
-    model::Term,
-    real::{Real, real},
+    numerics::{
+        math,
+        real::{Real, real},
+    },
+    theory::{
+        effect::{DecimationFilter, Effect, SearchRange, Span},
+        model::Term,
+    },
 };
 
 /// Means over so many times the number of samples are tried.

@@ -8,10 +8,13 @@ use super::{
 };
 use crate::{
     limits::{MAX_SHAPE, TWO_SIDED_95},
-    list, math,
-    model::Term,
-    nnls::Free,
-    real::{Real, real},
+    list,
+    numerics::{
+        math,
+        nnls::Free,
+        real::{Real, real},
+    },
+    theory::model::Term,
 };
 use core::ops::ControlFlow;
 use heapless::Vec;

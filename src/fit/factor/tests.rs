@@ -4,7 +4,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::*;
-use crate::test_random::Random;
+use crate::numerics::test_random::Random;
 
 const OCTAVES: usize = 4;
 const BINS: usize = 7;

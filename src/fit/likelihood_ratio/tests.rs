@@ -1,10 +1,12 @@
 use super::LikelihoodRatio;
 use crate::{
     Curve, Model, Real,
-    covariance::curve_covariance,
     fit::{Fitting, Options},
-    real::{double, real},
-    test_random::Random,
+    numerics::{
+        real::{double, real},
+        test_random::Random,
+    },
+    theory::covariance::curve_covariance,
 };
 use nalgebra::{SMatrix, SVector};
 

@@ -5,14 +5,18 @@ extern crate std;
 
 use crate::{
     Accumulator, Curve, Model, Scale, Term,
-    covariance::curve_covariance,
-    effect::{AngleRandomWalk, Sinusoid},
+    evidence::observed::Observed,
     fit::{Columns, Problem, Rows, Weights},
-    nnls::Vector,
-    observed::Observed,
-    real::{Real, double, real},
+    numerics::{
+        nnls::Vector,
+        real::{Real, double, real},
+        test_random::Random,
+    },
     spectrum::{Spectrum, SpectrumAccumulator, covariance_rows},
-    test_random::Random,
+    theory::{
+        covariance::curve_covariance,
+        effect::{AngleRandomWalk, Sinusoid},
+    },
 };
 use core::f64::consts::PI;
 

@@ -1,15 +1,22 @@
 use super::{Significance, normal, skewness};
 use crate::{
     Curve, Model,
-    chi_squared::chi_squared_tail,
-    coefficient::{Coefficient, State},
-    covariance::curve_covariance,
-    effect::{Effect, IEEE_952},
-    fit::{Fit, Fitting, Options, Problem, Start, Tolerance, Work, estimate::Estimator},
-    math::erfc,
-    observed::Observed,
-    real::{double, real},
+    evidence::observed::Observed,
+    fit::{
+        Fit, Fitting, Options, Problem, Start, Tolerance, Work,
+        coefficient::{Coefficient, State},
+        estimate::Estimator,
+    },
+    numerics::{
+        chi_squared::chi_squared_tail,
+        math::erfc,
+        real::{double, real},
+    },
     spectrum::Spectrum,
+    theory::{
+        covariance::curve_covariance,
+        effect::{Effect, IEEE_952},
+    },
 };
 use core::f64::consts::SQRT_2;
 use nalgebra::{SMatrix, SVector};

@@ -4,10 +4,10 @@ use super::{
     counts, densities,
     std::{self, vec::Vec},
 };
-use crate::test_random::Random;
 use crate::{
     Scale,
-    real::double,
+    numerics::real::double,
+    numerics::test_random::Random,
     spectrum::{Spectrum, SpectrumAccumulator},
 };
 

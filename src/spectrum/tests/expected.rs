@@ -2,12 +2,12 @@
 
 use super::{PI, std, std::vec::Vec, window};
 use crate::{
-    effect::{
+    numerics::real::{by_precision, double, real},
+    spectrum::expected_densities,
+    theory::effect::{
         Behind, CATALOGUE, DriftingResonance, DriftingSinusoid, Effect, MAX_PARAMETERS,
         MovingAverage, OutputLowPass, Quantization, Resonance, SampledShape, Sinusoid,
     },
-    real::{by_precision, double, real},
-    spectrum::expected_densities,
 };
 
 const INTERVAL_S: f64 = 0.01;

@@ -5,7 +5,7 @@
 use super::counts;
 use crate::{
     Scale,
-    real::{by_precision, double},
+    numerics::real::{by_precision, double},
     spectrum::{Spectrum, SpectrumAccumulator},
 };
 

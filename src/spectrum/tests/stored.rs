@@ -3,7 +3,7 @@
 use super::std::vec::Vec;
 use crate::{
     Error,
-    real::{Real, real},
+    numerics::real::{Real, real},
     spectrum::{BAND, Bin, Spectrum, covariance_rows, relative_covariance},
 };
 
@@ -114,7 +114,7 @@ fn a_line_alone_does_not_scatter() {
 fn the_covariance_is_positive_definite() {
     let bins: Vec<Bin> = (4..32).map(|index| Bin { index, ..BIN }).collect();
     for seed in 0..200 {
-        let mut random = crate::test_random::Random::new(seed);
+        let mut random = crate::numerics::test_random::Random::new(seed);
         let share = |_: &Bin| match random.below(3) {
             0 => 0.0,
             1 => real(0.999),

@@ -5,12 +5,11 @@ use crate::{
     Error, Model, Record,
     detection::{MAX_RANGES, Range, is_of_shape},
     diagnosis::{Step, Verdict},
-    effect::IEEE_952,
     fit::{Correlations, Fit, State},
     limits::MAX_PARAMETERS,
     list,
-    model::MAX_EFFECTS,
-    real::{double, real, single},
+    numerics::real::{double, real, single},
+    theory::{effect::IEEE_952, model::MAX_EFFECTS},
 };
 use heapless::Vec;
 

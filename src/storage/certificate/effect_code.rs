@@ -1,6 +1,6 @@
 //! The number that stands for an effect in a certificate.
 
-use crate::effect::{CATALOGUE, CODES, Effect, FIRST_OWN_CODE};
+use crate::theory::effect::{CATALOGUE, CODES, Effect, FIRST_OWN_CODE};
 
 /// An effect in a certificate: the [`code`](crate::effect::Description::code) of its description.
 ///

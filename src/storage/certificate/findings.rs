@@ -5,9 +5,9 @@ use crate::{
     comparison::{Band, Comparison, MAX_BANDS},
     course::{Event, Events, MAX_EVENTS, What},
     diagnosis::{FollowedCovariate, Step},
-    effect::CATALOGUE,
     list,
-    real::{real, single},
+    numerics::real::{real, single},
+    theory::effect::CATALOGUE,
 };
 use heapless::Vec;
 

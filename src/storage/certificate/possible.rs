@@ -6,9 +6,9 @@ use super::{
 };
 use crate::{
     diagnosis::Verdict,
-    effect::{Effect, Span},
-    integrity::Reason,
-    real::real,
+    numerics::real::real,
+    record::integrity::Reason,
+    theory::effect::{Effect, Span},
 };
 
 /// The largest ratio of two durations of one record, by the clock of the gyro and by that of whoever measured the time.

@@ -1,6 +1,6 @@
 //! Verdicts as they are stored. They are separate from the public verdicts, which may be reordered.
 
-use crate::{diagnosis::Verdict, integrity::Reason};
+use crate::{diagnosis::Verdict, record::integrity::Reason};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]

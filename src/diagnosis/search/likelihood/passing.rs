@@ -2,10 +2,12 @@
 
 use super::{Observation, Values, Workspace};
 use crate::{
-    effect::Behind,
     list::numbered,
-    model::{Model, Term, is_passed},
-    real::{Real, single},
+    numerics::real::{Real, single},
+    theory::{
+        effect::Behind,
+        model::{Model, Term, is_passed},
+    },
 };
 
 impl<const B: usize> Workspace<B> {

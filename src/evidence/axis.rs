@@ -1,0 +1,175 @@
+//! One axis, or several axes that are recorded together: the parts that a record may have, and what is read from it.
+
+#[doc(inline)]
+pub use crate::{
+    record::axis::{
+        Axes, Axis, GatePart, Gated, MomentPart, Moments, Sample, SpectrumPart, TrackPart, Tracked,
+    },
+    spectrum::{Spectral, SpectrumReading},
+};
+
+use super::{course::CosineTransform, covariate::CrossCurve, kurtosis::Kurtosis, record::Record};
+use crate::{
+    curve::{Curve, Scale},
+    error::Error,
+    numerics::real::Real,
+    record::{
+        axis::{
+            gate::{Gate, Passing as _},
+            moments::MomentSums as _,
+            track::Track as _,
+        },
+        integrity::{Integrity, Reason, exceeds},
+    },
+    spectrum::Spectrum,
+};
+use heapless::Vec;
+
+/// What is kept of a record of one axis: a [`Record`] that owns its parts. `D` is the type of its spectrum.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct AxisRecord<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spectrum<0>> {
+    /// The number of samples that are kept.
+    pub samples: u64,
+    /// The Allan curve.
+    pub curve: Curve<OCTAVES>,
+    /// The power spectral densities; without bins if no spectrum is kept.
+    pub spectrum: D,
+    /// The cosine transform of the course; `None` if no course is kept, or if it is too short.
+    pub course: Option<CosineTransform>,
+    /// The kurtosis of the differences, which tells whether they are Gaussian; `None` if fourth moments
+    /// are not kept.
+    pub kurtosis: Option<Kurtosis<OCTAVES>>,
+    /// What the axis has in common with each covariate.
+    pub covariates: Vec<CrossCurve<OCTAVES>, COVARIATES>,
+    /// The reason why the curve is not valid; `None` if it is valid.
+    pub invalid: Option<Reason>,
+}
+
+impl<'a, const OCTAVES: usize, const COVARIATES: usize, const B: usize>
+    From<&'a AxisRecord<OCTAVES, COVARIATES, Spectrum<B>>> for Record<'a, OCTAVES, B>
+{
+    fn from(record: &'a AxisRecord<OCTAVES, COVARIATES, Spectrum<B>>) -> Self {
+        Self {
+            curve: &record.curve,
+            spectrum: Some(&record.spectrum),
+            course: record.course.as_ref(),
+            kurtosis: record.kurtosis.as_ref(),
+            covariates: &record.covariates,
+            pairs: &[],
+            invalid: record.invalid,
+        }
+    }
+}
+
+/// The units of an axis and of its covariates: a [`Scale`], or, with covariates, a scale and the unit per count of each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units<const COVARIATES: usize = 0> {
+    /// The unit and the rate of the gyro.
+    pub scale: Scale,
+    /// The unit per count of each covariate.
+    pub per_count: [Real; COVARIATES],
+}
+
+impl From<Scale> for Units {
+    fn from(scale: Scale) -> Self {
+        Self {
+            scale,
+            per_count: [],
+        }
+    }
+}
+
+impl<const COVARIATES: usize> From<(Scale, [Real; COVARIATES])> for Units<COVARIATES> {
+    fn from((scale, per_count): (Scale, [Real; COVARIATES])) -> Self {
+        Self { scale, per_count }
+    }
+}
+
+impl<const OCTAVES: usize, const COVARIATES: usize, G, M, const AXES: usize, S, T>
+    Axes<OCTAVES, COVARIATES, G, M, AXES, S, T>
+where
+    G: GatePart,
+    M: MomentPart,
+    S: SpectrumReading,
+    T: TrackPart,
+{
+    /// The record of an axis at its end: [releases](Self::release) the samples that the gate still holds back. `units` is
+    /// the [`Scale`], or, with covariates, `(scale, [unit per count of each])`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidScale`] if a unit is not positive and finite; [`Error::UnknownAxis`] if there is no
+    /// such axis.
+    pub fn record(
+        &mut self,
+        axis: usize,
+        units: impl Into<Units<COVARIATES>>,
+    ) -> Result<AxisRecord<OCTAVES, COVARIATES, S::Spectrum>, Error> {
+        self.release();
+        self.record_so_far(axis, units)
+    }
+
+    /// The record of an axis at this moment, which goes on: without the samples that the gate holds back. The spectrum
+    /// also lacks up to `P` samples that wait for [`advance`](Self::advance).
+    ///
+    /// # Errors
+    /// As of [`record`](Self::record).
+    pub fn record_so_far(
+        &self,
+        axis: usize,
+        units: impl Into<Units<COVARIATES>>,
+    ) -> Result<AxisRecord<OCTAVES, COVARIATES, S::Spectrum>, Error> {
+        let Units { scale, per_count } = units.into();
+        let sums = self.kept.axes.get(axis);
+        let sums = sums.ok_or(Error::UnknownAxis { axis, axes: AXES })?;
+        let mut covariates = Vec::new();
+        let all = self.kept.covariates.iter().zip(&sums.cross).zip(per_count);
+        for ((covariate, products), per_count) in all {
+            let gyro = &sums.accumulator;
+            let cross = CrossCurve::new(gyro, covariate, products, scale, per_count)?;
+            // The vector has room for every covariate.
+            let _ = covariates.push(cross);
+        }
+        let moments = sums.moments.moments();
+        Ok(AxisRecord {
+            samples: sums.accumulator.samples(),
+            curve: sums.accumulator.curve(scale),
+            spectrum: S::spectrum(&sums.spectrum, scale),
+            course: sums
+                .track
+                .course()
+                .and_then(|course| course.cosine_transform(scale)),
+            kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),
+            covariates,
+            invalid: self.verdict(axis),
+        })
+    }
+
+    /// The reason why the curve of an axis is not valid; `None` if it is valid.
+    ///
+    /// The verdict is that of [`Integrity`] on the record that is kept. Motion in one axis makes all axes
+    /// invalid, because a gyro that turns about one axis is not at rest about the others. A record is also
+    /// invalid if the gate left out a larger share of its samples than
+    /// [`left_out_per_mille`](crate::integrity::Limits::left_out_per_mille) allows, which is one in four by default.
+    pub fn verdict(&self, axis: usize) -> Option<Reason> {
+        let verdict = |integrity: &Integrity| integrity.verdict();
+        let own = self.kept.axes.get(axis).map(|axis| &axis.integrity);
+        let all = self.kept.axes.iter().map(|axis| &axis.integrity);
+        let moved = |reason: &Reason| matches!(reason, Reason::Moved { .. });
+        let others = all.filter_map(verdict).find(moved);
+        let left_out = self
+            .gate
+            .gate()
+            .and_then(|gate| self.left_out_too_much(gate));
+        own.and_then(verdict).or(others).or(left_out)
+    }
+
+    fn left_out_too_much(&self, gate: &Gate<AXES, COVARIATES>) -> Option<Reason> {
+        let left_out = gate.left_out();
+        let samples = self.samples().saturating_add(left_out);
+        let most = self.limits().left_out_per_mille;
+        exceeds(left_out.into(), samples.into(), most)
+            .then_some(Reason::LeftOut { left_out, samples })
+    }
+}

@@ -1,0 +1,9 @@
+//! What is known of a record when it is read: the sums of `record` as a curve, a course, a kurtosis and dependences on
+//! covariates, with units.
+
+pub mod axis;
+pub(crate) mod course;
+pub mod covariate;
+pub mod kurtosis;
+pub(crate) mod observed;
+pub(crate) mod record;

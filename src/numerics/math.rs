@@ -1,0 +1,140 @@
+//! Every transcendental function of the library, as a named function. A method such as `x.sqrt()`
+//! becomes std's once anything in a build links std, and then host and target compute different
+//! numbers.
+
+use crate::numerics::real::{Real, consts::PI, real, single};
+#[cfg(feature = "double")]
+pub(crate) use libm::{ceil, erfc, exp, floor, log, sqrt};
+#[cfg(not(feature = "double"))]
+pub(crate) use libm::{
+    ceilf as ceil, erfcf as erfc, expf as exp, floorf as floor, logf as log, sqrtf as sqrt,
+};
+
+/// Sine and cosine of an angle in turns, accurate to 3e-16 (2e-7 in single precision). Whole quadrants
+/// are subtracted exactly, and the rest is small enough for Taylor's series. libm's reduction of angles
+/// of any size would cost 4 KB of flash and 700 bytes of stack.
+pub(crate) fn sincos_of_turns(turns: Real) -> (Real, Real) {
+    let turns = turns - floor(turns);
+    let quadrant = floor(4.0 * turns + 0.5);
+    let rest = 2.0 * PI * (turns - 0.25 * quadrant);
+    let square = rest * rest;
+    // The series are x − x³/3! + … for the sine and 1 − x²/2! + … for the cosine.
+    let (mut sine, mut cosine) = (0.0, 0.0);
+    for [odd, even] in SERIES {
+        sine = odd - square * sine;
+        cosine = even - square * cosine;
+    }
+    let sine = rest * sine;
+    match quadrant as u8 {
+        1 => (cosine, -sine),
+        2 => (-sine, -cosine),
+        3 => (-cosine, sine),
+        _ => (sine, cosine),
+    }
+}
+
+/// The number of terms of the series. At an eighth of a turn, the terms left out are below 1e-17, or
+/// below 1e-9 in single precision.
+const TERMS: usize = if cfg!(feature = "double") { 10 } else { 6 };
+
+/// The numbers `1/(2k+1)!` and `1/(2k)!`, the highest k first.
+const SERIES: [[Real; 2]; TERMS] = {
+    let mut series = [[1.0; 2]; TERMS];
+    let (mut factorial, mut k) = (1.0_f64, 1);
+    while k < TERMS {
+        factorial *= (2 * k) as f64;
+        // factorial is (2k)!, which is exact in 53 bits up to 18!.
+        series[TERMS - 1 - k][1] = (1.0 / factorial) as Real;
+        factorial *= (2 * k + 1) as f64;
+        series[TERMS - 1 - k][0] = (1.0 / factorial) as Real;
+        k += 1;
+    }
+    series
+};
+
+/// The sine of the angle `i` of `turn`, up to an eighth of a turn, for tables computed by the compiler.
+pub(crate) const fn sine_series(i: usize, turn: usize) -> f64 {
+    series(i, turn, 1)
+}
+
+/// The cosine of the angle `i` of `turn`, up to an eighth of a turn, for tables computed by the compiler.
+pub(crate) const fn cosine_series(i: usize, turn: usize) -> f64 {
+    series(i, turn, 0)
+}
+
+/// Taylor's series whose first term is the power `first` of the angle: the sine for 1, the cosine for 0.
+const fn series(i: usize, turn: usize, first: u32) -> f64 {
+    let angle = 2.0 * core::f64::consts::PI * i as f64 / turn as f64;
+    let square = angle * angle;
+    // The terms left out are below 1e-20.
+    let mut k = first + 20;
+    let mut sum = 1.0;
+    while k > first {
+        sum = 1.0 - square * sum / (k * (k - 1)) as f64;
+        k -= 2;
+    }
+    if first == 1 { angle * sum } else { sum }
+}
+
+/// The binary logarithm, accurate to about a percent. It sets the number of steps of a search grid.
+pub(crate) fn log2_roughly(x: Real) -> Real {
+    real(micromath::F32(single(x)).log2().0)
+}
+
+/// The whole part of the binary logarithm. It is 0 for 0, where `ilog2` panics.
+pub(crate) const fn floor_log2(n: u32) -> u32 {
+    (u32::BITS - 1) ^ (n | 1).leading_zeros()
+}
+
+/// The natural logarithm of an integer above 0, for tables computed by the compiler.
+pub(crate) const fn log_of_integer(i: u32) -> f64 {
+    // With i = 2^exponent · mantissa and the mantissa x in [1, 2), ln x = 2 artanh((x − 1)/(x + 1)).
+    let exponent = i.ilog2();
+    let mantissa = i as f64 / (1_u64 << exponent) as f64;
+    let t = (mantissa - 1.0) / (mantissa + 1.0);
+    let t2 = t * t;
+    // Because t² ≤ 1/9, nineteen terms leave less than 1e-19.
+    let mut k = 37;
+    let mut sum = 0.0;
+    while k > 0 {
+        sum = sum * t2 + 1.0 / k as f64;
+        k -= 2;
+    }
+    exponent as f64 * core::f64::consts::LN_2 + 2.0 * t * sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::real::{by_precision, double};
+
+    #[test]
+    fn sine_and_cosine_are_those_of_libm() {
+        for i in -3000..3000 {
+            let turns = real(i) / 1009.0;
+            // libm takes the angle in radians, which is rounded. Below one turn, the rounding is small.
+            let angle = 2.0 * core::f64::consts::PI * double(turns - floor(turns));
+            let (sine, cosine) = sincos_of_turns(turns);
+            let off = |found: Real, expected: f64| (double(found) - expected).abs();
+            let most = by_precision(8e-16, 4e-7);
+            assert!(
+                off(sine, libm::sin(angle)) < double(most),
+                "sine of {turns}"
+            );
+            assert!(
+                off(cosine, libm::cos(angle)) < double(most),
+                "cosine of {turns}"
+            );
+        }
+        assert_eq!(sincos_of_turns(0.25), (1.0, 0.0));
+        assert_eq!(sincos_of_turns(-0.5), (0.0, -1.0));
+    }
+
+    #[test]
+    fn floors_of_binary_logarithms_are_those_of_core() {
+        assert_eq!(floor_log2(0), 0);
+        for n in (1..70_000).chain(u32::MAX - 3..=u32::MAX) {
+            assert_eq!(floor_log2(n), n.ilog2());
+        }
+    }
+}

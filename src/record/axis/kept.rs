@@ -1,0 +1,232 @@
+//! The sums of a record, which receive the samples that pass the gate.
+
+use super::{
+    moments::{MomentPart, MomentSums},
+    sample::Sample,
+    spectra::{SpectrumPart, SpectrumSums, Waits},
+    track::{Track, TrackPart},
+};
+use crate::record::{
+    cross_sums::CrossSums,
+    integrity::{Integrity, InvalidLimit, Limits},
+    octave::{Accumulator, Observer},
+};
+
+/// The sums of all axes and covariates. They all receive the same samples and gaps, so that all results
+/// describe the same record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Kept<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S, T>
+where
+    M: MomentPart,
+    S: SpectrumPart,
+    T: TrackPart,
+{
+    pub(crate) axes: [AxisSums<OCTAVES, COVARIATES, M, S, T>; AXES],
+    /// One accumulator for each covariate, shared by all axes.
+    pub(crate) covariates: [Accumulator<OCTAVES>; COVARIATES],
+}
+
+/// The sums of one axis.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M, S, T>
+where
+    M: MomentPart,
+    S: SpectrumPart,
+    T: TrackPart,
+{
+    pub(crate) accumulator: Accumulator<OCTAVES>,
+    pub(crate) integrity: Integrity,
+    pub(crate) moments: M::Sums<OCTAVES>,
+    pub(crate) cross: [CrossSums<OCTAVES>; COVARIATES],
+    pub(crate) spectrum: S::Sums,
+    pub(crate) track: T::Track<COVARIATES>,
+}
+
+/// The differences of a covariate that one sample completes: those of octaves 0, 1 and 2, and at most one
+/// of a higher octave.
+#[derive(Clone, Copy)]
+struct Completed([i64; 4]);
+
+impl Completed {
+    /// The difference of an octave.
+    #[inline(always)]
+    fn of(&self, octave: usize) -> i64 {
+        self.0[octave.min(3)]
+    }
+}
+
+impl Observer for Completed {
+    #[inline(always)]
+    fn observe(&mut self, octave: usize, difference: i64) {
+        self.0[octave.min(3)] = difference;
+    }
+}
+
+/// The sums that are updated together with the accumulator of an axis when it takes a sample.
+struct Beside<'a, S, const OCTAVES: usize, const COVARIATES: usize> {
+    moments: &'a mut S,
+    cross: &'a mut [CrossSums<OCTAVES>; COVARIATES],
+    completed: &'a [Completed; COVARIATES],
+}
+
+impl<S, const OCTAVES: usize, const COVARIATES: usize> Observer
+    for Beside<'_, S, OCTAVES, COVARIATES>
+where
+    S: MomentSums<OCTAVES>,
+{
+    #[inline(always)]
+    fn observe(&mut self, octave: usize, difference: i64) {
+        self.moments.add(octave, difference);
+        for (cross, completed) in self.cross.iter_mut().zip(self.completed) {
+            cross.add(octave, difference, completed.of(octave));
+        }
+    }
+}
+
+impl<const OCTAVES: usize, const COVARIATES: usize, M, S, T> AxisSums<OCTAVES, COVARIATES, M, S, T>
+where
+    M: MomentPart,
+    S: SpectrumPart,
+    T: TrackPart,
+{
+    const NEW: Self = Self {
+        accumulator: Accumulator::new(),
+        integrity: Integrity::new(),
+        moments: M::Sums::NEW,
+        cross: [const { CrossSums::NEW }; COVARIATES],
+        spectrum: S::Sums::NEW,
+        track: T::Track::NEW,
+    };
+
+    #[inline(always)]
+    fn push(&mut self, count: i32, completed: &[Completed; COVARIATES]) {
+        let Self {
+            accumulator,
+            integrity,
+            moments,
+            cross,
+            spectrum,
+            ..
+        } = self;
+        integrity.push(count);
+        spectrum.push(count);
+        let mut beside = Beside {
+            moments,
+            cross,
+            completed,
+        };
+        accumulator.push_observed(count, &mut beside);
+    }
+
+    /// Adds the pending differences of the accumulators, which a gap discards.
+    fn add_pending(&mut self, covariates: &[Accumulator<OCTAVES>; COVARIATES]) {
+        for octave in 0..OCTAVES {
+            let Some(difference) = self.accumulator.pending_difference(octave) else {
+                continue;
+            };
+            self.moments.add(octave, difference);
+            for (cross, covariate) in self.cross.iter_mut().zip(covariates) {
+                if let Some(other) = covariate.pending_difference(octave) {
+                    cross.add(octave, difference, other);
+                }
+            }
+        }
+    }
+}
+
+impl<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S, T>
+    Kept<OCTAVES, COVARIATES, M, AXES, S, T>
+where
+    M: MomentPart,
+    S: SpectrumPart,
+    T: TrackPart,
+{
+    pub(crate) const NEW: Self = Self {
+        axes: [const { AxisSums::NEW }; AXES],
+        covariates: [const { Accumulator::new() }; COVARIATES],
+    };
+
+    pub(crate) fn set_limits(&mut self, limits: &'static Limits) -> Result<(), InvalidLimit> {
+        let fresh = Integrity::with_limits(limits)?;
+        for axis in &mut self.axes {
+            axis.integrity = fresh.clone();
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    pub(crate) fn push(&mut self, sample: &Sample<AXES, COVARIATES>) {
+        let mut completed = [Completed([0; 4]); COVARIATES];
+        let covariates = self.covariates.iter_mut().zip(&sample.covariates);
+        for ((covariate, &count), completed) in covariates.zip(&mut completed) {
+            covariate.push_observed(count, completed);
+        }
+        for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
+            axis.push(count, &completed);
+            axis.track.push(count, sample.covariates);
+        }
+        self.make_room();
+    }
+
+    /// Transforms a segment of an axis of which half of the room for counts is taken. The axes take turns, so
+    /// that one sample has to wait for one transform only. A segment is due every half of the room. So each of
+    /// up to four axes gets its turn in time, even if segments of seven levels are due at once.
+    #[inline(always)]
+    fn make_room(&mut self) {
+        let mut is_done = false;
+        for axis in &mut self.axes {
+            let is_due = match axis.spectrum.waits() {
+                Waits::Little => false,
+                Waits::Half => !is_done,
+                Waits::Full => true,
+            };
+            if is_due {
+                axis.spectrum.advance();
+                is_done = true;
+            }
+        }
+    }
+
+    /// Does a part of the work of the spectra that waits, and tells whether there is more.
+    pub(crate) fn advance(&mut self) -> bool {
+        self.axes.iter_mut().any(|axis| axis.spectrum.advance())
+    }
+
+    /// No difference spans this place, where so many samples are missing, or an unknown number if it is 0.
+    #[inline(never)]
+    pub(crate) fn gap(&mut self, missing: u64) {
+        for axis in &mut self.axes {
+            axis.add_pending(&self.covariates);
+            axis.accumulator.gap();
+            axis.integrity.gap();
+            axis.spectrum.gap();
+            axis.track.gap(missing);
+        }
+        self.covariates.iter_mut().for_each(Accumulator::gap);
+    }
+
+    pub(crate) fn add_missing(&mut self, samples: u64) {
+        for axis in &mut self.axes {
+            axis.integrity.add_missing(samples);
+        }
+    }
+
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.gap(0);
+        // The pending differences of the other record belong to its own sums.
+        let mut other = other.clone();
+        other.gap(0);
+        for (own, other) in self.axes.iter_mut().zip(&other.axes) {
+            own.accumulator.merge(&other.accumulator);
+            own.integrity.merge(&other.integrity);
+            own.moments.merge(&other.moments);
+            own.spectrum.merge(&other.spectrum);
+            for (own, other) in own.cross.iter_mut().zip(&other.cross) {
+                own.merge(other);
+            }
+        }
+        for (own, other) in self.covariates.iter_mut().zip(&other.covariates) {
+            own.merge(other);
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The course of an axis, which a type may leave out: then it takes no memory, no flash and no time.
+
+use crate::record::course::Course;
+use core::fmt::Debug;
+
+/// Keeps the course of every axis over time: `T` of [`Axes`](super::Axes).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tracked;
+
+/// What can stand for `T` of [`Axes`](super::Axes): [`Tracked`], or `()` for none.
+pub trait TrackPart: Clone + Debug + PartialEq + Eq {
+    /// The course of one axis.
+    #[doc(hidden)]
+    type Track<const COVARIATES: usize>: Track<COVARIATES>;
+}
+
+impl TrackPart for Tracked {
+    type Track<const COVARIATES: usize> = Course<COVARIATES>;
+}
+
+impl TrackPart for () {
+    type Track<const COVARIATES: usize> = ();
+}
+
+/// The course of one axis, or nothing.
+pub trait Track<const COVARIATES: usize>: Clone + Debug + PartialEq + Eq {
+    /// Nothing seen yet.
+    const NEW: Self;
+
+    /// Whether a course is kept.
+    const EXISTS: bool;
+
+    /// Adds one count, and one of every covariate.
+    fn push(&mut self, count: i32, covariates: [i32; COVARIATES]);
+
+    /// So many samples are not in the record, or it is not known how many if the number is 0.
+    fn gap(&mut self, missing: u64);
+
+    /// The course, if it is kept.
+    fn course(&self) -> Option<&Course<COVARIATES>>;
+
+    /// The course, if it is kept.
+    #[cfg(feature = "storage")]
+    fn course_mut(&mut self) -> Option<&mut Course<COVARIATES>>;
+}
+
+impl<const COVARIATES: usize> Track<COVARIATES> for Course<COVARIATES> {
+    const NEW: Self = Self::new();
+    const EXISTS: bool = true;
+
+    #[inline(always)]
+    fn push(&mut self, count: i32, covariates: [i32; COVARIATES]) {
+        self.push(count, covariates);
+    }
+
+    fn gap(&mut self, missing: u64) {
+        self.gap();
+        self.missing(missing);
+    }
+
+    fn course(&self) -> Option<&Self> {
+        Some(self)
+    }
+
+    #[cfg(feature = "storage")]
+    fn course_mut(&mut self) -> Option<&mut Self> {
+        Some(self)
+    }
+}
+
+impl<const COVARIATES: usize> Track<COVARIATES> for () {
+    const NEW: Self = ();
+    const EXISTS: bool = false;
+
+    #[inline(always)]
+    fn push(&mut self, _: i32, _: [i32; COVARIATES]) {}
+
+    fn gap(&mut self, _: u64) {}
+
+    fn course(&self) -> Option<&Course<COVARIATES>> {
+        None
+    }
+
+    #[cfg(feature = "storage")]
+    fn course_mut(&mut self) -> Option<&mut Course<COVARIATES>> {
+        None
+    }
+}

@@ -1,0 +1,83 @@
+use super::{
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, SampledShape,
+    SecondDifferences, gauss_markov, gauss_markov::GaussMarkov,
+};
+use crate::numerics::real::Real;
+
+/// Random telegraph noise: the rate jumps between two levels. The coefficient is its rms in rate
+/// units, the shape parameter its correlation time `T_c` in seconds, above zero.
+///
+/// The levels lie `2 rms` apart, and the rate stays at one of them for `2 T_c` on average
+/// (Machlup 1954). The autocovariance, and with it the Allan variance, is that of [`GaussMarkov`]
+/// noise, so that only the kurtosis of the differences at `τ ≲ T_c` tells the two apart.
+#[derive(Clone, Copy, Debug)]
+pub struct RandomTelegraph;
+
+pub(super) const DESCRIPTION: Description = Description {
+    name: "random_telegraph",
+    symbol: "s",
+    coefficient: "rms",
+    half_seconds: 0,
+    reference_s: None,
+    parameters: gauss_markov::DESCRIPTION.parameters,
+    code: 11,
+    replaces: None,
+    mirror: Some(&GaussMarkov),
+    special_case: None,
+    distribution: Distribution::TwoLevels,
+};
+
+impl Effect for RandomTelegraph {
+    fn description(&self) -> &'static Description {
+        &DESCRIPTION
+    }
+
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        GaussMarkov.kernel(lag, shape)
+    }
+
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        GaussMarkov.second_difference(x, m, shape)
+    }
+
+    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
+        GaussMarkov.variance(m, shape)
+    }
+
+    fn variances(
+        &self,
+        factors: &mut dyn Iterator<Item = Real>,
+        shape: &SampledShape,
+        each: &mut dyn FnMut(Real),
+    ) {
+        GaussMarkov.variances(factors, shape, each);
+    }
+
+    fn add_second_differences(
+        &self,
+        m: Real,
+        weight: Real,
+        shape: &SampledShape,
+        sum: &mut SecondDifferences,
+    ) {
+        GaussMarkov.add_second_differences(m, weight, shape, sum);
+    }
+
+    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
+        GaussMarkov.variogram(m, shape, values);
+    }
+}
+
+impl Explain for RandomTelegraph {
+    fn explanation(&self) -> Explanation {
+        Explanation {
+            what: "random telegraph noise: the rate jumps between two levels",
+            origin: "a single defect in the sense electronics that captures and releases charge (popcorn noise), a stick-slip contact in the package",
+            check: "plot the rate averaged over a fifth of the correlation time: are there two levels? does it change when the amplifier is cooled or replaced?",
+        }
+    }
+
+    fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
+        &[[0.1, 0.0, 0.0], [1.0, 0.0, 0.0]]
+    }
+}

@@ -3,7 +3,7 @@
 
 #[path = "common/factory.rs"]
 mod factory;
-#[path = "common/sealed.rs"]
+#[path = "../library/common/sealed.rs"]
 mod sealed;
 
 use allanite::{

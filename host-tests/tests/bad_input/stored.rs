@@ -1,6 +1,6 @@
 //! Bad certificates and snapshots.
 
-#[path = "../common/sealed.rs"]
+#[path = "../../library/common/sealed.rs"]
 mod sealed;
 
 use super::case::{Case, refused};

@@ -3,7 +3,7 @@
 mod coarse;
 mod disturbed;
 mod rest;
-#[path = "../common/seeded.rs"]
+#[path = "../../library/common/seeded.rs"]
 mod seeded;
 mod state;
 

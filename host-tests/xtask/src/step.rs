@@ -17,10 +17,13 @@ const COLOURS: &str = "CARGO_TERM_COLOR";
 /// The interval between checks for silence.
 const MOMENT: Duration = Duration::from_millis(500);
 
-/// Prints a heading and runs a command.
+/// Prints a heading, runs a command, and tells how long it took.
 pub(crate) fn step(heading: &str, command: &mut Command) -> Result<()> {
     println!("\n== {heading}");
-    run(command)
+    let begun = Instant::now();
+    run(command)?;
+    println!("      {heading}: {} s", begun.elapsed().as_secs());
+    Ok(())
 }
 
 /// Runs a command and passes on what it prints. If it is silent for long, a line says that it still

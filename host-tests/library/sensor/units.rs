@@ -1,5 +1,7 @@
 //! Tests the scales of gyro and temperature counts.
 
+use crate::precision::double;
+use allanite::Real;
 use allanite::sensor::{
     BMI160, CATALOGUE, Description, ICM_42688_P, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Temperature,
 };
@@ -11,10 +13,10 @@ fn temperatures_are_those_of_the_data_sheets() {
             .temperature
             .map(|t: Temperature| t.celsius(count))
     };
-    let near = |found: Option<f64>, expected: f64| {
-        let found = found.unwrap();
+    let near = |found: Option<Real>, expected: f64| {
+        let found = double(found.unwrap());
         assert!(
-            (found - expected).abs() < 1e-9,
+            (found - expected).abs() < 100.0 * double(Real::EPSILON),
             "{found} instead of {expected}"
         );
     };

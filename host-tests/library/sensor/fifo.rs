@@ -1,6 +1,7 @@
 //! Bursts from the FIFOs of simulated sensors: every sample once, losses known in number, and clocks that disagree.
 
 use crate::chip::{KINDS, Kind, gyro, number};
+use crate::precision::double;
 use crate::wire::{Fault, NoDelay, Wire};
 use allanite::sensor::{FifoImu, Loss, SpiBus};
 use allanite::{Accumulator, Axes, Error};
@@ -231,7 +232,8 @@ fn the_sensors_clock_is_measured_against_the_hosts() {
             }
             let clock = imu.clock();
             let (rate_hz, _) = kind.rate_and_ticks();
-            let (error, most) = (clock.error_ppm().unwrap(), clock.uncertainty_ppm().unwrap());
+            let error = double(clock.error_ppm().unwrap());
+            let most = double(clock.uncertainty_ppm().unwrap());
             // The nominal tick of the LSM6DSV16X is rounded to a ps.
             let true_ppm = 1e6 * off;
             assert!(
@@ -239,7 +241,7 @@ fn the_sensors_clock_is_measured_against_the_hosts() {
                 "{kind:?} {off}: {error} ± {most} ppm"
             );
             assert!(most < 120.0, "{most}");
-            let measured_hz = clock.measured_hz().unwrap();
+            let measured_hz = double(clock.measured_hz().unwrap());
             let true_hz = rate_hz * (1.0 + off);
             // The learned interval is rounded to 1/256 tick.
             let tolerance = 1e-6 * most + 1e-5;

@@ -6,9 +6,10 @@ mod configuration;
 mod driver;
 mod fault;
 mod fifo;
-mod filter;
 mod hostile;
 mod pace;
+#[path = "../common/precision.rs"]
+mod precision;
 mod record;
 mod replay;
 mod sheet;

@@ -1,6 +1,7 @@
 //! Configurations: what follows from them, and what is refused.
 
 use crate::chip::{KINDS, Kind};
+use crate::precision::double;
 use crate::wire::{NoDelay, Wire};
 use allanite::sensor::{
     Configuration, ConfigurationError, Description, FifoImu, icm_42688_p, icm_45686, lsm6dso,
@@ -41,14 +42,14 @@ fn exactly_the_rates_and_ranges_on_offer_are_accepted() {
                     Ok(description) => {
                         assert!(rates.contains(&rate_hz) && ranges.contains(&range_dps));
                         let rate = f64::from(rate_hz);
-                        assert_eq!(description.rate_hz, rate);
+                        assert_eq!(double(description.rate_hz), rate);
                         let full = description.scale_dps * 32768.0;
                         let range = f64::from(range_dps);
                         assert!(
-                            (0.998 * range..1.16 * (range + 1.0)).contains(&full),
+                            (0.998 * range..1.16 * (range + 1.0)).contains(&double(full)),
                             "{kind:?} {full}"
                         );
-                        assert!(description.filter.noise_bandwidth_hz < rate / 2.0);
+                        assert!(double(description.filter.noise_bandwidth_hz) < rate / 2.0);
                     }
                     Err(ConfigurationError::Rate { .. }) => assert!(!rates.contains(&rate_hz)),
                     Err(ConfigurationError::Range { .. }) => {
@@ -251,7 +252,7 @@ fn the_mpus_divide_their_rate_and_keep_the_low_pass_below_it() {
                 assert_eq!(rate_hz * divider, 1000);
                 assert_eq!(usize::from(value(&description, 0x1B) >> 3), code);
                 let full = description.scale_dps * 32768.0;
-                assert!((full / f64::from(range_dps) - 1.0).abs() < 2e-3);
+                assert!((double(full) / f64::from(range_dps) - 1.0).abs() < 2e-3);
             }
             for (code, bandwidth_hz) in (1..).zip(bandwidths_hz) {
                 let wanted = Configuration::new(rate_hz, 250);

@@ -166,8 +166,7 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
         let Some(first) = effect.parameters().first() else {
             return false;
         };
-        let has_bins = self.record.observed().spectrum().is_some();
-        let sees = has_bins || !effect.needs_spectrum();
+        let sees = self.record.observed().spectrum().is_some() || !effect.needs_spectrum();
         let model = &self.step.model;
         let has_place = effect
             .replaces()
@@ -179,9 +178,9 @@ impl<'a, const K: usize, const B: usize> Detection<'a, K, B> {
             .parameters()
             .last()
             .is_some_and(|last| last.name == "drift_hz");
-        // Beside a spectrum, the five terms follow a power law of any size in too many records: of those at what would be its
-        // limit, 31 % showed it (`cargo xtask study detection`).
-        let is_followed = has_bins && first.name == "exponent";
+        // The five terms follow a power law, and white noise that rises, of any size in too many records: of those at what
+        // would be its limit, 31 to 41 % and 25 to 28 % showed it (`cargo xtask study detection`).
+        let is_followed = ["exponent", "rise_hz"].contains(&first.name);
         let is_odd = is_around || is_general || is_drifting || is_followed;
         sees && has_place && !is_odd && effect.mirror().is_none()
     }

@@ -27,7 +27,7 @@ const ROUNDS: u8 = 5;
 
 /// The number of first rounds in which no more is added back to an octave than is left of it. What follows a strong
 /// covariate looks like noise at first. The error of its slope is then so large that adding back what it takes away
-/// would keep the noise large for many rounds. The test of `host-tests/tests/covariate.rs` where both slopes act set
+/// would keep the noise large for many rounds. The test of `host-tests/tests/library/covariate.rs` where both slopes act set
 /// it.
 const CAUTIOUS_ROUNDS: u8 = 2;
 

@@ -13,7 +13,7 @@ const RATIO: f64 = 3.0;
 const FASTEST: f64 = 30.0;
 const SLOWEST: f64 = 1e-9;
 /// Below this rate, the mean over a sample is taken as the mean of its two ends. Chosen by hand;
-/// `host-tests/tests/simulate.rs` compares the sum with its Allan variance.
+/// `host-tests/tests/cli/simulate.rs` compares the sum with its Allan variance.
 const SLOW: f64 = 1e-3;
 
 /// Flicker noise of coefficient B, averaged over each sample interval. It is the superposition of

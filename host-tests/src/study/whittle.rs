@@ -7,7 +7,7 @@
 //! ∂ ln S, so that the bound holds for noise without a variance too.
 //!
 //! The densities are written down here from their definitions, and not taken from the library's kernels. The
-//! densities of the other effects come from the kernels, and `host-tests/tests/efficiency.rs` compares those with
+//! densities of the other effects come from the kernels, and `host-tests/tests/studies/efficiency.rs` compares those with
 //! simulated records.
 
 use crate::simulate::{Coefficients, Hidden};

@@ -27,7 +27,7 @@ struct Octave {
 
 /// The margin on the factor, because the noise is itself estimated, and because a covariate that changes more slowly
 /// than the longest octave scatters up to 1.4 times as much as its octaves tell. The test of
-/// `host-tests/tests/covariate.rs` with 2000 records a case set it: without it, 11 of 8000 records of a random walk
+/// `host-tests/tests/library/covariate.rs` with 2000 records a case set it: without it, 11 of 8000 records of a random walk
 /// blame an unrelated warm-up where 4 are due, and 93 % of the intervals cover the slope; with it, 4 do, and 96 %
 /// cover.
 const MARGIN: Real = 1.25;

@@ -9,10 +9,10 @@ pub struct Limits {
     /// has `[-8192, 8191, i32::MIN, i32::MAX]`.
     pub rails: [i32; 4],
     /// The largest share of samples at a rail. Default 1. The default is chosen by hand;
-    /// `host-tests/tests/integrity/disturbed.rs` runs with it.
+    /// `host-tests/tests/library/integrity/disturbed.rs` runs with it.
     pub rail_per_mille: u16,
     /// A run of equal values is implausible if it is longer than this multiple of the record's mean
-    /// run, `8 … 256`. Default 128. `host-tests/tests/integrity/rest.rs` holds the default: no record
+    /// run, `8 … 256`. Default 128. `host-tests/tests/library/integrity/rest.rs` holds the default: no record
     /// with a noise of 0.2 counts rms or more is refused.
     pub run_factor: u16,
     /// The largest share of samples in implausibly long runs. Default 1. The default is chosen by hand;
@@ -25,7 +25,7 @@ pub struct Limits {
     /// The smallest mean square of the differences of neighbouring samples, in thousandths of a squared
     /// count. It is judged from 1000 differences on. Default 640. White noise of 0.475 to 0.495 counts rms
     /// has it, which depends on where between two counts the mean lies.
-    /// `host-tests/tests/integrity/coarse.rs` sets the default: above it, angle random walk depends on that
+    /// `host-tests/tests/library/integrity/coarse.rs` sets the default: above it, angle random walk depends on that
     /// place by less than 2 %, and a record of 0.5 counts rms is valid wherever its mean lies. The
     /// noise from sample to sample is taken for white. Noise that changes more slowly counts only as far
     /// as neighbours differ, because the short averaging times show no more of it.
@@ -39,7 +39,7 @@ pub struct Limits {
     pub spike_per_mille: u16,
     /// A cluster of samples has moved if its mean deviates by more than this multiple of the mean
     /// absolute difference of neighbouring clusters, `8 … 256`. Default 64. The default is chosen by
-    /// hand. `host-tests/tests/integrity` holds it from both sides: no hidden effect is taken for
+    /// hand. `host-tests/tests/library/integrity` holds it from both sides: no hidden effect is taken for
     /// motion, and a rotation of 10 deg/s for a second is refused.
     pub motion_factor: u16,
     /// The largest share of ΣD² of the clusters that may come from motion. Default 50. The default is

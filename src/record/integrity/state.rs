@@ -10,7 +10,7 @@ use super::{
 };
 
 /// The lengths in samples of the clusters whose means show motion: 0.64 s and 10 s at 100 Hz, 8 ms and
-/// 0.13 s at 8 kHz. Chosen by hand; `host-tests/tests/integrity/disturbed.rs` shakes and turns gyros
+/// 0.13 s at 8 kHz. Chosen by hand; `host-tests/tests/library/integrity/disturbed.rs` shakes and turns gyros
 /// for 1 to 30 s with them.
 pub(super) const CLUSTERS: [u16; 2] = [64, 1024];
 

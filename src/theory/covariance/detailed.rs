@@ -22,7 +22,7 @@ use nalgebra::Complex;
 
 /// The turn and decay, in radians, over a step of the lattice up to which a product with an oscillation is smooth
 /// enough for the trapezoidal rule. The rule's error is a twelfth of the square. Chosen by hand, and held to the
-/// sum over all pairs by `host-tests/tests/covariance`.
+/// sum over all pairs by `host-tests/tests/library/covariance`.
 pub(super) const SMOOTH: f32 = 0.25;
 
 /// The most lags of which the second differences are tabulated. The widest decimation filter needs 95.

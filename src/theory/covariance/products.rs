@@ -14,7 +14,7 @@ use crate::{
 
 /// The phase and decay, in radians, over the lags between the kinks, up to which an oscillation is summed there
 /// like a smooth effect. The terms of the closed form would cancel. Chosen by hand, and held to the sum over all
-/// pairs by `host-tests/tests/covariance`.
+/// pairs by `host-tests/tests/library/covariance`.
 const SLOW: f32 = 1.0;
 
 /// What an effect with detail is multiplied with.

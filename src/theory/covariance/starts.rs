@@ -3,7 +3,7 @@
 use crate::{curve::Point, numerics::math::floor_log2, theory::lattice};
 
 /// The outward tail of the sum ends after two lags in a row that each add less than this share of the
-/// sum. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/covariance`.
+/// sum. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/library/covariance`.
 pub(super) const NEGLIGIBLE: f32 = 1e-4;
 
 /// The number of powers of two among the steps of the sum.
@@ -11,14 +11,14 @@ pub(super) const LEVELS: usize = (lattice::END / 2).ilog2() as usize;
 
 /// Up to this distance from 0 or from the middle, the sum takes the lags one by one, in quarters of the
 /// shorter cluster. The kinks lie within one cluster, which is four quarters. Chosen by hand, and held
-/// to 1 % of the full sum by `host-tests/tests/covariance`.
+/// to 1 % of the full sum by `host-tests/tests/library/covariance`.
 const KINK: u32 = 6;
 /// Up to this distance, the sum takes every second lag. Beyond it, the step is the distance's power of
 /// two, or half of that for octaves less than [`FAR`] apart. Chosen by hand, and held to 1 % of the
-/// full sum by `host-tests/tests/covariance`.
+/// full sum by `host-tests/tests/library/covariance`.
 pub(super) const NEAR: u32 = 8;
 /// The distance of two octaves, in quarters of the shorter cluster, from which on the longer steps are
-/// enough. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/covariance`.
+/// enough. Chosen by hand, and held to 1 % of the full sum by `host-tests/tests/library/covariance`.
 const FAR: u32 = 256;
 
 /// Where the differences of two octaves start.

@@ -3,8 +3,6 @@
 mod coarse;
 mod disturbed;
 mod rest;
-#[path = "../../library/common/seeded.rs"]
-mod seeded;
 mod state;
 
 use allanite::integrity::{Integrity, Tally};

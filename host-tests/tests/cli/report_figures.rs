@@ -1,13 +1,8 @@
 //! The figures of a page of `report` agree with the diagnosis, and show where an error falls.
 
-#[path = "common/browser.rs"]
-mod browser;
-#[path = "common/page.rs"]
-mod page;
-
-use browser::Browser;
+use crate::browser::Browser;
+use crate::page::{embedded, number, opened, reported, simulate, steps};
 use host_tests::program::ADIS16405;
-use page::{embedded, number, opened, reported, simulate, steps};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;

@@ -1,7 +1,7 @@
 //! The state of the integrity check: what it reports, counts, merges and forgets.
 
-use super::seeded::seeded;
 use super::{disturb, integrity, mems};
+use crate::seeded::seeded;
 use allanite::integrity::{Integrity, Limits, Observation};
 use proptest::{collection::vec, prelude::*};
 

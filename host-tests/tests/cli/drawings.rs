@@ -1,9 +1,6 @@
 //! What `plot` draws of the spectrum agrees with the figures of the diagnosis.
 
-#[path = "common/drawing.rs"]
-mod drawing;
-
-use drawing::{
+use crate::drawing::{
     coordinate, dots, drawn, elements, frames, labels, labels_below, number, part, simulate,
 };
 use host_tests::program::{ADIS16405, json, refusal};

@@ -1,11 +1,8 @@
 //! Tests the server of `explore`: it answers nobody but its own page, and refuses what it cannot answer in a line.
 
-#[path = "common/served.rs"]
-mod served;
-
+use crate::served::Served;
 use host_tests::program::{ADIS16405, json};
 use serde_json::{Value, json};
-use served::Served;
 use std::{fs, path::Path};
 
 fn number(value: &Value) -> f64 {

@@ -1,10 +1,7 @@
 //! Bad certificates and snapshots.
 
-#[path = "../../library/common/sealed.rs"]
-mod sealed;
-
 use super::case::{Case, refused};
-use sealed::sealed;
+use crate::sealed::sealed;
 
 /// The head of a certificate's payload, for one axis: device, firmware, temperature, time, rate, samples and
 /// gaps.

@@ -1,13 +1,11 @@
 //! Tests `decode` on whole and broken certificates and snapshots, one file and many.
 
-#[path = "common/factory.rs"]
-mod factory;
-
+use crate::factory;
+use crate::factory::{SINUSOID, axis, encoded, followed, record};
 use allanite::{
     effect::{CATALOGUE, Effect, GaussMarkov, LowPass},
     storage::{AxisCertificate, CertifiedBand, Doubt, EffectCode, RateUnit},
 };
-use factory::{SINUSOID, axis, encoded, followed, record};
 use host_tests::program::{json, output, refusal, run};
 use std::{fs, sync::LazyLock};
 use tempfile::TempDir;

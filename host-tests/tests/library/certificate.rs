@@ -1,11 +1,9 @@
 //! Factory certificates keep what a fit and a diagnosis reported, and are refused if anything has
 //! changed.
 
-#[path = "common/factory.rs"]
-mod factory;
-#[path = "../library/common/sealed.rs"]
-mod sealed;
-
+use crate::factory;
+use crate::factory::{SINUSOID, axis, encoded, followed, record};
+use crate::sealed::sealed;
 use allanite::{
     Curve, Model,
     course::What,
@@ -18,8 +16,6 @@ use allanite::{
         CertifiedWhat, Doubt, EffectCode, Error, Findings, RateUnit,
     },
 };
-use factory::{SINUSOID, axis, encoded, followed, record};
-use sealed::sealed;
 
 fn three_axes() -> Certificate {
     let axes = [axis(None, 1), axis(Some(SINUSOID), 2), axis(None, 3)];

@@ -1,14 +1,9 @@
 //! Tests `report`: the page contains the results of `diagnose`, is accessible, and can be stepped
 //! through.
 
-#[path = "common/browser.rs"]
-mod browser;
-#[path = "common/page.rs"]
-mod page;
-
-use browser::Browser;
+use crate::browser::Browser;
+use crate::page::{embedded, number, opened, reported, simulate, steps};
 use host_tests::program::{ADIS16405, measure_without_spectrum, output, refusal};
-use page::{embedded, number, opened, reported, simulate, steps};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;

@@ -1,14 +1,9 @@
 //! Tests the page of `explore`: in a browser, effects are added and moved by hand as a user does it.
 
-#[path = "common/browser.rs"]
-mod browser;
-#[path = "common/served.rs"]
-mod served;
-
-use browser::Browser;
+use crate::browser::Browser;
+use crate::served::Served;
 use host_tests::program::{ADIS16405, json, output};
 use serde_json::{Value, json};
-use served::Served;
 use std::{
     path::Path,
     thread,

@@ -1,9 +1,6 @@
 //! What `plot` draws of a record over time agrees with the log, and a record that is not valid says so first.
 
-#[path = "common/drawing.rs"]
-mod drawing;
-
-use drawing::{
+use crate::drawing::{
     coordinate, dots, drawn, elements, frames, labels, labels_below, number, part, simulate,
 };
 use host_tests::program::{json, output};

@@ -1,0 +1,42 @@
+//! The program `allanite`, as its users call it: what it reads, prints, draws and refuses.
+
+#[path = "../common/browser.rs"]
+mod browser;
+#[path = "../common/drawing.rs"]
+mod drawing;
+#[path = "../common/factory.rs"]
+mod factory;
+#[path = "../common/page.rs"]
+mod page;
+#[path = "../../library/common/sealed.rs"]
+mod sealed;
+#[path = "../common/served.rs"]
+mod served;
+
+mod bad_input;
+mod command_line;
+mod compare;
+mod curve_file;
+mod decode;
+mod diagnose;
+mod drawings;
+mod evidence;
+mod explore;
+mod explore_server;
+mod export;
+mod export_tables;
+mod formats;
+mod help;
+mod known_filter;
+mod log;
+mod lot;
+mod many;
+mod merge;
+mod overbound;
+mod plot;
+mod readme;
+mod record_over_time;
+mod report;
+mod report_figures;
+mod simulate;
+mod watch;

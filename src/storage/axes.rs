@@ -22,8 +22,6 @@
 //! | losses | u64 |
 //! | with a gate: samples left out, then for each axis the integrity of all samples | u64, … |
 //! | for each self-test: plan, next look, limits kept, verdict | |
-//!
-//! Version 3, which has neither spectrum nor course, is read too.
 
 use super::{
     Error,
@@ -46,9 +44,6 @@ use crate::{
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 const VERSION: u8 = 4;
-
-/// The version without a spectrum.
-const WITHOUT_SPECTRUM: u8 = 3;
 
 /// The largest number of bytes that the integrity of an axis takes.
 const INTEGRITY: usize = 520;
@@ -242,7 +237,7 @@ where
     fn read(&mut self, self_tests: &mut [SelfTest<OCTAVES>], bytes: &[u8]) -> Result<(), Error> {
         let (version, payload) = envelope::open_any(bytes, Kind::Snapshot)?;
         match version {
-            VERSION | WITHOUT_SPECTRUM => {}
+            VERSION => {}
             snapshot::VERSION => return self.read_accumulator(self_tests, bytes),
             found => {
                 return Err(Error::UnknownVersion {
@@ -262,10 +257,7 @@ where
         if parts != Self::parts(self_tests.len()) {
             return Err(Error::OtherParts);
         }
-        let size = match version {
-            WITHOUT_SPECTRUM => (0, 0),
-            _ => reader.take()?,
-        };
+        let size: (u16, u8) = reader.take()?;
         if size != <S::Sums as SpectrumSums>::SIZE {
             return Err(Error::OtherParts);
         }

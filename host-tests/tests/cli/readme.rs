@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 use xtask::{
     CommandLine, cost,
     firmware::{
-        Precision, Way,
+        Precision,
         budgets::{self, target},
         figures,
     },
@@ -221,7 +221,7 @@ fn every_page_is_linked() {
 
 #[test]
 fn figures_are_those_of_the_budgets() {
-    let shown = figures::readme(&budgets::committed(Way::Rustup).unwrap()).unwrap();
+    let shown = figures::readme(&budgets::committed().unwrap()).unwrap();
     assert!(shown.lines().count() > 20);
     assert!(text(FIGURES).contains(&shown), "{FIGURES} lacks:\n{shown}");
 }
@@ -237,7 +237,7 @@ fn the_cost_of_a_product_is_what_the_calculator_says() {
     let product = CommandLine::try_parse_from(line)
         .expect("valid arguments")
         .product();
-    let budgets = budgets::committed(Way::Rustup).unwrap();
+    let budgets = budgets::committed().unwrap();
     let table = cost::table(&product.expect("a product"), &budgets).unwrap();
     assert!(
         table.lines().count() > 8 && page.contains(&table),
@@ -265,7 +265,7 @@ fn shown_figure(page: &str, row: &str) -> f64 {
 #[test]
 fn rounded_figures_of_the_crates_page_are_near_the_budgets() {
     let page = text(CRATE_PAGE);
-    let budgets = budgets::committed(Way::Rustup).unwrap();
+    let budgets = budgets::committed().unwrap();
     let budgets = &budgets[target(Precision::Single)];
     for (row, budget) in [
         (
@@ -306,23 +306,14 @@ fn rounded_figures_of_the_crates_page_are_near_the_budgets() {
 fn memory_that_is_promised_is_enough() {
     let promise = "fit into 123 KiB of flash and 34 KiB of RAM of a Cortex-M4F";
     assert!(text(README).contains(promise), "{README} lacks: {promise}");
-    for way in Way::ALL {
-        promised(way);
-    }
-}
-
-fn promised(way: Way) {
-    let budgets = budgets::committed(way).unwrap();
+    let budgets = budgets::committed().unwrap();
     for core in budgets["cores"].as_array().unwrap() {
         let ram = core["ram_bytes"].as_u64().unwrap();
-        assert!(
-            core["core"] != "Cortex-M0" || ram < 16 * 1024,
-            "{way}: {core}"
-        );
+        assert!(core["core"] != "Cortex-M0" || ram < 16 * 1024, "{core}");
     }
     let most = |precision, figure: &str, kibibytes: u64| {
         let bytes = budgets[target(precision)][figure].as_u64().unwrap();
-        assert!(bytes <= kibibytes * 1024, "{way}: {figure}: {bytes}");
+        assert!(bytes <= kibibytes * 1024, "{figure}: {bytes}");
     };
     for precision in Precision::ALL {
         most(precision, "flash_bytes_accumulator", 4);

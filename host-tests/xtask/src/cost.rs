@@ -1,6 +1,6 @@
 //! Adds up what a product costs, from the figures that `cargo xtask bench` measured in QEMU.
 
-use crate::firmware::{Precision, Way, budgets};
+use crate::firmware::{Precision, budgets};
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
@@ -326,7 +326,7 @@ pub fn table(product: &Product, budgets: &Value) -> Result<String> {
 }
 
 pub(crate) fn run(product: &Product) -> Result<()> {
-    let budgets = budgets::committed(Way::Rustup)?;
+    let budgets = budgets::committed()?;
     println!(
         "{} axes at {} Hz on a {} with {} million instructions a second",
         product.axes,
@@ -376,30 +376,28 @@ mod tests {
 
     #[test]
     fn sums_of_parts_are_near_what_was_measured_together() {
-        for way in [Way::Rustup, Way::Debian] {
-            let budgets = budgets::committed(way).unwrap();
-            let target = &budgets["target"];
-            for (spectrum, course, name) in [
-                ("0", false, ""),
-                ("64", false, "_with_spectrum"),
-                ("64", true, "_with_spectrum_and_course"),
-            ] {
-                let cost = product(spectrum, course).cost(&budgets).unwrap();
-                let receive = budgets["cores"][3]["parts"]["receive"]["instructions_3"].as_f64();
-                let together = &target[format!("instructions_per_sample_three_axes{name}")];
-                assert_near(cost.main_loop - receive.unwrap(), together);
-            }
-            let record = product("0", false).cost(&budgets).unwrap().record;
-            assert_near(
-                record / 3.0,
-                &target["ram_bytes_per_axis_20_with_all_parts"],
-            );
+        let budgets = budgets::committed().unwrap();
+        let target = &budgets["target"];
+        for (spectrum, course, name) in [
+            ("0", false, ""),
+            ("64", false, "_with_spectrum"),
+            ("64", true, "_with_spectrum_and_course"),
+        ] {
+            let cost = product(spectrum, course).cost(&budgets).unwrap();
+            let receive = budgets["cores"][3]["parts"]["receive"]["instructions_3"].as_f64();
+            let together = &target[format!("instructions_per_sample_three_axes{name}")];
+            assert_near(cost.main_loop - receive.unwrap(), together);
         }
+        let record = product("0", false).cost(&budgets).unwrap().record;
+        assert_near(
+            record / 3.0,
+            &target["ram_bytes_per_axis_20_with_all_parts"],
+        );
     }
 
     #[test]
     fn what_does_not_fit_is_told_with_its_remedy() {
-        let budgets = budgets::committed(Way::Rustup).unwrap();
+        let budgets = budgets::committed().unwrap();
         let mut big = product("64", true);
         (big.ram, big.flash) = (Some(32.0), Some(64.0));
         let complaints = big.complaints(&big.cost(&budgets).unwrap());
@@ -416,7 +414,7 @@ mod tests {
 
     #[test]
     fn less_costs_less() {
-        let budgets = budgets::committed(Way::Rustup).unwrap();
+        let budgets = budgets::committed().unwrap();
         let all = product("64", true).cost(&budgets).unwrap();
         let mut little = product("0", false);
         (little.no_gate, little.no_moments, little.covariates) = (true, true, 0);

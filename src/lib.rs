@@ -60,7 +60,7 @@
 //! | [`sensor`] | reads an IMU on SPI or I²C through embedded-hal 1.0: a sensor is a description, and eight are there, four with FIFO |
 //! | [`queue`] | hands samples from an interrupt to the main loop, and loses none silently |
 //! | [`axis`] | leaves out samples that are stuck, at a rail, spikes or motion, and keeps everything else |
-//! | [`octave`] | is the accumulator: quarter-overlapping differences of adjacent clusters, exact in 192 bits |
+//! | [`octave`] | is the accumulator: quarter-overlapping differences of adjacent clusters, exact in 158 bits |
 //! | [`spectrum`] | keeps power spectral densities beside the curve, and says what each effect adds to them |
 //! | [`integrity`] | judges whether the record is one of a gyro at rest |
 //! | [`kurtosis`], [`covariate`] | keep evidence beside the curve: jumps of the rate, and what follows a temperature |
@@ -139,7 +139,7 @@
 //!
 //! # Samples were lost
 //!
-//! [`Axes::gap`] marks the place, and [`Axes::missing`] also counts the samples. No difference spans the gap, and
+//! [`Axes::gap`] marks the place, and [`Axes::lost`] also counts the samples. No difference spans the gap, and
 //! everything before it stays. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the
 //! two. [`Accumulator`] has `gap` and `merge` too.
 //!

@@ -38,8 +38,8 @@ impl Recorded {
         self.is_running = true;
     }
 
-    fn missing(&mut self, samples: usize) {
-        self.course.missing(samples as u64);
+    fn lost(&mut self, samples: usize) {
+        self.course.lost(samples as u64);
         self.slots.resize(self.slots.len() + samples, None);
         self.is_running &= samples == 0;
     }
@@ -131,7 +131,7 @@ fn sums_are_exact_through_doublings_and_gaps() {
         for n in 0..3000 {
             match random.below(40) {
                 0 => recorded.gap(),
-                1 => recorded.missing(random.below(30)),
+                1 => recorded.lost(random.below(30)),
                 _ => {}
             }
             // Counts of a gyro at rest, or those at both ends of their range.
@@ -168,12 +168,12 @@ fn blocks_double_when_the_sample_after_the_last_block_comes() {
 fn a_course_ends_after_its_longest_blocks_and_keeps_what_it_has() {
     let mut course = Course::<0>::new();
     course.push(7, []);
-    course.missing(u64::MAX);
+    course.lost(u64::MAX);
     assert_eq!(course.time(), 1 << 37);
     assert_eq!(course.block_length(), LONGEST);
     let full = course.clone();
     course.push(5, []);
-    course.missing(3);
+    course.lost(3);
     assert_eq!(course.exact_sums().next(), Some((7, 0)));
     assert!(course.exact_sums().eq(full.exact_sums()));
     assert_eq!(course.time(), full.time());

@@ -1,7 +1,7 @@
 //! Covariate stage: whether the rate follows a covariate, or two that act together. This comes before the search for
 //! effects, because a covariate carries its own record.
 
-use super::step::{Beside, FollowedCovariate};
+use super::step::{FollowedCovariate, SecondCovariate};
 use crate::{
     curve::Curve,
     evidence::{
@@ -153,7 +153,7 @@ impl<const K: usize, const B: usize> Search<'_, '_, K, B> {
         Some(FollowedCovariate {
             index,
             slope,
-            beside: Some(Beside {
+            beside: Some(SecondCovariate {
                 index: other,
                 slope: beside,
                 correlation,

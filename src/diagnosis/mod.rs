@@ -26,7 +26,7 @@ pub use options::Options;
 pub use run::{Diagnosis, Progress};
 pub use shapes::fit_shapes;
 pub use step::{
-    Addition, Beside, Candidate, FollowedCovariate, MAX_AMBIGUOUS, MAX_CANDIDATES, Step,
+    Addition, Candidate, FollowedCovariate, MAX_AMBIGUOUS, MAX_CANDIDATES, SecondCovariate, Step,
 };
 pub use verdict::Verdict;
 pub use width::line_width;

@@ -154,7 +154,7 @@ impl Rounds {
             Some(confused) => {
                 // This is another model, whose scores cannot be compared with the earlier ones.
                 if let Some(term) = self.present.model.terms_mut().get_mut(confused) {
-                    term.held = true;
+                    term.pinned = true;
                 }
                 self.present.squares.put(confused, 0.0);
                 self.before = Real::INFINITY;

@@ -56,14 +56,14 @@ pub struct FollowedCovariate {
     /// The slope with which the rate follows the covariate.
     pub slope: Slope,
     /// The covariate that acts beside it; `None` if it acts alone.
-    pub beside: Option<Beside>,
+    pub beside: Option<SecondCovariate>,
 }
 
 /// A covariate that acts beside another one, such as the rate of change of a temperature that the rate follows with a
 /// lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Beside {
+pub struct SecondCovariate {
     /// The covariate's place among [`Record::covariates`](crate::Record::covariates).
     pub index: usize,
     /// The slope with which the rate follows it.

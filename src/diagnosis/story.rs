@@ -28,7 +28,7 @@ const MAX_STEPS: usize = 4;
 
 /// One step of a story.
 #[derive(Debug)]
-struct Told {
+struct StoryStep {
     /// What is added, and what could be added instead, best first.
     candidates: Vec<Candidate, MAX_CANDIDATES>,
     ambiguous: Vec<&'static str, MAX_AMBIGUOUS>,
@@ -37,7 +37,7 @@ struct Told {
 /// What was found, in the order in which it is told.
 #[derive(Debug)]
 pub(super) struct Story {
-    steps: Vec<Told, MAX_STEPS>,
+    steps: Vec<StoryStep, MAX_STEPS>,
     /// The number of steps that have been told.
     told: usize,
     /// What the white noise is in other stories that explain the record as well.
@@ -88,7 +88,7 @@ impl Story {
         else {
             return Err(Stop::Paused);
         };
-        let mut steps: Vec<Told, MAX_STEPS> = Vec::new();
+        let mut steps: Vec<StoryStep, MAX_STEPS> = Vec::new();
         for &(term, fall) in &ordered {
             let mut candidates: Vec<Candidate, MAX_CANDIDATES> = Vec::new();
             let mut ambiguous: Vec<&'static str, MAX_AMBIGUOUS> = Vec::new();
@@ -108,7 +108,7 @@ impl Story {
                     let _ = candidates.push(candidate);
                 }
             }
-            let _ = steps.push(Told {
+            let _ = steps.push(StoryStep {
                 candidates,
                 ambiguous,
             });

@@ -13,7 +13,7 @@ use crate::{
     limits::{MAX_EFFECTS, PAIRS},
     numerics::{
         math,
-        nnls::{Free, NormalEquations, Vector},
+        nnls::{NormalEquations, PassiveSet, Vector},
         real::{Real, real, single},
     },
     theory::model::Model,
@@ -97,7 +97,7 @@ impl Fit {
         let columns = Columns::new(observed, model);
         let problem = Problem::new(observed, model, &columns);
         let squares = problem.squares_of(self);
-        let free = Free::of(|i| i < MAX_EFFECTS && squares[i] > 0.0);
+        let free = PassiveSet::of(|i| i < MAX_EFFECTS && squares[i] > 0.0);
         let mut weights = Weights::EMPTY;
         weights.set(&problem, &squares, self.tolerance)?;
         let mut shape = ShapeEquations::EMPTY;
@@ -116,7 +116,7 @@ impl Fit {
 
 impl Correlations {
     /// Computes the correlations from the columns of a covariance matrix.
-    fn take(&mut self, count: usize, free: &Free, column: impl Fn(usize) -> Option<Vector>) {
+    fn take(&mut self, count: usize, free: &PassiveSet, column: impl Fn(usize) -> Option<Vector>) {
         let mut variances = Vector::zeros();
         for i in 0..count {
             let own = if free.has(i) { column(i) } else { None };

@@ -154,7 +154,7 @@ fn coefficient<const K: usize, const B: usize>(
     shape: Option<&ShapeEquations>,
     widened: Real,
 ) -> Coefficient {
-    if term.held {
+    if term.pinned {
         return Coefficient::new(term.effect, 0.0, None);
     }
     let square = solver.squares[i];
@@ -224,8 +224,8 @@ fn interval<const K: usize, const B: usize>(
 ) -> Option<Interval> {
     let overlap = shape.map_or(1.0, |shape| shape.widening(i));
     let rise = real(CHI_SQUARED_95) * widened * widened * overlap;
-    let (squares, free, held) = (&solver.squares, &solver.free, problem.held());
-    let mut interval = solver.equations.interval(i, squares, free, &held, rise)?;
+    let (squares, free, pinned) = (&solver.squares, &solver.free, problem.pinned());
+    let mut interval = solver.equations.interval(i, squares, free, &pinned, rise)?;
     interval.variance *= widened * widened * overlap;
     let with_shapes = shape.and_then(|shape| shape.variance(i, &free.with(i)));
     if let Some(variance) = with_shapes {
@@ -258,7 +258,8 @@ fn bound<const K: usize, const B: usize>(
         if set.is_err() {
             break;
         }
-        let (squares, mut free) = equations.solve_non_negative_near(&solver.free, &problem.held());
+        let (squares, mut free) =
+            equations.solve_non_negative_near(&solver.free, &problem.pinned());
         free.add(i);
         let Some(variance) = equations.variance(i, &free) else {
             break;

@@ -13,7 +13,7 @@ use crate::{
     list::{self, numbered},
     numerics::{
         chi_squared::chi_squared_tail,
-        nnls::{Free, Interval, NormalEquations},
+        nnls::{Interval, NormalEquations, PassiveSet},
         real::Real,
     },
 };
@@ -80,7 +80,7 @@ pub(super) fn fit<const K: usize, const B: usize>(
     let mut equations = NormalEquations::EMPTY;
     self::equations(problem, weight, &mut equations)?;
     let squares = equations.solve()?;
-    let free = Free::of(|i| i < problem.count());
+    let free = PassiveSet::of(|i| i < problem.count());
     let residuals = problem.rows().map(|row| {
         let residual = problem.measured(row) - problem.variance(row, &squares);
         weight(row) * residual * residual

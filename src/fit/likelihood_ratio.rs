@@ -89,8 +89,8 @@ impl LikelihoodRatio {
         fit: &Fit,
         place: usize,
     ) -> Result<Self, Error> {
-        let held = problem.held().with(place);
-        let (start, _) = solver.equations.solve_non_negative(&held);
+        let pinned = problem.pinned().with(place);
+        let (start, _) = solver.equations.solve_non_negative(&pinned);
         solver.begin_rounds(problem, start, fit.tolerance, Rounds::All)?;
         Ok(Self {
             place,
@@ -131,8 +131,8 @@ impl LikelihoodRatio {
         let rest = |k: usize| problem.measured(k) - self.square * problem.unit(self.place, k);
         let (weights, equations) = (&solver.weights, &mut solver.equations);
         weights.equations(problem, &|_| 1.0, &[], &rest, equations)?;
-        let held = problem.held().with(self.place);
-        let (mut squares, _) = solver.equations.solve_non_negative(&held);
+        let pinned = problem.pinned().with(self.place);
+        let (mut squares, _) = solver.equations.solve_non_negative(&pinned);
         squares.put(self.place, self.square);
         solver.squares = squares;
         if solver.has_ended(problem, self.converged)? {
@@ -152,7 +152,7 @@ impl LikelihoodRatio {
         let curve = |k: usize| problem.measured(k);
         let (weights, equations) = (&solver.weights, &mut solver.equations);
         weights.equations(problem, &|_| 1.0, &[], &curve, equations)?;
-        let (squares, _): (Vector, _) = solver.equations.solve_non_negative(&problem.held());
+        let (squares, _): (Vector, _) = solver.equations.solve_non_negative(&problem.pinned());
         let free = solver.weights.squared_residuals(problem, &squares);
         let root = math::sqrt((at_limit - free).max(0.0));
         Ok(if squares[self.place] > self.square {

@@ -4,7 +4,7 @@ use crate::{
     limits::CHI_SQUARED_95,
     list::numbered,
     numerics::{
-        nnls::{Free, Matrix, NormalEquations, Vector},
+        nnls::{Matrix, NormalEquations, PassiveSet, Vector},
         real::{Real, real},
     },
     theory::model::Model,
@@ -25,7 +25,7 @@ pub(crate) fn record_length_s(
     i: usize,
     square: Real,
     squares: &Vector,
-    free: &Free,
+    free: &PassiveSet,
     model: &Model,
     interval_s: Real,
     samples: Real,

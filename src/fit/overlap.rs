@@ -17,7 +17,7 @@ use crate::{
     limits::MAX_EFFECTS,
     list::numbered,
     numerics::{
-        nnls::{Free, Vector},
+        nnls::{PassiveSet, Vector},
         real::{Real, real},
     },
     spectrum::{BAND, Bin, Fine, Lags, Lobe, Sum, octave_lag, relative_covariance},
@@ -36,7 +36,7 @@ pub(super) struct Overlap<'a, const K: usize, const B: usize> {
     problem: &'a Problem<'a, K, B>,
     squares: &'a Vector,
     /// The effects that are lines: deterministic effects with a frequency.
-    lines: Free,
+    lines: PassiveSet,
     /// The densities of the model's random part.
     random: Rows<K, B>,
 }
@@ -77,7 +77,7 @@ impl<'a, const K: usize, const B: usize> Overlap<'a, K, B> {
         Self {
             problem,
             squares,
-            lines: Free::of(|i| terms.get(i).is_some_and(is_line)),
+            lines: PassiveSet::of(|i| terms.get(i).is_some_and(is_line)),
             random,
         }
     }

@@ -9,7 +9,7 @@ use crate::{
     list::{self, numbered},
     numerics::{
         math,
-        nnls::{Free, Vector},
+        nnls::{PassiveSet, Vector},
         real::{Real, real, single},
     },
     spectrum::{Bin, WHITE_DENSITY},
@@ -216,8 +216,8 @@ impl<'a, const K: usize, const B: usize> Problem<'a, K, B> {
     }
 
     /// The choice of coefficients that are held at zero.
-    pub(crate) fn held(&self) -> Free {
-        Free::of(|i| self.model.terms().get(i).is_some_and(|term| term.held))
+    pub(crate) fn pinned(&self) -> PassiveSet {
+        PassiveSet::of(|i| self.model.terms().get(i).is_some_and(|term| term.pinned))
     }
 
     /// The number of coefficients.
@@ -260,16 +260,16 @@ impl<'a, const K: usize, const B: usize> Problem<'a, K, B> {
     }
 
     /// The deterministic effects.
-    pub(crate) fn deterministic(&self) -> Free {
+    pub(crate) fn deterministic(&self) -> PassiveSet {
         let is_deterministic = |term: &Term| {
             let shape = term.sampled_shape(self.interval_s);
             term.effect.response(1.0, &shape).is_some()
         };
-        Free::of(|i| self.model.terms().get(i).is_some_and(is_deterministic))
+        PassiveSet::of(|i| self.model.terms().get(i).is_some_and(is_deterministic))
     }
 
     /// The share of these effects in the model's value of a row, from 0 to 1.
-    pub(crate) fn share_of(&self, effects: &Free, row: usize, squares: &Vector) -> Real {
+    pub(crate) fn share_of(&self, effects: &PassiveSet, row: usize, squares: &Vector) -> Real {
         let places = (0..self.count()).filter(|&i| effects.has(i));
         places.map(|i| self.share(row, i, squares)).sum()
     }

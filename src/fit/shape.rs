@@ -8,7 +8,7 @@ use crate::{
     list::{self, numbered},
     numerics::{
         math,
-        nnls::{Free, NormalEquations, Vector},
+        nnls::{NormalEquations, PassiveSet, Vector},
         real::{Real, real, single},
     },
     theory::model::Term,
@@ -185,7 +185,7 @@ impl ShapeEquations {
         problem: &Problem<'_, K, B>,
         weights: &Weights<K, B>,
         squares: &Vector,
-        free: &Free,
+        free: &PassiveSet,
     ) -> bool {
         let mut derivatives = Derivatives::NONE;
         derivatives.set(problem, squares);
@@ -202,7 +202,7 @@ impl ShapeEquations {
         problem: &Problem<'_, K, B>,
         weights: &Weights<K, B>,
         squares: &Vector,
-        free: &Free,
+        free: &PassiveSet,
         derivatives: &[Rows<K, B, f32>],
     ) {
         let (count, unknowns) = (self.count(), self.equations.count());
@@ -252,8 +252,10 @@ impl ShapeEquations {
         core::array::from_fn(|at| self.widening(count.saturating_add(at)))
     }
 
-    fn with_shapes(&self, free: &Free, count: usize) -> Free {
-        Free::of(|i| (i < count && free.has(i)) || (count..self.equations.count()).contains(&i))
+    fn with_shapes(&self, free: &PassiveSet, count: usize) -> PassiveSet {
+        PassiveSet::of(|i| {
+            (i < count && free.has(i)) || (count..self.equations.count()).contains(&i)
+        })
     }
 
     fn count(&self) -> usize {
@@ -262,7 +264,7 @@ impl ShapeEquations {
 
     /// The step of Gauss and Newton: the change of the shapes' logarithms that leads to the smallest
     /// χ², with all free coefficients fitted anew. Calls `each(effect, parameter, change)`.
-    pub(crate) fn steps(&self, free: &Free, mut each: impl FnMut(usize, usize, Real)) {
+    pub(crate) fn steps(&self, free: &PassiveSet, mut each: impl FnMut(usize, usize, Real)) {
         let count = self.count();
         let free = self.with_shapes(free, count);
         let Some(steps) = self.equations.solve_free(&free) else {
@@ -274,21 +276,21 @@ impl ShapeEquations {
     }
 
     /// The variance of a squared coefficient with the shapes free.
-    pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<Real> {
+    pub(crate) fn variance(&self, i: usize, free: &PassiveSet) -> Option<Real> {
         let free = self.with_shapes(free, self.count());
         let variance = self.equations.variance(i, &free)?;
         Some(variance * self.widening(i))
     }
 
     /// The covariances of a squared coefficient with all coefficients, with the shapes free.
-    pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector> {
+    pub(crate) fn column(&self, i: usize, free: &PassiveSet) -> Option<Vector> {
         let free = self.with_shapes(free, self.count());
         self.equations.column(i, &free)
     }
 
     /// The largest standard error of a shape's logarithm. It is infinite where the curve does not
     /// determine a shape.
-    pub(crate) fn worst_error(&self, free: &Free) -> Real {
+    pub(crate) fn worst_error(&self, free: &PassiveSet) -> Real {
         let count = self.count();
         let free = self.with_shapes(free, count);
         let variance = |at: usize| self.equations.variance(count.saturating_add(at), &free);
@@ -299,7 +301,11 @@ impl ShapeEquations {
 
     /// The fitted parameters with their intervals, which are symmetric in the logarithm. The standard errors are
     /// multiplied by `widened`.
-    pub(crate) fn estimates(&self, free: &Free, widened: Real) -> Vec<ShapeEstimate, MAX_SHAPE> {
+    pub(crate) fn estimates(
+        &self,
+        free: &PassiveSet,
+        widened: Real,
+    ) -> Vec<ShapeEstimate, MAX_SHAPE> {
         let count = self.count();
         let free = self.with_shapes(free, count);
         let parameters = numbered(self.parameters.iter());

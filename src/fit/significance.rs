@@ -94,7 +94,7 @@ fn skewness<const K: usize, const B: usize>(
     place: usize,
 ) -> Real {
     let (equations, weights) = (&solver.equations, &solver.weights);
-    let (_, free) = equations.solve_non_negative(&problem.held());
+    let (_, free) = equations.solve_non_negative(&problem.pinned());
     let Some(covariances) = equations.covariances(place, &free.with(place)) else {
         return 0.0;
     };

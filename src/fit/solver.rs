@@ -11,7 +11,7 @@ use crate::{
     list::numbered,
     numerics::{
         chi_squared::chi_squared_tail,
-        nnls::{Free, NormalEquations, Vector},
+        nnls::{NormalEquations, PassiveSet, Vector},
         real::Real,
     },
 };
@@ -78,7 +78,7 @@ pub(crate) struct Solver<const K: usize, const B: usize = 0> {
     pub(crate) weights: Weights<K, B>,
     pub(crate) equations: NormalEquations,
     pub(crate) squares: Vector,
-    pub(crate) free: Free,
+    pub(crate) free: PassiveSet,
     pub(crate) chi_squared: Real,
     /// What the solution makes smallest, `r'C⁻¹r`.
     pub(crate) squared_residuals: Real,
@@ -103,7 +103,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         weights: Weights::EMPTY,
         equations: NormalEquations::EMPTY,
         squares: Vector::ZEROS,
-        free: Free::NONE,
+        free: PassiveSet::NONE,
         chi_squared: 0.0,
         squared_residuals: 0.0,
         assumed: Vector::ZEROS,
@@ -132,7 +132,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
             Start::Independent => {
                 let weight = |row| independent::by_relative_accuracy(problem, row);
                 independent::equations(problem, weight, &mut self.equations)?;
-                self.equations.solve_non_negative(&problem.held()).0
+                self.equations.solve_non_negative(&problem.pinned()).0
             }
             Start::From(squares) | Start::Once(squares) => squares,
         };
@@ -202,7 +202,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
         let curve = |k: usize| problem.measured(k);
         let (weights, equations) = (&self.weights, &mut self.equations);
         weights.equations(problem, &|_| 1.0, &[], &curve, equations)?;
-        (self.squares, self.free) = self.equations.solve_non_negative(&problem.held());
+        (self.squares, self.free) = self.equations.solve_non_negative(&problem.pinned());
         self.degrees_of_freedom = degrees_of_freedom(problem, &self.free);
         let change = self.change(problem);
         let is_last = change.amax() < CONVERGED
@@ -322,7 +322,7 @@ impl<const K: usize, const B: usize> Solver<K, B> {
 /// parameters.
 fn degrees_of_freedom<const K: usize, const B: usize>(
     problem: &Problem<'_, K, B>,
-    free: &Free,
+    free: &PassiveSet,
 ) -> usize {
     let terms = numbered(problem.model.terms().iter());
     let active = terms.filter(|&(i, _)| free.has(i));

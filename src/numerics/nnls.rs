@@ -31,8 +31,8 @@ const LEAST_PIVOT: Real = by_precision(1e-10, 1e-5);
 /// precision, it is some ten times the rounding of a product. `src/numerics/nnls/tests.rs` checks the solutions.
 const LEAST_SLOPE: Real = by_precision(1e-12, 1e-6);
 
-/// The choice of free unknowns. The others are held at zero.
-pub(crate) type Free = Choice;
+/// The choice of free unknowns, the passive set of Lawson & Hanson (1974, chapter 23). The others are held at zero.
+pub(crate) type PassiveSet = Choice;
 
 /// The normal equations, with every column scaled to one so that coefficients of any magnitude share
 /// one tolerance.
@@ -113,7 +113,7 @@ impl NormalEquations {
 
     /// Factors the equations of the free unknowns. The rows of the others become those of the identity.
     #[inline(never)]
-    fn factor(&self, free: &Free, factor: &mut Matrix) -> bool {
+    fn factor(&self, free: &PassiveSet, factor: &mut Matrix) -> bool {
         for i in 0..self.count {
             for j in 0..=i {
                 let element = match (i == j, free.has(i) && free.has(j)) {
@@ -132,7 +132,7 @@ impl NormalEquations {
     /// Solves the scaled equations of the free unknowns for any right side, in place. Returns `false`
     /// if they cannot be told apart.
     #[inline(never)]
-    fn solve_for(&self, free: &Free, x: &mut Vector) -> bool {
+    fn solve_for(&self, free: &PassiveSet, x: &mut Vector) -> bool {
         let mut factor = Matrix::ZEROS;
         let regular = self.factor(free, &mut factor);
         if regular {
@@ -142,7 +142,7 @@ impl NormalEquations {
         regular
     }
 
-    fn solve_scaled(&self, free: &Free) -> Option<Vector> {
+    fn solve_scaled(&self, free: &PassiveSet) -> Option<Vector> {
         // Elements beyond the count may be left over from an earlier use, so they are not copied.
         let mut solution = Vector::zeros();
         for i in (0..self.count).filter(|&i| free.has(i)) {
@@ -173,7 +173,7 @@ impl NormalEquations {
 
     /// The solution with the given unknowns free, whatever their signs. `None` if they cannot be told
     /// apart.
-    pub(crate) fn solve_free(&self, free: &Free) -> Option<Vector> {
+    pub(crate) fn solve_free(&self, free: &PassiveSet) -> Option<Vector> {
         let solution = self.solve_scaled(free)?;
         Some(solution.component_mul(&self.scale).into())
     }
@@ -183,7 +183,7 @@ impl NormalEquations {
     /// # Errors
     /// [`Error::Singular`] if the unknowns cannot be told apart.
     pub(crate) fn solve(&self) -> Result<Vector, Error> {
-        let all = Free::of(|i| i < self.count);
+        let all = PassiveSet::of(|i| i < self.count);
         let solution = self.solve_scaled(&all).ok_or(Error::Singular)?;
         Ok(solution.component_mul(&self.scale).into())
     }
@@ -191,30 +191,39 @@ impl NormalEquations {
     /// The solution without negative coefficients, and the choice of those above zero. The coefficients
     /// of `held` stay at zero. The algorithm is that of Lawson & Hanson 1974, ch. 23, applied to the
     /// normal equations.
-    pub(crate) fn solve_non_negative(&self, held: &Free) -> (Vector, Free) {
-        self.improve(Vector::zeros(), Free::default(), held)
+    pub(crate) fn solve_non_negative(&self, pinned: &PassiveSet) -> (Vector, PassiveSet) {
+        self.improve(Vector::zeros(), PassiveSet::default(), pinned)
     }
 
     /// Finds the same solution, and does so sooner if `guess` is the right choice of coefficients above
     /// zero.
-    pub(crate) fn solve_non_negative_near(&self, guess: &Free, held: &Free) -> (Vector, Free) {
+    pub(crate) fn solve_non_negative_near(
+        &self,
+        guess: &PassiveSet,
+        pinned: &PassiveSet,
+    ) -> (Vector, PassiveSet) {
         match self.solve_scaled(guess) {
             Some(trial) if (0..self.count).all(|i| !guess.has(i) || trial[i] > 0.0) => {
-                self.improve(trial, *guess, held)
+                self.improve(trial, *guess, pinned)
             }
-            _ => self.solve_non_negative(held),
+            _ => self.solve_non_negative(pinned),
         }
     }
 
     #[inline(never)]
-    fn improve(&self, mut solution: Vector, mut free: Free, held: &Free) -> (Vector, Free) {
-        let mut refused = Free::default();
+    fn improve(
+        &self,
+        mut solution: Vector,
+        mut free: PassiveSet,
+        pinned: &PassiveSet,
+    ) -> (Vector, PassiveSet) {
+        let mut refused = PassiveSet::default();
         // Each round frees one coefficient. Three times their number is the customary limit.
         for _ in 0..3 * UNKNOWNS {
             let gradient = self.gradient(&solution);
             let candidate = (0..self.count)
                 .filter(|&i| {
-                    !(free.has(i) || refused.has(i) || held.has(i)) && gradient[i] > LEAST_SLOPE
+                    !(free.has(i) || refused.has(i) || pinned.has(i)) && gradient[i] > LEAST_SLOPE
                 })
                 .max_by(|&a, &b| gradient[a].total_cmp(&gradient[b]));
             let Some(entering) = candidate else { break };
@@ -231,20 +240,20 @@ impl NormalEquations {
             solution = self.retreat(solution, trial, &mut free);
             // A coefficient that was refused beside others may be accepted once the others have
             // changed.
-            refused = Free::of(|i| refused.has(i) && i == entering);
+            refused = PassiveSet::of(|i| refused.has(i) && i == entering);
         }
         (solution.component_mul(&self.scale).into(), free)
     }
 
     /// Goes from a solution towards one that may have negative coefficients. Coefficients that reach
     /// zero are held there, until none is negative.
-    fn retreat(&self, mut solution: Vector, mut trial: Vector, free: &mut Free) -> Vector {
+    fn retreat(&self, mut solution: Vector, mut trial: Vector, free: &mut PassiveSet) -> Vector {
         for _ in 0..self.count {
-            let held = (0..self.count)
+            let pinned = (0..self.count)
                 .filter(|&i| free.has(i) && trial[i] <= 0.0)
                 .map(|i| (i, solution[i] / (solution[i] - trial[i])))
                 .min_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((leaving, fraction)) = held else {
+            let Some((leaving, fraction)) = pinned else {
                 break;
             };
             solution = (*solution + (*trial - *solution) * fraction).into();
@@ -259,7 +268,7 @@ impl NormalEquations {
     }
 
     /// The variance of one of the free unknowns. `None` if they cannot be told apart.
-    pub(crate) fn variance(&self, i: usize, free: &Free) -> Option<Real> {
+    pub(crate) fn variance(&self, i: usize, free: &PassiveSet) -> Option<Real> {
         let mut unit = Vector::zeros();
         unit.put(i, 1.0);
         let regular = self.solve_for(free, &mut unit);
@@ -268,7 +277,7 @@ impl NormalEquations {
 
     /// The covariances of one of the free unknowns with all of them. `None` if they cannot be told
     /// apart.
-    pub(crate) fn column(&self, i: usize, free: &Free) -> Option<Vector> {
+    pub(crate) fn column(&self, i: usize, free: &PassiveSet) -> Option<Vector> {
         let mut unit = Vector::zeros();
         unit.put(i, 1.0);
         let regular = self.solve_for(free, &mut unit);

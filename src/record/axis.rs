@@ -22,7 +22,7 @@ use crate::{
     },
 };
 use gate::{Passed, Passing};
-use kept::Kept;
+use kept::AxesSums;
 use track::Track as _;
 
 /// One axis: [`Axes`] for a gyro of which a single axis is recorded.
@@ -112,7 +112,7 @@ pub struct Axes<
     T: TrackPart = (),
 > {
     pub(crate) gate: G::State<AXES, COVARIATES>,
-    pub(crate) kept: Kept<OCTAVES, COVARIATES, M, AXES, S, T>,
+    pub(crate) kept: AxesSums<OCTAVES, COVARIATES, M, AXES, S, T>,
     pub(crate) losses: u64,
 }
 
@@ -128,7 +128,7 @@ where
     pub const fn new() -> Self {
         Self {
             gate: <G::State<AXES, COVARIATES> as Passing<AXES, COVARIATES>>::NEW,
-            kept: Kept::NEW,
+            kept: AxesSums::NEW,
             losses: 0,
         }
     }
@@ -178,7 +178,7 @@ where
 
     /// Counts samples that were lost at this place, and marks a [`gap`](Self::gap). Does nothing for 0
     /// samples.
-    pub fn missing(&mut self, samples: u64) {
+    pub fn lost(&mut self, samples: u64) {
         if samples > 0 {
             self.kept.add_missing(samples);
             self.lose(samples);
@@ -249,7 +249,7 @@ where
     }
 
     /// How often samples were lost: the number of calls of [`gap`](Self::gap) and
-    /// [`missing`](Self::missing). [`Accumulator::gaps`] is smaller where several calls follow each
+    /// [`lost`](Self::lost). [`Accumulator::gaps`] is smaller where several calls follow each
     /// other without a sample in between, and larger where a gate leaves samples out.
     pub const fn losses(&self) -> u64 {
         self.losses

@@ -19,7 +19,7 @@ pub(crate) const LONGEST: u32 = 1 << 31;
 /// course of more than 64 samples therefore has 33 to 64 blocks, the last of which may not be full. It ends after
 /// 2^37 samples, which is 4 years at 1 kHz; later samples are ignored.
 ///
-/// Time is counted in samples. Lost samples whose number is known count as time ([`missing`](Self::missing)). A
+/// Time is counted in samples. Lost samples whose number is known count as time ([`lost`](Self::lost)). A
 /// [`gap`](Self::gap) of unknown length takes no time.
 ///
 /// A course has no `merge`: a course is a time series, and another record has no place in it.
@@ -105,7 +105,7 @@ impl<const COVARIATES: usize> Course<COVARIATES> {
 
     /// Counts samples that were lost at this place. Their time passes, and no difference spans them. Does nothing
     /// for 0 samples.
-    pub fn missing(&mut self, samples: u64) {
+    pub fn lost(&mut self, samples: u64) {
         let mut left = samples;
         while left > 0 {
             self.gap();

@@ -70,7 +70,7 @@ use state::{CLUSTERS, State};
 /// of a sample. Motion makes the record invalid from 5 % of the clusters' ΣD² on.
 ///
 /// *Missing samples.* At most one in ten samples may be lost, as reported by
-/// [`missing`](Self::missing).
+/// [`lost`](Self::lost).
 ///
 /// Two kinds of motion are not seen. One is motion that sets in as gradually as the scale follows, by
 /// about a factor of two in a hundred clusters. The other is a shake of zero mean that lasts while the
@@ -186,7 +186,7 @@ impl Integrity {
 
     /// Counts samples that were lost at this place, and marks a [`gap`](Self::gap). Does nothing for 0
     /// samples.
-    pub fn missing(&mut self, samples: u64) {
+    pub fn lost(&mut self, samples: u64) {
         if samples > 0 {
             self.add_missing(samples);
             self.gap();

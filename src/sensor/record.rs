@@ -75,7 +75,7 @@ where
     ) {
         match reading.loss {
             Loss::Nothing => {}
-            Loss::Samples(samples) => self.missing(samples.into()),
+            Loss::Samples(samples) => self.lost(samples.into()),
             Loss::Unknown => self.gap(),
         }
         self.push((reading.gyro, covariates(reading)));

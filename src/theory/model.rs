@@ -25,7 +25,7 @@ pub struct Term {
     pub fitted: bool,
     /// Whether the coefficient is held at zero, because a fitted shape could take its place and the
     /// curve does not tell the two apart.
-    pub held: bool,
+    pub pinned: bool,
 }
 
 impl Term {
@@ -35,7 +35,7 @@ impl Term {
             effect,
             parameters: [0.0; MAX_PARAMETERS],
             fitted: false,
-            held: false,
+            pinned: false,
         }
     }
 
@@ -80,7 +80,7 @@ impl Term {
 
     /// Goes from a shape at which the effect no longer changes with a parameter to the nearest one at which it does.
     pub(crate) fn make_distinct(&mut self, interval_s: Real) {
-        self.parameters = self.effect.distinct(&self.sampled_shape(interval_s));
+        self.parameters = self.effect.canonical(&self.sampled_shape(interval_s));
     }
 
     pub(crate) fn parameter_name(&self, j: usize) -> &'static str {

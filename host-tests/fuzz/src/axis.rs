@@ -221,7 +221,7 @@ impl Record {
     fn lose(&mut self, samples: Option<u64>) {
         match samples {
             None => self.ours.gap(),
-            Some(samples) => self.ours.missing(samples),
+            Some(samples) => self.ours.lost(samples),
         }
         if samples == Some(0) {
             return;

@@ -125,7 +125,7 @@ impl Program {
                 0 => allanite_gyro_init(gyro, bytes.size::<AllaniteGyro>()),
                 1..=4 => push(gyro, bytes),
                 5 => allanite_gyro_gap(gyro),
-                6 => allanite_gyro_missing(gyro, u64::from(bytes.word()) << (choice % 33)),
+                6 => allanite_gyro_lost(gyro, u64::from(bytes.word()) << (choice % 33)),
                 7 => allanite_gyro_advance(gyro, flag),
                 8 => allanite_gyro_release(gyro),
                 9 => {

@@ -25,7 +25,7 @@ fn open(bytes: &[u8]) {
     restore::<12>(bytes);
     let mut axis = Axis::<12, 1>::new();
     if axis.restore(&mut [], bytes).is_ok() {
-        axis.missing(1);
+        axis.lost(1);
     }
     if let Ok(certificate) = Certificate::decode(bytes) {
         let terms = certificate.axes.iter().flat_map(|axis| &axis.terms);

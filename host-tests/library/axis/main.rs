@@ -309,8 +309,8 @@ fn three_axes_at_rest_are_three_single_axes() {
     let mut single = [(); 3].map(|()| Axis::<OCTAVES, 1>::new());
     for (n, &(counts, covariates)) in rest().iter().enumerate() {
         if n % 20_000 == 19_999 {
-            axes.missing(3);
-            single.iter_mut().for_each(|axis| axis.missing(3));
+            axes.lost(3);
+            single.iter_mut().for_each(|axis| axis.lost(3));
         }
         axes.push((counts, covariates));
         for (axis, count) in single.iter_mut().zip(counts) {
@@ -339,7 +339,7 @@ fn samples_that_are_left_out_or_missing_count_as_time_of_the_course() {
             continue;
         }
         if n == 50_100 {
-            gyro.missing(100);
+            gyro.lost(100);
             cleaning.gap();
         }
         gyro.push(sample);
@@ -352,7 +352,7 @@ fn samples_that_are_left_out_or_missing_count_as_time_of_the_course() {
         let mut expected = Course::<1>::new();
         let mut next = 0;
         for at in places.iter().copied().flatten() {
-            expected.missing((at - next) as u64);
+            expected.lost((at - next) as u64);
             let (counts, covariates) = samples[at];
             expected.push(counts[axis], covariates);
             next = at + 1;

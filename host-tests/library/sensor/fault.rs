@@ -341,7 +341,7 @@ fn accumulators_after_faults_are_those_of_a_record_with_the_same_gaps() {
             }
             let mut next = None;
             for n in numbers {
-                expected.missing(next.map_or(0, |next| n - next));
+                expected.lost(next.map_or(0, |next| n - next));
                 expected.push(gyro(n));
                 next = Some(n + 1);
             }

@@ -157,7 +157,7 @@ fn bursts_give_the_bits_of_single_samples_with_known_gaps() {
         }
         for &n in &ledger.seen {
             let lost = next.map_or(0, |next| n - next);
-            expected.missing(lost);
+            expected.lost(lost);
             expected.push(gyro(n));
             next = Some(n + 1);
         }

@@ -240,7 +240,7 @@ fn said(
                 scaling.unit
             ));
         }
-        Origin::Told | Origin::Assumed => {}
+        Origin::AxisEvidence | Origin::Assumed => {}
     }
     if let Some(time) = time {
         let rate = match is_told {

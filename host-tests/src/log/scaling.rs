@@ -23,7 +23,7 @@ pub(super) struct Scaling {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
     /// The unit is given by an option or a comment.
-    Told,
+    AxisEvidence,
     /// The unit is in the names of the columns.
     Names,
     /// The unit is the one that a program always uses.
@@ -80,7 +80,7 @@ impl Scaling {
         let convention = table.columns().convention_of(axes);
         let convention = convention.filter(|convention| fits(&convention.unit));
         let (unit, origin) = match (told, by_names, convention) {
-            (Some(unit), ..) => (unit, Origin::Told),
+            (Some(unit), ..) => (unit, Origin::AxisEvidence),
             (None, Some((unit, _)), _) => (unit, Origin::Names),
             (None, None, Some(convention)) => {
                 (convention.unit, Origin::Convention(convention.program))

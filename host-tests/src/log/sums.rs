@@ -8,7 +8,7 @@ pub(super) enum Sums {
     /// The sums of the first rows, and those of the remaining rows.
     InTwo { first: Box<Part>, rest: Box<Part> },
     /// The axis with everything that is kept beside its curve.
-    Watched(Box<dyn WatchedAxis>, Beside),
+    Watched(Box<dyn WatchedAxis>, OwnSums),
 }
 
 /// The curve and the spectrum of some rows.
@@ -19,12 +19,12 @@ pub(super) struct Part {
 }
 
 /// What is kept beside an axis of the library.
-pub(super) struct Beside {
+pub(super) struct OwnSums {
     pub(super) spectrum: Box<SpectrumSums>,
     pub(super) course: Box<Course>,
 }
 
-impl Beside {
+impl OwnSums {
     pub(super) fn new() -> Self {
         Self {
             spectrum: Box::new(SpectrumSums::new()),

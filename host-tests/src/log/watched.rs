@@ -13,7 +13,7 @@ use allanite::{
 pub(super) const MOST: usize = 8;
 
 /// What an axis shows beside its curve.
-pub(super) struct Told {
+pub(super) struct AxisEvidence {
     pub(super) kurtosis: Kurtosis<OCTAVES>,
     pub(super) covariates: Vec<CrossCurve<OCTAVES>>,
     pub(super) invalid: Option<Reason>,
@@ -32,7 +32,7 @@ pub(super) trait WatchedAxis: Send {
     fn accumulator(&self) -> &Accumulator<OCTAVES>;
 
     /// The evidence of the axis. `units` holds the unit per count of every covariate.
-    fn evidence(&self, scale: Scale, units: &[f64]) -> Result<Told, Error>;
+    fn evidence(&self, scale: Scale, units: &[f64]) -> Result<AxisEvidence, Error>;
 }
 
 /// An axis without a gate, because a log is judged as it is.
@@ -94,11 +94,11 @@ where
         accumulator
     }
 
-    fn evidence(&self, scale: Scale, units: &[f64]) -> Result<Told, Error> {
+    fn evidence(&self, scale: Scale, units: &[f64]) -> Result<AxisEvidence, Error> {
         let told = self
             .axis
             .record_so_far(0, (scale, std::array::from_fn(|i| units[i])))?;
-        Ok(Told {
+        Ok(AxisEvidence {
             kurtosis: told.kurtosis.unwrap_or_default(),
             covariates: told.covariates.into_iter().collect(),
             invalid: told.invalid,
@@ -127,8 +127,8 @@ impl WatchedAxis for Alone {
         &self.accumulator
     }
 
-    fn evidence(&self, _: Scale, _: &[f64]) -> Result<Told, Error> {
-        Ok(Told {
+    fn evidence(&self, _: Scale, _: &[f64]) -> Result<AxisEvidence, Error> {
+        Ok(AxisEvidence {
             kurtosis: Kurtosis::default(),
             covariates: Vec::new(),
             invalid: self.integrity.verdict(),

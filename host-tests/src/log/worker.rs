@@ -5,7 +5,7 @@
 use super::{
     CovariateChoice,
     covariate::{self, Derived},
-    sums::{Beside, Part, Sums},
+    sums::{OwnSums, Part, Sums},
     watched::{self, SharedSums, WatchedAxis},
 };
 use crate::dependence::block_means::BlockSums;
@@ -54,10 +54,10 @@ impl Plan {
         self.axes + self.covariates().len()
     }
 
-    fn kept(&self) -> Kept {
+    fn kept(&self) -> AxisState {
         match &self.watch {
-            Some(watch) => Kept::Watched(watched::axis(watch.covariates.len(), watch.moments)),
-            None => Kept::InTwo {
+            Some(watch) => AxisState::Watched(watched::axis(watch.covariates.len(), watch.moments)),
+            None => AxisState::InTwo {
                 first: Part::new(),
                 rest: Part::new(),
             },
@@ -83,7 +83,7 @@ pub(super) struct Batches {
     /// Batches that have been accumulated and can be filled again.
     empty: Receiver<Vec<i32>>,
     thread: JoinHandle<Worker>,
-    beside: JoinHandle<Vec<Beside>>,
+    beside: JoinHandle<Vec<OwnSums>>,
 }
 
 /// What the thread has accumulated.
@@ -133,14 +133,14 @@ impl Batches {
             worker
         });
         let beside = thread::spawn(move || {
-            let mut axes: Vec<_> = (0..beside).map(|_| Beside::new()).collect();
+            let mut axes: Vec<_> = (0..beside).map(|_| OwnSums::new()).collect();
             for work in incoming_beside {
                 match work {
                     Work::Batch(axis, batch) => {
                         axes[axis].push(&batch);
                         recycle(&outgoing, batch);
                     }
-                    Work::Gap => axes.iter_mut().for_each(Beside::gap),
+                    Work::Gap => axes.iter_mut().for_each(OwnSums::gap),
                 }
             }
             axes
@@ -212,10 +212,10 @@ impl Batches {
             .unwrap_or_else(|panic| resume_unwind(panic))
             .into_iter();
         let axes = worker.axes.into_iter().map(|kept| match kept {
-            Kept::InTwo { first, rest } => Sums::InTwo { first, rest },
-            Kept::Watched(axis) => {
+            AxisState::InTwo { first, rest } => Sums::InTwo { first, rest },
+            AxisState::Watched(axis) => {
                 // There is one for every watched axis.
-                Sums::Watched(axis, beside.next().unwrap_or_else(Beside::new))
+                Sums::Watched(axis, beside.next().unwrap_or_else(OwnSums::new))
             }
         });
         Totals {
@@ -228,14 +228,14 @@ impl Batches {
 }
 
 /// What the first thread keeps of one axis.
-enum Kept {
+enum AxisState {
     InTwo { first: Box<Part>, rest: Box<Part> },
     Watched(Box<dyn WatchedAxis>),
 }
 
 struct Worker {
     plan: Plan,
-    axes: Vec<Kept>,
+    axes: Vec<AxisState>,
     pairs: Vec<([usize; 2], SharedSums)>,
     derived: Vec<Derived>,
     columns: Vec<Course>,
@@ -311,28 +311,28 @@ impl Worker {
         }
         for kept in &mut self.axes {
             match kept {
-                Kept::InTwo { first, rest } => {
+                AxisState::InTwo { first, rest } => {
                     if first.accumulator.samples() >= self.plan.first {
                         rest.gap();
                     } else {
                         first.gap();
                     }
                 }
-                Kept::Watched(axis) => axis.gap(),
+                AxisState::Watched(axis) => axis.gap(),
             }
         }
     }
 
     fn accumulate(&mut self, axis: usize, counts: &[i32], covariates: &[Vec<i32>]) {
         match &mut self.axes[axis] {
-            Kept::InTwo { first, rest } => {
+            AxisState::InTwo { first, rest } => {
                 let room = self.plan.first - first.accumulator.samples();
                 let room = usize::try_from(room).unwrap_or(usize::MAX);
                 let (of_start, of_rest) = counts.split_at(room.min(counts.len()));
                 first.push(of_start);
                 rest.push(of_rest);
             }
-            Kept::Watched(axis) => axis.push(counts, covariates),
+            AxisState::Watched(axis) => axis.push(counts, covariates),
         }
     }
 }

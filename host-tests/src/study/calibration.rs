@@ -165,7 +165,7 @@ fn diagnose(
         if left > 0 {
             let missing = random.random_range(GAPS);
             rates.nth(missing - 1);
-            sums.missing(missing as u64);
+            sums.lost(missing as u64);
         }
     }
     let scale = Scale::new(quantum, RATE_HZ).expect("positive");

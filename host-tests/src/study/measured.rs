@@ -44,10 +44,10 @@ impl Sums {
     }
 
     /// Marks that so many samples are missing here.
-    pub fn missing(&mut self, samples: u64) {
+    pub fn lost(&mut self, samples: u64) {
         self.gyro.gap();
         self.spectrum.gap();
-        self.course.missing(samples);
+        self.course.lost(samples);
     }
 
     /// The number of samples.

@@ -198,7 +198,7 @@ fn lost_samples_move_events_by_their_time_and_gaps_do_not() {
         if n == 30_000 {
             // 100 s are lost, and then some more of unknown number.
             accumulator.gap();
-            course.missing(10_000);
+            course.lost(10_000);
             course.gap();
         }
         let step = if n >= 50_000 { 0.1 } else { 0.0 };

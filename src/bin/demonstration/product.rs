@@ -162,7 +162,7 @@ pub fn run(
             interrupt.send(sensor.sample());
         }
         while let Some(Queued { sample, lost }) = main_loop.receive() {
-            gyro.missing(lost.into());
+            gyro.lost(lost.into());
             gyro.push(sample);
         }
         // The main loop has nothing else to do.

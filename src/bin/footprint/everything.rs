@@ -51,7 +51,7 @@ mod image {
         while let Some(counts) = black_box(None) {
             sender.send(counts);
             if let Some(Queued { sample, lost }) = receiver.receive() {
-                gyro.missing(lost.into());
+                gyro.lost(lost.into());
                 gyro.push((sample, [black_box(0)]));
             }
             if test.is_due(gyro.samples())

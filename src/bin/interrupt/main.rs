@@ -115,7 +115,7 @@ mod image {
                 continue;
             };
             if lost > 0 {
-                gyro.missing(lost.into());
+                gyro.lost(lost.into());
                 defmt::info!("gap after {=u32} taken, lost {=u32}", taken, lost);
             }
             gyro.push(sample);

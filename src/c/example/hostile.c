@@ -64,7 +64,7 @@ static void without_values(void) {
     EXPECT(MISALIGNED, allanite_gyro_init((AllaniteGyro *)((char *)&gyro + 4), sizeof gyro));
     EXPECT(NOT_INITIALISED, allanite_gyro_push(&gyro, counts, 0));
     EXPECT(NOT_INITIALISED, allanite_gyro_gap(&gyro));
-    EXPECT(NOT_INITIALISED, allanite_gyro_missing(&gyro, 1));
+    EXPECT(NOT_INITIALISED, allanite_gyro_lost(&gyro, 1));
     EXPECT(NOT_INITIALISED, allanite_gyro_advance(&gyro, &flag));
     EXPECT(NOT_INITIALISED, allanite_gyro_release(&gyro));
     EXPECT(NOT_INITIALISED, allanite_gyro_merge(&gyro, &other));
@@ -107,7 +107,7 @@ static void with_values(void) {
     EXPECT(MISALIGNED, allanite_gyro_push(&gyro, (const int32_t *)((const char *)counts + 1), 0));
     EXPECT(OK, allanite_gyro_advance(&gyro, NULL));
     EXPECT(OK, allanite_gyro_samples(&gyro, NULL, NULL));
-    EXPECT(OK, allanite_gyro_missing(&gyro, UINT64_MAX));
+    EXPECT(OK, allanite_gyro_lost(&gyro, UINT64_MAX));
     EXPECT(OK, allanite_gyro_init(&gyro, sizeof gyro));
     EXPECT(UNKNOWN_AXIS, take(3, 1.0f, 100.0f, 1.0f));
     EXPECT(NOT_INITIALISED, allanite_fit(&record, &fit));

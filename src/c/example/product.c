@@ -190,7 +190,7 @@ void product(void) {
             check(allanite_gyro_init(&gyro, sizeof gyro), "gyro");
             make_test();
             check(allanite_gyro_restore(&gyro, &test, stored, length), "restore");
-            check(allanite_gyro_missing(&gyro, POWER_LOSS - SNAPSHOT), "missing");
+            check(allanite_gyro_lost(&gyro, POWER_LOSS - SNAPSHOT), "missing");
         }
     }
     check(allanite_gyro_release(&gyro), "release");

@@ -161,7 +161,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             gyro.reset();
             tests = [self_test(scale)?];
             gyro.restore(&mut tests, &stored)?;
-            gyro.missing((POWER_LOSS - SNAPSHOT).into());
+            gyro.lost((POWER_LOSS - SNAPSHOT).into());
         }
     }
     gyro.release();

@@ -504,7 +504,7 @@ AllaniteStatus allanite_gyro_gap(AllaniteGyro *gyro);
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`.
-AllaniteStatus allanite_gyro_missing(AllaniteGyro *gyro, uint64_t samples);
+AllaniteStatus allanite_gyro_lost(AllaniteGyro *gyro, uint64_t samples);
 
 // Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` tells whether there is
 // more; it may be null.

@@ -83,12 +83,12 @@ pub unsafe extern "C" fn allanite_gyro_gap(gyro: *mut AllaniteGyro) -> AllaniteS
 /// # Safety
 /// `gyro` is null, or points to an `AllaniteGyro`.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn allanite_gyro_missing(
+pub unsafe extern "C" fn allanite_gyro_lost(
     gyro: *mut AllaniteGyro,
     samples: u64,
 ) -> AllaniteStatus {
     // SAFETY: the caller promises what `get_mut` wants.
-    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.missing(samples)))
+    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.lost(samples)))
 }
 
 /// Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` tells whether there is

@@ -18,7 +18,7 @@ use crate::{
     list::numbered,
     numerics::{
         math,
-        nnls::{Free, NormalEquations, Vector},
+        nnls::{NormalEquations, PassiveSet, Vector},
         real::{Real, real, single},
     },
     theory::{effect::Effect, model::Term},
@@ -65,7 +65,7 @@ pub(crate) struct Workspace<const B: usize> {
     /// The squared coefficients in units of their columns.
     pub(super) squares: Vector,
     /// Those above zero in the last solution, with which the next one begins.
-    pub(super) free: Free,
+    pub(super) free: PassiveSet,
 }
 
 impl<const B: usize> Workspace<B> {
@@ -84,7 +84,7 @@ impl<const B: usize> Workspace<B> {
         shape: Values::NONE,
         equations: NormalEquations::EMPTY,
         squares: Vector::ZEROS,
-        free: Free::NONE,
+        free: PassiveSet::NONE,
     };
 
     /// The number of columns, slopes left out.
@@ -244,7 +244,7 @@ impl<const B: usize> Workspace<B> {
         if !self.set_equations(Some(with), &shift, 0.0) {
             return None;
         }
-        let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
+        let (squares, _) = self.equations.solve_non_negative(&PassiveSet::NONE);
         let mut rest = *with;
         for i in 0..self.count().saturating_add(shift.len()) {
             let slope = i >= self.count();
@@ -268,7 +268,7 @@ impl<const B: usize> Workspace<B> {
             if !self.set_equations(Some(with), &[], 0.0) {
                 break;
             }
-            let (squares, _) = self.equations.solve_non_negative(&Free::NONE);
+            let (squares, _) = self.equations.solve_non_negative(&PassiveSet::NONE);
             self.model = self.model_of(&squares);
             let mut sum = 0.0;
             with.each_with(&self.model, &self.shape, |with, model, shape| {
@@ -367,7 +367,7 @@ impl<const B: usize> Workspace<B> {
             }
             let (squares, free) = self
                 .equations
-                .solve_non_negative_near(&self.free, &Free::NONE);
+                .solve_non_negative_near(&self.free, &PassiveSet::NONE);
             self.free = free;
             let model = self.model_of(&squares);
             let deviance = self.deviance(&model);

@@ -13,7 +13,7 @@ use crate::{
     list::{self, numbered},
     numerics::{
         math,
-        nnls::{Free, Vector},
+        nnls::{PassiveSet, Vector},
         real::{Real, real, single},
     },
     pause::Pause,
@@ -230,11 +230,11 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let shapes_too = |i: usize| {
             self.work.free.has(i) || (count..count.saturating_add(shapes.len())).contains(&i)
         };
-        let guess = Free::of(shapes_too);
+        let guess = PassiveSet::of(shapes_too);
         let (solution, _) = self
             .work
             .equations
-            .solve_non_negative_near(&guess, &Free::NONE);
+            .solve_non_negative_near(&guess, &PassiveSet::NONE);
         let steps = numbered(strides.iter()).map(|(at, &stride)| {
             let shifted = solution[count.saturating_add(at)];
             (shifted - stride).min(stride)

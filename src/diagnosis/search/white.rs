@@ -11,7 +11,7 @@ use crate::{
     list,
     numerics::{
         math,
-        nnls::Free,
+        nnls::PassiveSet,
         real::{Real, real},
     },
     theory::model::Term,
@@ -74,7 +74,8 @@ impl<const B: usize> Solver<'_, '_, '_, B> {
         let shift: Vec<Real, MAX_SHAPE> = list::fill(self.work.slopes.iter().map(|_| 0.0));
         let count = self.work.count();
         let slopes = count..count.saturating_add(shift.len());
-        let free = Free::of(|i| slopes.contains(&i) || (i < count && self.work.squares[i] > 0.0));
+        let free =
+            PassiveSet::of(|i| slopes.contains(&i) || (i < count && self.work.squares[i] > 0.0));
         let variance = if self.work.set_equations(None, &shift, 0.0) {
             self.work.equations.variance(place, &free)
         } else {

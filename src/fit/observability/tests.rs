@@ -54,7 +54,7 @@ fn the_record_length_is_the_shortest_doubling_that_measures_the_effect() {
         let i = random.below(5);
         // White noise is always there.
         let free = random.bits() & 31 | 2;
-        let chosen = Free::of(|j| free >> j & 1 == 1);
+        let chosen = PassiveSet::of(|j| free >> j & 1 == 1);
         // At a bound from far below to far above what the curve shows.
         let square = SQUARES[i] * libm::pow(10.0, 3.0 * random.signed() - 1.0);
         let mut squares = SQUARES;

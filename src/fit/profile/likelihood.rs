@@ -5,7 +5,7 @@ use crate::{
     fit::{Problem, Weights, Whitened},
     limits::MAX_EFFECTS,
     numerics::{
-        nnls::{Free, NormalEquations, Vector},
+        nnls::{NormalEquations, PassiveSet, Vector},
         real::{Real, real},
     },
     theory::model::Term,
@@ -19,8 +19,8 @@ pub(crate) struct Profile<const K: usize, const B: usize = 0> {
     equations: NormalEquations,
     /// The effect's place in the model.
     place: usize,
-    free: Free,
-    held: Free,
+    free: PassiveSet,
+    pinned: PassiveSet,
 }
 
 impl<const K: usize, const B: usize> Profile<K, B> {
@@ -30,8 +30,8 @@ impl<const K: usize, const B: usize> Profile<K, B> {
         whitened: Whitened::EMPTY,
         equations: NormalEquations::EMPTY,
         place: 0,
-        free: Free::NONE,
-        held: Free::NONE,
+        free: PassiveSet::NONE,
+        pinned: PassiveSet::NONE,
     };
 
     /// Begins with a problem and its weights.
@@ -73,17 +73,17 @@ impl<const K: usize, const B: usize> Profile<K, B> {
                 own(i).map_or(0.0, |column| column.dot(curve))
             })?;
         self.place = place;
-        self.held = problem.held();
-        self.held.drop(place);
-        let held = self.held;
+        self.pinned = problem.pinned();
+        self.pinned.drop(place);
+        let pinned = self.pinned;
         let above = |i: usize| i < MAX_EFFECTS && squares[i] > 0.0;
-        self.free = Free::of(|i| i == place || (above(i) && !held.has(i)));
+        self.free = PassiveSet::of(|i| i == place || (above(i) && !pinned.has(i)));
         Ok(())
     }
 
     /// Frees also the effects that are held at zero.
     pub(crate) fn release(&mut self) {
-        self.held = Free::default();
+        self.pinned = PassiveSet::default();
     }
 }
 
@@ -134,7 +134,7 @@ impl<'a, const K: usize, const B: usize> Evaluation<'a, K, B> {
             return Found::none(term);
         }
         let equations = &profile.equations;
-        let (squares, _) = equations.solve_non_negative_near(&profile.free, &profile.held);
+        let (squares, _) = equations.solve_non_negative_near(&profile.free, &profile.pinned);
         Found {
             term,
             chi_squared: curve.norm_squared() - equations.explained(&squares),

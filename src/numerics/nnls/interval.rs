@@ -1,7 +1,7 @@
 //! The interval of an unknown by the likelihood ratio: how far the unknown can go while the others, which
 //! cannot be negative, make the best of it.
 
-use super::{Free, LEAST_SLOPE, NormalEquations, Vector};
+use super::{LEAST_SLOPE, NormalEquations, PassiveSet, Vector};
 use crate::{
     limits::TWO_SIDED_95,
     numerics::{
@@ -52,8 +52,8 @@ impl NormalEquations {
         &self,
         i: usize,
         solution: &Vector,
-        free: &Free,
-        held: &Free,
+        free: &PassiveSet,
+        pinned: &PassiveSet,
         rise: Real,
     ) -> Option<Interval> {
         let mut others = *free;
@@ -63,7 +63,7 @@ impl NormalEquations {
             best.put(j, solution[j] / self.scale[j]);
         }
         let direction = self.direction(i, &others)?;
-        let end = |up| self.end(i, &best, &direction, others, held, rise, up);
+        let end = |up| self.end(i, &best, &direction, others, pinned, rise, up);
         let scale = self.scale[i];
         Some(Interval {
             variance: direction[i] * scale * scale,
@@ -77,7 +77,7 @@ impl NormalEquations {
     }
 
     /// The covariances of unknown `i` with itself and the free others; `None` if it cannot be told from them.
-    pub(crate) fn covariances(&self, i: usize, free: &Free) -> Option<Vector> {
+    pub(crate) fn covariances(&self, i: usize, free: &PassiveSet) -> Option<Vector> {
         let mut covariances = self.direction(i, free)?;
         for j in 0..self.count {
             covariances.put(j, covariances[j] * self.scale[i] * self.scale[j]);
@@ -86,7 +86,7 @@ impl NormalEquations {
     }
 
     /// The covariances of unknown `i` with itself and the free others, in scaled units.
-    fn direction(&self, i: usize, others: &Free) -> Option<Vector> {
+    fn direction(&self, i: usize, others: &PassiveSet) -> Option<Vector> {
         let mut unit = Vector::zeros();
         unit.put(i, 1.0);
         self.solve_for(&others.with(i), &mut unit).then_some(unit)
@@ -100,8 +100,8 @@ impl NormalEquations {
         i: usize,
         best: &Vector,
         direction: &Vector,
-        mut others: Free,
-        held: &Free,
+        mut others: PassiveSet,
+        pinned: &PassiveSet,
         rise: Real,
         up: bool,
     ) -> Option<Real> {
@@ -122,9 +122,9 @@ impl NormalEquations {
                 next.put(j, at[j] + direction[j] / variance * step);
             }
             next.put(i, value);
-            let solved = self.is_solved(i, &next, &others, held);
+            let solved = self.is_solved(i, &next, &others, pinned);
             if !solved {
-                (next, others) = self.solve_beside(i, value, &others, held);
+                (next, others) = self.solve_beside(i, value, &others, pinned);
                 direction = self.direction(i, &others)?;
             }
             at = next;
@@ -138,25 +138,31 @@ impl NormalEquations {
     }
 
     /// Whether no unknown but `i` is negative, and none of those at zero wants to grow.
-    fn is_solved(&self, i: usize, at: &Vector, others: &Free, held: &Free) -> bool {
+    fn is_solved(&self, i: usize, at: &Vector, others: &PassiveSet, pinned: &PassiveSet) -> bool {
         let gradient = self.gradient(at);
         let mut unknowns = (0..self.count).filter(|&j| j != i);
         unknowns.all(|j| match others.has(j) {
             true => at[j] > 0.0,
-            false => held.has(j) || gradient[j] <= LEAST_SLOPE,
+            false => pinned.has(j) || gradient[j] <= LEAST_SLOPE,
         })
     }
 
     /// The solution with unknown `i` at a value, in scaled units, and the choice of others above zero.
     #[inline(never)]
-    fn solve_beside(&self, i: usize, value: Real, guess: &Free, held: &Free) -> (Vector, Free) {
+    fn solve_beside(
+        &self,
+        i: usize,
+        value: Real,
+        guess: &PassiveSet,
+        pinned: &PassiveSet,
+    ) -> (Vector, PassiveSet) {
         let mut beside = self.clone();
         for j in 0..self.count {
             beside
                 .right
                 .put(j, self.right[j] - self.scaled[(i, j)] * value);
         }
-        let (solution, free) = beside.solve_non_negative_near(guess, &held.with(i));
+        let (solution, free) = beside.solve_non_negative_near(guess, &pinned.with(i));
         let mut scaled = Vector::zeros();
         for j in 0..self.count {
             scaled.put(j, solution[j] / self.scale[j]);

@@ -47,7 +47,9 @@ fn separated(mut check: impl FnMut(&Problem, &mut Random)) {
 fn the_non_negative_solution_is_the_best_over_all_sets_of_free_unknowns() {
     let mut at_zero = 0;
     separated(|problem, _| {
-        let (solution, free) = problem.equations().solve_non_negative(&Free::default());
+        let (solution, free) = problem
+            .equations()
+            .solve_non_negative(&PassiveSet::default());
         let (best, _) = problem.best(0);
         let found = problem.scaled(&solution);
         for i in 0..problem.count {
@@ -63,7 +65,9 @@ fn the_non_negative_solution_is_the_best_over_all_sets_of_free_unknowns() {
 #[test]
 fn solutions_fulfil_the_optimality_conditions_of_karush_kuhn_and_tucker() {
     separated(|problem, _| {
-        let (solution, free) = problem.equations().solve_non_negative(&Free::default());
+        let (solution, free) = problem
+            .equations()
+            .solve_non_negative(&PassiveSet::default());
         let found = problem.scaled(&solution);
         let size = libm::sqrt(problem.size);
         for i in 0..problem.count {
@@ -78,10 +82,10 @@ fn solutions_fulfil_the_optimality_conditions_of_karush_kuhn_and_tucker() {
 #[test]
 fn unknowns_that_are_held_stay_at_zero() {
     separated(|problem, random| {
-        let held = random.bits() & ((1 << problem.count) - 1);
-        let chosen = Free::of(|i| held >> i & 1 == 1);
+        let pinned = random.bits() & ((1 << problem.count) - 1);
+        let chosen = PassiveSet::of(|i| pinned >> i & 1 == 1);
         let (solution, free) = problem.equations().solve_non_negative(&chosen);
-        let (best, _) = problem.best(held);
+        let (best, _) = problem.best(pinned);
         let found = problem.scaled(&solution);
         for i in 0..problem.count {
             assert!(!(chosen.has(i) && (free.has(i) || found[i] != 0.0)));
@@ -95,10 +99,10 @@ fn unknowns_that_are_held_stay_at_zero() {
 fn any_initial_guess_leads_to_the_same_solution() {
     separated(|problem, random| {
         let guess = random.bits();
-        let guess = Free::of(|i| i < problem.count && guess >> i & 1 == 1);
+        let guess = PassiveSet::of(|i| i < problem.count && guess >> i & 1 == 1);
         let equations = problem.equations();
-        let (found, free) = equations.solve_non_negative_near(&guess, &Free::default());
-        let (expected, expected_free) = equations.solve_non_negative(&Free::default());
+        let (found, free) = equations.solve_non_negative_near(&guess, &PassiveSet::default());
+        let (expected, expected_free) = equations.solve_non_negative(&PassiveSet::default());
         assert_eq!(free, expected_free);
         let (found, expected) = (problem.scaled(&found), problem.scaled(&expected));
         for i in 0..problem.count {
@@ -111,7 +115,7 @@ fn any_initial_guess_leads_to_the_same_solution() {
 fn solutions_and_covariances_of_free_unknowns_equal_those_of_elimination() {
     separated(|problem, random| {
         let chosen = 1 + random.below((1 << problem.count) - 1) as u32;
-        let free = Free::of(|i| chosen >> i & 1 == 1);
+        let free = PassiveSet::of(|i| chosen >> i & 1 == 1);
         let equations = problem.equations();
         let expected = problem.unknowns(chosen).expect("separated");
         let found = equations.solve_free(&free).expect("separated");
@@ -149,8 +153,10 @@ fn exchanging_an_unknown_equals_setting_the_equations_with_it() {
         let entry = |j: usize| real(problem.h[place][j]);
         let right = real(problem.b[place]);
         assert!(before.exchange(place, &entry, right).is_ok());
-        let (found, free) = before.solve_non_negative(&Free::default());
-        let (expected, expected_free) = problem.equations().solve_non_negative(&Free::default());
+        let (found, free) = before.solve_non_negative(&PassiveSet::default());
+        let (expected, expected_free) = problem
+            .equations()
+            .solve_non_negative(&PassiveSet::default());
         assert_eq!(free, expected_free);
         let (found, expected) = (problem.scaled(&found), problem.scaled(&expected));
         for i in 0..problem.count {
@@ -196,7 +202,9 @@ fn the_scale_of_columns_does_not_change_the_solution() {
                 scaled.h[i][j] *= scales[i] * scales[j];
             }
         }
-        let (solution, _) = scaled.equations().solve_non_negative(&Free::default());
+        let (solution, _) = scaled
+            .equations()
+            .solve_non_negative(&PassiveSet::default());
         let explained = plain.explained(&scaled.scaled(&solution));
         let (_, best) = plain.best(0);
         assert!(
@@ -218,7 +226,9 @@ fn the_size_of_the_data_does_not_change_the_solution() {
             b: plain.b.map(|b| b * factor),
             ..plain
         };
-        let (solution, _) = scaled.equations().solve_non_negative(&Free::default());
+        let (solution, _) = scaled
+            .equations()
+            .solve_non_negative(&PassiveSet::default());
         let found = scaled.scaled(&solution).map(|x| x / factor);
         assert!(found.iter().all(|&x| x >= 0.0));
         let (_, best) = plain.best(0);
@@ -249,7 +259,7 @@ fn nearly_equal_columns_lose_little_of_the_explained_squares() {
             columns[to] = copied.map(|x| x * (1.0 + difference * random.signed()));
         });
         let equations = problem.equations();
-        let (solution, _) = equations.solve_non_negative(&Free::default());
+        let (solution, _) = equations.solve_non_negative(&PassiveSet::default());
         let found = problem.scaled(&solution);
         assert!(found.iter().all(|&x| x >= 0.0 && x.is_finite()));
         let (_, best) = problem.best(0);

@@ -15,8 +15,14 @@ use crate::record::{
 /// The sums of all axes and covariates. They all receive the same samples and gaps, so that all results
 /// describe the same record.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Kept<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S, T>
-where
+pub(crate) struct AxesSums<
+    const OCTAVES: usize,
+    const COVARIATES: usize,
+    M,
+    const AXES: usize,
+    S,
+    T,
+> where
     M: MomentPart,
     S: SpectrumPart,
     T: TrackPart,
@@ -63,14 +69,14 @@ impl Observer for Completed {
 }
 
 /// The sums that are updated together with the accumulator of an axis when it takes a sample.
-struct Beside<'a, S, const OCTAVES: usize, const COVARIATES: usize> {
+struct DifferenceSums<'a, S, const OCTAVES: usize, const COVARIATES: usize> {
     moments: &'a mut S,
     cross: &'a mut [CrossSums<OCTAVES>; COVARIATES],
     completed: &'a [Completed; COVARIATES],
 }
 
 impl<S, const OCTAVES: usize, const COVARIATES: usize> Observer
-    for Beside<'_, S, OCTAVES, COVARIATES>
+    for DifferenceSums<'_, S, OCTAVES, COVARIATES>
 where
     S: MomentSums<OCTAVES>,
 {
@@ -110,7 +116,7 @@ where
         } = self;
         integrity.push(count);
         spectrum.push(count);
-        let mut beside = Beside {
+        let mut beside = DifferenceSums {
             moments,
             cross,
             completed,
@@ -135,7 +141,7 @@ where
 }
 
 impl<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S, T>
-    Kept<OCTAVES, COVARIATES, M, AXES, S, T>
+    AxesSums<OCTAVES, COVARIATES, M, AXES, S, T>
 where
     M: MomentPart,
     S: SpectrumPart,

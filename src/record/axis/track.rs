@@ -55,7 +55,7 @@ impl<const COVARIATES: usize> Track<COVARIATES> for Course<COVARIATES> {
 
     fn gap(&mut self, missing: u64) {
         self.gap();
-        self.missing(missing);
+        self.lost(missing);
     }
 
     fn course(&self) -> Option<&Self> {

@@ -182,7 +182,7 @@ pub trait Effect: Sync {
 
     /// The shape from which a search goes on, in the place of one at which the effect no longer changes with a parameter:
     /// the nearest one with the same effect at which it does. The default is the shape itself.
-    fn distinct(&self, shape: &SampledShape) -> [Real; super::MAX_PARAMETERS] {
+    fn canonical(&self, shape: &SampledShape) -> [Real; super::MAX_PARAMETERS] {
         shape.parameters
     }
 

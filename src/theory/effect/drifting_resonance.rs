@@ -69,7 +69,7 @@ impl Effect for DriftingResonance {
         true
     }
 
-    fn distinct(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+    fn canonical(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
         let [frequency_hz, quality, drift_hz] = shape.parameters;
         [
             frequency_hz,

@@ -51,7 +51,7 @@ impl Effect for DriftingSinusoid {
         true
     }
 
-    fn distinct(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+    fn canonical(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
         let [frequency_hz, drift_hz, ..] = shape.parameters;
         [frequency_hz, distinct_drift(drift_hz, frequency_hz), 0.0]
     }

@@ -29,7 +29,7 @@ pub(super) trait Filter: Sync {
     fn output(shape: &SampledShape) -> Output;
 
     /// The nearest shape with the same effect at which it changes with every parameter.
-    fn distinct(shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+    fn canonical(shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
         shape.parameters
     }
 }
@@ -145,8 +145,8 @@ impl<F: Filter> Effect for F {
         F::PASSES_ALL
     }
 
-    fn distinct(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
-        F::distinct(shape)
+    fn canonical(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+        F::canonical(shape)
     }
 
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {

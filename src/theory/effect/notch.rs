@@ -132,7 +132,7 @@ impl Filter for Notch {
         }
     }
 
-    fn distinct(shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+    fn canonical(shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
         let [frequency_hz, quality, ..] = shape.parameters;
         let turns = frequency_hz * shape.interval_s;
         let (sine, _) = math::sincos_of_turns(turns);
@@ -175,7 +175,7 @@ mod tests {
             (5.0, 1.0, false),
             (41.0, 2.0, true),
         ] {
-            let [same_hz, distinct, _] = Effect::distinct(&Notch, &shape([frequency_hz, quality]));
+            let [same_hz, distinct, _] = Effect::canonical(&Notch, &shape([frequency_hz, quality]));
             assert_eq!(same_hz, frequency_hz);
             let found = of(frequency_hz, distinct);
             assert!((found / of(frequency_hz, quality) - 1.0).abs() < 0.05);

@@ -139,7 +139,7 @@ fn a_known_filter_takes_the_place_of_the_white_noise() {
     assert_names(&model, &expected);
     let known = model.terms()[1];
     assert_eq!(
-        (known.parameters, known.fitted, known.held),
+        (known.parameters, known.fitted, known.pinned),
         ([0.004, 2.0, 0.0], false, false)
     );
     // A second filter has nothing to replace.

@@ -221,7 +221,7 @@ fn missing_samples_are_refused_from_a_tenth_on() {
             chunk.iter().for_each(|&count| {
                 integrity.push(count);
             });
-            integrity.missing(lost);
+            integrity.lost(lost);
         }
         let verdict = integrity.verdict();
         assert_eq!(matches!(verdict, Some(Reason::Missing { .. })), refused);

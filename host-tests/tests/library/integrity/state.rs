@@ -134,7 +134,7 @@ fn reset_forgets_everything_except_the_limits() {
     let fresh = Integrity::with_limits(leaked(limits)).expect("valid limits");
     let mut used = fresh.clone();
     used.push(3);
-    used.missing(4);
+    used.lost(4);
     used.reset();
     assert_eq!(used, fresh);
     assert_eq!(used.limits(), &limits);
@@ -190,7 +190,7 @@ fn play(integrity: &mut Integrity, events: &[Event]) {
                 let up = n / u16::from(*period) % 2 == 0;
                 push(integrity, if up { *a } else { *b });
             }),
-            Event::Missing(samples) => integrity.missing(*samples),
+            Event::Missing(samples) => integrity.lost(*samples),
             Event::Gap => integrity.gap(),
             Event::Merge(events) => {
                 let mut other = Integrity::default();

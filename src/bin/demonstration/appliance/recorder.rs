@@ -83,7 +83,7 @@ impl<'a> Recorder<'a> {
         let accounted = accounted(gyro);
         let taken = made.min(SAMPLES);
         let missing = u64::from(taken).saturating_sub(accounted);
-        gyro.missing(missing);
+        gyro.lost(missing);
         let restart = Restart {
             snapshot,
             accounted,
@@ -127,7 +127,7 @@ impl<'a> Recorder<'a> {
         if self.has_ended() {
             return Ok(());
         }
-        self.gyro.missing(queued.lost.into());
+        self.gyro.lost(queued.lost.into());
         self.gyro.push(queued.sample);
         self.taken = (self.taken + queued.lost + 1).min(SAMPLES);
         self.counts.during_erase += u32::from(self.saver.is_erasing());

@@ -1,6 +1,6 @@
 //! The ends of intervals are compared with bisections, in which the others are the best of all choices.
 
-use super::{super::Free, separated};
+use super::{super::PassiveSet, separated};
 use crate::numerics::{
     nnls::tests::problem::Problem,
     real::{by_precision, double, real},
@@ -40,7 +40,7 @@ fn intervals_end_where_the_best_fit_of_the_others_has_risen_so_far() {
             return;
         }
         let equations = problem.equations();
-        let none = Free::default();
+        let none = PassiveSet::default();
         let (solution, free) = equations.solve_non_negative(&none);
         let (best, least) = problem.best(0);
         for rise in [0.05, 0.5] {

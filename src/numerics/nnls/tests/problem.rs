@@ -137,8 +137,8 @@ impl Problem {
 
     /// The best solution without a negative unknown, of all choices that leave the unknowns of `held`
     /// at zero.
-    pub(super) fn best(&self, held: u32) -> ([f64; MOST], f64) {
-        let choices = (0..1_u32 << self.count).filter(|chosen| chosen & held == 0);
+    pub(super) fn best(&self, pinned: u32) -> ([f64; MOST], f64) {
+        let choices = (0..1_u32 << self.count).filter(|chosen| chosen & pinned == 0);
         let solutions = choices.filter_map(|chosen| self.unknowns(chosen));
         let allowed = solutions.filter(|x| x.iter().all(|&x| x >= 0.0));
         let judged = allowed.map(|x| (x, self.explained(&x)));

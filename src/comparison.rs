@@ -106,7 +106,7 @@ impl<const K: usize, const B: usize> Comparison<K, B> {
     /// Compares the fit of a model with the curve that it was fitted to.
     ///
     /// # Errors
-    /// The same as those of [`fit`](crate::fit::fit()).
+    /// The same as those of [`fit`](crate::fit::fit()), and [`Error::OtherModel`] if the fit is one of another model.
     pub fn new<'a>(
         record: impl Into<Record<'a, K, B>>,
         model: &Model,
@@ -128,7 +128,7 @@ impl<const K: usize, const B: usize> Comparison<K, B> {
     /// variance.
     ///
     /// # Errors
-    /// The same as those of [`fit`](crate::fit::fit()).
+    /// The same as those of [`fit`](crate::fit::fit()), and [`Error::OtherModel`] if the fit is one of another model.
     pub fn held_out<'a>(
         record: impl Into<Record<'a, K, B>>,
         model: &Model,
@@ -145,6 +145,10 @@ impl<const K: usize, const B: usize> Comparison<K, B> {
         tolerance: Real,
         unknowns: usize,
     ) -> Result<Self, Error> {
+        let names = model.terms().iter().map(|term| term.effect.name());
+        if !names.eq(fit.coefficients.iter().map(|coefficient| coefficient.name)) {
+            return Err(Error::OtherModel);
+        }
         let columns = Columns::new(observed, model);
         let problem = Problem::new(observed, model, &columns);
         let squares = problem.squares_of(fit);

@@ -81,6 +81,15 @@ pub enum Error {
         /// The rate at which the samples came, in Hz.
         measured_hz: Real,
     },
+    /// The record has another rate than the one that a self-test was made for.
+    OtherRate {
+        /// The rate of the record, in Hz.
+        record_hz: Real,
+        /// The rate that the self-test was made for, in Hz.
+        test_hz: Real,
+    },
+    /// The fit is one of another model: the effects are not the same ones in the same order.
+    OtherModel,
     /// The normal equations have no solution. The model's effects cannot be told apart, or a column is
     /// not finite.
     Singular,
@@ -107,6 +116,8 @@ impl Error {
             Self::NoNoise { .. } => "check the sensor",
             Self::TooManyEffects { .. } | Self::Singular => "remove one",
             Self::UnknownAxis { .. } => "count them from 0",
+            Self::OtherRate { .. } => "make the test with the scale of the record",
+            Self::OtherModel => "compare a fit with the model that was fitted",
             Self::RateContradicted { .. } => {
                 "pass the measured rate, or check the output rate and that every sample is read"
             }
@@ -160,6 +171,11 @@ impl core::fmt::Display for Error {
                 f,
                 "samples come at {measured_hz:.2} Hz, but {configured_hz:.2} Hz are configured"
             ),
+            Self::OtherRate { record_hz, test_hz } => write!(
+                f,
+                "the record has {record_hz:.2} Hz, but the self-test was made for {test_hz:.2} Hz"
+            ),
+            Self::OtherModel => write!(f, "the fit is one of another model"),
             Self::Singular => write!(f, "the model's effects cannot be told apart on this curve"),
         }?;
         write!(f, ": {}", self.remedy())
@@ -185,6 +201,11 @@ mod tests {
             },
             Error::NoNoise { m: 1 },
             Error::NoNoise { m: 4 },
+            Error::OtherRate {
+                record_hz: 100.0,
+                test_hz: 200.0,
+            },
+            Error::OtherModel,
             Error::Singular,
         ] {
             let text = error.to_string();

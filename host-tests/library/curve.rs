@@ -4,7 +4,10 @@
 #[path = "common/precision.rs"]
 mod precision;
 
-use allanite::{Accumulator, Curve, Error, Real, Scale};
+use allanite::{
+    Accumulator, Comparison, Curve, Error, Model, Real, Scale,
+    fit::{Options, fit},
+};
 use precision::double;
 
 /// Several roundings of a result.
@@ -354,4 +357,15 @@ fn the_stretches_that_are_long_enough_for_an_octave_follow_from_the_numbers_of_d
         }
     }
     assert!(compared >= 10, "{compared} octaves");
+}
+
+#[test]
+fn a_fit_of_another_model_is_refused() {
+    let curve = test_curve();
+    let model = Model::ieee_952();
+    let fit = fit(&curve, &model, Options::default()).expect("five terms");
+    assert!(Comparison::<12>::new(&curve, &model, &fit).is_ok());
+    let other = Model::ieee_952().without("angle_random_walk");
+    let refused = Comparison::<12>::new(&curve, &other, &fit);
+    assert_eq!(refused, Err(Error::OtherModel));
 }

@@ -43,7 +43,7 @@ use heapless::Vec;
 ///     gyro.push(sample());
 /// }
 /// let record = gyro.record_so_far(0, scale)?;
-/// let mut look = test.begin_look(record.samples, record.curve, record.invalid);
+/// let mut look = test.begin_look(record.samples, record.curve, record.invalid)?;
 /// while !look.advance() {
 ///     gyro.push(sample()); // feed the watchdog, take the next samples
 /// }

@@ -14,6 +14,7 @@ pub use plan::{InvalidPlan, Limit, Plan};
 
 use crate::{
     curve::{Curve, Scale},
+    error::Error,
     fit::coefficient::{Coefficient, State},
     list::numbered,
     numerics::{
@@ -126,7 +127,7 @@ pub enum Failure {
 ///     gyro.push((random >> 28) as i32);
 ///     if test.is_due(gyro.samples()) {
 ///         let record = gyro.record_so_far(0, scale)?;
-///         match test.look(record.samples, &record.curve, record.invalid) {
+///         match test.look(record.samples, &record.curve, record.invalid)? {
 ///             Status::Running { .. } => continue,
 ///             verdict => break verdict,
 ///         }
@@ -208,16 +209,23 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
 
     /// Begins a look at the curve of a record of so many samples, where one [is due](Self::is_due).
     /// `invalid` is why the curve is not valid, as of [`Axes::verdict`](crate::Axes::verdict).
+    ///
+    /// # Errors
+    /// [`Error::OtherRate`] if the curve has another rate than the scale that the test was made with.
     pub fn begin_look(
         &self,
         samples: u64,
         curve: Curve<OCTAVES>,
         invalid: Option<Reason>,
-    ) -> Look<OCTAVES> {
+    ) -> Result<Look<OCTAVES>, Error> {
+        let (record_hz, test_hz) = (curve.rate_hz(), self.scale.rate_hz());
+        if record_hz != test_hz {
+            return Err(Error::OtherRate { record_hz, test_hz });
+        }
         let limits = numbered(self.plan.limits.iter());
         let undecided = limits.filter(|&(i, _)| !self.progress.kept.has(i));
         let compared = undecided.filter_map(|(_, limit)| Compared::new(limit));
-        Look::new(samples, curve, invalid, compared)
+        Ok(Look::new(samples, curve, invalid, compared))
     }
 
     /// Takes up a look that is [complete](Look::advance), and says how the test stands.
@@ -240,18 +248,21 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     /// [`Look::advance`] until it is complete, and [`conclude`](Self::conclude). It takes a
     /// [`fit`](crate::fit::fit()) and one more for each undecided limit where a look is due, and next to
     /// nothing otherwise.
+    ///
+    /// # Errors
+    /// [`Error::OtherRate`] if the curve has another rate than the scale that the test was made with.
     pub fn look(
         &mut self,
         samples: u64,
         curve: &Curve<OCTAVES>,
         invalid: Option<Reason>,
-    ) -> Status {
+    ) -> Result<Status, Error> {
         if !self.is_due(samples) {
-            return self.status(samples);
+            return Ok(self.status(samples));
         }
-        let mut look = self.begin_look(samples, curve.clone(), invalid);
+        let mut look = self.begin_look(samples, curve.clone(), invalid)?;
         while !look.advance() {}
-        self.conclude(&look)
+        Ok(self.conclude(&look))
     }
 
     /// Share of the longest record that is there.

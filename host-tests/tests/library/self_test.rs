@@ -1,7 +1,7 @@
 //! Tests the self-test: its verdicts, its looks, and the plans that it refuses.
 
 use allanite::{
-    Axis, Scale,
+    Axis, Error, Scale,
     integrity::{Limits, Reason},
     self_test::{Failure, InvalidPlan, Limit, Plan, SelfTest, Status},
 };
@@ -38,6 +38,7 @@ fn look(test: &mut SelfTest<16>, gyro: &Gyro) -> Status {
     }
     let record = gyro.record_so_far(0, scale()).unwrap();
     test.look(record.samples, &record.curve, record.invalid)
+        .unwrap()
 }
 
 /// Pushes the counts of a consumer gyro, changed by `change(index, count)`, until there is a
@@ -325,8 +326,12 @@ fn a_look_in_pieces_judges_the_record_that_it_began_with() {
             continue;
         }
         let record = gyro.record_so_far(0, scale()).unwrap();
-        let expected = whole.look(record.samples, &record.curve, record.invalid);
-        let mut look = pieces.begin_look(record.samples, record.curve, record.invalid);
+        let expected = whole
+            .look(record.samples, &record.curve, record.invalid)
+            .unwrap();
+        let mut look = pieces
+            .begin_look(record.samples, record.curve, record.invalid)
+            .unwrap();
         let mut calls = 1;
         while !look.advance() {
             calls += 1;
@@ -350,8 +355,10 @@ fn a_look_that_is_not_complete_or_belongs_to_another_test_decides_nothing() {
         gyro.push((rate / UNIT).round() as i32);
     }
     let record = gyro.record_so_far(0, scale()).unwrap();
-    let begin =
-        |test: &SelfTest<16>| test.begin_look(record.samples, record.curve.clone(), record.invalid);
+    let begin = |test: &SelfTest<16>| {
+        test.begin_look(record.samples, record.curve.clone(), record.invalid)
+            .unwrap()
+    };
     let mut look = begin(&new(0.02));
     let not_complete = new(0.02).conclude(&look);
     assert!(
@@ -365,4 +372,19 @@ fn a_look_that_is_not_complete_or_belongs_to_another_test_decides_nothing() {
         matches!(of_another, Status::Running { .. }),
         "{of_another:?}"
     );
+}
+
+#[test]
+fn a_record_of_another_rate_is_refused() {
+    let mut test = SelfTest::<16>::new(plan("angle_random_walk", 0.02), scale()).unwrap();
+    let mut gyro = Gyro::new();
+    for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7).take(1000) {
+        gyro.push((rate / UNIT).round() as i32);
+    }
+    let other = Scale::new(UNIT, 2.0 * RATE_HZ).unwrap();
+    let record = gyro.record_so_far(0, other).unwrap();
+    let refused = test.look(record.samples, &record.curve, record.invalid);
+    let (record_hz, test_hz) = (2.0 * RATE_HZ, RATE_HZ);
+    assert_eq!(refused, Err(Error::OtherRate { record_hz, test_hz }));
+    assert!(test.is_due(gyro.samples()), "nothing was decided");
 }

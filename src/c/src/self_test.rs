@@ -276,7 +276,10 @@ pub unsafe extern "C" fn allanite_look_begin(
         Err(error) => return error,
     };
     let (samples, invalid) = (record.samples, record.invalid);
-    let begun = || Ok(test.begin_look(samples, record.curve.clone(), invalid));
+    let begun = || {
+        test.begin_look(samples, record.curve.clone(), invalid)
+            .map_err(Into::into)
+    };
     // SAFETY: the caller promises what `make` wants.
     status(unsafe { memory::make(look, bytes, begun) })
 }

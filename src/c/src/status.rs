@@ -44,7 +44,10 @@ pub enum AllaniteStatus {
 impl From<Error> for AllaniteStatus {
     fn from(error: Error) -> Self {
         match error {
-            Error::InvalidRate(_) | Error::InvalidScale(_) => Self::InvalidArgument,
+            Error::InvalidRate(_)
+            | Error::InvalidScale(_)
+            | Error::OtherRate { .. }
+            | Error::OtherModel => Self::InvalidArgument,
             Error::UnknownAxis { .. } => Self::UnknownAxis,
             Error::TooFewOctaves { .. } => Self::TooShort,
             Error::NoNoise { .. } => Self::NoNoise,

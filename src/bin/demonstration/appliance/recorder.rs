@@ -155,7 +155,7 @@ impl<'a> Recorder<'a> {
         }
         if self.look.is_none() && !self.has_ended() && self.tests[0].is_due(self.gyro.samples()) {
             let x = self.record(0)?;
-            let look = self.tests[0].begin_look(x.samples, x.curve, x.invalid);
+            let look = self.tests[0].begin_look(x.samples, x.curve, x.invalid)?;
             self.look = Some((look, false, taken + LOOK));
         }
         Ok(())

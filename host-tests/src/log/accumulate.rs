@@ -55,6 +55,8 @@ pub(super) struct Passes<'a, T> {
     /// The columns that are tried without being asked for.
     pub(super) tried: TriedColumns,
     pub(super) time: Option<&'a TimeColumn>,
+    /// The rows whose stamps are known to be late, counted from 1.
+    pub(super) late: Vec<u64>,
     pub(super) progress: &'a ProgressBar,
 }
 
@@ -66,7 +68,7 @@ impl<T: Table> Passes<'_, T> {
             return Ok((ended, None));
         };
         let mut timed = Timed {
-            clock: Clock::new(time.pace),
+            clock: Clock::new(time.pace, &self.late),
             columns: time.columns.len(),
             seconds: None,
             repeated: false,
@@ -119,10 +121,26 @@ impl<V: Visitor> Visitor for Timed<'_, V> {
     }
 }
 
+/// Accumulates the given columns, and once more if stamps turned out to be late: only behind a stamp, the rows tell
+/// whether samples were lost before it.
+pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
+    let measured = measure_once(passes, plan)?;
+    let late = measured.clock.as_ref().map_or(&[][..], Clock::late);
+    if late.is_empty() {
+        return Ok(measured);
+    }
+    let again = Passes {
+        late: late.to_vec(),
+        tried: passes.tried.clone(),
+        ..*passes
+    };
+    measure_once(&again, plan)
+}
+
 /// Accumulates the given columns. A log of counts takes one pass. At the first value that is not a
 /// count, reading starts again: one pass finds the range of each axis, and another accumulates the
 /// rounded values.
-pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
+fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
     let path = passes.path;
     let columns = &passes.columns[..passes.tried.first.min(passes.columns.len())];
     let mut counts = Counts {

@@ -1,6 +1,7 @@
 //! Finds the columns of a log that are the sensor's axes, and their unit.
 
 use super::{
+    axis_names,
     columns::{AxisColumn, Columns, Look},
     convention::{self, Convention},
     names, unit_names,
@@ -27,7 +28,7 @@ impl Columns {
         let all_are = |sensor: &Sensor| {
             let is = |axis: &AxisColumn| {
                 let name = self.name(axis.column);
-                name.is_some_and(|name| names::is_axis(name, *sensor))
+                name.is_some_and(|name| axis_names::is_axis(name, *sensor))
             };
             axes.iter().all(is)
         };
@@ -102,11 +103,11 @@ impl Columns {
             };
             all.clone().filter(is).collect()
         };
-        let by_name = named(&|name| names::is_axis(name, sensor));
+        let by_name = named(&|name| axis_names::is_axis(name, sensor));
         let any = [Sensor::Gyro, Sensor::Accelerometer];
         let none_is_named = || {
             any.iter()
-                .all(|&sensor| named(&|name| names::is_axis(name, sensor)).is_empty())
+                .all(|&sensor| named(&|name| axis_names::is_axis(name, sensor)).is_empty())
         };
         if by_name.is_empty()
             && convention::sensor_said(&self.said) == Some(sensor)
@@ -149,6 +150,51 @@ impl Columns {
         Ok(())
     }
 
+    /// Three columns of numbers, one behind the other, that are the axes of something which their names do not tell.
+    fn unknown_triple(&self, known: &[usize]) -> Option<[usize; 3]> {
+        let is_free = |column: usize| {
+            let name = self.name(column)?;
+            let is_other = names::is_other(name) || names::is_time(name);
+            let is_free = self.looks[column] == Look::Number && !known.contains(&column);
+            (is_free && !is_other && !convention::is_bare_axis(name)).then_some(name)
+        };
+        let starts = 0..self.looks.len().saturating_sub(2);
+        starts
+            .map(|first| [first, first + 1, first + 2])
+            .find(|columns| match columns.map(is_free) {
+                [Some(x), Some(y), Some(z)] => axis_names::are_triple([x, y, z]),
+                _ => false,
+            })
+    }
+
+    /// Whether these axes of a gyro stand beside three of an accelerometer that feel 9.3 to 10.3 units of gravity, and
+    /// scatter less than rates in deg/s do: then both are in units of the SI.
+    pub(super) fn is_in_si(&self, axes: &[AxisColumn]) -> bool {
+        const GRAVITY: std::ops::Range<f64> = 9.3..10.3;
+        // No gyro that has an accelerometer beside it is as quiet as 0.02 °/s in a sample. Chosen by hand.
+        const QUIET: f64 = 0.02;
+        let beside = self.axes_of(Sensor::Accelerometer);
+        let &[x, y, z] = beside.as_slice() else {
+            return false;
+        };
+        let mean = |column: usize| {
+            let head = &self.heads[column];
+            head.iter().sum::<f64>() / head.len() as f64
+        };
+        let norm = [x, y, z]
+            .map(|column| mean(column).powi(2))
+            .iter()
+            .sum::<f64>()
+            .sqrt();
+        let scatter = |axis: &AxisColumn| {
+            let head = &self.heads[axis.column];
+            let squares = head.windows(2).map(|pair| (pair[1] - pair[0]).powi(2));
+            (0.5 * squares.sum::<f64>() / (head.len().max(2) - 1) as f64).sqrt()
+        };
+        let is_gyro = self.sensor_of(axes) == Some(Sensor::Gyro);
+        is_gyro && GRAVITY.contains(&norm) && axes.iter().all(|axis| scatter(axis) < QUIET)
+    }
+
     /// The convention that all these columns follow.
     pub(super) fn convention_of(&self, axes: &[AxisColumn]) -> Option<Convention> {
         let of = |axis: &AxisColumn| convention::of(self.name(axis.column)?, &self.said);
@@ -189,6 +235,26 @@ impl Columns {
             }
         };
         let by_name = sensor.map_or_else(Vec::new, named);
+        if wanted.is_none()
+            && let (Some(Sensor::Accelerometer), Some(unknown)) =
+                (sensor, self.unknown_triple(&by_name))
+        {
+            let [first, .., last] = unknown;
+            return Err(Place::file(path).failure(
+                format!(
+                    "{} to {} may be the axes of a gyro, and {} are those of an accelerometer",
+                    self.called(first),
+                    self.called(last),
+                    self.list(&by_name)
+                ),
+                format!(
+                    "choose with --sensor accel, or with --columns gx={},gy={},gz={}",
+                    first + 1,
+                    unknown[1] + 1,
+                    last + 1
+                ),
+            ));
+        }
         let taken = if by_name.is_empty() {
             let is_no_axis = |name| names::is_other(name) || names::is_time(name);
             let is_axis = |&column: &usize| {

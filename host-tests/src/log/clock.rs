@@ -10,6 +10,18 @@ use std::time::Duration;
 /// refused. Chosen by hand; no study varies it.
 const MOST_ODD: f64 = 0.05;
 
+/// The same for rows that follow a gap where stamps are exact: their steps are whole numbers of samples. Every fifth row
+/// missing is still refused, because a rate that changes by turns looks so too. Chosen by hand.
+const MOST_GAPS: f64 = 0.2;
+
+/// The largest distance of a gap from a whole number of samples, and of steps from the usual one (root mean square), of
+/// exact stamps. Chosen by hand.
+const EXACT: (f64, f64) = (0.1, 0.05);
+
+/// A late stamp is followed by this many rows at most until the stamps are where they would be without a loss. Chosen by
+/// hand.
+const MOST_LATE: u64 = 16;
+
 /// After this many gaps in a row, the log is taken to have changed its rate. Chosen by hand; no study
 /// varies it.
 const RUN: u32 = 16;
@@ -50,16 +62,37 @@ pub(super) struct Clock {
     steps: u64,
     sum: f64,
     squares: f64,
+    /// The number of rows in these steps: as many as steps, or more where several rows share a stamp.
+    rows_of_steps: u64,
+    /// The number of rows behind the first one with the present stamp.
+    sharing: u64,
     /// The shortest and the longest step, in ticks.
     range: (f64, f64),
     block: (u32, f64),
     /// The shortest and the longest mean step of a block, in ticks.
     means: Option<(f64, f64)>,
+    /// The number of gaps that are no whole number of samples.
+    off_grid: u64,
+    /// The rows whose stamps are known to be late, latest first, and the longest delay in ticks.
+    late: Vec<u64>,
+    delayed: (u64, f64),
+    /// The rows behind the last gaps, the stamps in front of them, and the first rows with these stamps.
+    behind: Vec<(u64, Stamp, u64)>,
+    /// The rows whose stamps turned out to be late.
+    found: Vec<u64>,
 }
 
 impl Clock {
-    pub(super) fn new(pace: Pace) -> Self {
+    /// A clock of this pace. The stamps of the rows `late`, counted from 1, are late: no sample is lost before them.
+    pub(super) fn new(pace: Pace, late: &[u64]) -> Self {
+        let mut late = late.to_vec();
+        late.sort_unstable_by(|a, b| b.cmp(a));
         Self {
+            off_grid: 0,
+            late,
+            delayed: (0, 0.0),
+            behind: Vec::new(),
+            found: Vec::new(),
             pace,
             last: None,
             rows: 0,
@@ -71,6 +104,8 @@ impl Clock {
             steps: 0,
             sum: 0.0,
             squares: 0.0,
+            rows_of_steps: 0,
+            sharing: 0,
             range: (f64::INFINITY, 0.0),
             block: (0, 0.0),
             means: None,
@@ -90,13 +125,26 @@ impl Clock {
             )));
         }
         if step == 0.0 {
+            if self.pace.rows > 1.0 {
+                self.sharing += 1;
+                return Ok(Tick::Next);
+            }
             self.repeated += 1;
             return Ok(Tick::Repeated);
         }
-        if step > self.pace.longest {
+        let rows = 1 + std::mem::take(&mut self.sharing);
+        self.end_delay(stamp);
+        if step > self.pace.longest && self.late.last() == Some(&self.rows) {
+            self.late.pop();
+            let delay = step - self.pace.step;
+            self.delayed = (self.delayed.0 + 1, self.delayed.1.max(delay));
+        } else if step > self.pace.longest {
+            self.behind.push((self.rows, last, self.rows - rows));
+            let samples = step / self.pace.step;
+            self.off_grid += u64::from((samples - samples.round()).abs() > EXACT.0);
             self.gaps += 1;
             self.longest_gap = self.longest_gap.max(step);
-            self.lost += (step / self.pace.step).round() - 1.0;
+            self.lost += ((step / self.pace.step).round() - 1.0) * self.pace.rows.round();
             self.gaps_in_a_row += 1;
             if self.gaps_in_a_row >= RUN {
                 return Err(self.two_rates(step, self.pace.step));
@@ -104,8 +152,30 @@ impl Clock {
             return Ok(Tick::Gap);
         }
         self.gaps_in_a_row = 0;
+        self.rows_of_steps += rows;
         self.step(step)?;
         Ok(Tick::Next)
+    }
+
+    /// Finds out whether the stamps behind the last gaps were late: then the rows behind them catch up with their stamps,
+    /// as if nothing had been lost.
+    fn end_delay(&mut self, stamp: Stamp) {
+        let (now, pace) = (self.rows, self.pace);
+        let longest = (MOST_LATE as f64 * pace.rows) as u64;
+        self.behind.retain(|&(row, ..)| now - row < longest);
+        let has_caught_up = |&(_, before, first): &(u64, Stamp, u64)| {
+            let samples = stamp.since(before) / pace.step * pace.rows;
+            samples < (now - first) as f64 + 0.5 * pace.rows
+        };
+        if let Some(first) = self.behind.iter().position(has_caught_up) {
+            let late = self.behind.drain(first..);
+            self.found.extend(late.map(|(row, ..)| row));
+        }
+    }
+
+    /// The rows whose stamps turned out to be late, in any order. Their gaps were none.
+    pub(super) fn late(&self) -> &[u64] {
+        &self.found
     }
 
     fn step(&mut self, step: f64) -> Result<(), Flaw> {
@@ -154,13 +224,13 @@ impl Clock {
         if self.repeated as f64 > most {
             return Err(odd("repeat", self.repeated));
         }
-        if self.gaps as f64 > most {
+        if self.gaps as f64 > self.most_gaps() {
             let (gaps, rows) = (self.gaps, self.rows);
             return Err(Flaw::stamps(format!(
                 "time stamps jump in {gaps} of {rows} rows: rows are missing, or stamps are too coarse"
             )));
         }
-        let rate_hz = self.steps as f64 / self.pace.seconds(self.sum);
+        let rate_hz = self.rows_of_steps as f64 / self.pace.seconds(self.sum);
         let rounded = format!("{rate_hz:.8e}").parse().unwrap_or(rate_hz);
         if (1e-6..=1e9).contains(&rounded) {
             Ok(rounded)
@@ -169,12 +239,25 @@ impl Clock {
         }
     }
 
+    /// The largest number of gaps with which the rate is known.
+    fn most_gaps(&self) -> f64 {
+        let is_exact = self.off_grid as f64 <= MOST_ODD * self.gaps as f64
+            && self.jitter() <= EXACT.1 * self.pace.step;
+        self.rows as f64 * if is_exact { MOST_GAPS } else { MOST_ODD }
+    }
+
+    /// The root mean square of the steps' differences from their mean, in ticks.
+    fn jitter(&self) -> f64 {
+        let steps = self.steps.max(1) as f64;
+        let offset = self.sum / steps - self.pace.step;
+        (self.squares / steps - offset * offset).max(0.0).sqrt()
+    }
+
     /// Describes how regular the stamps are, with the gaps and the rows that were left out.
     pub(super) fn report(&self) -> String {
         let steps = self.steps.max(1) as f64;
         let mean = self.sum / steps;
-        let offset = mean - self.pace.step;
-        let jitter = (self.squares / steps - offset * offset).max(0.0).sqrt();
+        let jitter = self.jitter();
         let greatest = (mean - self.range.0).max(self.range.1 - mean);
         let [step, jitter, greatest] =
             [mean, jitter, greatest].map(|ticks| span(self.pace.seconds(ticks)));
@@ -185,6 +268,16 @@ impl Clock {
                 count(self.gaps, "gap"),
                 span(self.pace.seconds(self.longest_gap)),
                 self.lost
+            );
+        }
+        if self.pace.rows > 1.0 {
+            text += &format!("; about {:.1} rows share a stamp", self.pace.rows);
+        }
+        if self.delayed.0 > 0 {
+            text += &format!(
+                "; {}, by {} at most, with nothing lost",
+                count(self.delayed.0, "late stamp"),
+                span(self.pace.seconds(self.delayed.1))
             );
         }
         if self.repeated > 0 {
@@ -220,7 +313,7 @@ mod tests {
 
     fn clock(stamps: &[i64], unit: TimeUnit) -> Clock {
         let first: Vec<f64> = stamps.iter().take(100).map(|&stamp| stamp as f64).collect();
-        Clock::new(Pace::of(&first, unit).unwrap())
+        Clock::new(Pace::of(&first, unit).unwrap(), &[])
     }
 
     fn run(stamps: &[i64]) -> (Clock, Vec<Tick>) {
@@ -293,16 +386,55 @@ mod tests {
     }
 
     #[test]
-    fn bursts_and_coarse_stamps_give_no_rate() {
-        let coarse: Vec<i64> = (0..1000).map(|i| i / 4 * 10_000).collect();
-        assert!(
-            run(&coarse)
-                .0
-                .rate_hz()
-                .unwrap_err()
-                .what
-                .contains("repeat in 750 of")
+    fn a_late_stamp_is_no_gap_and_a_lost_sample_is_one() {
+        // Every twentieth stamp is 4 ms late, one of them with two more behind it, and a sample is lost.
+        let mut stamps: Vec<i64> = (0..1000).map(|i| 5000 * i).collect();
+        for i in (19..1000).step_by(20) {
+            stamps[i] += 4000;
+        }
+        stamps[400] += 9000;
+        stamps[401] += 5000;
+        stamps.remove(705);
+        let (first, _) = run(&stamps);
+        assert_eq!(
+            first.late().len(),
+            50,
+            "all but the last row: {:?}",
+            first.late()
         );
+        let pace = Pace::of(&[0.0, 5000.0, 10_000.0, 15_000.0], TimeUnit::Us).unwrap();
+        let mut clock = Clock::new(pace, first.late());
+        let tick = |&stamp: &i64| clock.tick(Stamp::Whole(stamp)).unwrap();
+        let ticks: Vec<Tick> = stamps.iter().map(tick).collect();
+        let gaps: Vec<usize> = (0..997).filter(|&i| ticks[i] == Tick::Gap).collect();
+        assert_eq!(gaps, [705]);
+        assert!((clock.rate_hz().unwrap() / 200.0 - 1.0).abs() < 2e-3);
+        let report = clock.report();
+        assert!(
+            report.contains("; 50 late stamps, by 9ms at most"),
+            "{report}"
+        );
+    }
+
+    #[test]
+    fn rows_that_share_a_stamp_give_the_rate_of_rows() {
+        let shared: Vec<i64> = (0..1000).map(|i| i / 4 * 10_000).collect();
+        let (clock, ticks) = run(&shared);
+        assert!(ticks.iter().all(|&tick| tick == Tick::Next));
+        assert_eq!(clock.rate_hz().unwrap(), 400.0);
+        let report = clock.report();
+        assert!(
+            report.ends_with("; about 4.0 rows share a stamp"),
+            "{report}"
+        );
+        // A burst is lost, and another one comes later.
+        let stamps: Vec<i64> = (0..1000)
+            .filter(|i| i / 4 != 70)
+            .map(|i| i / 4 * 10_000)
+            .collect();
+        let (clock, ticks) = run(&stamps);
+        assert_eq!(ticks.iter().filter(|&&tick| tick == Tick::Gap).count(), 1);
+        assert_eq!(clock.rate_hz().unwrap(), 400.0);
     }
 
     /// Records of 100 Hz from which rows are missing at random are read with few losses, and refused
@@ -326,10 +458,10 @@ mod tests {
                 let ticked = ticks.collect::<Result<Vec<_>, _>>();
                 match ticked.and_then(|_| clock.rate_hz()) {
                     Ok(rate_hz) => {
-                        assert!(percent <= 6.0, "{percent} % missing gave {rate_hz} Hz");
+                        assert!(percent <= 22.0, "{percent} % missing gave {rate_hz} Hz");
                         assert!((rate_hz / 100.0 - 1.0).abs() < 1e-2, "{rate_hz} Hz");
                     }
-                    Err(flaw) => assert!(percent >= 4.0, "{percent} % missing: {flaw:?}"),
+                    Err(flaw) => assert!(percent >= 18.0, "{percent} % missing: {flaw:?}"),
                 }
             }
         }

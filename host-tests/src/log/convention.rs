@@ -66,11 +66,12 @@ pub(super) fn of(name: &str, said: &str) -> Option<Convention> {
         (metres, "ROS")
     } else if starts(&["gyroadc["]) {
         (deg, "Betaflight")
-    } else if starts(&["gyr_x", "gyr_y", "gyr_z"]) {
-        match said.contains("xsens dot") || said.contains("movella dot") {
-            true => (deg, "Xsens DOT"),
-            false => (rad, "Xsens"),
-        }
+    } else if starts(&["gyr_x", "gyr_y", "gyr_z"])
+        && (said.contains("xsens dot") || said.contains("movella dot"))
+    {
+        (deg, "Xsens DOT")
+    } else if starts(&["gyr_x", "gyr_y", "gyr_z"]) && is_xsens(said) {
+        (rad, "Xsens")
     } else if starts(&["acc_x", "acc_y", "acc_z"]) && said.contains("mt manager") {
         (metres, "Xsens")
     } else if starts(&["uncompgyro", "angularrate"])
@@ -92,6 +93,13 @@ pub(super) fn of(name: &str, said: &str) -> Option<Convention> {
     Some(Convention { unit, program })
 }
 
+/// Whether a text was written by one of Xsens' programs.
+fn is_xsens(said: &str) -> bool {
+    ["mt manager", "xsens", "mtb", "mti"]
+        .iter()
+        .any(|program| said.contains(program))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +119,7 @@ mod tests {
             ("gyroADC[0]", "", Some((deg, "Betaflight"))),
             ("Gyr_X", "// mt manager version", Some((rad, "Xsens"))),
             ("Gyr_X", "devicetag:,xsens dot", Some((deg, "Xsens DOT"))),
+            ("gyr_x", "", None),
             ("UncompGyroX", "", Some((rad, "VectorNav"))),
             ("gyro_x", "vectornav", Some((rad, "VectorNav"))),
             ("gyro_x", "", None),

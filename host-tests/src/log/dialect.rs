@@ -90,6 +90,12 @@ impl Dialect {
             });
             (dialect, width, points.sum::<i64>())
         });
+        // A field between tabs may hold blanks, such as a date and a time, unless these stand between numbers.
+        let has_tabs = rows_with_tabs(rows);
+        let judged = judged.map(|(dialect, width, points)| {
+            let is_split = has_tabs && dialect.separator == Separator::Blanks;
+            (dialect, width, if is_split { i64::MIN } else { points })
+        });
         let [first, others @ ..] = judged;
         let is_better =
             |one: &(Self, usize, i64), best: &(Self, usize, i64)| match best.2.max(one.2) {
@@ -158,6 +164,22 @@ impl Dialect {
             given: 0,
         })
     }
+}
+
+/// Whether tabs separate the values of all rows: each has as many of them, and no blanks stand between numbers.
+fn rows_with_tabs(rows: &[&[u8]]) -> bool {
+    let count = |row: &[u8]| row.iter().filter(|&&byte| byte == b'\t').count();
+    let tabs = rows.first().map_or(0, |row| count(row));
+    let are_numbers = |field: &[u8]| {
+        let mut words = field
+            .split(|&byte| byte == b' ')
+            .filter(|word| !word.is_empty());
+        let is_number = |word: &[u8]| Kind::of(word) == Kind::Number;
+        matches!((words.next(), words.next()), (Some(one), Some(other)) if is_number(one) && is_number(other))
+    };
+    let is_of_tabs =
+        |row: &&[u8]| count(row) == tabs && !row.split(|&byte| byte == b'\t').any(are_numbers);
+    tabs > 0 && rows.iter().all(is_of_tabs)
 }
 
 /// The number of fields that most records have. Of several, it is the largest one.
@@ -328,6 +350,8 @@ mod tests {
             ("2024-05-01T12:00:00.005Z,0.1,0.2", 3),
             ("2024-05-01 12:00:00.005;0,1;0,2", 3),
             ("12:00:00.005 0.1 0.2", 3),
+            ("03/02/2026 07:48:12.000\t0.1\t0.2", 3),
+            ("1 2\t3 4", 4),
             ("1.5", 1),
             ("1,2", 2),
             ("1,2,", 3),
@@ -341,6 +365,13 @@ mod tests {
                 "{row}: {fields:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_date_that_is_not_known_does_not_shift_the_columns() {
+        let row = "Mon Mar 2 07:48:12 2026\t0.1\t0.2\t0.3";
+        let (dialect, width) = Dialect::of_rows(&[row.as_bytes(); 3]);
+        assert_eq!((width, dialect.separator), (4, Separator::Byte(b'\t')));
     }
 
     #[test]

@@ -72,6 +72,7 @@
 
 mod accumulate;
 mod axes;
+mod axis_names;
 #[cfg(feature = "bags")]
 mod bag;
 #[cfg(feature = "bags")]

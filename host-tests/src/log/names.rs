@@ -1,42 +1,4 @@
-//! Recognises sensors, times and temperatures by the names of columns.
-
-use crate::unit::Sensor;
-
-/// Whether a column is named like an axis of this sensor: `gx`, `gyro_y`, `imu.angular_velocity.z`,
-/// `w_RS_S_x [rad s^-1]`, or `ax`, `accel_y`, `linear_acceleration.z`, and the like.
-pub(super) fn is_axis(name: &str, sensor: Sensor) -> bool {
-    let name = bare(name).to_lowercase();
-    let others = [
-        "temp", "time", "cov", "bias", "clip", "accura", "_dt", "calib", "device", "count", "_id",
-        "error", "integral",
-    ];
-    if others.iter().any(|other| name.contains(other)) || is_angle(&name) {
-        return false;
-    }
-    let (short, long): (&[&str], &[&str]) = match sensor {
-        Sensor::Gyro => (
-            &["gx", "gy", "gz", "wx", "wy", "wz", "w_rs_s_"],
-            &[
-                "gyr",
-                "angular_velocity",
-                "angularvelocity",
-                "angular_rate",
-                "angularrate",
-                "ang_vel",
-                "omega",
-            ],
-        ),
-        Sensor::Accelerometer => (
-            &["ax", "ay", "az", "a_x", "a_y", "a_z", "a_rs_s_"],
-            &["acc"],
-        ),
-    };
-    let is_short = |axis: &&str| {
-        let rest = name.strip_prefix(*axis);
-        rest.is_some_and(|rest| axis.len() > 3 || !rest.starts_with(char::is_alphabetic))
-    };
-    short.iter().any(is_short) || long.iter().any(|part| name.contains(part))
-}
+//! Recognises times, temperatures and angles by the names of columns.
 
 /// Whether a column is named like an angle or an orientation, which is no rate: `roll_deg`, `yaw`, `Heading [°]`,
 /// `orientation.x`, `q_w`. The rates `roll_rate`, `gyro_yaw` and `pitch [deg/s]` are none.
@@ -70,7 +32,7 @@ pub(super) fn is_time(name: &str) -> bool {
         return false;
     }
     let first = tokens(&name).next().unwrap_or_default();
-    ["time", "stamp", "zeit"]
+    ["time", "stamp", "zeit", "elapsed", "epoch"]
         .iter()
         .any(|word| name.contains(word))
         || first == "t"
@@ -247,55 +209,6 @@ impl TimeUnit {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn usual_names_of_axes_are_known() {
-        let gyro = [
-            "gx",
-            "GyroX",
-            "gyro_y [deg/s]",
-            "gyrADC[0]",
-            "angular_velocity.z",
-            "w_RS_S_x [rad s^-1]",
-            "wx",
-            "gx_raw131",
-        ];
-        let accelerometer = [
-            "ax",
-            "a_x",
-            "acc_x",
-            "AccZ",
-            "accel_y (m/s^2)",
-            "linear_acceleration.z",
-            "a_RS_S_x [m s^-2]",
-            "accelerometer_m_s2[0]",
-        ];
-        let neither = [
-            "t",
-            "gyro_temp",
-            "gxyz",
-            "angular_velocity_covariance_0",
-            "weight",
-            "axis",
-            "azimuth",
-            "gyro_integral_dt",
-            "accelerometer_timestamp_relative",
-            "gyro_calibration_count",
-            "gyro_device_id",
-            "roll_deg",
-            "angular_velocity_covariance",
-        ];
-        for (names, expected) in [
-            (&gyro[..], [true, false]),
-            (&accelerometer, [false, true]),
-            (&neither, [false, false]),
-        ] {
-            for name in names {
-                let is = [Sensor::Gyro, Sensor::Accelerometer].map(|one| is_axis(name, one));
-                assert_eq!(is, expected, "{name}");
-            }
-        }
-    }
 
     #[test]
     fn names_of_times_are_known_with_their_units() {

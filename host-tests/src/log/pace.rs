@@ -6,15 +6,18 @@ use super::names::TimeUnit;
 /// [`SCATTER`]. It lies half way between one step and the two steps that a lost sample leaves.
 const GAP: f64 = 1.5;
 
-/// The largest ratio between a told step and the regular step of stamps. The clocks of cheap gyros are
-/// off by some per cent.
-const TOLD: f64 = 1.1;
+/// The largest ratio between a told step and the regular step of stamps. The clocks of cheap gyros are off by some per
+/// cent, which their stamps tell better than their data sheets.
+const TOLD: f64 = 1.02;
 
 /// The same for stamps that are not regular.
 const IRREGULAR: f64 = 2.0;
 
 /// Stamps are regular if their mean step differs by less than this share from the usual step.
 const REGULAR: f64 = 0.02;
+
+/// Rows come in bursts if more rows than this share a stamp. Fewer are rows that were written twice.
+const BURSTS: f64 = 1.3;
 
 /// A gap must exceed the usual step by this many times the usual scatter of steps. Chosen by hand; the
 /// tests of this file hold it to a jitter of half a step.
@@ -29,17 +32,26 @@ pub(super) struct Pace {
     pub(super) step: f64,
     /// The longest step that is not a gap, in ticks.
     pub(super) longest: f64,
+    /// The number of rows that have the same stamp: 1 unless rows come in bursts.
+    pub(super) rows: f64,
 }
 
 impl Pace {
     /// The pace of the stamps `first`, in a unit. Returns `None` if the stamps never advance.
     pub(super) fn of(first: &[f64], unit: TimeUnit) -> Option<Self> {
         let mut steps = steps(first);
+        // The last stamp may have more rows than are known.
+        let last = (1..first.len())
+            .rev()
+            .find(|&row| first[row] > first[row - 1]);
+        let rows = last.unwrap_or(0) as f64 / steps.len().max(1) as f64;
+        let rows = if rows > BURSTS { rows } else { 1.0 };
         if let Some(step) = lattice(&mut steps) {
             return Some(Self {
                 per_second: unit.per_second(),
                 step,
                 longest: GAP * step,
+                rows,
             });
         }
         let step = quantile(&mut steps, 0.5)?;
@@ -49,6 +61,7 @@ impl Pace {
             per_second: unit.per_second(),
             step,
             longest: (GAP * step).max(step + SCATTER * scatter),
+            rows,
         })
     }
 
@@ -69,7 +82,28 @@ impl Pace {
 
     /// The rate at the usual step, in Hz.
     pub(super) fn usual_hz(&self) -> f64 {
-        self.per_second / self.step
+        self.rows * self.per_second / self.step
+    }
+
+    /// The mean rate of the stamps `first`, or that at the usual step if rows are missing among them, in Hz.
+    pub(super) fn mean_hz(&self, first: &[f64]) -> f64 {
+        let rows = first.len().saturating_sub(1) as f64;
+        let whole = first
+            .last()
+            .zip(first.first())
+            .map_or(0.0, |(last, first)| last - first);
+        let mean_hz = rows * self.per_second / whole;
+        let usual_hz = self.usual_hz();
+        if (mean_hz / usual_hz - 1.0).abs() < 0.05 {
+            mean_hz
+        } else {
+            usual_hz
+        }
+    }
+
+    /// The same pace for rows that were written twice, and are not those of bursts.
+    pub(super) fn without_bursts(self) -> Self {
+        Self { rows: 1.0, ..self }
     }
 
     /// The seconds in a number of ticks.

@@ -114,6 +114,7 @@ pub(super) fn read_table(
         columns: &columns,
         tried,
         time: time.as_ref(),
+        late: Vec::new(),
         progress,
     };
     let measured = accumulate::measure(&passes, &plan)?;
@@ -240,7 +241,11 @@ fn said(
                 scaling.unit
             ));
         }
-        Origin::AxisEvidence | Origin::Assumed => {}
+        Origin::Beside => parts.push(
+            "rad/s assumed, because the accelerometer beside it is in m/s² (change it with --unit)"
+                .into(),
+        ),
+        Origin::Told | Origin::Assumed => {}
     }
     if let Some(time) = time {
         let rate = match is_told {

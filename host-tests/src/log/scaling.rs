@@ -23,11 +23,13 @@ pub(super) struct Scaling {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
     /// The unit is given by an option or a comment.
-    AxisEvidence,
+    Told,
     /// The unit is in the names of the columns.
     Names,
     /// The unit is the one that a program always uses.
     Convention(&'static str),
+    /// The unit is the one that goes with an accelerometer in m/s² beside the gyro.
+    Beside,
     /// The unit is assumed.
     Assumed,
 }
@@ -80,12 +82,17 @@ impl Scaling {
         let convention = table.columns().convention_of(axes);
         let convention = convention.filter(|convention| fits(&convention.unit));
         let (unit, origin) = match (told, by_names, convention) {
-            (Some(unit), ..) => (unit, Origin::AxisEvidence),
+            (Some(unit), ..) => (unit, Origin::Told),
             (None, Some((unit, _)), _) => (unit, Origin::Names),
             (None, None, Some(convention)) => {
                 (convention.unit, Origin::Convention(convention.program))
             }
-            (None, None, None) => (usual, Origin::Assumed),
+            (None, None, None) => {
+                match table.columns().is_in_si(axes) && fits(&Unit::RadiansPerSecond) {
+                    true if scale.is_none() => (Unit::RadiansPerSecond, Origin::Beside),
+                    _ => (usual, Origin::Assumed),
+                }
+            }
         };
         let is_convention = matches!(origin, Origin::Convention(_));
         Ok(Self {

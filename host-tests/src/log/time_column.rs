@@ -92,8 +92,15 @@ impl Columns {
             return Ok(None);
         }
         let head = &self.heads[column];
+        let pace_of = |unit| {
+            let pace = Pace::of(head, unit)?;
+            Some(match self.are_written_twice(column) {
+                true => pace.without_bursts(),
+                false => pace,
+            })
+        };
         if self.looks[column] == Look::Date {
-            return Ok(Pace::of(head, TimeUnit::Ns).map(|pace| TimeColumn {
+            return Ok(pace_of(TimeUnit::Ns).map(|pace| TimeColumn {
                 columns: vec![self.time_axis(column)],
                 pace,
                 unit: TimeUnit::Ns,
@@ -134,12 +141,31 @@ impl Columns {
                 )));
             }
         };
-        Ok(Pace::of(head, unit).map(|pace| TimeColumn {
+        Ok(pace_of(unit).map(|pace| TimeColumn {
             columns: vec![self.time_axis(column)],
             pace,
             unit,
             is_date: false,
         }))
+    }
+
+    /// Whether most rows that share the stamp of the row before also share its values, so that they are no samples of
+    /// their own.
+    fn are_written_twice(&self, time: usize) -> bool {
+        let stamps = &self.heads[time];
+        let numbers = (0..self.looks.len()).filter(|&column| {
+            column != time
+                && self.looks[column] == Look::Number
+                && self.heads[column].len() == stamps.len()
+        });
+        let numbers: Vec<&Vec<f64>> = numbers.map(|column| &self.heads[column]).collect();
+        let shared = (1..stamps.len()).filter(|&row| stamps[row] == stamps[row - 1]);
+        let (mut all, mut twice) = (0, 0);
+        for row in shared {
+            all += 1;
+            twice += usize::from(numbers.iter().all(|column| column[row] == column[row - 1]));
+        }
+        2 * twice > all
     }
 
     /// Checks that a told rate is not contradicted by time stamps whose unit is told too. Stamps that
@@ -162,7 +188,13 @@ impl Columns {
                 continue;
             }
             let told = TimeUnit::of_name(self.name(column).unwrap_or_default());
-            let Some(unit) = options.time_unit.or(told.unwrap_or(None)) else {
+            // Without a word about the unit, it is known where only one makes the rate plausible.
+            let only = || match possible_units(head).as_deref() {
+                Some(&[unit]) if self.looks[column] == Look::Rising => Some(unit),
+                _ => None,
+            };
+            let told = told.unwrap_or(None).or_else(only);
+            let Some(unit) = options.time_unit.or(told) else {
                 continue;
             };
             let Some(pace) = Pace::of(head, unit) else {
@@ -174,9 +206,9 @@ impl Columns {
                         "the rate is said to be {} Hz, but the time stamps of {} give {} Hz",
                         brief(rate_hz),
                         self.called(column),
-                        brief(pace.usual_hz())
+                        brief(pace.mean_hz(head))
                     ),
-                    "correct --rate or --time-unit, or drop the column of time stamps",
+                    "omit --rate, correct --time-unit, or drop the column of time stamps",
                 ));
             }
             return Ok(());

@@ -31,7 +31,7 @@ pub(super) fn unit(name: &str) -> Result<Option<(Unit, f64)>, UnknownUnit> {
         let start = tokens.len().checked_sub(count).filter(|&start| start > 0)?;
         Some(tokens[start..].join("/"))
     };
-    let ends = [at_end(2), at_end(1)];
+    let ends = [at_end(3), at_end(2), at_end(1)];
     let known = ends.iter().flatten().find_map(|text| unit_of_text(text));
     let foreign = |text: &&String| FOREIGN.contains(&text.as_str());
     match ends.iter().flatten().find(foreign) {
@@ -72,11 +72,13 @@ fn unit_of_text(text: &str) -> Option<(Unit, f64)> {
     let (deg, rad) = (Unit::DegreesPerSecond, Unit::RadiansPerSecond);
     let (metres, g) = (Unit::MetresPerSecondSquared, Unit::StandardGravity);
     Some(match text.as_str() {
-        "deg/s" | "degs-1" | "deg.s-1" | "dps" | "degps" => (deg, 1.0),
+        "deg/s" | "degs-1" | "deg.s-1" | "dps" | "degps" | "deg/per/s" | "degpers" | "degs"
+        | "degs/s" => (deg, 1.0),
         "mdps" | "mdeg/s" | "mdegs-1" => (deg, 1e-3),
         "deg/h" | "deg/hr" | "dph" => (deg, 1.0 / 3600.0),
-        "rad/s" | "rads-1" | "rad.s-1" | "rads" | "radps" | "rad" => (rad, 1.0),
-        "mrad/s" | "mrads-1" => (rad, 1e-3),
+        "rad/s" | "rads-1" | "rad.s-1" | "rads" | "radps" | "rad" | "rad/per/s" | "radpers"
+        | "rads/s" => (rad, 1.0),
+        "mrad/s" | "mrads-1" | "mradps" => (rad, 1e-3),
         "m/s2" | "ms-2" | "m.s-2" | "m/s/s" | "ms2" | "mps2" | "mss" => (metres, 1.0),
         "g" | "gs" | "g0" | "gn" => (g, 1.0),
         "mg" => (g, 1e-3),
@@ -157,6 +159,11 @@ mod tests {
             ("gx_raw131", None),
             ("g", None),
             ("angular_velocity.x", None),
+            ("gyro_x_rad_per_s", Some((rad, 1.0))),
+            ("gyro_x_rad_per_sec", Some((rad, 1.0))),
+            ("gyro_deg_per_s_x", Some((deg, 1.0))),
+            ("gyro_x_degs", Some((deg, 1.0))),
+            ("AsX(°/s)", Some((deg, 1.0))),
         ] {
             assert_eq!(unit(name), Ok(expected), "{name}");
         }

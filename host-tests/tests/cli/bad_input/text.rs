@@ -57,7 +57,7 @@ pub(crate) fn cases() -> Vec<Case> {
     let said = |comment: &str| format!("# {comment}\ngx,gy,gz\n{}", rows(60));
     let third = (0..3000).filter(|i| i % 3 != 0).map(|i| 10_000 * i);
     let lost = (0..3000)
-        .filter(|i| i * i % 1009 % 10 != 3)
+        .filter(|i| i * i % 1009 % 10 > 2)
         .map(|i| 10_000 * i);
     let two = (0..3000).map(|i| 5000 * i + 5000 * (i - 2000).max(0));
     let levels = (0..600).zip(noise()).map(|(i, count)| {
@@ -296,7 +296,7 @@ pub(crate) fn cases() -> Vec<Case> {
         ),
         (
             "fit",
-            stamped("time_us,gx", (0..3000).map(|i| i / 4 * 20_000)),
+            stamped("time_us,gx", (0..3000).map(|i| (i - i % 10 / 9) * 5000)),
             "time stamps repeat",
         ),
         ("fit", stamped("time_us,gx", lost), "rows are missing"),

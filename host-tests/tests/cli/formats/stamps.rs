@@ -36,8 +36,8 @@ fn rate_follows_from_stamps_of_every_unit() {
             "{header}"
         );
         assert_eq!(log.axes[0].name, "gx");
-        // The clock of a cheap gyro is off by some per cent.
-        let told_hz = 1.03 * rate_hz;
+        // The clock of a cheap gyro is off by a per cent.
+        let told_hz = 1.01 * rate_hz;
         let told = Options {
             rate_hz: Some(told_hz),
             unit: Some(Unit::RadiansPerSecond),
@@ -101,7 +101,7 @@ fn gaps_split_the_record_and_repeated_rows_are_left_out() {
             let _ = writeln!(text, "{},{count}", 5000 * i);
         }
     }
-    for given in [None, Some(195.0)] {
+    for given in [None, Some(200.5)] {
         let options = Options {
             rate_hz: given,
             time: Some("timestamp".into()),
@@ -124,7 +124,7 @@ fn unusable_stamps_are_refused_with_their_row() {
     let regular = || (0..3000).map(|i| 5000 * i);
     let slower = regular().chain((1..500).map(|i| 5000 * 2999 + 10_000 * i));
     let back = regular().chain([7]);
-    let coarse = (0..3000).map(|i| i / 4 * 20_000);
+    let coarse = (0..3000).map(|i| (i - i % 10 / 9) * 5000);
     for (stamps, expected) in [
         (
             slower.collect::<Vec<_>>(),
@@ -138,7 +138,7 @@ fn unusable_stamps_are_refused_with_their_row() {
         ),
         (
             coarse.collect(),
-            "a.csv: time stamps repeat in 2250 of 3000 rows: too coarse, or written in bursts; \
+            "a.csv: time stamps repeat in 300 of 3000 rows: too coarse, or written in bursts; \
              give --rate to ignore the stamps",
         ),
     ] {
@@ -229,7 +229,8 @@ fn rate_that_the_stamps_contradict_is_refused() {
     let text = stamped("time_us,gx [deg/s]", (0..200).map(|i| i * 5000));
     for (rate_hz, agrees) in [
         (200.0, true),
-        (190.0, true),
+        (197.0, true),
+        (190.0, false),
         (100.0, false),
         (400.0, false),
         (0.2, false),
@@ -245,7 +246,7 @@ fn rate_that_the_stamps_contradict_is_refused() {
                 !agrees
                     && line.ends_with(
                         " Hz, but the time stamps of time_us give 200 Hz; \
-                         correct --rate or --time-unit, or drop the column of time stamps"
+                         omit --rate, correct --time-unit, or drop the column of time stamps"
                     ),
                 "{line}"
             ),
@@ -254,8 +255,8 @@ fn rate_that_the_stamps_contradict_is_refused() {
 }
 
 #[test]
-fn rows_missing_at_random_are_refused_however_many_they_are() {
-    for percent in [0, 2, 8, 10, 20, 30, 50] {
+fn rows_missing_at_random_are_read_up_to_a_fifth_if_stamps_are_exact() {
+    for percent in [0, 2, 8, 10, 30, 50] {
         let mut state = 1_u32;
         let is_kept = |_: &i64| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -264,9 +265,9 @@ fn rows_missing_at_random_are_refused_however_many_they_are() {
         let kept: Vec<i64> = (0..3000).filter(is_kept).map(|i| 10_000 * i).collect();
         let text = stamped("time_us,gx [deg/s]", kept.into_iter());
         match read_text(&text, &Options::default()) {
-            Ok(log) => assert!(percent <= 2 && log.rate_hz == 100.0, "{percent} %"),
+            Ok(log) => assert!(percent <= 10 && log.rate_hz == 100.0, "{percent} %"),
             Err(line) => assert!(
-                percent > 2 && line.contains("rows are missing, or stamps are too coarse"),
+                percent > 10 && line.contains("rows are missing, or stamps are too coarse"),
                 "{percent} %: {line}"
             ),
         }

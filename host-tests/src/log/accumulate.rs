@@ -125,7 +125,7 @@ impl<V: Visitor> Visitor for Timed<'_, V> {
 /// whether samples were lost before it.
 pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
     let measured = measure_once(passes, plan)?;
-    let late = measured.clock.as_ref().map_or(&[][..], Clock::late);
+    let late = measured.clock.as_ref().map_or(&[][..], Clock::found_late);
     if late.is_empty() {
         return Ok(measured);
     }

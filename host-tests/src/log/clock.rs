@@ -174,7 +174,7 @@ impl Clock {
     }
 
     /// The rows whose stamps turned out to be late, in any order. Their gaps were none.
-    pub(super) fn late(&self) -> &[u64] {
+    pub(super) fn found_late(&self) -> &[u64] {
         &self.found
     }
 
@@ -397,13 +397,13 @@ mod tests {
         stamps.remove(705);
         let (first, _) = run(&stamps);
         assert_eq!(
-            first.late().len(),
+            first.found_late().len(),
             50,
             "all but the last row: {:?}",
-            first.late()
+            first.found_late()
         );
         let pace = Pace::of(&[0.0, 5000.0, 10_000.0, 15_000.0], TimeUnit::Us).unwrap();
-        let mut clock = Clock::new(pace, first.late());
+        let mut clock = Clock::new(pace, first.found_late());
         let tick = |&stamp: &i64| clock.tick(Stamp::Whole(stamp)).unwrap();
         let ticks: Vec<Tick> = stamps.iter().map(tick).collect();
         let gaps: Vec<usize> = (0..997).filter(|&i| ticks[i] == Tick::Gap).collect();

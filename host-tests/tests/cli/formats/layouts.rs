@@ -9,7 +9,7 @@ use host_tests::{
 use std::fmt::Write as _;
 
 const ROWS: usize = 60;
-const LAYOUTS: u32 = 2500;
+const LAYOUTS: u32 = 2000;
 
 /// Names of a gyro's axes: `@` is the letter, `$` the capital letter, `%` the number.
 const GYRO: [&str; 26] = [

@@ -74,8 +74,11 @@ const RATES: [(&str, Unit); 12] = [
 ];
 const ACCELERATIONS: [&str; 5] = ["", " (g)", " [m/s^2]", "_g", "_m_s2"];
 
-/// Names of times, and how a time in milliseconds is written.
-const TIMES: [(&str, fn(u32) -> String); 9] = [
+/// Writes a time in milliseconds.
+type Write = fn(u32) -> String;
+
+/// Names of times, and how they are written.
+const TIMES: [(&str, Write); 9] = [
     ("time", |ms| format!("{:.3}", f64::from(ms) / 1e3)),
     ("t_us", |ms| (ms * 1000).to_string()),
     ("timestamp (ms)", |ms| ms.to_string()),

@@ -264,10 +264,10 @@ impl Clock {
         let mut text = format!("time stamps {step} apart, jitter {jitter} rms, {greatest} at most");
         if self.gaps > 0 {
             text += &format!(
-                "; {}, the longest {}, about {} samples lost",
+                "; {}, the longest {}, about {} lost",
                 count(self.gaps, "gap"),
                 span(self.pace.seconds(self.longest_gap)),
-                self.lost
+                count(self.lost as u64, "sample")
             );
         }
         if self.pace.rows > 1.0 {

@@ -112,7 +112,10 @@ impl Columns {
         };
         let fail = |what: String| {
             Place::file(path).failure(
-                format!("time column {}: {what}", self.called(column)),
+                match self.name(column) {
+                    Some(name) => format!("time column {name}: {what}"),
+                    None => format!("column {} as the time: {what}", column + 1),
+                },
                 "choose with --time-unit, or give --rate",
             )
         };

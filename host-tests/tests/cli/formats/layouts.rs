@@ -255,3 +255,55 @@ fn layouts_that_nobody_listed_are_read_right_or_refused() {
         refused.len()
     );
 }
+
+/// A log of a gyro and an accelerometer at rest, of these names and scatters.
+fn beside(names: &str, scatter: f64, gravity: f64) -> String {
+    let mut random = Random(3);
+    let mut text = format!("time,{names}\n");
+    for row in 0..ROWS {
+        let noise: Vec<f64> = (0..6)
+            .map(|_| random.below(1000) as f64 / 500.0 - 1.0)
+            .collect();
+        let [x, y, z] = [0, 1, 2].map(|i| scatter * noise[i]);
+        let [a, b, c] = [3, 4, 5].map(|i| 0.01 * gravity * noise[i]);
+        let _ = writeln!(
+            text,
+            "{:.2},{x:.6},{y:.6},{z:.6},{a:.5},{b:.5},{:.5}",
+            row as f64 / 100.0,
+            c + gravity
+        );
+    }
+    text
+}
+
+#[test]
+fn without_a_unit_the_accelerometer_beside_a_gyro_tells_it() {
+    for (scatter, gravity, unit) in [
+        (0.002, 9.81, Unit::RadiansPerSecond),
+        (0.002, 1.0, Unit::DegreesPerSecond),
+        (0.1, 9.81, Unit::DegreesPerSecond),
+    ] {
+        let text = beside("gx,gy,gz,ax,ay,az", scatter, gravity);
+        let log = read_text(&text, &Options::default()).unwrap();
+        assert_eq!(log.unit, unit, "{scatter} beside {gravity}");
+        let said = log.notes.join("\n");
+        assert!(said.contains("assumed"), "{said}");
+    }
+}
+
+#[test]
+fn where_two_readings_are_plausible_both_are_spelled_out() {
+    let text = beside("foo_x,foo_y,foo_z,acc_x,acc_y,acc_z", 0.05, 1.0);
+    let line = read_text(&text, &Options::default()).unwrap_err();
+    assert_eq!(
+        line,
+        "a.csv: foo_x to foo_z may be the axes of a gyro, and acc_x, acc_y, acc_z are those of an \
+         accelerometer; choose with --sensor accel, or with --columns gx=2,gy=3,gz=4"
+    );
+    let sensor = Some(host_tests::unit::Sensor::Accelerometer);
+    let options = Options {
+        sensor,
+        ..Options::default()
+    };
+    assert_eq!(read_text(&text, &options).unwrap().axes[0].name, "acc_x");
+}

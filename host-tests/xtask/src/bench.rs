@@ -107,12 +107,12 @@ pub(crate) fn run(json: bool, update_budgets: bool) -> Result<()> {
         setup::run()?;
     }
     let way = Way::in_use()?;
+    ensure!(
+        !update_budgets || way == Way::Rustup,
+        "budgets are those of rustup's toolchain, and {way} is in use"
+    );
     let mut measured = budgets::measured()?;
     if update_budgets {
-        ensure!(
-            way == Way::Rustup,
-            "budgets are those of rustup's toolchain, and {way} is in use"
-        );
         budgets::update(&measured)?;
         println!("written: {}", budgets::path().display());
         println!(

@@ -28,7 +28,10 @@ const LOOKS: usize = 100;
 
 /// A log of text whose first rows are known.
 pub(super) struct Csv {
+    /// The file that messages name.
     path: PathBuf,
+    /// The file with the text.
+    text: PathBuf,
     gzip: bool,
     dialect: Dialect,
     metadata: Metadata,
@@ -43,9 +46,15 @@ pub(super) struct Csv {
 
 impl Csv {
     pub(super) fn open(path: &Path, gzip: bool) -> Result<Self, Failure> {
-        let preamble = Preamble::read(path, gzip)?;
+        Self::open_as(path, path, gzip)
+    }
+
+    /// Opens a text that was made of another file, which messages name.
+    pub(super) fn open_as(path: &Path, text: &Path, gzip: bool) -> Result<Self, Failure> {
+        let preamble = Preamble::read(path, text, gzip)?;
         let mut table = Self {
             path: path.to_owned(),
+            text: text.to_owned(),
             gzip,
             dialect: preamble.dialect,
             metadata: preamble.metadata,
@@ -57,7 +66,7 @@ impl Csv {
                 said: said(path, &preamble.said),
             },
             start: preamble.start,
-            is_whole: gzip || source::ends_with_line(path)?,
+            is_whole: gzip || source::ends_with_line(text)?,
             lost: Cell::new((0, 0)),
         };
         if preamble.width > MOST_COLUMNS {
@@ -78,7 +87,7 @@ impl Csv {
 
     /// The text from the first row on, with one delimiter between values.
     fn rows(&self, progress: &ProgressBar) -> Result<Box<dyn Read>, Failure> {
-        let mut text = source::open_text(&self.path, self.gzip, progress)?;
+        let mut text = source::open_text(&self.text, self.gzip, progress)?;
         io::copy(&mut text.by_ref().take(self.start), &mut io::sink())
             .map_err(|error| self.failure((0, error)))?;
         Ok(self.dialect.tidied(text))
@@ -118,7 +127,7 @@ impl Csv {
     }
 
     fn row(&self, byte: u64) -> Result<u64, Failure> {
-        let raw = source::open_text(&self.path, self.gzip, &ProgressBar::hidden())?;
+        let raw = source::open_text(&self.text, self.gzip, &ProgressBar::hidden())?;
         let above = source::lines_before(raw, self.start.min(byte));
         let rows = BufReader::new(self.rows(&ProgressBar::hidden())?);
         Ok(above + source::row_at(rows, byte.saturating_sub(self.start)))

@@ -13,6 +13,8 @@
 //!   `.txt` behind its name may contain the same comments.
 //! * Bags of ROS 2 (MCAP, SQLite, or a folder of them) and of ROS 1, with a topic of `sensor_msgs/msg/Imu`.
 //!   The stamps are those of the messages' headers. One chunk is in memory at a time.
+//! * Parquet, Arrow, workbooks, arrays of MATLAB and HDF5, and flight logs of ArduPilot and Betaflight, which are rewritten as
+//!   text first. In a file with several tables, the longest one is taken, or that of [`Options::topic`].
 //! * `.ulg`: a log of PX4 with `sensor_gyro`, `sensor_accel`, `sensor_combined` or `vehicle_imu`.
 //!
 //! # Which columns are axes
@@ -88,6 +90,8 @@ mod channel;
 mod clock;
 mod columns;
 mod convention;
+#[cfg(any(feature = "bags", feature = "tables"))]
+mod converted;
 mod covariate;
 mod csv;
 mod date_time;
@@ -99,12 +103,15 @@ mod foreign;
 #[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
+#[cfg(feature = "bags")]
+mod message_layout;
 mod metadata;
 mod names;
 mod npy;
 mod npy_block;
 pub mod npy_header;
 mod pace;
+mod parts;
 mod preamble;
 mod quantum;
 mod reading;
@@ -114,6 +121,8 @@ mod scaling;
 mod source;
 mod sums;
 mod table;
+#[cfg(feature = "tables")]
+mod tables;
 mod time_column;
 mod tried;
 mod ulog;

@@ -183,11 +183,7 @@ pub(crate) fn cases() -> Vec<Case> {
             after("# \u{1b}[2J\n1,2,3"),
             "a comment among the rows",
         ),
-        (
-            "fit",
-            "H Product:Blackbox\n".into(),
-            "convert it with `blackbox_decode a.csv`",
-        ),
+        ("fit", "H Product:Blackbox\n".into(), "no log with numbers"),
         ("fit", "a\0b,c\n".into(), "not text"),
         (
             "fit",

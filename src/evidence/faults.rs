@@ -5,11 +5,11 @@ pub use crate::record::faults::{JointRepeats, SampleFaults};
 use crate::{
     list::numbered,
     numerics::{
-        math::{exp, log, sqrt},
-        real::{Real, real},
+        math::{erfc, exp, log, sqrt},
+        real::{Real, consts::FRAC_1_SQRT_2, real},
     },
     record::{
-        faults::{Hole, steps::Steps},
+        faults::{Hole, ends::End, steps::Steps},
         integrity::Reason,
     },
 };
@@ -17,6 +17,8 @@ use crate::{
 /// The significance from which repeats are told, in standard errors. `cargo xtask study faults` sets this and all
 /// other numbers of this file.
 const TOLD: Real = 4.5;
+/// The same for repeats of three axes at once, whose chance depends on more.
+const TOLD_OF_ALL: Real = 5.5;
 /// The number of samples from which a record is judged.
 const JUDGED: u64 = 1000;
 /// The smallest share of repeats that is told.
@@ -88,6 +90,11 @@ impl SampleFaults {
     pub fn repeats(&self, joint: Option<&JointRepeats>) -> Repeats {
         let own = self.own_repeats();
         match joint.map(JointRepeats::repeats) {
+            // All axes tell that samples repeat, and the surer one of both how many.
+            Some(all) if all.told && own.told && own.least < all.least => Repeats {
+                chance: all.chance,
+                ..own
+            },
             Some(all) if all.told || all.least <= own.least && !own.told => all,
             _ => own,
         }
@@ -106,8 +113,17 @@ impl SampleFaults {
         if one + two < 60.0 {
             return fine_repeats(steps);
         }
-        if two < 60.0 || two < 0.3 * one {
+        if two < 60.0 || two < 0.02 * one {
             return Repeats::unknown(zero / pairs);
+        }
+        if two < 0.3 * one {
+            // Narrower values do not lie anywhere within a step.
+            let (_, variance) = self.mean_and_variance();
+            let step = steps.step() as Real;
+            return match variance >= 0.42 * step * step {
+                true => coarse_repeats(steps.near, pairs),
+                false => Repeats::unknown(zero / pairs),
+            };
         }
         let [h1, h2, h3] = [one, two, three + 0.5].map(|number| log(0.5 * number));
         // The logarithm of the distribution is a polynomial of the squared difference: of first order for Gaussian
@@ -151,26 +167,54 @@ impl SampleFaults {
         self.steps.later.saturating_add(256)
     }
 
+    /// The mean of the counts, and their variance.
+    fn mean_and_variance(&self) -> (Real, Real) {
+        let (first, sum, squares) = self.spread.sums();
+        let number = self.samples.max(1) as Real;
+        let mean = sum as Real / number;
+        let variance = squares as Real / number - mean * mean;
+        (first as Real + mean, variance.max(0.0))
+    }
+
     fn share_of_equal(&self) -> Real {
         self.runs.zeros as Real / self.pairs() as Real
     }
 
     /// More samples at an end of the range than the values next to it let expect. The distribution of noise is
-    /// log-concave there, so that a level has at most the square of the next one over the one behind that.
+    /// log-concave there, so that a level has at most the square of the next one over the one behind that. A sinusoid
+    /// that is larger than the noise has up to 1.9 times as many, at both ends.
     fn clipped(&self) -> Option<Reason> {
-        let is_clipped = |near: &[u64; 3]| {
-            let [end, next, behind] = near.map(|number| number as Real);
+        let excess = |end: &End| {
+            let [here, next, behind] = end.near.map(|number| number as Real);
             let expected = next * next / behind.max(1.0);
-            let rest = end - expected.max(next);
-            let error = sqrt(end + expected * expected * (4.0 / next.max(1.0) + 1.0 / behind.max(1.0)) + 1.0);
-            let few = next + behind < 8.0;
-            let levels = next >= 4.0 && behind >= 4.0 && behind > 0.8 * next;
-            end >= 16.0
-                && ((few && end > 10.0 * (next + behind))
-                    || (levels && end > 2.2 * expected && rest > 0.0 && end - expected > 5.0 * error))
+            // Neighbours are alike where noise is slow, so that the numbers scatter more.
+            let alike = here / (end.entries as Real).max(1.0);
+            let relative = 4.0 / next.max(1.0) + 1.0 / behind.max(1.0);
+            let error = sqrt(alike * (here + expected * expected * relative) + 1.0);
+            let few = next + behind < 8.0 && here > 10.0 * (next + behind);
+            let many = next >= 4.0 && behind >= 4.0 && here - expected > TOLD * error;
+            let is_full = here >= 16.0 && end.entries >= 8 && (few || many);
+            let ratio = if few { Real::MAX } else { here / expected };
+            if is_full { ratio } else { 0.0 }
         };
-        let clipped = self.ends.iter().filter(|end| is_clipped(&end.near));
-        let hits = clipped.map(|end| end.samples).sum();
+        let [high, low] = &self.ends;
+        let (mean, variance) = self.mean_and_variance();
+        let (deviation, step) = (sqrt(variance), self.steps.step() as Real);
+        let [up, down] = [high.value() as Real - mean, low.value() as Real + mean];
+        // The noise is cut off on one side of its mean, and goes on on the other one.
+        let is_cut = |end: &End, near: Real, far: Real| {
+            let [here, next, _] = end.near.map(|number| number as Real);
+            let is_full = here >= 16.0 && end.entries >= 8 && here >= 0.3 * next;
+            is_full && deviation > step && near < 3.2 * deviation && far > 1.3 * near + 1.5 * step
+        };
+        let is_above = |own: Real, other: Real| own > 2.2 || (own > 1.2 && other == 0.0);
+        let [above, below] = [excess(high), excess(low)];
+        let clipped = [
+            is_above(above, below) || is_cut(high, up, down),
+            is_above(below, above) || is_cut(low, down, up),
+        ];
+        let hits = self.ends.iter().zip(clipped).filter(|(_, is)| *is);
+        let hits = hits.filter_map(|(end, _)| end.near.first()).sum();
         (hits > 0 && self.share_of_equal() < MOSTLY_EQUAL).then_some(Reason::Railed {
             hits,
             samples: self.samples,
@@ -192,7 +236,7 @@ impl SampleFaults {
         let zeros_found = zeros as Real;
         let is_hole = edge >= step.saturating_mul(2).saturating_sub(step / 4) && beside >= 8;
         let enough = zeros >= 16 && zeros_found >= 0.005 * self.samples as Real;
-        (is_hole && enough && (0.5 * expected..8.0 * expected).contains(&zeros_found)).then_some(
+        (is_hole && enough && (0.5 * expected..40.0 * expected).contains(&zeros_found)).then_some(
             Reason::DeadBand {
                 zeros,
                 samples: self.samples,
@@ -224,6 +268,60 @@ impl SampleFaults {
     }
 }
 
+/// The repeats of values whose differences are hardly longer than a step. The sensor's value before rounding lies anywhere
+/// within a step, so that the differences of white or slow Gaussian noise have the distribution of Gaussian ones plus
+/// a triangle of two steps. The numbers of one and two steps tell its width, and with it that of zero.
+fn coarse_repeats(near: [u64; 4], pairs: Real) -> Repeats {
+    let [zero, one, two, three] = near.map(|number| number as Real);
+    let ratio = two / one;
+    let (mut low, mut high): (Real, Real) = (0.1, 3.0);
+    for _ in 0..24 {
+        let middle = 0.5 * (low + high);
+        let [_, first, second, _] = rounded(middle);
+        if second < ratio * first {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let of_one = |width: Real| {
+        let [none, first, _, third] = rounded(width);
+        (0.5 * none / first, third / first)
+    };
+    let ((chance, third), (other, _)) = (of_one(low), of_one(low * 1.01));
+    let [_, first, second, _] = rounded(low);
+    let [_, other_first, other_second, _] = rounded(low * 1.01);
+    // How the logarithm of the chance follows that of the ratio.
+    let slope = log(other / chance) / log(other_second / other_first / (second / first));
+    let chance = chance * one;
+    let relative = (1.0 - slope) * (1.0 - slope) / one + slope * slope / two;
+    let error = sqrt(zero + chance * chance * relative).max(1.0);
+    // Noise of another distribution has longer differences.
+    let expected = third * one;
+    if three
+        > expected + TOLD * sqrt(expected * (1.0 + expected * 9.0 * (1.0 / one + 1.0 / two)) + 1.0)
+    {
+        return Repeats::unknown(zero / pairs);
+    }
+    let number = zero - chance;
+    let own = chance / (pairs - number).max(1.0);
+    Repeats::new(number / error, number / pairs, error / pairs, own)
+}
+
+/// The probabilities that the difference of two rounded values is 0, 1, 2 and 3 steps, up to a factor. `width` is the
+/// standard deviation of the difference before rounding, in steps.
+fn rounded(width: Real) -> [Real; 4] {
+    // The second integral of the normal density.
+    let integral = |steps: Real| {
+        let u = steps / width;
+        let below = 0.5 * erfc(-u * FRAC_1_SQRT_2);
+        u * below + 0.398_942_3 * exp(-0.5 * u * u)
+    };
+    [0.0, 1.0, 2.0, 3.0].map(|steps: Real| {
+        (integral(steps + 1.0) - 2.0 * integral(steps) + integral(steps - 1.0)).max(1e-12)
+    })
+}
+
 /// The repeats of values so fine that none is there by chance. Their grid may be finer for smaller values, but hardly
 /// coarser than a 64th of the usual difference. Then at most half as many differences are zero as are below that.
 fn fine_repeats(steps: &Steps) -> Repeats {
@@ -235,7 +333,7 @@ fn fine_repeats(steps: &Steps) -> Repeats {
     let most = 0.5 * small;
     let error = sqrt(most + 0.25 * small + 1.0);
     let [_, one, ..] = steps.near.map(|number| number as Real);
-    let chance = 0.5 * one / steps.pairs.max(1) as Real;
+    let chance = 0.5 * one / pairs;
     let share = zero / pairs;
     Repeats::new((zero - most) / error, share, error / pairs, chance)
 }
@@ -296,6 +394,9 @@ impl JointRepeats {
             (y + xy + yz) / (none + x + y + z + xy + yz),
             (z + xz + yz) / (none + x + y + z + xz + yz),
         ];
+        if chances.iter().any(|&chance| chance > 0.7) {
+            return Repeats::unknown(all / pairs);
+        }
         let chance = chances.iter().product::<Real>();
         let mean = exp(log(chance) / 3.0);
         let share = (all / pairs - chance) / (1.0 - chance);
@@ -308,9 +409,12 @@ impl JointRepeats {
                 + expected * expected * (1.0 / one + 1.0 / other);
             (both - expected, variance + 1.0)
         });
-        let [together, variance] = joint.iter().fold([0.0; 2], |[sum, variance], (one, own)| {
-            [sum + one, variance + own]
-        });
+        let [together, variance, dependence] =
+            joint
+                .iter()
+                .fold([0.0; 3], |[sum, variance, squares], (one, own)| {
+                    [sum + one, variance + own, squares + one * one / own]
+                });
         let common = together / sqrt(variance);
         // No third-order interaction: the axes may depend on each other in pairs.
         let expected = exp(log(xy) + log(xz) + log(yz) + log(none) - log(x) - log(y) - log(z));
@@ -324,7 +428,7 @@ impl JointRepeats {
         } else {
             0.0
         };
-        let is_common = common >= 3.0;
+        let is_common = common >= 2.5 || dependence >= 11.0;
         let own = if is_common { 0.0 } else { independent };
         let z = if all >= 16.0 {
             own.max(pairwise).max(smooth)
@@ -334,8 +438,8 @@ impl JointRepeats {
         if is_common {
             let share = (all - expected).max(0.0) / pairs;
             let chance = expected / (pairs * (1.0 - share)).max(1.0);
-            return Repeats::new(z, share, all / pairs, chance);
+            return Repeats::new(z - TOLD_OF_ALL + TOLD, share, all / pairs / TOLD, chance);
         }
-        Repeats::new(z, share, error, chance)
+        Repeats::new(z - TOLD_OF_ALL + TOLD, share, error, chance)
     }
 }

@@ -4,14 +4,16 @@
 //! [`Integrity`](crate::integrity::Integrity), so that a device that does not ask for them pays nothing. `evidence`
 //! judges them.
 
-mod ends;
+pub(crate) mod ends;
 mod hole;
+mod spread;
 pub(crate) mod steps;
 mod zero_runs;
 
 pub(crate) use hole::Hole;
 
 use ends::End;
+use spread::Spread;
 use steps::Steps;
 use zero_runs::ZeroRuns;
 
@@ -46,6 +48,7 @@ pub struct SampleFaults {
     pub(crate) runs: ZeroRuns,
     pub(crate) ends: [End; 2],
     pub(crate) hole: Hole,
+    pub(crate) spread: Spread,
 }
 
 impl SampleFaults {
@@ -64,6 +67,7 @@ impl SampleFaults {
             runs: ZeroRuns::NEW,
             ends: [End::NEW, End::NEW],
             hole: Hole::NEW,
+            spread: Spread::NEW,
         }
     }
 
@@ -72,22 +76,17 @@ impl SampleFaults {
     #[inline]
     pub fn push(&mut self, count: i32) -> Option<u8> {
         self.samples = self.samples.saturating_add(1);
-        let class = self
-            .last
-            .map(|last| self.steps.push(count.abs_diff(last)));
+        let class = self.last.map(|last| self.steps.push(count.abs_diff(last)));
         self.last = Some(count);
         let repeats = class == Some(0);
         self.runs.push(repeats);
         let step = self.steps.step();
+        self.spread.push(count);
         self.hole.push(count.abs_diff(self.zero), step);
         let [high, low] = &mut self.ends;
         let count = i64::from(count);
         for (end, value) in [(high, count), (low, -count)] {
-            if repeats {
-                end.stay(value);
-            } else {
-                end.push(value, |distance| self.steps.class(distance));
-            }
+            end.push(value, repeats, |distance| self.steps.class(distance));
         }
         class
     }

@@ -62,15 +62,6 @@ impl Fault {
         Self::DeadBand(4),
     ];
 
-    /// The share of samples that the logger repeats; `None` if it does something else.
-    pub fn repeated(self) -> Option<f64> {
-        match self {
-            Self::Polled(ratio, _) => Some(1.0 - 1.0 / ratio),
-            Self::Repeated(share) | Self::Bursts(share) => Some(share),
-            _ => None,
-        }
-    }
-
     /// Whether a finding is the right one. Values held by a burst are stuck as well.
     fn is_told_by(self, reason: &Reason) -> bool {
         match self {
@@ -174,6 +165,7 @@ struct One {
     chance: f64,
     verdicts: Vec<Option<Reason>>,
     share: f64,
+    repeated: f64,
     least: f64,
     noise: String,
 }
@@ -194,8 +186,8 @@ impl Tally {
         if !told && is_judged {
             self.missed.push(one.noise.clone());
         }
-        if told && let Some(share) = fault.repeated() {
-            self.rate_errors.push((1.0 - one.share) / (1.0 - share) - 1.0);
+        if told && is_judged && one.repeated > 0.0 {
+            self.rate_errors.push((1.0 - one.share) / (1.0 - one.repeated) - 1.0);
         }
     }
 }
@@ -210,7 +202,7 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
         let equal = axis.windows(2).filter(|pair| pair[0] == pair[1]).count();
         equal as f64 / axis.len() as f64
     });
-    let faulty = spoilt(fault, &record, random);
+    let (faulty, repeated) = spoilt(fault, &record, random);
     let mut axes = [(); 3].map(|()| SampleFaults::new());
     let mut joint = JointRepeats::new();
     for row in 0..SAMPLES {
@@ -226,6 +218,7 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
             chance: chances[..number].iter().fold(0.0, |most, &one| one.max(most)),
             verdicts: axes[..number].iter().map(|axis| axis.verdict(joint)).collect(),
             share: repeats.share,
+            repeated,
             least: repeats.least,
             noise: format!("{:?} {:.2}", record.colour, record.sigma),
         }
@@ -337,8 +330,8 @@ fn flicker(samples: usize, random: &mut Random) -> Vec<f64> {
         .collect()
 }
 
-/// The counts that the logger writes.
-fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> [Vec<i32>; 3] {
+/// The counts that the logger writes, and the share of samples that it repeats.
+fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> ([Vec<i32>; 3], f64) {
     let last = SAMPLES - 1;
     // The place of the sensor's sample in each row.
     let mut places: Vec<usize> = (0..SAMPLES).collect();
@@ -356,10 +349,12 @@ fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> [Vec<i32>; 3] {
     match fault {
         Fault::Polled(ratio, jitter) => {
             let phase: f64 = random.random_range(0.0..1.0);
+            let mut before = 0;
             for (row, place) in places.iter_mut().enumerate() {
                 let late = if jitter > 0.0 { jitter * normal(random) } else { 0.0 };
                 let time = (row as f64 + late) / ratio + phase;
-                *place = (time.max(0.0) as usize).min(last);
+                *place = (time.max(0.0) as usize).clamp(before, last);
+                before = *place;
             }
         }
         Fault::Repeated(share) => {
@@ -404,5 +399,6 @@ fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> [Vec<i32>; 3] {
         }
         _ => {}
     }
-    axes
+    let repeated = places.windows(2).filter(|pair| pair[0] == pair[1]).count();
+    (axes, repeated as f64 / last as f64)
 }

@@ -6,10 +6,10 @@
 pub(crate) struct End {
     begun: bool,
     value: i64,
-    /// How often a value came to the end, to one step from it, and to two. Values that only stay there do not count.
+    /// The samples at the end, one step from it, and two.
     pub(crate) near: [u64; 3],
-    /// The samples at the end, those that stay included.
-    pub(crate) samples: u64,
+    /// How often a value came to the end from another one.
+    pub(crate) entries: u64,
 }
 
 impl End {
@@ -17,12 +17,17 @@ impl End {
         begun: false,
         value: 0,
         near: [0; 3],
-        samples: 0,
+        entries: 0,
     };
 
-    /// Adds a value that differs from the one before it. `steps` tells how many steps long a distance is.
+    /// The end, whose sign is the opposite one at the lower end.
+    pub(crate) const fn value(&self) -> i64 {
+        self.value
+    }
+
+    /// Adds a value, which repeats the one before it or not. `steps` tells how many steps long a distance is.
     #[inline(always)]
-    pub(super) fn push(&mut self, value: i64, steps: impl Fn(u32) -> u8) {
+    pub(super) fn push(&mut self, value: i64, repeats: bool, steps: impl Fn(u32) -> u8) {
         // The distance between values of 32 bits fits into 32 bits.
         let distance = value.abs_diff(self.value) as u32;
         if value > self.value || !self.begun {
@@ -32,18 +37,13 @@ impl End {
                 2 if self.begun => [1, 0, first],
                 _ => [1, 0, 0],
             };
-            (self.begun, self.value, self.samples) = (true, value, 1);
+            (self.begun, self.value, self.entries) = (true, value, 1);
             return;
         }
         if let Some(near) = self.near.get_mut(usize::from(steps(distance))) {
             *near = near.saturating_add(1);
         }
-        self.samples = self.samples.saturating_add(u64::from(distance == 0));
-    }
-
-    /// Adds a value that repeats the one before it.
-    #[inline(always)]
-    pub(super) fn stay(&mut self, value: i64) {
-        self.samples = self.samples.saturating_add(u64::from(value == self.value));
+        let enters = distance == 0 && !repeats;
+        self.entries = self.entries.saturating_add(u64::from(enters));
     }
 }

@@ -28,7 +28,13 @@ impl Hole {
     #[inline(always)]
     pub(super) fn push(&mut self, distance: u32, step: u32) {
         // Beyond twice the edge, or beyond the edge and a step, a value is not beside it.
-        if distance >= self.edge.saturating_mul(2).max(self.edge.saturating_add(step)) && self.edge > 0 {
+        if distance
+            >= self
+                .edge
+                .saturating_mul(2)
+                .max(self.edge.saturating_add(step))
+            && self.edge > 0
+        {
             return;
         }
         if distance == 0 {

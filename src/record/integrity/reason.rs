@@ -95,9 +95,16 @@ impl core::fmt::Display for Reason {
                 times,
                 changes,
                 samples,
-            } if *times < 2 || changes.saturating_mul(98).saturating_mul((*times).into()) > samples.saturating_mul(100) => {
-                let per_mille = |part: u64| (u128::from(part) * 1000 / u128::from(*samples.max(&1))) as u16;
-                let (repeats, own) = (per_mille(samples.saturating_sub(*changes)), per_mille(*changes));
+            } if *times < 2
+                || changes.saturating_mul(98).saturating_mul((*times).into())
+                    > samples.saturating_mul(100) =>
+            {
+                let per_mille =
+                    |part: u64| (u128::from(part) * 1000 / u128::from(*samples.max(&1))) as u16;
+                let (repeats, own) = (
+                    per_mille(samples.saturating_sub(*changes)),
+                    per_mille(*changes),
+                );
                 write!(
                     f,
                     "{}.{} % of the samples repeat the one before: the sensor's rate is {}.{:03} of what \

@@ -22,7 +22,7 @@ use zero_runs::ZeroRuns;
 ///
 /// Beside the repeats are counted the differences of one, two and three steps, from which the number of repeats by
 /// chance follows, the lengths of runs of repeats, the values at both ends of the range and next to them, and zeros and
-/// the values next to them. A sample takes some ten comparisons and additions. The state takes at most 400 bytes.
+/// the values next to them. A sample takes some ten comparisons and additions. The state takes at most 512 bytes.
 ///
 /// ```
 /// use allanite::{faults::SampleFaults, integrity::Reason};
@@ -155,3 +155,6 @@ impl Default for JointRepeats {
         Self::new()
     }
 }
+
+#[cfg(test)]
+mod tests;

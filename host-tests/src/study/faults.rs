@@ -178,7 +178,11 @@ impl Tally {
         self.judged += usize::from(is_judged);
         // A fault of one axis is told there; repeats of all axes are told of each.
         let mut reasons = one.verdicts.iter().flatten();
-        let told = one.verdicts.iter().flatten().any(|reason| fault.is_told_by(reason));
+        let told = one
+            .verdicts
+            .iter()
+            .flatten()
+            .any(|reason| fault.is_told_by(reason));
         self.told += usize::from(told && is_judged);
         if let Some(other) = reasons.find(|reason| !fault.is_told_by(reason)) {
             self.otherwise.push(format!("{other:?}, {}", one.noise));
@@ -187,7 +191,8 @@ impl Tally {
             self.missed.push(one.noise.clone());
         }
         if told && is_judged && one.repeated > 0.0 {
-            self.rate_errors.push((1.0 - one.share) / (1.0 - one.repeated) - 1.0);
+            self.rate_errors
+                .push((1.0 - one.share) / (1.0 - one.repeated) - 1.0);
         }
     }
 }
@@ -195,8 +200,11 @@ impl Tally {
 fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] {
     let record = record(fault, resolution, random);
     let counts = |axes: &[Vec<f64>; 3]| {
-        axes.each_ref()
-            .map(|axis| axis.iter().map(|value| value.round() as i32).collect::<Vec<_>>())
+        axes.each_ref().map(|axis| {
+            axis.iter()
+                .map(|value| value.round() as i32)
+                .collect::<Vec<_>>()
+        })
     };
     let chances = counts(&record.axes).map(|axis| {
         let equal = axis.windows(2).filter(|pair| pair[0] == pair[1]).count();
@@ -215,8 +223,13 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
     let one = |joint: Option<&JointRepeats>, number: usize| {
         let repeats = axes[0].repeats(joint);
         One {
-            chance: chances[..number].iter().fold(0.0, |most, &one| one.max(most)),
-            verdicts: axes[..number].iter().map(|axis| axis.verdict(joint)).collect(),
+            chance: chances[..number]
+                .iter()
+                .fold(0.0, |most, &one| one.max(most)),
+            verdicts: axes[..number]
+                .iter()
+                .map(|axis| axis.verdict(joint))
+                .collect(),
             share: repeats.share,
             repeated,
             least: repeats.least,
@@ -235,7 +248,10 @@ fn record(fault: Fault, resolution: Resolution, random: &mut Random) -> Record {
         (_, Fault::Clipped(_)) => 10_f64.powf(random.random_range(0.0..1.0)),
         _ => 0.4 * 25_f64.powf(random.random_range(0.0..1.0)),
     };
-    let [line, phase] = [random.random_range(0.01..0.45), random.random_range(0.0..TAU)];
+    let [line, phase] = [
+        random.random_range(0.01..0.45),
+        random.random_range(0.0..TAU),
+    ];
     let amplitude = random.random_range(0.3..2.0);
     let axes = [(); 3].map(|()| {
         let own = sigma * random.random_range(0.8..1.25);
@@ -244,9 +260,16 @@ fn record(fault: Fault, resolution: Resolution, random: &mut Random) -> Record {
             _ => random.random_range(-20.0..20.0),
         };
         let noise = noise(colour, (line, phase, amplitude), random);
-        noise.into_iter().map(|value| own * value + offset).collect()
+        noise
+            .into_iter()
+            .map(|value| own * value + offset)
+            .collect()
     });
-    Record { axes, colour, sigma }
+    Record {
+        axes,
+        colour,
+        sigma,
+    }
 }
 
 fn normal(random: &mut Random) -> f64 {
@@ -254,7 +277,11 @@ fn normal(random: &mut Random) -> f64 {
 }
 
 /// Noise whose standard deviation is 1; with a walk, that of its white noise.
-fn noise(colour: Colour, (line, phase, amplitude): (f64, f64, f64), random: &mut Random) -> Vec<f64> {
+fn noise(
+    colour: Colour,
+    (line, phase, amplitude): (f64, f64, f64),
+    random: &mut Random,
+) -> Vec<f64> {
     let white: Vec<f64> = (0..SAMPLES + 400).map(|_| normal(random)).collect();
     let mut noise = match colour {
         Colour::White => white,
@@ -271,7 +298,11 @@ fn noise(colour: Colour, (line, phase, amplitude): (f64, f64, f64), random: &mut
         Colour::Flicker => flicker(white.len(), random),
         Colour::WhiteAndFlicker => {
             let slow = normalised(flicker(white.len(), random));
-            white.iter().zip(slow).map(|(white, slow)| white + 0.5 * slow).collect()
+            white
+                .iter()
+                .zip(slow)
+                .map(|(white, slow)| white + 0.5 * slow)
+                .collect()
         }
         Colour::Walk => {
             let mut walk = 0.0;
@@ -283,7 +314,11 @@ fn noise(colour: Colour, (line, phase, amplitude): (f64, f64, f64), random: &mut
         }
         Colour::Vibration => {
             let at = |n: usize| amplitude * (TAU * line * n as f64 + phase).sin();
-            white.iter().enumerate().map(|(n, value)| value + at(n)).collect()
+            white
+                .iter()
+                .enumerate()
+                .map(|(n, value)| value + at(n))
+                .collect()
         }
     };
     noise.drain(..400);
@@ -294,7 +329,9 @@ fn normalised(mut noise: Vec<f64>) -> Vec<f64> {
     let mean = noise.iter().sum::<f64>() / noise.len() as f64;
     let squares: f64 = noise.iter().map(|value| (value - mean).powi(2)).sum();
     let deviation = (squares / noise.len() as f64).sqrt();
-    noise.iter_mut().for_each(|value| *value = (*value - mean) / deviation);
+    noise
+        .iter_mut()
+        .for_each(|value| *value = (*value - mean) / deviation);
     noise
 }
 
@@ -351,7 +388,11 @@ fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> ([Vec<i32>; 3],
             let phase: f64 = random.random_range(0.0..1.0);
             let mut before = 0;
             for (row, place) in places.iter_mut().enumerate() {
-                let late = if jitter > 0.0 { jitter * normal(random) } else { 0.0 };
+                let late = if jitter > 0.0 {
+                    jitter * normal(random)
+                } else {
+                    0.0
+                };
                 let time = (row as f64 + late) / ratio + phase;
                 *place = (time.max(0.0) as usize).clamp(before, last);
                 before = *place;

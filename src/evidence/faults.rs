@@ -128,13 +128,12 @@ impl SampleFaults {
         let [h1, h2, h3] = [one, two, three + 0.5].map(|number| log(0.5 * number));
         // The logarithm of the distribution is a polynomial of the squared difference: of first order for Gaussian
         // noise, and of second order for noise whose size changes.
-        let gauss = ((4.0 * h1 - h2) / 3.0, 16.0 / 9.0 / one + 1.0 / 9.0 / two);
+        let gauss = smooth([one, two]);
         let mixed = (
-            1.5 * h1 - 0.6 * h2 + 0.1 * h3,
+            exp(1.5 * h1 - 0.6 * h2 + 0.1 * h3),
             2.25 / one + 0.36 / two + 0.01 / (three + 0.5),
         );
-        let excess = |(log_of_chance, variance): (Real, Real)| {
-            let chance = exp(log_of_chance);
+        let excess = |(chance, variance): (Real, Real)| {
             let error = sqrt(zero + chance * chance * variance);
             (zero - chance, error.max(1.0))
         };
@@ -221,27 +220,42 @@ impl SampleFaults {
         })
     }
 
-    /// Zeros in the middle of a hole, about as many as the values beside it let expect to be in it.
+    /// Zeros in the middle of a hole, about as many as the values beside it let expect to be in it. Or more zeros than the
+    /// levels next to them let expect, where all larger values are moved towards zero.
     fn dead_band(&self) -> Option<Reason> {
         let Hole {
             zeros,
             edge,
             beside,
+            levels,
+            around,
         } = self.hole;
         let step = self.steps.step().max(1);
         let width = Hole::width(edge, step) as Real;
         // Zero and the levels on either side of it up to the edge.
-        let levels = 2.0 * edge as Real - step as Real;
-        let expected = 0.5 * beside as Real / width * levels;
-        let zeros_found = zeros as Real;
-        let is_hole = edge >= step.saturating_mul(2).saturating_sub(step / 4) && beside >= 8;
-        let enough = zeros >= 16 && zeros_found >= 0.005 * self.samples as Real;
-        (is_hole && enough && (0.5 * expected..40.0 * expected).contains(&zeros_found)).then_some(
-            Reason::DeadBand {
-                zeros,
-                samples: self.samples,
-            },
-        )
+        let inside = 2.0 * edge as Real - step as Real;
+        let expected = 0.5 * beside as Real / width * inside;
+        let found = zeros as Real;
+        let is_hole = edge >= step.saturating_mul(2).saturating_sub(step / 4)
+            && beside >= 8
+            && (0.5 * expected..40.0 * expected).contains(&found);
+        let [none, one, two] = levels.map(|number| number as Real);
+        let is_peak = if one + two < 60.0 {
+            self.steps.window() > 0 && none > 2.0 * around as Real + 16.0
+        } else {
+            let (chance, relative) = smooth([one, two]);
+            let error = sqrt(none + chance * chance * relative);
+            two >= 60.0 && two >= 0.3 * one && none > 1.5 * chance && none - chance > 5.0 * error
+        };
+        // Zeros at an end of the range are clipped.
+        let [high, low] = self.ends.each_ref().map(End::value);
+        let zero = i64::from(self.zero);
+        let is_inside = high > zero && -low < zero;
+        let enough = is_inside && zeros >= 16 && found >= 0.005 * self.samples as Real;
+        (enough && (is_hole || is_peak)).then_some(Reason::DeadBand {
+            zeros,
+            samples: self.samples,
+        })
     }
 
     fn repeated(&self, joint: Option<&JointRepeats>, repeats: &Repeats) -> Reason {
@@ -322,6 +336,13 @@ fn rounded(width: Real) -> [Real; 4] {
     })
 }
 
+/// The number of zeros of a smooth symmetric distribution, of which so many are one and two steps long on both sides,
+/// and its relative variance. The logarithm of a Gaussian density is a parabola.
+fn smooth([one, two]: [Real; 2]) -> (Real, Real) {
+    let zero = exp((4.0 * log(0.5 * one) - log(0.5 * two)) / 3.0);
+    (zero, 16.0 / 9.0 / one + 1.0 / 9.0 / two)
+}
+
 /// The repeats of values so fine that none is there by chance. Their grid may be finer for smaller values, but hardly
 /// coarser than a 64th of the usual difference. Then at most half as many differences are zero as are below that.
 fn fine_repeats(steps: &Steps) -> Repeats {
@@ -333,9 +354,10 @@ fn fine_repeats(steps: &Steps) -> Repeats {
     let most = 0.5 * small;
     let error = sqrt(most + 0.25 * small + 1.0);
     let [_, one, ..] = steps.near.map(|number| number as Real);
-    let chance = 0.5 * one / pairs;
-    let share = zero / pairs;
-    Repeats::new((zero - most) / error, share, error / pairs, chance)
+    let by_chance = 0.5 * one;
+    let share = (zero - by_chance) / pairs;
+    let z = (zero - most) / error;
+    Repeats::new(z, share, error / pairs, by_chance / pairs)
 }
 
 /// Whether runs of repeats are too long. `fine` tells that none is there by chance. Then a sensor slower by a factor
@@ -422,9 +444,8 @@ impl JointRepeats {
         let pairwise = (all - expected) / sqrt(expected + expected * expected * inverse);
         let [one, two] = self.third.map(|number| number as Real / 3.0);
         let smooth = if two >= 20.0 && two >= 0.3 * one {
-            let expected = exp((4.0 * log(0.5 * one) - log(0.5 * two)) / 3.0);
-            let variance = (16.0 / 9.0 / one + 1.0 / 9.0 / two) / 3.0;
-            (all - expected) / sqrt(expected + expected * expected * variance)
+            let (expected, variance) = smooth([one, two]);
+            (all - expected) / sqrt(expected + expected * expected * variance / 3.0)
         } else {
             0.0
         };

@@ -41,7 +41,7 @@ use zero_runs::ZeroRuns;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SampleFaults {
-    zero: i32,
+    pub(crate) zero: i32,
     last: Option<i32>,
     pub(crate) samples: u64,
     pub(crate) steps: Steps,
@@ -80,9 +80,9 @@ impl SampleFaults {
         self.last = Some(count);
         let repeats = class == Some(0);
         self.runs.push(repeats);
-        let step = self.steps.step();
         self.spread.push(count);
-        self.hole.push(count.abs_diff(self.zero), step);
+        self.hole
+            .push(count.abs_diff(self.zero), repeats, &self.steps);
         let [high, low] = &mut self.ends;
         let count = i64::from(count);
         for (end, value) in [(high, count), (low, -count)] {

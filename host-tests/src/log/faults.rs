@@ -19,8 +19,8 @@ pub(super) struct Plan {
     pub(super) zeros: Vec<i32>,
     /// Whether the columns come row by row, so that the axes can be compared.
     pub(super) by_rows: bool,
-    /// Whether rows are left out in which all axes repeat.
-    pub(super) drop: bool,
+    /// The share of the rows that the logger repeated, if rows are left out in which all axes repeat.
+    pub(super) left_out: Option<f64>,
     /// What to do with repeats that are certain.
     pub(super) repeats: Repeats,
 }
@@ -74,7 +74,7 @@ impl Faults {
     pub(super) fn push_rows(&mut self, columns: &mut [Vec<i32>]) {
         let axes = self.axes.len();
         self.rows += columns[0].len() as u64;
-        if self.plan.drop {
+        if self.plan.left_out.is_some() {
             self.drop_repeats(columns);
         }
         if self.joint.is_empty() {
@@ -137,7 +137,8 @@ impl Faults {
     /// The plan of another pass that leaves out the repeats, if all of them are certain: hardly any is there by chance,
     /// all axes have them, and no value is held.
     pub(super) fn without_repeats(&self) -> Option<Plan> {
-        if self.plan.repeats == Repeats::Keep || self.plan.drop || !self.plan.by_rows {
+        if self.plan.repeats == Repeats::Keep || self.plan.left_out.is_some() || !self.plan.by_rows
+        {
             return None;
         }
         let verdicts = (0..self.axes.len()).map(|axis| self.verdict(axis));
@@ -160,47 +161,46 @@ impl Faults {
         let certain = all.iter().all(|repeats| repeats.are_certain());
         // The axes of a sensor repeat together.
         (certain && !all.is_empty() && most - least < 0.005).then(|| Plan {
-            drop: true,
+            left_out: Some(0.5 * (least + most)),
             ..self.plan.clone()
         })
     }
 
     /// The rate of the sensor, of a record with this one, and a note on the repeats that were left out.
     pub(super) fn sensor_rate(&self, rate_hz: f64) -> (f64, Option<String>) {
-        let pairs = self.rows.saturating_sub(1).max(1);
-        if self.dropped == 0 {
+        let Some(share) = self.plan.left_out else {
             return (rate_hz, None);
-        }
-        let rate_hz = rate_of(pairs - self.dropped, pairs, rate_hz);
-        let words = said(self.dropped, pairs, true);
+        };
+        // The sensor's own samples that equal the one before are few and count here.
+        let rate_hz = rate_of(1.0 - share, self.rows, rate_hz);
         let note = format!(
-            "{words}: the sensor runs at {rate_hz} Hz; the repeats are left out (keep them with --repeats keep)"
+            "{}: the sensor runs at {rate_hz} Hz; the {} repeats are left out (keep them with --repeats keep)",
+            said(share, true),
+            self.dropped
         );
         (rate_hz, Some(note))
     }
 
-    /// A note on the smallest share of repeats that can be told, if larger ones may hide.
-    pub(super) fn bound(&self) -> Option<String> {
-        let least = (0..self.axes.len()).map(|axis| {
-            let (faults, joint) = self.of_axis(axis);
-            match self.verdict(axis) {
-                None => faults.repeats(joint).least,
-                Some(_) => 0.0,
-            }
-        });
-        let least = least.fold(0.0, f64::max);
-        (least > NOTED).then(|| {
-            format!(
-                "repeats below {:.0} % cannot be told: neighbours are equal too often by chance",
-                (100.0 * least).ceil()
-            )
-        })
+    /// The smallest share of repeats that can be told of an axis.
+    pub(super) fn least(&self, axis: usize) -> f64 {
+        let (faults, joint) = self.of_axis(axis);
+        faults.repeats(joint).least
     }
 }
 
+/// A note that only larger shares of repeats than this one can be told, if it is worth one.
+pub(super) fn bound(least: f64) -> Option<String> {
+    (least > NOTED).then(|| {
+        format!(
+            "repeats below {:.0} % cannot be told: neighbours are equal too often by chance",
+            (100.0 * least).ceil()
+        )
+    })
+}
+
 /// The rate of the samples that are the sensor's own, with as many digits as so many samples tell.
-pub(crate) fn rate_of(own: u64, samples: u64, rate_hz: f64) -> f64 {
-    let rate = rate_hz * own as f64 / samples.max(1) as f64;
+pub(crate) fn rate_of(own: f64, samples: u64, rate_hz: f64) -> f64 {
+    let rate = rate_hz * own;
     let digits = f64::from(samples.max(1000).ilog10()) - 1.0;
     let unit = 10_f64.powf(rate.log10().floor() - digits);
     // Division by a whole number leaves no digits behind the last one.
@@ -211,23 +211,20 @@ pub(crate) fn rate_of(own: u64, samples: u64, rate_hz: f64) -> f64 {
 }
 
 /// How many samples repeat the one before, in words.
-pub(crate) fn said(repeats: u64, samples: u64, regular: bool) -> String {
+pub(crate) fn said(share: f64, regular: bool) -> String {
     const ORDINALS: [&str; 9] = [
         "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth",
     ];
-    let share = repeats as f64 / samples.max(1) as f64;
     let (every, times) = ((1.0 / share).round(), (1.0 / (1.0 - share)).round());
     let is_near = |value: f64| (share / value - 1.0).abs() < 0.01;
     if regular && (2.0..=10.0).contains(&every) && is_near(1.0 / every) {
-        return format!(
-            "every {} sample repeats the one before",
-            ORDINALS[every as usize - 2]
-        );
+        let every = ORDINALS[every as usize - 2];
+        return format!("every {every} sample repeats the one before");
     }
     if regular && times >= 2.0 && is_near(1.0 - 1.0 / times) {
         return format!("every sample is there {times} times");
     }
-    let digits = if share < 0.1 { 1 } else { 0 };
+    let digits = usize::from(share < 0.1);
     format!(
         "{:.digits$} % of the samples repeat the one before",
         100.0 * share
@@ -240,37 +237,34 @@ mod tests {
 
     #[test]
     fn shares_are_said_as_fractions_where_they_are_regular() {
+        assert_eq!(said(0.2, true), "every fifth sample repeats the one before");
         assert_eq!(
-            said(200, 1000, true),
-            "every fifth sample repeats the one before"
-        );
-        assert_eq!(
-            said(199, 1000, false),
+            said(0.199, false),
             "20 % of the samples repeat the one before"
         );
-        assert_eq!(said(800, 1000, true), "every sample is there 5 times");
+        assert_eq!(said(0.8, true), "every sample is there 5 times");
         assert_eq!(
-            said(350, 1000, true),
+            said(0.35, true),
             "35 % of the samples repeat the one before"
         );
         assert_eq!(
-            said(20, 1000, true),
+            said(0.02, true),
             "2.0 % of the samples repeat the one before"
         );
     }
 
     #[test]
     fn rates_have_the_digits_that_the_samples_tell() {
-        assert_eq!(rate_of(15_999, 19_999, 500.0), 400.0);
-        assert_eq!(rate_of(5600, 7000, 1250.0), 1000.0);
-        assert_eq!(rate_of(2, 3, 0.1), 0.0667);
+        assert_eq!(rate_of(0.80002, 19_999, 500.0), 400.0);
+        assert_eq!(rate_of(0.8, 7000, 1250.0), 1000.0);
+        assert_eq!(rate_of(2.0 / 3.0, 3, 0.1), 0.0667);
     }
 
     #[test]
     fn rows_are_left_out_where_all_axes_repeat_and_no_gap_lies_between() {
         let plan = Plan {
             by_rows: true,
-            drop: true,
+            left_out: Some(0.3),
             ..Plan::default()
         };
         let mut faults = Faults::new(plan, 2);

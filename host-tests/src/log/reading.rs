@@ -139,7 +139,8 @@ pub(super) fn read_table(
     }
     notes.extend(measured.clock.as_ref().map(Clock::report));
     notes.extend(table.notes());
-    notes.extend(repeats.or_else(|| measured.faults.bound()));
+    notes.extend(repeats);
+    let mut least = 0.0_f64;
     notes.extend(evidence::left_out(covariates, &measured));
     let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
     let mut axes = Vec::new();
@@ -177,6 +178,9 @@ pub(super) fn read_table(
             let coarse = measured.coarse.get(place).copied().flatten();
             let fault = measured.faults.verdict(place);
             let evidence = recorded.evidence(path, &axis, &**watched, (fault, coarse))?;
+            if evidence.invalid.is_none() {
+                least = least.max(measured.faults.least(place));
+            }
             axis.evidence = Some(Evidence {
                 course: Some(*beside.course.clone()),
                 means: recorded.means(&measured.blocks, place, axis.rate_per_count),
@@ -192,6 +196,7 @@ pub(super) fn read_table(
         notes.extend(scaling.check(path, &axis)?);
         axes.push(axis);
     }
+    notes.extend(faults::bound(least));
     spread_motion(&mut axes);
     if scaling.origin == Origin::Assumed {
         notes.push(format!(

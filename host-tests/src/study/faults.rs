@@ -30,11 +30,13 @@ pub enum Fault {
     Clipped(f64),
     /// Values of an axis within so many counts of zero become zero. The noise is 0.7 to 2 times as large.
     DeadBand(i32),
+    /// The same, and all other values move towards zero by as much.
+    Threshold(i32),
 }
 
 impl Fault {
     /// The faults of the study.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 27] = [
         Self::Polled(1.02, 0.0),
         Self::Polled(1.02, 0.3),
         Self::Polled(1.05, 0.0),
@@ -60,6 +62,8 @@ impl Fault {
         Self::Clipped(2.5),
         Self::DeadBand(1),
         Self::DeadBand(4),
+        Self::Threshold(1),
+        Self::Threshold(4),
     ];
 
     /// Whether a finding is the right one. Values held by a burst are stuck as well.
@@ -70,7 +74,7 @@ impl Fault {
             Self::Bursts(_) => matches!(reason, Reason::Repeated { .. } | Reason::Stuck { .. }),
             Self::Stuck(_) => matches!(reason, Reason::Stuck { .. }),
             Self::Clipped(_) => matches!(reason, Reason::Railed { .. }),
-            Self::DeadBand(_) => matches!(reason, Reason::DeadBand { .. }),
+            Self::DeadBand(_) | Self::Threshold(_) => matches!(reason, Reason::DeadBand { .. }),
         }
     }
 }
@@ -244,7 +248,9 @@ fn record(fault: Fault, resolution: Resolution, random: &mut Random) -> Record {
     let colour = COLOURS[random.random_range(0..COLOURS.len())];
     let sigma = match (resolution, fault) {
         (Resolution::Fine, _) => 1e5,
-        (_, Fault::DeadBand(width)) => f64::from(width) * random.random_range(0.7..2.0),
+        (_, Fault::DeadBand(width) | Fault::Threshold(width)) => {
+            f64::from(width) * random.random_range(0.7..2.0)
+        }
         (_, Fault::Clipped(_)) => 10_f64.powf(random.random_range(0.0..1.0)),
         _ => 0.4 * 25_f64.powf(random.random_range(0.0..1.0)),
     };
@@ -256,7 +262,9 @@ fn record(fault: Fault, resolution: Resolution, random: &mut Random) -> Record {
     let axes = [(); 3].map(|()| {
         let own = sigma * random.random_range(0.8..1.25);
         let offset = match fault {
-            Fault::DeadBand(width) => f64::from(width) * random.random_range(-0.5..0.5),
+            Fault::DeadBand(width) | Fault::Threshold(width) => {
+                f64::from(width) * random.random_range(-0.5..0.5)
+            }
             _ => random.random_range(-20.0..20.0),
         };
         let noise = noise(colour, (line, phase, amplitude), random);
@@ -437,6 +445,10 @@ fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> ([Vec<i32>; 3],
         Fault::DeadBand(width) => {
             let cut = |count: &mut i32| *count *= i32::from(count.abs() > width);
             axis.iter_mut().for_each(cut);
+        }
+        Fault::Threshold(width) => {
+            let moved = |count: &mut i32| *count = count.signum() * (count.abs() - width).max(0);
+            axis.iter_mut().for_each(moved);
         }
         _ => {}
     }

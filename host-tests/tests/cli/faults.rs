@@ -203,10 +203,16 @@ fn stuck_clipped_and_cut_out_values_are_said_and_no_effect_is_named() {
         .iter()
         .map(|value| if value.abs() < 5.5 { 0.0 } else { *value })
         .collect();
+    // A dead band that moves all values towards zero leaves no hole.
+    let moved = sound
+        .iter()
+        .map(|value| value.signum() * (value.abs() - 5.5).max(0.0))
+        .collect();
     for (column, words) in [
+        (moved, "values are exactly zero, as a dead band leaves them"),
         (stuck, "stuck values"),
         (clipped, "samples are at the end of the scale"),
-        (cut, "a dead band sets small values to zero"),
+        (cut, "values are exactly zero, as a dead band leaves them"),
     ] {
         write(folder.path(), "gx", &[column], 0);
         let log = [

@@ -1,5 +1,7 @@
 //! Zeros, and the hole that a dead band leaves beside them.
 
+use super::steps::Steps;
+
 /// The zeros of a record, and the values next to them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -9,6 +11,10 @@ pub(crate) struct Hole {
     pub(crate) edge: u32,
     /// The values that are less than [`width`](Self::width) beyond the edge.
     pub(crate) beside: u64,
+    /// The values at zero, one step from it, and two, that do not repeat the one before.
+    pub(crate) levels: [u64; 3],
+    /// Those within a 64th of the usual difference of neighbours, other than zero, once that is known.
+    pub(crate) around: u64,
 }
 
 impl Hole {
@@ -16,6 +22,8 @@ impl Hole {
         zeros: 0,
         edge: 0,
         beside: 0,
+        levels: [0; 3],
+        around: 0,
     };
 
     /// The width of the band beside the edge, in counts: a step, or a quarter of the edge if that is longer.
@@ -26,16 +34,19 @@ impl Hole {
 
     /// Adds the distance of a value from zero.
     #[inline(always)]
-    pub(super) fn push(&mut self, distance: u32, step: u32) {
-        // Beyond twice the edge, or beyond the edge and a step, a value is not beside it.
-        if distance
-            >= self
-                .edge
-                .saturating_mul(2)
-                .max(self.edge.saturating_add(step))
-            && self.edge > 0
-        {
+    pub(super) fn push(&mut self, distance: u32, repeats: bool, steps: &Steps) {
+        let step = steps.step();
+        // Beyond twice the edge, or beyond the edge and three steps, a value is not beside it.
+        let far = self.edge.saturating_mul(2);
+        if self.edge > 0 && distance >= far.max(self.edge.saturating_add(step.saturating_mul(3))) {
             return;
+        }
+        if !repeats {
+            if let Some(level) = self.levels.get_mut(usize::from(steps.class(distance))) {
+                *level = level.saturating_add(1);
+            }
+            let around = distance > 0 && u64::from(distance) <= steps.window();
+            self.around = self.around.saturating_add(u64::from(around));
         }
         if distance == 0 {
             self.zeros = self.zeros.saturating_add(1);

@@ -100,6 +100,13 @@ fn counters_are_those_of_the_definition() {
                 (faults.hole.zeros, faults.hole.edge, faults.hole.beside),
                 hole
             );
+            let own = |row: &usize| *row == 0 || *row == gap || difference(axis, *row) > 0;
+            let levels = [0, 1, 2].map(|level| {
+                let rows = (0..ROWS).filter(own);
+                rows.filter(|&row| axis[row].unsigned_abs() == level)
+                    .count() as u64
+            });
+            assert_eq!(faults.hole.levels, levels);
             let sum: i64 = axis.iter().map(|&value| i64::from(step * value)).sum();
             let square = |value: &i32| u128::from((step * value).unsigned_abs()).pow(2);
             assert_eq!(

@@ -39,7 +39,7 @@ pub enum Reason {
         /// Samples of the record.
         samples: u64,
     },
-    /// Small values are set to zero: the noise is larger than the record shows.
+    /// Too many values are zero, as behind a dead band: the noise is larger than the record shows.
     DeadBand {
         /// Samples that are zero.
         zeros: u64,
@@ -148,8 +148,8 @@ impl core::fmt::Display for Reason {
             ),
             Self::DeadBand { zeros, samples } => write!(
                 f,
-                "a dead band sets small values to zero, {zeros} of {samples} samples, so that the \
-                 coefficients are lower bounds; switch it off in the sensor or its driver"
+                "{zeros} of {samples} values are exactly zero, as a dead band leaves them, so that the \
+                 coefficients are lower bounds; switch the dead band off in the sensor or its driver"
             ),
             Self::Spiked { spikes, percent } => write!(
                 f,

@@ -16,7 +16,10 @@ pub(crate) fn print(records: u64, clean: u64, seed: u64) {
     );
     for (resolution, name) in [(Resolution::Counts, "0.4–10"), (Resolution::Fine, "fine")] {
         for fault in [Fault::None].into_iter().chain(Fault::ALL) {
-            let is_coarse = matches!(fault, Fault::Clipped(_) | Fault::DeadBand(_));
+            let is_coarse = matches!(
+                fault,
+                Fault::Clipped(_) | Fault::DeadBand(_) | Fault::Threshold(_)
+            );
             if is_coarse && resolution == Resolution::Fine {
                 continue;
             }

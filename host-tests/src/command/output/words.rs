@@ -31,11 +31,12 @@ pub(crate) fn invalid(
         samples,
     } = *reason
     {
-        let words = log::repeats_said(samples - changes, samples, times > 0);
-        let rate = log::rate_of(changes, samples, rate_hz);
+        let own = changes as f64 / samples as f64;
+        let words = log::repeats_said(1.0 - own, times > 0);
+        let rate = log::rate_of(own, samples, rate_hz);
         return format!(
-            "{words}: the sensor runs at {rate} Hz, and what the repeats do to the curve looks like a filter; read the \
-             sensor at its own rate, or leave the repeats out"
+            "{words}: the sensor runs at {rate} Hz, and the repeats make its noise look filtered; read it at its own rate, \
+             or leave the repeats out, which `--repeats drop` does where it is certain which samples repeat"
         );
     }
     match motion.filter(|_| matches!(reason, Reason::Moved { .. })) {

@@ -63,6 +63,7 @@
 //! | [`octave`] | is the accumulator: quarter-overlapping differences of adjacent clusters, exact in 158 bits |
 //! | [`spectrum`] | keeps power spectral densities beside the curve, and says what each effect adds to them |
 //! | [`integrity`] | judges whether the record is one of a gyro at rest |
+//! | [`faults`] | judges what the logger did: repeated samples, stuck values, clipping, a dead band |
 //! | [`kurtosis`], [`covariate`] | keep evidence beside the curve: jumps of the rate, and what follows a temperature |
 //! | [`course`] | says when the noise changed, a burst or a step came, and whether the gyro warmed up |
 //! | [`curve`] | holds τ, averaging factor, variance and number of differences of each octave |
@@ -252,7 +253,7 @@ pub use curve::{Curve, Scale};
 pub use error::Error;
 pub use evidence::{
     axis::{self, Axes, Axis},
-    covariate, kurtosis,
+    covariate, faults, kurtosis,
     record::Record,
 };
 pub use fit::coefficient::Coefficient;

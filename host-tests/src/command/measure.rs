@@ -80,7 +80,11 @@ fn measured(log: &Path, about_log: &LogArguments) -> Result<Vec<AxisCurve>, Fail
     let axes = record::read_with_evidence(log, about_log, &CovariateArguments::NONE)?;
     let curve = |(curve, evidence): (AxisCurve, Evidence)| {
         if let Some(reason) = evidence.invalid.filter(|_| !progress::is_quiet()) {
-            let reason = words::invalid(&reason, evidence.motion.as_ref(), &curve.axis);
+            let reason = words::invalid(
+                &reason,
+                evidence.motion.as_ref(),
+                (&curve.axis, curve.rate_hz),
+            );
             let note = format!("axis {}: the curve is not valid: {reason}", curve.axis);
             report(format_args!("{}{}", Place::file(log), one_line(&note)));
         }

@@ -4,7 +4,8 @@
 use super::{
     clock::{Clock, Tick},
     columns::AxisColumn,
-    field::{Field, Stamp},
+    faults::Faults,
+    field::{Exact, Field, Stamp},
     quantum::{Quantum, Range},
     rounding::{Steps, range_of},
     sums::Sums,
@@ -34,6 +35,8 @@ pub(super) struct Measured {
     pub(super) pairs: Vec<([usize; 2], SharedSums)>,
     /// The block sums of the axes, and behind them those of the columns of the covariates.
     pub(super) blocks: BlockSums,
+    /// What the logger did to the samples of the axes.
+    pub(super) faults: Faults,
     /// The time stamps that were followed, if the log has a time column.
     pub(super) clock: Option<Clock>,
 }
@@ -122,19 +125,28 @@ impl<V: Visitor> Visitor for Timed<'_, V> {
 }
 
 /// Accumulates the given columns, and once more if stamps turned out to be late: only behind a stamp, the rows tell
-/// whether samples were lost before it.
+/// whether samples were lost before it. Samples that the logger repeated are left out in another pass, because only the
+/// whole record tells them.
 pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
-    let measured = measure_once(passes, plan)?;
-    let late = measured.clock.as_ref().map_or(&[][..], Clock::found_late);
-    if late.is_empty() {
-        return Ok(measured);
-    }
-    let again = Passes {
+    let again = |late: &[u64]| Passes {
         late: late.to_vec(),
         tried: passes.tried.clone(),
         ..*passes
     };
-    measure_once(&again, plan)
+    let mut measured = measure_once(passes, plan)?;
+    let late = measured.clock.as_ref().map_or(&[][..], Clock::found_late);
+    let late = late.to_vec();
+    if !late.is_empty() {
+        measured = measure_once(&again(&late), plan)?;
+    }
+    let Some(faults) = measured.faults.without_repeats() else {
+        return Ok(measured);
+    };
+    let plan = Plan {
+        faults,
+        ..plan.clone()
+    };
+    measure_once(&again(&late), &plan)
 }
 
 /// Accumulates the given columns. A log of counts takes one pass. At the first value that is not a
@@ -170,8 +182,11 @@ fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, F
         })
         .collect::<Result<Vec<_>, _>>()?;
 
+    let mut plan = plan.clone();
+    let zero = |quantum: &Quantum| quantum.count(quantum.relative(Exact::Float(0.0)));
+    plan.faults.zeros = quanta.iter().map(zero).collect();
     let mut rounded = Rounded {
-        batches: Batches::new(plan.clone()),
+        batches: Batches::new(plan),
         quanta,
         tried: passes.tried.clone(),
         steps: vec![Steps::default(); columns.len()],
@@ -237,6 +252,7 @@ fn finish(
         columns,
         pairs,
         blocks,
+        faults,
     } = batches.finish();
     if sums.iter().any(|axis| axis.accumulator().samples() == 0) {
         return Err(Place::file(path).failure("no rows", "record some samples"));
@@ -255,6 +271,7 @@ fn finish(
         covariates: quanta.zip(columns).map(beside).collect(),
         pairs,
         blocks,
+        faults,
         clock,
     })
 }

@@ -63,14 +63,14 @@ impl Recorded {
         })
     }
 
-    /// The evidence of an axis, without its course and its block means. `coarse` is why its numbers are too coarse, if they
-    /// are.
+    /// The evidence of an axis, without its course and its block means. `fault` is what the logger did to its samples, and
+    /// `coarse` is why its numbers are too coarse, if they are.
     pub(super) fn evidence(
         &self,
         path: &Path,
         axis: &Axis,
         watched: &dyn WatchedAxis,
-        coarse: Option<Reason>,
+        (fault, coarse): (Option<Reason>, Option<Reason>),
     ) -> Result<Evidence, Failure> {
         let fail = |error: allanite::Error| {
             Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
@@ -81,10 +81,9 @@ impl Recorded {
         let told = watched.evidence(scale, &units).map_err(fail)?;
         // The order of the reasons is that of counts, where coarse numbers come before the jumps that they seem to make.
         let invalid = match told.invalid {
-            Some(Reason::Railed { .. } | Reason::Repeated { .. } | Reason::Stuck { .. }) => {
-                told.invalid
-            }
-            other => coarse.or(other),
+            Some(Reason::Railed { .. }) => told.invalid,
+            Some(Reason::Repeated { .. } | Reason::Stuck { .. }) => fault.or(told.invalid),
+            other => fault.or(coarse).or(other),
         };
         let moved = matches!(invalid, Some(Reason::Moved { .. }));
         let named = self.named.iter().zip(told.covariates);

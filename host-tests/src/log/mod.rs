@@ -48,6 +48,12 @@
 //! is left out. A note counts both. Stamps that go back are refused, and so are two rates in one
 //! log and stamps that jump or repeat in more than 5 % of the rows.
 //!
+//! # Repeats
+//!
+//! A reader that is faster than the sensor repeats samples. If all axes repeat at once, and hardly any sample of the
+//! sensor does so by chance, the repeats are left out, the rate is that of the sensor, and a note says so. Where chance
+//! repeats are too many, the curve is not valid, and the reason tells the rate of the sensor.
+//!
 //! # Temperatures
 //!
 //! [`read_with_evidence`] takes the first two columns that are named like a temperature (`temp_C`,
@@ -97,6 +103,7 @@ mod csv;
 mod date_time;
 mod dialect;
 mod evidence;
+mod faults;
 mod field;
 mod file;
 mod foreign;
@@ -146,6 +153,7 @@ use allanite::{
     spectrum::SpectrumAccumulator,
 };
 pub use covariate::{CovariateChoice, Covariates};
+pub(crate) use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
@@ -190,6 +198,18 @@ pub struct Options {
     pub time_unit: Option<TimeUnit>,
     /// The topic to read, in a log with several topics.
     pub topic: Option<String>,
+    /// What to do with samples that the logger repeated.
+    pub repeats: Repeats,
+}
+
+/// What to do with samples that the logger repeated, where it is certain that the sensor did not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Repeats {
+    /// Leave them out, and take the rate of the sensor.
+    #[default]
+    Drop,
+    /// Keep them. The curve is not valid then.
+    Keep,
 }
 
 /// A column to read, written `column` or `axis=column`.

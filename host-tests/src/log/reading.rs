@@ -6,6 +6,7 @@ use super::{
     axes::Taken,
     clock::Clock,
     evidence::{self, Recorded, spread_motion},
+    faults,
     scaling::{self, Origin, Scaling},
     sums::Sums,
     table::Table,
@@ -107,6 +108,11 @@ pub(super) fn read_table(
             covariates: covariates.clone(),
             moments: watch.moments,
         }),
+        faults: faults::Plan {
+            by_rows: table.by_rows() || columns.len() == 1,
+            repeats: options.repeats,
+            ..faults::Plan::default()
+        },
     };
     let passes = Passes {
         table,
@@ -125,6 +131,7 @@ pub(super) fn read_table(
         })?,
         (rate_hz, _) => rate_hz.unwrap_or(f64::NAN),
     };
+    let (rate_hz, repeats) = measured.faults.sensor_rate(rate_hz);
     let mut notes = vec![said(taken.note, &scaling, time.as_ref(), rate_hz, is_told)];
     notes.retain(|note| !note.is_empty());
     if let Some((row, rate)) = metadata.rate_of_preamble(options) {
@@ -132,6 +139,8 @@ pub(super) fn read_table(
     }
     notes.extend(measured.clock.as_ref().map(Clock::report));
     notes.extend(table.notes());
+    notes.extend(repeats);
+    let mut least = 0.0_f64;
     notes.extend(evidence::left_out(covariates, &measured));
     let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
     let mut axes = Vec::new();
@@ -167,7 +176,11 @@ pub(super) fn read_table(
         check_axis(path, &axis)?;
         if let Sums::Watched(watched, beside) = &sums {
             let coarse = measured.coarse.get(place).copied().flatten();
-            let evidence = recorded.evidence(path, &axis, &**watched, coarse)?;
+            let fault = measured.faults.verdict(place);
+            let evidence = recorded.evidence(path, &axis, &**watched, (fault, coarse))?;
+            if evidence.invalid.is_none() {
+                least = least.max(measured.faults.least(place));
+            }
             axis.evidence = Some(Evidence {
                 course: Some(*beside.course.clone()),
                 means: recorded.means(&measured.blocks, place, axis.rate_per_count),
@@ -183,6 +196,7 @@ pub(super) fn read_table(
         notes.extend(scaling.check(path, &axis)?);
         axes.push(axis);
     }
+    notes.extend(faults::bound(least));
     spread_motion(&mut axes);
     if scaling.origin == Origin::Assumed {
         notes.push(format!(

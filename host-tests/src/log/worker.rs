@@ -5,6 +5,7 @@
 use super::{
     CovariateChoice,
     covariate::{self, Derived},
+    faults::{self, Faults},
     sums::{OwnSums, Part, Sums},
     watched::{self, SharedSums, WatchedAxis},
 };
@@ -34,6 +35,7 @@ pub(super) struct Plan {
     pub(super) first: u64,
     /// What is watched, if the evidence beside the curve is kept.
     pub(super) watch: Option<Watch>,
+    pub(super) faults: faults::Plan,
 }
 
 /// What is watched beside the curves.
@@ -97,6 +99,8 @@ pub(super) struct Totals {
     pub(super) pairs: Vec<([usize; 2], SharedSums)>,
     /// The block sums of the axes, and behind them those of the columns of the covariates. Empty without covariates.
     pub(super) blocks: BlockSums,
+    /// What the logger did to the samples.
+    pub(super) faults: Faults,
 }
 
 impl Batches {
@@ -223,6 +227,7 @@ impl Batches {
             columns: worker.columns,
             pairs: worker.pairs,
             blocks: worker.blocks,
+            faults: worker.faults,
         }
     }
 }
@@ -240,7 +245,8 @@ struct Worker {
     derived: Vec<Derived>,
     columns: Vec<Course>,
     blocks: BlockSums,
-    /// With covariates, a batch waits until the batches of the other columns with the same rows
+    faults: Faults,
+    /// If the columns come row by row, a batch waits until the batches of the other columns with the same rows
     /// arrive.
     waiting: Vec<VecDeque<Vec<i32>>>,
 }
@@ -255,13 +261,15 @@ impl Worker {
             derived: plan.covariates().iter().map(Derived::new).collect(),
             columns: plan.covariates().iter().map(|_| Course::new()).collect(),
             blocks: BlockSums::new(plan.columns()),
+            faults: Faults::new(plan.faults.clone(), plan.axes),
             waiting: vec![VecDeque::new(); plan.columns()],
             plan,
         }
     }
 
     fn take(&mut self, column: usize, batch: Vec<i32>, mut done: impl FnMut(usize, Vec<i32>)) {
-        if self.derived.is_empty() {
+        if self.derived.is_empty() && !self.faults.by_rows() {
+            self.faults.push(column, &batch);
             self.accumulate(column, &batch, &[]);
             return done(column, batch);
         }
@@ -275,7 +283,10 @@ impl Worker {
             .iter_mut()
             .filter_map(VecDeque::pop_front)
             .collect();
-        self.blocks.push(&rows);
+        self.faults.push_rows(&mut rows);
+        if !self.derived.is_empty() {
+            self.blocks.push(&rows);
+        }
         let (axes, covariates) = rows.split_at_mut(self.plan.axes);
         for (course, counts) in self.columns.iter_mut().zip(covariates.iter()) {
             course.push_slice(counts);
@@ -299,6 +310,7 @@ impl Worker {
     }
 
     fn gap(&mut self) {
+        self.faults.gap();
         self.blocks.gap();
         for derived in &mut self.derived {
             derived.gap();

@@ -25,6 +25,7 @@ mod explore;
 mod explore_server;
 mod export;
 mod export_tables;
+mod faults;
 mod formats;
 mod help;
 mod known_filter;

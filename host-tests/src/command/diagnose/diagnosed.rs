@@ -275,7 +275,7 @@ impl Diagnosed {
             Verdict::Invalid(reason) => Some(words::invalid(
                 &reason,
                 self.motion.as_ref(),
-                &self.axis.axis,
+                (&self.axis.axis, self.axis.rate_hz),
             )),
             _ => None,
         }

@@ -122,7 +122,8 @@ impl Fitted {
             .and_then(|spectrum| tried::beside_model(&fitted.curve, &spectrum, &evidence, model));
         let motion = evidence.motion.as_ref();
         Ok(Self {
-            invalid: reason.map(|reason| words::invalid(&reason, motion, name)),
+            invalid: reason
+                .map(|reason| words::invalid(&reason, motion, (name, fitted.axis.rate_hz))),
             tried: tried.map_err(|error| record::library_failure(path, name, error))?,
             ..fitted
         })

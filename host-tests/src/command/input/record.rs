@@ -4,7 +4,7 @@ use crate::{
     command::output::progress,
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place, one_line, report},
-    log::{self, ColumnChoice, CovariateChoice, Covariates, Evidence, Log, TimeUnit},
+    log::{self, ColumnChoice, CovariateChoice, Covariates, Evidence, Log, Repeats, TimeUnit},
     unit::{Sensor, Unit},
 };
 use clap::Args;
@@ -43,6 +43,9 @@ pub(crate) struct LogArguments {
     /// [default: the topic with the most samples]
     #[arg(long)]
     topic: Option<String>,
+    /// What to do with samples that a logger faster than the sensor repeated, where that is certain
+    #[arg(long, value_name = "CHOICE", default_value = "drop")]
+    repeats: Repeats,
 }
 
 impl LogArguments {
@@ -56,6 +59,7 @@ impl LogArguments {
             time: self.time.clone(),
             time_unit: self.time_unit,
             topic: self.topic.clone(),
+            repeats: self.repeats,
         }
     }
 }

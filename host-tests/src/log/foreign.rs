@@ -4,7 +4,7 @@ use crate::failure::{Failure, Place, one_line};
 use std::path::Path;
 
 /// The magic bytes at the beginning of a file, what the file is, and the remedy. `FILE` stands for its name.
-const MAGICS: [(&[u8], &str, &str); 14] = [
+const MAGICS: [(&[u8], &str, &str); 15] = [
     (
         b"H Product:Blackbox",
         "a flight log of Betaflight",
@@ -22,6 +22,11 @@ const MAGICS: [(&[u8], &str, &str); 14] = [
     ),
     (
         b"MATLAB 5.0",
+        "a file of MATLAB",
+        "save its table in MATLAB with `writematrix(TABLE, 'log.csv')`",
+    ),
+    (
+        b"MATLAB 7.3",
         "a file of MATLAB",
         "save its table in MATLAB with `writematrix(TABLE, 'log.csv')`",
     ),
@@ -119,6 +124,11 @@ pub(super) fn refusal(path: &Path, start: &[u8]) -> Option<Failure> {
     let of_start = MAGICS.iter().find(|(magic, ..)| start.starts_with(magic));
     let of_start = of_start.map(|(_, what, remedy)| (what, remedy));
     let of_name = EXTENSIONS.iter().find(|(name, ..)| *name == extension);
+    // MATLAB writes text with this name too: `save -ascii`.
+    let is_text = start
+        .iter()
+        .all(|&byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
+    let of_name = of_name.filter(|(name, ..)| *name != "mat" || !is_text);
     let of_name = of_name.map(|(_, what, remedy)| (what, remedy));
     let (what, remedy) = of_start.or(of_name)?;
     Some(failure(path, what, remedy))

@@ -90,8 +90,10 @@ mod columns;
 mod convention;
 mod covariate;
 mod csv;
+mod cuts;
 mod date_time;
 mod dialect;
+mod disturbed;
 mod evidence;
 mod field;
 mod file;
@@ -110,6 +112,7 @@ mod quantum;
 mod reading;
 mod records;
 mod rounding;
+mod rows;
 mod scaling;
 mod source;
 mod sums;
@@ -137,6 +140,7 @@ use allanite::{
     spectrum::SpectrumAccumulator,
 };
 pub use covariate::{CovariateChoice, Covariates};
+pub use cuts::{Cuts, Moment, Stretch};
 pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
@@ -181,6 +185,8 @@ pub struct Options {
     pub time_unit: Option<TimeUnit>,
     /// The topic to read, in a log with several topics.
     pub topic: Option<String>,
+    /// What is left out.
+    pub cuts: Cuts,
 }
 
 /// A column to read, written `column` or `axis=column`.
@@ -255,15 +261,21 @@ pub struct Evidence {
     pub columns: Vec<(String, Vec<f64>)>,
     /// The means of the axis and of the columns of the covariates in many short blocks; `None` without covariates.
     pub means: Option<BlockMeans>,
-    /// The motion that makes the record not valid, if there is one.
-    pub motion: Option<Motion>,
+    /// The motion or the spikes that make the record not valid, if there are any.
+    pub disturbance: Option<Disturbance>,
 }
 
-/// Motion during a record. A gyro that turns about one axis is not at rest about the others.
+/// Motion during a record, or its spikes. A gyro that turns about one axis is not at rest about the others.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct Disturbance {
     /// The axis that shows it.
     pub axis: String,
-    /// When it began, in seconds from the start of the record without its gaps.
+    /// Whether it is motion rather than spikes.
+    pub is_motion: bool,
+    /// When it began, in seconds from the first row of the log, missing samples included.
     pub at_s: f64,
+    /// The stretches of the log that are disturbed, in seconds from its first row. Empty if they are not found.
+    pub stretches_s: Vec<(f64, f64)>,
+    /// When the log ends.
+    pub end_s: f64,
 }

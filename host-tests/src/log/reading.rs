@@ -5,6 +5,7 @@ use super::{
     accumulate::{self, Passes},
     axes::Taken,
     clock::Clock,
+    cuts::Dropped,
     evidence::{self, Recorded, spread_motion},
     scaling::{self, Origin, Scaling},
     sums::Sums,
@@ -108,15 +109,18 @@ pub(super) fn read_table(
             moments: watch.moments,
         }),
     };
-    let passes = Passes {
+    let mut passes = Passes {
         table,
         path,
         columns: &columns,
         tried,
         time: time.as_ref(),
+        rate_hz,
+        dropped: Dropped::NONE,
         late: Vec::new(),
         progress,
     };
+    passes.cut(&options.cuts)?;
     let measured = accumulate::measure(&passes, &plan)?;
     let is_told = rate_hz.is_some();
     let rate_hz = match (rate_hz, &measured.clock) {
@@ -132,6 +136,8 @@ pub(super) fn read_table(
     }
     notes.extend(measured.clock.as_ref().map(Clock::report));
     notes.extend(table.notes());
+    notes.extend(measured.tally.note());
+    notes.extend(passes.left_out(&measured.tally, rate_hz)?);
     notes.extend(evidence::left_out(covariates, &measured));
     let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
     let mut axes = Vec::new();
@@ -168,7 +174,14 @@ pub(super) fn read_table(
         if let Sums::Watched(watched, beside) = &sums {
             let coarse = measured.coarse.get(place).copied().flatten();
             let evidence = recorded.evidence(path, &axis, &**watched, coarse)?;
+            let moved_at = watched.moved_at();
             axis.evidence = Some(Evidence {
+                disturbance: recorded.disturbance(
+                    &axis.name,
+                    evidence.invalid,
+                    moved_at,
+                    &beside.extremes,
+                ),
                 course: Some(*beside.course.clone()),
                 means: recorded.means(&measured.blocks, place, axis.rate_per_count),
                 ..evidence
@@ -277,10 +290,10 @@ fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
     const LEAST: u64 = 9;
     if accumulator.samples() < LEAST {
         return fail(
-            format!(
-                "{} samples are too few: two octaves need {LEAST}",
-                accumulator.samples()
-            ),
+            match accumulator.samples() {
+                1 => format!("1 sample is too few: two octaves need {LEAST}"),
+                samples => format!("{samples} samples are too few: two octaves need {LEAST}"),
+            },
             "record longer",
         );
     }

@@ -8,7 +8,7 @@ use super::{
     imu_message::{COLUMNS, Encoding, ImuMessage},
     message_layout::{Layout, Value},
     metadata::Metadata,
-    table::{Ended, Stop, Table, Visitor},
+    table::{Ended, Stop, Table, Visitor, after_stop},
 };
 use crate::failure::{Failure, Place, quoted};
 use indicatif::ProgressBar;
@@ -117,13 +117,12 @@ impl Table for Bag {
                     place().failure(format!("{}: {what}", self.topic), "record the bag again")
                 })?;
                 for (i, axis) in axes.iter().enumerate() {
-                    match visit(&message, i, axis.column, visitor) {
-                        Ok(()) => {}
-                        Err(Stop::NotCounts) => {
-                            ended = Ended::NotCounts;
-                            return Ok(ControlFlow::Break(()));
+                    if let Err(stop) = visit(&message, i, axis.column, visitor) {
+                        if after_stop(visitor, (i, &stop), axes, place)? {
+                            break;
                         }
-                        Err(stop) => return Err(stop.failure(axis, place())),
+                        ended = Ended::NotCounts;
+                        return Ok(ControlFlow::Break(()));
                     }
                 }
                 Ok(ControlFlow::Continue(()))

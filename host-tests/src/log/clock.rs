@@ -4,6 +4,7 @@ use super::{
     field::{Flaw, Stamp},
     pace::Pace,
 };
+use crate::failure::plural;
 use std::time::Duration;
 
 /// The largest share of rows that may follow a gap or repeat a stamp. Beyond it, the stamps are
@@ -39,8 +40,8 @@ const TWO_RATES: f64 = 1.1;
 pub(super) enum Tick {
     /// The stamp follows the one before without a gap.
     Next,
-    /// Samples are missing between the stamp before and this one.
-    Gap,
+    /// So many samples are missing between the stamp before and this one.
+    Gap(u64),
     /// The stamp is equal to the one before.
     Repeated,
 }
@@ -144,17 +145,23 @@ impl Clock {
             self.off_grid += u64::from((samples - samples.round()).abs() > EXACT.0);
             self.gaps += 1;
             self.longest_gap = self.longest_gap.max(step);
-            self.lost += ((step / self.pace.step).round() - 1.0) * self.pace.rows.round();
+            let lost = ((step / self.pace.step).round() - 1.0) * self.pace.rows.round();
+            self.lost += lost;
             self.gaps_in_a_row += 1;
             if self.gaps_in_a_row >= RUN {
                 return Err(self.two_rates(step, self.pace.step));
             }
-            return Ok(Tick::Gap);
+            return Ok(Tick::Gap(lost as u64));
         }
         self.gaps_in_a_row = 0;
         self.rows_of_steps += rows;
         self.step(step)?;
         Ok(Tick::Next)
+    }
+
+    /// A difference of stamps in seconds.
+    pub(super) fn seconds(&self, ticks: f64) -> f64 {
+        self.pace.seconds(ticks)
     }
 
     /// Finds out whether the stamps behind the last gaps were late: then the rows behind them catch up with their stamps,
@@ -265,9 +272,9 @@ impl Clock {
         if self.gaps > 0 {
             text += &format!(
                 "; {}, the longest {}, about {} lost",
-                count(self.gaps, "gap"),
+                plural(self.gaps, "gap"),
                 span(self.pace.seconds(self.longest_gap)),
-                count(self.lost as u64, "sample")
+                plural(self.lost as u64, "sample")
             );
         }
         if self.pace.rows > 1.0 {
@@ -276,23 +283,18 @@ impl Clock {
         if self.delayed.0 > 0 {
             text += &format!(
                 "; {}, by {} at most, with nothing lost",
-                count(self.delayed.0, "late stamp"),
+                plural(self.delayed.0, "late stamp"),
                 span(self.pace.seconds(self.delayed.1))
             );
         }
         if self.repeated > 0 {
             text += &format!(
                 "; {} with a repeated stamp left out",
-                count(self.repeated, "row")
+                plural(self.repeated, "row")
             );
         }
         text
     }
-}
-
-fn count(count: u64, noun: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{plural}")
 }
 
 /// Formats a length of time with three digits, such as `5ms` or `1s 250ms`.
@@ -341,7 +343,7 @@ mod tests {
         stamps.drain(500..520);
         stamps.insert(300, stamps[299]);
         let (clock, ticks) = run(&stamps);
-        assert_eq!((ticks[300], ticks[501]), (Tick::Repeated, Tick::Gap));
+        assert_eq!((ticks[300], ticks[501]), (Tick::Repeated, Tick::Gap(20)));
         assert_eq!(ticks.iter().filter(|&&tick| tick != Tick::Next).count(), 2);
         assert_eq!(clock.rate_hz().unwrap(), 200.0);
         assert!(

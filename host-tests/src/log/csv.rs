@@ -9,7 +9,7 @@ use super::{
     preamble::{Preamble, values},
     records::{LONGEST_ROW, Records},
     source,
-    table::{Ended, Stop, Table, Visitor},
+    table::{Ended, Table, Visitor, after_stop},
 };
 use crate::failure::{Failure, Place, quoted};
 use csv::ByteRecord;
@@ -103,7 +103,7 @@ impl Csv {
                 break;
             }
             let row = reader.row();
-            if row.get(0).is_some_and(|field| field.starts_with(b"#")) {
+            if row.get(0).is_some_and(|field| field.starts_with(b"#")) || is_blank(row) {
                 continue;
             }
             // A row of another width is refused when all rows are read.
@@ -149,7 +149,7 @@ impl Csv {
         if lost > 0 {
             let (gaps, samples) = self.lost.get();
             self.lost.set((gaps + 1, samples.saturating_add(lost)));
-            visitor.gap();
+            visitor.gap(lost);
         }
         Ok(None)
     }
@@ -187,10 +187,9 @@ impl Csv {
         byte: impl Fn() -> u64,
     ) -> Result<bool, Failure> {
         for (axis, column) in axes.iter().enumerate() {
-            match visitor.visit(axis, Text(field(column.column))) {
-                Ok(()) => {}
-                Err(Stop::NotCounts) => return Ok(true),
-                Err(stop) => return Err(stop.failure(column, self.row_at(byte()))),
+            if let Err(stop) = visitor.visit(axis, Text(field(column.column))) {
+                let place = || self.row_at(byte());
+                return after_stop(visitor, (axis, &stop), axes, place).map(|goes_on| !goes_on);
             }
         }
         Ok(false)
@@ -267,14 +266,20 @@ impl Table for Csv {
                 pending = pending.or(found);
                 continue;
             }
+            if is_blank(row) {
+                continue;
+            }
             if let Some(pending) = &pending {
                 return Err(self.unclear(pending));
             }
             if row.len() != width {
-                return Err(self.row_at(byte()).failure(
-                    format!("{} where the first row has {width}", values(row.len())),
-                    "correct the row or cut the record there",
-                ));
+                visitor.lose_row(None, || {
+                    self.row_at(byte()).failure(
+                        format!("{} where the first row has {width}", values(row.len())),
+                        "correct the row or cut the record there",
+                    )
+                })?;
+                continue;
             }
             if self.visit_row(axes, visitor, |column| &row[column], byte)? {
                 return Ok(Ended::NotCounts);
@@ -292,6 +297,11 @@ fn said(path: &Path, preamble: &str) -> String {
         .to_string_lossy()
         .to_lowercase();
     format!("{name}\n{preamble}")
+}
+
+/// Whether a row is a line of blanks alone.
+fn is_blank(row: &ByteRecord) -> bool {
+    row.len() == 1 && row[0].trim_ascii().is_empty()
 }
 
 /// A comment among the rows that tells of no lost samples, and its place.

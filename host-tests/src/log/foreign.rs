@@ -89,6 +89,11 @@ pub(super) fn refusal(path: &Path, start: &[u8]) -> Option<Failure> {
     let of_start = MAGICS.iter().find(|(magic, ..)| start.starts_with(magic));
     let of_start = of_start.map(|(_, what, remedy)| (what, remedy));
     let of_name = EXTENSIONS.iter().find(|(name, ..)| *name == extension);
+    // MATLAB writes text with this name too: `save -ascii`.
+    let is_text = start
+        .iter()
+        .all(|&byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
+    let of_name = of_name.filter(|(name, ..)| *name != "mat" || !is_text);
     let of_name = of_name.map(|(_, what, remedy)| (what, remedy));
     let (what, remedy) = of_start.or(of_name)?;
     Some(failure(path, what, remedy))

@@ -100,8 +100,10 @@ mod convention;
 mod converted;
 mod covariate;
 mod csv;
+mod cuts;
 mod date_time;
 mod dialect;
+mod disturbed;
 mod evidence;
 mod faults;
 mod field;
@@ -124,6 +126,7 @@ mod quantum;
 mod reading;
 mod records;
 mod rounding;
+mod rows;
 mod scaling;
 mod source;
 mod sums;
@@ -153,6 +156,7 @@ use allanite::{
     spectrum::SpectrumAccumulator,
 };
 pub use covariate::{CovariateChoice, Covariates};
+pub use cuts::{Cuts, Moment, Stretch};
 pub(crate) use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
@@ -200,6 +204,8 @@ pub struct Options {
     pub topic: Option<String>,
     /// What to do with samples that the logger repeated.
     pub repeats: Repeats,
+    /// What is left out.
+    pub cuts: Cuts,
 }
 
 /// What to do with samples that the logger repeated, where it is certain that the sensor did not.
@@ -284,15 +290,21 @@ pub struct Evidence {
     pub columns: Vec<(String, Vec<f64>)>,
     /// The means of the axis and of the columns of the covariates in many short blocks; `None` without covariates.
     pub means: Option<BlockMeans>,
-    /// The motion that makes the record not valid, if there is one.
-    pub motion: Option<Motion>,
+    /// The motion or the spikes that make the record not valid, if there are any.
+    pub disturbance: Option<Disturbance>,
 }
 
-/// Motion during a record. A gyro that turns about one axis is not at rest about the others.
+/// Motion during a record, or its spikes. A gyro that turns about one axis is not at rest about the others.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct Disturbance {
     /// The axis that shows it.
     pub axis: String,
-    /// When it began, in seconds from the start of the record without its gaps.
+    /// Whether it is motion rather than spikes.
+    pub is_motion: bool,
+    /// When it began, in seconds from the first row of the log, missing samples included.
     pub at_s: f64,
+    /// The stretches of the log that are disturbed, in seconds from its first row. Empty if they are not found.
+    pub stretches_s: Vec<(f64, f64)>,
+    /// When the log ends.
+    pub end_s: f64,
 }

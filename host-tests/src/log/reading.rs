@@ -5,6 +5,7 @@ use super::{
     accumulate::{self, Passes},
     axes::Taken,
     clock::Clock,
+    cuts::Dropped,
     evidence::{self, Recorded, spread_motion},
     faults,
     scaling::{self, Origin, Scaling},
@@ -114,15 +115,18 @@ pub(super) fn read_table(
             ..faults::Plan::default()
         },
     };
-    let passes = Passes {
+    let mut passes = Passes {
         table,
         path,
         columns: &columns,
         tried,
         time: time.as_ref(),
+        rate_hz,
+        dropped: Dropped::NONE,
         late: Vec::new(),
         progress,
     };
+    passes.cut(&options.cuts)?;
     let measured = accumulate::measure(&passes, &plan)?;
     let is_told = rate_hz.is_some();
     let rate_hz = match (rate_hz, &measured.clock) {
@@ -131,7 +135,8 @@ pub(super) fn read_table(
         })?,
         (rate_hz, _) => rate_hz.unwrap_or(f64::NAN),
     };
-    let (rate_hz, repeats) = measured.faults.sensor_rate(rate_hz);
+    let logged_hz = rate_hz;
+    let (rate_hz, repeats) = measured.faults.sensor_rate(logged_hz);
     let mut notes = vec![said(taken.note, &scaling, time.as_ref(), rate_hz, is_told)];
     notes.retain(|note| !note.is_empty());
     if let Some((row, rate)) = metadata.rate_of_preamble(options) {
@@ -141,6 +146,8 @@ pub(super) fn read_table(
     notes.extend(table.notes());
     notes.extend(repeats);
     let mut least = 0.0_f64;
+    notes.extend(measured.tally.note());
+    notes.extend(passes.left_out(&measured.tally, logged_hz)?);
     notes.extend(evidence::left_out(covariates, &measured));
     let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
     let mut axes = Vec::new();
@@ -181,7 +188,14 @@ pub(super) fn read_table(
             if evidence.invalid.is_none() {
                 least = least.max(measured.faults.least(place));
             }
+            let moved_at = watched.moved_at();
             axis.evidence = Some(Evidence {
+                disturbance: recorded.disturbance(
+                    &axis.name,
+                    evidence.invalid,
+                    moved_at,
+                    &beside.extremes,
+                ),
                 course: Some(*beside.course.clone()),
                 means: recorded.means(&measured.blocks, place, axis.rate_per_count),
                 ..evidence
@@ -291,10 +305,10 @@ fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
     const LEAST: u64 = 9;
     if accumulator.samples() < LEAST {
         return fail(
-            format!(
-                "{} samples are too few: two octaves need {LEAST}",
-                accumulator.samples()
-            ),
+            match accumulator.samples() {
+                1 => format!("1 sample is too few: two octaves need {LEAST}"),
+                samples => format!("{samples} samples are too few: two octaves need {LEAST}"),
+            },
             "record longer",
         );
     }

@@ -71,9 +71,9 @@ impl Plan {
 enum Work {
     /// The counts of a column.
     Batch(usize, Vec<i32>),
-    /// Samples are missing after the batches that were sent so far. All of them end at the same
+    /// So many samples are missing after the batches that were sent so far. All of them end at the same
     /// row.
-    Gap,
+    Gap(u64),
 }
 
 /// Sends the counts of every column to the thread with the accumulators, which passes those of watched axes on to the
@@ -128,9 +128,9 @@ impl Batches {
                             recycle(&recycled, batch);
                         }
                     }),
-                    Work::Gap => {
-                        worker.gap();
-                        let _ = accumulated.send(Work::Gap);
+                    Work::Gap(missing) => {
+                        worker.gap(missing);
+                        let _ = accumulated.send(Work::Gap(missing));
                     }
                 }
             }
@@ -144,7 +144,7 @@ impl Batches {
                         axes[axis].push(&batch);
                         recycle(&outgoing, batch);
                     }
-                    Work::Gap => axes.iter_mut().for_each(OwnSums::gap),
+                    Work::Gap(missing) => axes.iter_mut().for_each(|axis| axis.gap(missing)),
                 }
             }
             axes
@@ -160,10 +160,22 @@ impl Batches {
 
     #[inline]
     pub(super) fn push(&mut self, column: usize, count: i32) {
-        let batch = &mut self.open[column];
-        batch.push(count);
-        if batch.len() >= BATCH {
+        if self.open[column].len() >= BATCH {
             self.send(column);
+        }
+        self.open[column].push(count);
+    }
+
+    /// Forgets the last count of the first columns, which the others do not have.
+    #[cold]
+    pub(super) fn forget(&mut self, columns: usize) {
+        for column in 0..self.open.len() {
+            if column < columns {
+                self.open[column].pop();
+            } else if self.open[column].len() >= BATCH {
+                // The columns before it have sent theirs, and all have to send equally often.
+                self.send(column);
+            }
         }
     }
 
@@ -171,13 +183,13 @@ impl Batches {
     pub(super) fn extend(&mut self, column: usize, counts: &[i32]) {
         let mut rest = counts;
         while !rest.is_empty() {
+            if self.open[column].len() >= BATCH {
+                self.send(column);
+            }
             let batch = &mut self.open[column];
             let room = BATCH.saturating_sub(batch.len());
             let (counts, after) = rest.split_at(room.min(rest.len()));
             batch.extend_from_slice(counts);
-            if batch.len() >= BATCH {
-                self.send(column);
-            }
             rest = after;
         }
     }
@@ -193,11 +205,11 @@ impl Batches {
         let _ = self.full.send(Work::Batch(column, batch));
     }
 
-    /// Tells that samples are missing here, between two rows.
+    /// Tells that so many samples are missing here, between two rows.
     #[cold]
-    pub(super) fn gap(&mut self) {
+    pub(super) fn gap(&mut self, missing: u64) {
         self.send_all();
-        let _ = self.full.send(Work::Gap);
+        let _ = self.full.send(Work::Gap(missing));
     }
 
     fn send_all(&mut self) {
@@ -309,14 +321,14 @@ impl Worker {
         }
     }
 
-    fn gap(&mut self) {
+    fn gap(&mut self, missing: u64) {
         self.faults.gap();
         self.blocks.gap();
         for derived in &mut self.derived {
             derived.gap();
         }
         for course in &mut self.columns {
-            course.gap();
+            course.lost(missing);
         }
         for (_, shared) in &mut self.pairs {
             shared.gap();
@@ -330,7 +342,7 @@ impl Worker {
                         first.gap();
                     }
                 }
-                AxisState::Watched(axis) => axis.gap(),
+                AxisState::Watched(axis) => axis.gap(missing),
             }
         }
     }

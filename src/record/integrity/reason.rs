@@ -161,11 +161,17 @@ impl core::fmt::Display for Reason {
                 motions,
                 cluster,
                 percent,
-            } => write!(
-                f,
-                "the gyro was moved: {motions} jumps explain {percent} % of the variance of means of \
-                 {cluster} samples; record again at rest, untouched"
-            ),
+            } => {
+                let (jumps, explain) = match motions {
+                    1 => ("jump", "explains"),
+                    _ => ("jumps", "explain"),
+                };
+                write!(
+                    f,
+                    "the gyro was moved: {motions} {jumps} {explain} {percent} % of the variance of \
+                     means of {cluster} samples; record again at rest, untouched"
+                )
+            }
             Self::Missing { missing, sent } => write!(
                 f,
                 "{missing} of {sent} samples are missing; read faster or record at a lower rate"

@@ -4,10 +4,7 @@ use super::{
     number::{duration, number, rounded_up, two_digits},
     units,
 };
-use crate::{
-    log::{self, Motion},
-    unit::{Sensor, Unit},
-};
+use crate::unit::{Sensor, Unit};
 use allanite::{
     Coefficient, Model, Term,
     comparison::Band,
@@ -15,42 +12,7 @@ use allanite::{
     detection::Range,
     effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
     fit::{Fit, State},
-    integrity::Reason,
 };
-
-/// Why a record is not valid. Motion is said with its time, and with its axis where another one shows it, and repeats
-/// with the rate of the sensor.
-pub(crate) fn invalid(
-    reason: &Reason,
-    motion: Option<&Motion>,
-    (axis, rate_hz): (&str, f64),
-) -> String {
-    if let Reason::Repeated {
-        times,
-        changes,
-        samples,
-    } = *reason
-    {
-        let own = changes as f64 / samples as f64;
-        let words = log::repeats_said(1.0 - own, times > 0);
-        let rate = log::rate_of(own, samples, rate_hz);
-        return format!(
-            "{words}: the sensor runs at {rate} Hz, and the repeats make its noise look filtered; read it at its own rate, \
-             or leave the repeats out, which `--repeats drop` does where it is certain which samples repeat"
-        );
-    }
-    match motion.filter(|_| matches!(reason, Reason::Moved { .. })) {
-        Some(motion) if motion.axis == axis => {
-            format!("{reason} (first at {} s)", number(motion.at_s))
-        }
-        Some(motion) => format!(
-            "{reason} (first at {} s, seen in axis {}: motion about one axis makes all axes invalid)",
-            number(motion.at_s),
-            motion.axis
-        ),
-        None => reason.to_string(),
-    }
-}
 
 /// A name as people write it.
 pub(crate) fn plain(name: &str) -> String {

@@ -75,8 +75,9 @@
 //! or `17.0`. Larger whole numbers become counts after an origin is subtracted from them as integers. An
 //! axis with any other number is rounded to counts. The size of a count is a power of
 //! two between 2^-30 and 2^-29 of the axis' range, and a constant offset is subtracted. This takes
-//! one more pass for the range. No value is skipped: a value that is not a finite number ends the
-//! reading with an error that names its row.
+//! one more pass for the range. A row with a value that is not a finite number is a lost sample, which a note
+//! counts. If more than a tenth of the rows are so, the log is refused, and so it is where columns lie one behind
+//! the other.
 
 mod accumulate;
 mod axes;

@@ -25,6 +25,8 @@ const JUDGED: u64 = 1000;
 const LEAST: Real = 0.005;
 /// The largest chance of a sample to equal the one before at which every repeat counts as one of the logger.
 const CHANCE: Real = 0.002;
+/// A run longer than so many mean runs holds a value, as [`Integrity`](crate::integrity::Integrity) has it.
+const LONGEST_RUN: Real = 128.0;
 /// The share of equal neighbours from which neither long runs nor full ends of the range mean anything.
 const MOSTLY_EQUAL: Real = 0.45;
 
@@ -150,11 +152,15 @@ impl SampleFaults {
         let own = (&self.runs, self.pairs(), self.own_repeats());
         let all = joint.map(|joint| (&joint.runs, joint.pairs(), joint.repeats()));
         let mut all = [Some(own), all].into_iter().flatten();
-        all.any(|(runs, pairs, repeats)| {
-            let fine = repeats.chance <= CHANCE;
-            is_stuck(&runs.reached, (runs.zeros, runs.long), pairs, fine)
-        })
-        .then(|| Reason::Stuck {
+        // A run of noise is geometric: none is that long.
+        let changes = self.pairs().saturating_sub(self.runs.zeros).max(1);
+        let held = real(self.runs.longest) * changes as Real > LONGEST_RUN * self.pairs() as Real;
+        let is_held = held
+            || all.any(|(runs, pairs, repeats)| {
+                let fine = repeats.chance <= CHANCE;
+                is_stuck(&runs.reached, (runs.zeros, runs.long), pairs, fine)
+            });
+        is_held.then(|| Reason::Stuck {
             longest_run: self.runs.longest.saturating_add(1),
             changes: self.pairs().saturating_sub(self.runs.zeros),
             samples: self.samples,

@@ -187,7 +187,7 @@ fn impossible_questions_are_refused() {
     for (arguments, message) in [
         (
             &["--with", "sinusiod"][..],
-            "no such effect; choose from quantization, ",
+            "no such effect; did you mean sinusoid? choose from quantization, ",
         ),
         (
             &["--with", "sinusoid:frequency=1"],

@@ -28,7 +28,7 @@ fn folder() -> (TempDir, Vec<String>) {
             text += &format!("{}\n", (random >> 20) as usize % (20 + file));
         }
         if file == BROKEN {
-            text += "brok";
+            text = "brok".into();
         }
         let name = format!("log{file}.csv");
         fs::write(folder.path().join(&name), text).unwrap();

@@ -116,7 +116,7 @@ pub(crate) fn cases() -> Vec<Case> {
             after(&format!("1,\"2\n{}", rows(100_000))),
             "a row is longer than 1024 KiB",
         ),
-        ("fit", after("\0\0\0"), "where the first row has 3"),
+        ("fit", after("\0\0\0"), "this is not text"),
         (
             "fit",
             "# rate_hz=9\ngx\n".to_owned() + &"5\n".repeat(50),
@@ -438,7 +438,10 @@ fn invalid() -> Vec<Case> {
             log(&|_, count| i64::from(count > 2000)),
             "the noise is below half a count",
         ),
-        (log(&|at, _| held[at / 2]), "every sample is there twice"),
+        (
+            log(&|at, _| held[at / 2]),
+            "every second sample repeats the one before",
+        ),
         (
             log(&|at, count| {
                 count
@@ -451,7 +454,7 @@ fn invalid() -> Vec<Case> {
             "the gyro was moved",
         ),
     ];
-    let export = "export -f kalibr --rate 100 --scale 0.01 --unit deg/s a.csv";
+    let export = "export -f kalibr --rate 100 --scale 0.01 --unit deg/s --repeats keep a.csv";
     let both = |(text, reason): (String, &str)| {
         let refusal = refused("a.csv", text.clone(), export, reason);
         let told = format!("{export} --despite-invalid");

@@ -7,7 +7,7 @@ use allanite::{
 };
 
 /// The shares of repeats that are worth a note because smaller ones cannot be told. Chosen by hand.
-const NOTED: f64 = 0.05;
+const NOTED: f64 = 0.1;
 
 /// The axes of a sensor.
 const SENSOR: usize = 3;

@@ -121,6 +121,7 @@ mod npy;
 mod npy_block;
 pub mod npy_header;
 mod pace;
+mod part_names;
 mod parts;
 mod preamble;
 mod quantum;

@@ -1,6 +1,6 @@
 //! Tells the format of a log, and opens it.
 
-use super::{foreign, parts};
+use super::{foreign, part_names};
 use crate::{
     failure::{Failure, Place},
     regular_file,
@@ -69,7 +69,7 @@ impl Format {
     /// When the file is another one than a log, which the message names together with the command that converts it.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         if path.is_dir() {
-            let has_text = !parts::files(path).is_empty();
+            let has_text = !part_names::files(path).is_empty();
             return Ok(if has_text { Self::Parts } else { Self::Folder });
         }
         let (file, _) = regular_file::open(path)?;

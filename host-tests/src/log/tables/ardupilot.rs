@@ -1,6 +1,10 @@
 //! Flight logs of ArduPilot. They describe their own messages; those of one sensor form the table.
 
-use super::{Candidate, Text, Wrong, choose};
+use super::{
+    choice::{Candidate, choose},
+    wrong::Wrong,
+};
+use crate::log::converted::Text;
 use ardupilot_binlog::{Entry, File, Reader};
 use std::{collections::BTreeMap, fs, io::Write as _, path::Path};
 

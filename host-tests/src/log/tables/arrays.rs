@@ -1,6 +1,10 @@
 //! Named arrays as columns of a table: what MATLAB and HDF5 have in common.
 
-use super::{Candidate, Text, Wrong, choose};
+use super::{
+    choice::{Candidate, choose},
+    wrong::Wrong,
+};
+use crate::log::converted::Text;
 use std::{collections::BTreeMap, io::Write as _};
 
 /// More columns are refused by the reader of text, and would make the text long.

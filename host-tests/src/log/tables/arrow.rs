@@ -1,6 +1,7 @@
 //! Parquet and Arrow files, by the crates of the Arrow project.
 
-use super::{Kind, Text, Wrong};
+use super::wrong::Wrong;
+use crate::log::{converted::Text, source::TableKind as Kind};
 use ::arrow::{
     array::RecordBatch,
     compute::cast,

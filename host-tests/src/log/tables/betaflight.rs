@@ -1,6 +1,10 @@
 //! Flight logs of Betaflight, whose main frames form the table.
 
-use super::{Candidate, Text, Wrong, choose};
+use super::{
+    choice::{Candidate, choose},
+    wrong::Wrong,
+};
+use crate::log::converted::Text;
 use blackbox_log::{
     File, Filter, FilterSet,
     frame::Value,

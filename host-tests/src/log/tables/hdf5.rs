@@ -1,9 +1,10 @@
 //! HDF5 files, such as those of MATLAB 7.3, whose datasets of one group and length are the columns.
 
 use super::{
-    Text, Wrong,
     arrays::{self, Array, Values},
+    wrong::Wrong,
 };
+use crate::log::converted::{MOST_TEXT, MOST_TIMES, Text};
 use hdf5_pure::{DType, Dataset, Error, File, Group};
 use std::path::Path;
 
@@ -41,7 +42,7 @@ fn gather(
         let claimed = shape
             .iter()
             .try_fold(8_u64, |all, &length| all.checked_mul(length));
-        if claimed.is_none_or(|bytes| bytes > super::MOST_TIMES * size + super::MOST_TEXT) {
+        if claimed.is_none_or(|bytes| bytes > MOST_TIMES * size + MOST_TEXT) {
             continue;
         }
         let Some(values) = values(&dataset)? else {

@@ -1,9 +1,10 @@
 //! Files of MATLAB up to version 7, whose arrays of numbers are the columns. Those of version 7.3 are HDF5 files.
 
 use super::{
-    Text, Wrong,
     arrays::{self, Array, Values},
+    wrong::Wrong,
 };
+use crate::log::converted::Text;
 use ::matfile::{MatFile, NumericData};
 use std::{fs::File, io::BufReader, path::Path};
 

@@ -1,6 +1,10 @@
 //! Workbooks of Excel and LibreOffice, one of whose sheets is the table.
 
-use super::{Candidate, Text, Wrong, choose};
+use super::{
+    choice::{Candidate, choose},
+    wrong::Wrong,
+};
+use crate::log::converted::Text;
 use calamine::{Data, Reader as _, open_workbook_auto};
 use std::path::Path;
 

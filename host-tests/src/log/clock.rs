@@ -18,6 +18,10 @@ const MOST_GAPS: f64 = 0.2;
 /// exact stamps. Chosen by hand.
 const EXACT: (f64, f64) = (0.1, 0.05);
 
+/// The largest distance of a gap from a whole number of samples, in samples, at which their number counts as known. Chosen
+/// by hand.
+const WHOLE: f64 = 0.3;
+
 /// A late stamp is followed by this many rows at most until the stamps are where they would be without a loss. Chosen by
 /// hand.
 const MOST_LATE: u64 = 16;
@@ -39,8 +43,8 @@ const TWO_RATES: f64 = 1.1;
 pub(super) enum Tick {
     /// The stamp follows the one before without a gap.
     Next,
-    /// Samples are missing between the stamp before and this one.
-    Gap,
+    /// Samples are missing between the stamp before and this one: so many, or an unknown number if it is 0.
+    Gap(u64),
     /// The stamp is equal to the one before.
     Repeated,
 }
@@ -149,7 +153,9 @@ impl Clock {
             if self.gaps_in_a_row >= RUN {
                 return Err(self.two_rates(step, self.pace.step));
             }
-            return Ok(Tick::Gap);
+            let is_whole = (samples - samples.round()).abs() <= WHOLE && self.pace.rows <= 1.0;
+            let lost = if is_whole { samples.round() - 1.0 } else { 0.0 };
+            return Ok(Tick::Gap(lost as u64));
         }
         self.gaps_in_a_row = 0;
         self.rows_of_steps += rows;
@@ -341,7 +347,7 @@ mod tests {
         stamps.drain(500..520);
         stamps.insert(300, stamps[299]);
         let (clock, ticks) = run(&stamps);
-        assert_eq!((ticks[300], ticks[501]), (Tick::Repeated, Tick::Gap));
+        assert_eq!((ticks[300], ticks[501]), (Tick::Repeated, Tick::Gap(20)));
         assert_eq!(ticks.iter().filter(|&&tick| tick != Tick::Next).count(), 2);
         assert_eq!(clock.rate_hz().unwrap(), 200.0);
         assert!(
@@ -406,7 +412,7 @@ mod tests {
         let mut clock = Clock::new(pace, first.found_late());
         let tick = |&stamp: &i64| clock.tick(Stamp::Whole(stamp)).unwrap();
         let ticks: Vec<Tick> = stamps.iter().map(tick).collect();
-        let gaps: Vec<usize> = (0..997).filter(|&i| ticks[i] == Tick::Gap).collect();
+        let gaps: Vec<usize> = (0..997).filter(|&i| ticks[i] == Tick::Gap(1)).collect();
         assert_eq!(gaps, [705]);
         assert!((clock.rate_hz().unwrap() / 200.0 - 1.0).abs() < 2e-3);
         let report = clock.report();
@@ -433,7 +439,10 @@ mod tests {
             .map(|i| i / 4 * 10_000)
             .collect();
         let (clock, ticks) = run(&stamps);
-        assert_eq!(ticks.iter().filter(|&&tick| tick == Tick::Gap).count(), 1);
+        assert_eq!(
+            ticks.iter().filter(|&&tick| tick == Tick::Gap(0)).count(),
+            1
+        );
         assert_eq!(clock.rate_hz().unwrap(), 400.0);
     }
 

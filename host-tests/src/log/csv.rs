@@ -140,7 +140,7 @@ impl Csv {
         if lost > 0 {
             let (gaps, samples) = self.lost.get();
             self.lost.set((gaps + 1, samples.saturating_add(lost)));
-            visitor.gap();
+            visitor.gap(lost);
         }
         Ok(None)
     }

@@ -53,8 +53,8 @@ pub(super) trait Visitor {
         visit_each(self, axis, values)
     }
 
-    /// Tells that samples are missing before the next row.
-    fn gap(&mut self) {}
+    /// Tells that samples are missing before the next row: so many, or an unknown number if it is 0.
+    fn gap(&mut self, _lost: u64) {}
 }
 
 /// Shows a visitor the values of a run one by one.

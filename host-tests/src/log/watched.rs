@@ -27,7 +27,7 @@ pub(super) trait WatchedAxis: Send {
     fn push(&mut self, counts: &[i32], covariates: &[Vec<i32>]);
 
     /// Tells that samples are missing here.
-    fn gap(&mut self);
+    fn gap(&mut self, lost: u64);
 
     fn accumulator(&self) -> &Accumulator<OCTAVES>;
 
@@ -85,8 +85,8 @@ where
         }
     }
 
-    fn gap(&mut self) {
-        self.axis.gap();
+    fn gap(&mut self, lost: u64) {
+        self.axis.miss(lost);
     }
 
     fn accumulator(&self) -> &Accumulator<OCTAVES> {
@@ -118,8 +118,11 @@ impl WatchedAxis for Alone {
         self.integrity.push_slice(rest);
     }
 
-    fn gap(&mut self) {
-        self.accumulator.gap();
+    fn gap(&mut self, lost: u64) {
+        match lost {
+            0 => self.accumulator.gap(),
+            lost => self.accumulator.lost(lost),
+        }
         self.integrity.gap();
     }
 

@@ -69,9 +69,9 @@ impl Plan {
 enum Work {
     /// The counts of a column.
     Batch(usize, Vec<i32>),
-    /// Samples are missing after the batches that were sent so far. All of them end at the same
-    /// row.
-    Gap,
+    /// So many samples, or an unknown number if it is 0, are missing after the batches that were sent so far. All of them
+    /// end at the same row.
+    Gap(u64),
 }
 
 /// Sends the counts of every column to the thread with the accumulators, which passes those of watched axes on to the
@@ -124,9 +124,9 @@ impl Batches {
                             recycle(&recycled, batch);
                         }
                     }),
-                    Work::Gap => {
-                        worker.gap();
-                        let _ = accumulated.send(Work::Gap);
+                    Work::Gap(lost) => {
+                        worker.gap(lost);
+                        let _ = accumulated.send(Work::Gap(lost));
                     }
                 }
             }
@@ -140,7 +140,7 @@ impl Batches {
                         axes[axis].push(&batch);
                         recycle(&outgoing, batch);
                     }
-                    Work::Gap => axes.iter_mut().for_each(OwnSums::gap),
+                    Work::Gap(_) => axes.iter_mut().for_each(OwnSums::gap),
                 }
             }
             axes
@@ -191,9 +191,9 @@ impl Batches {
 
     /// Tells that samples are missing here, between two rows.
     #[cold]
-    pub(super) fn gap(&mut self) {
+    pub(super) fn gap(&mut self, lost: u64) {
         self.send_all();
-        let _ = self.full.send(Work::Gap);
+        let _ = self.full.send(Work::Gap(lost));
     }
 
     fn send_all(&mut self) {
@@ -298,7 +298,7 @@ impl Worker {
         }
     }
 
-    fn gap(&mut self) {
+    fn gap(&mut self, lost: u64) {
         self.blocks.gap();
         for derived in &mut self.derived {
             derived.gap();
@@ -307,18 +307,18 @@ impl Worker {
             course.gap();
         }
         for (_, shared) in &mut self.pairs {
-            shared.gap();
+            shared.miss(lost);
         }
         for kept in &mut self.axes {
             match kept {
                 AxisState::InTwo { first, rest } => {
                     if first.accumulator.samples() >= self.plan.first {
-                        rest.gap();
+                        rest.gap(lost);
                     } else {
-                        first.gap();
+                        first.gap(lost);
                     }
                 }
-                AxisState::Watched(axis) => axis.gap(),
+                AxisState::Watched(axis) => axis.gap(lost),
             }
         }
     }

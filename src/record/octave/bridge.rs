@@ -91,7 +91,7 @@ impl Bridged {
     }
 
     /// Adds the gaps of another record.
-    pub(super) fn merge(&mut self, other: &Self) {
+    pub fn merge(&mut self, other: &Self) {
         for (own, other) in self.gaps.iter_mut().zip(other.gaps) {
             *own = own.saturating_add(other);
         }

@@ -147,8 +147,7 @@ impl<const K: usize> Curve<K> {
 
     /// The curve without what filled gaps change in its variances, for a record of so many samples without those that were
     /// lost. [`Accumulator::curve`] does this itself; sums that were stored need it. The curve stays as it is if no gap was
-    /// filled. With 1 % of single losses, what is left is below a tenth of a standard error in every octave of 2^16
-    /// samples, and with 5 % below two tenths (`cargo xtask study losses`).
+    /// filled.
     #[must_use]
     pub fn without_bridges(mut self, bridged: &Bridged, samples: u64) -> Self {
         if !bridged.is_empty() {

@@ -92,7 +92,7 @@ impl Level {
 /// On a Cortex-M4F [`push`](Self::push) takes 136 instructions per sample, whatever the number of
 /// octaves and the position in the schedule, as long as no difference exceeds 31 bits. It takes at most
 /// 232 with full-scale input. [`push_slice`](Self::push_slice) takes 124 to 136, built for size. The state
-/// takes `80 + 96 · OCTAVES` bytes, which is 2384 for 24 octaves. `cargo xtask bench` measures this.
+/// takes `176 + 96 · OCTAVES` bytes, which is 2480 for 24 octaves. `cargo xtask bench` measures this.
 ///
 /// # Example
 ///

@@ -73,7 +73,8 @@ impl Bridged {
     }
 
     /// The first octave that uses differences across gaps of a class: that of `m = 4` after the loss of a single sample,
-    /// and otherwise that of twice the longest gap of the class (`cargo xtask study losses`).
+    /// and otherwise that of twice the longest gap of the class. Chosen
+    /// by hand; no study varies it.
     pub(crate) const fn first_octave(class: usize) -> usize {
         if class < 1 {
             2

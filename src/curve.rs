@@ -152,7 +152,12 @@ impl<const K: usize> Curve<K> {
     pub fn without_bridges(mut self, bridged: &Bridged, samples: u64) -> Self {
         if !bridged.is_empty() {
             let places = samples.saturating_add(bridged.lost());
-            bridged::take_off(&mut self.points, bridged, places);
+            let points = self.points.iter();
+            let mut octaves: Vec<_, K> = points.map(|point| (point.m, point.variance)).collect();
+            bridged::take_off(&mut octaves, bridged, places);
+            for (point, (_, variance)) in self.points.iter_mut().zip(octaves) {
+                point.variance = variance;
+            }
             self.variance_unit = power_of_four(&self.points);
         }
         self

@@ -11,7 +11,6 @@
 //! Between powers of two, `G` is a cubic through four of them, which is exact for quantization, white noise and random
 //! walk. So no model is needed, and what is taken off is right to the second order in the share of lost samples.
 
-use super::Point;
 use crate::{
     list::numbered,
     numerics::real::{Real, real},
@@ -20,6 +19,7 @@ use crate::{
         bridge::{BEFORE, WINDOW},
     },
 };
+use heapless::Vec;
 
 /// The number of powers of two at which `G` is known: the largest distance is that of `m = 128` beside a gap of 64.
 const NODES: usize = 11;
@@ -38,14 +38,14 @@ const PARTS: i32 = 16;
 struct Covariance([Real; NODES]);
 
 impl Covariance {
-    fn of(points: &[Point]) -> Self {
+    fn of(octaves: &[(u32, Real)]) -> Self {
         let mut nodes = [0.0; NODES];
         let mut variance = 0.0;
         let (mut last, mut m) = (0.0, 1_u32);
         for node in nodes.iter_mut().skip(1) {
             // Behind the last octave, the variance is taken to stay.
-            let point = points.iter().find(|point| point.m == m);
-            variance = point.map_or(variance, |point| point.variance);
+            let octave = octaves.iter().find(|octave| octave.0 == m);
+            variance = octave.map_or(variance, |octave| octave.1);
             last = 4.0 * last + real(m) * real(m) * variance;
             *node = last;
             m = m.wrapping_shl(1);
@@ -133,26 +133,21 @@ impl Covariance {
     }
 }
 
-/// Takes off what filled gaps change in the variances. `places` is the number of samples with those that were lost.
+/// Takes off what filled gaps change in the variances of octaves `(m, variance)`. `places` is the number of samples with
+/// those that were lost.
 #[inline(never)]
-pub(super) fn take_off(points: &mut [Point], bridged: &Bridged, places: u64) {
-    let as_read = Covariance::of(points);
-    let once = |point: &Point| changes(&as_read, bridged, point.m, places);
-    // The first covariance is that of filled angles. The second one is closer, and changes follow from it.
-    let mut list = [0.0; 30];
-    for (own, point) in list.iter_mut().zip(points.iter()) {
-        *own = point.variance;
-    }
-    let mut changed = [0.0; 30];
-    for (own, point) in changed.iter_mut().zip(points.iter()) {
-        *own = once(point);
-    }
-    for ((point, read), change) in points.iter_mut().zip(list).zip(changed) {
-        point.variance = within(read, change);
-    }
-    let close = Covariance::of(points);
-    for (point, read) in points.iter_mut().zip(list) {
-        point.variance = within(read, changes(&close, bridged, point.m, places));
+pub(super) fn take_off<const K: usize>(
+    octaves: &mut Vec<(u32, Real), K>,
+    bridged: &Bridged,
+    places: u64,
+) {
+    let read = octaves.clone();
+    // The first covariance is that of the filled angle. The second one is closer to that of the angle.
+    for _ in 0..2 {
+        let covariance = Covariance::of(octaves);
+        for (own, &(m, variance)) in octaves.iter_mut().zip(&read) {
+            own.1 = within(variance, changes(&covariance, bridged, m, places));
+        }
     }
 }
 

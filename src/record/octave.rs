@@ -1,14 +1,15 @@
 //! The accumulator: it turns counts into one exact sum of squares per octave of averaging time.
 
 pub(crate) mod bridge;
+mod bridged;
 mod read;
 mod slice;
 #[cfg(target_pointer_width = "64")]
 mod wide;
 
 pub use crate::record::square_sum::SquareSum;
-pub use bridge::{Bridged, CLASSES};
-use bridge::{TOUCHED, span};
+pub use bridged::{Bridged, CLASSES};
+use bridged::{TOUCHED, span};
 
 /// The number of angles that a level keeps: those at the last eight block boundaries.
 const RING: usize = 8;

@@ -1,6 +1,6 @@
 //! What an accumulator says of its octaves, with what the schedule has put off.
 
-use super::{Accumulator, FIRST, Level, OctaveSum, RING, bridge::span, second_difference};
+use super::{Accumulator, FIRST, Level, OctaveSum, RING, bridged::span, second_difference};
 use crate::record::square_sum::SquareSum;
 
 impl<const OCTAVES: usize> Accumulator<OCTAVES> {

@@ -63,6 +63,7 @@
 //! | [`octave`] | is the accumulator: quarter-overlapping differences of adjacent clusters, exact in 158 bits |
 //! | [`spectrum`] | keeps power spectral densities beside the curve, and says what each effect adds to them |
 //! | [`integrity`] | judges whether the record is one of a gyro at rest |
+//! | [`faults`] | judges what the logger did: repeated samples, stuck values, clipping, a dead band |
 //! | [`kurtosis`], [`covariate`] | keep evidence beside the curve: jumps of the rate, and what follows a temperature |
 //! | [`course`] | says when the noise changed, a burst or a step came, and whether the gyro warmed up |
 //! | [`curve`] | holds τ, averaging factor, variance and number of differences of each octave |
@@ -84,7 +85,7 @@
 //! least square algorithm*, Optik 2015, whose weighting is [`fit::Method::RelativeAccuracy`]. The default is
 //! [`fit::Method::Covariance`].
 //!
-//! The folder `src/bin` holds programs to start from. `product.rs` does all that a product does: three axes and
+//! The folder `src/bin` of the repository holds programs to start from. `product.rs` does all that a product does: three axes and
 //! a temperature, self-test, snapshot, diagnosis. `interrupt` hands samples from an interrupt to the main loop.
 //! `hidden_effect.rs` names what is hidden in its gyro, and a test compares it with the host, to the bit.
 //!
@@ -221,6 +222,8 @@
 
 // The page names what the features `storage` and `flash` add. Without them there is nothing to link to.
 #![cfg_attr(not(feature = "flash"), allow(rustdoc::broken_intra_doc_links))]
+// On docs.rs, whose compiler has it, each item that needs a feature says so.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -251,7 +254,7 @@ pub use curve::{Curve, Scale};
 pub use error::Error;
 pub use evidence::{
     axis::{self, Axes, Axis},
-    covariate, kurtosis,
+    covariate, faults, kurtosis,
     record::Record,
 };
 pub use fit::coefficient::Coefficient;
@@ -267,7 +270,7 @@ pub use theory::{
     model::{self, Model, Term},
 };
 
-/// The example in the README, so that it is compiled.
+/// The example of the published page, so that it is compiled. The README of the repository shows the same.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
+#[doc = include_str!("README.md")]
 struct Readme;

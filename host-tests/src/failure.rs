@@ -95,6 +95,48 @@ impl Failure {
         Place::default().failure(what, remedy)
     }
 
+    /// The same failure with more of what is wrong.
+    pub fn and(self, more: &str) -> Self {
+        match self {
+            Self::Input {
+                place,
+                what,
+                remedy,
+            } => place.failure(format!("{what}, and {more}"), remedy),
+            Self::Closed => self,
+        }
+    }
+
+    /// The same failure in another file, if it is in this one.
+    pub fn moved(self, from: &Path, to: &Path) -> Self {
+        match self {
+            Self::Input {
+                place,
+                what,
+                remedy,
+            } if place.file.as_deref() == Some(from) => Self::Input {
+                place: Place {
+                    file: Some(to.to_owned()),
+                    ..place
+                },
+                what,
+                remedy,
+            },
+            other => other,
+        }
+    }
+
+    /// What was found, with its row and without the file and the remedy.
+    pub fn found(&self) -> String {
+        match self {
+            Self::Input { place, what, .. } => match place.row {
+                Some(row) => format!("row {row}: {what}"),
+                None => what.clone(),
+            },
+            Self::Closed => self.to_string(),
+        }
+    }
+
     /// The failure of a part that was left out when the program was built.
     pub fn not_built_in(part: &str) -> Self {
         Self::option(
@@ -131,6 +173,26 @@ pub fn quoted(text: &[u8]) -> String {
         shown.push('…');
     }
     format!("{shown:?}")
+}
+
+/// A hint at the name that is most like one that does not exist, with a blank behind it, or nothing.
+pub fn did_you_mean<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    /// The similarity from which a name is named. It is that with which options are.
+    const LIKE: f64 = 0.7;
+    let wanted = wanted.to_lowercase();
+    let like = |name: &'a str| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name);
+    let most = names
+        .into_iter()
+        .map(like)
+        .max_by(|one, other| one.0.total_cmp(&other.0));
+    most.filter(|(like, _)| *like > LIKE)
+        .map_or(String::new(), |(_, name)| format!("did you mean {name}? "))
+}
+
+/// A number of things: `1 gap`, `2 gaps`.
+pub fn plural(count: u64, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
 }
 
 /// A number for a message: as it is written, or with four digits and an exponent if it would otherwise

@@ -4,6 +4,7 @@
 pub mod axis;
 pub(crate) mod course;
 pub mod covariate;
+pub mod faults;
 pub mod kurtosis;
 pub(crate) mod observed;
 pub(crate) mod record;

@@ -7,6 +7,7 @@
 pub(crate) mod axis;
 pub(crate) mod course;
 pub(crate) mod cross_sums;
+pub(crate) mod faults;
 pub(crate) mod fourth_moments;
 pub mod integrity;
 pub mod octave;

@@ -1,6 +1,6 @@
 //! Effects as options of the command line: `EFFECT[:parameter=value,…]`.
 
-use crate::failure::{Failure, quoted};
+use crate::failure::{Failure, did_you_mean, quoted};
 use allanite::effect::{CATALOGUE, Effect, MAX_PARAMETERS, Parameter, Span};
 
 /// The effect that an option names, with the values that have not been taken from it yet.
@@ -92,14 +92,15 @@ impl<'a> EffectArgument<'a> {
         catalogue
             .find(|effect| effect.name() == self.name)
             .ok_or_else(|| {
-                let names = CATALOGUE.map(|effect| effect.name()).join(", ");
+                let names = CATALOGUE.map(|effect| effect.name());
+                let hint = did_you_mean(self.name, names);
                 Failure::option(
                     format!(
                         "{} {}: no such effect",
                         self.option,
                         quoted(self.name.as_bytes())
                     ),
-                    format!("choose from {names}"),
+                    format!("{hint}choose from {}", names.join(", ")),
                 )
             })
     }
@@ -208,7 +209,10 @@ impl<'a> EffectArgument<'a> {
         let what = format!("there is no parameter {}", quoted(name.as_bytes()));
         let remedy = match known {
             [] => "give no parameters".into(),
-            known => format!("choose from {}", known.join(", ")),
+            known => {
+                let hint = did_you_mean(name, known.iter().copied());
+                format!("{hint}choose from {}", known.join(", "))
+            }
         };
         self.failure(what, &remedy)
     }
@@ -330,7 +334,7 @@ mod tests {
         for (text, message) in [
             (
                 "sinusiod:frequency_hz=1",
-                "\"sinusiod\": no such effect; choose from quantization",
+                "\"sinusiod\": no such effect; did you mean sinusoid? choose from quantization",
             ),
             (
                 "sinusoid",

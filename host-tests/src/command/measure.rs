@@ -7,7 +7,7 @@ use crate::{
             many,
             record::{self, CovariateArguments, LogArguments},
         },
-        output::{file::OutputFile, number::number, progress, words},
+        output::{disturbance::invalid, file::OutputFile, number::number, progress},
     },
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place, one_line, report},
@@ -80,7 +80,9 @@ fn measured(log: &Path, about_log: &LogArguments) -> Result<Vec<AxisCurve>, Fail
     let axes = record::read_with_evidence(log, about_log, &CovariateArguments::NONE)?;
     let curve = |(curve, evidence): (AxisCurve, Evidence)| {
         if let Some(reason) = evidence.invalid.filter(|_| !progress::is_quiet()) {
-            let reason = words::invalid(&reason, evidence.motion.as_ref(), &curve.axis);
+            let disturbance = evidence.disturbance.as_ref();
+            let about = (curve.axis.as_str(), curve.rate_hz, curve.unit);
+            let reason = invalid(&reason, disturbance, about);
             let note = format!("axis {}: the curve is not valid: {reason}", curve.axis);
             report(format_args!("{}{}", Place::file(log), one_line(&note)));
         }

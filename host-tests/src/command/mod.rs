@@ -24,6 +24,7 @@ mod watch;
 
 use crate::failure::Failure;
 use clap::{CommandFactory, Parser, Subcommand};
+use input::standard_input;
 use output::{progress, temporary, wrapped::Wrapped};
 use std::io::{self, BufWriter, Write};
 
@@ -75,6 +76,12 @@ impl CommandLine {
         if !matches!(self.command, Command::Watch(_)) {
             temporary::remove_when_interrupted();
         }
+        let done = self.run_command();
+        standard_input::forget();
+        done
+    }
+
+    fn run_command(&self) -> Result<(), Failure> {
         let mut output = Wrapped::new(BufWriter::new(io::stdout().lock()));
         match &self.command {
             Command::Simulate(arguments) => simulate::run(arguments, &mut output),

@@ -2,11 +2,14 @@
 //! more for its range and one that rounds its values to counts.
 
 use super::{
-    clock::{Clock, Tick},
+    clock::Clock,
     columns::AxisColumn,
-    field::{Field, Stamp},
+    cuts::{Cuts, Dropped},
+    faults::Faults,
+    field::{Exact, Field},
     quantum::{Quantum, Range},
     rounding::{Steps, range_of},
+    rows::{Rows, Tally},
     sums::Sums,
     table::{Ended, RUN, Stop, Table, Visitor, visit_each},
     time_column::TimeColumn,
@@ -16,7 +19,7 @@ use super::{
 };
 use crate::{
     dependence::block_means::BlockSums,
-    failure::{Failure, Place},
+    failure::{Failure, Place, brief, plural},
 };
 use allanite::{course::Course, integrity::Reason};
 use indicatif::ProgressBar;
@@ -34,8 +37,12 @@ pub(super) struct Measured {
     pub(super) pairs: Vec<([usize; 2], SharedSums)>,
     /// The block sums of the axes, and behind them those of the columns of the covariates.
     pub(super) blocks: BlockSums,
+    /// What the logger did to the samples of the axes.
+    pub(super) faults: Faults,
     /// The time stamps that were followed, if the log has a time column.
     pub(super) clock: Option<Clock>,
+    /// What became of the rows.
+    pub(super) tally: Tally,
 }
 
 /// The column of a covariate.
@@ -55,6 +62,10 @@ pub(super) struct Passes<'a, T> {
     /// The columns that are tried without being asked for.
     pub(super) tried: TriedColumns,
     pub(super) time: Option<&'a TimeColumn>,
+    /// The sample rate, if it is told.
+    pub(super) rate_hz: Option<f64>,
+    /// The times that are left out.
+    pub(super) dropped: Dropped,
     /// The rows whose stamps are known to be late, counted from 1.
     pub(super) late: Vec<u64>,
     pub(super) progress: &'a ProgressBar,
@@ -62,79 +73,135 @@ pub(super) struct Passes<'a, T> {
 
 impl<T: Table> Passes<'_, T> {
     /// Shows every row to the visitor. If there is a time column, a clock follows its stamps.
-    fn pass<V: Visitor>(&self, visitor: &mut V) -> Result<(Ended, Option<Clock>), Failure> {
-        let Some(time) = self.time else {
-            let ended = self.table.pass(self.columns, visitor, self.progress)?;
-            return Ok((ended, None));
+    fn pass<V: Visitor>(&self, visitor: &mut V) -> Result<Passed, Failure> {
+        self.pass_over(self.columns, visitor)
+    }
+
+    fn pass_over<V: Visitor>(
+        &self,
+        columns: &[AxisColumn],
+        visitor: &mut V,
+    ) -> Result<Passed, Failure> {
+        match self.time.is_some() || !self.dropped.is_none() {
+            true => self.pass_as::<V, true>(columns, visitor),
+            false => self.pass_as::<V, false>(columns, visitor),
+        }
+    }
+
+    fn pass_as<V: Visitor, const EACH: bool>(
+        &self,
+        columns: &[AxisColumn],
+        visitor: &mut V,
+    ) -> Result<Passed, Failure> {
+        let clock = |time: &TimeColumn| (Clock::new(time.pace, &self.late), time.columns.len());
+        let clock = self.time.map(clock);
+        let rate_hz = self.rate_hz.unwrap_or(f64::NAN);
+        let is_by_rows = self.table.by_rows();
+        let mut rows = Rows::<V, EACH>::new(clock, rate_hz, is_by_rows, &self.dropped, visitor);
+        let time = self.time.map_or(&[][..], |time| &time.columns);
+        let columns = [time, columns].concat();
+        let ended = self.table.pass(&columns, &mut rows, self.progress)?;
+        if matches!(ended, Ended::AtTheLastRow) {
+            rows.tally.check()?;
+        }
+        Ok(Passed {
+            ended,
+            clock: rows.clock,
+            tally: rows.tally,
+        })
+    }
+
+    /// Finds the times that the user leaves out. If they are counted from the end, a pass finds that.
+    pub(super) fn cut(&mut self, cuts: &Cuts) -> Result<(), Failure> {
+        if cuts.is_empty() {
+            return Ok(());
+        }
+        let mut end_s = f64::INFINITY;
+        if cuts.need_end() {
+            // Nothing falls behind the end of time, so that every row is followed.
+            self.dropped = Dropped::ALL;
+            end_s = self
+                .pass_over(&self.columns[..1], &mut Nothing)?
+                .tally
+                .end_s;
+        }
+        self.dropped = cuts.dropped(end_s)?;
+        if self.dropped.has_stretches() && !self.table.by_rows() {
+            return Err(Place::file(self.path).failure(
+                "--drop needs rows, but the columns lie one behind the other",
+                "save the array in C order, or cut it with --from and --to",
+            ));
+        }
+        Ok(())
+    }
+
+    /// A note on what is left out.
+    ///
+    /// # Errors
+    /// When a stretch lies behind the end of the log.
+    pub(super) fn left_out(&self, tally: &Tally, rate_hz: f64) -> Result<Option<String>, Failure> {
+        let Tally { cut, end_s, .. } = *tally;
+        if let Some(stretch) = self.dropped.behind(end_s) {
+            return Err(Place::file(self.path).failure(
+                format!(
+                    "--drop {stretch} lies behind the end of the log, {} s",
+                    brief(end_s)
+                ),
+                "give a stretch within the log",
+            ));
+        }
+        let note = || {
+            let seconds = brief((cut as f64 / rate_hz * 1000.0).round() / 1000.0);
+            format!(
+                "{} left out, {seconds} s of {} s",
+                plural(cut, "row"),
+                brief(end_s)
+            )
         };
-        let mut timed = Timed {
-            clock: Clock::new(time.pace, &self.late),
-            columns: time.columns.len(),
-            seconds: None,
-            repeated: false,
-            visitor,
-        };
-        let columns = [&time.columns, self.columns].concat();
-        let ended = self.table.pass(&columns, &mut timed, self.progress)?;
-        Ok((ended, Some(timed.clock)))
+        Ok((cut > 0).then(note))
     }
 }
 
-/// A visitor whose first columns are the time. It reports gaps to the visitor inside, and leaves
-/// out rows whose stamp repeats.
-struct Timed<'a, V> {
-    clock: Clock,
-    /// The number of time columns.
-    columns: usize,
-    /// The seconds of the current row, if seconds and nanoseconds are in two columns.
-    seconds: Option<Stamp>,
-    repeated: bool,
-    visitor: &'a mut V,
+/// A pass that met no error.
+struct Passed {
+    ended: Ended,
+    clock: Option<Clock>,
+    tally: Tally,
 }
 
-impl<V: Visitor> Visitor for Timed<'_, V> {
-    /// A stamp tells whether its own row is left out, and whether samples are missing before it.
-    const BY_ROWS: bool = true;
+/// The visitor that needs no values.
+struct Nothing;
 
-    #[inline]
-    fn visit<F: Field>(&mut self, column: usize, value: F) -> Result<(), Stop> {
-        if let Some(axis) = column.checked_sub(self.columns) {
-            return match self.repeated {
-                false => self.visitor.visit(axis, value),
-                true => Ok(()),
-            };
-        }
-        let mut stamp = value.stamp().map_err(Stop::Flaw)?;
-        if column + 1 < self.columns {
-            self.seconds = Some(stamp);
-            return Ok(());
-        }
-        if let Some(seconds) = self.seconds {
-            stamp = stamp.behind_seconds(seconds);
-        }
-        let tick = self.clock.tick(stamp).map_err(Stop::Clock)?;
-        self.repeated = tick == Tick::Repeated;
-        if let Tick::Gap(lost) = tick {
-            self.visitor.gap(lost);
-        }
+impl Visitor for Nothing {
+    fn visit<F: Field>(&mut self, _axis: usize, _value: F) -> Result<(), Stop> {
         Ok(())
     }
 }
 
 /// Accumulates the given columns, and once more if stamps turned out to be late: only behind a stamp, the rows tell
-/// whether samples were lost before it.
+/// whether samples were lost before it. Samples that the logger repeated are left out in another pass, because only the
+/// whole record tells them.
 pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
-    let measured = measure_once(passes, plan)?;
-    let late = measured.clock.as_ref().map_or(&[][..], Clock::found_late);
-    if late.is_empty() {
-        return Ok(measured);
-    }
-    let again = Passes {
+    let again = |late: &[u64]| Passes {
         late: late.to_vec(),
+        dropped: passes.dropped.clone(),
         tried: passes.tried.clone(),
         ..*passes
     };
-    measure_once(&again, plan)
+    let mut measured = measure_once(passes, plan)?;
+    let late = measured.clock.as_ref().map_or(&[][..], Clock::found_late);
+    let late = late.to_vec();
+    if !late.is_empty() {
+        measured = measure_once(&again(&late), plan)?;
+    }
+    let Some(faults) = measured.faults.without_repeats() else {
+        return Ok(measured);
+    };
+    let plan = Plan {
+        faults,
+        ..plan.clone()
+    };
+    measure_once(&again(&late), &plan)
 }
 
 /// Accumulates the given columns. A log of counts takes one pass. At the first value that is not a
@@ -147,9 +214,10 @@ fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, F
         batches: Batches::new(plan.clone()),
         tried: passes.tried.clone(),
     };
-    if let (Ended::AtTheLastRow, clock) = passes.pass(&mut counts)? {
+    let passed = passes.pass(&mut counts)?;
+    if matches!(passed.ended, Ended::AtTheLastRow) {
         let whole = vec![Quantum::WHOLE; columns.len()];
-        return finish(path, counts.batches, &whole, &counts.tried, clock);
+        return finish(path, counts.batches, &whole, &counts.tried, passed);
     }
 
     let mut ranges = Ranges(vec![Range::EMPTY; columns.len()]);
@@ -170,13 +238,16 @@ fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, F
         })
         .collect::<Result<Vec<_>, _>>()?;
 
+    let mut plan = plan.clone();
+    let zero = |quantum: &Quantum| quantum.count(quantum.relative(Exact::Float(0.0)));
+    plan.faults.zeros = quanta.iter().map(zero).collect();
     let mut rounded = Rounded {
-        batches: Batches::new(plan.clone()),
+        batches: Batches::new(plan),
         quanta,
         tried: passes.tried.clone(),
         steps: vec![Steps::default(); columns.len()],
     };
-    let (_, clock) = passes.pass(&mut rounded)?;
+    let passed = passes.pass(&mut rounded)?;
     for (column, steps) in columns.iter().zip(&rounded.steps) {
         // The tenth is chosen by hand.
         if steps.lost > steps.changes / 10 {
@@ -194,7 +265,7 @@ fn measure_once<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, F
         rounded.batches,
         &rounded.quanta,
         &rounded.tried,
-        clock,
+        passed,
     )?;
     for (column, (sums, quantum)) in columns.iter().zip(&measured.axes) {
         if !quantum.is_whole() && is_coarse(sums) {
@@ -230,16 +301,20 @@ fn finish(
     batches: Batches,
     quanta: &[Quantum],
     tried: &TriedColumns,
-    clock: Option<Clock>,
+    passed: Passed,
 ) -> Result<Measured, Failure> {
     let Totals {
         axes: sums,
         columns,
         pairs,
         blocks,
+        faults,
     } = batches.finish();
     if sums.iter().any(|axis| axis.accumulator().samples() == 0) {
-        return Err(Place::file(path).failure("no rows", "record some samples"));
+        return Err(match passed.tally.cut {
+            0 => Place::file(path).failure("no rows", "record some samples"),
+            _ => Place::file(path).failure("all rows are left out", "leave out less of the log"),
+        });
     }
     let (axes, covariates) = quanta.split_at(sums.len());
     let quanta = covariates.iter().map(|quantum| (*quantum, false));
@@ -255,7 +330,9 @@ fn finish(
         covariates: quanta.zip(columns).map(beside).collect(),
         pairs,
         blocks,
-        clock,
+        faults,
+        clock: passed.clock,
+        tally: passed.tally,
     })
 }
 
@@ -270,7 +347,14 @@ impl Visitor for Counts {
     fn visit<F: Field>(&mut self, axis: usize, value: F) -> Result<(), Stop> {
         let count = match self.tried.count(axis, &value) {
             Some(count) => count,
-            None => value.count().ok_or(Stop::NotCounts)?,
+            None => match value.count() {
+                Some(count) => count,
+                // What is no number at all is no reason to read the others as such.
+                None => {
+                    value.number().map_err(Stop::Flaw)?;
+                    return Err(Stop::NotCounts);
+                }
+            },
         };
         self.batches.push(axis, count);
         Ok(())
@@ -294,8 +378,12 @@ impl Visitor for Counts {
         Ok(())
     }
 
-    fn gap(&mut self, lost: u64) {
-        self.batches.gap(lost);
+    fn gap(&mut self, missing: u64) {
+        self.batches.gap(missing);
+    }
+
+    fn forget(&mut self, columns: usize) {
+        self.batches.forget(columns);
     }
 }
 
@@ -360,8 +448,12 @@ impl Visitor for Rounded {
         visit_each(self, axis, values)
     }
 
-    fn gap(&mut self, lost: u64) {
-        self.batches.gap(lost);
+    fn forget(&mut self, columns: usize) {
+        self.batches.forget(columns);
+    }
+
+    fn gap(&mut self, missing: u64) {
+        self.batches.gap(missing);
         self.steps.iter_mut().for_each(Steps::gap);
     }
 }

@@ -268,7 +268,10 @@ impl Columns {
         };
         if taken.is_empty() {
             return Err(Place::file(path).failure(
-                format!("none of {count} columns looks like an axis"),
+                match count {
+                    1 => "the only column does not look like an axis".into(),
+                    _ => format!("none of {count} columns looks like an axis"),
+                },
                 "name them with --columns, such as gx=3,gy=4,gz=5",
             ));
         }

@@ -4,14 +4,17 @@ use super::{
     Options, bag_mcap, bag_ros1, bag_sqlite,
     channel::{Channel, Show},
     columns::{AxisColumn, Columns, Look},
-    imu_message::{COLUMNS, ImuMessage},
+    converted::{Converted, Text},
+    imu_message::{COLUMNS, Encoding, ImuMessage},
+    message_layout::{Layout, Value},
     metadata::Metadata,
-    table::{Ended, Stop, Table, Visitor},
+    table::{Ended, Stop, Table, Visitor, after_stop},
 };
 use crate::failure::{Failure, Place, quoted};
 use indicatif::ProgressBar;
 use std::{
     collections::BTreeMap,
+    io::Write as _,
     ops::ControlFlow,
     path::{Path, PathBuf},
 };
@@ -114,13 +117,12 @@ impl Table for Bag {
                     place().failure(format!("{}: {what}", self.topic), "record the bag again")
                 })?;
                 for (i, axis) in axes.iter().enumerate() {
-                    match visit(&message, i, axis.column, visitor) {
-                        Ok(()) => {}
-                        Err(Stop::NotCounts) => {
-                            ended = Ended::NotCounts;
-                            return Ok(ControlFlow::Break(()));
+                    if let Err(stop) = visit(&message, i, axis.column, visitor) {
+                        if after_stop(visitor, (i, &stop), axes, place)? {
+                            break;
                         }
-                        Err(stop) => return Err(stop.failure(axis, place())),
+                        ended = Ended::NotCounts;
+                        return Ok(ControlFlow::Break(()));
                     }
                 }
                 Ok(ControlFlow::Continue(()))
@@ -165,6 +167,7 @@ fn choose(path: &Path, channels: &[Channel], wanted: Option<&str>) -> Result<Str
                     topic,
                     schema,
                     encoding,
+                    ..
                 } = channel;
                 format!("{topic} ({schema}, {encoding})")
             };
@@ -174,7 +177,7 @@ fn choose(path: &Path, channels: &[Channel], wanted: Option<&str>) -> Result<Str
             };
             fail(
                 format!("no topic of sensor_msgs/msg/Imu: {found}"),
-                "give a bag with an IMU",
+                "give a bag with an IMU, or name a topic of other messages with rates with --topic",
             )
         }
         (Some(wanted), imus) => fail(
@@ -186,6 +189,84 @@ fn choose(path: &Path, channels: &[Channel], wanted: Option<&str>) -> Result<Str
             "choose one with --topic",
         ),
     }
+}
+
+/// The messages of another type that is asked for, or of the only type with rates among its fields, as text: one that
+/// contains `sensor_msgs/Imu`, or rates by themselves. `None` if the bag has an IMU topic, or no such type.
+pub(super) fn other_messages(
+    path: &Path,
+    (container, files): (Container, &[PathBuf]),
+    options: &Options,
+    progress: &ProgressBar,
+) -> Result<Option<Converted>, Failure> {
+    let wanted = options.topic.as_deref();
+    let is_wanted = |channel: &&Channel| wanted.is_none_or(|wanted| channel.topic == wanted);
+    let channels = each_message(container, files, progress, &mut |channel, _| {
+        let is_imu = is_wanted(&channel) && channel.imu().is_some();
+        Ok(if is_imu {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        })
+    })?;
+    if channels
+        .iter()
+        .filter(is_wanted)
+        .any(|channel| channel.imu().is_some())
+    {
+        return Ok(None);
+    }
+    let has_rates = |layout: &Layout| {
+        let names = layout.columns();
+        let words = [
+            "angular_velocity",
+            "gyr",
+            "angular_rate",
+            "body_rate",
+            "omega",
+        ];
+        let is_rate = |name: &&String| words.iter().any(|word| name.to_lowercase().contains(word));
+        names.iter().filter(is_rate).count() >= 3
+    };
+    let mut found: BTreeMap<&str, (Layout, Encoding)> = BTreeMap::new();
+    for channel in channels.iter().filter(is_wanted) {
+        let layout = channel.layout();
+        let layout = layout.filter(|(layout, _)| match wanted {
+            Some(_) => !layout.columns().is_empty(),
+            None => has_rates(layout),
+        });
+        found.extend(layout.map(|layout| (channel.topic.as_str(), layout)));
+    }
+    let mut found = found.into_iter();
+    let (Some((topic, (layout, encoding))), None) = (found.next(), found.next()) else {
+        return Ok(None);
+    };
+    let size = files.iter().filter_map(|file| file.metadata().ok());
+    let size = size.map(|file| file.len()).sum();
+    let mut text = Text::new(path, size)?;
+    text.names(layout.columns())
+        .map_err(|error| text.failure(&error))?;
+    each_message(container, files, progress, &mut |channel, bytes| {
+        if channel.topic == topic {
+            let values = layout.read(bytes, encoding).ok_or_else(|| {
+                let what = format!("{topic}: a message is not as its definition says");
+                Place::file(path).failure(what, "record the bag again")
+            })?;
+            let mut separator = "";
+            for value in values {
+                let written = match value {
+                    Value::Integer(value) => write!(text, "{separator}{value}"),
+                    Value::Float(value) => write!(text, "{separator}{value}"),
+                };
+                written.map_err(|error| text.failure(&error))?;
+                separator = ",";
+            }
+            writeln!(text).map_err(|error| text.failure(&error))?;
+        }
+        Ok(ControlFlow::Continue(()))
+    })?;
+    let note = format!("topic {topic}");
+    text.finish(Some(note)).map(Some)
 }
 
 /// Calls `show` with every message and its channel, file after file, until `show` breaks. Returns the channels.

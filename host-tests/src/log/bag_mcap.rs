@@ -17,14 +17,14 @@ use mcap::{
     records::op,
     sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
 };
-use std::{collections::BTreeMap, io::Read, path::Path};
+use std::{collections::BTreeMap, io::Read, path::Path, rc::Rc};
 
 const RECOVER: &str = "copy it again, or recover what there is with `mcap recover`";
 
 /// The schemas and channels of a bag by their identifiers.
 #[derive(Default)]
 struct Channels {
-    schemas: BTreeMap<u16, String>,
+    schemas: BTreeMap<u16, (String, Rc<str>)>,
     channels: BTreeMap<u16, Channel>,
 }
 
@@ -71,15 +71,21 @@ pub(super) fn each_message(
             op::SCHEMA => {
                 let id = fields.number().ok_or_else(short)?;
                 let name = fields.text().ok_or_else(short)?;
-                channels.schemas.insert(id, name);
+                // The name of the definition's language lies between.
+                let _ = fields.text().ok_or_else(short)?;
+                let definition = fields.lines().ok_or_else(short)?;
+                channels.schemas.insert(id, (name, definition));
             }
             op::CHANNEL => {
                 let id = fields.number().ok_or_else(short)?;
                 let schema: u16 = fields.number().ok_or_else(short)?;
+                let (schema, definition) =
+                    channels.schemas.get(&schema).cloned().unwrap_or_default();
                 let channel_of = Channel {
                     topic: fields.text().ok_or_else(short)?,
-                    schema: channels.schemas.get(&schema).cloned().unwrap_or_default(),
+                    schema,
                     encoding: fields.text().ok_or_else(short)?,
+                    definition,
                 };
                 channels.channels.insert(id, channel_of);
             }
@@ -133,10 +139,20 @@ impl Fields<'_> {
 
     /// A text without control characters.
     fn text(&mut self) -> Option<String> {
+        self.bytes().map(text)
+    }
+
+    /// A text of several lines, of which nothing is shown to users but names that are made of letters.
+    fn lines(&mut self) -> Option<Rc<str>> {
+        self.bytes()
+            .map(|bytes| String::from_utf8_lossy(bytes).into())
+    }
+
+    fn bytes(&mut self) -> Option<&[u8]> {
         let length = usize::try_from(self.word()?).ok()?;
         let (bytes, rest) = self.0.split_at_checked(length)?;
         self.0 = rest;
-        Some(text(bytes))
+        Some(bytes)
     }
 }
 

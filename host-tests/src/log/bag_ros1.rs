@@ -240,6 +240,10 @@ impl Reading<'_> {
                     topic: text(header.get("topic").unwrap_or_default()),
                     schema: text(fields.get("type").unwrap_or_default()),
                     encoding: "ros1".into(),
+                    definition: String::from_utf8_lossy(
+                        fields.get("message_definition").unwrap_or_default(),
+                    )
+                    .into(),
                 };
                 self.channels.insert(connection, channel);
                 if self.channels.len() > MOST_CONNECTIONS {

@@ -104,6 +104,7 @@ fn channels(database: &Connection) -> Result<BTreeMap<i64, Channel>, Error> {
             topic: part(1),
             schema: part(2),
             encoding: part(3),
+            definition: "".into(),
         };
         Ok((row.get(0)?, channel))
     };

@@ -1,8 +1,8 @@
 //! What the kinds of bags have in common: channels of messages, and limits of what a damaged bag may claim.
 
-use super::imu_message::Encoding;
+use super::{imu_message::Encoding, message_layout::Layout};
 use crate::failure::{Failure, Place};
-use std::{ops::ControlFlow, path::Path};
+use std::{ops::ControlFlow, path::Path, rc::Rc};
 
 /// The largest record or chunk that is accepted, in bytes. It limits the memory that a damaged length
 /// can claim. Chosen by hand, as are the two limits below.
@@ -21,12 +21,24 @@ pub(super) struct Channel {
     pub(super) topic: String,
     pub(super) schema: String,
     pub(super) encoding: String,
+    /// The definition of the message type; empty if the bag has none.
+    pub(super) definition: Rc<str>,
 }
 
 impl Channel {
     /// The encoding of the messages, or `None` if they are not those of an IMU.
     pub(super) fn imu(&self) -> Option<Encoding> {
         Encoding::of(&self.schema, &self.encoding)
+    }
+
+    /// The fields of its messages, and how they are serialised, if the bag tells.
+    pub(super) fn layout(&self) -> Option<(Layout, Encoding)> {
+        let encoding = match self.encoding.as_str() {
+            "cdr" => Encoding::Cdr,
+            "ros1" => Encoding::Ros1,
+            _ => return None,
+        };
+        Some((Layout::of(&self.schema, &self.definition)?, encoding))
     }
 }
 

@@ -4,6 +4,7 @@ use super::{
     field::{Flaw, Stamp},
     pace::Pace,
 };
+use crate::failure::plural;
 use std::time::Duration;
 
 /// The largest share of rows that may follow a gap or repeat a stamp. Beyond it, the stamps are
@@ -17,10 +18,6 @@ const MOST_GAPS: f64 = 0.2;
 /// The largest distance of a gap from a whole number of samples, and of steps from the usual one (root mean square), of
 /// exact stamps. Chosen by hand.
 const EXACT: (f64, f64) = (0.1, 0.05);
-
-/// The largest distance of a gap from a whole number of samples, in samples, at which their number counts as known. Chosen
-/// by hand.
-const WHOLE: f64 = 0.3;
 
 /// A late stamp is followed by this many rows at most until the stamps are where they would be without a loss. Chosen by
 /// hand.
@@ -43,7 +40,7 @@ const TWO_RATES: f64 = 1.1;
 pub(super) enum Tick {
     /// The stamp follows the one before without a gap.
     Next,
-    /// Samples are missing between the stamp before and this one: so many, or an unknown number if it is 0.
+    /// So many samples are missing between the stamp before and this one.
     Gap(u64),
     /// The stamp is equal to the one before.
     Repeated,
@@ -148,19 +145,23 @@ impl Clock {
             self.off_grid += u64::from((samples - samples.round()).abs() > EXACT.0);
             self.gaps += 1;
             self.longest_gap = self.longest_gap.max(step);
-            self.lost += ((step / self.pace.step).round() - 1.0) * self.pace.rows.round();
+            let lost = ((step / self.pace.step).round() - 1.0) * self.pace.rows.round();
+            self.lost += lost;
             self.gaps_in_a_row += 1;
             if self.gaps_in_a_row >= RUN {
                 return Err(self.two_rates(step, self.pace.step));
             }
-            let is_whole = (samples - samples.round()).abs() <= WHOLE && self.pace.rows <= 1.0;
-            let lost = if is_whole { samples.round() - 1.0 } else { 0.0 };
             return Ok(Tick::Gap(lost as u64));
         }
         self.gaps_in_a_row = 0;
         self.rows_of_steps += rows;
         self.step(step)?;
         Ok(Tick::Next)
+    }
+
+    /// A difference of stamps in seconds.
+    pub(super) fn seconds(&self, ticks: f64) -> f64 {
+        self.pace.seconds(ticks)
     }
 
     /// Finds out whether the stamps behind the last gaps were late: then the rows behind them catch up with their stamps,
@@ -271,9 +272,9 @@ impl Clock {
         if self.gaps > 0 {
             text += &format!(
                 "; {}, the longest {}, about {} lost",
-                count(self.gaps, "gap"),
+                plural(self.gaps, "gap"),
                 span(self.pace.seconds(self.longest_gap)),
-                count(self.lost as u64, "sample")
+                plural(self.lost as u64, "sample")
             );
         }
         if self.pace.rows > 1.0 {
@@ -282,23 +283,18 @@ impl Clock {
         if self.delayed.0 > 0 {
             text += &format!(
                 "; {}, by {} at most, with nothing lost",
-                count(self.delayed.0, "late stamp"),
+                plural(self.delayed.0, "late stamp"),
                 span(self.pace.seconds(self.delayed.1))
             );
         }
         if self.repeated > 0 {
             text += &format!(
                 "; {} with a repeated stamp left out",
-                count(self.repeated, "row")
+                plural(self.repeated, "row")
             );
         }
         text
     }
-}
-
-fn count(count: u64, noun: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{plural}")
 }
 
 /// Formats a length of time with three digits, such as `5ms` or `1s 250ms`.
@@ -412,7 +408,9 @@ mod tests {
         let mut clock = Clock::new(pace, first.found_late());
         let tick = |&stamp: &i64| clock.tick(Stamp::Whole(stamp)).unwrap();
         let ticks: Vec<Tick> = stamps.iter().map(tick).collect();
-        let gaps: Vec<usize> = (0..997).filter(|&i| ticks[i] == Tick::Gap(1)).collect();
+        let gaps: Vec<usize> = (0..997)
+            .filter(|&i| matches!(ticks[i], Tick::Gap(_)))
+            .collect();
         assert_eq!(gaps, [705]);
         assert!((clock.rate_hz().unwrap() / 200.0 - 1.0).abs() < 2e-3);
         let report = clock.report();
@@ -440,7 +438,10 @@ mod tests {
             .collect();
         let (clock, ticks) = run(&stamps);
         assert_eq!(
-            ticks.iter().filter(|&&tick| tick == Tick::Gap(0)).count(),
+            ticks
+                .iter()
+                .filter(|tick| matches!(tick, Tick::Gap(_)))
+                .count(),
             1
         );
         assert_eq!(clock.rate_hz().unwrap(), 400.0);

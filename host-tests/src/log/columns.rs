@@ -2,7 +2,7 @@
 
 use super::{ColumnChoice, CovariateChoice, names};
 use crate::{
-    failure::{Failure, Place, quoted},
+    failure::{Failure, Place, did_you_mean, quoted},
     unit::Sensor,
 };
 use std::path::Path;
@@ -226,7 +226,13 @@ impl Columns {
             format!("there is no column {}", quoted(wanted.as_bytes()))
         };
         let remedy = match &self.names {
-            Some(names) => format!("choose by name from {} or by number", names.join(", ")),
+            Some(names) => {
+                let hint = did_you_mean(wanted, names.iter().map(String::as_str));
+                format!(
+                    "{hint}choose by name from {} or by number",
+                    names.join(", ")
+                )
+            }
             None => format!("there is no header: choose by number from 1 to {count}"),
         };
         Err(Place::file(path).failure(what, remedy))

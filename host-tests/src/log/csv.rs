@@ -9,7 +9,7 @@ use super::{
     preamble::{Preamble, values},
     records::{LONGEST_ROW, Records},
     source,
-    table::{Ended, Stop, Table, Visitor},
+    table::{Ended, Table, Visitor, after_stop},
 };
 use crate::failure::{Failure, Place, quoted};
 use csv::ByteRecord;
@@ -28,7 +28,10 @@ const LOOKS: usize = 100;
 
 /// A log of text whose first rows are known.
 pub(super) struct Csv {
+    /// The file that messages name.
     path: PathBuf,
+    /// The file with the text.
+    text: PathBuf,
     gzip: bool,
     dialect: Dialect,
     metadata: Metadata,
@@ -43,9 +46,15 @@ pub(super) struct Csv {
 
 impl Csv {
     pub(super) fn open(path: &Path, gzip: bool) -> Result<Self, Failure> {
-        let preamble = Preamble::read(path, gzip)?;
+        Self::open_as(path, path, gzip)
+    }
+
+    /// Opens a text that was made of another file, which messages name.
+    pub(super) fn open_as(path: &Path, text: &Path, gzip: bool) -> Result<Self, Failure> {
+        let preamble = Preamble::read(path, text, gzip)?;
         let mut table = Self {
             path: path.to_owned(),
+            text: text.to_owned(),
             gzip,
             dialect: preamble.dialect,
             metadata: preamble.metadata,
@@ -57,7 +66,7 @@ impl Csv {
                 said: said(path, &preamble.said),
             },
             start: preamble.start,
-            is_whole: gzip || source::ends_with_line(path)?,
+            is_whole: gzip || source::ends_with_line(text)?,
             lost: Cell::new((0, 0)),
         };
         if preamble.width > MOST_COLUMNS {
@@ -78,7 +87,7 @@ impl Csv {
 
     /// The text from the first row on, with one delimiter between values.
     fn rows(&self, progress: &ProgressBar) -> Result<Box<dyn Read>, Failure> {
-        let mut text = source::open_text(&self.path, self.gzip, progress)?;
+        let mut text = source::open_text(&self.text, self.gzip, progress)?;
         io::copy(&mut text.by_ref().take(self.start), &mut io::sink())
             .map_err(|error| self.failure((0, error)))?;
         Ok(self.dialect.tidied(text))
@@ -94,7 +103,7 @@ impl Csv {
                 break;
             }
             let row = reader.row();
-            if row.get(0).is_some_and(|field| field.starts_with(b"#")) {
+            if row.get(0).is_some_and(|field| field.starts_with(b"#")) || is_blank(row) {
                 continue;
             }
             // A row of another width is refused when all rows are read.
@@ -118,7 +127,7 @@ impl Csv {
     }
 
     fn row(&self, byte: u64) -> Result<u64, Failure> {
-        let raw = source::open_text(&self.path, self.gzip, &ProgressBar::hidden())?;
+        let raw = source::open_text(&self.text, self.gzip, &ProgressBar::hidden())?;
         let above = source::lines_before(raw, self.start.min(byte));
         let rows = BufReader::new(self.rows(&ProgressBar::hidden())?);
         Ok(above + source::row_at(rows, byte.saturating_sub(self.start)))
@@ -178,10 +187,9 @@ impl Csv {
         byte: impl Fn() -> u64,
     ) -> Result<bool, Failure> {
         for (axis, column) in axes.iter().enumerate() {
-            match visitor.visit(axis, Text(field(column.column))) {
-                Ok(()) => {}
-                Err(Stop::NotCounts) => return Ok(true),
-                Err(stop) => return Err(stop.failure(column, self.row_at(byte()))),
+            if let Err(stop) = visitor.visit(axis, Text(field(column.column))) {
+                let place = || self.row_at(byte());
+                return after_stop(visitor, (axis, &stop), axes, place).map(|goes_on| !goes_on);
             }
         }
         Ok(false)
@@ -258,14 +266,20 @@ impl Table for Csv {
                 pending = pending.or(found);
                 continue;
             }
+            if is_blank(row) {
+                continue;
+            }
             if let Some(pending) = &pending {
                 return Err(self.unclear(pending));
             }
             if row.len() != width {
-                return Err(self.row_at(byte()).failure(
-                    format!("{} where the first row has {width}", values(row.len())),
-                    "correct the row or cut the record there",
-                ));
+                visitor.lose_row(None, || {
+                    self.row_at(byte()).failure(
+                        format!("{} where the first row has {width}", values(row.len())),
+                        "correct the row or cut the record there",
+                    )
+                })?;
+                continue;
             }
             if self.visit_row(axes, visitor, |column| &row[column], byte)? {
                 return Ok(Ended::NotCounts);
@@ -283,6 +297,11 @@ fn said(path: &Path, preamble: &str) -> String {
         .to_string_lossy()
         .to_lowercase();
     format!("{name}\n{preamble}")
+}
+
+/// Whether a row is a line of blanks alone.
+fn is_blank(row: &ByteRecord) -> bool {
+    row.len() == 1 && row[0].trim_ascii().is_empty()
 }
 
 /// A comment among the rows that tells of no lost samples, and its place.

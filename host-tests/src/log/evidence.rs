@@ -1,8 +1,9 @@
 //! What a log tells beside the curves of its axes, in units.
 
 use super::{
-    Axis, CovariateChoice, Evidence, Motion, OCTAVES,
+    Axis, CovariateChoice, Disturbance, Evidence, OCTAVES,
     accumulate::{CovariateColumn, Measured},
+    disturbed::Extremes,
     watched::{SharedSums, WatchedAxis},
 };
 use crate::{
@@ -63,14 +64,14 @@ impl Recorded {
         })
     }
 
-    /// The evidence of an axis, without its course and its block means. `coarse` is why its numbers are too coarse, if they
-    /// are.
+    /// The evidence of an axis, without its course and its block means. `fault` is what the logger did to its samples, and
+    /// `coarse` is why its numbers are too coarse, if they are.
     pub(super) fn evidence(
         &self,
         path: &Path,
         axis: &Axis,
         watched: &dyn WatchedAxis,
-        coarse: Option<Reason>,
+        (fault, coarse): (Option<Reason>, Option<Reason>),
     ) -> Result<Evidence, Failure> {
         let fail = |error: allanite::Error| {
             Place::file(path).failure(format!("axis {}: {error}", axis.name), "check the scale")
@@ -81,12 +82,10 @@ impl Recorded {
         let told = watched.evidence(scale, &units).map_err(fail)?;
         // The order of the reasons is that of counts, where coarse numbers come before the jumps that they seem to make.
         let invalid = match told.invalid {
-            Some(Reason::Railed { .. } | Reason::Repeated { .. } | Reason::Stuck { .. }) => {
-                told.invalid
-            }
-            other => coarse.or(other),
+            Some(Reason::Railed { .. }) => told.invalid,
+            Some(Reason::Repeated { .. } | Reason::Stuck { .. }) => fault.or(told.invalid),
+            other => fault.or(coarse).or(other),
         };
-        let moved = matches!(invalid, Some(Reason::Moved { .. }));
         let named = self.named.iter().zip(told.covariates);
         let named = named.filter_map(|(named, cross)| Some((named.as_ref()?.0.clone(), cross)));
         Ok(Evidence {
@@ -97,10 +96,35 @@ impl Recorded {
             course: None,
             columns: self.columns.clone(),
             means: None,
-            motion: told.moved_at.filter(|_| moved).map(|sample| Motion {
-                axis: axis.name.clone(),
-                at_s: sample as f64 / self.rate_hz,
-            }),
+            disturbance: None,
+        })
+    }
+
+    /// What disturbed an axis that is not valid for this reason: motion, which first showed at a sample of time, or spikes.
+    pub(super) fn disturbance(
+        &self,
+        axis: &str,
+        reason: Option<Reason>,
+        moved_at: Option<u64>,
+        extremes: &Extremes,
+    ) -> Option<Disturbance> {
+        let is_motion = match reason? {
+            Reason::Moved { .. } => true,
+            Reason::Spiked { .. } => false,
+            _ => return None,
+        };
+        let time_s = |samples: u64| samples as f64 / self.rate_hz;
+        let stretches = extremes.disturbed(self.rate_hz).into_iter();
+        let stretches_s: Vec<_> = stretches
+            .map(|(from, to)| (time_s(from), time_s(to)))
+            .collect();
+        let found = stretches_s.first().map(|(from_s, _)| *from_s);
+        Some(Disturbance {
+            axis: axis.to_owned(),
+            is_motion,
+            at_s: found.or(moved_at.map(time_s))?,
+            stretches_s,
+            end_s: time_s(extremes.time()),
         })
     }
 }
@@ -198,23 +222,52 @@ fn short_means(choices: &[CovariateChoice], measured: &Measured) -> Vec<(String,
 }
 
 /// Motion of one axis makes the curves of all axes invalid, because a gyro that turns about one axis is not at rest
-/// about the others.
+/// about the others. What is to be left out of a log is to be left out of all axes.
 pub(super) fn spread_motion(axes: &mut [Axis]) {
-    let evidence = axes.iter().filter_map(|axis| axis.evidence.as_ref());
-    let moved = evidence.filter(|evidence| matches!(evidence.invalid, Some(Reason::Moved { .. })));
+    let mut evidence: Vec<&mut Evidence> = axes
+        .iter_mut()
+        .filter_map(|axis| axis.evidence.as_mut())
+        .collect();
+    let all = evidence.iter().filter_map(|one| one.disturbance.as_ref());
+    let stretches_s = union(
+        all.flat_map(|one| one.stretches_s.iter().copied())
+            .collect(),
+    );
+    for one in evidence
+        .iter_mut()
+        .filter_map(|one| one.disturbance.as_mut())
+    {
+        one.stretches_s.clone_from(&stretches_s);
+    }
+    let is_moved = |one: &&mut Evidence| matches!(one.invalid, Some(Reason::Moved { .. }));
+    let moved = evidence.iter().filter(|one| is_moved(one));
     let first = moved.min_by(|one, other| {
-        let at = |evidence: &Evidence| evidence.motion.as_ref().map_or(0.0, |motion| motion.at_s);
+        let at = |one: &Evidence| one.disturbance.as_ref().map_or(0.0, |motion| motion.at_s);
         at(one).total_cmp(&at(other))
     });
-    let Some((reason, motion)) = first.map(|first| (first.invalid, first.motion.clone())) else {
+    let Some((reason, motion)) = first.map(|first| (first.invalid, first.disturbance.clone()))
+    else {
         return;
     };
-    for evidence in axes.iter_mut().filter_map(|axis| axis.evidence.as_mut()) {
-        if evidence.invalid.is_none() {
-            evidence.invalid = reason;
+    for one in evidence {
+        if one.invalid.is_none() {
+            one.invalid = reason;
         }
-        if evidence.motion.is_none() {
-            evidence.motion.clone_from(&motion);
+        if one.disturbance.is_none() {
+            one.disturbance.clone_from(&motion);
         }
     }
+}
+
+/// Stretches without overlaps, the earliest first.
+fn union(mut stretches: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    stretches.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut union: Vec<(f64, f64)> = Vec::new();
+    for (from, to) in stretches {
+        match union.last_mut() {
+            Some(last) if from <= last.1 => last.1 = last.1.max(to),
+            _ => union.push((from, to)),
+        }
+    }
+    union
 }

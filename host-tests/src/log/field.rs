@@ -7,6 +7,11 @@ pub(super) trait Field: Copy {
     /// The value as a count, or `None` if it is not a whole number within `i32`.
     fn count(&self) -> Option<i32>;
 
+    /// Whether the value is a finite number.
+    fn is_number(&self) -> bool {
+        true
+    }
+
     /// The value as a finite number, or the reason why it is none.
     fn number(&self) -> Result<f64, Flaw>;
 
@@ -126,6 +131,10 @@ impl Field for Text<'_> {
         // Blanks around the number, a leading plus and a decimal point are left to `number`, which
         // is slower.
         atoi_simd::parse::<i32, false, false>(self.0).ok()
+    }
+
+    fn is_number(&self) -> bool {
+        self.number().is_ok()
     }
 
     fn number(&self) -> Result<f64, Flaw> {
@@ -261,6 +270,11 @@ impl Field for f64 {
         } else {
             Err(flaw(*self))
         }
+    }
+
+    #[inline]
+    fn is_number(&self) -> bool {
+        self.is_finite()
     }
 
     fn floats(values: &[Self]) -> Option<&[f64]> {

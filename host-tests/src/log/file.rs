@@ -1,7 +1,11 @@
 //! Reads a log with the reader of its format.
 
+#[cfg(any(feature = "bags", feature = "tables"))]
+use super::converted::Converted;
+#[cfg(feature = "tables")]
+use super::tables;
 use super::{
-    Axis, Covariates, Log, Options, csv, npy,
+    Axis, Covariates, Log, Options, csv, npy, parts,
     reading::{Watched, read_table},
     source::Format,
     ulog,
@@ -89,7 +93,7 @@ fn read_parts(
     watch: Option<Watched>,
     progress: &ProgressBar,
 ) -> Result<(Log, Vec<Axis>), Failure> {
-    let parts = (first, watch);
+    let wanted = (first, watch);
     let format = Format::of(path)?;
     if !format.has_topics() && options.topic.is_some() {
         return Err(Place::file(path).failure("this kind of log has no topics", "omit --topic"));
@@ -97,12 +101,26 @@ fn read_parts(
     match format {
         Format::Text { gzip } => {
             let text = csv::Csv::open(path, gzip)?;
-            read_table(&text, path, options, parts, progress)
+            read_table(&text, path, options, wanted, progress)
         }
-        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, parts, progress),
+        Format::Parts => {
+            let (joined, note) = parts::join(path, progress)?;
+            let text = csv::Csv::open_as(path, &joined, false)?;
+            let (mut log, rest) = read_table(&text, path, options, wanted, progress)?;
+            log.notes.insert(0, note);
+            Ok((log, rest))
+        }
+        #[cfg(not(feature = "tables"))]
+        Format::Table(_) => Err(Failure::not_built_in("reading tables in binary")),
+        #[cfg(feature = "tables")]
+        Format::Table(kind) => {
+            let table = tables::convert(path, kind, options, progress)?;
+            read_converted(&table, path, options, wanted, progress)
+        }
+        Format::Npy => read_table(&npy::Npy::open(path)?, path, options, wanted, progress),
         Format::Ulog => {
             let log = ulog::Ulog::open(path, options, progress)?;
-            read_table(&log, path, options, parts, progress)
+            read_table(&log, path, options, wanted, progress)
         }
         #[cfg(not(feature = "bags"))]
         Format::Mcap | Format::Ros1 | Format::Sqlite | Format::Folder => {
@@ -111,8 +129,27 @@ fn read_parts(
         #[cfg(feature = "bags")]
         Format::Mcap | Format::Ros1 | Format::Sqlite | Format::Folder => {
             let files = bag_folder::files(path, format)?;
+            let others = bag::other_messages(path, (files.0, &files.1), options, progress)?;
+            if let Some(table) = others {
+                return read_converted(&table, path, options, wanted, progress);
+            }
             let bag = bag::Bag::open(path, files, options, progress)?;
-            read_table(&bag, path, options, parts, progress)
+            read_table(&bag, path, options, wanted, progress)
         }
     }
+}
+
+/// Reads the text that was made of a log in another format.
+#[cfg(any(feature = "bags", feature = "tables"))]
+fn read_converted(
+    table: &Converted,
+    path: &Path,
+    options: &Options,
+    wanted: (Option<u64>, Option<Watched>),
+    progress: &ProgressBar,
+) -> Result<(Log, Vec<Axis>), Failure> {
+    let text = csv::Csv::open_as(path, &table.text, false)?;
+    let (mut log, rest) = read_table(&text, path, options, wanted, progress)?;
+    log.notes.extend(table.note.clone());
+    Ok((log, rest))
 }

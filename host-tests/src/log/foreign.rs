@@ -4,36 +4,26 @@ use crate::failure::{Failure, Place, one_line};
 use std::path::Path;
 
 /// The magic bytes at the beginning of a file, what the file is, and the remedy. `FILE` stands for its name.
-const MAGICS: [(&[u8], &str, &str); 14] = [
-    (
-        b"H Product:Blackbox",
-        "a flight log of Betaflight",
-        "convert it with `blackbox_decode FILE`, and give the .csv file",
-    ),
-    (
-        b"\xa3\x95\x80",
-        "a flight log of ArduPilot",
-        "convert it with `mavlogdump.py --types IMU --format csv FILE > imu.csv`",
-    ),
+const MAGICS: [(&[u8], &str, &str); 12] = [
     (
         b"FMT, 128, 89,",
         "a flight log of ArduPilot",
         "convert it with `mavlogdump.py --types IMU --format csv FILE > imu.csv`",
     ),
     (
-        b"MATLAB 5.0",
-        "a file of MATLAB",
-        "save its table in MATLAB with `writematrix(TABLE, 'log.csv')`",
+        b"MDF     ",
+        "a measurement in the format MDF",
+        "export its group with the gyro as CSV, such as with asammdf",
     ),
     (
-        b"\x89HDF\r\n\x1a\n",
-        "an HDF5 file",
-        "export its table with `h5dump -d DATASET -y -w 0 -o log.csv FILE`",
+        b"TDSm",
+        "a measurement of LabVIEW in the format TDMS",
+        "export its group with the gyro as CSV, such as with npTDMS",
     ),
     (
-        b"PAR1",
-        "a Parquet file",
-        "convert it with `duckdb -c \"COPY 'FILE' TO 'log.csv'\"`",
+        b"$IMURAW",
+        "a file of raw IMU data in the format IMR",
+        "export it as text with the program that made it, or give the receiver's own log as CSV",
     ),
     (
         b"(\xb5/\xfd",
@@ -70,26 +60,11 @@ const MAGICS: [(&[u8], &str, &str); 14] = [
 ];
 
 /// The extensions of files whose beginning does not tell what they are.
-const EXTENSIONS: [(&str, &str, &str); 8] = [
-    (
-        "bbl",
-        "a flight log of Betaflight",
-        "convert it with `blackbox_decode FILE`, and give the .csv file",
-    ),
-    (
-        "bfl",
-        "a flight log of Betaflight",
-        "convert it with `blackbox_decode FILE`, and give the .csv file",
-    ),
+const EXTENSIONS: [(&str, &str, &str); 4] = [
     (
         "tlog",
         "a telemetry log of MAVLink",
         "convert it with `mavlogdump.py --types HIGHRES_IMU --format csv FILE > imu.csv`",
-    ),
-    (
-        "xlsx",
-        "a workbook",
-        "save its sheet as CSV, such as with `soffice --convert-to csv FILE`",
     ),
     (
         "npz",
@@ -97,11 +72,6 @@ const EXTENSIONS: [(&str, &str, &str); 8] = [
         "save the one with the gyro with numpy.save",
     ),
     ("zip", "an archive", "unpack it with `unzip FILE`"),
-    (
-        "mat",
-        "a file of MATLAB",
-        "save its table in MATLAB with `writematrix(TABLE, 'log.csv')`",
-    ),
     (
         "mtb",
         "a binary log of Xsens",
@@ -119,6 +89,11 @@ pub(super) fn refusal(path: &Path, start: &[u8]) -> Option<Failure> {
     let of_start = MAGICS.iter().find(|(magic, ..)| start.starts_with(magic));
     let of_start = of_start.map(|(_, what, remedy)| (what, remedy));
     let of_name = EXTENSIONS.iter().find(|(name, ..)| *name == extension);
+    // MATLAB writes text with this name too: `save -ascii`.
+    let is_text = start
+        .iter()
+        .all(|&byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
+    let of_name = of_name.filter(|(name, ..)| *name != "mat" || !is_text);
     let of_name = of_name.map(|(_, what, remedy)| (what, remedy));
     let (what, remedy) = of_start.or(of_name)?;
     Some(failure(path, what, remedy))

@@ -13,6 +13,8 @@
 //!   `.txt` behind its name may contain the same comments.
 //! * Bags of ROS 2 (MCAP, SQLite, or a folder of them) and of ROS 1, with a topic of `sensor_msgs/msg/Imu`.
 //!   The stamps are those of the messages' headers. One chunk is in memory at a time.
+//! * Parquet, Arrow, workbooks, arrays of MATLAB and HDF5, and flight logs of ArduPilot and Betaflight, which are rewritten as
+//!   text first. In a file with several tables, the longest one is taken, or that of [`Options::topic`].
 //! * `.ulg`: a log of PX4 with `sensor_gyro`, `sensor_accel`, `sensor_combined` or `vehicle_imu`.
 //!
 //! # Which columns are axes
@@ -46,6 +48,12 @@
 //! is left out. A note counts both. Stamps that go back are refused, and so are two rates in one
 //! log and stamps that jump or repeat in more than 5 % of the rows.
 //!
+//! # Repeats
+//!
+//! A reader that is faster than the sensor repeats samples. If all axes repeat at once, and hardly any sample of the
+//! sensor does so by chance, the repeats are left out, the rate is that of the sensor, and a note says so. Where chance
+//! repeats are too many, the curve is not valid, and the reason tells the rate of the sensor.
+//!
 //! # Temperatures
 //!
 //! [`read_with_evidence`] takes the first two columns that are named like a temperature (`temp_C`,
@@ -67,8 +75,9 @@
 //! or `17.0`. Larger whole numbers become counts after an origin is subtracted from them as integers. An
 //! axis with any other number is rounded to counts. The size of a count is a power of
 //! two between 2^-30 and 2^-29 of the axis' range, and a constant offset is subtracted. This takes
-//! one more pass for the range. No value is skipped: a value that is not a finite number ends the
-//! reading with an error that names its row.
+//! one more pass for the range. A row with a value that is not a finite number is a lost sample, which a note
+//! counts. If more than a tenth of the rows are so, the log is refused, and so it is where columns lie one behind
+//! the other.
 
 mod accumulate;
 mod axes;
@@ -88,32 +97,44 @@ mod channel;
 mod clock;
 mod columns;
 mod convention;
+#[cfg(any(feature = "bags", feature = "tables"))]
+mod converted;
 mod covariate;
 mod csv;
+mod cuts;
 mod date_time;
 mod dialect;
+mod disturbed;
 mod evidence;
+mod faults;
 mod field;
 mod file;
 mod foreign;
 #[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
+#[cfg(feature = "bags")]
+mod message_layout;
 mod metadata;
 mod names;
 mod npy;
 mod npy_block;
 pub mod npy_header;
 mod pace;
+mod part_names;
+mod parts;
 mod preamble;
 mod quantum;
 mod reading;
 mod records;
 mod rounding;
+mod rows;
 mod scaling;
 mod source;
 mod sums;
 mod table;
+#[cfg(feature = "tables")]
+mod tables;
 mod time_column;
 mod tried;
 mod ulog;
@@ -137,6 +158,8 @@ use allanite::{
     spectrum::SpectrumAccumulator,
 };
 pub use covariate::{CovariateChoice, Covariates};
+pub use cuts::{Cuts, Moment, Stretch};
+pub(crate) use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
@@ -181,6 +204,20 @@ pub struct Options {
     pub time_unit: Option<TimeUnit>,
     /// The topic to read, in a log with several topics.
     pub topic: Option<String>,
+    /// What to do with samples that the logger repeated.
+    pub repeats: Repeats,
+    /// What is left out.
+    pub cuts: Cuts,
+}
+
+/// What to do with samples that the logger repeated, where it is certain that the sensor did not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Repeats {
+    /// Leave them out, and take the rate of the sensor.
+    #[default]
+    Drop,
+    /// Keep them. The curve is not valid then.
+    Keep,
 }
 
 /// A column to read, written `column` or `axis=column`.
@@ -255,15 +292,21 @@ pub struct Evidence {
     pub columns: Vec<(String, Vec<f64>)>,
     /// The means of the axis and of the columns of the covariates in many short blocks; `None` without covariates.
     pub means: Option<BlockMeans>,
-    /// The motion that makes the record not valid, if there is one.
-    pub motion: Option<Motion>,
+    /// The motion or the spikes that make the record not valid, if there are any.
+    pub disturbance: Option<Disturbance>,
 }
 
-/// Motion during a record. A gyro that turns about one axis is not at rest about the others.
+/// Motion during a record, or its spikes. A gyro that turns about one axis is not at rest about the others.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct Disturbance {
     /// The axis that shows it.
     pub axis: String,
-    /// When it began, in seconds from the start of the record without its gaps.
+    /// Whether it is motion rather than spikes.
+    pub is_motion: bool,
+    /// When it began, in seconds from the first row of the log, missing samples included.
     pub at_s: f64,
+    /// The stretches of the log that are disturbed, in seconds from its first row. Empty if they are not found.
+    pub stretches_s: Vec<(f64, f64)>,
+    /// When the log ends.
+    pub end_s: f64,
 }

@@ -4,7 +4,7 @@ use super::{
     columns::{AxisColumn, Columns, Look},
     field::Field,
     metadata::Metadata,
-    npy_block::{Block, Stopped},
+    npy_block::Block,
     npy_header::{Header, sidecar},
     source,
     table::{Ended, Stop, Table, Visitor},
@@ -135,7 +135,7 @@ impl Npy {
             axis: String::new(),
         };
         block
-            .show(&self.header, &[column], &mut Keep(&mut number))
+            .show(&self.header, &[column], &mut Keep(&mut number), &self.path)
             .ok()?;
         number
     }
@@ -214,15 +214,8 @@ impl Table for Npy {
                 row,
                 first,
             };
-            match block.show(&self.header, axes, visitor) {
-                Ok(()) => {}
-                Err(Stopped {
-                    stop: Stop::NotCounts,
-                    ..
-                }) => return Ok(Ended::NotCounts),
-                Err(Stopped { axis, row, stop }) => {
-                    return Err(stop.failure(&axes[axis], Place::row(&self.path, row + 1)));
-                }
+            if !block.show(&self.header, axes, visitor, &self.path)? {
+                return Ok(Ended::NotCounts);
             }
             run += whole as u64;
             if let Some(error) = ended {

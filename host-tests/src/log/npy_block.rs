@@ -4,8 +4,10 @@ use super::{
     columns::AxisColumn,
     field::Field,
     npy_header::{Header, Kind},
-    table::{RUN, Stop, Visitor},
+    table::{RUN, Visitor, after_stop},
 };
+use crate::failure::{Failure, Place};
+use std::path::Path;
 
 /// Some rows of an array that follow each other, or a part of one of its columns.
 pub(super) struct Block<'a> {
@@ -18,31 +20,24 @@ pub(super) struct Block<'a> {
     pub(super) first: usize,
 }
 
-/// Why and where a visitor wanted no more values.
-pub(super) struct Stopped {
-    /// The place of the column among those that were asked for.
-    pub(super) axis: usize,
-    pub(super) row: u64,
-    pub(super) stop: Stop,
-}
-
 impl Block<'_> {
-    /// Shows the elements to a visitor.
+    /// Shows the elements to a visitor. Returns whether it wants more.
     pub(super) fn show<V: Visitor>(
         &self,
         header: &Header,
         axes: &[AxisColumn],
         visitor: &mut V,
-    ) -> Result<(), Stopped> {
+        path: &Path,
+    ) -> Result<bool, Failure> {
         // The type and the order of the bytes are decided once for all elements, which leaves a short loop.
         macro_rules! elements {
             ($element:ty as $field:ty) => {
                 if header.big_endian {
-                    self.show_elements(axes, visitor, |bytes| {
+                    self.show_elements(axes, (visitor, path), |bytes| {
                         <$field>::from(<$element>::from_be_bytes(bytes))
                     })
                 } else {
-                    self.show_elements(axes, visitor, |bytes| {
+                    self.show_elements(axes, (visitor, path), |bytes| {
                         <$field>::from(<$element>::from_le_bytes(bytes))
                     })
                 }
@@ -65,28 +60,36 @@ impl Block<'_> {
     fn show_elements<const SIZE: usize, F: Field + Default, V: Visitor>(
         &self,
         axes: &[AxisColumn],
-        visitor: &mut V,
+        (visitor, path): (&mut V, &Path),
         convert: impl Fn([u8; SIZE]) -> F,
-    ) -> Result<(), Stopped> {
+    ) -> Result<bool, Failure> {
         let here = axes.iter().enumerate().filter_map(|(i, axis)| {
             let at = axis.column.checked_sub(self.first)?;
             (at < self.columns).then_some((i, at))
         });
         let here: Vec<_> = here.collect();
         let (elements, _) = self.bytes.as_chunks::<SIZE>();
-        if V::BY_ROWS {
-            for (elements, row) in elements.chunks_exact(self.columns).zip(self.row..) {
-                for &(axis, at) in &here {
-                    let shown = visitor.visit(axis, convert(elements[at]));
-                    shown.map_err(|stop| Stopped { axis, row, stop })?;
-                }
-            }
-            return Ok(());
-        }
         let mut values = [F::default(); RUN];
         let runs = elements.chunks(RUN * self.columns);
-        for (run, row) in runs.zip((self.row..).step_by(RUN)) {
-            let mut stopped: Option<Stopped> = None;
+        for (run, first) in runs.zip((self.row..).step_by(RUN)) {
+            let rows = || run.chunks_exact(self.columns);
+            // A row whose values are not all numbers has to be seen as a row.
+            let is_whole =
+                || rows().all(|row| here.iter().all(|&(_, at)| convert(row[at]).is_number()));
+            if V::BY_ROWS || !is_whole() {
+                for (elements, row) in rows().zip(first..) {
+                    let place = || Place::row(path, row + 1);
+                    for &(axis, at) in &here {
+                        let shown = visitor.visit(axis, convert(elements[at]));
+                        let Err(stop) = shown else { continue };
+                        if !after_stop(visitor, (axis, &stop), axes, place)? {
+                            return Ok(false);
+                        }
+                        break;
+                    }
+                }
+                continue;
+            }
             for &(axis, at) in &here {
                 let values = &mut values[..run.len() / self.columns];
                 if self.columns == 1 {
@@ -94,22 +97,16 @@ impl Block<'_> {
                         *value = convert(element);
                     }
                 } else {
-                    for (value, row) in values.iter_mut().zip(run.chunks_exact(self.columns)) {
+                    for (value, row) in values.iter_mut().zip(rows()) {
                         *value = convert(row[at]);
                     }
                 }
                 if let Err((place, stop)) = visitor.visit_run(axis, values) {
-                    let row = row + place as u64;
-                    // The value that comes first in the order of the rows is reported.
-                    if stopped.as_ref().is_none_or(|stopped| row < stopped.row) {
-                        stopped = Some(Stopped { axis, row, stop });
-                    }
+                    let place = || Place::row(path, first + place as u64 + 1);
+                    return after_stop(visitor, (axis, &stop), axes, place).map(|_| false);
                 }
             }
-            if let Some(stopped) = stopped {
-                return Err(stopped);
-            }
         }
-        Ok(())
+        Ok(true)
     }
 }

@@ -62,10 +62,11 @@ impl Line {
 }
 
 impl Preamble {
-    pub(super) fn read(path: &Path, gzip: bool) -> Result<Self, Failure> {
+    /// Reads the beginning of a text; messages name the file `path`, of which the text may have been made.
+    pub(super) fn read(path: &Path, text: &Path, gzip: bool) -> Result<Self, Failure> {
         let mut metadata = Metadata::default();
         let mut said = String::new();
-        let (comment, lines) = sample(path, gzip, &mut metadata, &mut said)?;
+        let (comment, lines) = sample(path, text, gzip, &mut metadata, &mut said)?;
         let rows: Vec<&Line> = lines
             .iter()
             .filter(|line| line.comment().is_none())
@@ -187,11 +188,12 @@ fn keep(said: &mut String, text: &str) {
 /// Empty lines are left out.
 fn sample(
     path: &Path,
+    text: &Path,
     gzip: bool,
     metadata: &mut Metadata,
     said: &mut String,
 ) -> Result<(Option<String>, Vec<Line>), Failure> {
-    let mut text = source::open_text(path, gzip, &ProgressBar::hidden())?;
+    let mut text = source::open_text(text, gzip, &ProgressBar::hidden())?;
     let mut lines: Vec<Line> = Vec::new();
     let mut last_comment = None;
     let (mut offset, mut bytes) = (0, 0);

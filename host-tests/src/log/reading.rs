@@ -5,7 +5,9 @@ use super::{
     accumulate::{self, Passes},
     axes::Taken,
     clock::Clock,
+    cuts::Dropped,
     evidence::{self, Recorded, spread_motion},
+    faults,
     scaling::{self, Origin, Scaling},
     sums::Sums,
     table::Table,
@@ -107,16 +109,24 @@ pub(super) fn read_table(
             covariates: covariates.clone(),
             moments: watch.moments,
         }),
+        faults: faults::Plan {
+            by_rows: table.by_rows() || columns.len() == 1,
+            repeats: options.repeats,
+            ..faults::Plan::default()
+        },
     };
-    let passes = Passes {
+    let mut passes = Passes {
         table,
         path,
         columns: &columns,
         tried,
         time: time.as_ref(),
+        rate_hz,
+        dropped: Dropped::NONE,
         late: Vec::new(),
         progress,
     };
+    passes.cut(&options.cuts)?;
     let measured = accumulate::measure(&passes, &plan)?;
     let is_told = rate_hz.is_some();
     let rate_hz = match (rate_hz, &measured.clock) {
@@ -125,6 +135,8 @@ pub(super) fn read_table(
         })?,
         (rate_hz, _) => rate_hz.unwrap_or(f64::NAN),
     };
+    let logged_hz = rate_hz;
+    let (rate_hz, repeats) = measured.faults.sensor_rate(logged_hz);
     let mut notes = vec![said(taken.note, &scaling, time.as_ref(), rate_hz, is_told)];
     notes.retain(|note| !note.is_empty());
     if let Some((row, rate)) = metadata.rate_of_preamble(options) {
@@ -142,6 +154,10 @@ pub(super) fn read_table(
         )
     }));
     notes.extend(table.notes());
+    notes.extend(repeats);
+    let mut least = 0.0_f64;
+    notes.extend(measured.tally.note());
+    notes.extend(passes.left_out(&measured.tally, logged_hz)?);
     notes.extend(evidence::left_out(covariates, &measured));
     let recorded = Recorded::new(path, covariates, &measured, rate_hz)?;
     let mut axes = Vec::new();
@@ -177,8 +193,19 @@ pub(super) fn read_table(
         check_axis(path, &axis)?;
         if let Sums::Watched(watched, beside) = &sums {
             let coarse = measured.coarse.get(place).copied().flatten();
-            let evidence = recorded.evidence(path, &axis, &**watched, coarse)?;
+            let fault = measured.faults.verdict(place);
+            let evidence = recorded.evidence(path, &axis, &**watched, (fault, coarse))?;
+            if evidence.invalid.is_none() {
+                least = least.max(measured.faults.least(place));
+            }
+            let moved_at = watched.moved_at();
             axis.evidence = Some(Evidence {
+                disturbance: recorded.disturbance(
+                    &axis.name,
+                    evidence.invalid,
+                    moved_at,
+                    &beside.extremes,
+                ),
                 course: Some(*beside.course.clone()),
                 means: recorded.means(&measured.blocks, place, axis.rate_per_count),
                 ..evidence
@@ -193,6 +220,7 @@ pub(super) fn read_table(
         notes.extend(scaling.check(path, &axis)?);
         axes.push(axis);
     }
+    notes.extend(faults::bound(least));
     spread_motion(&mut axes);
     if scaling.origin == Origin::Assumed {
         notes.push(format!(
@@ -287,10 +315,10 @@ fn check_axis(path: &Path, axis: &Axis) -> Result<(), Failure> {
     const LEAST: u64 = 9;
     if accumulator.samples() < LEAST {
         return fail(
-            format!(
-                "{} samples are too few: two octaves need {LEAST}",
-                accumulator.samples()
-            ),
+            match accumulator.samples() {
+                1 => format!("1 sample is too few: two octaves need {LEAST}"),
+                samples => format!("{samples} samples are too few: two octaves need {LEAST}"),
+            },
             "record longer",
         );
     }

@@ -1,6 +1,6 @@
 //! Tells the format of a log, and opens it.
 
-use super::foreign;
+use super::{foreign, part_names};
 use crate::{
     failure::{Failure, Place},
     regular_file,
@@ -42,8 +42,24 @@ pub(super) enum Format {
     Sqlite,
     /// A folder with the files of a bag of ROS 2.
     Folder,
+    /// A folder with the parts of a record as text.
+    Parts,
     /// A log of PX4.
     Ulog,
+    /// A table of another program in binary.
+    Table(TableKind),
+}
+
+/// The format of a table in binary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum TableKind {
+    Ardupilot,
+    Arrow,
+    Betaflight,
+    Hdf5,
+    Matlab,
+    Parquet,
+    Workbook,
 }
 
 impl Format {
@@ -53,7 +69,8 @@ impl Format {
     /// When the file is another one than a log, which the message names together with the command that converts it.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         if path.is_dir() {
-            return Ok(Self::Folder);
+            let has_text = !part_names::files(path).is_empty();
+            return Ok(if has_text { Self::Parts } else { Self::Folder });
         }
         let (file, _) = regular_file::open(path)?;
         let mut start = Vec::new();
@@ -67,18 +84,32 @@ impl Format {
             (b"#ROSBAG V", Self::Ros1),
             (b"SQLite format 3\0", Self::Sqlite),
             (b"ULog", Self::Ulog),
+            (b"PAR1", Self::Table(TableKind::Parquet)),
+            (b"ARROW1", Self::Table(TableKind::Arrow)),
+            (b"\xff\xff\xff\xff", Self::Table(TableKind::Arrow)),
+            (b"H Product:Blackbox", Self::Table(TableKind::Betaflight)),
+            (b"\xa3\x95\x80", Self::Table(TableKind::Ardupilot)),
+            (b"MATLAB 5.0", Self::Table(TableKind::Matlab)),
+            // A file of MATLAB 7.3 has 512 bytes of its own before those of HDF5.
+            (b"MATLAB 7.3", Self::Table(TableKind::Hdf5)),
+            (b"\x89HDF\r\n\x1a\n", Self::Table(TableKind::Hdf5)),
         ];
         if let Some((_, format)) = of_start.into_iter().find(|(magic, _)| begins(magic)) {
             return Ok(format);
-        }
-        if let Some(failure) = foreign::refusal(path, &start) {
-            return Err(failure);
         }
         let name = path
             .file_name()
             .unwrap_or_default()
             .to_string_lossy()
             .to_lowercase();
+        // Workbooks are archives, or what programs called so before; only their names tell them from others.
+        let books = [".xlsx", ".xlsm", ".xlsb", ".xls", ".ods"];
+        if start.contains(&0) && books.iter().any(|extension| name.ends_with(extension)) {
+            return Ok(Self::Table(TableKind::Workbook));
+        }
+        if let Some(failure) = foreign::refusal(path, &start) {
+            return Err(failure);
+        }
         let of_name = [
             (".gz", Self::Text { gzip: true }),
             (".npy", Self::Npy),
@@ -87,6 +118,8 @@ impl Format {
             (".db3", Self::Sqlite),
             (".ulg", Self::Ulog),
             (".ulog", Self::Ulog),
+            (".bbl", Self::Table(TableKind::Betaflight)),
+            (".bfl", Self::Table(TableKind::Betaflight)),
         ];
         let of_name = of_name
             .into_iter()
@@ -104,7 +137,7 @@ impl Format {
 
     /// Whether a file of this format can hold several sensors, each with its own topic.
     pub(super) const fn has_topics(self) -> bool {
-        !matches!(self, Self::Text { .. } | Self::Npy)
+        !matches!(self, Self::Text { .. } | Self::Npy | Self::Parts)
     }
 }
 

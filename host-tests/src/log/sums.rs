@@ -1,6 +1,6 @@
 //! What is kept of an axis while a log is read.
 
-use super::{OCTAVES, SpectrumSums, watched::WatchedAxis};
+use super::{OCTAVES, SpectrumSums, disturbed::Extremes, watched::WatchedAxis};
 use allanite::{Accumulator, course::Course};
 
 /// What is kept of one axis.
@@ -22,6 +22,7 @@ pub(super) struct Part {
 pub(super) struct OwnSums {
     pub(super) spectrum: Box<SpectrumSums>,
     pub(super) course: Box<Course>,
+    pub(super) extremes: Extremes,
 }
 
 impl OwnSums {
@@ -29,17 +30,20 @@ impl OwnSums {
         Self {
             spectrum: Box::new(SpectrumSums::new()),
             course: Box::new(Course::new()),
+            extremes: Extremes::new(),
         }
     }
 
     pub(super) fn push(&mut self, counts: &[i32]) {
         self.spectrum.push_slice(counts);
         self.course.push_slice(counts);
+        self.extremes.push(counts);
     }
 
-    pub(super) fn gap(&mut self) {
+    pub(super) fn gap(&mut self, missing: u64) {
         self.spectrum.gap();
-        self.course.gap();
+        self.course.lost(missing);
+        self.extremes.lost(missing);
     }
 }
 

@@ -53,8 +53,39 @@ pub(super) trait Visitor {
         visit_each(self, axis, values)
     }
 
-    /// Tells that samples are missing before the next row: so many, or an unknown number if it is 0.
-    fn gap(&mut self, _lost: u64) {}
+    /// Tells that so many samples are missing before the next row, or an unknown number if it is 0.
+    fn gap(&mut self, _missing: u64) {}
+
+    /// Forgets the values of the present row, whose first columns were shown.
+    fn forget(&mut self, _columns: usize) {}
+
+    /// Handles a row that holds no sample. `shown` is the column of the present row whose value is none, or `None` if no
+    /// column was shown.
+    fn lose_row(
+        &mut self,
+        _shown: Option<usize>,
+        failure: impl FnOnce() -> Failure,
+    ) -> Result<(), Failure> {
+        Err(failure())
+    }
+}
+
+/// Handles the reason why a visitor wanted no more values of the present row. Returns whether the pass goes on with the
+/// next row.
+pub(super) fn after_stop<V: Visitor>(
+    visitor: &mut V,
+    (column, stop): (usize, &Stop),
+    axes: &[AxisColumn],
+    place: impl FnOnce() -> Place,
+) -> Result<bool, Failure> {
+    match stop {
+        Stop::NotCounts => Ok(false),
+        Stop::Clock(flaw) => Err(flaw.at(place())),
+        Stop::Flaw(_) | Stop::NoStamp(_) => {
+            let failure = || stop.failure(&axes[column], place());
+            visitor.lose_row(Some(column), failure).map(|()| true)
+        }
+    }
 }
 
 /// Shows a visitor the values of a run one by one.
@@ -75,6 +106,8 @@ pub(super) enum Stop {
     NotCounts,
     /// A value is not a finite number.
     Flaw(Flaw),
+    /// A time stamp is none.
+    NoStamp(Flaw),
     /// A time stamp is not valid.
     Clock(Flaw),
 }
@@ -85,6 +118,9 @@ impl Stop {
         match self {
             Self::Flaw(flaw) => {
                 place.failure(format!("axis {}: {}", column.axis, flaw.what), flaw.remedy)
+            }
+            Self::NoStamp(flaw) => {
+                place.failure(format!("{}: {}", column.axis, flaw.what), flaw.remedy)
             }
             Self::Clock(flaw) => flaw.at(place),
             // Every visitor that reaches this takes numbers as well, so users do not see this

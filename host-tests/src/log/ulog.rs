@@ -5,13 +5,13 @@ use super::{
     columns::{AxisColumn, Columns, Look},
     metadata::Metadata,
     scaling, source,
-    table::{Ended, Stop, Table, Visitor},
+    table::{Ended, Table, Visitor, after_stop},
     ulog_format::Value,
     ulog_messages::{Error, Message, Messages, Subscription},
     ulog_topics::{RAW, Source, columns, defined},
 };
 use crate::{
-    failure::{Failure, Place, quoted},
+    failure::{Failure, Place, plural, quoted},
     unit::Sensor,
 };
 use indicatif::ProgressBar;
@@ -110,12 +110,16 @@ impl Ulog {
         let others: Vec<String> = found
             .iter()
             .filter(|(other, one)| **other != identity && is_raw(one))
-            .map(|(_, one)| format!("{} ({} messages)", one.name(), one.messages))
+            .map(|(_, one)| format!("{} ({})", one.name(), plural(one.messages, "message")))
             .collect();
         let Some(chosen) = found.remove(&identity) else {
             return Err(Place::file(path).failure("no messages", "record some samples"));
         };
-        let mut note = format!("topic {} of {} messages", chosen.name(), chosen.messages);
+        let mut note = format!(
+            "topic {} of {}",
+            chosen.name(),
+            plural(chosen.messages, "message")
+        );
         if !others.is_empty() {
             note += &format!("; others: {} (choose with --topic)", few(&others));
         }
@@ -206,13 +210,12 @@ impl Table for Ulog {
                     Value::Unsigned(value) => visitor.visit(i, value),
                     Value::Float(value) => visitor.visit(i, value),
                 };
-                match visited {
-                    Ok(()) => {}
-                    Err(Stop::NotCounts) => {
+                if let Err(stop) = visited {
+                    let goes_on = after_stop(visitor, (i, &stop), axes, place)?;
+                    if !goes_on {
                         ended = Ended::NotCounts;
-                        return Ok(false);
                     }
-                    Err(stop) => return Err(stop.failure(axis, place())),
+                    return Ok(goes_on);
                 }
             }
             Ok(true)

@@ -17,8 +17,6 @@ pub(super) struct AxisEvidence {
     pub(super) kurtosis: Kurtosis<OCTAVES>,
     pub(super) covariates: Vec<CrossCurve<OCTAVES>>,
     pub(super) invalid: Option<Reason>,
-    /// The sample near which motion first showed.
-    pub(super) moved_at: Option<u64>,
 }
 
 /// An axis of the library, whatever number of covariates its type has.
@@ -26,10 +24,13 @@ pub(super) trait WatchedAxis: Send {
     /// Adds the counts of some rows, and those of every covariate in the same rows.
     fn push(&mut self, counts: &[i32], covariates: &[Vec<i32>]);
 
-    /// Tells that samples are missing here.
-    fn gap(&mut self, lost: u64);
+    /// Tells that so many samples are missing here, or an unknown number if it is 0.
+    fn gap(&mut self, missing: u64);
 
     fn accumulator(&self) -> &Accumulator<OCTAVES>;
+
+    /// The sample of time near which motion first showed.
+    fn moved_at(&self) -> Option<u64>;
 
     /// The evidence of the axis. `units` holds the unit per count of every covariate.
     fn evidence(&self, scale: Scale, units: &[f64]) -> Result<AxisEvidence, Error>;
@@ -38,33 +39,47 @@ pub(super) trait WatchedAxis: Send {
 /// An axis without a gate, because a log is judged as it is.
 struct Watched<const COVARIATES: usize, M: MomentPart> {
     axis: Axis<OCTAVES, COVARIATES, (), M>,
-    moved_at: Option<u64>,
+    motion: FirstMotion,
 }
 
 /// An axis of which only the curve and the integrity are kept. Both take slices, which is several times as fast.
 struct Alone {
     accumulator: Accumulator<OCTAVES>,
     integrity: Integrity,
-    moved_at: Option<u64>,
+    motion: FirstMotion,
+}
+
+/// The sample of time near which motion first showed.
+#[derive(Default)]
+struct FirstMotion {
+    at: Option<u64>,
+    /// The samples that are missing so far.
+    missing: u64,
 }
 
 /// The number of samples after which motion is looked for: those of the shortest cluster whose mean shows it.
 const LOOK: usize = 64;
 
-/// Remembers the first motion.
-fn look(integrity: &Integrity, moved_at: &mut Option<u64>) {
-    if moved_at.is_none() {
-        let tally = integrity.tally();
-        let moves = tally.motions > 0 || tally.steps > 0;
-        *moved_at = moves.then(|| tally.samples.saturating_sub(LOOK as u64));
+impl FirstMotion {
+    fn look(&mut self, integrity: &Integrity) {
+        if self.at.is_none() {
+            let tally = integrity.tally();
+            let moves = tally.motions > 0 || tally.steps > 0;
+            let at = (tally.samples + self.missing).saturating_sub(LOOK as u64);
+            self.at = moves.then_some(at);
+        }
+    }
+
+    const fn gap(&mut self, missing: u64) {
+        self.missing = self.missing.saturating_add(missing);
     }
 }
 
 impl<const COVARIATES: usize, M: MomentPart> Watched<COVARIATES, M> {
-    const fn new() -> Self {
+    fn new() -> Self {
         Self {
             axis: Axis::new(),
-            moved_at: None,
+            motion: FirstMotion::default(),
         }
     }
 }
@@ -80,13 +95,18 @@ where
             self.axis.push((count, beside));
             if row % LOOK == LOOK - 1 {
                 let [integrity] = self.axis.integrity();
-                look(integrity, &mut self.moved_at);
+                self.motion.look(integrity);
             }
         }
     }
 
-    fn gap(&mut self, lost: u64) {
-        self.axis.miss(lost);
+    fn gap(&mut self, missing: u64) {
+        self.motion.gap(missing);
+        self.axis.miss(missing);
+    }
+
+    fn moved_at(&self) -> Option<u64> {
+        self.motion.at
     }
 
     fn accumulator(&self) -> &Accumulator<OCTAVES> {
@@ -102,7 +122,6 @@ where
             kurtosis: told.kurtosis.unwrap_or_default(),
             covariates: told.covariates.into_iter().collect(),
             invalid: told.invalid,
-            moved_at: self.moved_at,
         })
     }
 }
@@ -113,17 +132,22 @@ impl WatchedAxis for Alone {
         let (blocks, rest) = counts.as_chunks::<LOOK>();
         for block in blocks {
             self.integrity.push_slice(block);
-            look(&self.integrity, &mut self.moved_at);
+            self.motion.look(&self.integrity);
         }
         self.integrity.push_slice(rest);
     }
 
-    fn gap(&mut self, lost: u64) {
-        match lost {
+    fn gap(&mut self, missing: u64) {
+        self.motion.gap(missing);
+        match missing {
             0 => self.accumulator.gap(),
-            lost => self.accumulator.lost(lost),
+            missing => self.accumulator.lost(missing),
         }
         self.integrity.gap();
+    }
+
+    fn moved_at(&self) -> Option<u64> {
+        self.motion.at
     }
 
     fn accumulator(&self) -> &Accumulator<OCTAVES> {
@@ -135,7 +159,6 @@ impl WatchedAxis for Alone {
             kurtosis: Kurtosis::default(),
             covariates: Vec::new(),
             invalid: self.integrity.verdict(),
-            moved_at: self.moved_at,
         })
     }
 }
@@ -149,7 +172,7 @@ pub(super) fn axis(covariates: usize, moments: bool) -> Box<dyn WatchedAxis> {
         (0, false) => Box::new(Alone {
             accumulator: Accumulator::new(),
             integrity: Integrity::new(),
-            moved_at: None,
+            motion: FirstMotion::default(),
         }),
         (_, false) => with_covariates::<()>(covariates),
         (_, true) => with_covariates::<Moments>(covariates),

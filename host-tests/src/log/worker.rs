@@ -5,6 +5,7 @@
 use super::{
     CovariateChoice,
     covariate::{self, Derived},
+    faults::{self, Faults},
     sums::{OwnSums, Part, Sums},
     watched::{self, SharedSums, WatchedAxis},
 };
@@ -34,6 +35,7 @@ pub(super) struct Plan {
     pub(super) first: u64,
     /// What is watched, if the evidence beside the curve is kept.
     pub(super) watch: Option<Watch>,
+    pub(super) faults: faults::Plan,
 }
 
 /// What is watched beside the curves.
@@ -69,8 +71,8 @@ impl Plan {
 enum Work {
     /// The counts of a column.
     Batch(usize, Vec<i32>),
-    /// So many samples, or an unknown number if it is 0, are missing after the batches that were sent so far. All of them
-    /// end at the same row.
+    /// So many samples are missing after the batches that were sent so far. All of them end at the same
+    /// row.
     Gap(u64),
 }
 
@@ -97,6 +99,8 @@ pub(super) struct Totals {
     pub(super) pairs: Vec<([usize; 2], SharedSums)>,
     /// The block sums of the axes, and behind them those of the columns of the covariates. Empty without covariates.
     pub(super) blocks: BlockSums,
+    /// What the logger did to the samples.
+    pub(super) faults: Faults,
 }
 
 impl Batches {
@@ -124,9 +128,9 @@ impl Batches {
                             recycle(&recycled, batch);
                         }
                     }),
-                    Work::Gap(lost) => {
-                        worker.gap(lost);
-                        let _ = accumulated.send(Work::Gap(lost));
+                    Work::Gap(missing) => {
+                        worker.gap(missing);
+                        let _ = accumulated.send(Work::Gap(missing));
                     }
                 }
             }
@@ -140,7 +144,7 @@ impl Batches {
                         axes[axis].push(&batch);
                         recycle(&outgoing, batch);
                     }
-                    Work::Gap(_) => axes.iter_mut().for_each(OwnSums::gap),
+                    Work::Gap(missing) => axes.iter_mut().for_each(|axis| axis.gap(missing)),
                 }
             }
             axes
@@ -156,10 +160,22 @@ impl Batches {
 
     #[inline]
     pub(super) fn push(&mut self, column: usize, count: i32) {
-        let batch = &mut self.open[column];
-        batch.push(count);
-        if batch.len() >= BATCH {
+        if self.open[column].len() >= BATCH {
             self.send(column);
+        }
+        self.open[column].push(count);
+    }
+
+    /// Forgets the last count of the first columns, which the others do not have.
+    #[cold]
+    pub(super) fn forget(&mut self, columns: usize) {
+        for column in 0..self.open.len() {
+            if column < columns {
+                self.open[column].pop();
+            } else if self.open[column].len() >= BATCH {
+                // The columns before it have sent theirs, and all have to send equally often.
+                self.send(column);
+            }
         }
     }
 
@@ -167,13 +183,13 @@ impl Batches {
     pub(super) fn extend(&mut self, column: usize, counts: &[i32]) {
         let mut rest = counts;
         while !rest.is_empty() {
+            if self.open[column].len() >= BATCH {
+                self.send(column);
+            }
             let batch = &mut self.open[column];
             let room = BATCH.saturating_sub(batch.len());
             let (counts, after) = rest.split_at(room.min(rest.len()));
             batch.extend_from_slice(counts);
-            if batch.len() >= BATCH {
-                self.send(column);
-            }
             rest = after;
         }
     }
@@ -189,11 +205,11 @@ impl Batches {
         let _ = self.full.send(Work::Batch(column, batch));
     }
 
-    /// Tells that samples are missing here, between two rows.
+    /// Tells that so many samples are missing here, between two rows.
     #[cold]
-    pub(super) fn gap(&mut self, lost: u64) {
+    pub(super) fn gap(&mut self, missing: u64) {
         self.send_all();
-        let _ = self.full.send(Work::Gap(lost));
+        let _ = self.full.send(Work::Gap(missing));
     }
 
     fn send_all(&mut self) {
@@ -223,6 +239,7 @@ impl Batches {
             columns: worker.columns,
             pairs: worker.pairs,
             blocks: worker.blocks,
+            faults: worker.faults,
         }
     }
 }
@@ -240,7 +257,8 @@ struct Worker {
     derived: Vec<Derived>,
     columns: Vec<Course>,
     blocks: BlockSums,
-    /// With covariates, a batch waits until the batches of the other columns with the same rows
+    faults: Faults,
+    /// If the columns come row by row, a batch waits until the batches of the other columns with the same rows
     /// arrive.
     waiting: Vec<VecDeque<Vec<i32>>>,
 }
@@ -255,13 +273,15 @@ impl Worker {
             derived: plan.covariates().iter().map(Derived::new).collect(),
             columns: plan.covariates().iter().map(|_| Course::new()).collect(),
             blocks: BlockSums::new(plan.columns()),
+            faults: Faults::new(plan.faults.clone(), plan.axes),
             waiting: vec![VecDeque::new(); plan.columns()],
             plan,
         }
     }
 
     fn take(&mut self, column: usize, batch: Vec<i32>, mut done: impl FnMut(usize, Vec<i32>)) {
-        if self.derived.is_empty() {
+        if self.derived.is_empty() && !self.faults.by_rows() {
+            self.faults.push(column, &batch);
             self.accumulate(column, &batch, &[]);
             return done(column, batch);
         }
@@ -275,7 +295,10 @@ impl Worker {
             .iter_mut()
             .filter_map(VecDeque::pop_front)
             .collect();
-        self.blocks.push(&rows);
+        self.faults.push_rows(&mut rows);
+        if !self.derived.is_empty() {
+            self.blocks.push(&rows);
+        }
         let (axes, covariates) = rows.split_at_mut(self.plan.axes);
         for (course, counts) in self.columns.iter_mut().zip(covariates.iter()) {
             course.push_slice(counts);
@@ -298,27 +321,28 @@ impl Worker {
         }
     }
 
-    fn gap(&mut self, lost: u64) {
+    fn gap(&mut self, missing: u64) {
+        self.faults.gap();
         self.blocks.gap();
         for derived in &mut self.derived {
             derived.gap();
         }
         for course in &mut self.columns {
-            course.gap();
+            course.lost(missing);
         }
         for (_, shared) in &mut self.pairs {
-            shared.miss(lost);
+            shared.miss(missing);
         }
         for kept in &mut self.axes {
             match kept {
                 AxisState::InTwo { first, rest } => {
                     if first.accumulator.samples() >= self.plan.first {
-                        rest.gap(lost);
+                        rest.gap(missing);
                     } else {
-                        first.gap(lost);
+                        first.gap(missing);
                     }
                 }
-                AxisState::Watched(axis) => axis.gap(lost),
+                AxisState::Watched(axis) => axis.gap(missing),
             }
         }
     }

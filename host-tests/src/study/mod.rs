@@ -8,6 +8,7 @@ pub mod confusion;
 pub mod course;
 pub mod detection;
 pub mod efficiency;
+pub mod faults;
 pub mod hidden_effect;
 pub mod lag;
 pub mod lines;

@@ -187,11 +187,11 @@ fn impossible_questions_are_refused() {
     for (arguments, message) in [
         (
             &["--with", "sinusiod"][..],
-            "no such effect; choose from quantization, ",
+            "no such effect; did you mean sinusoid? choose from quantization, ",
         ),
         (
             &["--with", "sinusoid:frequency=1"],
-            "there is no parameter \"frequency\"; choose from frequency_hz",
+            "there is no parameter \"frequency\"; did you mean frequency_hz? choose from frequency_hz",
         ),
         (
             &["--with", "resonance:frequency_hz~1,quality=2"],
@@ -230,7 +230,7 @@ fn impossible_questions_are_refused() {
         (&["--hold-out", "-0.5"], "--hold-out -0.5 is impossible"),
         (
             &["--hold-out", "0.99999"],
-            "1 samples are too few: two octaves need 9",
+            "1 sample is too few: two octaves need 9",
         ),
     ] {
         let arguments = [&["compare", "log.csv"], arguments].concat();

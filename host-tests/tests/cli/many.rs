@@ -28,7 +28,7 @@ fn folder() -> (TempDir, Vec<String>) {
             text += &format!("{}\n", (random >> 20) as usize % (20 + file));
         }
         if file == BROKEN {
-            text += "brok";
+            text = "brok".into();
         }
         let name = format!("log{file}.csv");
         fs::write(folder.path().join(&name), text).unwrap();
@@ -96,7 +96,7 @@ fn json_of_many_files_contains_each_as_for_a_single_file() {
     assert_eq!(listed, names);
     let error = files[BROKEN]["error"].as_str().unwrap();
     assert_eq!(format!("allanite: {error}\n"), errors);
-    assert!(errors.contains("\"brok\" is not a number"), "{errors}");
+    assert!(errors.contains("no rows"), "{errors}");
     for file in [0, 3, FILES - 1] {
         let alone = json(folder.path(), &["fit", &names[file]]);
         assert_eq!(alone["axes"], files[file]["axes"]);

@@ -17,6 +17,9 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 /// The project's page.
 const README: &str = "README.md";
 
+/// The page of the published crate.
+const PUBLISHED: &str = "src/README.md";
+
 /// The pages of the manual that print commands with what they say.
 const WITH_COMMANDS: [(&str, usize); 2] = [
     ("host-tests/doc/tour.md", 6),
@@ -139,6 +142,7 @@ fn pictures_of_the_manual_are_those_that_plot_draws() {
 fn pages() -> Vec<String> {
     let mut pages = vec![
         README.to_owned(),
+        PUBLISHED.to_owned(),
         "host-tests/README.md".to_owned(),
         "host-tests/CONTRIBUTING.md".to_owned(),
     ];
@@ -199,6 +203,45 @@ fn what_is_linked_exists() {
     }
 }
 
+/// A registry shows this page apart from any repository, so that no link of its own leads anywhere. What it names is in
+/// the package, and the project's page, whose links reach the repository, is not.
+#[test]
+fn the_published_page_links_nothing_that_is_not_published() {
+    let listed = xtask::firmware::cargo()
+        .args([
+            "package",
+            "--package",
+            "allanite",
+            "--list",
+            "--allow-dirty",
+        ])
+        .output()
+        .expect("cargo");
+    assert!(listed.status.success(), "{listed:?}");
+    let listed = String::from_utf8(listed.stdout).expect("names");
+    let files: Vec<_> = listed.lines().collect();
+    let page = text(PUBLISHED);
+    assert_eq!(links(&page).next(), None);
+    for file in ["LICENSE-APACHE", "LICENSE-MIT"] {
+        assert!(page.contains(file) && files.contains(&file), "{file}");
+    }
+    assert!(
+        files.contains(&PUBLISHED) && !files.contains(&README),
+        "{files:?}"
+    );
+}
+
+/// The example of a firmware is compiled where it is published; the project's page shows the same.
+#[test]
+fn both_pages_show_the_same_example() {
+    let example = |page: &str| {
+        let page = text(page);
+        let code = page.split("```rust\n").nth(1).expect("an example");
+        code.split("```").next().expect("its end").to_owned()
+    };
+    assert_eq!(example(README), example(PUBLISHED));
+}
+
 #[test]
 fn every_page_is_linked() {
     let pages = pages();
@@ -213,7 +256,11 @@ fn every_page_is_linked() {
         })
         .filter_map(|file| file.canonicalize().ok())
         .collect();
-    for path in pages.iter().filter(|path| *path != README) {
+    let entrances = [README, PUBLISHED];
+    for path in pages
+        .iter()
+        .filter(|path| !entrances.contains(&path.as_str()))
+    {
         let file = Path::new(ROOT).join(path).canonicalize().expect("a page");
         assert!(linked.contains(&file), "no page links to {path}");
     }

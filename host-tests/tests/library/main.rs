@@ -14,6 +14,7 @@ mod covariance;
 mod covariate;
 mod detection;
 mod effect;
+mod faults;
 mod fit;
 mod integrity;
 mod lag;

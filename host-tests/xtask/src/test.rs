@@ -21,7 +21,9 @@ const PACKAGES: [&str; 6] = [
 
 /// The optional parts of the program, each to be built alone, after none of them. `cargo allanite` builds none, so that
 /// code which needs one by mistake would show in the first command of the README only.
-const OPTIONAL_PARTS: [&str; 6] = ["", "bags", "explore", "pictures", "study", "watch"];
+const OPTIONAL_PARTS: [&str; 7] = [
+    "", "bags", "explore", "pictures", "study", "tables", "watch",
+];
 
 /// Every feature except double precision.
 const SINGLE: [&str; 2] = ["--features", "async,defmt,storage,flash,overlap"];

@@ -107,6 +107,8 @@ pub enum AllaniteReason {
     LeftOut = 8,
     /// Any other reason, of a later version.
     Other = 9,
+    /// Small values are set to zero.
+    DeadBand = 10,
 }
 
 impl AllaniteReason {
@@ -121,6 +123,7 @@ impl AllaniteReason {
             Some(Reason::Moved { .. }) => Self::Moved,
             Some(Reason::Missing { .. }) => Self::Missing,
             Some(Reason::LeftOut { .. }) => Self::LeftOut,
+            Some(Reason::DeadBand { .. }) => Self::DeadBand,
             Some(_) => Self::Other,
         }
     }

@@ -15,11 +15,12 @@ pub enum Reason {
         /// Samples of the record.
         samples: u64,
     },
-    /// Every sample is there several times: the sensor's rate is a fraction of what was given.
+    /// Samples are there several times: the sensor's rate is a fraction of what was given.
     Repeated {
-        /// How often each sample is there.
+        /// How often each sample is there, 2 to 4. 1: some are there once more than others, at equal distances, as by a
+        /// reader that is faster than the sensor. 0: at any distances.
         times: u8,
-        /// Number of samples that differ from the one before.
+        /// Number of samples that differ from the one before, and of those that equal it by chance where that is known.
         changes: u64,
         /// Samples of the record.
         samples: u64,
@@ -30,11 +31,18 @@ pub enum Reason {
         /// The mean square of the differences of neighbouring samples, in thousandths of a squared count.
         per_mille: u16,
     },
-    /// Too many values are extreme values of the converter: the rate left the sensor's range, or the
+    /// Too many values are extreme values of the converter, or of the record: the rate left the sensor's range, or the
     /// sensor marks bad data with such a value.
     Railed {
-        /// Samples at either end of the scale.
+        /// Samples at the end of the scale that is clipped, or at both.
         hits: u64,
+        /// Samples of the record.
+        samples: u64,
+    },
+    /// Too many values are zero, as behind a dead band: the noise is larger than the record shows.
+    DeadBand {
+        /// Samples that are zero.
+        zeros: u64,
         /// Samples of the record.
         samples: u64,
     },
@@ -79,10 +87,35 @@ impl core::fmt::Display for Reason {
                 samples,
             } => write!(
                 f,
-                "the values are stuck: up to {longest_run} equal values in a row, {changes} changes \
+                "stuck values: up to {longest_run} equal values in a row, {changes} changes \
                  in {samples} samples; check that the sensor is read at its own rate, or use a finer \
                  range"
             ),
+            Self::Repeated {
+                times,
+                changes,
+                samples,
+            } if *times < 2
+                || changes.saturating_mul(98).saturating_mul((*times).into())
+                    > samples.saturating_mul(100) =>
+            {
+                let per_mille =
+                    |part: u64| (u128::from(part) * 1000 / u128::from(*samples.max(&1))) as u16;
+                let (repeats, own) = (
+                    per_mille(samples.saturating_sub(*changes)),
+                    per_mille(*changes),
+                );
+                write!(
+                    f,
+                    "{}.{} % of the samples repeat the one before: the sensor's rate is {}.{:03} of what \
+                     was given; read the sensor at its own rate, or give that rate and leave the repeated \
+                     samples out",
+                    repeats / 10,
+                    repeats % 10,
+                    own / 1000,
+                    own % 1000
+                )
+            }
             Self::Repeated {
                 times,
                 changes,
@@ -113,6 +146,11 @@ impl core::fmt::Display for Reason {
                 "{hits} of {samples} samples are at the end of the scale; record at rest, use a \
                  wider range, or check the bus"
             ),
+            Self::DeadBand { zeros, samples } => write!(
+                f,
+                "{zeros} of {samples} values are exactly zero, as a dead band leaves them, so that the \
+                 coefficients are lower bounds; switch the dead band off in the sensor or its driver"
+            ),
             Self::Spiked { spikes, percent } => write!(
                 f,
                 "the record has spikes: single samples far beyond the noise ({spikes}) explain \
@@ -123,11 +161,17 @@ impl core::fmt::Display for Reason {
                 motions,
                 cluster,
                 percent,
-            } => write!(
-                f,
-                "the gyro was moved: {motions} jumps explain {percent} % of the variance of means of \
-                 {cluster} samples; record again at rest, untouched"
-            ),
+            } => {
+                let (jumps, explain) = match motions {
+                    1 => ("jump", "explains"),
+                    _ => ("jumps", "explain"),
+                };
+                write!(
+                    f,
+                    "the gyro was moved: {motions} {jumps} {explain} {percent} % of the variance of \
+                     means of {cluster} samples; record again at rest, untouched"
+                )
+            }
             Self::Missing { missing, sent } => write!(
                 f,
                 "{missing} of {sent} samples are missing; read faster or record at a lower rate"

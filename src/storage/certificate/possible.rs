@@ -204,7 +204,8 @@ fn is_possible_verdict(verdict: Verdict) -> bool {
             times,
             changes,
             samples,
-        } => (2..=4).contains(&times) && changes <= samples,
+        } => times <= 4 && changes <= samples,
+        Reason::DeadBand { zeros, samples } => zeros <= samples,
         Reason::Coarse { per_mille } => per_mille < 1000,
     }
 }

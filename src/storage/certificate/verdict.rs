@@ -24,6 +24,7 @@ pub(crate) enum WireReason {
     LeftOut(u64, u64),
     Repeated(u8, u64, u64),
     Coarse(u16),
+    DeadBand(u64, u64),
 }
 
 impl From<Option<Verdict>> for WireVerdict {
@@ -77,6 +78,7 @@ impl From<Reason> for WireReason {
                 samples,
             } => Self::Repeated(times, changes, samples),
             Reason::Coarse { per_mille } => Self::Coarse(per_mille),
+            Reason::DeadBand { zeros, samples } => Self::DeadBand(zeros, samples),
         }
     }
 }
@@ -104,6 +106,7 @@ impl From<WireReason> for Reason {
                 samples,
             },
             WireReason::Coarse(per_mille) => Self::Coarse { per_mille },
+            WireReason::DeadBand(zeros, samples) => Self::DeadBand { zeros, samples },
         }
     }
 }

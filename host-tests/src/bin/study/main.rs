@@ -7,6 +7,7 @@ mod confusion;
 mod course;
 mod detection;
 mod efficiency;
+mod faults;
 mod hidden_effect;
 mod lines;
 mod long;
@@ -208,6 +209,18 @@ enum Study {
         #[arg(long)]
         clean: bool,
     },
+    /// Count how often repeated, stuck and clipped samples and dead bands are told, and how often without one
+    Faults {
+        /// Number of records per fault
+        #[arg(long, default_value_t = 1000)]
+        records: u64,
+        /// Number of records without a fault
+        #[arg(long, default_value_t = 20_000)]
+        clean: u64,
+        /// Seed of the records
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
+    },
     /// Count how often the self-test errs, and compare its length with a test of fixed length
     SelfTest {
         /// Number of devices per case
@@ -347,6 +360,11 @@ fn main() -> Result<()> {
             preset,
             clean,
         } => course::print(records, preset, clean),
+        Study::Faults {
+            records,
+            clean,
+            seed,
+        } => faults::print(records, clean, seed),
         Study::SelfTest {
             devices,
             effect,

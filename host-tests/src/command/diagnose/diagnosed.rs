@@ -10,14 +10,14 @@ use crate::{
     command::{
         input::record::{self, CovariateArguments, LogArguments},
         known_filter::{self, KnownFilter, known_filter},
-        output::{rounding, words},
+        output::{disturbance::invalid, rounding, words},
         tried::{TriedCovariate, tried},
     },
     curve_file::AxisCurve,
     dependence::candidates::{Candidate as Series, Candidates},
     diagnosis::{diagnose, go_on},
     failure::Failure,
-    log::{BINS, Evidence, Motion, OCTAVES},
+    log::{BINS, Disturbance, Evidence, OCTAVES},
 };
 use allanite::{
     Curve, Error, Model, Record, Scale, Term,
@@ -100,8 +100,8 @@ pub(crate) struct Diagnosed {
     pub(crate) course: Option<Course>,
     /// The columns that were recorded beside the axis, with their means in the blocks of the course.
     pub(crate) columns: Vec<(String, Vec<f64>)>,
-    /// The motion that makes the record not valid, if there is one.
-    pub(crate) motion: Option<Motion>,
+    /// The motion or the spikes that make the record not valid, if there are any.
+    pub(crate) disturbance: Option<Disturbance>,
     /// The covariates that were tried, with what was found of each. Empty for a record that is not valid.
     pub(crate) tried: Vec<TriedCovariate>,
     /// The options of the search for effects.
@@ -127,7 +127,7 @@ impl Diagnosed {
             evidence.course.take(),
             std::mem::take(&mut evidence.columns),
         );
-        let motion = evidence.motion.take();
+        let disturbance = evidence.disturbance.take();
         let (curve, spectrum, densities) = (axis.curve()?, axis.spectrum()?, axis.course()?);
         let candidates = Candidates::new(&curve, &spectrum, model, &evidence)?;
         let record = Record {
@@ -167,7 +167,7 @@ impl Diagnosed {
             combs: Vec::new(),
             course: None,
             columns,
-            motion,
+            disturbance,
             tried: Vec::new(),
             options,
             candidates,
@@ -272,13 +272,18 @@ impl Diagnosed {
     /// Why the record is not valid, if it is not.
     pub(crate) fn invalid(&self) -> Option<String> {
         match self.verdict {
-            Verdict::Invalid(reason) => Some(words::invalid(
+            Verdict::Invalid(reason) => Some(invalid(
                 &reason,
-                self.motion.as_ref(),
-                &self.axis.axis,
+                self.disturbance.as_ref(),
+                (&self.axis.axis, self.axis.rate_hz, self.axis.unit),
             )),
             _ => None,
         }
+    }
+
+    /// The motion that makes the record not valid, if there is one.
+    pub(crate) fn motion(&self) -> impl Iterator<Item = &Disturbance> {
+        self.disturbance.iter().filter(|one| one.is_motion)
     }
 
     /// The model of a step in words: `five terms + sinusoid`.

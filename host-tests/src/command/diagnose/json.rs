@@ -163,8 +163,7 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
             bins.map(bin).collect()
         }),
         events: diagnosed
-            .motion
-            .iter()
+            .motion()
             .map(motion)
             .chain(diagnosed.stationarity.events.iter().map(event))
             .collect(),

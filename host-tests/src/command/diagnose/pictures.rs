@@ -65,7 +65,7 @@ impl<'a> Pictures<'a> {
         let course = self.diagnosed.course.as_ref()?;
         let scale = Scale::new(axis.rate_per_count, axis.rate_hz).ok()?;
         // A record with motion is not valid, and has no other events.
-        let motion = self.diagnosed.motion.iter().map(|motion| Mark {
+        let motion = self.diagnosed.motion().map(|motion| Mark {
             at_s: motion.at_s,
             words: "motion".into(),
         });

@@ -3,7 +3,7 @@
 use crate::{
     command::{
         input::record,
-        output::words,
+        output::disturbance::invalid,
         tried::{self, TriedCovariate},
     },
     curve_file::AxisCurve,
@@ -120,9 +120,11 @@ impl Fitted {
         let spectrum = fitted.axis.spectrum();
         let tried = spectrum
             .and_then(|spectrum| tried::beside_model(&fitted.curve, &spectrum, &evidence, model));
-        let motion = evidence.motion.as_ref();
+        let disturbance = evidence.disturbance.as_ref();
+        let unit = fitted.axis.unit;
         Ok(Self {
-            invalid: reason.map(|reason| words::invalid(&reason, motion, name)),
+            invalid: reason
+                .map(|reason| invalid(&reason, disturbance, (name, fitted.axis.rate_hz, unit))),
             tried: tried.map_err(|error| record::library_failure(path, name, error))?,
             ..fitted
         })

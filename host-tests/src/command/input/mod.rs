@@ -2,3 +2,4 @@
 
 pub(super) mod many;
 pub(super) mod record;
+pub(super) mod standard_input;

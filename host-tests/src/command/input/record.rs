@@ -1,10 +1,13 @@
 //! Logs and curve files as inputs of commands.
 
 use crate::{
-    command::output::progress,
+    command::{input::standard_input, output::progress},
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place, one_line, report},
-    log::{self, ColumnChoice, CovariateChoice, Covariates, Evidence, Log, TimeUnit},
+    log::{
+        self, ColumnChoice, CovariateChoice, Covariates, Cuts, Evidence, Log, Moment, Repeats,
+        Stretch, TimeUnit,
+    },
     unit::{Sensor, Unit},
 };
 use clap::Args;
@@ -43,6 +46,19 @@ pub(crate) struct LogArguments {
     /// [default: the topic with the most samples]
     #[arg(long)]
     topic: Option<String>,
+    /// What to do with samples that a logger faster than the sensor repeated, where that is certain
+    #[arg(long, value_name = "CHOICE", default_value = "drop")]
+    repeats: Repeats,
+    /// Leave out what lies before this time from the log's first row, or with a minus sign from its last row: `10s`,
+    /// `2.5min`, `1h`
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    from: Option<Moment>,
+    /// Leave out what lies behind this time from the log's first row, or with a minus sign from its last row: `-12s`
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    to: Option<Moment>,
+    /// Leave out a stretch of the log, such as `311s..313s`, which becomes a gap; may be given several times
+    #[arg(long, value_name = "FROM..TO", allow_hyphen_values = true)]
+    drop: Vec<Stretch>,
 }
 
 impl LogArguments {
@@ -56,6 +72,12 @@ impl LogArguments {
             time: self.time.clone(),
             time_unit: self.time_unit,
             topic: self.topic.clone(),
+            repeats: self.repeats,
+            cuts: Cuts {
+                from: self.from.clone(),
+                to: self.to.clone(),
+                drop: self.drop.clone(),
+            },
         }
     }
 }
@@ -90,10 +112,7 @@ impl CovariateArguments {
 
 /// Measures the curves of a log.
 pub(crate) fn measure(path: &Path, arguments: &LogArguments) -> Result<Vec<AxisCurve>, Failure> {
-    let bar = progress::reading(path);
-    let log = log::read(path, &arguments.options(), &bar);
-    bar.finish_and_clear();
-    let log = log?;
+    let log = reading(path, |file, bar| log::read(file, &arguments.options(), bar))?;
     note(path, &log);
     curves(&log)
 }
@@ -138,11 +157,9 @@ fn read_beside(
         let axes = read(path, arguments)?.into_iter();
         return Ok(axes.map(|axis| (axis, Evidence::default())).collect());
     }
-    let bar = progress::reading(path);
     let covariates = covariates.tried();
-    let log = read_log(path, &arguments.options(), &covariates, &bar);
-    bar.finish_and_clear();
-    let log = log?;
+    let options = arguments.options();
+    let log = reading(path, |file, bar| read_log(file, &options, &covariates, bar))?;
     note(path, &log);
     let evidence = log.axes.iter().map(|axis| axis.evidence.clone());
     let evidence = evidence.map(Option::unwrap_or_default).collect::<Vec<_>>();
@@ -155,12 +172,25 @@ pub(crate) fn measure_in_two(
     arguments: &LogArguments,
     share: f64,
 ) -> Result<(Vec<AxisCurve>, Vec<AxisCurve>), Failure> {
-    let bar = progress::reading(path);
-    let logs = log::read_in_two(path, &arguments.options(), share, &bar);
-    bar.finish_and_clear();
+    let options = arguments.options();
+    let logs = reading(path, |file, bar| {
+        log::read_in_two(file, &options, share, bar)
+    });
     let (first, rest) = logs?;
     note(path, &first);
     Ok((curves(&first)?, curves(&rest)?))
+}
+
+/// Reads a log with a progress bar, whether it is in a file or comes from standard input.
+fn reading<T>(
+    path: &Path,
+    read: impl FnOnce(&Path, &indicatif::ProgressBar) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let file = standard_input::as_file(path)?;
+    let bar = progress::reading(path);
+    let log = read(&file, &bar);
+    bar.finish_and_clear();
+    log.map_err(|failure| failure.moved(&file, path))
 }
 
 fn note(path: &Path, log: &Log) {

@@ -55,8 +55,14 @@ pub(super) fn print(lot: &Lot, output: &mut impl Write) -> io::Result<()> {
     if lot.compared > 0 {
         writeln!(
             output,
-            "\n{} devices have earlier certificates; a change counts from {:.1} σ on",
-            lot.compared, lot.drift_threshold
+            "\n{} {} earlier certificates; a change counts from {:.1} σ on",
+            lot.compared,
+            if lot.compared == 1 {
+                "device has"
+            } else {
+                "devices have"
+            },
+            lot.drift_threshold
         )?;
     }
     list(output, "drifted", &lot.drifted, |one| {

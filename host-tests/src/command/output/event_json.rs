@@ -1,6 +1,6 @@
 //! What happened during a record, in JSON documents.
 
-use crate::log::Motion;
+use crate::log::Disturbance;
 use allanite::course::{Event as Told, What};
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ pub(crate) struct Event {
 }
 
 /// Motion has a time but no size: its squares are not noise, and their share is in the notes.
-pub(crate) fn motion(motion: &Motion) -> Event {
+pub(crate) fn motion(motion: &Disturbance) -> Event {
     Event {
         what: "motion",
         at_s: motion.at_s,

@@ -60,6 +60,11 @@ impl Temporary {
         })
     }
 
+    /// Where the file is.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Moves the file to its final path and replaces a file that was there.
     pub(crate) fn move_to(mut self, path: &Path) -> io::Result<()> {
         match self.file.take() {

@@ -4,10 +4,7 @@ use super::{
     number::{duration, number, rounded_up, two_digits},
     units,
 };
-use crate::{
-    log::Motion,
-    unit::{Sensor, Unit},
-};
+use crate::unit::{Sensor, Unit};
 use allanite::{
     Coefficient, Model, Term,
     comparison::Band,
@@ -15,23 +12,7 @@ use allanite::{
     detection::Range,
     effect::{Effect, MAX_PARAMETERS, Parameter, explanation},
     fit::{Fit, State},
-    integrity::Reason,
 };
-
-/// Why a record is not valid. Motion is said with its time, and with its axis where another one shows it.
-pub(crate) fn invalid(reason: &Reason, motion: Option<&Motion>, axis: &str) -> String {
-    match motion.filter(|_| matches!(reason, Reason::Moved { .. })) {
-        Some(motion) if motion.axis == axis => {
-            format!("{reason} (first at {} s)", number(motion.at_s))
-        }
-        Some(motion) => format!(
-            "{reason} (first at {} s, seen in axis {}: motion about one axis makes all axes invalid)",
-            number(motion.at_s),
-            motion.axis
-        ),
-        None => reason.to_string(),
-    }
-}
 
 /// A name as people write it.
 pub(crate) fn plain(name: &str) -> String {

@@ -20,7 +20,7 @@ use crate::{
         output::{file::OutputFile, progress},
     },
     curve_file::CurveFile,
-    failure::{Failure, Place, one_line, report},
+    failure::{Failure, Place, one_line, plural, report},
 };
 use console::Term;
 use std::{
@@ -282,10 +282,10 @@ impl Watch<'_> {
         if self.recording.curves()?.is_none() {
             return Err(Failure::option(
                 format!(
-                    "{}: received {} samples and {} invalid lines, but a curve needs 9 samples",
+                    "{}: received {} and {}, but a curve needs 9 samples",
                     self.place,
-                    self.recording.samples(),
-                    self.recording.garbled()
+                    plural(self.recording.samples(), "sample"),
+                    plural(self.recording.garbled(), "invalid line")
                 ),
                 self.recording.remedy().unwrap_or_else(|| {
                     "record longer, and check that each line has one whole number for each axis"

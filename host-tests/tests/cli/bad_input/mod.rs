@@ -8,6 +8,7 @@ mod curves;
 mod options;
 mod pipes;
 mod stored;
+mod tables;
 mod text;
 mod ulogs;
 
@@ -28,6 +29,7 @@ fn every_bad_input_ends_with_its_status_and_message_in_little_time_and_memory() 
         ulogs::cases(),
         curves::cases(),
         stored::cases(),
+        tables::cases(),
         options::cases(),
         pipes::cases(),
     ]

@@ -52,11 +52,11 @@ pub(crate) fn cases() -> Vec<Case> {
     ));
     cases.push(watch(
         &[0xff; 1 << 20],
-        "received 0 samples and 1 invalid lines",
+        "received 0 samples and 1 invalid line,",
     ));
     cases.push(watch(
         &b"1,".repeat(1 << 19),
-        "received 0 samples and 1 invalid lines",
+        "received 0 samples and 1 invalid line,",
     ));
     cases
 }

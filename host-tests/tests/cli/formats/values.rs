@@ -101,7 +101,7 @@ fn bags_and_logs_of_no_or_several_sensors_are_refused_with_a_list_of_their_topic
             "no-imu.mcap",
             Options::default(),
             "no-imu.mcap: no topic of sensor_msgs/msg/Imu: \
-             only /words (std_msgs/msg/String, cdr); give a bag with an IMU",
+             only /words (std_msgs/msg/String, cdr); give a bag with an IMU, or name a topic of other messages with rates with --topic",
         ),
         (
             "no-gyro.ulg",

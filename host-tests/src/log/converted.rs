@@ -1,0 +1,81 @@
+//! The text that is made of a log in another format, in a temporary file.
+
+use crate::failure::{Failure, Place};
+use std::{
+    io::{self, BufWriter, ErrorKind, Write},
+    path::{Path, PathBuf},
+};
+use tempfile::{NamedTempFile, TempPath};
+
+/// The text of a log may be this long, and this many times the size of its file longer. Packed columns of noise become
+/// some ten times as long.
+pub(super) const MOST_TEXT: u64 = 1 << 24;
+pub(super) const MOST_TIMES: u64 = 100;
+
+/// A text that is deleted when this is dropped.
+pub(super) struct Converted {
+    pub(super) text: TempPath,
+    pub(super) note: Option<String>,
+}
+
+/// A text of bounded length that is being written.
+pub(super) struct Text {
+    path: PathBuf,
+    out: BufWriter<NamedTempFile>,
+    left: u64,
+}
+
+impl Text {
+    /// An empty text for a log of so many bytes.
+    pub(super) fn new(path: &Path, size: u64) -> Result<Self, Failure> {
+        let file = NamedTempFile::new().map_err(|error| Place::file(path).io(&error))?;
+        Ok(Self {
+            path: path.to_owned(),
+            out: BufWriter::new(file),
+            left: MOST_TEXT.saturating_add(size.saturating_mul(MOST_TIMES)),
+        })
+    }
+
+    /// Writes the names of the columns.
+    pub(super) fn names<T: AsRef<[u8]>>(
+        &mut self,
+        names: impl IntoIterator<Item = T>,
+    ) -> io::Result<()> {
+        let mut writer = csv::Writer::from_writer(&mut *self);
+        writer.write_record(names)?;
+        writer.flush()
+    }
+
+    /// The failure to write it.
+    pub(super) fn failure(&self, error: &io::Error) -> Failure {
+        let here = Place::file(&self.path);
+        match error.kind() {
+            ErrorKind::QuotaExceeded => here.failure(
+                format!("its table is more than {MOST_TIMES} times as long as the file"),
+                "check what it holds, and export it as CSV",
+            ),
+            _ => here.io(error),
+        }
+    }
+
+    pub(super) fn finish(self, note: Option<String>) -> Result<Converted, Failure> {
+        let file = self.out.into_inner();
+        let file = file.map_err(|error| Place::file(&self.path).io(error.error()))?;
+        Ok(Converted {
+            text: file.into_temp_path(),
+            note,
+        })
+    }
+}
+
+impl Write for Text {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let left = self.left.checked_sub(bytes.len() as u64);
+        self.left = left.ok_or(ErrorKind::QuotaExceeded)?;
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}

@@ -1,0 +1,160 @@
+//! What a logger does to samples: it repeats them, holds values for a while, clips them, or cuts out a band.
+//!
+//! A [`SampleFaults`] watches an axis, and a [`JointRepeats`] the three axes of a sensor together. Both are apart from
+//! [`Integrity`](crate::integrity::Integrity), so that a device that does not ask for them pays nothing. `evidence`
+//! judges them.
+
+pub(crate) mod ends;
+mod hole;
+mod spread;
+pub(crate) mod steps;
+mod zero_runs;
+
+pub(crate) use hole::Hole;
+
+use ends::End;
+use spread::Spread;
+use steps::Steps;
+use zero_runs::ZeroRuns;
+
+/// Counts, in fixed memory and integers, what shows that a logger repeated, held, clipped or cut out samples of one
+/// axis.
+///
+/// Beside the repeats are counted the differences of one, two and three steps, from which the number of repeats by
+/// chance follows, the lengths of runs of repeats, the values at both ends of the range and next to them, and zeros and
+/// the values next to them. A sample takes some ten comparisons and additions. The state takes at most 512 bytes.
+///
+/// ```
+/// use allanite::{faults::SampleFaults, integrity::Reason};
+///
+/// // A sensor of 400 Hz, read at 500 Hz.
+/// let (mut faults, mut random) = (SampleFaults::new(), 1_u32);
+/// for n in 0..20_000 {
+///     if n % 5 != 0 {
+///         random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+///     }
+///     faults.push((random >> 8) as i32);
+/// }
+/// let Some(Reason::Repeated { changes, samples, .. }) = faults.verdict(None) else { panic!() };
+/// assert!(samples * 4 - changes * 5 < 50);
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SampleFaults {
+    pub(crate) zero: i32,
+    last: Option<i32>,
+    pub(crate) samples: u64,
+    pub(crate) steps: Steps,
+    pub(crate) runs: ZeroRuns,
+    pub(crate) ends: [End; 2],
+    pub(crate) hole: Hole,
+    pub(crate) spread: Spread,
+}
+
+impl SampleFaults {
+    /// No samples yet.
+    pub const fn new() -> Self {
+        Self::with_zero(0)
+    }
+
+    /// No samples yet, of counts whose zero is this one.
+    pub const fn with_zero(zero: i32) -> Self {
+        Self {
+            zero,
+            last: None,
+            samples: 0,
+            steps: Steps::NEW,
+            runs: ZeroRuns::NEW,
+            ends: [End::NEW, End::NEW],
+            hole: Hole::NEW,
+            spread: Spread::NEW,
+        }
+    }
+
+    /// Adds a count. Returns how many steps it is away from the one before, for [`JointRepeats::push`]: 0 if it repeats
+    /// it, and 4 from four steps on. `None` behind a gap.
+    #[inline]
+    pub fn push(&mut self, count: i32) -> Option<u8> {
+        self.samples = self.samples.saturating_add(1);
+        let class = self.last.map(|last| self.steps.push(count.abs_diff(last)));
+        self.last = Some(count);
+        let repeats = class == Some(0);
+        self.runs.push(repeats);
+        self.spread.push(count);
+        self.hole
+            .push(count.abs_diff(self.zero), repeats, &self.steps);
+        let [high, low] = &mut self.ends;
+        let count = i64::from(count);
+        for (end, value) in [(high, count), (low, -count)] {
+            end.push(value, repeats, |distance| self.steps.class(distance));
+        }
+        class
+    }
+
+    /// Marks a place where the next sample does not adjoin the one before.
+    pub fn gap(&mut self) {
+        self.last = None;
+        self.runs.push(false);
+    }
+}
+
+impl Default for SampleFaults {
+    /// No samples yet.
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Counts which of the three axes of a sensor repeat at the same time. That one axis repeats says little where counts
+/// are coarse; that three do at once says much.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct JointRepeats {
+    /// The number of samples in which the axes repeat whose bits are set in the place.
+    pub(crate) cells: [u64; 8],
+    /// The number of samples in which two axes repeat and the third one moves by one step, and by two.
+    pub(crate) third: [u64; 2],
+    /// Runs of samples in which all axes repeat.
+    pub(crate) runs: ZeroRuns,
+}
+
+impl JointRepeats {
+    /// No samples yet.
+    pub const fn new() -> Self {
+        Self {
+            cells: [0; 8],
+            third: [0; 2],
+            runs: ZeroRuns::NEW,
+        }
+    }
+
+    /// Adds what [`SampleFaults::push`] returned for each axis. Behind a gap, this is a gap.
+    #[inline]
+    pub fn push(&mut self, steps: [Option<u8>; 3]) {
+        let [Some(x), Some(y), Some(z)] = steps else {
+            return self.runs.push(false);
+        };
+        let cell = usize::from(x == 0) | usize::from(y == 0) << 1 | usize::from(z == 0) << 2;
+        if let Some(cell) = self.cells.get_mut(cell) {
+            *cell = cell.saturating_add(1);
+        }
+        self.runs.push(cell == 7);
+        if cell.count_ones() == 2 {
+            // Only the axis that does not repeat contributes.
+            let third = x.wrapping_add(y).wrapping_add(z).wrapping_sub(1);
+            if let Some(third) = self.third.get_mut(usize::from(third)) {
+                *third = third.saturating_add(1);
+            }
+        }
+    }
+}
+
+impl Default for JointRepeats {
+    /// No samples yet.
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests;

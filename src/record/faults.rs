@@ -4,6 +4,7 @@
 //! [`Integrity`](crate::integrity::Integrity), so that a device that does not ask for them pays nothing. `evidence`
 //! judges them.
 
+mod bulk;
 pub(crate) mod ends;
 mod hole;
 mod spread;
@@ -12,6 +13,7 @@ mod zero_runs;
 
 pub(crate) use hole::Hole;
 
+use bulk::Bulk;
 use ends::End;
 use spread::Spread;
 use steps::Steps;
@@ -91,6 +93,18 @@ impl SampleFaults {
         class
     }
 
+    /// Adds counts. The state afterwards is the same as if they were pushed one by one, but it is reached sooner.
+    pub fn push_slice(&mut self, counts: &[i32]) {
+        for counts in counts.chunks(bulk::MOST) {
+            match Bulk::of(self, counts) {
+                Some(bulk) => bulk.add_to(self),
+                None => counts.iter().for_each(|&count| {
+                    self.push(count);
+                }),
+            }
+        }
+    }
+
     /// Marks a place where the next sample does not adjoin the one before.
     pub fn gap(&mut self) {
         self.last = None;
@@ -144,6 +158,33 @@ impl JointRepeats {
             let third = x.wrapping_add(y).wrapping_add(z).wrapping_sub(1);
             if let Some(third) = self.third.get_mut(usize::from(third)) {
                 *third = third.saturating_add(1);
+            }
+        }
+    }
+}
+
+impl JointRepeats {
+    /// Adds counts of each axis, here and to `axes`. The state afterwards is the same as if they were pushed one by one,
+    /// but it is reached sooner. Counts of one axis for which there are none of another are left out.
+    pub fn push_slices(&mut self, axes: &mut [SampleFaults; 3], [x, y, z]: [&[i32]; 3]) {
+        let chunks = x.chunks(bulk::MOST).zip(y.chunks(bulk::MOST));
+        for ((x, y), z) in chunks.zip(z.chunks(bulk::MOST)) {
+            let [of_x, of_y, of_z] = &mut *axes;
+            let bulks = (Bulk::of(of_x, x), Bulk::of(of_y, y), Bulk::of(of_z, z));
+            if let (Some(by_x), Some(by_y), Some(by_z)) = bulks
+                && x.len() == y.len()
+                && x.len() == z.len()
+            {
+                by_x.add_to(of_x);
+                by_y.add_to(of_y);
+                by_z.add_to(of_z);
+                let [none, ..] = &mut self.cells;
+                *none = none.saturating_add(x.len() as u64);
+                self.runs.push(false);
+                continue;
+            }
+            for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
+                self.push([of_x.push(x), of_y.push(y), of_z.push(z)]);
             }
         }
     }

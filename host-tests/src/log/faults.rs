@@ -19,8 +19,9 @@ pub(super) struct Plan {
     pub(super) zeros: Vec<i32>,
     /// Whether the columns come row by row, so that the axes can be compared.
     pub(super) by_rows: bool,
-    /// The share of the rows that the logger repeated, if rows are left out in which all axes repeat.
-    pub(super) left_out: Option<f64>,
+    /// The share of the rows that the logger repeated, and whether at equal distances, if rows are left out in which all
+    /// axes repeat.
+    pub(super) left_out: Option<(f64, bool)>,
     /// What to do with repeats that are certain.
     pub(super) repeats: Repeats,
 }
@@ -63,10 +64,7 @@ impl Faults {
 
     /// Watches some counts of an axis.
     pub(super) fn push(&mut self, axis: usize, counts: &[i32]) {
-        let faults = &mut self.axes[axis];
-        for &count in counts {
-            faults.push(count);
-        }
+        self.axes[axis].push_slice(counts);
     }
 
     /// Watches the counts of some rows. The first columns are the axes. Rows that are left out are taken out of all
@@ -86,10 +84,7 @@ impl Faults {
         let sensors = self.axes.as_chunks_mut::<SENSOR>().0.iter_mut();
         let counts = columns.as_chunks::<SENSOR>().0;
         for ((axes, joint), [x, y, z]) in sensors.zip(&mut self.joint).zip(counts) {
-            let [of_x, of_y, of_z] = axes;
-            for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
-                joint.push([of_x.push(x), of_y.push(y), of_z.push(z)]);
-            }
+            joint.push_slices(axes, [x, y, z]);
         }
     }
 
@@ -142,6 +137,10 @@ impl Faults {
             return None;
         }
         let verdicts = (0..self.axes.len()).map(|axis| self.verdict(axis));
+        let regular = matches!(
+            verdicts.clone().next(),
+            Some(Some(Reason::Repeated { times: 1.., .. }))
+        );
         let mut others = verdicts.flatten();
         if others.any(|reason| !matches!(reason, Reason::Repeated { .. })) {
             return None;
@@ -161,21 +160,21 @@ impl Faults {
         let certain = all.iter().all(|repeats| repeats.are_certain());
         // The axes of a sensor repeat together.
         (certain && !all.is_empty() && most - least < 0.005).then(|| Plan {
-            left_out: Some(0.5 * (least + most)),
+            left_out: Some((0.5 * (least + most), regular)),
             ..self.plan.clone()
         })
     }
 
     /// The rate of the sensor, of a record with this one, and a note on the repeats that were left out.
     pub(super) fn sensor_rate(&self, rate_hz: f64) -> (f64, Option<String>) {
-        let Some(share) = self.plan.left_out else {
+        let Some((share, regular)) = self.plan.left_out else {
             return (rate_hz, None);
         };
         // The sensor's own samples that equal the one before are few and count here.
-        let rate_hz = rate_of(1.0 - share, self.rows, rate_hz);
+        let rate_hz = rate_of((share, regular), self.rows, rate_hz);
         let note = format!(
             "{}: the sensor runs at {rate_hz} Hz; the {} repeats are left out (keep them with --repeats keep)",
-            said(share, true),
+            said(share, regular),
             self.dropped
         );
         (rate_hz, Some(note))
@@ -198,9 +197,12 @@ pub(super) fn bound(least: f64) -> Option<String> {
     })
 }
 
-/// The rate of the samples that are the sensor's own, with as many digits as so many samples tell.
-pub(crate) fn rate_of(own: f64, samples: u64, rate_hz: f64) -> f64 {
-    let rate = rate_hz * own;
+/// The rate of a sensor of whose samples this share is repeated, with as many digits as so many samples tell.
+pub(crate) fn rate_of((share, regular): (f64, bool), samples: u64, rate_hz: f64) -> f64 {
+    // A share this near to a simple fraction is the fraction.
+    const NEAR: f64 = 0.0005;
+    let fraction = fraction(share).filter(|exact| regular && (exact - share).abs() < NEAR);
+    let rate = rate_hz * (1.0 - fraction.unwrap_or(share));
     let digits = f64::from(samples.max(1000).ilog10()) - 1.0;
     let unit = 10_f64.powf(rate.log10().floor() - digits);
     // Division by a whole number leaves no digits behind the last one.
@@ -210,25 +212,35 @@ pub(crate) fn rate_of(own: f64, samples: u64, rate_hz: f64) -> f64 {
     }
 }
 
-/// How many samples repeat the one before, in words.
+/// The share of one in a few samples, or of all but one, that is nearest to this one.
+fn fraction(share: f64) -> Option<f64> {
+    let (every, times) = ((1.0 / share).round(), (1.0 / (1.0 - share)).round());
+    [1.0 / every, 1.0 - 1.0 / times]
+        .into_iter()
+        .find(|exact| *exact >= 0.1 && (share / exact - 1.0).abs() < 0.01)
+}
+
+/// How many samples repeat the one before, in words. `regular` tells whether at equal distances.
 pub(crate) fn said(share: f64, regular: bool) -> String {
     const ORDINALS: [&str; 9] = [
         "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth",
     ];
-    let (every, times) = ((1.0 / share).round(), (1.0 / (1.0 - share)).round());
-    let is_near = |value: f64| (share / value - 1.0).abs() < 0.01;
-    if regular && (2.0..=10.0).contains(&every) && is_near(1.0 / every) {
-        let every = ORDINALS[every as usize - 2];
-        return format!("every {every} sample repeats the one before");
+    match fraction(share).filter(|_| regular) {
+        Some(exact) if exact > 0.5 => {
+            format!("every sample is there {:.0} times", 1.0 / (1.0 - exact))
+        }
+        Some(exact) => {
+            let every = ORDINALS[(1.0 / exact).round() as usize - 2];
+            format!("every {every} sample repeats the one before")
+        }
+        None => {
+            let digits = usize::from(share < 0.1);
+            format!(
+                "{:.digits$} % of the samples repeat the one before",
+                100.0 * share
+            )
+        }
     }
-    if regular && times >= 2.0 && is_near(1.0 - 1.0 / times) {
-        return format!("every sample is there {times} times");
-    }
-    let digits = usize::from(share < 0.1);
-    format!(
-        "{:.digits$} % of the samples repeat the one before",
-        100.0 * share
-    )
 }
 
 #[cfg(test)]
@@ -255,16 +267,16 @@ mod tests {
 
     #[test]
     fn rates_have_the_digits_that_the_samples_tell() {
-        assert_eq!(rate_of(0.80002, 19_999, 500.0), 400.0);
-        assert_eq!(rate_of(0.8, 7000, 1250.0), 1000.0);
-        assert_eq!(rate_of(2.0 / 3.0, 3, 0.1), 0.0667);
+        assert_eq!(rate_of((0.19998, true), 19_999, 500.0), 400.0);
+        assert_eq!(rate_of((0.2, false), 7000, 1250.0), 1000.0);
+        assert_eq!(rate_of((1.0 / 3.0, false), 3, 0.1), 0.0667);
     }
 
     #[test]
     fn rows_are_left_out_where_all_axes_repeat_and_no_gap_lies_between() {
         let plan = Plan {
             by_rows: true,
-            left_out: Some(0.3),
+            left_out: Some((0.3, true)),
             ..Plan::default()
         };
         let mut faults = Faults::new(plan, 2);

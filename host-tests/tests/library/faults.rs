@@ -27,7 +27,7 @@ fn repeats_are_told_with_the_rate_of_the_sensor() {
             Fault::Clipped(_) => [0.4, 0.4],
             Fault::DeadBand(_) => [0.95, 0.95],
             // A step of a count is hard to tell from coarse noise.
-            Fault::Threshold(1) => [0.4, 0.4],
+            Fault::Threshold(1) => [0.25, 0.25],
             Fault::Threshold(_) => [0.9, 0.9],
             Fault::None => unreachable!("a record without a fault"),
         };

@@ -32,21 +32,34 @@ impl Hole {
         if quarter > step { quarter } else { step }
     }
 
+    /// Whether a value is neither beside the edge nor within two steps of zero: it is beyond twice the edge, and beyond the
+    /// edge and three steps.
+    #[inline(always)]
+    pub(super) fn is_far(&self, distance: u32, step: u32) -> bool {
+        let far = self.edge.saturating_mul(2);
+        self.edge > 0 && distance >= far.max(self.edge.saturating_add(step.saturating_mul(3)))
+    }
+
+    /// Adds values that are far from zero and do not repeat, some of which are within the window.
+    pub(super) fn push_far(&mut self, around: u64) {
+        self.around = self.around.saturating_add(around);
+    }
+
     /// Adds the distance of a value from zero.
     #[inline(always)]
     pub(super) fn push(&mut self, distance: u32, repeats: bool, steps: &Steps) {
         let step = steps.step();
-        // Beyond twice the edge, or beyond the edge and three steps, a value is not beside it.
-        let far = self.edge.saturating_mul(2);
-        if self.edge > 0 && distance >= far.max(self.edge.saturating_add(step.saturating_mul(3))) {
+        if !repeats {
+            let around = distance > 0 && u64::from(distance) <= steps.window();
+            self.push_far(around.into());
+        }
+        if self.is_far(distance, step) {
             return;
         }
         if !repeats {
             if let Some(level) = self.levels.get_mut(usize::from(steps.class(distance))) {
                 *level = level.saturating_add(1);
             }
-            let around = distance > 0 && u64::from(distance) <= steps.window();
-            self.around = self.around.saturating_add(u64::from(around));
         }
         if distance == 0 {
             self.zeros = self.zeros.saturating_add(1);

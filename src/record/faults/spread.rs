@@ -28,6 +28,17 @@ impl Spread {
         }
     }
 
+    /// The first value.
+    pub(super) const fn first(&self) -> Option<i32> {
+        self.first
+    }
+
+    /// Adds the sums of some values and of their squares, relative to the first one.
+    pub(super) fn push_sums(&mut self, sum: i64, squares: u64) {
+        self.sum = self.sum.saturating_add(sum);
+        self.squares = self.squares.saturating_add(squares.into());
+    }
+
     /// The first value, and the sums of the values and of their squares relative to it.
     pub(crate) fn sums(&self) -> (i64, i64, u128) {
         (self.first.unwrap_or(0).into(), self.sum, self.squares)

@@ -52,6 +52,21 @@ impl Steps {
         self.usual >> 14
     }
 
+    /// The same, once it is known.
+    pub(super) const fn learnt_window(&self) -> Option<u64> {
+        match self.learnt < LEARNT {
+            true => None,
+            false => Some(self.window()),
+        }
+    }
+
+    /// Adds differences that are far longer than a step, some of which are within the window.
+    pub(super) fn push_far(&mut self, number: u64, small: u64) {
+        self.pairs = self.pairs.saturating_add(number);
+        self.later = self.later.saturating_add(number);
+        self.small = self.small.saturating_add(small);
+    }
+
     /// How many steps long a difference is, at most [`FAR`].
     #[inline(always)]
     pub(super) fn class(&self, difference: u32) -> u8 {

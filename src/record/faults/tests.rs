@@ -134,6 +134,40 @@ fn counters_are_those_of_the_definition() {
 }
 
 #[test]
+fn slices_lead_to_the_state_of_single_counts() {
+    for (seed, size) in (1..9).zip([1, 3, 9, 40, 300, 10_000, 1 << 20, 1 << 28]) {
+        let mut random = Random::new(seed);
+        let rows = 20_000;
+        let axes = [(); 3].map(|()| {
+            let noise = (0..rows).map(|_| (0..8).map(|_| random.below(size) as i32).sum());
+            noise.collect::<Vec<i32>>()
+        });
+        // Three of four records have zero in the middle.
+        let zero = 4 * (size as i32 - 1) * i32::from(seed % 4 > 0);
+        let fresh = || [(); 3].map(|()| SampleFaults::with_zero(zero));
+        let (mut singly, mut joint) = (fresh(), JointRepeats::new());
+        let (mut sliced, mut joint_sliced) = (fresh(), JointRepeats::new());
+        let mut alone = SampleFaults::with_zero(zero);
+        let mut from = 0;
+        while from < rows {
+            let to = rows.min(from + random.below(1000));
+            joint_sliced.push_slices(&mut sliced, axes.each_ref().map(|axis| &axis[from..to]));
+            alone.push_slice(&axes[0][from..to]);
+            for row in from..to {
+                let mut steps = [None; 3];
+                for ((steps, faults), axis) in steps.iter_mut().zip(&mut singly).zip(&axes) {
+                    *steps = faults.push(axis[row]);
+                }
+                joint.push(steps);
+            }
+            from = to;
+        }
+        assert_eq!((&singly, &joint), (&sliced, &joint_sliced), "{size}");
+        assert_eq!(alone, singly[0]);
+    }
+}
+
+#[test]
 fn steps_that_were_taken_for_too_long_are_forgotten() {
     let mut faults = SampleFaults::new();
     for value in [0, 100, 200, 200, 210, 230, 230, 260, 300] {

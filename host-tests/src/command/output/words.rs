@@ -31,9 +31,9 @@ pub(crate) fn invalid(
         samples,
     } = *reason
     {
-        let own = changes as f64 / samples as f64;
-        let words = log::repeats_said(1.0 - own, times > 0);
-        let rate = log::rate_of(own, samples, rate_hz);
+        let share = (1.0 - changes as f64 / samples as f64, times > 0);
+        let words = log::repeats_said(share.0, share.1);
+        let rate = log::rate_of(share, samples, rate_hz);
         return format!(
             "{words}: the sensor runs at {rate} Hz, and the repeats make its noise look filtered; read it at its own rate, \
              or leave the repeats out, which `--repeats drop` does where it is certain which samples repeat"

@@ -77,6 +77,15 @@ impl SampleFaults {
     /// it, and 4 from four steps on. `None` behind a gap.
     #[inline]
     pub fn push(&mut self, count: i32) -> Option<u8> {
+        if let Some(bulk) = Bulk::of(self, &[count]) {
+            bulk.add_to(self);
+            return Some(steps::FAR);
+        }
+        self.push_near(count)
+    }
+
+    #[inline(never)]
+    fn push_near(&mut self, count: i32) -> Option<u8> {
         self.samples = self.samples.saturating_add(1);
         let class = self.last.map(|last| self.steps.push(count.abs_diff(last)));
         self.last = Some(count);
@@ -96,11 +105,12 @@ impl SampleFaults {
     /// Adds counts. The state afterwards is the same as if they were pushed one by one, but it is reached sooner.
     pub fn push_slice(&mut self, counts: &[i32]) {
         for counts in counts.chunks(bulk::MOST) {
-            match Bulk::of(self, counts) {
-                Some(bulk) => bulk.add_to(self),
-                None => counts.iter().for_each(|&count| {
-                    self.push(count);
-                }),
+            if let Some(bulk) = Bulk::of(self, counts) {
+                bulk.add_to(self);
+                continue;
+            }
+            for &count in counts {
+                self.push(count);
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::SampleFaults;
 
 /// The number of counts that are taken together.
-pub(super) const MOST: usize = 64;
+pub(super) const MOST: usize = 16;
 
 /// What some counts add.
 pub(super) struct Bulk {
@@ -17,7 +17,7 @@ pub(super) struct Bulk {
 
 impl Bulk {
     /// The sums of at most [`MOST`] counts, if all of them are far from what is counted one by one.
-    #[inline]
+    #[inline(always)]
     pub(super) fn of(faults: &SampleFaults, counts: &[i32]) -> Option<Self> {
         let (mut before, first) = (faults.last?, faults.spread.first()?);
         let window = u32::try_from(faults.steps.learnt_window()?).ok()?;
@@ -60,7 +60,7 @@ impl Bulk {
     }
 
     /// Adds the counts.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add_to(&self, faults: &mut SampleFaults) {
         faults.last = Some(self.last);
         faults.samples = faults.samples.saturating_add(self.number);

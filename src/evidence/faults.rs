@@ -9,7 +9,7 @@ use crate::{
         real::{Real, consts::FRAC_1_SQRT_2, real},
     },
     record::{
-        faults::{Hole, ends::End, steps::Steps},
+        faults::{Hole, ZeroRuns, ends::End, steps::Steps},
         integrity::Reason,
     },
 };
@@ -25,6 +25,8 @@ const JUDGED: u64 = 1000;
 const LEAST: Real = 0.005;
 /// The largest chance of a sample to equal the one before at which every repeat counts as one of the logger.
 const CHANCE: Real = 0.002;
+/// The negative logarithm of the probability below which runs are too long for chance: a ten thousandth.
+const RARE: Real = 9.2;
 /// The share of equal neighbours from which neither long runs nor full ends of the range mean anything.
 const MOSTLY_EQUAL: Real = 0.45;
 
@@ -100,11 +102,6 @@ impl SampleFaults {
         }
     }
 
-    /// Whether the values are held, so that what repeats are not the samples of a slow sensor.
-    pub fn is_stuck(&self, joint: Option<&JointRepeats>) -> bool {
-        self.stuck(joint).is_some()
-    }
-
     /// The differences of noise have a smooth distribution, so that those of one and two steps tell how many are zero.
     fn own_repeats(&self) -> Repeats {
         let steps = &self.steps;
@@ -152,7 +149,7 @@ impl SampleFaults {
         let mut all = [Some(own), all].into_iter().flatten();
         all.any(|(runs, pairs, repeats)| {
             let fine = repeats.chance <= CHANCE;
-            is_stuck(&runs.reached, (runs.zeros, runs.long), pairs, fine)
+            is_stuck(runs, pairs, fine)
         })
         .then(|| Reason::Stuck {
             longest_run: self.runs.longest.saturating_add(1),
@@ -363,10 +360,10 @@ fn fine_repeats(steps: &Steps) -> Repeats {
 /// Whether runs of repeats are too long. `fine` tells that none is there by chance. Then a sensor slower by a factor
 /// `1/(1 − r)` has no runs beyond this factor, and repeats at random go on with the probability `r`. Else the short
 /// runs tell how likely a run goes on.
-fn is_stuck(reached: &[u64; 6], (zeros, long): (u64, u64), pairs: u64, fine: bool) -> bool {
-    let [one, two, four, ..] = reached.map(|number| number as Real);
-    let share = zeros as Real / pairs.max(1) as Real;
-    if long.saturating_mul(1000) < pairs || (!fine && share >= MOSTLY_EQUAL) {
+fn is_stuck(runs: &ZeroRuns, pairs: u64, fine: bool) -> bool {
+    let [one, two, four, ..] = runs.reached.map(|number| number as Real);
+    let share = runs.zeros as Real / pairs.max(1) as Real;
+    if runs.long.saturating_mul(1000) < pairs || (!fine && share >= MOSTLY_EQUAL) {
         return false;
     }
     // Slow noise makes a run go on more often than short ones tell: the exponent allows for it.
@@ -374,17 +371,26 @@ fn is_stuck(reached: &[u64; 6], (zeros, long): (u64, u64), pairs: u64, fine: boo
         true => (share.max(0.001), 1.0, one),
         false => {
             let later = if two > 20.0 { sqrt(four / two) } else { 0.0 };
-            ((two / one.max(1.0)).max(later).max(0.001), 4.0, four + 1.0)
+            let next = (two / one.max(1.0)).max(later);
+            (next.max(0.001), 4.0, four + 1.0)
         }
     };
     let slow = 1.0 / (1.0 - share).max(0.001);
-    numbered(reached.iter()).skip(3).any(|(place, &runs)| {
-        let length = (1_u32 << place) as Real;
-        let expected = begun * exp(0.6 * (length - from) * log(chance)) + 0.01;
-        let runs = runs as Real;
-        // Chernoff's bound of the probability of so many runs.
-        length > slow && runs > expected && runs * (log(runs / expected) - 1.0) + expected > 9.2
-    })
+    // The logarithm of the number of runs of a length that are expected.
+    let expected = |length: Real| log(begun.max(1.0)) + 0.6 * (length - from) * log(chance);
+    let longest = runs.longest as Real;
+    let too_long = longest > slow && expected(longest) < -RARE;
+    too_long
+        || numbered(runs.reached.iter())
+            .skip(3)
+            .any(|(place, &found)| {
+                let length = (1_u32 << place) as Real;
+                let expected = exp(expected(length)) + 0.01;
+                let found = found as Real;
+                // Chernoff's bound of the probability of so many runs.
+                let rare = found * (log(found / expected) - 1.0) + expected > RARE;
+                length > slow && found > expected && rare
+            })
 }
 
 impl JointRepeats {

@@ -12,12 +12,12 @@ pub(crate) mod steps;
 mod zero_runs;
 
 pub(crate) use hole::Hole;
+pub(crate) use zero_runs::ZeroRuns;
 
 use bulk::Bulk;
 use ends::End;
 use spread::Spread;
 use steps::Steps;
-use zero_runs::ZeroRuns;
 
 /// Counts, in fixed memory and integers, what shows that a logger repeated, held, clipped or cut out samples of one
 /// axis.

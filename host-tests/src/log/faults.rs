@@ -7,7 +7,7 @@ use allanite::{
 };
 
 /// The shares of repeats that are worth a note because smaller ones cannot be told. Chosen by hand.
-const NOTED: f64 = 0.05;
+const NOTED: f64 = 0.1;
 
 /// The axes of a sensor.
 const SENSOR: usize = 3;
@@ -222,15 +222,16 @@ fn fraction(share: f64) -> Option<f64> {
 
 /// How many samples repeat the one before, in words. `regular` tells whether at equal distances.
 pub(crate) fn said(share: f64, regular: bool) -> String {
-    const ORDINALS: [&str; 9] = [
-        "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth",
+    const ORDINALS: [&str; 8] = [
+        "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth",
     ];
     match fraction(share).filter(|_| regular) {
+        Some(exact) if exact == 0.5 => "every sample is there twice".into(),
         Some(exact) if exact > 0.5 => {
             format!("every sample is there {:.0} times", 1.0 / (1.0 - exact))
         }
         Some(exact) => {
-            let every = ORDINALS[(1.0 / exact).round() as usize - 2];
+            let every = ORDINALS[(1.0 / exact).round() as usize - 3];
             format!("every {every} sample repeats the one before")
         }
         None => {
@@ -254,6 +255,7 @@ mod tests {
             said(0.199, false),
             "20 % of the samples repeat the one before"
         );
+        assert_eq!(said(0.5, true), "every sample is there twice");
         assert_eq!(said(0.8, true), "every sample is there 5 times");
         assert_eq!(
             said(0.35, true),

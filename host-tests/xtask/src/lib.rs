@@ -36,7 +36,7 @@ enum Task {
     /// Set up, then check and test everything.
     Test,
     /// Run a study behind the README's figures: theory, coefficients, efficiency, calibration, paper,
-    /// hidden-effect, confusion, detection, lines, clean, course, thermal, self-test, speed, precision, peers or long.
+    /// hidden-effect, confusion, detection, lines, clean, faults, course, thermal, self-test, speed, precision, peers or long.
     Study {
         /// The study and its options; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]

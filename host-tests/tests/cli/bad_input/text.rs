@@ -453,7 +453,7 @@ fn invalid() -> Vec<Case> {
             "the gyro was moved",
         ),
     ];
-    let export = "export -f kalibr --rate 100 --scale 0.01 --unit deg/s a.csv";
+    let export = "export -f kalibr --rate 100 --scale 0.01 --unit deg/s --repeats keep a.csv";
     let both = |(text, reason): (String, &str)| {
         let refusal = refused("a.csv", text.clone(), export, reason);
         let told = format!("{export} --despite-invalid");

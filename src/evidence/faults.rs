@@ -121,7 +121,7 @@ impl SampleFaults {
         if two < 0.3 * one {
             // Narrower values do not lie anywhere within a step.
             let (_, variance) = self.mean_and_variance();
-            let step = steps.step() as Real;
+            let step = real(steps.step());
             return match variance >= 0.42 * step * step {
                 true => coarse_repeats(steps.near, pairs),
                 false => Repeats::unknown(zero / pairs),
@@ -204,7 +204,7 @@ impl SampleFaults {
         };
         let [high, low] = &self.ends;
         let (mean, variance) = self.mean_and_variance();
-        let (deviation, step) = (sqrt(variance), self.steps.step() as Real);
+        let (deviation, step) = (sqrt(variance), real(self.steps.step()));
         let [up, down] = [high.value() as Real - mean, low.value() as Real + mean];
         // The noise is cut off on one side of its mean, and goes on on the other one.
         let is_cut = |end: &End, near: Real, far: Real| {
@@ -237,9 +237,9 @@ impl SampleFaults {
             around,
         } = self.hole;
         let step = self.steps.step().max(1);
-        let width = Hole::width(edge, step) as Real;
+        let width = real(Hole::width(edge, step));
         // Zero and the levels on either side of it up to the edge.
-        let inside = 2.0 * edge as Real - step as Real;
+        let inside = 2.0 * real(edge) - real(step);
         let expected = 0.5 * beside as Real / width * inside;
         let found = zeros as Real;
         let is_hole = edge >= step.saturating_mul(2).saturating_sub(step / 4)
@@ -385,7 +385,7 @@ fn is_stuck(reached: &[u64; 6], (zeros, long): (u64, u64), pairs: u64, fine: boo
     };
     let slow = 1.0 / (1.0 - share).max(0.001);
     numbered(reached.iter()).skip(3).any(|(place, &runs)| {
-        let length = (1_u32 << place) as Real;
+        let length = real(1_u32 << place);
         let expected = begun * exp(0.6 * (length - from) * log(chance)) + 0.01;
         let runs = runs as Real;
         // Chernoff's bound of the probability of so many runs.

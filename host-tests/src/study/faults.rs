@@ -217,12 +217,10 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
     let (faulty, repeated) = spoilt(fault, &record, random);
     let mut axes = [(); 3].map(|()| SampleFaults::new());
     let mut joint = JointRepeats::new();
-    for row in 0..SAMPLES {
-        let mut steps = [None; 3];
-        for (i, axis) in axes.iter_mut().enumerate() {
-            steps[i] = axis.push(faulty[i][row]);
-        }
-        joint.push(steps);
+    let [x, y, z] = &faulty;
+    for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
+        let [of_x, of_y, of_z] = &mut axes;
+        joint.push([of_x.push(x), of_y.push(y), of_z.push(z)]);
     }
     let one = |joint: Option<&JointRepeats>, number: usize| {
         let repeats = axes[0].repeats(joint);

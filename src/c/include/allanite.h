@@ -210,6 +210,8 @@ enum AllaniteReason
   ALLANITE_REASON_LEFT_OUT = 8,
   // Any other reason, of a later version.
   ALLANITE_REASON_OTHER = 9,
+  // Small values are set to zero.
+  ALLANITE_REASON_DEAD_BAND = 10,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

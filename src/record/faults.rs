@@ -36,7 +36,7 @@ use zero_runs::ZeroRuns;
 ///     faults.push((random >> 8) as i32);
 /// }
 /// let Some(Reason::Repeated { changes, samples, .. }) = faults.verdict(None) else { panic!() };
-/// assert!(samples * 4 - changes * 5 < 50);
+/// assert!((samples * 4).abs_diff(changes * 5) < 50);
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

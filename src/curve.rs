@@ -1,5 +1,6 @@
 //! The Allan curve, which is what remains of the samples.
 
+mod bridged;
 mod sums;
 
 pub(crate) use sums::LIMB;
@@ -11,7 +12,7 @@ use crate::{
         math,
         real::{Real, real},
     },
-    record::octave::Accumulator,
+    record::octave::{Accumulator, Bridged},
 };
 use heapless::Vec;
 
@@ -144,6 +145,24 @@ impl<const K: usize> Curve<K> {
         })
     }
 
+    /// The curve without what filled gaps change in its variances, for a record of so many samples without those that were
+    /// lost. [`Accumulator::curve`] does this itself; sums that were stored need it. The curve stays as it is if no gap was
+    /// filled.
+    #[must_use]
+    pub fn without_bridges(mut self, bridged: &Bridged, samples: u64) -> Self {
+        if !bridged.is_empty() {
+            let places = samples.saturating_add(bridged.lost());
+            let points = self.points.iter();
+            let mut octaves: Vec<_, K> = points.map(|point| (point.m, point.variance)).collect();
+            bridged::take_off(&mut octaves, bridged, places);
+            for (point, (_, variance)) in self.points.iter_mut().zip(octaves) {
+                point.variance = variance;
+            }
+            self.variance_unit = power_of_four(&self.points);
+        }
+        self
+    }
+
     /// Replaces every variance in place. The new variances must be finite and not negative.
     pub(crate) fn change_variances(&mut self, variance: impl Fn(usize, Real) -> Real) {
         for (k, point) in numbered(self.points.iter_mut()) {
@@ -274,11 +293,12 @@ impl<const K: usize> Accumulator<K> {
             let _ = points.push(point);
         }
         set_stretches(&mut points, K);
-        Curve {
+        let curve = Curve {
             rate_hz: scale.rate_hz,
             variance_unit: power_of_four(&points),
             points,
-        }
+        };
+        curve.without_bridges(self.bridged(), self.samples())
     }
 }
 

@@ -140,9 +140,10 @@
 //!
 //! # Samples were lost
 //!
-//! [`Axes::gap`] marks the place, and [`Axes::lost`] also counts the samples. No difference spans the gap, and
-//! everything before it stays. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the
-//! two. [`Accumulator`] has `gap` and `merge` too.
+//! [`Axes::gap`] marks the place. No difference spans the gap, and everything before it stays. If it is known how many
+//! samples were lost, [`Axes::lost`] fills up to 64 of them with a mean of those before, so that they cost only what they
+//! touch: short clusters leave out differences that touch them, and the curve of long ones takes off what they change. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the
+//! two. [`Accumulator`] has `gap`, `lost` and `merge` too.
 //!
 //! # The power may fail
 //!
@@ -156,7 +157,7 @@
 //! verdict. `cargo allanite decode FILE…` prints certificates and snapshots on a workstation.
 //!
 //! The formats are documented byte by byte: [`storage::envelope`] surrounds everything that is stored,
-//! [`storage::snapshot`] and [`storage::axes`] are the two versions of a snapshot, and
+//! [`storage::snapshot`] and [`storage::axes`] are the versions of a snapshot, and
 //! [`storage::certificate`] is the factory calibration.
 //!
 //! # An effect of your own

@@ -137,7 +137,7 @@ fn every_missing_and_every_additional_byte_is_refused() {
 fn snapshot_of_twenty_octaves_takes_a_quarter_of_a_kilobyte() {
     let accumulator = recorded::<20>(1 << 22);
     assert_eq!(snapshot(&accumulator).len(), 248);
-    assert_eq!(Accumulator::<20>::SNAPSHOT_BYTES, 833);
+    assert_eq!(Accumulator::<20>::SNAPSHOT_BYTES, 903);
 }
 
 #[test]

@@ -17,7 +17,7 @@ use crate::{
     regular_file,
     unit::Unit,
 };
-use allanite::{Curve, Scale, course::CosineTransform, spectrum::Spectrum};
+use allanite::{Curve, Scale, course::CosineTransform, octave::Bridged, spectrum::Spectrum};
 use serde::{Deserialize, Serialize};
 use std::{io::Read, ops::Range, path::Path};
 
@@ -66,6 +66,9 @@ pub struct AxisCurve {
     pub samples: u64,
     /// Number of gaps, each of which ends a contiguous stretch of the record.
     pub gaps: u64,
+    /// The gaps that were filled, and the samples that were lost in them.
+    #[serde(default, skip_serializing_if = "Bridged::is_empty")]
+    pub bridged: Bridged,
     /// Where the record comes from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
@@ -266,6 +269,7 @@ impl AxisCurve {
             rate_per_count: axis.rate_per_count,
             samples: axis.accumulator.samples(),
             gaps: axis.accumulator.gaps(),
+            bridged: *axis.accumulator.bridged(),
             source: None,
             licence: None,
             octaves: octaves.collect(),
@@ -335,14 +339,20 @@ impl AxisCurve {
                 self.octaves.len()
             ));
         }
+        if !self.bridged.is_possible() {
+            return Err("the gaps that were filled are impossible".into());
+        }
+        let raw = self.octaves.iter();
+        let raw = raw.map(|octave| (octave.m, octave.differences, octave.sum));
+        let variances = variances(raw, self.rate_per_count, &self.bridged, self.samples);
         let mut last = 0;
-        for octave in &self.octaves {
+        for (octave, variance) in self.octaves.iter().zip(variances) {
             let here = |what: String| format!("octave m = {}: {what}", octave.m);
             if octave.m <= last {
                 return Err(here("averaging factors must ascend".into()));
             }
             last = octave.m;
-            self.check_octave(octave).map_err(here)?;
+            self.check_octave(octave, variance).map_err(here)?;
         }
         for short in &self.short {
             let here = |what: String| format!("short octave m = {}: {what}", short.m);
@@ -371,18 +381,12 @@ impl AxisCurve {
         Ok(())
     }
 
-    fn check_octave(&self, octave: &Octave) -> Result<(), String> {
+    fn check_octave(&self, octave: &Octave, variance: f64) -> Result<(), String> {
         let least = Curve::<OCTAVES>::MIN_DIFFERENCES;
         self.check_sum(octave.m, octave.differences, octave.sum, least..u64::MAX)?;
         if !close(octave.tau_s, f64::from(octave.m) / self.rate_hz) {
             return Err(format!("tau_s {} is not m / rate_hz", brief(octave.tau_s)));
         }
-        let variance = variance(
-            octave.m,
-            octave.differences,
-            octave.sum,
-            self.rate_per_count,
-        );
         if !close(octave.variance, variance) {
             return Err(format!(
                 "variance {} does not follow from the sum",
@@ -402,9 +406,9 @@ impl AxisCurve {
         if !m.is_power_of_two() || m.ilog2() >= OCTAVES as u32 {
             return Err("the averaging factor is not a power of two up to 2^29".into());
         }
-        let possible = possible_differences(self.samples, m);
+        let possible = possible_differences(self.samples.saturating_add(self.bridged.lost()), m);
         let right = match self.gaps {
-            0 => differences == possible,
+            0 if self.bridged.is_empty() => differences == possible,
             _ => differences <= possible,
         };
         if !right || !allowed.contains(&differences) {
@@ -421,10 +425,31 @@ impl AxisCurve {
     }
 }
 
-/// The Allan variance, in rate units squared, computed as [`Curve`] does.
-fn variance(m: u32, differences: u64, sum: u128, rate_per_count: f64) -> f64 {
-    let cluster_scale = rate_per_count / f64::from(m);
-    0.5 * (sum as f64 / differences as f64) * cluster_scale * cluster_scale
+/// The Allan variances, in rate units squared, computed as [`Curve`] does.
+fn variances(
+    octaves: impl Iterator<Item = (u32, u64, u128)> + Clone,
+    rate_per_count: f64,
+    bridged: &Bridged,
+    samples: u64,
+) -> Vec<f64> {
+    let raw = octaves.map(|(m, differences, sum)| {
+        let cluster_scale = rate_per_count / f64::from(m);
+        let mean = sum as f64 / differences as f64;
+        (m, differences, 0.5 * mean * cluster_scale * cluster_scale)
+    });
+    let plain = || raw.clone().map(|(.., variance)| variance).collect();
+    if bridged.is_empty() {
+        return plain();
+    }
+    // The rate does not matter. What the library refuses is refused elsewhere.
+    let curve = Curve::<OCTAVES>::new(1.0, raw.clone());
+    curve.map_or_else(
+        |_| plain(),
+        |curve| {
+            let curve = curve.without_bridges(bridged, samples);
+            curve.points().iter().map(|point| point.variance).collect()
+        },
+    )
 }
 
 /// Number of quarter-overlapping differences in a record without gaps.

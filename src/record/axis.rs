@@ -21,7 +21,7 @@ use crate::{
         octave::Accumulator,
     },
 };
-use gate::{Passed, Passing};
+use gate::{Missing, Passed, Passing};
 use kept::AxesSums;
 use track::Track as _;
 
@@ -43,7 +43,7 @@ pub type Axis<
 /// counts + covariates ─► gate ─► integrity, accumulator, fourth moments, products with covariates, spectrum
 /// ```
 ///
-/// The gate sees every sample. It passes on those of a gyro at rest, and replaces the others by a gap.
+/// The gate sees every sample. It passes on those of a gyro at rest, and treats the others as lost.
 /// The parts behind the gate all see the same record of samples and gaps. So the curve, the evidence
 /// for a diagnosis, the snapshot and the verdict on the record's integrity all describe the record that
 /// is kept, and none of the samples that were left out.
@@ -150,7 +150,7 @@ where
         match self.gate.push(sample.into()) {
             Passed::Nothing => {}
             Passed::Sample(sample) => self.kept.push(&sample),
-            Passed::Gap(missing) => self.kept.gap(missing),
+            Passed::Gap(missing) => self.kept.miss(missing),
         }
     }
 
@@ -166,22 +166,25 @@ where
 
     /// Marks a place where samples were lost or the gyro was disturbed. No difference spans this place.
     pub fn gap(&mut self) {
-        self.lose(0);
+        self.miss(0);
     }
 
-    /// Marks a place where so many samples were lost, or an unknown number if it is 0.
-    fn lose(&mut self, samples: u64) {
+    /// Marks a place where so many samples are missing, or an unknown number if it is 0, as [`lost`](Self::lost) does. They
+    /// do not count as [missing](crate::integrity::Tally::missing).
+    pub fn miss(&mut self, samples: u64) {
         self.losses = self.losses.saturating_add(1);
-        let passed = self.gate.gap(samples);
+        let passed = self.gate.gap(Missing::new(samples));
         self.keep(passed);
     }
 
-    /// Counts samples that were lost at this place, and marks a [`gap`](Self::gap). Does nothing for 0
-    /// samples.
+    /// Counts samples that were lost at this place. Does nothing for 0 samples.
+    ///
+    /// A few samples are filled with the mean of those before, as [`Accumulator::lost`] says, and the results take off
+    /// what this adds or takes away. So are samples that the gate leaves out. More samples are a [`gap`](Self::gap).
     pub fn lost(&mut self, samples: u64) {
         if samples > 0 {
             self.kept.add_missing(samples);
-            self.lose(samples);
+            self.miss(samples);
         }
     }
 
@@ -201,8 +204,8 @@ where
     fn keep(&mut self, passed: Passed<AXES, COVARIATES>) {
         match passed {
             Passed::Nothing => {}
-            Passed::Sample(sample) => self.kept.push(&sample),
-            Passed::Gap(missing) => self.kept.gap(missing),
+            Passed::Sample(sample) => self.kept.push_any(&sample, true),
+            Passed::Gap(missing) => self.kept.miss(missing),
         }
     }
 

@@ -1,10 +1,15 @@
 //! The accumulator: it turns counts into one exact sum of squares per octave of averaging time.
 
+pub(crate) mod bridge;
+mod bridged;
+mod read;
 mod slice;
 #[cfg(target_pointer_width = "64")]
 mod wide;
 
 pub use crate::record::square_sum::SquareSum;
+pub use bridged::{Bridged, CLASSES};
+use bridged::{TOUCHED, span};
 
 /// The number of angles that a level keeps: those at the last eight block boundaries.
 const RING: usize = 8;
@@ -43,13 +48,14 @@ impl Level {
         sum: SquareSum::ZERO,
     };
 
-    /// Takes the angle at boundary `block`, and returns the difference that it completes.
+    /// Takes the angle at boundary `block`, and returns the difference that it completes. Differences start at boundary
+    /// `from` or later.
     #[inline(always)]
-    fn push(&mut self, block: u32, angle: u64) -> Option<i64> {
+    fn push(&mut self, block: u32, angle: u64, from: u32) -> Option<i64> {
         let i = block as usize % RING;
         let (oldest, middle) = (self.ring[i], self.ring[i ^ 4]);
         self.ring[i] = angle;
-        if block < RING as u32 {
+        if block < from.wrapping_add(RING as u32) {
             return None;
         }
         let difference = second_difference(angle, middle, oldest);
@@ -87,7 +93,7 @@ impl Level {
 /// On a Cortex-M4F [`push`](Self::push) takes 136 instructions per sample, whatever the number of
 /// octaves and the position in the schedule, as long as no difference exceeds 31 bits. It takes at most
 /// 232 with full-scale input. [`push_slice`](Self::push_slice) takes 124 to 136, built for size. The state
-/// takes `80 + 96 · OCTAVES` bytes, which is 2384 for 24 octaves. `cargo xtask bench` measures this.
+/// takes `176 + 96 · OCTAVES` bytes, which is 2480 for 24 octaves. `cargo xtask bench` measures this.
 ///
 /// # Example
 ///
@@ -110,6 +116,11 @@ pub struct Accumulator<const OCTAVES: usize> {
     number: u32,
     /// How often `number` went on from 2^31.
     laps: u32,
+    /// The sample number from which on a full ring has nothing to leave out in the octaves of level 0, less the ring's
+    /// length.
+    late: u32,
+    /// For the octaves that leave out differences across short gaps, the block from which on their differences start.
+    from: [u32; TOUCHED],
     /// The present angle, in counts.
     angle: u64,
     /// Sums of the octaves below the first level.
@@ -121,6 +132,11 @@ pub struct Accumulator<const OCTAVES: usize> {
     /// The number of samples in the segments before the last gap.
     earlier_samples: u64,
     gaps: u64,
+    /// The number of filled values since the last gap.
+    filled: u32,
+    /// What rounding left of the filled values.
+    rest: u32,
+    bridged: Bridged,
 }
 
 /// What the accumulator knows about one octave.
@@ -154,12 +170,17 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         Self {
             number: 0,
             laps: 0,
+            late: 0,
+            from: [0; TOUCHED],
             angle: 0,
             short: [SquareSum::ZERO; FIRST],
             levels: [Level::EMPTY; OCTAVES],
             differences: [0; OCTAVES],
             earlier_samples: 0,
             gaps: 0,
+            filled: 0,
+            rest: 0,
+            bridged: Bridged::NONE,
         }
     }
 
@@ -183,7 +204,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
 
         let base = &mut self.levels[0];
         let two_before = base.ring[i.wrapping_sub(2) % RING];
-        if n >= RING as u32 {
+        if n >= self.late.wrapping_add(RING as u32) {
             let difference = second_difference(angle, before, two_before);
             self.short[0].add_square(difference);
             observer.observe(0, difference);
@@ -206,25 +227,35 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
     }
 
-    /// Does the work of [`push`](Self::push) while the ring is not yet full, and checks which
+    /// Does the work of [`push`](Self::push) while the ring is not yet full or holds filled values, and checks which
     /// differences exist.
     #[cold]
     #[inline(never)]
     fn push_early(&mut self, before: u64, two_before: u64, observer: &mut impl Observer) {
         let angle = self.angle;
-        let n = self.number as usize;
-        let four_before = self.levels[0].ring[(n % RING) ^ 4];
-        if n >= 2 {
+        let i = self.number as usize % RING;
+        let [four_before, eight_before] = [i ^ 4, i].map(|i| self.levels[0].ring[i]);
+        self.levels[0].ring[i] = angle;
+        if self.exists(0) {
             let difference = second_difference(angle, before, two_before);
             self.short[0].add_square(difference);
             observer.observe(0, difference);
         }
-        if n >= 4 {
+        if self.exists(1) {
             let difference = second_difference(angle, two_before, four_before);
             self.short[1].add_square(difference);
             observer.observe(1, difference);
         }
-        self.levels[0].ring[n % RING] = angle;
+        if OCTAVES > FIRST && self.exists(FIRST) {
+            let difference = second_difference(angle, four_before, eight_before);
+            self.levels[0].sum.add_square(difference);
+            observer.observe(FIRST, difference);
+        }
+    }
+
+    /// Whether the present sample completes a difference of an octave of level 0.
+    fn exists(&self, k: usize) -> bool {
+        self.number >= self.from(k).wrapping_add(span(k))
     }
 
     #[inline(always)]
@@ -237,6 +268,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     #[cold]
     #[inline(never)]
     fn lap(&mut self) -> u32 {
+        self.lap_touched();
         self.laps = self.laps.wrapping_add(1);
         self.number = LAP;
         LAP
@@ -255,7 +287,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         // one below.
         let block = n >> level;
         let new = self.levels[level - 1].ring[(2 * block) as usize % RING];
-        let difference = self.levels[level].push(block, new)?;
+        let from = self.from(level + FIRST);
+        let difference = self.levels[level].push(block, new, from)?;
         Some((level + FIRST, difference))
     }
 
@@ -273,6 +306,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         self.earlier_samples = self.samples();
         self.number = 0;
         self.laps = 0;
+        (self.late, self.from) = (0, [0; TOUCHED]);
+        (self.filled, self.rest) = (0, 0);
         self.angle = 0;
         for level in &mut self.levels {
             level.ring = Level::EMPTY.ring;
@@ -293,6 +328,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             self.set_counted(k, counted);
         }
         self.earlier_samples = self.earlier_samples.saturating_add(other.samples());
+        self.bridged.merge(&other.bridged);
         let ends = other.gaps.saturating_add(u64::from(other.number > 0));
         self.gaps = self.gaps.saturating_add(ends);
     }
@@ -302,12 +338,13 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         *self = Self::new();
     }
 
-    /// The number of samples so far.
+    /// The number of samples so far, without those that were lost.
     pub const fn samples(&self) -> u64 {
-        self.earlier_samples.saturating_add(self.position())
+        let running = self.position().saturating_sub(self.filled as u64);
+        self.earlier_samples.saturating_add(running)
     }
 
-    /// The number of samples since the last gap.
+    /// The number of samples and filled values since the last gap.
     const fn position(&self) -> u64 {
         self.number as u64 + ((self.laps as u64) << 31)
     }
@@ -339,91 +376,6 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         accumulator.earlier_samples = samples;
         accumulator.gaps = gaps;
         accumulator
-    }
-
-    /// Octave `k`, of averaging factor `2^k`, as it is now. What the schedule has put off is included,
-    /// and the state stays as it is. `None` from `OCTAVES` on.
-    pub fn octave(&self, k: usize) -> Option<OctaveSum> {
-        (k < OCTAVES).then(|| self.read(k))
-    }
-
-    /// All octaves as they are now, shortest averaging time first.
-    pub fn octaves(&self) -> impl Iterator<Item = OctaveSum> + '_ {
-        (0..OCTAVES).map(|k| self.read(k))
-    }
-
-    fn read(&self, k: usize) -> OctaveSum {
-        let level = k.saturating_sub(FIRST);
-        let served = self.levels.get(level).unwrap_or(&Level::EMPTY);
-        let mut sum = match self.short.get(k) {
-            Some(short) => *short,
-            None => served.sum,
-        };
-        let block = self.position().wrapping_shr(level as u32);
-        if let Some(difference) = self.pending_difference(k) {
-            sum.add_square(difference);
-        }
-        // These are the blocks so far, less those that the first difference needs.
-        let running = block.saturating_sub(match k {
-            0 => 1,
-            1 => 3,
-            _ => 7,
-        });
-        OctaveSum {
-            m: 1_u32.wrapping_shl(k as u32),
-            differences: self.counted(k).saturating_add(running),
-            sum,
-        }
-    }
-
-    /// The difference of octave `k` that is complete and still waits for its turn in the schedule.
-    pub(crate) fn pending_difference(&self, k: usize) -> Option<i64> {
-        let level = k.saturating_sub(FIRST);
-        let served = self.levels.get(level)?;
-        let block = self.position().wrapping_shr(level as u32);
-        if !self.is_pending(level) || block < RING as u64 {
-            return None;
-        }
-        let i = block as usize % RING;
-        let [middle, oldest] = [served.ring[i ^ 4], served.ring[i]];
-        Some(second_difference(self.boundary(level), middle, oldest))
-    }
-
-    fn sum_mut(&mut self, k: usize) -> &mut SquareSum {
-        let level = k.checked_sub(FIRST);
-        match level.and_then(|level| self.levels.get_mut(level)) {
-            Some(level) => &mut level.sum,
-            None => &mut self.short[k % FIRST],
-        }
-    }
-
-    /// The number of differences in the segments before the last gap.
-    fn counted(&self, k: usize) -> u64 {
-        self.differences.get(k).copied().unwrap_or(0)
-    }
-
-    fn set_counted(&mut self, k: usize, differences: u64) {
-        if let Some(counted) = self.differences.get_mut(k) {
-            *counted = differences;
-        }
-    }
-
-    /// Whether the level's newest boundary still waits for its turn in the schedule.
-    fn is_pending(&self, level: usize) -> bool {
-        let below = level.checked_sub(1);
-        below.is_some_and(|below| self.number.wrapping_shr(below as u32) & 1 == 0)
-    }
-
-    /// The angle at the level's newest block boundary, taken from the nearest level below that has it.
-    fn boundary(&self, level: usize) -> u64 {
-        let holder = (0..=level)
-            .rev()
-            .find(|&l| !self.is_pending(l))
-            .unwrap_or(0);
-        // While levels are pending, the boundary is also the newest one of the level below.
-        let block = self.number.wrapping_shr(holder as u32) as usize;
-        let held = self.levels.get(holder).unwrap_or(&Level::EMPTY);
-        held.ring[block % RING]
     }
 }
 

@@ -1,4 +1,5 @@
-//! Snapshots of everything that is kept of a record, including the self-tests: version 4 of the format.
+//! Snapshots of everything that is kept of a record, including the self-tests: version 4 of the format, or version 5
+//! for a record with gaps that were filled.
 //!
 //! This table describes the payload of the [`envelope`]. The payload is in
 //! postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits first,
@@ -11,6 +12,7 @@
 //! | spectrum: number of blocks of a segment, number of levels; zeros without one | u16, u8 |
 //! | samples; gaps, including one at the end of the snapshot | 2 × u64 |
 //! | for each octave `m = 1, 2, 4, …`: number of differences, the same for all axes and covariates | u64 |
+//! | in version 5: gaps that were filled and samples lost in them, of each class of [`Bridged`] | 7 × u32, 7 × u32 |
 //! | for each axis, then for each covariate: Σ D² of each octave in counts², lowest limb first | 3 × u64 |
 //! | for each axis: its integrity, as the structure `integrity::State` has it | |
 //! | and with fourth moments: Σ D⁴ of each octave, lowest limb first | 3 × u64 |
@@ -26,17 +28,17 @@
 use super::{
     Error,
     envelope::{self, Kind, OVERHEAD, Writer, take},
-    snapshot::{self, LONGEST, has_possible_gaps, is_possible},
+    snapshot::{self, LONGEST, LONGEST_BRIDGED, has_possible_gaps, is_possible, take_bridged},
 };
 use crate::{
     record::{
         axis::{
-            Axes, GatePart, MomentPart, SpectrumPart, TrackPart, gate::Passing,
+            Axes, GatePart, MomentPart, SpectrumPart, TrackPart, gate::Passing, kept::AxisSums,
             moments::MomentSums, spectra::SpectrumSums, track::Track,
         },
         course::Course,
         cross_sums::ProductSum,
-        octave::{Accumulator, OctaveSum},
+        octave::{Accumulator, Bridged, OctaveSum},
         square_sum::SquareSum,
     },
     self_test::{self, SelfTest},
@@ -44,6 +46,9 @@ use crate::{
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 const VERSION: u8 = 4;
+
+/// The version for a record with gaps that were filled.
+const BRIDGED_VERSION: u8 = 5;
 
 /// The largest number of bytes that the integrity of an axis takes.
 const INTEGRITY: usize = 520;
@@ -101,7 +106,7 @@ where
             0
         };
         let axis = sums + INTEGRITY + moments + products + seen + spectrum + course;
-        let head = 5 + 4 + (4 + OCTAVES) * LONGEST;
+        let head = 5 + 4 + (4 + OCTAVES) * LONGEST + LONGEST_BRIDGED;
         head + AXES * axis + COVARIATES * sums + self_tests * self_test::LONGEST + OVERHEAD
     }
 
@@ -153,7 +158,12 @@ where
         buffer: &'b mut [u8],
     ) -> Result<&'b [u8], Error> {
         let most = Self::snapshot_bytes(self_tests.len()) - OVERHEAD;
-        let mut writer = Writer::new(buffer, Kind::Snapshot, VERSION, most)?;
+        let is_bridged = |axis: &AxisSums<_, _, _, _, _>| !axis.accumulator.bridged().is_empty();
+        let version = match self.kept.axes.first().is_some_and(is_bridged) {
+            true => BRIDGED_VERSION,
+            false => VERSION,
+        };
+        let mut writer = Writer::new(buffer, Kind::Snapshot, version, most)?;
         writer.push(&Self::parts(self_tests.len()))?;
         writer.push(&<S::Sums as SpectrumSums>::SIZE)?;
         self.write_sums(&mut writer)?;
@@ -203,6 +213,9 @@ where
         for octave in first.octaves() {
             writer.push(&octave.differences)?;
         }
+        if !first.bridged().is_empty() {
+            writer.push(first.bridged())?;
+        }
         for accumulator in accumulators() {
             for octave in accumulator.octaves() {
                 writer.push(&octave.sum.limbs())?;
@@ -237,8 +250,10 @@ where
     fn read(&mut self, self_tests: &mut [SelfTest<OCTAVES>], bytes: &[u8]) -> Result<(), Error> {
         let (version, payload) = envelope::open_any(bytes, Kind::Snapshot)?;
         match version {
-            VERSION => {}
-            snapshot::VERSION => return self.read_accumulator(self_tests, bytes),
+            VERSION | BRIDGED_VERSION => {}
+            snapshot::VERSION | snapshot::BRIDGED_VERSION => {
+                return self.read_accumulator(self_tests, bytes);
+            }
             found => {
                 return Err(Error::UnknownVersion {
                     found,
@@ -261,7 +276,7 @@ where
         if size != <S::Sums as SpectrumSums>::SIZE {
             return Err(Error::OtherParts);
         }
-        self.read_sums(&mut reader)?;
+        self.read_sums(&mut reader, version == BRIDGED_VERSION)?;
         for axis in &mut self.kept.axes {
             let rest = axis.integrity.restore(reader.0);
             reader.0 = rest.ok_or(Error::Impossible)?;
@@ -293,7 +308,7 @@ where
         reader.0.is_empty().then_some(()).ok_or(Error::Impossible)
     }
 
-    fn read_sums(&mut self, reader: &mut Reader<'_>) -> Result<(), Error> {
+    fn read_sums(&mut self, reader: &mut Reader<'_>, is_bridged: bool) -> Result<(), Error> {
         let Counts { samples, gaps } = reader.take()?;
         if !has_possible_gaps(samples, gaps) {
             return Err(Error::Impossible);
@@ -307,21 +322,25 @@ where
             octave.m = 1_u32.wrapping_shl(k);
             octave.differences = reader.take()?;
         }
+        let bridged = match is_bridged {
+            true => take_bridged(&mut reader.0).ok_or(Error::Impossible)?,
+            false => Bridged::NONE,
+        };
         let axes = self.kept.axes.iter_mut().map(|axis| &mut axis.accumulator);
         for accumulator in axes.chain(&mut self.kept.covariates) {
             for (octave, k) in octaves.iter_mut().zip(0..) {
                 let sum = SquareSum::from_limbs(reader.take()?);
                 octave.sum = sum.ok_or(Error::Impossible)?;
-                if !is_possible(samples, gaps, k, octave) {
+                if !is_possible((samples, gaps), &bridged, k, octave) {
                     return Err(Error::Impossible);
                 }
             }
-            *accumulator = Accumulator::ended(samples, gaps, octaves);
+            *accumulator = Accumulator::ended(samples, gaps, octaves).with_bridged(bridged);
         }
         Ok(())
     }
 
-    /// Restores a snapshot of version 1.
+    /// Restores a snapshot of an accumulator.
     fn read_accumulator(
         &mut self,
         self_tests: &[SelfTest<OCTAVES>],

@@ -119,18 +119,6 @@ pub(crate) fn take<'b, T: Deserialize<'b>>(rest: &mut &'b [u8]) -> Option<T> {
     Some(part)
 }
 
-/// Returns the payload of an intact envelope of this kind and version.
-pub(crate) fn open(bytes: &[u8], kind: Kind, known: u8) -> Result<&[u8], Error> {
-    let (version, payload) = open_any(bytes, kind)?;
-    if version != known {
-        return Err(Error::UnknownVersion {
-            found: version,
-            known,
-        });
-    }
-    Ok(payload)
-}
-
 /// Returns the version and the payload of an intact envelope of this kind.
 pub(crate) fn open_any(bytes: &[u8], kind: Kind) -> Result<(u8, &[u8]), Error> {
     let (head, _) = bytes.split_at(bytes.len().min(MAGIC.len()));

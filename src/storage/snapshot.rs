@@ -2,7 +2,7 @@
 //!
 //! This table describes version 1 of the payload of the [`envelope`]. The payload is
 //! in postcard's encoding: numbers longer than one byte are varints of seven bits per byte, lowest bits
-//! first. [`Axes`](crate::Axes) writes a [later version](super::axes).
+//! first. A record with gaps that were filled has version 6. [`Axes`](crate::Axes) writes [other versions](super::axes).
 //!
 //! | content | type |
 //! |---|---|
@@ -11,11 +11,12 @@
 //! | gaps, including one at the end of the snapshot | u64 |
 //! | for each octave, `m = 1, 2, 4, …`: number of differences | u64 |
 //! | for each octave, after its number of differences: Σ D² in counts², lowest limb first | 3 × u64 |
+//! | in version 6: gaps that were filled and samples lost in them, of each class of [`Bridged`] | 7 × u32, 7 × u32 |
 
-use super::envelope::{self, Kind, OVERHEAD, Writer};
+use super::envelope::{self, Kind, OVERHEAD, Writer, take as take_part};
 use crate::{
     record::{
-        octave::{Accumulator, OctaveSum},
+        octave::{Accumulator, Bridged, CLASSES, OctaveSum},
         square_sum::SquareSum,
     },
     storage::Error,
@@ -24,6 +25,9 @@ use serde::{Deserialize, Serialize};
 
 /// The version of the format for an accumulator alone.
 pub(crate) const VERSION: u8 = 1;
+
+/// The version of the format for an accumulator of a record with gaps that were filled.
+pub(crate) const BRIDGED_VERSION: u8 = 6;
 
 /// The number of bytes of the longest varint of 64 bits.
 pub(crate) const LONGEST: usize = 10;
@@ -43,8 +47,11 @@ struct Octave {
 
 /// The largest number of bytes of a payload with this many octaves.
 const fn longest(octaves: usize) -> usize {
-    1 + 2 * LONGEST + octaves * 4 * LONGEST
+    1 + 2 * LONGEST + octaves * 4 * LONGEST + LONGEST_BRIDGED
 }
+
+/// The largest number of bytes of the gaps that were filled.
+pub(crate) const LONGEST_BRIDGED: usize = 2 * CLASSES * 5;
 
 /// A stored accumulator of any number of octaves, which has been checked. Its contents can be read without
 /// restoring it.
@@ -54,6 +61,7 @@ pub struct Snapshot<'b> {
     samples: u64,
     gaps: u64,
     sums: &'b [u8],
+    bridged: Bridged,
 }
 
 impl<'b> Snapshot<'b> {
@@ -63,14 +71,21 @@ impl<'b> Snapshot<'b> {
     /// [`Error::UnknownMagic`], [`Error::WrongLength`], [`Error::Corrupt`], [`Error::WrongKind`],
     /// [`Error::UnknownVersion`]; [`Error::Impossible`] if no record of that many samples has such sums.
     pub fn open(bytes: &'b [u8]) -> Result<Self, Error> {
-        let payload = envelope::open(bytes, Kind::Snapshot, VERSION)?;
+        let (version, payload) = envelope::open_any(bytes, Kind::Snapshot)?;
+        if ![VERSION, BRIDGED_VERSION].contains(&version) {
+            return Err(Error::UnknownVersion {
+                found: version,
+                known: VERSION,
+            });
+        }
         let (head, sums) =
             postcard::take_from_bytes::<Head>(payload).map_err(|_| Error::Impossible)?;
-        let snapshot = Self {
+        let mut snapshot = Self {
             octaves: head.octaves,
             samples: head.samples,
             gaps: head.gaps,
             sums,
+            bridged: Bridged::NONE,
         };
         let possible = has_possible_gaps(head.samples, head.gaps);
         if !(2..=30).contains(&snapshot.octaves) || !possible {
@@ -78,11 +93,16 @@ impl<'b> Snapshot<'b> {
         }
         let mut rest = sums;
         for k in 0..usize::from(snapshot.octaves) {
-            let (octave, after) = take(k, rest).ok_or(Error::Impossible)?;
-            if !is_possible(head.samples, head.gaps, k, &octave) {
-                return Err(Error::Impossible);
-            }
-            rest = after;
+            (_, rest) = take(k, rest).ok_or(Error::Impossible)?;
+        }
+        if version == BRIDGED_VERSION {
+            snapshot.bridged = take_bridged(&mut rest).ok_or(Error::Impossible)?;
+        }
+        let is_possible = |(k, octave): (usize, OctaveSum)| {
+            is_possible((head.samples, head.gaps), &snapshot.bridged, k, &octave)
+        };
+        if !snapshot.octaves().enumerate().all(is_possible) {
+            return Err(Error::Impossible);
         }
         rest.is_empty().then_some(snapshot).ok_or(Error::Impossible)
     }
@@ -95,6 +115,11 @@ impl<'b> Snapshot<'b> {
     /// The number of ends of contiguous stretches, including the end of the snapshot.
     pub const fn gaps(&self) -> u64 {
         self.gaps
+    }
+
+    /// The gaps that were filled.
+    pub const fn bridged(&self) -> &Bridged {
+        &self.bridged
     }
 
     /// The octaves, in order of increasing averaging time.
@@ -121,7 +146,13 @@ pub(crate) const fn has_possible_gaps(samples: u64, gaps: u64) -> bool {
 }
 
 /// Whether a record of this many samples and gaps can have this octave `k`, with `k` below 30.
-pub(crate) fn is_possible(samples: u64, gaps: u64, k: usize, octave: &OctaveSum) -> bool {
+pub(crate) fn is_possible(
+    (samples, gaps): (u64, u64),
+    bridged: &Bridged,
+    k: usize,
+    octave: &OctaveSum,
+) -> bool {
+    let samples = samples.saturating_add(bridged.lost());
     let (level, first) = match k {
         0 => (0, 1),
         1 => (0, 3),
@@ -129,7 +160,7 @@ pub(crate) fn is_possible(samples: u64, gaps: u64, k: usize, octave: &OctaveSum)
     };
     let most = samples.wrapping_shr(level as u32).saturating_sub(first);
     let possible = match gaps {
-        0 | 1 => octave.differences == most,
+        0 | 1 if bridged.is_empty() => octave.differences == most,
         // The counters of records that are merged without end stay at their largest value.
         _ => octave.differences <= most || samples == u64::MAX,
     };
@@ -138,6 +169,12 @@ pub(crate) fn is_possible(samples: u64, gaps: u64, k: usize, octave: &OctaveSum)
     let above = u128::from(high) << 64 | u128::from(middle);
     let bound = u128::from(octave.differences).wrapping_shl(2 * k as u32);
     possible && (above < bound || (above, low, bound) == (0, 0, 0))
+}
+
+/// Reads the gaps that were filled, of a record that has some.
+pub(crate) fn take_bridged(rest: &mut &[u8]) -> Option<Bridged> {
+    let bridged: Bridged = take_part(rest)?;
+    (bridged.is_possible() && !bridged.is_empty()).then_some(bridged)
 }
 
 /// Reads octave `k`, and returns it with the bytes after it.
@@ -152,7 +189,7 @@ fn take(k: usize, bytes: &[u8]) -> Option<(OctaveSum, &[u8])> {
 }
 
 impl<const OCTAVES: usize> Accumulator<OCTAVES> {
-    /// The size in bytes of a buffer that holds a snapshot of any record: 833 for 20 octaves. Four million
+    /// The size in bytes of a buffer that holds a snapshot of any record: 903 for 20 octaves. Four million
     /// samples of a gyro at rest take 248 of these.
     pub const SNAPSHOT_BYTES: usize = longest(OCTAVES) + OVERHEAD;
 
@@ -178,7 +215,11 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
     pub fn snapshot<'b>(&self, buffer: &'b mut [u8]) -> Result<&'b [u8], Error> {
-        let mut writer = Writer::new(buffer, Kind::Snapshot, VERSION, longest(OCTAVES))?;
+        let version = match self.bridged().is_empty() {
+            true => VERSION,
+            false => BRIDGED_VERSION,
+        };
+        let mut writer = Writer::new(buffer, Kind::Snapshot, version, longest(OCTAVES))?;
         writer.push(&Head {
             octaves: OCTAVES as u8,
             samples: self.samples(),
@@ -189,6 +230,9 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
                 differences: octave.differences,
                 sum: octave.sum.limbs(),
             })?;
+        }
+        if version == BRIDGED_VERSION {
+            writer.push(self.bridged())?;
         }
         writer.finish()
     }
@@ -207,10 +251,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
                 wanted: OCTAVES,
             });
         }
-        Ok(Self::ended(
-            snapshot.samples,
-            snapshot.gaps,
-            snapshot.octaves(),
-        ))
+        let (samples, gaps) = (snapshot.samples, snapshot.gaps);
+        Ok(Self::ended(samples, gaps, snapshot.octaves()).with_bridged(snapshot.bridged))
     }
 }

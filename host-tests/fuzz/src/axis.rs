@@ -4,7 +4,7 @@
 //! What this gate passes enters axes without a gate. Their results have to be the same, and their sums those of the
 //! definition in 128-bit integers.
 
-use crate::accumulator::definition;
+use crate::accumulator::{Stretch, definition};
 use allanite::{
     Axes, Scale,
     axis::{Gated, Moments, Sample, Spectral},
@@ -92,7 +92,8 @@ fn sample(kind: u8, random: &mut u32) -> Sample<3, 1> {
 #[derive(Clone, Copy)]
 enum Held {
     Sample(Sample<3, 1>),
-    Gap,
+    /// So many samples are missing, and others if the number is not known.
+    Gap(u64, bool),
 }
 
 #[derive(Clone)]
@@ -109,7 +110,7 @@ struct Record {
     /// What it passed.
     ungated: Ungated,
     kept: [Integrity; 3],
-    stretches: [Vec<Vec<i32>>; 4],
+    stretches: [Vec<Stretch>; 4],
 }
 
 impl Record {
@@ -125,7 +126,7 @@ impl Record {
             left_out: 0,
             ungated: Ungated::new(),
             kept: [(); 3].map(|()| Integrity::new()),
-            stretches: [(); 4].map(|()| vec![Vec::new()]),
+            stretches: [(); 4].map(|()| vec![Stretch::default()]),
         }
     }
 
@@ -144,7 +145,17 @@ impl Record {
         }
         self.left_out += 1;
         self.behind = self.behind.saturating_sub(1);
+        let (mut missing, mut is_known) = (1, true);
         if moving || stuck {
+            for held in &self.held {
+                match held {
+                    Held::Sample(_) => missing += 1,
+                    Held::Gap(samples, known) => {
+                        missing += samples;
+                        is_known &= known;
+                    }
+                }
+            }
             let is_sample = |held: &&Held| matches!(held, Held::Sample(_));
             self.left_out += self.held.iter().filter(is_sample).count() as u64;
             self.held.clear();
@@ -152,7 +163,7 @@ impl Record {
         if moving {
             self.behind = BEHIND;
         }
-        self.hold_gap();
+        self.hold_gap(missing, is_known);
     }
 
     /// What the integrity of any axis finds odd.
@@ -176,9 +187,13 @@ impl Record {
     }
 
     /// Gaps that follow each other are one.
-    fn hold_gap(&mut self) {
-        if !matches!(self.held.back(), Some(Held::Gap)) {
-            self.hold(Held::Gap);
+    fn hold_gap(&mut self, missing: u64, is_known: bool) {
+        match self.held.back_mut() {
+            Some(Held::Gap(samples, known)) => {
+                *samples += missing;
+                *known &= is_known;
+            }
+            _ => self.hold(Held::Gap(missing, is_known)),
         }
     }
 
@@ -186,13 +201,13 @@ impl Record {
     fn pass(&mut self) {
         match self.held.pop_front() {
             None => {}
-            Some(Held::Gap) => self.kept_gap(),
+            Some(Held::Gap(missing, is_known)) => self.kept_gap(if is_known { missing } else { 0 }),
             Some(Held::Sample(sample)) => {
                 self.ungated.push(sample);
                 let counts = sample.counts.iter().chain(&sample.covariates);
                 for (stretches, &count) in self.stretches.iter_mut().zip(counts) {
                     if let Some(stretch) = stretches.last_mut() {
-                        stretch.push(count);
+                        stretch.counts.push(count);
                     }
                 }
                 for (integrity, count) in self.kept.iter_mut().zip(sample.counts) {
@@ -202,17 +217,21 @@ impl Record {
         }
     }
 
-    fn kept_gap(&mut self) {
-        self.ungated.gap();
+    /// So many samples are missing, or an unknown number if it is 0.
+    fn kept_gap(&mut self, missing: u64) {
+        self.ungated.miss(missing);
         self.kept.iter_mut().for_each(Integrity::gap);
-        self.end_stretches();
+        let mut last = self.stretches.iter_mut().filter_map(|all| all.last_mut());
+        if !last.all(|last| last.fill(missing, OCTAVES)) {
+            self.end_stretches();
+        }
     }
 
     /// Begins a new stretch, unless the last one is still empty: merges of merges would double the number of empty ones.
     fn end_stretches(&mut self) {
         for stretches in &mut self.stretches {
-            if stretches.last().is_none_or(|last| !last.is_empty()) {
-                stretches.push(Vec::new());
+            if stretches.last().is_none_or(|last| !last.counts.is_empty()) {
+                stretches.push(Stretch::default());
             }
         }
     }
@@ -229,7 +248,7 @@ impl Record {
         self.missing = self.missing.saturating_add(samples.unwrap_or(0));
         self.losses += 1;
         self.seen.iter_mut().for_each(Integrity::gap);
-        self.hold_gap();
+        self.hold_gap(samples.unwrap_or(0), samples.is_some());
     }
 
     fn release(&mut self) {
@@ -259,7 +278,11 @@ impl Record {
         }
         self.end_stretches();
         for (own, other) in self.stretches.iter_mut().zip(other.stretches) {
-            own.extend(other.into_iter().filter(|stretch| !stretch.is_empty()));
+            own.extend(
+                other
+                    .into_iter()
+                    .filter(|stretch| !stretch.counts.is_empty()),
+            );
         }
         self.end_stretches();
         self.pushed += other.pushed;

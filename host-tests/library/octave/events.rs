@@ -63,11 +63,16 @@ pub(crate) enum Event {
     Push(Vec<i32>),
     PushSlice(Vec<i32>),
     Gap,
+    Lost(u64),
     Read,
     Merge(Vec<Event>),
     /// The accumulator so far is merged into another one that has seen these events.
     MergeInto(Vec<Event>),
     Reset,
+}
+
+fn lost() -> impl Strategy<Value = Event> {
+    prop_oneof![4 => 0..9_u64, 2 => 0..70_u64, 1 => any::<u64>()].prop_map(Event::Lost)
 }
 
 pub(crate) fn events() -> impl Strategy<Value = Vec<Event>> {
@@ -76,11 +81,16 @@ pub(crate) fn events() -> impl Strategy<Value = Vec<Event>> {
         3 => counts(30).prop_map(Event::PushSlice),
         2 => counts(900).prop_map(Event::PushSlice),
         1 => Just(Event::Gap),
+        3 => lost(),
         2 => Just(Event::Read),
     ];
     let other = || {
         vec(
-            prop_oneof![counts(300).prop_map(Event::PushSlice), Just(Event::Gap)],
+            prop_oneof![
+                2 => counts(300).prop_map(Event::PushSlice),
+                1 => Just(Event::Gap),
+                1 => lost(),
+            ],
             0..4,
         )
     };
@@ -101,15 +111,19 @@ pub(crate) fn play<const K: usize>(events: &[Event]) -> (Accumulator<K>, Record)
         match event {
             Event::Push(counts) => {
                 counts.iter().for_each(|&count| accumulator.push(count));
-                record.running.extend(counts);
+                record.running.counts.extend(counts);
             }
             Event::PushSlice(counts) => {
                 accumulator.push_slice(counts);
-                record.running.extend(counts);
+                record.running.counts.extend(counts);
             }
             Event::Gap => {
                 accumulator.gap();
                 record.gap();
+            }
+            Event::Lost(samples) => {
+                accumulator.lost(*samples);
+                record.lost(*samples, K);
             }
             Event::Read => check(&accumulator, &record),
             Event::Merge(events) => {
@@ -136,4 +150,6 @@ pub(crate) fn check<const K: usize>(accumulator: &Accumulator<K>, record: &Recor
     assert_eq!(octaves(accumulator), record.octaves(K));
     assert_eq!(accumulator.samples(), record.samples(), "samples");
     assert_eq!(accumulator.gaps(), record.gaps, "gaps");
+    assert_eq!(accumulator.bridged().lost(), record.filled(), "filled");
+    assert!(accumulator.bridged().is_possible());
 }

@@ -1,7 +1,7 @@
 //! Nothing overflows with square waves of full scale or with sums beyond 128 bits.
 
 use super::{
-    definition::{Octave, Record, big, octaves, square},
+    definition::{Octave, Record, Stretch, big, octaves, square},
     events::Counts,
 };
 use allanite::{Accumulator, Real};
@@ -109,10 +109,13 @@ fn the_closed_form_of_square_waves_follows_the_definition() {
             samples: 1 << 16,
         };
         let record = Record {
-            running: Counts::Square {
-                half_period: half_period as usize,
-            }
-            .take(1 << 16),
+            running: Stretch {
+                counts: Counts::Square {
+                    half_period: half_period as usize,
+                }
+                .take(1 << 16),
+                ..Stretch::default()
+            },
             ..Record::default()
         };
         assert_eq!(

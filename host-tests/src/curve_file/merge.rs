@@ -1,8 +1,8 @@
 //! Curves of parts of a record, merged as if a gap lay between the parts.
 
-use super::{AxisCurve, Octave, ShortOctave, SpectrumLevel, SpectrumLevels, variance};
+use super::{AxisCurve, Octave, ShortOctave, SpectrumLevel, SpectrumLevels, variances};
 use crate::log::OCTAVES;
-use allanite::Curve;
+use allanite::{Curve, octave::Bridged};
 use std::collections::BTreeMap;
 
 /// Differences and the sum of their squares, by averaging factor.
@@ -27,6 +27,7 @@ impl AxisCurve {
         let finest = parts.iter().map(|part| part.rate_per_count);
         let finest = finest.fold(f64::INFINITY, f64::min);
         let mut sums = Sums::new();
+        let mut bridged = Bridged::NONE;
         let (mut samples, mut gaps) = (0_u64, parts.len() as u64 - 1);
         for (i, part) in parts.iter().enumerate() {
             let too_large = || (i, "the sums of all parts exceed 128 bits".to_owned());
@@ -49,12 +50,17 @@ impl AxisCurve {
                 all.0 = all.0.saturating_add(differences);
                 all.1 = all.1.checked_add(scaled).ok_or_else(too_large)?;
             }
+            bridged.merge(&part.bridged);
             samples = samples.saturating_add(part.samples);
             gaps = gaps.saturating_add(part.gaps);
         }
         let is_long = |differences: u64| differences >= Curve::<OCTAVES>::MIN_DIFFERENCES;
         let long = sums.iter().filter(|(_, (count, _))| is_long(*count));
         let short = sums.iter().filter(|(_, (count, _))| !is_long(*count));
+        let raw = long
+            .clone()
+            .map(|(&m, &(differences, sum))| (m, differences, sum));
+        let variances = variances(raw, finest, &bridged, samples);
         Ok(Self {
             axis: first.axis.clone(),
             rate_hz: first.rate_hz,
@@ -62,15 +68,17 @@ impl AxisCurve {
             rate_per_count: finest,
             samples,
             gaps,
+            bridged,
             source: joined(parts.iter().map(|part| &part.source)),
             licence: joined(parts.iter().map(|part| &part.licence)),
             octaves: long
-                .map(|(&m, &(differences, sum))| Octave {
+                .zip(variances)
+                .map(|((&m, &(differences, sum)), variance)| Octave {
                     m,
                     tau_s: f64::from(m) / first.rate_hz,
                     differences,
                     sum,
-                    variance: variance(m, differences, sum, finest),
+                    variance,
                 })
                 .collect(),
             short: short

@@ -143,6 +143,16 @@ pub(super) fn read_table(
         notes.push(format!("{rate} Hz from row {row} above the header"));
     }
     notes.extend(measured.clock.as_ref().map(Clock::report));
+    let filled = measured
+        .axes
+        .first()
+        .map(|(sums, _)| *sums.accumulator().bridged());
+    notes.extend(filled.filter(|filled| !filled.is_empty()).map(|filled| {
+        format!(
+            "the lost samples of {} short gaps bridged: filled in the Allan curve, which takes off what that changes",
+            filled.gaps.iter().map(|&gaps| u64::from(gaps)).sum::<u64>()
+        )
+    }));
     notes.extend(table.notes());
     notes.extend(repeats);
     let mut least = 0.0_f64;

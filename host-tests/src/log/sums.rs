@@ -60,8 +60,11 @@ impl Part {
         self.spectrum.push_slice(counts);
     }
 
-    pub(super) fn gap(&mut self) {
-        self.accumulator.gap();
+    pub(super) fn gap(&mut self, lost: u64) {
+        match lost {
+            0 => self.accumulator.gap(),
+            lost => self.accumulator.lost(lost),
+        }
         self.spectrum.gap();
     }
 }

@@ -53,7 +53,7 @@ pub(super) trait Visitor {
         visit_each(self, axis, values)
     }
 
-    /// Tells that so many samples are missing before the next row.
+    /// Tells that so many samples are missing before the next row, or an unknown number if it is 0.
     fn gap(&mut self, _missing: u64) {}
 
     /// Forgets the values of the present row, whose first columns were shown.

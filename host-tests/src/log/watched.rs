@@ -24,7 +24,7 @@ pub(super) trait WatchedAxis: Send {
     /// Adds the counts of some rows, and those of every covariate in the same rows.
     fn push(&mut self, counts: &[i32], covariates: &[Vec<i32>]);
 
-    /// Tells that so many samples are missing here.
+    /// Tells that so many samples are missing here, or an unknown number if it is 0.
     fn gap(&mut self, missing: u64);
 
     fn accumulator(&self) -> &Accumulator<OCTAVES>;
@@ -102,7 +102,7 @@ where
 
     fn gap(&mut self, missing: u64) {
         self.motion.gap(missing);
-        self.axis.gap();
+        self.axis.miss(missing);
     }
 
     fn moved_at(&self) -> Option<u64> {
@@ -139,7 +139,10 @@ impl WatchedAxis for Alone {
 
     fn gap(&mut self, missing: u64) {
         self.motion.gap(missing);
-        self.accumulator.gap();
+        match missing {
+            0 => self.accumulator.gap(),
+            missing => self.accumulator.lost(missing),
+        }
         self.integrity.gap();
     }
 

@@ -331,15 +331,15 @@ impl Worker {
             course.lost(missing);
         }
         for (_, shared) in &mut self.pairs {
-            shared.gap();
+            shared.miss(missing);
         }
         for kept in &mut self.axes {
             match kept {
                 AxisState::InTwo { first, rest } => {
                     if first.accumulator.samples() >= self.plan.first {
-                        rest.gap();
+                        rest.gap(missing);
                     } else {
-                        first.gap();
+                        first.gap(missing);
                     }
                 }
                 AxisState::Watched(axis) => axis.gap(missing),

@@ -39,7 +39,7 @@
 #endif
 
 // Words of an `AllaniteGyro`.
-#define ALLANITE_GYRO_WORDS (2160 + (66 * ALLANITE_OCTAVES))
+#define ALLANITE_GYRO_WORDS (2208 + (66 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteRecord`.
 #define ALLANITE_RECORD_WORDS (470 + (7 * ALLANITE_OCTAVES))

@@ -17,7 +17,7 @@ pub const ALLANITE_OCTAVES: usize = 26;
 pub const ALLANITE_OCTAVES: usize = 20;
 
 /// Words of an `AllaniteGyro`.
-pub const ALLANITE_GYRO_WORDS: usize = 2160 + 66 * ALLANITE_OCTAVES;
+pub const ALLANITE_GYRO_WORDS: usize = 2208 + 66 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteRecord`.
 pub const ALLANITE_RECORD_WORDS: usize = 470 + 7 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteSelfTest`.

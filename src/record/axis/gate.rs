@@ -30,8 +30,32 @@ pub enum Passed<const AXES: usize, const COVARIATES: usize> {
     Nothing,
     /// A sample.
     Sample(Sample<AXES, COVARIATES>),
-    /// The place of samples that were left out or lost: how many, or 0 if the number is not known.
-    Gap(u64),
+    /// The place of samples that were left out or lost.
+    Gap(Missing),
+}
+
+/// Samples that are missing at a place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Missing {
+    /// The number of samples that are known to be missing.
+    pub samples: u64,
+    /// Whether others, whose number is not known, are missing too.
+    pub has_more: bool,
+}
+
+impl Missing {
+    /// So many samples, or an unknown number if it is 0.
+    pub(crate) const fn new(samples: u64) -> Self {
+        let has_more = samples == 0;
+        Self { samples, has_more }
+    }
+
+    const fn and(self, other: Self) -> Self {
+        Self {
+            samples: self.samples.saturating_add(other.samples),
+            has_more: self.has_more || other.has_more,
+        }
+    }
 }
 
 /// How samples pass a gate. Without one, everything passes at once.
@@ -50,9 +74,8 @@ pub trait Passing<const AXES: usize, const COVARIATES: usize>:
     /// A sample comes; what passes now.
     fn push(&mut self, sample: Sample<AXES, COVARIATES>) -> Passed<AXES, COVARIATES>;
 
-    /// The next sample does not adjoin the last; what passes now. So many samples were lost in between, or an
-    /// unknown number if it is 0.
-    fn gap(&mut self, lost: u64) -> Passed<AXES, COVARIATES>;
+    /// The next sample does not adjoin the last; what passes now.
+    fn gap(&mut self, lost: Missing) -> Passed<AXES, COVARIATES>;
 
     /// The oldest that is held back; [`Passed::Nothing`] where nothing is.
     fn release(&mut self) -> Passed<AXES, COVARIATES>;
@@ -81,7 +104,7 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES> for (
         Passed::Sample(sample)
     }
 
-    fn gap(&mut self, lost: u64) -> Passed<AXES, COVARIATES> {
+    fn gap(&mut self, lost: Missing) -> Passed<AXES, COVARIATES> {
         Passed::Gap(lost)
     }
 
@@ -127,7 +150,7 @@ pub struct Gate<const AXES: usize, const COVARIATES: usize> {
     integrity: [Integrity; AXES],
     held: [Sample<AXES, COVARIATES>; HELD],
     /// One bit for each slot, which is set if the slot marks a gap and holds no sample. Its first count then holds
-    /// the number of samples that are missing there.
+    /// the number of samples that are missing there, with all bits inverted if others are missing too.
     is_gap: [u32; HELD / WORD],
     /// The slot of the oldest entry.
     first: u8,
@@ -169,9 +192,9 @@ impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
         passed
     }
 
-    /// Appends a gap of so many samples to the queue. Consecutive samples that are left out or lost share one gap.
+    /// Appends a gap to the queue. Consecutive samples that are left out or lost share one gap.
     #[inline(never)]
-    fn hold_gap(&mut self, samples: u64) -> Passed<AXES, COVARIATES> {
+    fn hold_gap(&mut self, missing: Missing) -> Passed<AXES, COVARIATES> {
         let mut passed = Passed::Nothing;
         let mut newest = self.slot(self.length.wrapping_sub(1));
         if self.length == 0 || !self.is_gap(newest) {
@@ -179,28 +202,34 @@ impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
             newest = self.slot(self.length.wrapping_sub(1));
             self.is_gap[newest / WORD] |= flag(newest);
         }
-        if let Some(missing) = self.held[newest].counts.first_mut() {
-            let samples = i32::try_from(samples).unwrap_or(i32::MAX);
-            *missing = missing.saturating_add(samples);
+        let all = self.missing_at(newest).and(missing);
+        if let Some(count) = self.held[newest].counts.first_mut() {
+            let samples = i32::try_from(all.samples).unwrap_or(i32::MAX);
+            *count = if all.has_more { !samples } else { samples };
         }
         passed
     }
 
-    /// The number of samples that are missing at a slot that marks a gap.
-    fn missing_at(&self, slot: usize) -> u64 {
-        let missing = self.held[slot].counts.first();
-        missing.map_or(0, |&missing| u64::from(missing.unsigned_abs()))
+    /// The samples that are missing at a slot that marks a gap.
+    fn missing_at(&self, slot: usize) -> Missing {
+        let count = self.held[slot].counts.first().copied().unwrap_or(0);
+        let has_more = count < 0;
+        let samples = if has_more { !count } else { count };
+        Missing {
+            samples: samples as u64,
+            has_more,
+        }
     }
 
-    /// Leaves out all samples that are held back, and returns the number of samples that are missing in their place.
+    /// Leaves out all samples that are held back, and returns what is missing in their place.
     #[cold]
     #[inline(never)]
-    fn leave_out_held(&mut self) -> u64 {
-        let (mut samples, mut missing) = (0_u64, 0_u64);
+    fn leave_out_held(&mut self) -> Missing {
+        let (mut samples, mut missing) = (0_u64, Missing::default());
         for behind in 0..self.length {
             let slot = self.slot(behind);
             if self.is_gap(slot) {
-                missing = missing.saturating_add(self.missing_at(slot));
+                missing = missing.and(self.missing_at(slot));
             } else {
                 samples = samples.saturating_add(1);
             }
@@ -208,7 +237,8 @@ impl<const AXES: usize, const COVARIATES: usize> Gate<AXES, COVARIATES> {
         self.left_out = self.left_out.saturating_add(samples);
         self.is_gap = [0; HELD / WORD];
         self.length = 0;
-        missing.saturating_add(samples)
+        missing.samples = missing.samples.saturating_add(samples);
+        missing
     }
 
     /// The slot at this distance from the oldest entry.
@@ -261,9 +291,9 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES>
         }
         self.left_out = self.left_out.saturating_add(1);
         self.behind = self.behind.saturating_sub(1);
-        let mut missing = 1_u64;
+        let mut missing = Missing::new(1);
         if seen.moving || seen.stuck {
-            missing = missing.saturating_add(self.leave_out_held());
+            missing = missing.and(self.leave_out_held());
         }
         if seen.moving {
             self.behind = CLUSTER;
@@ -271,7 +301,7 @@ impl<const AXES: usize, const COVARIATES: usize> Passing<AXES, COVARIATES>
         self.hold_gap(missing)
     }
 
-    fn gap(&mut self, lost: u64) -> Passed<AXES, COVARIATES> {
+    fn gap(&mut self, lost: Missing) -> Passed<AXES, COVARIATES> {
         self.integrity.iter_mut().for_each(Integrity::gap);
         self.hold_gap(lost)
     }

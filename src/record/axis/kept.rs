@@ -1,6 +1,7 @@
 //! The sums of a record, which receive the samples that pass the gate.
 
 use super::{
+    gate::Missing,
     moments::{MomentPart, MomentSums},
     sample::Sample,
     spectra::{SpectrumPart, SpectrumSums, Waits},
@@ -9,7 +10,7 @@ use super::{
 use crate::record::{
     cross_sums::CrossSums,
     integrity::{Integrity, InvalidLimit, Limits},
-    octave::{Accumulator, Observer},
+    octave::{Accumulator, Observer, bridge::Filling},
 };
 
 /// The sums of all axes and covariates. They all receive the same samples and gaps, so that all results
@@ -108,14 +109,10 @@ where
     fn push(&mut self, count: i32, completed: &[Completed; COVARIATES]) {
         let Self {
             accumulator,
-            integrity,
             moments,
             cross,
-            spectrum,
             ..
         } = self;
-        integrity.push(count);
-        spectrum.push(count);
         let mut beside = DifferenceSums {
             moments,
             cross,
@@ -124,9 +121,9 @@ where
         accumulator.push_observed(count, &mut beside);
     }
 
-    /// Adds the pending differences of the accumulators, which a gap discards.
-    fn add_pending(&mut self, covariates: &[Accumulator<OCTAVES>; COVARIATES]) {
-        for octave in 0..OCTAVES {
+    /// Adds the pending differences of the first octaves, which the accumulators no longer hand out after a loss.
+    fn add_pending(&mut self, octaves: usize, covariates: &[Accumulator<OCTAVES>; COVARIATES]) {
+        for octave in 0..octaves {
             let Some(difference) = self.accumulator.pending_difference(octave) else {
                 continue;
             };
@@ -162,6 +159,30 @@ where
 
     #[inline(always)]
     pub(crate) fn push(&mut self, sample: &Sample<AXES, COVARIATES>) {
+        self.watch(sample);
+        self.sum(sample);
+    }
+
+    /// Adds a sample, or values that fill the place of a lost one.
+    #[inline(never)]
+    pub(crate) fn push_any(&mut self, sample: &Sample<AXES, COVARIATES>, is_measured: bool) {
+        if is_measured {
+            self.watch(sample);
+        }
+        self.sum(sample);
+    }
+
+    #[inline(always)]
+    fn watch(&mut self, sample: &Sample<AXES, COVARIATES>) {
+        for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
+            axis.integrity.push(count);
+            axis.spectrum.push(count);
+            axis.track.push(count, sample.covariates);
+        }
+    }
+
+    #[inline(always)]
+    fn sum(&mut self, sample: &Sample<AXES, COVARIATES>) {
         let mut completed = [Completed([0; 4]); COVARIATES];
         let covariates = self.covariates.iter_mut().zip(&sample.covariates);
         for ((covariate, &count), completed) in covariates.zip(&mut completed) {
@@ -169,7 +190,6 @@ where
         }
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
             axis.push(count, &completed);
-            axis.track.push(count, sample.covariates);
         }
         self.make_room();
     }
@@ -198,11 +218,49 @@ where
         self.axes.iter_mut().any(|axis| axis.spectrum.advance())
     }
 
+    /// Samples are missing at this place. If they are few, and their number is known, the sums of octaves go on with values
+    /// that fill it. No segment of the spectrum spans it.
+    #[inline(never)]
+    pub(crate) fn miss(&mut self, missing: Missing) {
+        let known = if missing.has_more { 0 } else { missing.samples };
+        // All accumulators take the same samples and gaps.
+        let mut accumulators = self.axes.iter().map(|axis| &axis.accumulator);
+        let touched = accumulators.next().and_then(|first| first.touched(known));
+        let Some(touched) = touched else {
+            return self.gap(missing.samples);
+        };
+        for axis in &mut self.axes {
+            axis.add_pending(touched, &self.covariates);
+            axis.integrity.gap();
+            axis.spectrum.gap();
+            axis.track.gap(known);
+        }
+        let mut axes = self
+            .axes
+            .each_mut()
+            .map(|axis| axis.accumulator.fill(known));
+        let mut covariates = self
+            .covariates
+            .each_mut()
+            .map(|covariate| covariate.fill(known));
+        let next = |filling: &mut Option<Filling>| {
+            let next = filling.as_mut().and_then(Iterator::next);
+            next.unwrap_or(0)
+        };
+        for _ in 0..known {
+            let sample = Sample {
+                counts: axes.each_mut().map(next),
+                covariates: covariates.each_mut().map(next),
+            };
+            self.push_any(&sample, false);
+        }
+    }
+
     /// No difference spans this place, where so many samples are missing, or an unknown number if it is 0.
     #[inline(never)]
     pub(crate) fn gap(&mut self, missing: u64) {
         for axis in &mut self.axes {
-            axis.add_pending(&self.covariates);
+            axis.add_pending(OCTAVES, &self.covariates);
             axis.accumulator.gap();
             axis.integrity.gap();
             axis.spectrum.gap();

@@ -28,6 +28,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             let past = self.number as usize % BATCH;
             let ready = past == 0 && self.number >= FULL && self.number < u32::MAX - FULL;
             if ready
+                && self.is_clear()
                 && let Some((batch, after)) = rest.split_first_chunk()
                 && self.push_any_batch(batch, &mut is_far)
             {
@@ -83,7 +84,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
                 for (block, &offset) in
                     (n >> level..u32::MAX).zip(boundaries.step_by(1 << (level - 4)))
                 {
-                    own.push(block, base.wrapping_add(u64::from(offset)));
+                    own.push(block, base.wrapping_add(u64::from(offset)), 0);
                 }
             }
         }
@@ -127,7 +128,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             self.store::<COUNT>(level, block, base, offsets);
         } else {
             for (block, &offset) in (block..).zip(&offsets[RING..RING + COUNT]) {
-                self.levels[level].push(block, base.wrapping_add(u64::from(offset)));
+                self.levels[level].push(block, base.wrapping_add(u64::from(offset)), 0);
             }
         }
     }

@@ -118,7 +118,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             {
                 let boundaries = (RING..RING + (BATCH >> 4)).step_by(1 << (level - 4));
                 for (block, i) in (n >> level..u32::MAX).zip(boundaries) {
-                    own.push(block, base.wrapping_add_signed(offsets.get(i)));
+                    own.push(block, base.wrapping_add_signed(offsets.get(i)), 0);
                 }
             }
         }
@@ -150,7 +150,7 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             self.store_wide::<0, COUNT>(level, base, offsets);
         } else {
             for (block, i) in (block..).zip(RING..RING + COUNT) {
-                self.levels[level].push(block, base.wrapping_add_signed(offsets.get(i)));
+                self.levels[level].push(block, base.wrapping_add_signed(offsets.get(i)), 0);
             }
         }
     }

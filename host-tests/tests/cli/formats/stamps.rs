@@ -3,9 +3,13 @@
 use super::{counts, read_text};
 use allanite::Accumulator;
 use host_tests::{
-    log::{OCTAVES, Options, TimeUnit},
+    curve_file::AxisCurve,
+    log::{Log, OCTAVES, Options, TimeUnit},
     unit::Unit,
 };
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_xoshiro::Xoshiro256PlusPlus;
 use std::fmt::Write as _;
 
 /// A log of one axis with these stamps.
@@ -84,14 +88,14 @@ fn seconds_and_nanoseconds_are_one_stamp() {
 }
 
 #[test]
-fn gaps_split_the_record_and_repeated_rows_are_left_out() {
+fn lost_rows_are_filled_and_repeated_rows_are_left_out() {
     let noise = counts();
     let mut expected = Accumulator::<OCTAVES>::new();
     let mut text = String::from("timestamp [us],gx [deg/s]\n");
     for (i, count) in noise.iter().flatten().cycle().take(400).enumerate() {
         if (200..220).contains(&i) {
             if i == 200 {
-                expected.gap();
+                expected.lost(20);
             }
             continue;
         }
@@ -117,6 +121,37 @@ fn gaps_split_the_record_and_repeated_rows_are_left_out() {
             "{notes}"
         );
     }
+}
+
+/// White noise at 40 Hz, of which every fiftieth row is lost on average.
+#[test]
+fn single_lost_rows_leave_all_octaves_and_the_noise() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
+    let (mut text, mut whole) = (String::from("time [s],gx [deg/s]\n"), String::new());
+    whole += &text;
+    for i in 0..24_000 {
+        let count = (100.0 * random.sample::<f64, _>(StandardNormal)).round();
+        let row = format!("{:.3},{count}\n", 0.025 * f64::from(i));
+        whole += &row;
+        if i < 100 || random.random::<f64>() >= 0.02 {
+            text += &row;
+        }
+    }
+    let read = |text| read_text(text, &Options::default()).unwrap();
+    let (log, whole) = (read(&text), read(&whole));
+    let notes = log.notes.join("\n");
+    assert!(notes.contains("gaps bridged"), "{notes}");
+    let curve = |log: &Log| AxisCurve::of(&log.axes[0], log.rate_hz, log.unit).unwrap();
+    let (curve, whole) = (curve(&log), curve(&whole));
+    assert_eq!(curve.octaves.len(), whole.octaves.len());
+    assert!(curve.samples < 23_700 && curve.gaps == 0 && whole.bridged.is_empty());
+    for (octave, all) in curve.octaves.iter().zip(&whole.octaves).take(9) {
+        // Without what is taken off, the octave of m = 4 is 5 % below.
+        let ratio = octave.variance / all.variance;
+        assert!((ratio - 1.0).abs() < 0.02, "m = {}: {ratio}", octave.m);
+    }
+    let merged = AxisCurve::merged(std::slice::from_ref(&curve)).unwrap();
+    assert_eq!(merged.octaves, curve.octaves);
 }
 
 #[test]

@@ -1,0 +1,174 @@
+//! What filled values change in a curve, which is taken off.
+//!
+//! A filled gap changes the variance of the differences that touch it. How much follows from the generalised covariance
+//! `G` of the angle, whatever the noise: the second difference of the filled angle is a combination of angles at seven
+//! places. And the curve itself gives `G` at the powers of two, up to a polynomial that all second differences ignore:
+//!
+//! ```text
+//! m² σ²(m) = 3 G(0) − 4 G(m) + G(2m)
+//! ```
+//!
+//! Between powers of two, `G` is a cubic through four of them, which is exact for quantization, white noise and random
+//! walk. So no model is needed, and what is taken off is right to the second order in the share of lost samples.
+
+use crate::{
+    list::numbered,
+    numerics::real::{Real, real},
+    record::octave::{
+        Bridged,
+        bridge::{BEFORE, WINDOW},
+    },
+};
+use heapless::Vec;
+
+/// The number of powers of two at which `G` is known: the largest distance is that of `m = 128` beside a gap of 64.
+const NODES: usize = 11;
+
+/// The octave from which on the change falls in proportion to the number of samples of a cluster.
+const LONG: u32 = 7;
+
+/// The distances of the window's end from the gap that are averaged. With 0 to 7 samples, they share the mean, and nearly
+/// the variance.
+const ENDS: [i32; 2] = [(BEFORE as i32 - 1) / 2 - 2, BEFORE as i32 / 2 + 2];
+
+/// The largest number of parts in which the starts of a difference are summed.
+const PARTS: i32 = 16;
+
+/// The generalised covariance of the angle at powers of two, in samples squared.
+struct Covariance([Real; NODES]);
+
+impl Covariance {
+    fn of(octaves: &[(u32, Real)]) -> Self {
+        let mut nodes = [0.0; NODES];
+        let mut variance = 0.0;
+        let (mut last, mut m) = (0.0, 1_u32);
+        for node in nodes.iter_mut().skip(1) {
+            // Behind the last octave, the variance is taken to stay.
+            let octave = octaves.iter().find(|octave| octave.0 == m);
+            variance = octave.map_or(variance, |octave| octave.1);
+            last = 4.0 * last + real(m) * real(m) * variance;
+            *node = last;
+            m = m.wrapping_shl(1);
+        }
+        // Without the part that grows with the square, the numbers are small.
+        let square = last / (real(m) * real(m));
+        let mut m = 1.0;
+        for node in &mut nodes {
+            *node -= square * m * m;
+            m *= 2.0;
+        }
+        Self(nodes)
+    }
+
+    fn at(&self, distance: i32) -> Real {
+        let distance = distance.unsigned_abs();
+        if distance == 0 {
+            return 0.0;
+        }
+        let node = |k: usize| self.0.get(k).copied().unwrap_or(0.0);
+        let octave = distance.ilog2() as usize;
+        if distance.is_power_of_two() {
+            return node(octave);
+        }
+        let first = octave.saturating_sub(1).min(NODES - 4);
+        // In units of the first of four powers of two.
+        let t = real(distance) / real(1_u32.wrapping_shl(first as u32));
+        let [one, two, four, eight] = [t - 1.0, t - 2.0, t - 4.0, t - 8.0];
+        node(first) * two * four * eight / -21.0
+            + node(first.saturating_add(1)) * one * four * eight / 12.0
+            - node(first.saturating_add(2)) * one * two * eight / 24.0
+            + node(first.saturating_add(3)) * one * two * four / 168.0
+    }
+
+    /// The sum over all starts of what a gap of `lost` samples changes in the Allan variance at `m`.
+    fn change(&self, m: i32, lost: i32) -> Real {
+        let double = m.wrapping_mul(2);
+        let plain = self.at(double) - 4.0 * self.at(m);
+        let starts = double.wrapping_add(lost).wrapping_sub(1);
+        let parts = starts.min(PARTS);
+        let mut sum = 0.0;
+        for end in ENDS {
+            for part in 0..parts {
+                // The middle of the part, from the first start whose difference touches the gap.
+                let place = starts.wrapping_mul(part.wrapping_mul(2).wrapping_add(1));
+                let place = place.wrapping_div_euclid(parts.wrapping_mul(2));
+                let start = place.wrapping_add(1).wrapping_sub(double);
+                sum += self.filled(start, m, lost, end) - 2.0 * plain;
+            }
+        }
+        let all = real(starts as u32) / real((2 * parts) as u32);
+        0.5 * sum * all / (real(m as u32) * real(m as u32))
+    }
+
+    /// The variance of the difference that starts at `start`, where the gap begins at 0.
+    fn filled(&self, start: i32, m: i32, lost: i32, end: i32) -> Real {
+        let window = WINDOW as i32;
+        let (until, from) = (end.wrapping_neg(), end.wrapping_add(window).wrapping_neg());
+        let mut terms = [(0, 0.0); 7];
+        let [zero, behind, newest, oldest, boundaries @ ..] = &mut terms;
+        (zero.0, behind.0, newest.0, oldest.0) = (0, lost, until, from);
+        let places = [0, m, m.wrapping_mul(2)].map(|step: i32| start.wrapping_add(step));
+        for ((own, place), weight) in boundaries.iter_mut().zip(places).zip([1.0, -2.0, 1.0]) {
+            if place <= 0 {
+                *own = (place, weight);
+                continue;
+            }
+            let inside = place.min(lost);
+            let share = weight * inside as Real / window as Real;
+            zero.1 += weight;
+            newest.1 += share;
+            oldest.1 -= share;
+            if place > lost {
+                behind.1 -= weight;
+                *own = (place, weight);
+            }
+        }
+        let mut sum = 0.0;
+        for (i, (place, weight)) in numbered(terms.iter()) {
+            for (other, other_weight) in terms.iter().take(i) {
+                sum += 2.0 * weight * other_weight * self.at(place.wrapping_sub(*other));
+            }
+        }
+        sum
+    }
+}
+
+/// Takes off what filled gaps change in the variances of octaves `(m, variance)`. `places` is the number of samples with
+/// those that were lost.
+#[inline(never)]
+pub(super) fn take_off<const K: usize>(
+    octaves: &mut Vec<(u32, Real), K>,
+    bridged: &Bridged,
+    places: u64,
+) {
+    let read = octaves.clone();
+    // The first covariance is that of the filled angle. The second one is closer to that of the angle.
+    for _ in 0..2 {
+        let covariance = Covariance::of(octaves);
+        for (own, &(m, variance)) in octaves.iter_mut().zip(&read) {
+            own.1 = within(variance, changes(&covariance, bridged, m, places));
+        }
+    }
+}
+
+/// The variance without a change. Where noise is nearly nothing, the change may be wrong by more than the noise.
+fn within(variance: Real, change: Real) -> Real {
+    (variance - change).max(0.5 * variance)
+}
+
+/// What all filled gaps change in the Allan variance at `m`.
+fn changes(covariance: &Covariance, bridged: &Bridged, m: u32, places: u64) -> Real {
+    let octave = m.ilog2();
+    let shortened = octave.min(LONG);
+    let scale = real(1_u32 << shortened) / (real(m) * places as Real);
+    let classes = bridged.gaps.iter().zip(&bridged.samples);
+    let mut sum = 0.0;
+    for (class, (&gaps, &lost)) in numbered(classes) {
+        if gaps == 0 || (octave as usize) < Bridged::first_octave(class) {
+            continue;
+        }
+        let length = lost.wrapping_add(gaps / 2) / gaps;
+        sum += real(gaps) * covariance.change(1 << shortened, length.min(64) as i32);
+    }
+    sum * scale
+}

@@ -142,6 +142,7 @@ mod ulog_format;
 mod ulog_messages;
 mod ulog_topics;
 mod unit_names;
+pub(crate) mod unrest;
 mod watched;
 mod worker;
 

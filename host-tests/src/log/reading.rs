@@ -15,7 +15,10 @@ use super::{
     tried::TriedColumns,
     watched, worker,
 };
-use crate::failure::{Failure, Place};
+use crate::{
+    failure::{Failure, Place},
+    unit::Sensor,
+};
 use allanite::Accumulator;
 use indicatif::ProgressBar;
 use std::path::Path;
@@ -166,6 +169,16 @@ pub(super) fn read_table(
         is_constant(sums.accumulator())
             || matches!(sums, Sums::InTwo { rest, .. } if first.is_some() && is_constant(&rest.accumulator))
     };
+    let units: Vec<f64> = measured
+        .axes
+        .iter()
+        .map(|(_, quantum)| scaling.scale * quantum.step())
+        .collect();
+    let are_whole = measured.axes.iter().any(|(_, quantum)| quantum.is_whole());
+    let is_gyro = scaling.unit.sensor() == Sensor::Gyro;
+    let per_degree = scaling
+        .has_scale(are_whole)
+        .then(|| 1.0 / scaling.unit.in_usual());
     let some_change = measured.axes.iter().any(|(sums, _)| !is_constant(sums));
     let measured_axes = axis_columns.into_iter().zip(measured.axes);
     for (place, (column, (sums, quantum))) in measured_axes.enumerate() {
@@ -194,7 +207,10 @@ pub(super) fn read_table(
         if let Sums::Watched(watched, beside) = &sums {
             let coarse = measured.coarse.get(place).copied().flatten();
             let fault = measured.faults.verdict(place);
-            let evidence = recorded.evidence(path, &axis, &**watched, (fault, coarse))?;
+            let motion = is_gyro
+                .then(|| evidence::unrest(&measured.unrest, place, rate_hz, &units, per_degree))
+                .flatten();
+            let evidence = recorded.evidence(path, &axis, &**watched, [fault, coarse, motion])?;
             if evidence.invalid.is_none() {
                 least = least.max(measured.faults.least(place));
             }

@@ -103,6 +103,11 @@ impl Scaling {
         })
     }
 
+    /// Whether it is known how large the values are, of numbers that are whole or not.
+    pub(super) fn has_scale(&self, are_whole: bool) -> bool {
+        self.origin != Origin::Assumed && (self.scale_is_told || !are_whole)
+    }
+
     /// Checks that the scatter between neighbouring samples of an axis is possible for a sensor at
     /// rest. An unlikely scatter is a warning, an impossible one an error.
     pub(super) fn check(&self, path: &Path, axis: &Axis) -> Result<Option<String>, Failure> {

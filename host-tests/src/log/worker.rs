@@ -7,6 +7,7 @@ use super::{
     covariate::{self, Derived},
     faults::{self, Faults},
     sums::{OwnSums, Part, Sums},
+    unrest::{self, Unrest},
     watched::{self, SharedSums, WatchedAxis},
 };
 use crate::dependence::block_means::BlockSums;
@@ -56,6 +57,15 @@ impl Plan {
         self.axes + self.covariates().len()
     }
 
+    /// The number of sensors whose motion is watched.
+    fn sensors(&self) -> usize {
+        let is_watched = self.watch.is_some() && self.faults.by_rows;
+        match is_watched && self.axes.is_multiple_of(unrest::AXES) {
+            true => self.axes / unrest::AXES,
+            false => 0,
+        }
+    }
+
     fn kept(&self) -> AxisState {
         match &self.watch {
             Some(watch) => AxisState::Watched(watched::axis(watch.covariates.len(), watch.moments)),
@@ -101,6 +111,8 @@ pub(super) struct Totals {
     pub(super) blocks: BlockSums,
     /// What the logger did to the samples.
     pub(super) faults: Faults,
+    /// The motion of every sensor. Empty unless three axes are watched row by row.
+    pub(super) unrest: Vec<Unrest>,
 }
 
 impl Batches {
@@ -240,6 +252,7 @@ impl Batches {
             pairs: worker.pairs,
             blocks: worker.blocks,
             faults: worker.faults,
+            unrest: worker.unrest,
         }
     }
 }
@@ -258,6 +271,7 @@ struct Worker {
     columns: Vec<Course>,
     blocks: BlockSums,
     faults: Faults,
+    unrest: Vec<Unrest>,
     /// If the columns come row by row, a batch waits until the batches of the other columns with the same rows
     /// arrive.
     waiting: Vec<VecDeque<Vec<i32>>>,
@@ -274,6 +288,7 @@ impl Worker {
             columns: plan.covariates().iter().map(|_| Course::new()).collect(),
             blocks: BlockSums::new(plan.columns()),
             faults: Faults::new(plan.faults.clone(), plan.axes),
+            unrest: vec![Unrest::new(); plan.sensors()],
             waiting: vec![VecDeque::new(); plan.columns()],
             plan,
         }
@@ -296,6 +311,10 @@ impl Worker {
             .filter_map(VecDeque::pop_front)
             .collect();
         self.faults.push_rows(&mut rows);
+        let sensors = rows.as_chunks::<{ unrest::AXES }>().0;
+        for (unrest, axes) in self.unrest.iter_mut().zip(sensors) {
+            unrest.push(axes.each_ref().map(Vec::as_slice));
+        }
         if !self.derived.is_empty() {
             self.blocks.push(&rows);
         }
@@ -323,6 +342,9 @@ impl Worker {
 
     fn gap(&mut self, missing: u64) {
         self.faults.gap();
+        self.unrest
+            .iter_mut()
+            .for_each(|unrest| unrest.gap(missing));
         self.blocks.gap();
         for derived in &mut self.derived {
             derived.gap();

@@ -1,14 +1,14 @@
 //! Studies how often faults of a logger are told, and how often they are told of records that have none.
 
+use super::noise::{butterworth, flicker, normal, normalised};
 use crate::simulate::Random;
 use allanite::{
     faults::{JointRepeats, SampleFaults},
     integrity::Reason,
 };
 use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
 use rayon::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// The number of samples of a record.
 pub const SAMPLES: usize = 1 << 14;
@@ -278,10 +278,6 @@ fn record(fault: Fault, resolution: Resolution, random: &mut Random) -> Record {
     }
 }
 
-fn normal(random: &mut Random) -> f64 {
-    random.sample(StandardNormal)
-}
-
 /// Noise whose standard deviation is 1; with a walk, that of its white noise.
 fn noise(
     colour: Colour,
@@ -301,9 +297,9 @@ fn noise(
             white.into_iter().map(step).collect()
         }
         Colour::LowPass(_, cutoff) => butterworth(&white, cutoff),
-        Colour::Flicker => flicker(white.len(), random),
+        Colour::Flicker => flicker::<7>(white.len(), random),
         Colour::WhiteAndFlicker => {
-            let slow = normalised(flicker(white.len(), random));
+            let slow = normalised(flicker::<7>(white.len(), random));
             white
                 .iter()
                 .zip(slow)
@@ -329,48 +325,6 @@ fn noise(
     };
     noise.drain(..400);
     normalised(noise)
-}
-
-fn normalised(mut noise: Vec<f64>) -> Vec<f64> {
-    let mean = noise.iter().sum::<f64>() / noise.len() as f64;
-    let squares: f64 = noise.iter().map(|value| (value - mean).powi(2)).sum();
-    let deviation = (squares / noise.len() as f64).sqrt();
-    noise
-        .iter_mut()
-        .for_each(|value| *value = (*value - mean) / deviation);
-    noise
-}
-
-/// A Butterworth low pass of two poles by the bilinear transform.
-fn butterworth(white: &[f64], cutoff: f64) -> Vec<f64> {
-    let k = (PI * cutoff).tan();
-    let scale = 1.0 / (1.0 + 2_f64.sqrt() * k + k * k);
-    let (b, a1, a2) = (
-        k * k * scale,
-        2.0 * (k * k - 1.0) * scale,
-        (1.0 - 2_f64.sqrt() * k + k * k) * scale,
-    );
-    let ([mut x1, mut x2], [mut y1, mut y2]) = ([0.0; 2], [0.0; 2]);
-    let step = |&x: &f64| {
-        let y = b * (x + 2.0 * x1 + x2) - a1 * y1 - a2 * y2;
-        (x2, x1, y2, y1) = (x1, x, y1, y);
-        y
-    };
-    white.iter().map(step).collect()
-}
-
-/// Flicker noise: a sum of relaxations whose times grow fourfold.
-fn flicker(samples: usize, random: &mut Random) -> Vec<f64> {
-    let poles = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0].map(|time: f64| (-1.0 / time).exp());
-    let mut states = poles.map(|_| normal(random));
-    (0..samples)
-        .map(|_| {
-            for (state, pole) in states.iter_mut().zip(poles) {
-                *state = pole * *state + (1.0 - pole * pole).sqrt() * normal(random);
-            }
-            states.iter().sum()
-        })
-        .collect()
 }
 
 /// The counts that the logger writes, and the share of samples that it repeats.

@@ -290,3 +290,35 @@ fn filter_stays_a_filter() {
     assert_eq!(diagnosis["axes"][0]["verdict"], "improved", "{diagnosis}");
     assert_eq!(named(&diagnosis).len(), 1);
 }
+
+/// A record in a hand, which looks like noise behind a low pass, and one beside a fan, which all axes see.
+#[test]
+fn motion_that_never_stops_is_told_and_no_effect_is_named() {
+    let folder = TempDir::new().unwrap();
+    let swings = noise(30_000, 0.3, 9);
+    for (name, is_motion) in [("hand", true), ("fan", false)] {
+        let axes = [(0.4, 1), (1.0, 2), (-0.7, 3)].map(|(share, seed)| {
+            let (mut slow, mut slower) = (0.0, 0.0);
+            let white = noise(30_000, 0.02, seed);
+            let rows = white.iter().zip(&swings).enumerate();
+            let rows = rows.map(|(row, (white, swing))| {
+                slow += 0.1 * (swing - slow);
+                slower += 0.1 * (slow - slower);
+                let fan = 0.05 * (2.0 * std::f64::consts::PI * 0.37 * row as f64).sin();
+                white + share * if is_motion { slower } else { fan }
+            });
+            rows.collect::<Vec<f64>>()
+        });
+        write(folder.path(), "gx [deg/s],gy [deg/s],gz [deg/s]", &axes, 5);
+        let diagnosis = json(folder.path(), &["diagnose", "log.csv", "--rate", "100"]);
+        let said = diagnosis.to_string();
+        assert_eq!(said.contains("never at rest"), is_motion, "{name}: {said}");
+        for axis in diagnosis["axes"].as_array().unwrap() {
+            assert_eq!(axis["verdict"] == "invalid", is_motion, "{name}: {axis}");
+        }
+        match is_motion {
+            true => assert_eq!(named(&diagnosis), [""; 0]),
+            false => assert_eq!(named(&diagnosis), ["sinusoid"]),
+        }
+    }
+}

@@ -55,11 +55,11 @@ pub enum Reason {
     },
     /// The gyro was not at rest.
     Moved {
-        /// Number of stretches of motion.
+        /// Number of stretches of motion. 0: the motion never stopped.
         motions: u64,
         /// Samples in each of the clusters whose means showed the motion.
         cluster: u16,
-        /// Share of ΣD² of these clusters that the motion contributes, in percent.
+        /// Share of ΣD² of these clusters that the motion contributes, in percent; at least, where it never stopped.
         percent: u8,
     },
     /// Too many samples were lost.
@@ -156,6 +156,15 @@ impl core::fmt::Display for Reason {
                 "the record has spikes: single samples far beyond the noise ({spikes}) explain \
                  {percent} % of the variance of one sample; check the supply and the bus, or leave \
                  the spikes out as gaps"
+            ),
+            Self::Moved {
+                motions: 0,
+                cluster,
+                percent,
+            } => write!(
+                f,
+                "the gyro was never at rest: motion explains at least {percent} % of the variance of \
+                 means of {cluster} samples; record again at rest, untouched"
             ),
             Self::Moved {
                 motions,

@@ -11,6 +11,8 @@ mod faults;
 mod hidden_effect;
 mod lines;
 mod long;
+mod losses;
+mod motion;
 mod origin;
 mod own;
 mod pairs;
@@ -221,6 +223,24 @@ enum Study {
         #[arg(long, default_value_t = 0)]
         seed: u64,
     },
+    /// Compare records of which samples are lost with the same records without losses
+    Losses {
+        /// Number of records per kind of gyro and of loss
+        #[arg(long, default_value_t = 400)]
+        records: u64,
+    },
+    /// Count how often motion that never stops is told, and how often in records at rest
+    Motion {
+        /// Number of records in motion, of all kinds
+        #[arg(long, default_value_t = 6000)]
+        records: u64,
+        /// Number of records at rest, of all kinds
+        #[arg(long, default_value_t = 12_000)]
+        rest: u64,
+        /// Seed of the records
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
+    },
     /// Count how often the self-test errs, and compare its length with a test of fixed length
     SelfTest {
         /// Number of devices per case
@@ -365,6 +385,12 @@ fn main() -> Result<()> {
             clean,
             seed,
         } => faults::print(records, clean, seed),
+        Study::Losses { records } => losses::print(records),
+        Study::Motion {
+            records,
+            rest,
+            seed,
+        } => motion::print(records, rest, seed),
         Study::SelfTest {
             devices,
             effect,

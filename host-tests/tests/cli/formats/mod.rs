@@ -1,6 +1,7 @@
 //! Logs that the formats' own libraries wrote are read exactly, and refused if they are broken.
 
 mod broken;
+mod cases;
 mod layouts;
 mod origins;
 mod stamps;

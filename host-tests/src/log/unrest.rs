@@ -191,7 +191,7 @@ impl Unrest {
     /// Marks a place where so many samples are missing, or an unknown number if it is 0. A short gap is filled with the mean
     /// of 32 samples before, so that single losses do not hide the slow parts.
     pub(crate) fn gap(&mut self, missing: u64) {
-        if (1..=LONGEST_FILLED).contains(&missing) && self.number >= 2 * WINDOW {
+        if (1..=LONGEST_FILLED).contains(&missing) && self.number >= WINDOW {
             let newest = self.number >> WINDOW_LEVEL;
             let ring = &self.levels[WINDOW_LEVEL];
             let [last, first] = [newest, newest - (WINDOW >> WINDOW_LEVEL)]

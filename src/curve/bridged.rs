@@ -114,7 +114,7 @@ impl Covariance {
                 continue;
             }
             let inside = place.min(lost);
-            let share = weight * inside as Real / window as Real;
+            let share = weight * real(inside) / real(window);
             zero.1 += weight;
             newest.1 += share;
             oldest.1 -= share;

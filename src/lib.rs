@@ -97,10 +97,10 @@
 //!
 //! | what | about |
 //! |---|---|
-//! | a sample into an accumulator, any number of octaves | 140 instructions |
-//! | RAM of an accumulator of 24 octaves | 2400 bytes |
-//! | flash of accumulator, curve and fit | 40 500 bytes |
-//! | flash with the diagnosis and the whole catalogue | 119 500 bytes |
+//! | a sample into an accumulator, any number of octaves | 148 instructions |
+//! | RAM of an accumulator of 24 octaves | 2480 bytes |
+//! | flash of accumulator, curve and fit | 45 100 bytes |
+//! | flash with the diagnosis and the whole catalogue | 127 400 bytes |
 //! | a fit of 20 octaves | 15 million instructions |
 //! | RAM of a spectrum, for an axis | 3928 bytes |
 //! | a sample into a spectrum | 25 instructions in the interrupt, 216 in the main loop |

@@ -104,7 +104,7 @@
 //! | a fit of 20 octaves | 15 million instructions |
 //! | RAM of a spectrum, for an axis | 3928 bytes |
 //! | a sample into a spectrum | 25 instructions in the interrupt, 216 in the main loop |
-//! | flash with diagnosis and spectrum | 129 400 bytes |
+//! | flash with diagnosis and spectrum | 140 400 bytes |
 //! | a diagnosis with a spectrum | 272 million instructions, 51 000 bytes of stack |
 //!
 //! A sample always takes a bounded number of instructions, whatever the input and however long the record. The

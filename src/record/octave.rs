@@ -92,7 +92,7 @@ impl Level {
 ///
 /// On a Cortex-M4F [`push`](Self::push) takes 148 instructions per sample, whatever the number of
 /// octaves and the position in the schedule, as long as no difference exceeds 31 bits. It takes at most
-/// 232 with full-scale input. [`push_slice`](Self::push_slice) takes 124 to 136, built for size. The state
+/// 244 with full-scale input. [`push_slice`](Self::push_slice) takes 130, built for size. The state
 /// takes `176 + 96 · OCTAVES` bytes, which is 2480 for 24 octaves. `cargo xtask bench` measures this.
 ///
 /// # Example

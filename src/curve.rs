@@ -7,7 +7,7 @@ pub(crate) use sums::LIMB;
 
 use crate::{
     error::Error,
-    list::numbered,
+    list::{fill, numbered},
     numerics::{
         math,
         real::{Real, real},
@@ -153,10 +153,10 @@ impl<const K: usize> Curve<K> {
         if !bridged.is_empty() {
             let places = samples.saturating_add(bridged.lost());
             let points = self.points.iter();
-            let mut octaves: Vec<_, K> = points.map(|point| (point.m, point.variance)).collect();
+            let mut octaves: Vec<_, K> = fill(points.map(|point| (point.m, point.variance)));
             bridged::take_off(&mut octaves, bridged, places);
-            for (point, (_, variance)) in self.points.iter_mut().zip(octaves) {
-                point.variance = variance;
+            for (point, (_, variance)) in self.points.iter_mut().zip(&octaves) {
+                point.variance = *variance;
             }
             self.variance_unit = power_of_four(&self.points);
         }

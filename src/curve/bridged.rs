@@ -66,7 +66,7 @@ impl Covariance {
             return 0.0;
         }
         let node = |k: usize| self.0.get(k).copied().unwrap_or(0.0);
-        let octave = distance.ilog2() as usize;
+        let octave = 31_u32.saturating_sub(distance.leading_zeros()) as usize;
         if distance.is_power_of_two() {
             return node(octave);
         }
@@ -158,7 +158,8 @@ fn within(variance: Real, change: Real) -> Real {
 
 /// What all filled gaps change in the Allan variance at `m`.
 fn changes(covariance: &Covariance, bridged: &Bridged, m: u32, places: u64) -> Real {
-    let octave = m.ilog2();
+    // The largest power of two in `m`, where the logarithm of the standard library may panic.
+    let octave = 31_u32.saturating_sub(m.leading_zeros());
     let shortened = octave.min(LONG);
     let scale = real(1_u32 << shortened) / (real(m) * places as Real);
     let classes = bridged.gaps.iter().zip(&bridged.samples);

@@ -234,8 +234,9 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     fn push_early(&mut self, before: u64, two_before: u64, observer: &mut impl Observer) {
         let angle = self.angle;
         let i = self.number as usize % RING;
-        let [four_before, eight_before] = [i ^ 4, i].map(|i| self.levels[0].ring[i]);
-        self.levels[0].ring[i] = angle;
+        let base = &mut self.levels[0];
+        let (four_before, eight_before) = (base.ring[i ^ 4], base.ring[i]);
+        base.ring[i] = angle;
         if self.exists(0) {
             let difference = second_difference(angle, before, two_before);
             self.short[0].add_square(difference);

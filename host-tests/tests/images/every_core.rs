@@ -238,7 +238,7 @@ fn samples_that_a_late_main_loop_loses_are_counted_and_become_gaps() {
         let [made, taken, lost] = numbers(total, ["made", "taken", "lost"]);
         assert_eq!(taken + lost, made);
 
-        // The host replays the same record, with a gap where the image lost samples.
+        // The host replays the same record, and loses what the image lost.
         let mut gyro = SimulatedGyro::new(AMPLITUDES, seed.into());
         let mut accumulator = Accumulator::<12>::new();
         assert_eq!(octaves, 12);
@@ -249,7 +249,7 @@ fn samples_that_a_late_main_loop_loses_are_counted_and_become_gaps() {
             for count in gyro.by_ref().take((after - taken_here) as usize) {
                 accumulator.push(count);
             }
-            accumulator.gap();
+            accumulator.lost(lost.into());
             gyro.by_ref().take(lost as usize).for_each(drop);
             (taken_here, lost_here) = (after, lost_here + lost);
         }

@@ -2,7 +2,7 @@
 //! more for its range and one that rounds its values to counts.
 
 use super::{
-    clock::Clock,
+    clock::{Clock, Late},
     columns::AxisColumn,
     cuts::{Cuts, Dropped},
     faults::Faults,
@@ -69,8 +69,8 @@ pub(super) struct Passes<'a, T> {
     pub(super) rate_hz: Option<f64>,
     /// The times that are left out.
     pub(super) dropped: Dropped,
-    /// The rows whose stamps are known to be late, counted from 1.
-    pub(super) late: Vec<u64>,
+    /// The rows whose stamps are known to be late.
+    pub(super) late: Vec<Late>,
     pub(super) progress: &'a ProgressBar,
 }
 
@@ -185,15 +185,17 @@ impl Visitor for Nothing {
 /// whether samples were lost before it. Samples that the logger repeated are left out in another pass, because only the
 /// whole record tells them.
 pub(super) fn measure<T: Table>(passes: &Passes<T>, plan: &Plan) -> Result<Measured, Failure> {
-    let again = |late: &[u64]| Passes {
+    let again = |late: &[Late]| Passes {
         late: late.to_vec(),
         dropped: passes.dropped.clone(),
         tried: passes.tried.clone(),
         ..*passes
     };
     let mut measured = measure_once(passes, plan)?;
-    let late = measured.clock.as_ref().map_or(&[][..], Clock::found_late);
-    let late = late.to_vec();
+    let late = measured
+        .clock
+        .as_ref()
+        .map_or(Vec::new(), Clock::found_late);
     if !late.is_empty() {
         measured = measure_once(&again(&late), plan)?;
     }

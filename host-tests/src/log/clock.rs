@@ -19,8 +19,8 @@ const MOST_GAPS: f64 = 0.2;
 /// exact stamps. Chosen by hand.
 const EXACT: (f64, f64) = (0.1, 0.05);
 
-/// A late stamp is followed by this many rows at most until the stamps are where they would be without a loss. Chosen by
-/// hand.
+/// A late stamp is followed by this many rows at most until the stamps are where they would be if it had been on time.
+/// Chosen by hand.
 const MOST_LATE: u64 = 16;
 
 /// After this many gaps in a row, the log is taken to have changed its rate. Chosen by hand; no study
@@ -74,20 +74,51 @@ pub(super) struct Clock {
     means: Option<(f64, f64)>,
     /// The number of gaps that are no whole number of samples.
     off_grid: u64,
-    /// The rows whose stamps are known to be late, latest first, and the longest delay in ticks.
-    late: Vec<u64>,
+    /// The rows whose stamps are known to be late, latest first.
+    late: Vec<Late>,
+    /// Their number so far, and the longest delay in ticks.
     delayed: (u64, f64),
-    /// The rows behind the last gaps, the stamps in front of them, and the first rows with these stamps.
-    behind: Vec<(u64, Stamp, u64)>,
+    /// The last gaps.
+    behind: Vec<Behind>,
     /// The rows whose stamps turned out to be late.
-    found: Vec<u64>,
+    found: Vec<Late>,
+}
+
+/// A row whose stamp is late, so that fewer samples are lost before it than the stamp tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Late {
+    /// The row, counted from 1.
+    row: u64,
+    /// The samples that are lost before it.
+    lost: u64,
+}
+
+/// A gap that may turn out to be a late stamp.
+#[derive(Clone, Copy, Debug)]
+struct Behind {
+    /// The row behind it.
+    row: u64,
+    /// The stamp in front of it, and the first row with that stamp.
+    before: Stamp,
+    first: u64,
+    /// Its length, in ticks.
+    step: f64,
+    /// The samples that the stamps behind it leave for lost, at least.
+    least: f64,
+}
+
+impl Behind {
+    /// The samples that are lost in it.
+    fn lost(&self) -> u64 {
+        self.least.round().max(0.0) as u64
+    }
 }
 
 impl Clock {
-    /// A clock of this pace. The stamps of the rows `late`, counted from 1, are late: no sample is lost before them.
-    pub(super) fn new(pace: Pace, late: &[u64]) -> Self {
+    /// A clock of this pace. The stamps of some rows are known to be late.
+    pub(super) fn new(pace: Pace, late: &[Late]) -> Self {
         let mut late = late.to_vec();
-        late.sort_unstable_by(|a, b| b.cmp(a));
+        late.sort_unstable_by_key(|late| std::cmp::Reverse(late.row));
         Self {
             off_grid: 0,
             late,
@@ -134,24 +165,44 @@ impl Clock {
             return Ok(Tick::Repeated);
         }
         let rows = 1 + std::mem::take(&mut self.sharing);
-        self.end_delay(stamp);
-        if step > self.pace.longest && self.late.last() == Some(&self.rows) {
-            self.late.pop();
-            let delay = step - self.pace.step;
+        self.end_delays(stamp);
+        let is_long = step > self.pace.longest;
+        let known = self.late.pop_if(|late| late.row == self.rows);
+        if let Some(late) = known {
+            let delay = step - (late.lost + 1) as f64 * self.pace.step;
             self.delayed = (self.delayed.0 + 1, self.delayed.1.max(delay));
-        } else if step > self.pace.longest {
-            self.behind.push((self.rows, last, self.rows - rows));
-            let samples = step / self.pace.step;
+        }
+        let samples = step / self.pace.step;
+        let told = ((samples.round() - 1.0) * self.pace.rows.round()).max(0.0) as u64;
+        let lost = match known {
+            Some(late) => late.lost,
+            None if is_long => told,
+            None => 0,
+        };
+        if is_long && known.is_none() {
+            self.behind.push(Behind {
+                row: self.rows,
+                before: last,
+                first: self.rows - rows,
+                step,
+                least: told as f64,
+            });
             self.off_grid += u64::from((samples - samples.round()).abs() > EXACT.0);
+        }
+        if lost > 0 {
+            if known.is_some() {
+                // The rows that catch up count for the rate, and so does their delay.
+                self.rows_of_steps += rows;
+                self.sum += step - lost as f64 / self.pace.rows * self.pace.step;
+            }
             self.gaps += 1;
             self.longest_gap = self.longest_gap.max(step);
-            let lost = ((step / self.pace.step).round() - 1.0) * self.pace.rows.round();
-            self.lost += lost;
+            self.lost += lost as f64;
             self.gaps_in_a_row += 1;
             if self.gaps_in_a_row >= RUN {
                 return Err(self.two_rates(step, self.pace.step));
             }
-            return Ok(Tick::Gap(lost as u64));
+            return Ok(Tick::Gap(lost));
         }
         self.gaps_in_a_row = 0;
         self.rows_of_steps += rows;
@@ -164,25 +215,38 @@ impl Clock {
         self.pace.seconds(ticks)
     }
 
-    /// Finds out whether the stamps behind the last gaps were late: then the rows behind them catch up with their stamps,
-    /// as if nothing had been lost.
-    fn end_delay(&mut self, stamp: Stamp) {
+    /// Finds out which stamps behind the last gaps were late: the rows behind them catch up with their stamps, so that they
+    /// leave less for lost.
+    fn end_delays(&mut self, stamp: Stamp) {
         let (now, pace) = (self.rows, self.pace);
+        for gap in &mut self.behind {
+            let samples = stamp.since(gap.before) / pace.step * pace.rows;
+            gap.least = gap.least.min(samples - (now - gap.first) as f64);
+        }
         let longest = (MOST_LATE as f64 * pace.rows) as u64;
-        self.behind.retain(|&(row, ..)| now - row < longest);
-        let has_caught_up = |&(_, before, first): &(u64, Stamp, u64)| {
-            let samples = stamp.since(before) / pace.step * pace.rows;
-            samples < (now - first) as f64 + 0.5 * pace.rows
-        };
-        if let Some(first) = self.behind.iter().position(has_caught_up) {
-            let late = self.behind.drain(first..);
-            self.found.extend(late.map(|(row, ..)| row));
+        let is_settled = |gap: &mut Behind| gap.lost() == 0 || now - gap.row >= longest;
+        let settled: Vec<Behind> = self.behind.extract_if(.., is_settled).collect();
+        for gap in settled {
+            if let Some(late) = self.late(&gap) {
+                self.found.push(late);
+                // The shorter steps of the rows that caught up are in the present block.
+                self.block.0 += 1;
+                self.block.1 += gap.step - late.lost as f64 * pace.step;
+            }
         }
     }
 
-    /// The rows whose stamps turned out to be late, in any order. Their gaps were none.
-    pub(super) fn found_late(&self) -> &[u64] {
-        &self.found
+    /// The late stamp behind a gap, if fewer samples are lost than it tells.
+    fn late(&self, gap: &Behind) -> Option<Late> {
+        let told = (gap.step / self.pace.step).round() - 1.0;
+        let (row, lost) = (gap.row, gap.lost());
+        ((lost as f64) < told * self.pace.rows.round()).then_some(Late { row, lost })
+    }
+
+    /// The rows whose stamps turned out to be late, in any order.
+    pub(super) fn found_late(&self) -> Vec<Late> {
+        let open = self.behind.iter().filter_map(|gap| self.late(gap));
+        self.found.iter().copied().chain(open).collect()
     }
 
     fn step(&mut self, step: f64) -> Result<(), Flaw> {
@@ -193,8 +257,8 @@ impl Clock {
         self.range = (self.range.0.min(step), self.range.1.max(step));
         self.block.0 += 1;
         self.block.1 += step;
-        if self.block.0 == BLOCK {
-            let mean = self.block.1 / f64::from(BLOCK);
+        if self.block.0 >= BLOCK {
+            let mean = self.block.1 / f64::from(self.block.0);
             self.block = (0, 0.0);
             let (shortest, longest) = self.means.unwrap_or((mean, mean));
             if mean > TWO_RATES * shortest {
@@ -282,7 +346,7 @@ impl Clock {
         }
         if self.delayed.0 > 0 {
             text += &format!(
-                "; {}, by {} at most, with nothing lost",
+                "; {}, by {} at most",
                 plural(self.delayed.0, "late stamp"),
                 span(self.pace.seconds(self.delayed.1))
             );
@@ -405,7 +469,7 @@ mod tests {
             first.found_late()
         );
         let pace = Pace::of(&[0.0, 5000.0, 10_000.0, 15_000.0], TimeUnit::Us).unwrap();
-        let mut clock = Clock::new(pace, first.found_late());
+        let mut clock = Clock::new(pace, &first.found_late());
         let tick = |&stamp: &i64| clock.tick(Stamp::Whole(stamp)).unwrap();
         let ticks: Vec<Tick> = stamps.iter().map(tick).collect();
         let gaps: Vec<usize> = (0..997)
@@ -418,6 +482,36 @@ mod tests {
             report.contains("; 50 late stamps, by 5ms at most"),
             "{report}"
         );
+    }
+
+    #[test]
+    fn a_sample_lost_before_a_late_stamp_is_one_loss() {
+        let mut stamps: Vec<i64> = (0..1000).map(|i| 5000 * i).collect();
+        stamps[400] += 9000;
+        stamps[401] += 4500;
+        stamps.remove(399);
+        let (first, ticks) = run(&stamps);
+        assert_eq!(ticks[399], Tick::Gap(3));
+        let pace = Pace::of(&[0.0, 5000.0, 10_000.0, 15_000.0], TimeUnit::Us).unwrap();
+        let mut clock = Clock::new(pace, &first.found_late());
+        let tick = |&stamp: &i64| clock.tick(Stamp::Whole(stamp)).unwrap();
+        let ticks: Vec<Tick> = stamps.iter().map(tick).collect();
+        assert_eq!(ticks[399], Tick::Gap(1));
+        assert_eq!(ticks.iter().filter(|&&tick| tick != Tick::Next).count(), 1);
+        assert_eq!(clock.rate_hz().unwrap(), 200.0);
+    }
+
+    #[test]
+    fn stamps_rounded_to_a_third_of_a_step_tell_each_loss() {
+        for step in [2.5_f64, 2.74, 3.1, 3.5, 4.6, 5.755] {
+            let rows = (0..2000).filter(|i| i % 97 != 96);
+            let stamps: Vec<i64> = rows.map(|i| (step * f64::from(i)) as i64).collect();
+            let (first, ticks) = run(&stamps);
+            let gaps = ticks.iter().filter(|&&tick| tick == Tick::Gap(1)).count();
+            assert_eq!((gaps, first.found_late()), (20, Vec::new()), "{step}");
+            let rate = first.rate_hz().unwrap() * step / 1e6;
+            assert!((rate - 1.0).abs() < 1e-3, "{step}: {rate}");
+        }
     }
 
     #[test]

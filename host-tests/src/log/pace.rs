@@ -46,6 +46,14 @@ impl Pace {
             .find(|&row| first[row] > first[row - 1]);
         let rows = last.unwrap_or(0) as f64 / steps.len().max(1) as f64;
         let rows = if rows > BURSTS { rows } else { 1.0 };
+        if let Some((step, longest)) = rounded(&mut steps) {
+            return Some(Self {
+                per_second: unit.per_second(),
+                step,
+                longest,
+                rows,
+            });
+        }
         if let Some(step) = lattice(&mut steps) {
             return Some(Self {
                 per_second: unit.per_second(),
@@ -140,6 +148,43 @@ fn steps(stamps: &[f64]) -> Vec<f64> {
     steps.filter(|&step| step > 0.0).collect()
 }
 
+/// The mean step of regular stamps that are rounded to a unit of a fifth to two thirds of it, and the longest step that is not
+/// a gap. Such steps take two or three values, which differ by the unit.
+fn rounded(steps: &mut [f64]) -> Option<(f64, f64)> {
+    /// The share of steps within a unit of the usual one.
+    const NEARLY_ALL: f64 = 0.8;
+    let median = quantile(steps, 0.5)?;
+    let unit = {
+        let others = steps.iter().map(|step| (step - median).abs());
+        others
+            .filter(|apart| *apart > 1e-6 * median)
+            .fold(f64::INFINITY, f64::min)
+    };
+    if !(0.2 * median..0.67 * median).contains(&unit) {
+        return None;
+    }
+    let units = |step: f64| (step - median) / unit;
+    let is_whole = |step: &&f64| (units(**step) - units(**step).round()).abs() < 0.01;
+    let near: Vec<f64> = steps
+        .iter()
+        .copied()
+        .filter(|step| units(*step).abs() < 1.5)
+        .collect();
+    let most = NEARLY_ALL * steps.len() as f64;
+    if (near.len() as f64) < most || (steps.iter().filter(is_whole).count() as f64) < most {
+        return None;
+    }
+    let mean = near.iter().sum::<f64>() / near.len() as f64;
+    // Rounding moves a step by less than a unit. Two steps are longer by more than the same, unless the unit is above half
+    // of a step.
+    Some((
+        mean,
+        (mean + 1.01 * unit)
+            .min(2.0 * mean - 0.01 * unit)
+            .max(1.1 * mean),
+    ))
+}
+
 /// The step of which nearly all steps are whole multiples, if there is one. Longer steps are then rows
 /// that are missing, however many they are.
 ///
@@ -158,8 +203,15 @@ fn lattice(steps: &mut [f64]) -> Option<f64> {
         step = quantile(&mut single, 0.5)?;
     }
     let is_near = |long: &&f64| (**long / step - multiple(**long, step)).abs() <= NEAR;
-    let near = steps.iter().filter(is_near).count();
-    (near as f64 >= NEARLY_ALL * steps.len() as f64).then_some(step)
+    let near = steps.iter().filter(is_near);
+    let (mut count, mut samples, mut sum) = (0, 0.0, 0.0);
+    for &long in near {
+        count += 1;
+        samples += multiple(long, step);
+        sum += long;
+    }
+    // The mean, because the usual one of rounded stamps may be off by some per cent.
+    (f64::from(count) >= NEARLY_ALL * steps.len() as f64).then(|| sum / samples)
 }
 
 fn quantile(values: &mut [f64], share: f64) -> Option<f64> {

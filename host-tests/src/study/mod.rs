@@ -29,6 +29,7 @@ pub mod self_test;
 pub mod slow;
 pub mod smallest;
 pub mod speed;
+pub mod stamps;
 pub mod strange;
 pub mod theory;
 pub mod thermal;

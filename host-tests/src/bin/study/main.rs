@@ -23,6 +23,7 @@ mod self_test;
 mod slow;
 mod smallest;
 mod speed;
+mod stamps;
 mod strange;
 mod theory;
 mod thermal;
@@ -241,6 +242,15 @@ enum Study {
         #[arg(long, default_value_t = 0)]
         seed: u64,
     },
+    /// Compare the losses and the rate that are told of logs with late stamps with the true ones
+    Stamps {
+        /// Number of records per kind of stamps and share of losses
+        #[arg(long, default_value_t = 200)]
+        records: u64,
+        /// Seed of the records
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
+    },
     /// Count how often the self-test errs, and compare its length with a test of fixed length
     SelfTest {
         /// Number of devices per case
@@ -391,6 +401,7 @@ fn main() -> Result<()> {
             rest,
             seed,
         } => motion::print(records, rest, seed),
+        Study::Stamps { records, seed } => stamps::print(records, seed)?,
         Study::SelfTest {
             devices,
             effect,

@@ -237,6 +237,7 @@ mod evidence;
 #[cfg(test)]
 mod extremes;
 pub mod fit;
+pub mod ieee_952;
 mod limits;
 mod list;
 mod numerics;

@@ -9,6 +9,7 @@ pub mod course;
 pub mod detection;
 pub mod efficiency;
 pub mod faults;
+pub mod five_terms;
 pub mod hidden_effect;
 pub mod lag;
 pub mod lines;

@@ -8,6 +8,7 @@ mod course;
 mod detection;
 mod efficiency;
 mod faults;
+mod five_terms;
 mod hidden_effect;
 mod lines;
 mod long;
@@ -242,6 +243,18 @@ enum Study {
         #[arg(long, default_value_t = 0)]
         seed: u64,
     },
+    /// Compare the small fit of the five terms with the general one
+    FiveTerms {
+        /// Number of records per kind of gyro
+        #[arg(long, default_value_t = 500)]
+        records: u64,
+        /// Length of the longest record, as a power of two
+        #[arg(long, default_value_t = 19.0)]
+        longest: f64,
+        /// Seed of the records
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
+    },
     /// Compare the losses and the rate that are told of logs with late stamps with the true ones
     Stamps {
         /// Number of records per kind of stamps and share of losses
@@ -401,6 +414,11 @@ fn main() -> Result<()> {
             rest,
             seed,
         } => motion::print(records, rest, seed),
+        Study::FiveTerms {
+            records,
+            longest,
+            seed,
+        } => five_terms::print(records, longest, seed),
         Study::Stamps { records, seed } => stamps::print(records, seed)?,
         Study::SelfTest {
             devices,

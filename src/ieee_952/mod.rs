@@ -1,0 +1,156 @@
+//! The five terms of IEEE Std 952 alone, in a few kilobytes: for a sensor that has no room for the general
+//! [fit](crate::fit()).
+//!
+//! [`fit()`] gives the numbers of the general fit of [`Model::ieee_952`](crate::Model::ieee_952) to a curve within some
+//! hundredths of their standard errors: coefficients, 95 % intervals by the likelihood ratio, bounds at the scatter that
+//! the curve has there, states, and χ². It knows these terms only, and takes the covariance of the octaves from a
+//! [table](self#the-covariance) instead of a sum over their differences. It computes in single precision and in integers
+//! alone, in any build, so that every core comes to the same bits.
+//!
+//! What it leaves out: a tolerance, a spectrum, the length of a record that would measure more, and the correction of the
+//! test against zero for the skewness of variances. [`Fit::p_value`] links an exponential function, and nothing else does.
+//!
+//! # The covariance
+//!
+//! Differences of octave `m` start at multiples of `m/4`, and the kernels of the five terms are homogeneous. So the sums over
+//! pairs of differences scale with `m`, and 28 sums of 14 pairs of terms hold all octaves, with the ends of the record and
+//! its gaps included. Against the sum over pairs of differences, standard errors are within 1 % and correlations
+//! within 0.006.
+//!
+//! ```
+//! use allanite::{Curve, Real, fit::State, ieee_952};
+//!
+//! // White noise of 1 count² at 100 Hz: σ²(τ) = N²/τ with N = 0.1.
+//! let white = (0..10).map(|k| (1 << k, (40_000 >> k) - 7, 1.0 / (1 << k) as Real));
+//! let curve = Curve::<10>::new(100.0, white)?;
+//! let fit = ieee_952::fit(&curve)?;
+//! let [_, angle_random_walk, ..] = fit.coefficients;
+//! assert_eq!(angle_random_walk.state, State::Measured);
+//! assert!((angle_random_walk.value - 0.1).abs() < 1e-6);
+//! # Ok::<(), allanite::Error>(())
+//! ```
+
+mod covariance;
+mod estimate;
+mod row;
+mod table;
+mod tableau;
+mod terms;
+#[cfg(test)]
+mod tests;
+
+pub use terms::TERMS;
+
+use crate::{
+    curve::{Curve, Point},
+    error::Error,
+    evidence::record::Record,
+    fit::{ADEQUATE_P, chi_squared_tail, coefficient::Coefficient},
+    numerics::real::{Real, real, single},
+};
+use row::{Row, Rows};
+use tableau::Tableau;
+
+/// The rounds of covariance and solution.
+const ROUNDS: u8 = 6;
+
+/// The rounds end when the relative change of the model is smaller than this.
+const CONVERGED: f32 = 3e-3;
+
+/// The five terms of a curve, with what they are worth.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Fit {
+    /// Quantization, angle random walk, bias instability, rate random walk and rate ramp.
+    pub coefficients: [Coefficient; TERMS],
+    /// χ² of the octaves, as that of the [general fit](crate::fit::Fit::chi_squared).
+    pub chi_squared: Real,
+    /// The number of octaves, less the number of coefficients above zero.
+    pub degrees_of_freedom: usize,
+    /// The factor by which intervals and bounds are widened because the terms do not explain the curve, as that of the
+    /// [general fit](crate::fit::Fit::birge_ratio).
+    pub birge_ratio: Real,
+}
+
+impl Fit {
+    /// The probability of a larger χ² if the five terms explain the curve; NaN without degrees of freedom.
+    pub fn p_value(&self) -> Real {
+        chi_squared_tail(self.chi_squared, self.degrees_of_freedom)
+    }
+
+    /// Whether the five terms explain the curve: the [p-value](Self::p_value) is [`ADEQUATE_P`] or more. `None` without
+    /// degrees of freedom.
+    pub fn is_adequate(&self) -> Option<bool> {
+        let p_value = self.p_value();
+        (!p_value.is_nan()).then_some(p_value >= ADEQUATE_P)
+    }
+}
+
+/// Fits the five terms to the curve of a record. Only octaves that follow each other from `m = 1` on are fitted.
+///
+/// # Errors
+/// [`Error::NoNoise`] if an octave has a variance of zero, [`Error::TooFewOctaves`] for fewer than two octaves, and
+/// [`Error::Singular`] if the covariance of the octaves is not positive definite.
+pub fn fit<'a, const K: usize, const B: usize>(
+    record: impl Into<Record<'a, K, B>>,
+) -> Result<Fit, Error> {
+    let curve: &Curve<K> = record.into().curve;
+    let points = consecutive(curve.points());
+    crate::fit::check(points, 2)?;
+    let mut rows = [Row::EMPTY; K];
+    let mut factor = [[0; K]; K];
+    // The variance of a middle octave, so that single precision holds the ratios to it whatever the unit of the rates.
+    let reference = points.get(points.len() / 2).map_or(1.0, |point| point.variance);
+    for (row, point) in rows.iter_mut().zip(points) {
+        row.measured = single(point.variance / reference);
+        row.model = row.measured;
+        row.differences = point.differences as f32;
+        row.ends = point.stretches as f32 / row.differences;
+    }
+    let rows = rows.get_mut(..points.len()).unwrap_or_default();
+    let mut rows = Rows::<K>::new(rows, &mut factor);
+    let mut tableau = Tableau::EMPTY;
+    let mut squares = solve(&mut rows, &mut tableau).ok_or(Error::Singular)?;
+    let (gradient, residuals) = rows.residuals(&squares);
+    let chi_squared = residuals - tableau.refine(&mut squares, &gradient) - rows.excess(&squares);
+    let degrees_of_freedom = points.len().saturating_sub(tableau.free().count_ones() as usize);
+    let birge_ratio = estimate::birge_ratio(chi_squared, degrees_of_freedom);
+    let scale = estimate::Scale::new(reference, curve.interval_s(), rows.units);
+    let coefficients = estimate::all(&mut rows, &mut tableau, &squares, birge_ratio, scale);
+    Ok(Fit {
+        coefficients,
+        chi_squared: real(chi_squared),
+        degrees_of_freedom,
+        birge_ratio: real(birge_ratio),
+    })
+}
+
+/// The first octaves, as far as they follow each other from `m = 1` on.
+fn consecutive(points: &[Point]) -> &[Point] {
+    let missing = (0_u32..32).zip(points).find(|(k, point)| point.m != 1 << k);
+    let known = missing.map_or(points.len(), |(k, _)| k as usize);
+    points.get(..known).unwrap_or_default()
+}
+
+/// The squared coefficients, by rounds of covariance and solution.
+#[inline(never)]
+fn solve<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau) -> Option<[f32; TERMS]> {
+    rows.weigh_independent();
+    rows.set_equations(None, tableau);
+    // Most records have white noise, flicker noise and quantization.
+    tableau.solve(0b111, 0);
+    let mut squares = tableau.squares();
+    for _ in 0..ROUNDS {
+        rows.set_models(&squares);
+        if !rows.weigh() {
+            return None;
+        }
+        rows.set_equations(None, tableau);
+        tableau.solve(0b111, 0);
+        squares = tableau.squares();
+        if rows.are_near(&squares, CONVERGED) {
+            break;
+        }
+    }
+    Some(squares)
+}

@@ -1,0 +1,274 @@
+//! What is known of an octave, and the factor of all of them.
+
+use super::{
+    covariance::{SHARE_BITS, covariance},
+    tableau::Tableau,
+    terms::{TERMS, Units, WALK, WHITE, power},
+};
+use crate::numerics::math::single_sqrt as sqrt;
+
+/// What the curve says of an octave, and what a model does.
+#[derive(Clone, Copy)]
+pub(super) struct Row {
+    /// The Allan variance, in units of the reference.
+    pub(super) measured: f32,
+    /// The number of differences, and of stretches over that of differences.
+    pub(super) differences: f32,
+    pub(super) ends: f32,
+    /// The model's variance, and each term's share of it in units of 2^-15.
+    pub(super) model: f32,
+    pub(super) shares: [u16; TERMS],
+    /// One over the standard error, relative to the model.
+    certainty: f32,
+    /// One over the octave's diagonal element of the factor, in units of 2^-24.
+    reciprocal: i32,
+    /// The whitened columns of the terms and of the curve, each in a unit of its own.
+    white: [i32; TERMS + 1],
+}
+
+impl Row {
+    pub(super) const EMPTY: Self = Self {
+        measured: 0.0,
+        differences: 0.0,
+        ends: 0.0,
+        model: 0.0,
+        shares: [0; TERMS],
+        certainty: 0.0,
+        reciprocal: 0,
+        white: [0; TERMS + 1],
+    };
+}
+
+/// A number of the factor is in units of 2^-30: the covariance is scaled to a diagonal of one.
+const FACTOR_BITS: u32 = 30;
+const ONE: i32 = 1 << FACTOR_BITS;
+
+/// The reciprocals of its diagonal are in units of 2^-24, and the square of a diagonal element is this at least.
+const RECIPROCAL_BITS: u32 = 24;
+const LEAST_PIVOT: f32 = 1e-3;
+
+/// A whitened column is in units of 2^-22 of its largest element before it was whitened.
+const WHITE_BITS: u32 = 22;
+
+/// Products of whitened columns lose these bits, so that no sum of thirty overflows.
+const PRODUCT_BITS: u32 = 8;
+
+/// The octaves of a curve, and the factor of their covariance.
+pub(super) struct Rows<'a, const K: usize> {
+    pub(super) rows: &'a mut [Row],
+    /// The factor below the diagonal, row by row.
+    factor: &'a mut [[i32; K]; K],
+    pub(super) units: Units,
+    /// The units of the whitened columns.
+    scales: [f32; TERMS + 1],
+}
+
+/// A column of the equations.
+#[derive(Clone, Copy)]
+pub(super) enum Column {
+    /// The variance of a term with a coefficient of one.
+    Term(usize),
+    /// The curve.
+    Measured,
+    /// The curve, less the model of these squared coefficients.
+    Residual([f32; TERMS]),
+}
+
+impl<'a, const K: usize> Rows<'a, K> {
+    pub(super) fn new(rows: &'a mut [Row], factor: &'a mut [[i32; K]; K]) -> Self {
+        Self {
+            units: Units::new(rows.len()),
+            rows,
+            factor,
+            scales: [0.0; TERMS + 1],
+        }
+    }
+
+    /// Sets the models of these squared coefficients, and the terms' shares of them.
+    #[inline(never)]
+    pub(super) fn set_models(&mut self, squares: &[f32; TERMS]) {
+        let units = self.units;
+        let walk = squares[WALK];
+        for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
+            row.model = units.model(squares, octave);
+            let per_model = power(-SHARE_BITS) / row.model;
+            let leak = walk * units.leak(octave);
+            for (term, (share, &square)) in (0..TERMS).zip(row.shares.iter_mut().zip(squares)) {
+                let own = match term {
+                    WHITE => square * units.variance(term, octave) + leak,
+                    WALK => square * units.variance(term, octave) - leak,
+                    _ => square * units.variance(term, octave),
+                };
+                // Not negative, and at most 2^15.
+                *share = (own * per_model + 0.5) as u16;
+            }
+        }
+    }
+
+    /// Takes the octaves for independent, with the scatter of as many clusters as they have: the weights with which the
+    /// rounds begin.
+    #[inline(never)]
+    pub(super) fn weigh_independent(&mut self) {
+        for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
+            let quarter = match octave {
+                0 => 1.0,
+                1 => 0.5,
+                _ => 0.25,
+            };
+            let clusters = (row.differences - 1.0) * quarter + 1.0;
+            row.certainty = sqrt(2.0 * clusters);
+            row.reciprocal = 1 << RECIPROCAL_BITS;
+        }
+        for row in self.factor.iter_mut() {
+            row.fill(0);
+        }
+    }
+
+    /// Factors the covariance at the present models. `false` if it cannot be made positive definite.
+    #[inline(never)]
+    pub(super) fn weigh(&mut self) -> bool {
+        /// The shares of the correlations that are kept, one after the other.
+        const KEPT: [f32; 5] = [1.0, 0.97, 0.9, 0.7, 0.0];
+        KEPT.iter().any(|&kept| self.factor(kept))
+    }
+
+    fn factor(&mut self, kept: f32) -> bool {
+        for k in 0..self.rows.len() {
+            let (before, rest) = self.rows.split_at_mut(k);
+            let (above, own) = self.factor.split_at_mut(k.min(K));
+            let (Some(row), Some(own)) = (rest.first_mut(), own.first_mut()) else {
+                return false;
+            };
+            let variance = 0.5 * covariance(row, row, k, 0) / row.differences;
+            row.certainty = 1.0 / sqrt(variance);
+            let per_row = kept * power(FACTOR_BITS as i32 - 1) * row.certainty;
+            let mut pivot = i64::from(ONE) << FACTOR_BITS;
+            for (j, shorter) in (0..K).zip(before.iter()) {
+                let common = covariance(shorter, row, j, k.wrapping_sub(j)) / shorter.differences;
+                let correlation = common * per_row * shorter.certainty;
+                let mut left = i64::from(correlation as i32) << FACTOR_BITS;
+                let its = above.get(j).map_or(&[][..], |row| &row[..]);
+                for (own, its) in own.iter().zip(its).take(j) {
+                    left = left.wrapping_sub(i64::from(*own).wrapping_mul((*its).into()));
+                }
+                let left = left >> FACTOR_BITS;
+                let element = left.wrapping_mul(shorter.reciprocal.into()) >> RECIPROCAL_BITS;
+                let element = element.clamp((-ONE).into(), ONE.into()) as i32;
+                if let Some(place) = own.get_mut(j) {
+                    *place = element;
+                }
+                pivot = pivot.wrapping_sub(i64::from(element).wrapping_mul(element.into()));
+            }
+            let pivot = pivot as f32 * power(-2 * FACTOR_BITS as i32);
+            if !(pivot > LEAST_PIVOT) {
+                return false;
+            }
+            row.reciprocal = (power(RECIPROCAL_BITS as i32) / sqrt(pivot)) as i32;
+        }
+        true
+    }
+
+    /// Whitens a column, and keeps it as column `place`. The scatter of the octaves is that of the factored covariance, for
+    /// models that are larger by `more` of a term.
+    #[inline(never)]
+    pub(super) fn whiten(&mut self, place: usize, column: Column, more: Option<(usize, f32)>) {
+        let units = self.units;
+        let value = |octave: usize, row: &Row| {
+            let scatter = match more {
+                Some((term, square)) => row.model + square * units.variance(term, octave),
+                None => row.model,
+            };
+            let own = match column {
+                Column::Term(term) => units.variance(term, octave),
+                Column::Measured => row.measured,
+                Column::Residual(squares) => row.measured - units.model(&squares, octave),
+            };
+            own / scatter * row.certainty
+        };
+        let mut values = [0.0; K];
+        let mut largest = f32::MIN_POSITIVE;
+        for ((octave, row), kept) in (0..K).zip(self.rows.iter()).zip(&mut values) {
+            let value = value(octave, row);
+            *kept = value;
+            largest = if value.abs() > largest { value.abs() } else { largest };
+        }
+        let per_scale = power(WHITE_BITS as i32) / largest;
+        for (k, value) in (0..K).zip(&values).take(self.rows.len()) {
+            let mut left = i64::from((value * per_scale) as i32) << FACTOR_BITS;
+            let factors = self.factor.get(k).map_or(&[][..], |row| &row[..]);
+            for (factor, before) in factors.iter().zip(self.rows.iter()).take(k) {
+                let its = before.white.get(place).copied().unwrap_or(0);
+                left = left.wrapping_sub(i64::from(*factor).wrapping_mul(its.into()));
+            }
+            if let Some(row) = self.rows.get_mut(k)
+                && let Some(white) = row.white.get_mut(place)
+            {
+                let element = (left >> FACTOR_BITS).wrapping_mul(row.reciprocal.into());
+                let limit = i64::from(i32::MAX);
+                *white = (element >> RECIPROCAL_BITS).clamp(-limit, limit) as i32;
+            }
+        }
+        if let Some(scale) = self.scales.get_mut(place) {
+            *scale = largest;
+        }
+    }
+
+    /// The product of two whitened columns.
+    fn product(&self, a: usize, b: usize) -> f32 {
+        let mut sum = 0_i64;
+        for row in self.rows.iter() {
+            let element = |place: usize| i64::from(row.white.get(place).copied().unwrap_or(0));
+            sum = sum.wrapping_add(element(a).wrapping_mul(element(b)) >> PRODUCT_BITS);
+        }
+        let scale = |place: usize| self.scales.get(place).copied().unwrap_or(0.0);
+        let bits = PRODUCT_BITS as i32 - 2 * WHITE_BITS as i32;
+        sum as f32 * power(bits) * scale(a) * scale(b)
+    }
+
+    /// Whitens the columns of all terms and of the curve, and sets the normal equations.
+    #[inline(never)]
+    pub(super) fn set_equations(&mut self, more: Option<(usize, f32)>, tableau: &mut Tableau) {
+        for term in 0..TERMS {
+            self.whiten(term, Column::Term(term), more);
+        }
+        self.whiten(TERMS, Column::Measured, more);
+        tableau.set(|a, b| self.product(a, b));
+    }
+
+    /// The gradient of the squared residuals with the residual as the last column, by the tableau's scales, and their sum.
+    #[inline(never)]
+    pub(super) fn residuals(&mut self, squares: &[f32; TERMS]) -> ([f32; TERMS], f32) {
+        self.whiten(TERMS, Column::Residual(*squares), None);
+        let mut gradient = [0.0; TERMS];
+        for (term, gradient) in (0..TERMS).zip(&mut gradient) {
+            *gradient = self.product(term, TERMS);
+        }
+        (gradient, self.product(TERMS, TERMS))
+    }
+
+    /// By how much the relative residuals exceed zero, twice: what χ² gains because its covariance follows the measurement
+    /// (see [`chi_squared`](super::Fit::chi_squared)).
+    pub(super) fn excess(&self, squares: &[f32; TERMS]) -> f32 {
+        let mut sum = 0.0;
+        for (octave, row) in (0..K).zip(self.rows.iter()) {
+            sum += (row.measured - self.units.model(squares, octave)) / row.model;
+        }
+        2.0 * sum
+    }
+
+    /// Whether the model is above a term with this squared coefficient, in every octave.
+    pub(super) fn all_above(&self, term: usize, square: f32) -> bool {
+        let mut rows = (0..K).zip(self.rows.iter());
+        rows.all(|(octave, row)| square * self.units.variance(term, octave) < row.model)
+    }
+
+    /// Whether the models of these squared coefficients are within a share of those of the weights.
+    #[inline(never)]
+    pub(super) fn are_near(&self, squares: &[f32; TERMS], share: f32) -> bool {
+        let mut rows = (0..K).zip(self.rows.iter());
+        rows.all(|(octave, row)| {
+            let change = self.units.model(squares, octave) - row.model;
+            change.abs() < share * row.model
+        })
+    }
+}

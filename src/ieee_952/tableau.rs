@@ -1,0 +1,218 @@
+//! Least squares whose unknowns cannot be negative, and intervals by the likelihood ratio, by pivots of one tableau.
+
+use super::terms::TERMS;
+use crate::numerics::math::single_sqrt as sqrt;
+
+/// An unknown can be told from the others if its pivot, relative to one, is larger.
+const LEAST_PIVOT: f32 = 1e-5;
+
+/// A gradient is zero below this size.
+const LEAST_GRADIENT: f32 = 1e-6;
+
+/// The equations of an interval's end, which never takes as many pivots.
+const MOST_PIVOTS: usize = 12;
+
+/// The equations `w = b − Hx` with unknowns scaled so that the diagonal of `H` is one, some of them solved for their `x`. The
+/// last number of a row is the value of `x` if the row is solved, and of `w`, half of what the squared residuals fall by
+/// where `x` grows, if it is not: with all `x` that are not solved at zero.
+#[derive(Clone, Copy)]
+pub(super) struct Tableau {
+    rows: [[f32; TERMS + 1]; TERMS],
+    scale: [f32; TERMS],
+    free: u8,
+}
+
+impl Tableau {
+    pub(super) const EMPTY: Self = Self {
+        rows: [[0.0; TERMS + 1]; TERMS],
+        scale: [0.0; TERMS],
+        free: 0,
+    };
+
+    /// Sets the equations from the products of columns, of which the last one is that of the curve.
+    pub(super) fn set(&mut self, product: impl Fn(usize, usize) -> f32) {
+        self.free = 0;
+        for (a, scale) in (0..TERMS).zip(&mut self.scale) {
+            *scale = 1.0 / sqrt(product(a, a));
+        }
+        let scale = self.scale;
+        for (a, (row, own)) in (0..TERMS).zip(self.rows.iter_mut().zip(scale)) {
+            for (b, (element, other)) in (0..TERMS).zip(row.iter_mut().zip(scale)) {
+                *element = product(a, b) * (own * other);
+            }
+            row[TERMS] = product(a, TERMS) * own;
+        }
+    }
+
+    fn row(&self, i: usize) -> [f32; TERMS + 1] {
+        self.rows.get(i).copied().unwrap_or_default()
+    }
+
+    fn pivot_of(&self, i: usize) -> f32 {
+        self.row(i).get(i).copied().unwrap_or(0.0)
+    }
+
+    pub(super) fn scale(&self, i: usize) -> f32 {
+        self.scale.get(i).copied().unwrap_or(0.0)
+    }
+
+    /// Whether an unknown is solved.
+    pub(super) const fn has(&self, i: usize) -> bool {
+        self.free.wrapping_shr(i as u32) & 1 == 1
+    }
+
+    /// The set of unknowns that are solved.
+    pub(super) const fn free(&self) -> u8 {
+        self.free
+    }
+
+    /// Solves an unknown, or holds a solved one at zero.
+    #[inline(never)]
+    fn pivot(&mut self, p: usize) {
+        let reciprocal = 1.0 / self.pivot_of(p);
+        let mut own = self.row(p).map(|element| element * reciprocal);
+        if let Some(diagonal) = own.get_mut(p) {
+            *diagonal = reciprocal;
+        }
+        for (i, row) in (0..TERMS).zip(&mut self.rows) {
+            if i == p {
+                *row = own;
+                continue;
+            }
+            let Some(factor) = row.get_mut(p).map(core::mem::take) else {
+                continue;
+            };
+            for (element, own) in row.iter_mut().zip(own) {
+                *element -= factor * own;
+            }
+        }
+        self.free ^= 1_u8.wrapping_shl(p as u32);
+    }
+
+    /// Holds an unknown at zero, and solves the others.
+    pub(super) fn hold(&mut self, i: usize) {
+        if self.has(i) {
+            self.pivot(i);
+        }
+    }
+
+    /// Finds the smallest squared residuals with unknowns that are not negative (Murty 1974, Math. Program. 7, 250: the
+    /// first unknown on the wrong side changes it). Those of `held` stay at zero, and those of `guess` are tried first.
+    /// Returns by how much the squared residuals fall.
+    #[inline(never)]
+    pub(super) fn solve(&mut self, guess: u8, held: u8) -> f32 {
+        let is_in = |set: u8, i: usize| set.wrapping_shr(i as u32) & 1 == 1;
+        let mut fall = 0.0;
+        for i in 0..TERMS {
+            if is_in(guess & !held, i) && !self.has(i) {
+                fall += self.change(i);
+            }
+        }
+        for _ in 0..40 {
+            let is_wrong = |i: &usize| {
+                let value = self.row(*i)[TERMS];
+                if self.has(*i) {
+                    value <= 0.0
+                } else {
+                    !is_in(held, *i) && value > LEAST_GRADIENT && self.pivot_of(*i) > LEAST_PIVOT
+                }
+            };
+            let Some(i) = (0..TERMS).find(is_wrong) else {
+                break;
+            };
+            fall += self.change(i);
+        }
+        fall
+    }
+
+    /// Lets an unknown change sides, if it can be told from the others. Returns by how much the squared residuals fall.
+    fn change(&mut self, i: usize) -> f32 {
+        let (value, own, was_free) = (self.row(i)[TERMS], self.pivot_of(i), self.has(i));
+        if !was_free && own <= LEAST_PIVOT {
+            return 0.0;
+        }
+        self.pivot(i);
+        let change = value * value / own;
+        if was_free { -change } else { change }
+    }
+
+    /// The squared coefficients.
+    pub(super) fn squares(&self) -> [f32; TERMS] {
+        let mut squares = [0.0; TERMS];
+        for (i, (square, row)) in (0..TERMS).zip(squares.iter_mut().zip(&self.rows)) {
+            if self.has(i) {
+                *square = row[TERMS] * self.scale(i);
+            }
+        }
+        squares
+    }
+
+    /// Takes back what rounding left in squared coefficients, by the gradient that they have.
+    pub(super) fn refine(&self, squares: &mut [f32; TERMS], gradient: &[f32; TERMS]) -> f32 {
+        let mut fall = 0.0;
+        for (i, (square, row)) in (0..TERMS).zip(squares.iter_mut().zip(&self.rows)) {
+            if !self.has(i) {
+                continue;
+            }
+            let mut step = 0.0;
+            for (j, (element, gradient)) in (0..TERMS).zip(row.iter().zip(gradient)) {
+                if self.has(j) {
+                    step += element * gradient * self.scale(j);
+                }
+            }
+            let step = step * self.scale(i);
+            fall += step * gradient.get(i).copied().unwrap_or(0.0);
+            *square = if *square + step > 0.0 { *square + step } else { *square };
+        }
+        fall
+    }
+
+    /// The variance of a squared coefficient with the others that are solved; `None` if it cannot be told from them. It is
+    /// held at zero.
+    pub(super) fn variance(&self, i: usize) -> Option<f32> {
+        let own = self.pivot_of(i);
+        let scale = self.scale(i);
+        (own > LEAST_PIVOT).then(|| scale * scale / own)
+    }
+
+    /// The square of coefficient `i`, which is held at zero, and was `square`, where the squared residuals are by `rise`
+    /// above their minimum, with the others fitted anew, at zero or above.
+    #[inline(never)]
+    pub(super) fn end(mut self, i: usize, square: f32, rise: f32, up: bool) -> f32 {
+        let (scale, mut left) = (self.scale(i), rise);
+        let mut at = square / scale;
+        for _ in 0..MOST_PIVOTS {
+            let curvature = self.pivot_of(i);
+            let slope = self.row(i)[TERMS] - curvature * at;
+            let root = sqrt(slope * slope + curvature * left);
+            let goal = at + if up { slope + root } else { slope - root } / curvature;
+            // The first of the others that falls to zero on the way, or leaves it.
+            let mut next = (if goal > 0.0 { goal } else { 0.0 }, TERMS);
+            for j in 0..TERMS {
+                let row = self.row(j);
+                let change = row.get(i).copied().unwrap_or(0.0);
+                let turns = change != 0.0 && (change > 0.0) == (up == self.has(j));
+                if j == i || !turns || self.pivot_of(j) <= LEAST_PIVOT {
+                    continue;
+                }
+                let place = row[TERMS] / change;
+                let is_on_the_way = if up {
+                    place >= at && place < next.0
+                } else {
+                    place <= at && place > next.0
+                };
+                if is_on_the_way {
+                    next = (place, j);
+                }
+            }
+            let step = next.0 - at;
+            left -= step * (curvature * step - 2.0 * slope);
+            at = next.0;
+            if next.1 >= TERMS {
+                break;
+            }
+            self.pivot(next.1);
+        }
+        at * scale
+    }
+}

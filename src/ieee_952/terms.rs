@@ -1,0 +1,72 @@
+//! The variances of the five terms, in units in which they are near one.
+
+/// The number of terms.
+pub const TERMS: usize = 5;
+
+/// The place of the angle random walk, which takes the white part of the rate random walk.
+pub(super) const WHITE: usize = 1;
+
+/// The place of the rate random walk.
+pub(super) const WALK: usize = 3;
+
+/// The variance of flicker noise of unit density: `2 ln 2 / π`.
+const FLICKER: f32 = 2.0 * core::f32::consts::LN_2 / core::f32::consts::PI;
+
+/// The octave from which on the white part of the random walk is below `2^-24` of it.
+const NO_LEAK: u32 = 13;
+
+/// The power of two, for exponents from −126 to 127.
+pub(super) const fn power(exponent: i32) -> f32 {
+    f32::from_bits((exponent.wrapping_add(127) as u32).wrapping_shl(23))
+}
+
+/// The terms' variances at every octave, in units of the averaging time of a middle one.
+#[derive(Clone, Copy)]
+pub(super) struct Units {
+    middle: i32,
+}
+
+impl Units {
+    pub(super) const fn new(octaves: usize) -> Self {
+        Self {
+            middle: (octaves / 2) as i32,
+        }
+    }
+
+    /// The octave whose averaging time is the unit.
+    pub(super) const fn middle(self) -> i32 {
+        self.middle
+    }
+
+    /// The variance of a term with a coefficient of one.
+    pub(super) fn variance(self, term: usize, octave: usize) -> f32 {
+        let distance = (octave as i32).wrapping_sub(self.middle);
+        match term {
+            0 => 3.0 * power(distance.wrapping_mul(-2)),
+            WHITE => power(distance.wrapping_neg()),
+            2 => FLICKER,
+            WALK => power(distance) * (1.0 / 3.0) + self.leak(octave),
+            _ => 0.5 * power(distance.wrapping_mul(2)),
+        }
+    }
+
+    /// The white part of the variance of the random walk: its steps scatter within a sample.
+    pub(super) fn leak(self, octave: usize) -> f32 {
+        if octave as u32 >= NO_LEAK {
+            return 0.0;
+        }
+        let exponent = (octave as i32).wrapping_add(self.middle);
+        power(exponent.wrapping_neg()) * (1.0 / 6.0)
+    }
+
+    /// The variance of all terms with these squared coefficients.
+    pub(super) fn model(self, squares: &[f32; TERMS], octave: usize) -> f32 {
+        let mut sum = 0.0;
+        for (term, &square) in (0..TERMS).zip(squares) {
+            if square > 0.0 {
+                sum += square * self.variance(term, octave);
+            }
+        }
+        sum
+    }
+}

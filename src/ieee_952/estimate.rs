@@ -27,8 +27,7 @@ const NAMES: [(&str, &str, i8); TERMS] = [
 /// A coefficient is tested against zero if the lower end of its interval is below this share of it.
 const NARROW: f32 = 0.7;
 
-/// The rounds of a test against zero, and of a bound.
-const ROUNDS: u8 = 8;
+/// The rounds of a bound.
 const BOUND_ROUNDS: u8 = 2;
 
 /// The rounds of a test end when the relative change of the model is smaller than this.
@@ -218,19 +217,12 @@ fn may_be_zero<const K: usize>(
     let guess = tableau.free();
     tableau.hold(term);
     tableau.solve(0, held);
-    for _ in 0..ROUNDS {
-        if tableau.free() == 0 {
-            return false;
-        }
-        rows.set_models(&tableau.squares());
-        if !rows.weigh() {
-            return false;
-        }
-        rows.set_equations(None, tableau);
+    let start = tableau.squares();
+    let rounds = super::iterate(rows, tableau, start, ROUGHLY, &|tableau| {
         tableau.solve(guess, held);
-        if rows.are_near(&tableau.squares(), ROUGHLY) {
-            break;
-        }
+    });
+    if rounds.is_none() {
+        return false;
     }
     let fall = tableau.solve(0, 0);
     !(tableau.has(term) && fall > CHI_SQUARED_95 as f32)

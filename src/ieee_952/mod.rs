@@ -7,7 +7,7 @@
 //! [table](self#the-covariance) instead of a sum over their differences. It computes in single precision and in integers
 //! alone, in any build, so that every core comes to the same bits.
 //!
-//! What it leaves out: a tolerance, a spectrum, the length of a record that would measure more, and the correction of the
+//! What it leaves out: a spectrum, any model but this one, the length of a record that would measure more, and the correction of the
 //! test against zero for the skewness of variances. [`Fit::p_value`] links an exponential function, and nothing else does.
 //!
 //! # The covariance
@@ -52,7 +52,14 @@ use row::{Row, Rows};
 use tableau::Tableau;
 
 /// The rounds of covariance and solution.
-const ROUNDS: u8 = 6;
+const ROUNDS: u8 = 8;
+
+/// How far an octave may be off, relative to its variance, where the scatter alone does not explain the misfit: as in the
+/// general fit by default.
+const TOLERANCE: f32 = 0.01;
+
+/// The terms that most records have, which the solution tries first: quantization, white noise and flicker noise.
+const USUAL: u8 = 0b111;
 
 /// The rounds end when the relative change of the model is smaller than this.
 const CONVERGED: f32 = 3e-3;
@@ -67,6 +74,8 @@ pub struct Fit {
     pub chi_squared: Real,
     /// The number of octaves, less the number of coefficients above zero.
     pub degrees_of_freedom: usize,
+    /// The tolerance that was granted: 0, or 0.01 where the terms do not explain the curve without it.
+    pub tolerance: Real,
     /// The factor by which intervals and bounds are widened because the terms do not explain the curve, as that of the
     /// [general fit](crate::fit::Fit::birge_ratio).
     pub birge_ratio: Real,
@@ -110,10 +119,17 @@ pub fn fit<'a, const K: usize, const B: usize>(
     let rows = rows.get_mut(..points.len()).unwrap_or_default();
     let mut rows = Rows::<K>::new(rows, &mut factor);
     let mut tableau = Tableau::EMPTY;
-    let mut squares = solve(&mut rows, &mut tableau).ok_or(Error::Singular)?;
-    let (gradient, residuals) = rows.residuals(&squares);
-    let chi_squared = residuals - tableau.refine(&mut squares, &gradient) - rows.excess(&squares);
-    let degrees_of_freedom = points.len().saturating_sub(tableau.free().count_ones() as usize);
+    let mut squares = begin(&mut rows, &mut tableau);
+    let mut chi_squared = solve(&mut rows, &mut tableau, &mut squares).ok_or(Error::Singular)?;
+    let degrees = |tableau: &Tableau| {
+        let free = tableau.free().count_ones() as usize;
+        points.len().saturating_sub(free)
+    };
+    if estimate::birge_ratio(chi_squared, degrees(&tableau)) > 1.0 {
+        rows.tolerance = TOLERANCE * TOLERANCE;
+        chi_squared = solve(&mut rows, &mut tableau, &mut squares).ok_or(Error::Singular)?;
+    }
+    let degrees_of_freedom = degrees(&tableau);
     let birge_ratio = estimate::birge_ratio(chi_squared, degrees_of_freedom);
     let scale = estimate::Scale::new(reference, curve.interval_s(), rows.units);
     let coefficients = estimate::all(&mut rows, &mut tableau, &squares, birge_ratio, scale);
@@ -121,6 +137,7 @@ pub fn fit<'a, const K: usize, const B: usize>(
         coefficients,
         chi_squared: real(chi_squared),
         degrees_of_freedom,
+        tolerance: if rows.tolerance > 0.0 { real(TOLERANCE) } else { 0.0 },
         birge_ratio: real(birge_ratio),
     })
 }
@@ -132,25 +149,71 @@ fn consecutive(points: &[Point]) -> &[Point] {
     points.get(..known).unwrap_or_default()
 }
 
-/// The squared coefficients, by rounds of covariance and solution.
+/// The squared coefficients for independent octaves.
 #[inline(never)]
-fn solve<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau) -> Option<[f32; TERMS]> {
+fn begin<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau) -> [f32; TERMS] {
     rows.weigh_independent();
     rows.set_equations(None, tableau);
-    // Most records have white noise, flicker noise and quantization.
-    tableau.solve(0b111, 0);
-    let mut squares = tableau.squares();
-    for _ in 0..ROUNDS {
-        rows.set_models(&squares);
+    tableau.solve(USUAL, 0);
+    tableau.squares()
+}
+
+/// Alternates between the covariance at a model and the solution with it, until the relative change of the model is smaller
+/// than `converged`. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
+/// solution has no term.
+///
+/// The changes of rounds that swing to and fro, or that creep, have a ratio, and the next round starts where it leads (Aitken
+/// 1926), as in the general fit.
+#[inline(never)]
+fn iterate<const K: usize>(
+    rows: &mut Rows<'_, K>,
+    tableau: &mut Tableau,
+    start: [f32; TERMS],
+    converged: f32,
+    solve: &dyn Fn(&mut Tableau),
+) -> Option<()> {
+    let (mut assumed, mut stride) = (start, 1.0);
+    for round in 0..ROUNDS {
+        if assumed.iter().all(|square| *square <= 0.0) {
+            return None;
+        }
+        rows.set_models(&assumed);
         if !rows.weigh() {
             return None;
         }
         rows.set_equations(None, tableau);
-        tableau.solve(0b111, 0);
-        squares = tableau.squares();
-        if rows.are_near(&squares, CONVERGED) {
+        solve(tableau);
+        let squares = tableau.squares();
+        let (largest, ratio) = rows.change(&squares);
+        if largest < converged {
             break;
         }
+        if round > 0 {
+            stride = (stride / (1.0 - ratio.min(0.5))).clamp(0.3, 2.0);
+        }
+        for (from, to) in assumed.iter_mut().zip(squares) {
+            // However far a step goes, it loses no term that both ends of it have.
+            let least = 0.5 * from.min(to);
+            *from = (*from + (to - *from) * stride).max(least);
+        }
     }
-    Some(squares)
+    Some(())
+}
+
+/// Finds the squared coefficients by rounds of covariance and solution, and returns χ². `None` if the covariance is not
+/// positive definite.
+#[inline(never)]
+fn solve<const K: usize>(
+    rows: &mut Rows<'_, K>,
+    tableau: &mut Tableau,
+    squares: &mut [f32; TERMS],
+) -> Option<f32> {
+    iterate(rows, tableau, *squares, CONVERGED, &|tableau| {
+        tableau.solve(USUAL, 0);
+    })?;
+    *squares = tableau.squares();
+    let (gradient, residuals) = rows.residuals(squares);
+    let fall = tableau.refine(squares, &gradient);
+    let chi_squared = residuals - fall - rows.excess(squares);
+    Some(if chi_squared > 0.0 { chi_squared } else { 0.0 })
 }

@@ -18,6 +18,8 @@ pub(super) struct Row {
     /// The model's variance, and each term's share of it in units of 2^-15.
     pub(super) model: f32,
     pub(super) shares: [u16; TERMS],
+    /// The relative change of the model in the last round.
+    change: f32,
     /// One over the standard error, relative to the model.
     certainty: f32,
     /// One over the octave's diagonal element of the factor, in units of 2^-24.
@@ -33,6 +35,7 @@ impl Row {
         ends: 0.0,
         model: 0.0,
         shares: [0; TERMS],
+        change: 0.0,
         certainty: 0.0,
         reciprocal: 0,
         white: [0; TERMS + 1],
@@ -44,8 +47,8 @@ const FACTOR_BITS: u32 = 30;
 const ONE: i32 = 1 << FACTOR_BITS;
 
 /// The reciprocals of its diagonal are in units of 2^-24, and the square of a diagonal element is this at least.
-const RECIPROCAL_BITS: u32 = 24;
-const LEAST_PIVOT: f32 = 1e-3;
+const RECIPROCAL_BITS: u32 = 22;
+const LEAST_PIVOT: f32 = 1e-5;
 
 /// A whitened column is in units of 2^-22 of its largest element before it was whitened.
 const WHITE_BITS: u32 = 22;
@@ -59,6 +62,8 @@ pub(super) struct Rows<'a, const K: usize> {
     /// The factor below the diagonal, row by row.
     factor: &'a mut [[i32; K]; K],
     pub(super) units: Units,
+    /// The square of the tolerance: the relative variance that each octave has beside its scatter.
+    pub(super) tolerance: f32,
     /// The units of the whitened columns.
     scales: [f32; TERMS + 1],
 }
@@ -80,6 +85,7 @@ impl<'a, const K: usize> Rows<'a, K> {
             units: Units::new(rows.len()),
             rows,
             factor,
+            tolerance: 0.0,
             scales: [0.0; TERMS + 1],
         }
     }
@@ -139,7 +145,7 @@ impl<'a, const K: usize> Rows<'a, K> {
             let (Some(row), Some(own)) = (rest.first_mut(), own.first_mut()) else {
                 return false;
             };
-            let variance = 0.5 * covariance(row, row, k, 0) / row.differences;
+            let variance = 0.5 * covariance(row, row, k, 0) / row.differences + self.tolerance;
             row.certainty = 1.0 / sqrt(variance);
             let per_row = kept * power(FACTOR_BITS as i32 - 1) * row.certainty;
             let mut pivot = i64::from(ONE) << FACTOR_BITS;
@@ -251,7 +257,8 @@ impl<'a, const K: usize> Rows<'a, K> {
     pub(super) fn excess(&self, squares: &[f32; TERMS]) -> f32 {
         let mut sum = 0.0;
         for (octave, row) in (0..K).zip(self.rows.iter()) {
-            sum += (row.measured - self.units.model(squares, octave)) / row.model;
+            let excess = (row.measured - self.units.model(squares, octave)) / row.model;
+            sum += excess * (1.0 - self.tolerance * row.certainty * row.certainty);
         }
         2.0 * sum
     }
@@ -262,13 +269,18 @@ impl<'a, const K: usize> Rows<'a, K> {
         rows.all(|(octave, row)| square * self.units.variance(term, octave) < row.model)
     }
 
-    /// Whether the models of these squared coefficients are within a share of those of the weights.
+    /// Notes the relative change from the models of the weights to those of these squared coefficients. Returns the largest
+    /// one, and the ratio of the change to that of the round before.
     #[inline(never)]
-    pub(super) fn are_near(&self, squares: &[f32; TERMS], share: f32) -> bool {
-        let mut rows = (0..K).zip(self.rows.iter());
-        rows.all(|(octave, row)| {
-            let change = self.units.model(squares, octave) - row.model;
-            change.abs() < share * row.model
-        })
+    pub(super) fn change(&mut self, squares: &[f32; TERMS]) -> (f32, f32) {
+        let (mut largest, mut product, mut square) = (0.0, 0.0, 0.0);
+        for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
+            let change = self.units.model(squares, octave) / row.model - 1.0;
+            product += change * row.change;
+            square += row.change * row.change;
+            largest = if change.abs() > largest { change.abs() } else { largest };
+            row.change = change;
+        }
+        (largest, if square > 0.0 { product / square } else { 0.0 })
     }
 }

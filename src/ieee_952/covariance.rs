@@ -31,16 +31,21 @@ pub(super) fn covariance(shorter: &Row, longer: &Row, j: usize, distance: usize)
     } else {
         j.min(2)
     };
-    let Some(mut entries) = TABLE.get(row).and_then(|row| row.get(near)).map(|all| &all[..]) else {
+    let Some(mut entries) = TABLE
+        .get(row)
+        .and_then(|row| row.get(near))
+        .map(|all| &all[..])
+    else {
         return 0.0;
     };
     let mut falls = &FALL[..];
     let (mut sum, mut ends) = (0_i32, 0_i32);
     for (a, &own) in (0..TERMS).zip(&shorter.shares).take(TERMS - 1) {
         let later = TERMS.wrapping_sub(a);
-        let (Some((its, rest)), Some((fall, next))) =
-            (entries.split_at_checked(later), falls.split_at_checked(later))
-        else {
+        let (Some((its, rest)), Some((fall, next))) = (
+            entries.split_at_checked(later),
+            falls.split_at_checked(later),
+        ) else {
             break;
         };
         (entries, falls) = (rest, next);
@@ -49,6 +54,9 @@ pub(super) fn covariance(shorter: &Row, longer: &Row, j: usize, distance: usize)
         }
         let others = longer.shares.get(a..).unwrap_or_default();
         for ((&[t0, t1], &fall), &other) in its.iter().zip(fall).zip(others) {
+            if other == 0 {
+                continue;
+            }
             // Below 2^16 · 2^16, and the table below 2^15: a sum of all pairs is below 2^31, because shares add to one.
             let product = u32::from(own).wrapping_mul(other.into());
             let rounded = product.wrapping_add(1 << 14).wrapping_shr(15);

@@ -3,16 +3,12 @@
 use super::{
     row::Rows,
     tableau::Tableau,
-    terms::{TERMS, Units, power},
+    terms::{TERMS, Units, power, sqrt},
 };
 use crate::{
     fit::coefficient::{Coefficient, State},
     limits::{CHI_SQUARED_95, ONE_SIDED_95},
-    numerics::{
-        math,
-        math::single_sqrt,
-        real::{Real, real},
-    },
+    numerics::real::{Real, real, single},
 };
 
 /// Name, symbol and twice the exponent of the second in the unit, of each term.
@@ -62,9 +58,13 @@ pub(super) fn birge_ratio(chi_squared: f32, degrees_of_freedom: usize) -> f32 {
     }
     let degrees = degrees_of_freedom as f32;
     let share = 2.0 / (9.0 * degrees);
-    let root = 1.0 - share + INADEQUATE * single_sqrt(share);
+    let root = 1.0 - share + INADEQUATE * sqrt(share);
     let ratio = chi_squared / degrees;
-    if ratio > root * root * root { single_sqrt(ratio) } else { 1.0 }
+    if ratio > root * root * root {
+        sqrt(ratio)
+    } else {
+        1.0
+    }
 }
 
 /// All coefficients. The tableau and the rows are those of the fit.
@@ -110,6 +110,21 @@ pub(super) fn all<const K: usize>(
     coefficients
 }
 
+/// The root of a unit, which single precision may not hold: only its part from 1 to 4 is rounded.
+fn root_of(unit: Real) -> Real {
+    let (mut part, mut scale) = (unit, 1.0);
+    for _ in 0..600 {
+        if part >= 4.0 {
+            (part, scale) = (0.25 * part, 2.0 * scale);
+        } else if part < 1.0 && part > 0.0 {
+            (part, scale) = (4.0 * part, 0.5 * scale);
+        } else {
+            break;
+        }
+    }
+    real(sqrt(single(part))) * scale
+}
+
 /// A squared coefficient with its interval, in units of the fit.
 #[derive(Clone, Copy)]
 struct Estimate {
@@ -135,9 +150,12 @@ impl Estimate {
         let mut beside = *tableau;
         beside.hold(term);
         let Some(variance) = beside.variance(term) else {
-            return Self { square, ..Self::NOTHING };
+            return Self {
+                square,
+                ..Self::NOTHING
+            };
         };
-        let error = single_sqrt(variance) * birge_ratio;
+        let error = sqrt(variance) * birge_ratio;
         let rise = CHI_SQUARED_95 as f32 * birge_ratio * birge_ratio;
         let lower = beside.end(term, square, rise, false);
         if lower > 0.0 {
@@ -177,9 +195,13 @@ impl Estimate {
             let Some(variance) = tableau.variance(term) else {
                 break;
             };
-            bound = square + ONE_SIDED_95 as f32 * single_sqrt(variance);
+            bound = square + ONE_SIDED_95 as f32 * sqrt(variance);
         }
-        bound = if bound > self.square { bound } else { self.square };
+        bound = if bound > self.square {
+            bound
+        } else {
+            self.square
+        };
         if rows.all_above(term, bound) {
             self.state = State::UpperBound;
         }
@@ -189,8 +211,14 @@ impl Estimate {
         }
     }
 
-    fn coefficient(&self, (name, symbol, half_seconds): (&'static str, &'static str, i8), unit: Real) -> Coefficient {
-        let root = |square: f32| math::sqrt(real(square) * unit);
+    fn coefficient(
+        &self,
+        (name, symbol, half_seconds): (&'static str, &'static str, i8),
+        unit: Real,
+    ) -> Coefficient {
+        let root_of_unit = root_of(unit);
+        // The root of the product, whose factors may be far from one.
+        let root = |square: f32| real(sqrt(square)) * root_of_unit;
         Coefficient {
             name,
             symbol,
@@ -208,11 +236,7 @@ impl Estimate {
 /// Whether a coefficient may be zero: the likelihood ratio with the covariance that the curve has if it is zero. The tableau is
 /// that of the fit.
 #[inline(never)]
-fn may_be_zero<const K: usize>(
-    rows: &mut Rows<'_, K>,
-    tableau: &mut Tableau,
-    term: usize,
-) -> bool {
+fn may_be_zero<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau, term: usize) -> bool {
     let held = 1_u8.wrapping_shl(term as u32);
     let guess = tableau.free();
     tableau.hold(term);

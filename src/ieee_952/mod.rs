@@ -109,7 +109,9 @@ pub fn fit<'a, const K: usize, const B: usize>(
     let mut rows = [Row::EMPTY; K];
     let mut factor = [[0; K]; K];
     // The variance of a middle octave, so that single precision holds the ratios to it whatever the unit of the rates.
-    let reference = points.get(points.len() / 2).map_or(1.0, |point| point.variance);
+    let reference = points
+        .get(points.len() / 2)
+        .map_or(1.0, |point| point.variance);
     for (row, point) in rows.iter_mut().zip(points) {
         row.measured = single(point.variance / reference);
         row.model = row.measured;
@@ -137,7 +139,11 @@ pub fn fit<'a, const K: usize, const B: usize>(
         coefficients,
         chi_squared: real(chi_squared),
         degrees_of_freedom,
-        tolerance: if rows.tolerance > 0.0 { real(TOLERANCE) } else { 0.0 },
+        tolerance: if rows.tolerance > 0.0 {
+            real(TOLERANCE)
+        } else {
+            0.0
+        },
         birge_ratio: real(birge_ratio),
     })
 }

@@ -3,9 +3,8 @@
 use super::{
     covariance::{SHARE_BITS, covariance},
     tableau::Tableau,
-    terms::{TERMS, Units, WALK, WHITE, power},
+    terms::{TERMS, Units, WALK, WHITE, power, sqrt},
 };
-use crate::numerics::math::single_sqrt as sqrt;
 
 /// What the curve says of an octave, and what a model does.
 #[derive(Clone, Copy)]
@@ -196,7 +195,11 @@ impl<'a, const K: usize> Rows<'a, K> {
         for ((octave, row), kept) in (0..K).zip(self.rows.iter()).zip(&mut values) {
             let value = value(octave, row);
             *kept = value;
-            largest = if value.abs() > largest { value.abs() } else { largest };
+            largest = if value.abs() > largest {
+                value.abs()
+            } else {
+                largest
+            };
         }
         let per_scale = power(WHITE_BITS as i32) / largest;
         for (k, value) in (0..K).zip(&values).take(self.rows.len()) {
@@ -278,7 +281,11 @@ impl<'a, const K: usize> Rows<'a, K> {
             let change = self.units.model(squares, octave) / row.model - 1.0;
             product += change * row.change;
             square += row.change * row.change;
-            largest = if change.abs() > largest { change.abs() } else { largest };
+            largest = if change.abs() > largest {
+                change.abs()
+            } else {
+                largest
+            };
             row.change = change;
         }
         (largest, if square > 0.0 { product / square } else { 0.0 })

@@ -34,6 +34,7 @@ pub(super) const END_STEP_BITS: [i32; DISTANCES] = [-7, -8, -10, -11, -13, -14, 
 pub(super) const FALL: [u8; PAIRS] = [0, 1, 2, 3, 0, 1, 2, 2, 0, 1, 1, 1, 0, 0];
 
 /// `T0` and `T1` of every row, distance and pair.
+#[rustfmt::skip]
 pub(super) static TABLE: [[[[i16; 2]; PAIRS]; DISTANCES]; ROWS] = [
     [
         [[3982, 512], [6827, 683], [5100, 206], [2731, -341], [0, -683], [3072, 256], [4984, 222], [3072, -256], [0, -1024], [2325, 96], [3652, -111], [282, -2103], [2304, 64], [6144, 512]],
@@ -124,7 +125,12 @@ mod tests {
             };
             let cost = starts(lag) + starts(-lag - 2 * (long - short));
             if cost <= most {
-                let product = sum(a) * if b == 4 { (short * long) as f64 } else { sum(b) };
+                let product = sum(a)
+                    * if b == 4 {
+                        (short * long) as f64
+                    } else {
+                        sum(b)
+                    };
                 sums[0] += product;
                 sums[1] += cost * product;
             }

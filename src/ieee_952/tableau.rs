@@ -1,7 +1,6 @@
 //! Least squares whose unknowns cannot be negative, and intervals by the likelihood ratio, by pivots of one tableau.
 
-use super::terms::TERMS;
-use crate::numerics::math::single_sqrt as sqrt;
+use super::terms::{TERMS, sqrt};
 
 /// An unknown can be told from the others if its pivot, relative to one, is larger.
 const LEAST_PIVOT: f32 = 1e-5;
@@ -162,7 +161,11 @@ impl Tableau {
             }
             let step = step * self.scale(i);
             fall += step * gradient.get(i).copied().unwrap_or(0.0);
-            *square = if *square + step > 0.0 { *square + step } else { *square };
+            *square = if *square + step > 0.0 {
+                *square + step
+            } else {
+                *square
+            };
         }
         fall
     }

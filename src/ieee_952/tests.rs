@@ -1,0 +1,101 @@
+//! The small fit beside the general one, on records of white noise, a random walk and rounding.
+
+extern crate std;
+
+use super::*;
+use crate::{
+    Accumulator, Model, Scale,
+    fit::{Options, State},
+    numerics::{real::double, test_random::Random},
+};
+use std::vec::Vec;
+
+fn record(seed: u32, samples: u32, gaps: u32) -> Curve<16> {
+    let mut random = Random::new(seed.into());
+    let mut accumulator = Accumulator::<16>::new();
+    let (mut drift, mut rounded) = (0.0, 0.0);
+    for n in 0..samples {
+        drift += 0.2 * random.signed();
+        let angle = 30.0 * random.signed();
+        accumulator.push((40.0 * random.signed() + drift + angle - rounded) as i32);
+        rounded = angle;
+        if gaps > 0 && n % (samples / gaps) == 0 {
+            accumulator.gap();
+        }
+    }
+    accumulator.curve(Scale::new(0.01, 100.0).expect("positive"))
+}
+
+#[test]
+fn the_small_fit_has_the_numbers_of_the_general_one() {
+    let (mut squares, mut chi_squared, mut states) = (Vec::new(), Vec::new(), 0);
+    for seed in 0..40 {
+        let samples = 3000 << (seed % 4);
+        let curve = record(seed, samples, if seed % 3 == 0 { 3 } else { 0 });
+        let small = fit(&curve).expect("a fit");
+        let general = crate::fit::fit(&curve, &Model::ieee_952(), Options::default());
+        let general = general.expect("a fit");
+        assert_eq!(small.coefficients[1].state, State::Measured);
+        for (one, other) in general.coefficients.iter().zip(&small.coefficients) {
+            assert_eq!((one.name, one.symbol), (other.name, other.symbol));
+            assert_eq!(one.half_seconds, other.half_seconds);
+            assert!(other.lower <= other.value && other.value <= other.upper);
+            let same = core::mem::discriminant(&one.state) == core::mem::discriminant(&other.state);
+            states += usize::from(same);
+            if one.square_error.is_finite() {
+                squares.push(double((one.square - other.square) / one.square_error).abs());
+            }
+        }
+        chi_squared.push(double(general.chi_squared - small.chi_squared).abs());
+        assert_eq!(general.is_adequate(), small.is_adequate());
+        assert_eq!(general.birge_ratio > 1.0, small.birge_ratio > 1.0);
+    }
+    squares.sort_by(f64::total_cmp);
+    chi_squared.sort_by(f64::total_cmp);
+    // The study `five-terms` has the distributions.
+    assert!(squares[squares.len() * 95 / 100] < 0.05, "{squares:?}");
+    assert!(
+        chi_squared[chi_squared.len() * 95 / 100] < 0.3,
+        "{chi_squared:?}"
+    );
+    assert!(states >= 196, "{states} of 200");
+}
+
+#[test]
+fn a_curve_of_another_unit_has_the_same_fit() {
+    let curve = record(7, 20_000, 0);
+    let near = fit(&curve).expect("a fit");
+    for unit in [1e-8, 1e8] {
+        let unit = real(unit);
+        let octaves = curve.points().iter().map(|point| {
+            let variance = point.variance * unit * unit;
+            (point.m, point.differences, variance)
+        });
+        let far = Curve::<16>::new(curve.rate_hz(), octaves).expect("a curve");
+        let far = fit(&far).expect("a fit");
+        for (one, other) in near.coefficients.iter().zip(far.coefficients) {
+            assert_eq!(one.state, other.state);
+            assert!((one.value * unit - other.value).abs() <= 1e-3 * one.value * unit);
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_fitted_is_an_error() {
+    let octaves = |octaves: &[(u32, u64, Real)]| {
+        fit(&Curve::<16>::new(100.0, octaves.iter().copied()).expect("a curve"))
+    };
+    assert!(matches!(
+        octaves(&[(1, 100, 1.0)]),
+        Err(Error::TooFewOctaves { .. })
+    ));
+    assert!(matches!(
+        octaves(&[(1, 100, 1.0), (2, 98, 0.0), (4, 94, 0.3)]),
+        Err(Error::NoNoise { .. })
+    ));
+    // Only octaves that follow each other from the first one on are fitted.
+    assert!(matches!(
+        octaves(&[(2, 98, 0.5), (4, 94, 0.3), (8, 44, 0.2)]),
+        Err(Error::TooFewOctaves { .. })
+    ));
+}

@@ -10,11 +10,6 @@ pub(crate) use libm::{
     ceilf as ceil, erfcf as erfc, expf as exp, floorf as floor, logf as log, sqrtf as sqrt,
 };
 
-/// The square root in single precision, in any build.
-pub(crate) fn single_sqrt(x: f32) -> f32 {
-    libm::sqrtf(x)
-}
-
 /// Sine and cosine of an angle in turns, accurate to 3e-16 (2e-7 in single precision). Whole quadrants
 /// are subtracted exactly, and the rest is small enough for Taylor's series. libm's reduction of angles
 /// of any size would cost 4 KB of flash and 700 bytes of stack.

@@ -331,6 +331,11 @@ fn rounded_figures_of_the_crates_page_are_near_the_budgets() {
             "flash with the diagnosis and the whole catalogue",
             "flash_bytes_with_diagnosis",
         ),
+        (
+            "flash of accumulator, curve and the fit of the five terms alone",
+            "flash_bytes_with_five_terms",
+        ),
+        ("that fit, of 20 octaves", "instructions_five_terms_20"),
         ("a fit of 20 octaves", "instructions_fit_20"),
         (
             "RAM of a spectrum, for an axis",

@@ -9,7 +9,7 @@ use comfy_table::{Table, presets};
 use serde_json::{Map, Value};
 
 /// The name of a figure of the Cortex-M4F or of this host, its unit and its meaning.
-const FIGURES: [(&str, &str, &str); 20] = [
+const FIGURES: [(&str, &str, &str); 23] = [
     (
         "instructions_per_sample",
         "instructions",
@@ -61,6 +61,17 @@ const FIGURES: [(&str, &str, &str); 20] = [
         "accumulator, curve and fit, with start-up code",
     ),
     ("flash_bytes_accumulator", "bytes", "push, gap and merge"),
+    (
+        "flash_bytes_with_five_terms",
+        "bytes",
+        "with curve and the fit of the five terms alone, 14 octaves",
+    ),
+    (
+        "instructions_five_terms_20",
+        "instructions",
+        "that fit, of 20 octaves",
+    ),
+    ("stack_of_five_terms_20", "bytes", "stack of that fit"),
     ("flash_bytes_with_fit", "bytes", "with curve and fit"),
     (
         "flash_bytes_with_diagnosis",

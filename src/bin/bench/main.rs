@@ -22,6 +22,7 @@ mod image {
         Accumulator, Axes, Curve, Model, Real,
         axis::{Gated, Moments, Spectral, Tracked},
         course::Course,
+        ieee_952,
         spectrum::{Spectrum, SpectrumAccumulator},
     };
     use core::hint::black_box;
@@ -192,6 +193,23 @@ mod image {
         defmt::info!("ram_bytes_axis_and_curve {=usize}", axis);
         defmt::info!("instructions_fit_{=usize} {=f64}", OCTAVES, instructions);
         defmt::info!("stack_bytes_fit_{=usize} {=usize}", OCTAVES, stack);
+        fitted && five_terms(clock, &curve)
+    }
+
+    /// Measures the small fit of the five terms.
+    #[inline(never)]
+    fn five_terms<const OCTAVES: usize>(clock: &Clock, curve: &Curve<OCTAVES>) -> bool {
+        let mut fitted = false;
+        let instructions = clock.instructions(|| fitted = ieee_952::fit(black_box(curve)).is_ok());
+        let stack = stack::used_by(|| {
+            black_box(ieee_952::fit(black_box(curve)).is_ok());
+        });
+        defmt::info!(
+            "instructions_five_terms_{=usize} {=f64}",
+            OCTAVES,
+            instructions
+        );
+        defmt::info!("stack_of_five_terms_{=usize} {=usize}", OCTAVES, stack);
         fitted
     }
 

@@ -90,6 +90,22 @@ pub fn characterised(test: &Characterised, mut line: impl FnMut(Arguments<'_>)) 
         Exact(test.fit.chi_squared),
         Exact(test.fit.p_value)
     ));
+    for coefficient in &test.small.coefficients {
+        line(format_args!(
+            "small {} value {} lower {} upper {} error {} {:?}",
+            coefficient.name,
+            Exact(coefficient.value),
+            Exact(coefficient.lower),
+            Exact(coefficient.upper),
+            Exact(coefficient.square_error),
+            coefficient.state
+        ));
+    }
+    line(format_args!(
+        "small degrees_of_freedom {} chi_squared {}",
+        test.small.degrees_of_freedom,
+        Exact(test.small.chi_squared)
+    ));
 }
 
 /// Prints a step of a diagnosis: the error of each octave and of each bin, the fit, the candidates, and the effect added.

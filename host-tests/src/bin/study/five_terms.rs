@@ -49,7 +49,11 @@ fn summary(compared: &[Compared]) {
     let together = compared.iter().flat_map(|one| one.squares);
     let states = compared.iter().flat_map(|one| one.states);
     let equal = states.filter(|&same| same).count() as f64;
-    println!("all {} {:>6.2} %", sizes(together), 100.0 * equal / (5.0 * n));
+    println!(
+        "all {} {:>6.2} %",
+        sizes(together),
+        100.0 * equal / (5.0 * n)
+    );
     let ends = compared.iter().flat_map(|one| one.ends.iter().copied());
     println!("ends{}", sizes(ends));
     println!("χ²  {}", sizes(compared.iter().map(|one| one.chi_squared)));

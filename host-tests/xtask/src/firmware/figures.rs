@@ -67,6 +67,10 @@ fn rows(target: &Figures<'_>) -> Result<Vec<(&'static str, String)>> {
             "flash of the accumulator",
             bytes("flash_bytes_accumulator")?,
         ),
+        (
+            "flash with curve and the fit of the five terms alone",
+            bytes("flash_bytes_with_five_terms")?,
+        ),
         ("flash with curve and fit", bytes("flash_bytes_with_fit")?),
         (
             "flash with the whole diagnosis",

@@ -1,0 +1,29 @@
+//! The smallest image that takes counts, computes the curve and fits the five terms of IEEE Std 952 to it.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(not(target_os = "none"))]
+fn main() {}
+
+#[cfg(target_os = "none")]
+mod image {
+    use allanite::{Accumulator, Scale, ieee_952};
+    use core::hint::black_box;
+
+    #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
+    #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
+    fn main() -> ! {
+        let mut accumulator = Accumulator::<14>::new();
+        while let Some(count) = black_box(None) {
+            accumulator.push(count);
+        }
+        let fit = Scale::new(1.0, 100.0)
+            .map(|scale| accumulator.curve(scale))
+            .and_then(|curve| ieee_952::fit(&curve));
+        black_box(&fit);
+        semihosting::process::exit(0)
+    }
+}
+
+#[cfg(target_os = "none")]
+mod panic;

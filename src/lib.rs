@@ -101,7 +101,7 @@
 //! |---|---|
 //! | a sample into an accumulator, any number of octaves | 148 instructions |
 //! | RAM of an accumulator of 24 octaves | 2480 bytes |
-//! | flash of accumulator, curve and the fit of the five terms alone | 17 000 bytes |
+//! | flash of accumulator, curve and the fit of the five terms alone | 16 400 bytes |
 //! | that fit, of 20 octaves | 1.0 million instructions, 5 000 bytes of stack |
 //! | flash of accumulator, curve and fit | 45 100 bytes |
 //! | flash with the diagnosis and the whole catalogue | 127 400 bytes |

@@ -67,6 +67,19 @@ pub(super) struct Rows<'a, const K: usize> {
     scales: [f32; TERMS + 1],
 }
 
+/// The number of places at which a shorter difference is taken to start beside a longer one: more than it has, if its octave
+/// leaves out those across filled gaps.
+fn places(shorter: &Row, longer: &Row, j: usize, k: usize) -> f32 {
+    // Differences start a quarter of a cluster apart, and one sample at least.
+    let bits = k.max(2).wrapping_sub(j.max(2)) as i32;
+    let beside = longer.differences * power(bits);
+    if beside > shorter.differences {
+        beside
+    } else {
+        shorter.differences
+    }
+}
+
 /// A column of the equations.
 #[derive(Clone, Copy)]
 pub(super) enum Column {
@@ -149,7 +162,8 @@ impl<'a, const K: usize> Rows<'a, K> {
             let per_row = kept * power(FACTOR_BITS as i32 - 1) * row.certainty;
             let mut pivot = i64::from(ONE) << FACTOR_BITS;
             for (j, shorter) in (0..K).zip(before.iter()) {
-                let common = covariance(shorter, row, j, k.wrapping_sub(j)) / shorter.differences;
+                let common =
+                    covariance(shorter, row, j, k.wrapping_sub(j)) / places(shorter, row, j, k);
                 let correlation = common * per_row * shorter.certainty;
                 let mut left = i64::from(correlation as i32) << FACTOR_BITS;
                 let its = above.get(j).map_or(&[][..], |row| &row[..]);

@@ -1,7 +1,7 @@
 //! The sum over two octaves of what effects without detail add.
 
 use super::{
-    starts::{NEAR, NEGLIGIBLE, Starts, step_after},
+    starts::{NEAR, NEGLIGIBLE, Starts, places, step_after},
     wave::{Turn, Wave},
 };
 use crate::{
@@ -79,7 +79,7 @@ impl Pair<'_> {
 
     /// The covariance that belongs to a sum over pairs, which took every pair `2 stride` times.
     pub(super) fn scaled(&self, sum: f32, stride: u32, differences: &Rounded) -> Real {
-        let counts = self.shorter.differences as Real * self.longer.differences as Real;
+        let counts = places(self.shorter, self.longer) as Real * self.longer.differences as Real;
         // The square of τ² would leave the range of single precision, so τ² is divided out first.
         let unit = differences.unit() / (self.shorter.tau_s * self.longer.tau_s);
         0.25 * real(sum) * (unit * unit) / (real(stride) * counts)

@@ -44,8 +44,7 @@ impl Starts {
             advance_bits: floor_log2(advance(longer.m)),
             quarter_bits: floor_log2(shorter.m),
             inside: u64::from(longer.m.saturating_sub(shorter.m)),
-            last: shorter
-                .differences
+            last: places(shorter, longer)
                 .saturating_sub(1)
                 .wrapping_shl(floor_log2(advance(shorter.m))),
             count: longer.differences,
@@ -109,6 +108,18 @@ impl Starts {
     pub(super) fn slope(&self, step: u32) -> f32 {
         let lost = self.stretches as f32 * step as f32;
         2.0 * lost / 1_u64.wrapping_shl(self.advance_bits) as f32
+    }
+}
+
+/// The number of places at which a shorter difference is taken to start beside a longer one. Octaves that leave out
+/// differences across filled gaps have fewer than longer ones, which lie among the places that are left out, too: what both
+/// have in common is a share of all pairs of places, and not of those that the shorter octave has.
+pub(super) fn places(shorter: &Point, longer: &Point) -> u64 {
+    let bits = floor_log2(advance(longer.m)).saturating_sub(floor_log2(advance(shorter.m)));
+    let beside = longer.differences.saturating_mul(1_u64.wrapping_shl(bits));
+    match shorter.m == longer.m {
+        true => shorter.differences,
+        false => shorter.differences.max(beside),
     }
 }
 

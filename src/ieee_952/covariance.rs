@@ -69,7 +69,14 @@ pub(super) fn covariance(shorter: &Row, longer: &Row, j: usize, distance: usize)
     let mut all = sum as f32 * power(SUM_BITS);
     if longer.ends > FEW_ENDS {
         let step = END_STEP_BITS.get(near).copied().unwrap_or(0);
-        all -= ends as f32 * power(step.wrapping_add(SHARE_BITS)) * longer.ends;
+        let cost = ends as f32 * power(step.wrapping_add(SHARE_BITS)) * longer.ends;
+        // Where stretches are so short that pairs far apart have no room in them, these cannot cost more than there are of
+        // them. If the distances count alike, a quarter of the square is left.
+        all = if cost > 0.5 * all {
+            0.25 * all * (all / cost)
+        } else {
+            all - cost
+        };
     }
     all
 }

@@ -158,6 +158,9 @@ impl<'a, const K: usize> Rows<'a, K> {
                 return false;
             };
             let variance = 0.5 * covariance(row, row, k, 0) / row.differences + self.tolerance;
+            if !(variance >= f32::MIN_POSITIVE) {
+                return false;
+            }
             row.certainty = 1.0 / sqrt(variance);
             let per_row = kept * power(FACTOR_BITS as i32 - 1) * row.certainty;
             let mut pivot = i64::from(ONE) << FACTOR_BITS;

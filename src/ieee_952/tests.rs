@@ -80,6 +80,22 @@ fn a_curve_of_another_unit_has_the_same_fit() {
     }
 }
 
+/// Records of many stretches, down to those with room for a difference or two of the longest octave.
+#[test]
+fn records_of_many_short_stretches_have_numbers() {
+    for seed in 0..60 {
+        let curve = record(seed, 3000 << (seed % 3), 4 << (seed % 6));
+        let Ok(small) = fit(&curve) else { continue };
+        for coefficient in &small.coefficients {
+            assert!(coefficient.value.is_finite(), "{seed}: {small:?}");
+            assert!(coefficient.lower <= coefficient.value, "{seed}: {small:?}");
+            assert!(coefficient.value <= coefficient.upper, "{seed}: {small:?}");
+        }
+        assert!(small.chi_squared.is_finite() && small.birge_ratio.is_finite());
+        assert_eq!(small.coefficients[1].state, State::Measured, "{seed}");
+    }
+}
+
 #[test]
 fn what_cannot_be_fitted_is_an_error() {
     let octaves = |octaves: &[(u32, u64, Real)]| {

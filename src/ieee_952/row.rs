@@ -158,7 +158,8 @@ impl<'a, const K: usize> Rows<'a, K> {
                 return false;
             };
             let variance = 0.5 * covariance(row, row, k, 0) / row.differences + self.tolerance;
-            if !(variance >= f32::MIN_POSITIVE) {
+            let is_positive = variance >= f32::MIN_POSITIVE;
+            if !is_positive {
                 return false;
             }
             row.certainty = 1.0 / sqrt(variance);
@@ -182,7 +183,8 @@ impl<'a, const K: usize> Rows<'a, K> {
                 pivot = pivot.wrapping_sub(i64::from(element).wrapping_mul(element.into()));
             }
             let pivot = pivot as f32 * power(-2 * FACTOR_BITS as i32);
-            if !(pivot > LEAST_PIVOT) {
+            let is_positive = pivot > LEAST_PIVOT;
+            if !is_positive {
                 return false;
             }
             row.reciprocal = (power(RECIPROCAL_BITS as i32) / sqrt(pivot)) as i32;

@@ -23,7 +23,8 @@ pub(super) const fn power(exponent: i32) -> f32 {
 /// The square root of a normal number to the last bit or so, and 0 for others: Newton's method from a start that halves the
 /// exponent. That of libm needs a table, and half a kilobyte in all.
 pub(super) fn sqrt(x: f32) -> f32 {
-    if !(x >= f32::MIN_POSITIVE) {
+    let is_normal = x >= f32::MIN_POSITIVE;
+    if !is_normal {
         return 0.0;
     }
     // Within 4 %, which three steps square to 1e-11.

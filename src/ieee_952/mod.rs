@@ -1,5 +1,5 @@
 //! The five terms of IEEE Std 952 alone, in a few kilobytes: for a sensor that has no room for the general
-//! [fit](crate::fit()).
+//! [fit](crate::fit::fit()).
 //!
 //! [`fit()`] gives the numbers of the general fit of [`Model::ieee_952`](crate::Model::ieee_952) to a curve within some
 //! hundredths of their standard errors: coefficients, 95 % intervals by the likelihood ratio, bounds at the scatter that

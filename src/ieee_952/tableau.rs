@@ -31,15 +31,31 @@ impl Tableau {
     /// Sets the equations from the products of columns, of which the last one is that of the curve.
     pub(super) fn set(&mut self, product: impl Fn(usize, usize) -> f32) {
         self.free = 0;
-        for (a, scale) in (0..TERMS).zip(&mut self.scale) {
-            *scale = 1.0 / sqrt(product(a, a));
+        // The products below the diagonal are those above it.
+        for a in 0..TERMS {
+            for b in a..=TERMS {
+                let product = product(a, b);
+                self.put(a, b, product);
+                if b < TERMS {
+                    self.put(b, a, product);
+                }
+            }
+        }
+        for (a, (scale, row)) in (0..TERMS).zip(self.scale.iter_mut().zip(&self.rows)) {
+            *scale = 1.0 / sqrt(row.get(a).copied().unwrap_or(0.0));
         }
         let scale = self.scale;
-        for (a, (row, own)) in (0..TERMS).zip(self.rows.iter_mut().zip(scale)) {
-            for (b, (element, other)) in (0..TERMS).zip(row.iter_mut().zip(scale)) {
-                *element = product(a, b) * (own * other);
+        for (row, own) in self.rows.iter_mut().zip(scale) {
+            for (element, other) in row.iter_mut().zip(scale) {
+                *element *= own * other;
             }
-            row[TERMS] = product(a, TERMS) * own;
+            row[TERMS] *= own;
+        }
+    }
+
+    fn put(&mut self, i: usize, j: usize, element: f32) {
+        if let Some(place) = self.rows.get_mut(i).and_then(|row| row.get_mut(j)) {
+            *place = element;
         }
     }
 

@@ -1,7 +1,8 @@
 //! Coefficients with their intervals, bounds and tests against zero.
 
 use super::{
-    row::Rows,
+    rounds::iterate,
+    rows::Rows,
     tableau::Tableau,
     terms::{TERMS, Units, power, sqrt},
 };
@@ -242,7 +243,7 @@ fn may_be_zero<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau, te
     tableau.hold(term);
     tableau.solve(0, held);
     let start = tableau.squares();
-    let rounds = super::iterate(rows, tableau, start, ROUGHLY, &|tableau| {
+    let rounds = iterate(rows, tableau, start, ROUGHLY, &|tableau| {
         tableau.solve(guess, held);
     });
     if rounds.is_none() {

@@ -32,7 +32,9 @@
 
 mod covariance;
 mod estimate;
+mod rounds;
 mod row;
+mod rows;
 mod table;
 mod tableau;
 mod terms;
@@ -48,21 +50,14 @@ use crate::{
     fit::{ADEQUATE_P, chi_squared_tail, coefficient::Coefficient},
     numerics::real::{Real, real, single},
 };
-use row::{Row, Rows};
+use rounds::{begin, solve};
+use row::Row;
+use rows::Rows;
 use tableau::Tableau;
-
-/// The rounds of covariance and solution.
-const ROUNDS: u8 = 8;
 
 /// How far an octave may be off, relative to its variance, where the scatter alone does not explain the misfit: as in the
 /// general fit by default.
 const TOLERANCE: f32 = 0.01;
-
-/// The terms that most records have, which the solution tries first: quantization, white noise and flicker noise.
-const USUAL: u8 = 0b111;
-
-/// The rounds end when the relative change of the model is smaller than this.
-const CONVERGED: f32 = 3e-3;
 
 /// The five terms of a curve, with what they are worth.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,73 +148,4 @@ fn consecutive(points: &[Point]) -> &[Point] {
     let missing = (0_u32..32).zip(points).find(|(k, point)| point.m != 1 << k);
     let known = missing.map_or(points.len(), |(k, _)| k as usize);
     points.get(..known).unwrap_or_default()
-}
-
-/// The squared coefficients for independent octaves.
-#[inline(never)]
-fn begin<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau) -> [f32; TERMS] {
-    rows.weigh_independent();
-    rows.set_equations(None, tableau);
-    tableau.solve(USUAL, 0);
-    tableau.squares()
-}
-
-/// Alternates between the covariance at a model and the solution with it, until the relative change of the model is smaller
-/// than `converged`. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
-/// solution has no term.
-///
-/// The changes of rounds that swing to and fro, or that creep, have a ratio, and the next round starts where it leads (Aitken
-/// 1926), as in the general fit.
-#[inline(never)]
-fn iterate<const K: usize>(
-    rows: &mut Rows<'_, K>,
-    tableau: &mut Tableau,
-    start: [f32; TERMS],
-    converged: f32,
-    solve: &dyn Fn(&mut Tableau),
-) -> Option<()> {
-    let (mut assumed, mut stride) = (start, 1.0);
-    for round in 0..ROUNDS {
-        if assumed.iter().all(|square| *square <= 0.0) {
-            return None;
-        }
-        rows.set_models(&assumed);
-        if !rows.weigh() {
-            return None;
-        }
-        rows.set_equations(None, tableau);
-        solve(tableau);
-        let squares = tableau.squares();
-        let (largest, ratio) = rows.change(&squares);
-        if largest < converged {
-            break;
-        }
-        if round > 0 {
-            stride = (stride / (1.0 - ratio.min(0.5))).clamp(0.3, 2.0);
-        }
-        for (from, to) in assumed.iter_mut().zip(squares) {
-            // However far a step goes, it loses no term that both ends of it have.
-            let least = 0.5 * from.min(to);
-            *from = (*from + (to - *from) * stride).max(least);
-        }
-    }
-    Some(())
-}
-
-/// Finds the squared coefficients by rounds of covariance and solution, and returns χ². `None` if the covariance is not
-/// positive definite.
-#[inline(never)]
-fn solve<const K: usize>(
-    rows: &mut Rows<'_, K>,
-    tableau: &mut Tableau,
-    squares: &mut [f32; TERMS],
-) -> Option<f32> {
-    iterate(rows, tableau, *squares, CONVERGED, &|tableau| {
-        tableau.solve(USUAL, 0);
-    })?;
-    *squares = tableau.squares();
-    let (gradient, residuals) = rows.residuals(squares);
-    let fall = tableau.refine(squares, &gradient);
-    let chi_squared = residuals - fall - rows.excess(squares);
-    Some(if chi_squared > 0.0 { chi_squared } else { 0.0 })
 }

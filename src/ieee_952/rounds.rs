@@ -1,0 +1,81 @@
+//! Rounds of covariance and solution.
+
+use super::{rows::Rows, tableau::Tableau, terms::TERMS};
+
+/// The rounds of covariance and solution.
+const ROUNDS: u8 = 8;
+
+/// The terms that most records have, which the solution tries first: quantization, white noise and flicker noise.
+const USUAL: u8 = 0b111;
+
+/// The rounds end when the relative change of the model is smaller than this.
+const CONVERGED: f32 = 3e-3;
+
+/// The squared coefficients for independent octaves.
+#[inline(never)]
+pub(super) fn begin<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau) -> [f32; TERMS] {
+    rows.weigh_independent();
+    rows.set_equations(None, tableau);
+    tableau.solve(USUAL, 0);
+    tableau.squares()
+}
+
+/// Alternates between the covariance at a model and the solution with it, until the relative change of the model is smaller
+/// than `converged`. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
+/// solution has no term.
+///
+/// The changes of rounds that swing to and fro, or that creep, have a ratio, and the next round starts where it leads (Aitken
+/// 1926), as in the general fit.
+#[inline(never)]
+pub(super) fn iterate<const K: usize>(
+    rows: &mut Rows<'_, K>,
+    tableau: &mut Tableau,
+    start: [f32; TERMS],
+    converged: f32,
+    solve: &dyn Fn(&mut Tableau),
+) -> Option<()> {
+    let (mut assumed, mut stride) = (start, 1.0);
+    for round in 0..ROUNDS {
+        if assumed.iter().all(|square| *square <= 0.0) {
+            return None;
+        }
+        rows.set_models(&assumed);
+        if !rows.weigh() {
+            return None;
+        }
+        rows.set_equations(None, tableau);
+        solve(tableau);
+        let squares = tableau.squares();
+        let (largest, ratio) = rows.change(&squares);
+        if largest < converged {
+            break;
+        }
+        if round > 0 {
+            stride = (stride / (1.0 - ratio.min(0.5))).clamp(0.3, 2.0);
+        }
+        for (from, to) in assumed.iter_mut().zip(squares) {
+            // However far a step goes, it loses no term that both ends of it have.
+            let least = 0.5 * from.min(to);
+            *from = (*from + (to - *from) * stride).max(least);
+        }
+    }
+    Some(())
+}
+
+/// Finds the squared coefficients by rounds of covariance and solution, and returns χ². `None` if the covariance is not
+/// positive definite.
+#[inline(never)]
+pub(super) fn solve<const K: usize>(
+    rows: &mut Rows<'_, K>,
+    tableau: &mut Tableau,
+    squares: &mut [f32; TERMS],
+) -> Option<f32> {
+    iterate(rows, tableau, *squares, CONVERGED, &|tableau| {
+        tableau.solve(USUAL, 0);
+    })?;
+    *squares = tableau.squares();
+    let (gradient, residuals) = rows.residuals(squares);
+    let fall = tableau.refine(squares, &gradient);
+    let chi_squared = residuals - fall - rows.excess(squares);
+    Some(if chi_squared > 0.0 { chi_squared } else { 0.0 })
+}

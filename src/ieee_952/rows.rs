@@ -1,0 +1,278 @@
+//! The octaves of a curve, and the factor of their covariance.
+
+use super::{
+    covariance::{SHARE_BITS, covariance},
+    row::Row,
+    tableau::Tableau,
+    terms::{TERMS, Units, WALK, WHITE, power, sqrt},
+};
+
+/// A number of the factor is in units of 2^-30: the covariance is scaled to a diagonal of one.
+const FACTOR_BITS: u32 = 30;
+const ONE: i32 = 1 << FACTOR_BITS;
+
+/// The reciprocals of its diagonal are in units of 2^-24, and the square of a diagonal element is this at least.
+const RECIPROCAL_BITS: u32 = 22;
+const LEAST_PIVOT: f32 = 1e-5;
+
+/// A whitened column is in units of 2^-22 of its largest element before it was whitened.
+const WHITE_BITS: u32 = 22;
+
+/// Products of whitened columns lose these bits, so that no sum of thirty overflows.
+const PRODUCT_BITS: u32 = 8;
+
+/// The octaves of a curve, and the factor of their covariance.
+pub(super) struct Rows<'a, const K: usize> {
+    pub(super) rows: &'a mut [Row],
+    /// The factor below the diagonal, row by row.
+    factor: &'a mut [[i32; K]; K],
+    pub(super) units: Units,
+    /// The square of the tolerance: the relative variance that each octave has beside its scatter.
+    pub(super) tolerance: f32,
+    /// The units of the whitened columns.
+    scales: [f32; TERMS + 1],
+}
+
+/// The number of places at which a shorter difference is taken to start beside a longer one: more than it has, if its octave
+/// leaves out those across filled gaps.
+fn places(shorter: &Row, longer: &Row, j: usize, k: usize) -> f32 {
+    // Differences start a quarter of a cluster apart, and one sample at least.
+    let bits = k.max(2).wrapping_sub(j.max(2)) as i32;
+    let beside = longer.differences * power(bits);
+    if beside > shorter.differences {
+        beside
+    } else {
+        shorter.differences
+    }
+}
+
+/// A column of the equations.
+#[derive(Clone, Copy)]
+pub(super) enum Column {
+    /// The variance of a term with a coefficient of one.
+    Term(usize),
+    /// The curve.
+    Measured,
+    /// The curve, less the model of these squared coefficients.
+    Residual([f32; TERMS]),
+}
+
+impl<'a, const K: usize> Rows<'a, K> {
+    pub(super) fn new(rows: &'a mut [Row], factor: &'a mut [[i32; K]; K]) -> Self {
+        Self {
+            units: Units::new(rows.len()),
+            rows,
+            factor,
+            tolerance: 0.0,
+            scales: [0.0; TERMS + 1],
+        }
+    }
+
+    /// Sets the models of these squared coefficients, and the terms' shares of them.
+    #[inline(never)]
+    pub(super) fn set_models(&mut self, squares: &[f32; TERMS]) {
+        let units = self.units;
+        let walk = squares[WALK];
+        for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
+            row.model = units.model(squares, octave);
+            let per_model = power(-SHARE_BITS) / row.model;
+            let leak = walk * units.leak(octave);
+            for (term, (share, &square)) in (0..TERMS).zip(row.shares.iter_mut().zip(squares)) {
+                let own = match term {
+                    WHITE => square * units.variance(term, octave) + leak,
+                    WALK => square * units.variance(term, octave) - leak,
+                    _ => square * units.variance(term, octave),
+                };
+                // Not negative, and at most 2^15.
+                *share = (own * per_model + 0.5) as u16;
+            }
+        }
+    }
+
+    /// Takes the octaves for independent, with the scatter of as many clusters as they have: the weights with which the
+    /// rounds begin.
+    #[inline(never)]
+    pub(super) fn weigh_independent(&mut self) {
+        for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
+            let quarter = match octave {
+                0 => 1.0,
+                1 => 0.5,
+                _ => 0.25,
+            };
+            let clusters = (row.differences - 1.0) * quarter + 1.0;
+            row.certainty = sqrt(2.0 * clusters);
+            row.reciprocal = 1 << RECIPROCAL_BITS;
+        }
+        for row in self.factor.iter_mut() {
+            row.fill(0);
+        }
+    }
+
+    /// Factors the covariance at the present models. `false` if it cannot be made positive definite.
+    #[inline(never)]
+    pub(super) fn weigh(&mut self) -> bool {
+        /// The shares of the correlations that are kept, one after the other.
+        const KEPT: [f32; 5] = [1.0, 0.97, 0.9, 0.7, 0.0];
+        KEPT.iter().any(|&kept| self.factor(kept))
+    }
+
+    fn factor(&mut self, kept: f32) -> bool {
+        for k in 0..self.rows.len() {
+            let (before, rest) = self.rows.split_at_mut(k);
+            let (above, own) = self.factor.split_at_mut(k.min(K));
+            let (Some(row), Some(own)) = (rest.first_mut(), own.first_mut()) else {
+                return false;
+            };
+            let variance = 0.5 * covariance(row, row, k, 0) / row.differences + self.tolerance;
+            let is_positive = variance >= f32::MIN_POSITIVE;
+            if !is_positive {
+                return false;
+            }
+            row.certainty = 1.0 / sqrt(variance);
+            let per_row = kept * power(FACTOR_BITS as i32 - 1) * row.certainty;
+            let mut pivot = i64::from(ONE) << FACTOR_BITS;
+            for (j, shorter) in (0..K).zip(before.iter()) {
+                let common =
+                    covariance(shorter, row, j, k.wrapping_sub(j)) / places(shorter, row, j, k);
+                let correlation = common * per_row * shorter.certainty;
+                let mut left = i64::from(correlation as i32) << FACTOR_BITS;
+                let its = above.get(j).map_or(&[][..], |row| &row[..]);
+                for (own, its) in own.iter().zip(its).take(j) {
+                    left = left.wrapping_sub(i64::from(*own).wrapping_mul((*its).into()));
+                }
+                let left = left >> FACTOR_BITS;
+                let element = left.wrapping_mul(shorter.reciprocal.into()) >> RECIPROCAL_BITS;
+                let element = element.clamp((-ONE).into(), ONE.into()) as i32;
+                if let Some(place) = own.get_mut(j) {
+                    *place = element;
+                }
+                pivot = pivot.wrapping_sub(i64::from(element).wrapping_mul(element.into()));
+            }
+            let pivot = pivot as f32 * power(-2 * FACTOR_BITS as i32);
+            let is_positive = pivot > LEAST_PIVOT;
+            if !is_positive {
+                return false;
+            }
+            row.reciprocal = (power(RECIPROCAL_BITS as i32) / sqrt(pivot)) as i32;
+        }
+        true
+    }
+
+    /// Whitens a column, and keeps it as column `place`. The scatter of the octaves is that of the factored covariance, for
+    /// models that are larger by `more` of a term.
+    #[inline(never)]
+    pub(super) fn whiten(&mut self, place: usize, column: Column, more: Option<(usize, f32)>) {
+        let units = self.units;
+        let value = |octave: usize, row: &Row| {
+            let scatter = match more {
+                Some((term, square)) => row.model + square * units.variance(term, octave),
+                None => row.model,
+            };
+            let own = match column {
+                Column::Term(term) => units.variance(term, octave),
+                Column::Measured => row.measured,
+                Column::Residual(squares) => row.measured - units.model(&squares, octave),
+            };
+            own / scatter * row.certainty
+        };
+        let mut values = [0.0; K];
+        let mut largest = f32::MIN_POSITIVE;
+        for ((octave, row), kept) in (0..K).zip(self.rows.iter()).zip(&mut values) {
+            let value = value(octave, row);
+            *kept = value;
+            largest = if value.abs() > largest {
+                value.abs()
+            } else {
+                largest
+            };
+        }
+        let per_scale = power(WHITE_BITS as i32) / largest;
+        for (k, value) in (0..K).zip(&values).take(self.rows.len()) {
+            let mut left = i64::from((value * per_scale) as i32) << FACTOR_BITS;
+            let factors = self.factor.get(k).map_or(&[][..], |row| &row[..]);
+            for (factor, before) in factors.iter().zip(self.rows.iter()).take(k) {
+                let its = before.white.get(place).copied().unwrap_or(0);
+                left = left.wrapping_sub(i64::from(*factor).wrapping_mul(its.into()));
+            }
+            if let Some(row) = self.rows.get_mut(k)
+                && let Some(white) = row.white.get_mut(place)
+            {
+                let element = (left >> FACTOR_BITS).wrapping_mul(row.reciprocal.into());
+                let limit = i64::from(i32::MAX);
+                *white = (element >> RECIPROCAL_BITS).clamp(-limit, limit) as i32;
+            }
+        }
+        if let Some(scale) = self.scales.get_mut(place) {
+            *scale = largest;
+        }
+    }
+
+    /// The product of two whitened columns.
+    fn product(&self, a: usize, b: usize) -> f32 {
+        let mut sum = 0_i64;
+        for row in self.rows.iter() {
+            let element = |place: usize| i64::from(row.white.get(place).copied().unwrap_or(0));
+            sum = sum.wrapping_add(element(a).wrapping_mul(element(b)) >> PRODUCT_BITS);
+        }
+        let scale = |place: usize| self.scales.get(place).copied().unwrap_or(0.0);
+        let bits = PRODUCT_BITS as i32 - 2 * WHITE_BITS as i32;
+        sum as f32 * power(bits) * scale(a) * scale(b)
+    }
+
+    /// Whitens the columns of all terms and of the curve, and sets the normal equations.
+    #[inline(never)]
+    pub(super) fn set_equations(&mut self, more: Option<(usize, f32)>, tableau: &mut Tableau) {
+        for term in 0..TERMS {
+            self.whiten(term, Column::Term(term), more);
+        }
+        self.whiten(TERMS, Column::Measured, more);
+        tableau.set(|a, b| self.product(a, b));
+    }
+
+    /// The gradient of the squared residuals with the residual as the last column, by the tableau's scales, and their sum.
+    #[inline(never)]
+    pub(super) fn residuals(&mut self, squares: &[f32; TERMS]) -> ([f32; TERMS], f32) {
+        self.whiten(TERMS, Column::Residual(*squares), None);
+        let mut gradient = [0.0; TERMS];
+        for (term, gradient) in (0..TERMS).zip(&mut gradient) {
+            *gradient = self.product(term, TERMS);
+        }
+        (gradient, self.product(TERMS, TERMS))
+    }
+
+    /// By how much the relative residuals exceed zero, twice: what χ² gains because its covariance follows the measurement
+    /// (see [`chi_squared`](super::Fit::chi_squared)).
+    pub(super) fn excess(&self, squares: &[f32; TERMS]) -> f32 {
+        let mut sum = 0.0;
+        for (octave, row) in (0..K).zip(self.rows.iter()) {
+            let excess = (row.measured - self.units.model(squares, octave)) / row.model;
+            sum += excess * (1.0 - self.tolerance * row.certainty * row.certainty);
+        }
+        2.0 * sum
+    }
+
+    /// Whether the model is above a term with this squared coefficient, in every octave.
+    pub(super) fn all_above(&self, term: usize, square: f32) -> bool {
+        let mut rows = (0..K).zip(self.rows.iter());
+        rows.all(|(octave, row)| square * self.units.variance(term, octave) < row.model)
+    }
+
+    /// Notes the relative change from the models of the weights to those of these squared coefficients. Returns the largest
+    /// one, and the ratio of the change to that of the round before.
+    #[inline(never)]
+    pub(super) fn change(&mut self, squares: &[f32; TERMS]) -> (f32, f32) {
+        let (mut largest, mut product, mut square) = (0.0, 0.0, 0.0);
+        for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
+            let change = self.units.model(squares, octave) / row.model - 1.0;
+            product += change * row.change;
+            square += row.change * row.change;
+            largest = if change.abs() > largest {
+                change.abs()
+            } else {
+                largest
+            };
+            row.change = change;
+        }
+        (largest, if square > 0.0 { product / square } else { 0.0 })
+    }
+}

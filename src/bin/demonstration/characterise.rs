@@ -4,7 +4,6 @@ use super::{AMPLITUDES, double, simulated::SimulatedGyro};
 use allanite::{
     Axis, Coefficient, Curve, Error, Model, Scale,
     fit::{Fit, Options, fit},
-    ieee_952,
 };
 
 /// The number of octaves of averaging time.
@@ -23,8 +22,6 @@ pub struct Characterised {
     pub curve: Curve<OCTAVES>,
     /// The five coefficients, in °/s and seconds.
     pub fit: Fit,
-    /// The same coefficients by the small fit of these terms.
-    pub small: ieee_952::Fit,
     /// The simulated coefficients.
     pub truth: [f64; 5],
 }
@@ -38,11 +35,9 @@ impl Characterised {
         let scale = Scale::new(1.0 / 131.0, 100.0)?;
         let curve = accumulated(scale, seed);
         let fit = fit(&curve, &Model::ieee_952(), Options::default())?;
-        let small = ieee_952::fit(&curve)?;
         Ok(Self {
             curve,
             fit,
-            small,
             truth: AMPLITUDES.coefficients(scale),
         })
     }

@@ -22,7 +22,9 @@ pub struct Differences {
 pub fn fits(records: u64) -> Result<Differences> {
     let mut all = Differences::default();
     for [single, double] in both("characterise", &[], records)? {
-        for (single, double) in single.iter().zip(&double) {
+        // The small fit computes in single precision in both.
+        let is_general = |pair: &(&String, &String)| !pair.1.starts_with("small ");
+        for (single, double) in single.iter().zip(&double).filter(is_general) {
             if let (Some(one), Some(other)) =
                 (after(single, "chi_squared"), after(double, "chi_squared"))
             {
@@ -94,7 +96,7 @@ pub fn diagnoses(records: u64) -> Result<Vec<(&'static str, Alike)>> {
 /// The lines that a program prints for each record, in single and in double precision.
 fn both(program: &str, arguments: &[&str], records: u64) -> Result<Vec<[Vec<String>; 2]>> {
     let last = match program {
-        "characterise" => "fit ",
+        "characterise" => "small degrees_of_freedom ",
         _ => "verdict ",
     };
     let seeds: Vec<String> = (1..=records).map(|seed| seed.to_string()).collect();

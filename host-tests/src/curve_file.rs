@@ -254,6 +254,9 @@ impl AxisCurve {
         let evidence = axis.evidence.as_ref();
         let course =
             evidence.and_then(|evidence| evidence.course.as_ref()?.cosine_transform(scale));
+        let (bridged, samples) = (axis.accumulator.bridged(), axis.accumulator.samples());
+        let spectrum = axis.spectrum.spectrum(scale);
+        let spectrum = spectrum.without_bridges(bridged, samples);
         let octaves = sums.iter().zip(curve.points());
         let octaves = octaves.map(|(sum, point)| Octave {
             m: sum.m,
@@ -274,7 +277,7 @@ impl AxisCurve {
             licence: None,
             octaves: octaves.collect(),
             short,
-            spectrum: Some(SpectrumLevels::of(&axis.spectrum.spectrum(scale)))
+            spectrum: Some(SpectrumLevels::of(&spectrum))
                 .filter(|spectrum| !spectrum.levels.is_empty()),
             course: course.as_ref().map(CourseDensities::of),
         })

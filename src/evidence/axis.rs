@@ -135,7 +135,7 @@ where
         Ok(AxisRecord {
             samples: sums.accumulator.samples(),
             curve: sums.accumulator.curve(scale),
-            spectrum: S::spectrum(&sums.spectrum, scale),
+            spectrum: S::spectrum(&sums.spectrum, &sums.accumulator, scale),
             course: sums
                 .track
                 .course()

@@ -8,6 +8,7 @@ mod slice;
 mod wide;
 
 pub use crate::record::square_sum::SquareSum;
+pub use bridge::Filling;
 pub use bridged::{Bridged, CLASSES};
 use bridged::{TOUCHED, span};
 

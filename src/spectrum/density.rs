@@ -30,7 +30,8 @@ pub struct Bin {
     pub frequency_hz: Real,
     /// The one-sided power spectral density, in rate units squared per hertz.
     pub density: Real,
-    /// The number of half-overlapping segments behind the density.
+    /// The number of half-overlapping segments behind the density, or fewer where [filled
+    /// gaps](Spectrum::without_bridges) add to its scatter: as many as would scatter so without them.
     pub segments: u32,
     /// The spectral kurtosis of the segments' powers: 1 ± 2/√n for steady Gaussian noise in `n` segments,
     /// less for a line, more for bursts or noise that changes (Nita & Gary 2010, PASP 122, 595, eq. 8).
@@ -161,6 +162,11 @@ impl<const B: usize> Spectrum<B> {
         levels_of(self.bins())
     }
 
+    /// All bins, to be changed.
+    pub(super) fn all_mut(&mut self) -> &mut [Bin] {
+        &mut self.bins
+    }
+
     /// Leaves out the levels whose blocks have this number of samples or more.
     pub(crate) fn leave_out_from(&mut self, block: u32) {
         let kept = self.bins.partition_point(|bin| bin.block < block);
@@ -224,7 +230,9 @@ fn expected<const B: usize>(
 
 /// The number of bins of the levels that are fitted.
 fn fitted<const B: usize>(bins: &[Bin]) -> usize {
-    bins.partition_point(|bin| bin.segments >= Spectrum::<B>::MIN_SEGMENTS)
+    let is_enough = |bin: &Bin| bin.segments >= Spectrum::<B>::MIN_SEGMENTS;
+    let dense = levels_of(bins).take_while(|level| level.iter().any(is_enough));
+    dense.fold(0, |all: usize, level| all.saturating_add(level.len()))
 }
 
 /// Bins of several levels, level by level.

@@ -18,6 +18,7 @@
 //! means and leakage of the window are a part of it, and of [`expected_densities`] too.
 
 mod accumulator;
+mod bridged;
 mod covariance;
 mod density;
 mod expected;

@@ -4,6 +4,7 @@
 extern crate std;
 
 mod accumulator;
+mod bridged;
 mod expected;
 mod scipy;
 mod stored;

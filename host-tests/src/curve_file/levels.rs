@@ -31,10 +31,21 @@ pub struct SpectrumLevel {
     pub block: u32,
     /// Number of segments that overlap by half.
     pub segments: u32,
+    /// Number of segments that would scatter as much as each bin, where filled gaps make a bin scatter more.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub segments_of_bins: Vec<u32>,
     /// One-sided densities in rate units squared per hertz, from the bin `segment/16` to the bin before `segment/2`.
     pub density: Vec<f64>,
     /// Spectral kurtosis of each bin.
     pub kurtosis: Vec<f64>,
+}
+
+impl SpectrumLevel {
+    /// Number of segments that would scatter as much as a bin does.
+    pub(super) fn segments_of(&self, bin: usize) -> u32 {
+        let own = self.segments_of_bins.get(bin);
+        own.copied().unwrap_or(self.segments)
+    }
 }
 
 impl SpectrumLevels {
@@ -42,7 +53,13 @@ impl SpectrumLevels {
         let levels = spectrum.all().chunk_by(|one, next| one.block == next.block);
         let levels = levels.map(|level| SpectrumLevel {
             block: level.first().map_or(0, |bin| bin.block),
-            segments: level.first().map_or(0, |bin| bin.segments),
+            segments: level.iter().map(|bin| bin.segments).max().unwrap_or(0),
+            segments_of_bins: match level {
+                [first, rest @ ..] if rest.iter().any(|bin| bin.segments != first.segments) => {
+                    level.iter().map(|bin| bin.segments).collect()
+                }
+                _ => Vec::new(),
+            },
             density: level.iter().map(|bin| bin.density).collect(),
             kurtosis: level.iter().map(|bin| bin.spectral_kurtosis).collect(),
         });
@@ -56,16 +73,15 @@ impl SpectrumLevels {
         let bins = self.levels.iter().flat_map(|level| {
             let measured = level.density.iter().zip(&level.kurtosis);
             let indices = self.segment / 16..;
-            measured
-                .zip(indices)
-                .map(|((density, kurtosis), index)| Bin {
-                    block: level.block,
-                    index,
-                    frequency_hz: 0.0,
-                    density: *density,
-                    segments: level.segments,
-                    spectral_kurtosis: *kurtosis,
-                })
+            let bins = measured.zip(indices).enumerate();
+            bins.map(|(place, ((density, kurtosis), index))| Bin {
+                block: level.block,
+                index,
+                frequency_hz: 0.0,
+                density: *density,
+                segments: level.segments_of(place),
+                spectral_kurtosis: *kurtosis,
+            })
         });
         Spectrum::new(rate_hz, self.segment, bins)
     }
@@ -94,8 +110,14 @@ impl SpectrumLevels {
             if u64::from(level.segments) > most {
                 return here("there are more segments than samples for them");
             }
-            if level.segments < Spectrum::<BINS>::SPARSE_SEGMENTS {
+            let least = Spectrum::<BINS>::SPARSE_SEGMENTS;
+            if level.segments < least {
                 return here("there are too few segments");
+            }
+            let each = &level.segments_of_bins;
+            let is_possible = |&segments: &u32| (least..=level.segments).contains(&segments);
+            if !(each.is_empty() || each.len() == bins && each.iter().all(is_possible)) {
+                return here("the numbers of segments of the bins are impossible");
             }
             // By Cauchy and Schwarz, n ΣP² is at least (ΣP)² and at most n (ΣP)².
             let most = f64::from(level.segments) + 1.0;

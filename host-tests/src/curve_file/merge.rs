@@ -177,7 +177,13 @@ fn level(parts: &[&SpectrumLevel]) -> SpectrumLevel {
             1.0
         }
     });
+    let segments_of = |k: usize| {
+        let each = parts.iter().map(|level| level.segments_of(k));
+        each.fold(0, u32::saturating_add)
+    };
+    let is_filled = parts.iter().any(|level| !level.segments_of_bins.is_empty());
     SpectrumLevel {
+        segments_of_bins: (0..bins).filter(|_| is_filled).map(segments_of).collect(),
         block: parts.first().map_or(0, |level| level.block),
         segments: parts
             .iter()

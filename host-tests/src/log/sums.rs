@@ -40,10 +40,25 @@ impl OwnSums {
         self.extremes.push(counts);
     }
 
-    pub(super) fn gap(&mut self, missing: u64) {
-        self.spectrum.gap();
+    /// Tells that so many samples are missing here. `filled` are the values that fill their places, or none.
+    pub(super) fn gap(&mut self, missing: u64, filled: &[i32]) {
+        go_on(&mut self.spectrum, filled);
         self.course.lost(missing);
         self.extremes.lost(missing);
+    }
+}
+
+/// The values that fill the places of lost samples; none if they are too many.
+pub(super) fn filled(accumulator: &Accumulator<OCTAVES>, lost: u64) -> Vec<i32> {
+    accumulator.filling(lost).into_iter().flatten().collect()
+}
+
+/// Goes on with the values that fill a gap. Without any, no segment spans it.
+fn go_on(spectrum: &mut SpectrumSums, filled: &[i32]) {
+    if filled.is_empty() {
+        spectrum.gap();
+    } else {
+        spectrum.push_slice(filled);
     }
 }
 
@@ -61,11 +76,11 @@ impl Part {
     }
 
     pub(super) fn gap(&mut self, lost: u64) {
+        go_on(&mut self.spectrum, &filled(&self.accumulator, lost));
         match lost {
             0 => self.accumulator.gap(),
             lost => self.accumulator.lost(lost),
         }
-        self.spectrum.gap();
     }
 }
 

@@ -6,7 +6,7 @@ use super::{
     CovariateChoice,
     covariate::{self, Derived},
     faults::{self, Faults},
-    sums::{OwnSums, Part, Sums},
+    sums::{OwnSums, Part, Sums, filled},
     unrest::{self, Unrest},
     watched::{self, SharedSums, WatchedAxis},
 };
@@ -83,7 +83,11 @@ enum Work {
     Batch(usize, Vec<i32>),
     /// So many samples are missing after the batches that were sent so far. All of them end at the same
     /// row.
-    Gap(u64),
+    Gap {
+        missing: u64,
+        /// The values that fill the gap in each watched axis, once they are known.
+        filled: Vec<Vec<i32>>,
+    },
 }
 
 /// Sends the counts of every column to the thread with the accumulators, which passes those of watched axes on to the
@@ -140,9 +144,9 @@ impl Batches {
                             recycle(&recycled, batch);
                         }
                     }),
-                    Work::Gap(missing) => {
-                        worker.gap(missing);
-                        let _ = accumulated.send(Work::Gap(missing));
+                    Work::Gap { missing, .. } => {
+                        let filled = worker.gap(missing);
+                        let _ = accumulated.send(Work::Gap { missing, filled });
                     }
                 }
             }
@@ -156,7 +160,11 @@ impl Batches {
                         axes[axis].push(&batch);
                         recycle(&outgoing, batch);
                     }
-                    Work::Gap(missing) => axes.iter_mut().for_each(|axis| axis.gap(missing)),
+                    Work::Gap { missing, filled } => {
+                        for (axis, filled) in axes.iter_mut().zip(&filled) {
+                            axis.gap(missing, filled);
+                        }
+                    }
                 }
             }
             axes
@@ -221,7 +229,10 @@ impl Batches {
     #[cold]
     pub(super) fn gap(&mut self, missing: u64) {
         self.send_all();
-        let _ = self.full.send(Work::Gap(missing));
+        let _ = self.full.send(Work::Gap {
+            missing,
+            filled: Vec::new(),
+        });
     }
 
     fn send_all(&mut self) {
@@ -340,7 +351,9 @@ impl Worker {
         }
     }
 
-    fn gap(&mut self, missing: u64) {
+    /// Tells that so many samples are missing here, and returns the values that fill their places in each watched axis.
+    fn gap(&mut self, missing: u64) -> Vec<Vec<i32>> {
+        let mut all_filled = Vec::new();
         self.faults.gap();
         self.unrest
             .iter_mut()
@@ -364,9 +377,13 @@ impl Worker {
                         first.gap(missing);
                     }
                 }
-                AxisState::Watched(axis) => axis.gap(missing),
+                AxisState::Watched(axis) => {
+                    all_filled.push(filled(axis.accumulator(), missing));
+                    axis.gap(missing);
+                }
             }
         }
+        all_filled
     }
 
     fn accumulate(&mut self, axis: usize, counts: &[i32], covariates: &[Vec<i32>]) {

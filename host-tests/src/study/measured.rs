@@ -45,8 +45,15 @@ impl Sums {
 
     /// Marks that so many samples are missing here.
     pub fn lost(&mut self, samples: u64) {
-        self.gyro.gap();
-        self.spectrum.gap();
+        let [accumulator] = self.gyro.accumulators();
+        match accumulator.filling(samples) {
+            Some(filling) => {
+                let filled: Vec<i32> = filling.collect();
+                self.spectrum.push_slice(&filled);
+            }
+            None => self.spectrum.gap(),
+        }
+        self.gyro.miss(samples);
         self.course.lost(samples);
     }
 
@@ -64,9 +71,11 @@ impl Sums {
     /// What the sums tell in this scale.
     pub fn measured(&self, scale: Scale) -> Measured {
         let evidence = self.gyro.record_so_far(0, scale).expect("one axis");
+        let [accumulator] = self.gyro.accumulators();
+        let spectrum = self.spectrum.spectrum(scale);
         Measured {
             curve: evidence.curve,
-            spectrum: self.spectrum.spectrum(scale),
+            spectrum: spectrum.without_bridges(accumulator.bridged(), accumulator.samples()),
             course: self.course.cosine_transform(scale),
             kurtosis: evidence.kurtosis,
         }

@@ -159,30 +159,24 @@ where
 
     #[inline(always)]
     pub(crate) fn push(&mut self, sample: &Sample<AXES, COVARIATES>) {
-        self.watch(sample);
-        self.sum(sample);
+        self.sum(sample, true);
     }
 
     /// Adds a sample, or values that fill the place of a lost one.
     #[inline(never)]
     pub(crate) fn push_any(&mut self, sample: &Sample<AXES, COVARIATES>, is_measured: bool) {
-        if is_measured {
-            self.watch(sample);
-        }
-        self.sum(sample);
+        self.sum(sample, is_measured);
     }
 
     #[inline(always)]
-    fn watch(&mut self, sample: &Sample<AXES, COVARIATES>) {
+    fn sum(&mut self, sample: &Sample<AXES, COVARIATES>, is_measured: bool) {
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
-            axis.integrity.push(count);
+            if is_measured {
+                axis.integrity.push(count);
+                axis.track.push(count, sample.covariates);
+            }
             axis.spectrum.push(count);
-            axis.track.push(count, sample.covariates);
         }
-    }
-
-    #[inline(always)]
-    fn sum(&mut self, sample: &Sample<AXES, COVARIATES>) {
         let mut completed = [Completed([0; 4]); COVARIATES];
         let covariates = self.covariates.iter_mut().zip(&sample.covariates);
         for ((covariate, &count), completed) in covariates.zip(&mut completed) {
@@ -218,8 +212,8 @@ where
         self.axes.iter_mut().any(|axis| axis.spectrum.advance())
     }
 
-    /// Samples are missing at this place. If they are few, and their number is known, the sums of octaves go on with values
-    /// that fill it. No segment of the spectrum spans it.
+    /// Samples are missing at this place. If they are few, and their number is known, the sums of octaves and the spectrum go
+    /// on with values that fill it.
     #[inline(never)]
     pub(crate) fn miss(&mut self, missing: Missing) {
         let known = if missing.has_more { 0 } else { missing.samples };
@@ -232,7 +226,6 @@ where
         for axis in &mut self.axes {
             axis.add_pending(touched, &self.covariates);
             axis.integrity.gap();
-            axis.spectrum.gap();
             axis.track.gap(known);
         }
         let mut axes = self

@@ -26,8 +26,10 @@ const LEVEL: usize = 3;
 /// The last sample number at which a gap is filled, so that no number of a block passes the largest one.
 const LAST: u32 = u32::MAX - 1024;
 
-/// The values that fill a gap. Each of them is the mean, rounded down after what rounding left of those before is added.
-pub(crate) struct Filling {
+/// The values that fill a gap, as [`Accumulator::filling`] gives them. Each of them is the mean of 32 samples, rounded down
+/// after what rounding left of those before is added.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Filling {
     /// The sum over the window.
     sum: i64,
     /// What rounding left, in parts of the window.
@@ -67,6 +69,22 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         }
     }
 
+    /// The values that [`lost`](Self::lost) would fill in for so many samples at this place, in counts; `None` if it would
+    /// make a gap. What else sums the same record, such as a [spectrum](crate::spectrum::SpectrumAccumulator), goes on with
+    /// them.
+    pub fn filling(&self, samples: u64) -> Option<Filling> {
+        self.touched(samples)?;
+        let end = self.number & !(BEFORE - 1);
+        let boundary = (end >> LEVEL).wrapping_sub(WINDOW >> LEVEL) as usize % RING;
+        let first = self.levels.get(LEVEL)?.ring[boundary];
+        let last = self.levels[0].ring[end as usize % RING];
+        Some(Filling {
+            sum: last.wrapping_sub(first) as i64,
+            rest: self.rest.into(),
+            left: samples as u32,
+        })
+    }
+
     /// The gaps that were filled.
     pub const fn bridged(&self) -> &Bridged {
         &self.bridged
@@ -93,7 +111,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
     /// out differences. `None` if the gap is not filled.
     pub(crate) fn fill(&mut self, samples: u64) -> Option<Filling> {
         let (touched, class) = (self.touched(samples)?, class(samples)?);
-        let lost = samples as u32;
+        let filling = self.filling(samples)?;
+        let lost = filling.left;
         let end = self.number.wrapping_add(lost);
         for k in 0..touched {
             let octave = self.read(k);
@@ -108,15 +127,6 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         // An octave of level 0 may still have to wait for an earlier, longer gap.
         let late = end.wrapping_sub(if touched > FIRST { 0 } else { RING as u32 / 2 });
         self.late = self.late.max(late);
-        let end = self.number & !(BEFORE - 1);
-        let boundary = (end >> LEVEL).wrapping_sub(WINDOW >> LEVEL) as usize % RING;
-        let first = self.levels.get(LEVEL)?.ring[boundary];
-        let last = self.levels[0].ring[end as usize % RING];
-        let filling = Filling {
-            sum: last.wrapping_sub(first) as i64,
-            rest: self.rest.into(),
-            left: lost,
-        };
         let all = filling.sum.wrapping_mul(lost.into());
         self.rest = (all.wrapping_add(filling.rest) & i64::from(WINDOW - 1)) as u32;
         self.bridged.add(class, lost);

@@ -9,11 +9,18 @@
 //! ```
 //!
 //! Between powers of two, `G` is a cubic through four of them, which is exact for quantization, white noise and random
-//! walk. So no model is needed, and what is taken off is right to the second order in the share of lost samples.
+//! walk. So no model is needed.
+//!
+//! To the second order in the share `p` of lost samples, gaps at random places do less than all of them alone: with `e` for
+//! what one gap changes in a difference, `E e²` counts `1 − p` times only, because the mean over all places is no noise. In
+//! its stead comes what the record loses to its own running mean `H x` everywhere, which is `p² |1 − H|²` of the variance.
 
 use crate::{
     list::numbered,
-    numerics::real::{Real, real},
+    numerics::{
+        math::sincos_of_turns,
+        real::{Real, real},
+    },
     record::octave::{
         Bridged,
         bridge::{BEFORE, WINDOW},
@@ -80,28 +87,32 @@ impl Covariance {
             + node(first.saturating_add(3)) * one * two * four / 168.0
     }
 
-    /// The sum over all starts of what a gap of `lost` samples changes in the Allan variance at `m`.
-    fn change(&self, m: i32, lost: i32) -> Real {
+    /// The sum over all starts of what a gap of `lost` samples changes in the Allan variance at `m`, and the part of it that
+    /// is the square of what the gap changes in a difference.
+    fn change(&self, m: i32, lost: i32) -> [Real; 2] {
         let double = m.wrapping_mul(2);
         let plain = self.at(double) - 4.0 * self.at(m);
         let starts = double.wrapping_add(lost).wrapping_sub(1);
         let parts = starts.min(PARTS);
-        let mut sum = 0.0;
+        let (mut sum, mut squares) = (0.0, 0.0);
         for end in ENDS {
             for part in 0..parts {
                 // The middle of the part, from the first start whose difference touches the gap.
                 let place = starts.wrapping_mul(part.wrapping_mul(2).wrapping_add(1));
                 let place = place.wrapping_div_euclid(parts.wrapping_mul(2));
                 let start = place.wrapping_add(1).wrapping_sub(double);
-                sum += self.filled(start, m, lost, end) - 2.0 * plain;
+                let [filled, square] = self.filled(start, m, lost, end);
+                sum += filled - 2.0 * plain;
+                squares += square;
             }
         }
         let all = real(starts as u32) / real((2 * parts) as u32);
-        0.5 * sum * all / (real(m as u32) * real(m as u32))
+        [sum, squares].map(|sum| 0.5 * sum * all / (real(m as u32) * real(m as u32)))
     }
 
-    /// The variance of the difference that starts at `start`, where the gap begins at 0.
-    fn filled(&self, start: i32, m: i32, lost: i32, end: i32) -> Real {
+    /// The variance of the difference that starts at `start`, where the gap begins at 0, and that of what the gap changes in
+    /// it.
+    fn filled(&self, start: i32, m: i32, lost: i32, end: i32) -> [Real; 2] {
         let window = WINDOW as i32;
         let (until, from) = (end.wrapping_neg(), end.wrapping_add(window).wrapping_neg());
         let mut terms = [(0, 0.0); 7];
@@ -123,14 +134,43 @@ impl Covariance {
                 *own = (place, weight);
             }
         }
+        let filled = self.variance(&terms);
+        let [.., first, middle, last] = &mut terms;
+        for ((place, own), weight) in [first, middle, last].into_iter().zip([1.0, -2.0, 1.0]) {
+            *own = if (1..=lost).contains(place) {
+                -weight
+            } else {
+                0.0
+            };
+        }
+        [filled, self.variance(&terms)]
+    }
+
+    /// The variance of a combination of angles at places.
+    fn variance(&self, terms: &[(i32, Real)]) -> Real {
         let mut sum = 0.0;
         for (i, (place, weight)) in numbered(terms.iter()) {
             for (other, other_weight) in terms.iter().take(i) {
-                sum += 2.0 * weight * other_weight * self.at(place.wrapping_sub(*other));
+                if *other_weight != 0.0 {
+                    sum += 2.0 * weight * other_weight * self.at(place.wrapping_sub(*other));
+                }
             }
         }
         sum
     }
+}
+
+/// The share `|1 − H|²` of the variance of clusters of `m` samples that differs from the mean of the samples before, at the
+/// frequency `1/(2m)` of a cluster's difference.
+fn own_share(m: u32) -> Real {
+    let turns = 0.5 / real(m);
+    let window = WINDOW as u32;
+    let (wave, _) = sincos_of_turns(0.5 * turns * real(window));
+    let (half, _) = sincos_of_turns(0.5 * turns);
+    let gain = wave / (half * real(window));
+    let middle = 0.5 * (real(window) + real((ENDS[0] + ENDS[1]) as u32) + 1.0);
+    let (_, cosine) = sincos_of_turns(middle * turns);
+    1.0 - gain * (2.0 * cosine - gain)
 }
 
 /// Takes off what filled gaps change in the variances of octaves `(m, variance)`. `places` is the number of samples with
@@ -145,8 +185,8 @@ pub(super) fn take_off<const K: usize>(
     // The first covariance is that of the filled angle. The second one is closer to that of the angle.
     for _ in 0..2 {
         let covariance = Covariance::of(octaves);
-        for (own, &(m, variance)) in octaves.iter_mut().zip(&read) {
-            own.1 = within(variance, changes(&covariance, bridged, m, places));
+        for (own, &(_, variance)) in octaves.iter_mut().zip(&read) {
+            own.1 = within(variance, changes(&covariance, bridged, *own, places));
         }
     }
 }
@@ -156,20 +196,28 @@ fn within(variance: Real, change: Real) -> Real {
     (variance - change).max(0.5 * variance)
 }
 
-/// What all filled gaps change in the Allan variance at `m`.
-fn changes(covariance: &Covariance, bridged: &Bridged, m: u32, places: u64) -> Real {
+/// What all filled gaps change in the Allan variance of an octave `(m, variance)`.
+fn changes(
+    covariance: &Covariance,
+    bridged: &Bridged,
+    (m, variance): (u32, Real),
+    places: u64,
+) -> Real {
     // The largest power of two in `m`, where the logarithm of the standard library may panic.
     let octave = 31_u32.saturating_sub(m.leading_zeros());
     let shortened = octave.min(LONG);
     let scale = real(1_u32 << shortened) / (real(m) * places as Real);
     let classes = bridged.gaps.iter().zip(&bridged.samples);
-    let mut sum = 0.0;
+    let (mut sum, mut squares, mut share) = (0.0, 0.0, 0.0);
     for (class, (&gaps, &lost)) in numbered(classes) {
         if gaps == 0 || (octave as usize) < Bridged::first_octave(class) {
             continue;
         }
         let length = lost.wrapping_add(gaps / 2) / gaps;
-        sum += real(gaps) * covariance.change(1 << shortened, length.min(64) as i32);
+        let [change, square] = covariance.change(1 << shortened, length.min(64) as i32);
+        sum += real(gaps) * change;
+        squares += real(gaps) * square;
+        share += real(lost) / places as Real;
     }
-    sum * scale
+    (sum - share * squares) * scale + share * share * own_share(m) * variance
 }

@@ -20,7 +20,9 @@ use super::{
 ///
 /// If it is late, the counts that find no room are left out, and [`lost`](Self::lost) tells their number. The
 /// place is treated as a [`gap`](Self::gap): no segment spans it, and the sums stay right. A gap ends a segment
-/// at every level, so each loss costs the highest levels most.
+/// at every level, so each loss costs the highest levels most. A few samples of known number that were lost before
+/// they came here need no gap: go on with the values that [fill](crate::Accumulator::filling) their place, and
+/// take off [what these change](super::Spectrum::without_bridges).
 ///
 /// # How it works
 ///

@@ -3,7 +3,7 @@
 use super::SYMBOLS;
 use host_tests::{
     simulate::Preset,
-    study::losses::{LOSSES, study},
+    study::losses::{LOSSES, study, words},
 };
 
 pub(crate) fn print(records: u64) {
@@ -13,26 +13,46 @@ pub(crate) fn print(records: u64) {
     );
     for preset in [Preset::Mems, Preset::Tactical, Preset::Fog] {
         for losses in LOSSES {
-            let outcome = study(preset, 1 << 17, losses, records);
             let (share, gap) = losses;
-            println!(
-                "\n{preset:?}, {} % lost in gaps of {gap}: fewer octaves in {} of {}; p below 5 %: {:.1} | {:.1} %",
-                100.0 * share,
-                outcome.fewer_octaves,
-                outcome.records,
-                100.0 * outcome.low_p[0],
-                100.0 * outcome.low_p[1]
-            );
-            for (symbol, one) in SYMBOLS.iter().zip(outcome.accuracies) {
-                let percent = |[whole, lossy]: [f64; 2]| {
-                    format!("{:>5.1} | {:>5.1} %", 100.0 * whole, 100.0 * lossy)
-                };
+            let outcomes = study(preset, 1 << 17, losses, records);
+            for (outcome, what) in outcomes.iter().zip(["curve", "curve and spectrum"]) {
                 println!(
-                    "{symbol:>3} error {:>6.3}, shift {:>6.3}, 95 % {}, measured {}",
-                    one.error_ratio,
-                    one.shift,
-                    percent(one.coverage),
-                    percent(one.measured)
+                    "\n{preset:?}, {} % lost in gaps of {gap}, {what}: fewer octaves in {} of {}, fewer bins in {}; p below \
+                     5 %: {:.1} | {:.1} %",
+                    100.0 * share,
+                    outcome.fewer_octaves,
+                    outcome.records,
+                    outcome.fewer_bins,
+                    100.0 * outcome.low_p[0],
+                    100.0 * outcome.low_p[1]
+                );
+                for (symbol, one) in SYMBOLS.iter().zip(outcome.accuracies) {
+                    let percent = |[whole, lossy]: [f64; 2]| {
+                        format!("{:>5.1} | {:>5.1} %", 100.0 * whole, 100.0 * lossy)
+                    };
+                    println!(
+                        "{symbol:>3} error {:>6.3}, shift {:>6.3}, 95 % {}, measured {}",
+                        one.error_ratio,
+                        one.shift,
+                        percent(one.coverage),
+                        percent(one.measured)
+                    );
+                }
+            }
+            for line in [false, true] {
+                let said = words(preset, line, 1 << 17, losses, records);
+                println!(
+                    "diagnosed, {}: right {} | {}, a wrong word {} | {} of {}",
+                    if line {
+                        "with a line"
+                    } else {
+                        "nothing hidden"
+                    },
+                    said.exact[0],
+                    said.exact[1],
+                    said.wrong[0],
+                    said.wrong[1],
+                    said.records
                 );
             }
         }

@@ -88,6 +88,15 @@ pub enum Error {
         /// The rate that the self-test was made for, in Hz.
         test_hz: Real,
     },
+    /// The record has another unit than the one that a self-test was made for.
+    OtherScale {
+        /// The rate per count of the record.
+        record: Real,
+        /// The rate per count that the self-test was made for.
+        test: Real,
+    },
+    /// A look is concluded by a test that did not begin it, or has begun another one since, or has concluded it.
+    OtherTest,
     /// The fit is one of another model: the effects are not the same ones in the same order.
     OtherModel,
     /// The normal equations have no solution. The model's effects cannot be told apart, or a column is
@@ -116,7 +125,10 @@ impl Error {
             Self::NoNoise { .. } => "check the sensor",
             Self::TooManyEffects { .. } | Self::Singular => "remove one",
             Self::UnknownAxis { .. } => "count them from 0",
-            Self::OtherRate { .. } => "make the test with the scale of the record",
+            Self::OtherRate { .. } | Self::OtherScale { .. } => {
+                "make the test with the scale of the record"
+            }
+            Self::OtherTest => "conclude each look once, by the test that began it",
             Self::OtherModel => "compare a fit with the model that was fitted",
             Self::RateContradicted { .. } => {
                 "pass the measured rate, or check the output rate and that every sample is read"
@@ -175,6 +187,11 @@ impl core::fmt::Display for Error {
                 f,
                 "the record has {record_hz:.2} Hz, but the self-test was made for {test_hz:.2} Hz"
             ),
+            Self::OtherScale { record, test } => write!(
+                f,
+                "a count of the record is {record}, but the self-test was made for {test}"
+            ),
+            Self::OtherTest => write!(f, "the look is not the one that the test has begun"),
             Self::OtherModel => write!(f, "the fit is one of another model"),
             Self::Singular => write!(f, "the model's effects cannot be told apart on this curve"),
         }?;
@@ -205,6 +222,11 @@ mod tests {
                 record_hz: 100.0,
                 test_hz: 200.0,
             },
+            Error::OtherScale {
+                record: 1.0,
+                test: 2.0,
+            },
+            Error::OtherTest,
             Error::OtherModel,
             Error::Singular,
         ] {

@@ -32,6 +32,8 @@ use heapless::Vec;
 pub struct AxisRecord<const OCTAVES: usize, const COVARIATES: usize = 0, D = Spectrum<0>> {
     /// The number of samples that are kept.
     pub samples: u64,
+    /// The unit and the rate of the gyro, as they were passed.
+    pub scale: Scale,
     /// The Allan curve.
     pub curve: Curve<OCTAVES>,
     /// The power spectral densities; without bins if no spectrum is kept.
@@ -134,6 +136,7 @@ where
         let moments = sums.moments.moments();
         Ok(AxisRecord {
             samples: sums.accumulator.samples(),
+            scale,
             curve: sums.accumulator.curve(scale),
             spectrum: S::spectrum(&sums.spectrum, &sums.accumulator, scale),
             course: sums

@@ -2,7 +2,7 @@
 
 use super::plan::Limit;
 use crate::{
-    curve::Curve,
+    evidence::axis::AxisRecord,
     fit::{Fitting, LikelihoodRatio, Options},
     limits::MAX_EFFECTS,
     list,
@@ -43,14 +43,16 @@ use heapless::Vec;
 ///     gyro.push(sample());
 /// }
 /// let record = gyro.record_so_far(0, scale)?;
-/// let mut look = test.begin_look(record.samples, record.curve, record.invalid)?;
+/// let mut look = test.begin_look(&record)?;
 /// while !look.advance() {
 ///     gyro.push(sample()); // feed the watchdog, take the next samples
 /// }
-/// assert!(matches!(test.conclude(&look), Status::Running { .. } | Status::Passed));
+/// assert!(matches!(test.conclude(&mut look)?, Status::Running { .. } | Status::Passed));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Look<const OCTAVES: usize> {
+    /// The mark of the test that began it; `None` once it is concluded.
+    pub(super) mark: Option<usize>,
     /// Samples of the record.
     pub(super) samples: u64,
     /// Why its curve is not valid.
@@ -90,24 +92,24 @@ impl Compared {
 }
 
 impl<const OCTAVES: usize> Look<OCTAVES> {
-    pub(super) fn new(
-        samples: u64,
-        curve: Curve<OCTAVES>,
-        invalid: Option<Reason>,
+    pub(super) fn new<const COVARIATES: usize, D>(
+        mark: usize,
+        record: &AxisRecord<OCTAVES, COVARIATES, D>,
         limits: impl Iterator<Item = Compared>,
     ) -> Self {
-        let fitting = match invalid {
+        let fitting = match record.invalid {
             Some(_) => None,
             None => Some(Fitting::of(
-                curve,
+                record.curve.clone(),
                 Spectrum::EMPTY,
                 Model::ieee_952(),
                 Options::default(),
             )),
         };
         Self {
-            samples,
-            invalid,
+            mark: Some(mark),
+            samples: record.samples,
+            invalid: record.invalid,
             fitting,
             is_fitted: false,
             limits: list::fill(limits),

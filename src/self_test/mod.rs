@@ -13,8 +13,9 @@ pub use look::Look;
 pub use plan::{InvalidPlan, Limit, Plan};
 
 use crate::{
-    curve::{Curve, Scale},
+    curve::Scale,
     error::Error,
+    evidence::axis::AxisRecord,
     fit::coefficient::{Coefficient, State},
     list::numbered,
     numerics::{
@@ -127,7 +128,7 @@ pub enum Failure {
 ///     gyro.push((random >> 28) as i32);
 ///     if test.is_due(gyro.samples()) {
 ///         let record = gyro.record_so_far(0, scale)?;
-///         match test.look(record.samples, &record.curve, record.invalid)? {
+///         match test.look(&record)? {
 ///             Status::Running { .. } => continue,
 ///             verdict => break verdict,
 ///         }
@@ -150,6 +151,8 @@ pub struct SelfTest<const OCTAVES: usize> {
     /// The number of looks in the plan.
     looks: u32,
     progress: Progress,
+    /// The mark of the look in progress.
+    mark: Option<usize>,
 }
 
 /// The state that changes while a test runs.
@@ -178,6 +181,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             pass: quantile(plan.false_pass / real(looks)),
             fail: quantile(plan.false_fail / (real(looks) * limits)),
             looks,
+            mark: None,
             progress: Progress {
                 next: first,
                 kept: Choice::default(),
@@ -207,29 +211,43 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         }
     }
 
-    /// Begins a look at the curve of a record of so many samples, where one [is due](Self::is_due).
-    /// `invalid` is why the curve is not valid, as of [`Axes::verdict`](crate::Axes::verdict).
+    /// Begins a look at a record, where one [is due](Self::is_due). A look that this test has begun before can no longer
+    /// be concluded.
     ///
     /// # Errors
-    /// [`Error::OtherRate`] if the curve has another rate than the scale that the test was made with.
-    pub fn begin_look(
-        &self,
-        samples: u64,
-        curve: Curve<OCTAVES>,
-        invalid: Option<Reason>,
+    /// [`Error::OtherRate`] and [`Error::OtherScale`] if the record has another scale than the test was made with.
+    pub fn begin_look<const COVARIATES: usize, D>(
+        &mut self,
+        record: &AxisRecord<OCTAVES, COVARIATES, D>,
     ) -> Result<Look<OCTAVES>, Error> {
-        let (record_hz, test_hz) = (curve.rate_hz(), self.scale.rate_hz());
+        let (record_hz, test_hz) = (record.scale.rate_hz(), self.scale.rate_hz());
         if record_hz != test_hz {
             return Err(Error::OtherRate { record_hz, test_hz });
         }
+        let (unit, test) = (record.scale.rate_per_count(), self.scale.rate_per_count());
+        if unit != test {
+            return Err(Error::OtherScale { record: unit, test });
+        }
+        // No other test that has begun a look lies at this place. The test may move afterwards.
+        let mark = core::ptr::from_ref(self).addr();
+        self.mark = Some(mark);
         let limits = numbered(self.plan.limits.iter());
         let undecided = limits.filter(|&(i, _)| !self.progress.kept.has(i));
         let compared = undecided.filter_map(|(_, limit)| Compared::new(limit));
-        Ok(Look::new(samples, curve, invalid, compared))
+        Ok(Look::new(mark, record, compared))
     }
 
-    /// Takes up a look that is [complete](Look::advance), and says how the test stands.
-    pub fn conclude(&mut self, look: &Look<OCTAVES>) -> Status {
+    /// Takes up a look, and says how the test stands. What the look still lacks is done at once, so that a look that was
+    /// [advanced](Look::advance) to its end takes next to no time.
+    ///
+    /// # Errors
+    /// [`Error::OtherTest`] if the look is not the last one that this test began, or was concluded before.
+    pub fn conclude(&mut self, look: &mut Look<OCTAVES>) -> Result<Status, Error> {
+        if self.mark.is_none() || self.mark != look.mark {
+            return Err(Error::OtherTest);
+        }
+        (self.mark, look.mark) = (None, None);
+        while !look.advance() {}
         let samples = look.samples;
         if self.is_due(samples) {
             self.progress.status = match look.invalid {
@@ -241,28 +259,24 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
                 self.progress.next = twice.min(self.last.max(samples.saturating_add(1)));
             }
         }
-        self.status(samples)
+        Ok(self.status(samples))
     }
 
-    /// Takes a whole look in one go, and says how the test stands: [`begin_look`](Self::begin_look),
-    /// [`Look::advance`] until it is complete, and [`conclude`](Self::conclude). It takes a
-    /// [`fit`](crate::fit::fit()) and one more for each undecided limit where a look is due, and next to
-    /// nothing otherwise.
+    /// Takes a whole look at a record in one go, and says how the test stands: [`begin_look`](Self::begin_look) and
+    /// [`conclude`](Self::conclude). It takes a [`fit`](crate::fit::fit()) and one more for each undecided limit where a
+    /// look is due, and next to nothing otherwise.
     ///
     /// # Errors
-    /// [`Error::OtherRate`] if the curve has another rate than the scale that the test was made with.
-    pub fn look(
+    /// As of [`begin_look`](Self::begin_look).
+    pub fn look<const COVARIATES: usize, D>(
         &mut self,
-        samples: u64,
-        curve: &Curve<OCTAVES>,
-        invalid: Option<Reason>,
+        record: &AxisRecord<OCTAVES, COVARIATES, D>,
     ) -> Result<Status, Error> {
-        if !self.is_due(samples) {
-            return Ok(self.status(samples));
+        if !self.is_due(record.samples) {
+            return Ok(self.status(record.samples));
         }
-        let mut look = self.begin_look(samples, curve.clone(), invalid)?;
-        while !look.advance() {}
-        Ok(self.conclude(&look))
+        let mut look = self.begin_look(record)?;
+        self.conclude(&mut look)
     }
 
     /// Share of the longest record that is there.

@@ -146,10 +146,7 @@ fn look<G: GatePart, M: MomentPart, S: SpectrumReading, T: TrackPart>(
 ) {
     if test.is_due(axes.samples()) {
         let x = axes.record_so_far(0, (scale(), [0.01])).unwrap();
-        looks.push((
-            x.samples,
-            test.look(x.samples, &x.curve, x.invalid).unwrap(),
-        ));
+        looks.push((x.samples, test.look(&x).unwrap()));
     }
 }
 

@@ -2,6 +2,7 @@
 
 use allanite::{
     Axis, Error, Scale,
+    axis::AxisRecord,
     integrity::{Limits, Reason},
     self_test::{Failure, InvalidPlan, Limit, Plan, SelfTest, Status},
 };
@@ -37,8 +38,7 @@ fn look(test: &mut SelfTest<16>, gyro: &Gyro) -> Status {
         return test.status(gyro.samples());
     }
     let record = gyro.record_so_far(0, scale()).unwrap();
-    test.look(record.samples, &record.curve, record.invalid)
-        .unwrap()
+    test.look(&record).unwrap()
 }
 
 /// Pushes the counts of a consumer gyro, changed by `change(index, count)`, until there is a
@@ -326,18 +326,14 @@ fn a_look_in_pieces_judges_the_record_that_it_began_with() {
             continue;
         }
         let record = gyro.record_so_far(0, scale()).unwrap();
-        let expected = whole
-            .look(record.samples, &record.curve, record.invalid)
-            .unwrap();
-        let mut look = pieces
-            .begin_look(record.samples, record.curve, record.invalid)
-            .unwrap();
+        let expected = whole.look(&record).unwrap();
+        let mut look = pieces.begin_look(&record).unwrap();
         let mut calls = 1;
         while !look.advance() {
             calls += 1;
         }
         assert!(calls > 10, "{calls} pieces");
-        assert_eq!(pieces.conclude(&look), expected);
+        assert_eq!(pieces.conclude(&mut look), Ok(expected));
         looks += 1;
         if !matches!(expected, Status::Running { .. }) {
             break;
@@ -348,30 +344,71 @@ fn a_look_in_pieces_judges_the_record_that_it_began_with() {
 }
 
 #[test]
-fn a_look_that_is_not_complete_or_belongs_to_another_test_decides_nothing() {
-    let new = |most| SelfTest::<16>::new(plan("angle_random_walk", most), scale()).unwrap();
+fn a_look_that_is_not_complete_is_completed_by_its_conclusion() {
+    let new = || SelfTest::<16>::new(plan("angle_random_walk", 0.02), scale()).unwrap();
+    let record = early();
+    for pieces in [0, 1, 5, 1000] {
+        let mut test = new();
+        let mut look = test.begin_look(&record).unwrap();
+        for _ in 0..pieces {
+            look.advance();
+        }
+        assert_eq!(
+            test.conclude(&mut look),
+            Ok(Status::Passed),
+            "{pieces} pieces"
+        );
+    }
+}
+
+/// Two axes have the same plan, and only one of them keeps its limit.
+#[test]
+fn a_test_concludes_only_the_last_look_that_it_began() {
+    let new = || SelfTest::<16>::new(plan("angle_random_walk", 0.02), scale()).unwrap();
+    let [mut good, mut bad] = [new(), new()];
+    let record = early();
+    let mut of_good = good.begin_look(&record).unwrap();
+    assert_eq!(bad.conclude(&mut of_good), Err(Error::OtherTest));
+    let mut of_bad = bad.begin_look(&record).unwrap();
+    assert_eq!(bad.conclude(&mut of_good), Err(Error::OtherTest));
+    assert_eq!(good.conclude(&mut of_bad), Err(Error::OtherTest));
+    assert!(bad.is_due(record.samples) && good.is_due(record.samples));
+    let mut again = good.begin_look(&record).unwrap();
+    assert_eq!(good.conclude(&mut of_good), Err(Error::OtherTest));
+    // A test may move while a look is in progress.
+    let mut moved = Box::new(good);
+    assert_eq!(moved.conclude(&mut again), Ok(Status::Passed));
+    assert_eq!(moved.conclude(&mut again), Err(Error::OtherTest));
+    assert_eq!(bad.conclude(&mut of_bad), Ok(Status::Passed));
+}
+
+/// A record that is long enough for the first look.
+fn early() -> AxisRecord<16> {
     let mut gyro = Gyro::new();
     for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7).take(1000) {
         gyro.push((rate / UNIT).round() as i32);
     }
-    let record = gyro.record_so_far(0, scale()).unwrap();
-    let begin = |test: &SelfTest<16>| {
-        test.begin_look(record.samples, record.curve.clone(), record.invalid)
-            .unwrap()
-    };
-    let mut look = begin(&new(0.02));
-    let not_complete = new(0.02).conclude(&look);
-    assert!(
-        matches!(not_complete, Status::Running { .. }),
-        "{not_complete:?}"
+    gyro.record_so_far(0, scale()).unwrap()
+}
+
+#[test]
+fn a_record_of_another_unit_is_refused() {
+    let mut test = SelfTest::<16>::new(plan("angle_random_walk", 0.02), scale()).unwrap();
+    let mut gyro = Gyro::new();
+    for rate in Simulator::new(Preset::Mems.coefficients(), RATE_HZ, 7).take(1000) {
+        gyro.push((rate / UNIT).round() as i32);
+    }
+    let other = Scale::new(0.01 * UNIT, RATE_HZ).unwrap();
+    let refused = test.look(&gyro.record_so_far(0, other).unwrap());
+    let (record, test_unit) = (0.01 * UNIT, UNIT);
+    assert_eq!(
+        refused,
+        Err(Error::OtherScale {
+            record,
+            test: test_unit
+        })
     );
-    while !look.advance() {}
-    assert_eq!(new(0.02).conclude(&look), Status::Passed);
-    let of_another = new(0.03).conclude(&look);
-    assert!(
-        matches!(of_another, Status::Running { .. }),
-        "{of_another:?}"
-    );
+    assert!(test.is_due(gyro.samples()), "nothing was decided");
 }
 
 #[test]
@@ -383,7 +420,7 @@ fn a_record_of_another_rate_is_refused() {
     }
     let other = Scale::new(UNIT, 2.0 * RATE_HZ).unwrap();
     let record = gyro.record_so_far(0, other).unwrap();
-    let refused = test.look(record.samples, &record.curve, record.invalid);
+    let refused = test.look(&record);
     let (record_hz, test_hz) = (2.0 * RATE_HZ, RATE_HZ);
     assert_eq!(refused, Err(Error::OtherRate { record_hz, test_hz }));
     assert!(test.is_due(gyro.samples()), "nothing was decided");

@@ -169,7 +169,7 @@ pub fn run(
         while gyro.advance() {}
         if tests[0].is_due(gyro.samples()) {
             let x = gyro.record_so_far(0, (scale, [KELVIN]))?;
-            let status = tests[0].look(x.samples, &x.curve, x.invalid)?;
+            let status = tests[0].look(&x)?;
             line(format_args!("look samples {} {status:?}", x.samples));
         }
         if sensor.made >= SNAPSHOT

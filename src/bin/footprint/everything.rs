@@ -57,7 +57,7 @@ mod image {
             if test.is_due(gyro.samples())
                 && let Ok(x) = gyro.record_so_far(0, (scale, [0.01]))
             {
-                let _ = black_box(test.look(x.samples, &x.curve, x.invalid));
+                let _ = black_box(test.look(&x));
             }
         }
         gyro.release();

@@ -36,7 +36,7 @@ static const AllaniteConditions conditions = {100.0, 100.0, 10000, 0, 25.0f, 27.
 static const int32_t counts[3] = {1, 2, 3};
 
 static AllaniteStatus make_test(AllaniteSelfTest *to, const AllanitePlan *by, const AllaniteLimit *of, size_t count) {
-    return allanite_self_test_init(to, sizeof *to, by, of, count, 1.0f / 131.0f, 100.0f);
+    return allanite_self_test_init(to, sizeof *to, by, of, count, 1.0f, 100.0f);
 }
 
 static AllaniteStatus take(size_t axis, float scale, float rate, float kelvin) {
@@ -150,10 +150,18 @@ static void with_values(void) {
     EXPECT(INVALID_PLAN, make_test(&test, &plan, twice, 2));
     EXPECT(OK, make_test(&test, &plan, limits, 1));
     EXPECT(NULL_POINTER, allanite_self_test_is_due(&test, 1, NULL));
-    /* A look that is not complete decides nothing. */
+    /* A look is concluded once, by the test that began it, of a record of its scale. */
+    static AllaniteSelfTest same;
+    EXPECT(OK, make_test(&same, &plan, limits, 1));
     EXPECT(OK, allanite_look_begin(&look, sizeof look, &test, &record));
+    EXPECT(OTHER_TEST, allanite_look_conclude(&same, &look, &status));
     EXPECT(OK, allanite_look_conclude(&test, &look, &status));
+    EXPECT(OTHER_TEST, allanite_look_conclude(&test, &look, &status));
+    EXPECT(OK, allanite_look_begin(&look, sizeof look, &test, &record));
     EXPECT(NULL_POINTER, allanite_look_conclude(&test, &look, NULL));
+    EXPECT(OK, take(0, 2.0f, 100.0f, 1.0f));
+    EXPECT(INVALID_ARGUMENT, allanite_look_begin(&look, sizeof look, &test, &record));
+    EXPECT(OK, take(0, 1.0f, 100.0f, 1.0f));
     /* Buffers. */
     EXPECT(BUFFER_TOO_SMALL, allanite_gyro_snapshot(&gyro, &test, stored, 10, &length));
     EXPECT(NULL_POINTER, allanite_gyro_snapshot(&gyro, &test, NULL, 10, &length));

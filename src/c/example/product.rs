@@ -151,7 +151,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         while gyro.advance() {}
         if tests[0].is_due(gyro.samples()) {
             let x = gyro.record_so_far(0, (scale, kelvin))?;
-            print_status(tests[0].look(x.samples, &x.curve, x.invalid)?);
+            print_status(tests[0].look(&x)?);
         }
         if n == SNAPSHOT {
             stored = gyro.snapshot(&tests, &mut buffer)?.to_vec();

@@ -254,7 +254,7 @@ pub unsafe extern "C" fn allanite_self_test_status(
 }
 
 /// Begins a look of a self-test at the record of its axis. `bytes` is `sizeof(AllaniteLook)`. The record may change
-/// afterwards.
+/// afterwards. A record of another scale than the test's is refused.
 ///
 /// # Safety
 /// `look` is null, or points to an `AllaniteLook` that nothing else uses; the others are null, or point to what they say.
@@ -262,11 +262,11 @@ pub unsafe extern "C" fn allanite_self_test_status(
 pub unsafe extern "C" fn allanite_look_begin(
     look: *mut AllaniteLook,
     bytes: usize,
-    test: *const AllaniteSelfTest,
+    test: *mut AllaniteSelfTest,
     record: *const AllaniteRecord,
 ) -> AllaniteStatus {
-    // SAFETY: the caller promises what `get` wants.
-    let test = match unsafe { get(test) } {
+    // SAFETY: the caller promises what `get_mut` wants.
+    let test = match unsafe { get_mut(test) } {
         Ok(test) => test,
         Err(error) => return error,
     };
@@ -275,11 +275,7 @@ pub unsafe extern "C" fn allanite_look_begin(
         Ok(record) => record,
         Err(error) => return error,
     };
-    let (samples, invalid) = (record.samples, record.invalid);
-    let begun = || {
-        test.begin_look(samples, record.curve.clone(), invalid)
-            .map_err(Into::into)
-    };
+    let begun = || test.begin_look(record).map_err(Into::into);
     // SAFETY: the caller promises what `make` wants.
     status(unsafe { memory::make(look, bytes, begun) })
 }
@@ -301,28 +297,29 @@ pub unsafe extern "C" fn allanite_look_advance(
     }
 }
 
-/// Takes up a complete look, and tells how the self-test stands.
+/// Takes up a look, and tells how the self-test stands. What the look still lacks is done at once. A look that another
+/// self-test began is refused, and so is one that was concluded before.
 ///
 /// # Safety
 /// All are null, or point to what they say.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn allanite_look_conclude(
     test: *mut AllaniteSelfTest,
-    look: *const AllaniteLook,
+    look: *mut AllaniteLook,
     to: *mut AllaniteTestStatus,
 ) -> AllaniteStatus {
-    // SAFETY: the caller promises what `get` wants.
-    let look = match unsafe { get(look) } {
+    // SAFETY: the caller promises what `get_mut` wants.
+    let look = match unsafe { get_mut(look) } {
         Ok(look) => look,
         Err(error) => return error,
     };
     // SAFETY: the caller promises what `get_mut` wants.
     match unsafe { get_mut(test) } {
         Err(error) => error,
-        Ok(test) => {
-            let stands = AllaniteTestStatus::of(test.conclude(look));
+        Ok(test) => match test.conclude(look) {
+            Err(error) => error.into(),
             // SAFETY: the caller promises what `put` wants.
-            status(unsafe { put(to, stands) })
-        }
+            Ok(stands) => status(unsafe { put(to, AllaniteTestStatus::of(stands)) }),
+        },
     }
 }

@@ -39,6 +39,8 @@ pub enum AllaniteStatus {
     InvalidPlan = 14,
     /// Any other error, of a later version.
     Other = 15,
+    /// The look is not the last one that the self-test began, or was concluded before.
+    OtherTest = 16,
 }
 
 impl From<Error> for AllaniteStatus {
@@ -47,11 +49,13 @@ impl From<Error> for AllaniteStatus {
             Error::InvalidRate(_)
             | Error::InvalidScale(_)
             | Error::OtherRate { .. }
+            | Error::OtherScale { .. }
             | Error::OtherModel => Self::InvalidArgument,
             Error::UnknownAxis { .. } => Self::UnknownAxis,
             Error::TooFewOctaves { .. } => Self::TooShort,
             Error::NoNoise { .. } => Self::NoNoise,
             Error::Singular => Self::Singular,
+            Error::OtherTest => Self::OtherTest,
             _ => Self::Other,
         }
     }
@@ -151,6 +155,7 @@ pub extern "C" fn allanite_status_text(status: i32) -> *const c_char {
         13 => c"the stored bytes are of a record with other parts or of another plan",
         14 => c"the plan of the self-test cannot be carried out",
         15 => c"another error",
+        16 => c"the look is not the one that the self-test has begun: conclude each look once, by its own test",
         _ => c"unknown status",
     };
     text.as_ptr()

@@ -1,6 +1,6 @@
 //! A look of a self-test: the five terms are fitted to the record so far, and each limit is compared with it.
 
-use super::plan::Limit;
+use super::{Mark, plan::Limit};
 use crate::{
     evidence::axis::AxisRecord,
     fit::{Fitting, LikelihoodRatio, Options},
@@ -52,7 +52,7 @@ use heapless::Vec;
 /// ```
 pub struct Look<const OCTAVES: usize> {
     /// The mark of the test that began it; `None` once it is concluded.
-    pub(super) mark: Option<usize>,
+    pub(super) mark: Option<Mark>,
     /// Samples of the record.
     pub(super) samples: u64,
     /// Why its curve is not valid.
@@ -93,7 +93,7 @@ impl Compared {
 
 impl<const OCTAVES: usize> Look<OCTAVES> {
     pub(super) fn new<const COVARIATES: usize, D>(
-        mark: usize,
+        mark: Mark,
         record: &AxisRecord<OCTAVES, COVARIATES, D>,
         limits: impl Iterator<Item = Compared>,
     ) -> Self {

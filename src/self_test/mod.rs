@@ -151,9 +151,14 @@ pub struct SelfTest<const OCTAVES: usize> {
     /// The number of looks in the plan.
     looks: u32,
     progress: Progress,
+    /// The looks that were begun since the start.
+    begun: u32,
     /// The mark of the look in progress.
-    mark: Option<usize>,
+    mark: Option<Mark>,
 }
+
+/// What tells a look from those of other tests: where its test lay when the look began, and which of its looks it is.
+type Mark = (usize, u32);
 
 /// The state that changes while a test runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,6 +186,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             pass: quantile(plan.false_pass / real(looks)),
             fail: quantile(plan.false_fail / (real(looks) * limits)),
             looks,
+            begun: 0,
             mark: None,
             progress: Progress {
                 next: first,
@@ -228,8 +234,9 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         if unit != test {
             return Err(Error::OtherScale { record: unit, test });
         }
-        // No other test that has begun a look lies at this place. The test may move afterwards.
-        let mark = core::ptr::from_ref(self).addr();
+        // No two tests that have begun a look lie at one place. A test may move afterwards.
+        self.begun = self.begun.wrapping_add(1);
+        let mark = (core::ptr::from_ref(self).addr(), self.begun);
         self.mark = Some(mark);
         let limits = numbered(self.plan.limits.iter());
         let undecided = limits.filter(|&(i, _)| !self.progress.kept.has(i));

@@ -140,9 +140,7 @@ fn test(case: Case, factors: &[f64], seed: u64, looks: Looks) -> Vec<Verdict> {
         }
         let record = gyro.record_so_far(0, scale).expect("one axis");
         for (test, verdict) in tests.iter_mut().zip(&mut verdicts) {
-            let status = test
-                .look(samples, &record.curve, record.invalid)
-                .expect("the rate of the plan");
+            let status = test.look(&record).expect("the scale of the plan");
             if verdict.is_none() && !matches!(status, Status::Running { .. }) {
                 *verdict = Some((status, samples as f64 / RATE_HZ));
             }

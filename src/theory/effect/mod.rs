@@ -12,6 +12,7 @@
 //! [`Diagnosis`](crate::diagnosis::Diagnosis).
 
 mod behind;
+mod check;
 mod definition;
 mod drift;
 mod explanation;
@@ -23,6 +24,7 @@ mod search_range;
 pub use crate::curve::Span;
 pub use crate::{limits::MAX_PARAMETERS, theory::lattice::SecondDifferences};
 pub use behind::Behind;
+pub use check::{Flaw, check};
 pub use definition::{
     Decay, Description, Distribution, Effect, FIRST_OWN_CODE, Parameter, Reciprocal, Response, Tail,
 };

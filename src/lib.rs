@@ -167,7 +167,8 @@
 //! # An effect of your own
 //!
 //! An effect is a description and a kernel, the generalised covariance of the angle. It takes one file, and one
-//! line in the list of effects that a diagnosis tries.
+//! line in the list of effects that a diagnosis tries. [`effect::check`] in a unit test beside it finds what is most often
+//! wrong.
 //!
 //! ```
 //! use allanite::{Accumulator, Model, Real, Scale};

@@ -31,6 +31,7 @@
 
 mod covariance;
 mod estimate;
+mod limits;
 mod rounds;
 mod row;
 mod rows;
@@ -40,6 +41,7 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
+pub use limits::{Checked, Limits};
 pub use terms::TERMS;
 
 use crate::{

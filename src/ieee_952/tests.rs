@@ -115,3 +115,35 @@ fn what_cannot_be_fitted_is_an_error() {
         Err(Error::TooFewOctaves { .. })
     ));
 }
+
+#[test]
+fn limits_pass_fail_or_stay_open_by_the_intervals() {
+    let mut found = fit(&record(3, 60_000, 0)).expect("a fit");
+    assert_eq!(found.is_adequate(), Some(true));
+    let infinite = [Real::INFINITY; TERMS];
+    let with = |place: usize, limit: Real| {
+        let mut most = infinite;
+        most[place] = limit;
+        Limits { most }
+    };
+    assert_eq!(Limits { most: infinite }.check(&found), Checked::Pass);
+    let white = found.coefficients[1];
+    assert!(white.lower < white.value && white.value < white.upper);
+    let place = 1;
+    for (limit, expected) in [
+        (white.upper, Checked::Pass),
+        (0.999 * white.upper, Checked::GuardBand { place }),
+        (white.value, Checked::GuardBand { place }),
+        (white.lower, Checked::GuardBand { place }),
+        (0.999 * white.lower, Checked::Fail { place }),
+        (Real::NAN, Checked::GuardBand { place }),
+    ] {
+        assert_eq!(with(place, limit).check(&found), expected, "{limit}");
+    }
+    // One coefficient that fails counts more than one that is open.
+    let mut both = with(1, 0.5 * white.lower);
+    both.most[0] = found.coefficients[0].value;
+    assert_eq!(both.check(&found), Checked::Fail { place });
+    found.chi_squared = 1e3;
+    assert_eq!(with(1, white.upper).check(&found), Checked::Misfit);
+}

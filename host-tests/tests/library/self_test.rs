@@ -144,7 +144,7 @@ fn a_gyro_that_is_moved_or_hangs_is_invalid_with_the_reason() {
     let stuck = |at, count| if at < 500 { count } else { 5 };
     // The limits can be configured, such as rails that differ from those of 16 bits.
     static LIMITS: Limits = Limits {
-        rails: [-1, 1, 0, 0],
+        rails: &[-1, 1, 0],
         ..Limits::DEFAULT
     };
     let mut test = SelfTest::new(plan("angle_random_walk", 0.00495), scale()).unwrap();

@@ -5,9 +5,9 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits {
-    /// The values at which the sensor clips, by default those of `i16` and `i32`. A sensor of 14 bits
-    /// has `[-8192, 8191, i32::MIN, i32::MAX]`.
-    pub rails: [i32; 4],
+    /// The values at which the sensor clips, by default those of 16, 20, 24 and 32 bits. A sensor of 14 bits
+    /// has `[-8192, 8191]`.
+    pub rails: &'static [i32],
     /// The largest share of samples at a rail. Default 1. The default is chosen by hand;
     /// `host-tests/tests/library/integrity/disturbed.rs` runs with it.
     pub rail_per_mille: u16,
@@ -56,7 +56,16 @@ pub struct Limits {
 impl Limits {
     /// The limits with the default of every field.
     pub const DEFAULT: Self = Self {
-        rails: [i16::MIN as i32, i16::MAX as i32, i32::MIN, i32::MAX],
+        rails: &[
+            i16::MIN as i32,
+            i16::MAX as i32,
+            -(1 << 19),
+            (1 << 19) - 1,
+            -(1 << 23),
+            (1 << 23) - 1,
+            i32::MIN,
+            i32::MAX,
+        ],
         rail_per_mille: 1,
         run_factor: 128,
         stuck_per_mille: 1,

@@ -30,7 +30,7 @@ impl Rails {
     }
 
     /// Whether the count is a rail and an extreme of the record.
-    pub(super) fn push(&mut self, count: i32, rails: &[i32; 4]) -> bool {
+    pub(super) fn push(&mut self, count: i32, rails: &[i32]) -> bool {
         if self.is_between(count) {
             return false;
         }

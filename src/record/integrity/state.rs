@@ -98,7 +98,7 @@ impl State {
         };
         *counter = counter.saturating_add(1);
         let stuck = self.runs.push(count, limits.run_factor);
-        let railed = self.rails.push(count, &limits.rails);
+        let railed = self.rails.push(count, limits.rails);
         let mut outlying = false;
         // A stuck value says nothing about the noise.
         if !stuck {

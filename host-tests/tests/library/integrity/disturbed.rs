@@ -194,9 +194,37 @@ fn rails_are_refused() {
 }
 
 #[test]
+fn the_rails_of_wide_converters_are_known() {
+    for bits in [20, 24, 32] {
+        let most = ((1_i64 << (bits - 1)) - 1) as i32;
+        for offset in [most, -most - 1] {
+            let clipped = mems(1).into_iter().map(|count| {
+                let count = i64::from(count) + i64::from(offset);
+                count.clamp(-i64::from(most) - 1, i64::from(most)) as i32
+            });
+            let verdict = integrity(&clipped.collect::<Vec<_>>()).verdict();
+            assert!(
+                matches!(verdict, Some(Reason::Railed { hits, .. }) if hits > 20_000),
+                "{bits} bits, {offset}: {verdict:?}"
+            );
+        }
+    }
+}
+
+/// Counts about zero that a program widened without their sign lie at both ends of the range.
+#[test]
+fn counts_that_are_read_without_their_sign_are_refused() {
+    for bits in [16, 20, 24] {
+        let misread = mems(2).into_iter().map(|count| count & ((1 << bits) - 1));
+        let verdict = integrity(&misread.collect::<Vec<_>>()).verdict();
+        assert!(verdict.is_some(), "{bits} bits");
+    }
+}
+
+#[test]
 fn the_rails_of_other_sensors_are_configured() {
     let limits = Limits {
-        rails: [-8192, 8191, i32::MIN, i32::MAX],
+        rails: &[-8192, 8191],
         ..Limits::default()
     };
     let mut integrity = Integrity::with_limits(Box::leak(Box::new(limits))).expect("valid limits");

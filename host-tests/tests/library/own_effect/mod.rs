@@ -6,7 +6,7 @@ mod second_order;
 use allanite::{
     Accumulator, Curve, Model, Scale,
     diagnosis::{Addition, Options, Step},
-    effect::{CATALOGUE, Effect, Explain, FIRST_OWN_CODE, SampledShape},
+    effect::{CATALOGUE, Effect, Explain, FIRST_OWN_CODE, Flaw, SampledShape, check},
     storage::{AxisCertificate, Certificate, Conditions, EffectCode, RateUnit},
 };
 use host_tests::{
@@ -165,6 +165,14 @@ impl Effect for Impostor {
     fn kernel(&self, lag: f64, _: &SampledShape) -> f64 {
         -lag
     }
+}
+
+#[test]
+fn own_effects_are_checked() {
+    for effect in OWN {
+        assert_eq!(check(effect), Ok(()));
+    }
+    assert_eq!(check(&Impostor), Err(Flaw::Code(7)));
 }
 
 #[test]

@@ -164,11 +164,11 @@ impl Covariance {
 /// frequency `1/(2m)` of a cluster's difference.
 fn own_share(m: u32) -> Real {
     let turns = 0.5 / real(m);
-    let window = WINDOW as u32;
-    let (wave, _) = sincos_of_turns(0.5 * turns * real(window));
+    let window = real(WINDOW);
+    let (wave, _) = sincos_of_turns(0.5 * turns * window);
     let (half, _) = sincos_of_turns(0.5 * turns);
-    let gain = wave / (half * real(window));
-    let middle = 0.5 * (real(window) + real((ENDS[0] + ENDS[1]) as u32) + 1.0);
+    let gain = wave / (half * window);
+    let middle = 0.5 * (window + real((ENDS[0] + ENDS[1]) as u32) + 1.0);
     let (_, cosine) = sincos_of_turns(middle * turns);
     1.0 - gain * (2.0 * cosine - gain)
 }

@@ -16,7 +16,7 @@ use super::{
     watched, worker,
 };
 use crate::{
-    failure::{Failure, Place},
+    failure::{Failure, Place, plural},
     unit::Sensor,
 };
 use allanite::Accumulator;
@@ -151,9 +151,10 @@ pub(super) fn read_table(
         .first()
         .map(|(sums, _)| *sums.accumulator().bridged());
     notes.extend(filled.filter(|filled| !filled.is_empty()).map(|filled| {
+        let gaps = filled.gaps.iter().map(|&gaps| u64::from(gaps)).sum();
         format!(
-            "the lost samples of {} short gaps bridged: filled in the Allan curve, which takes off what that changes",
-            filled.gaps.iter().map(|&gaps| u64::from(gaps)).sum::<u64>()
+            "{} bridged: filled, and what that changes is taken off the Allan curve and the spectrum",
+            plural(gaps, "short gap")
         )
     }));
     notes.extend(table.notes());

@@ -3,14 +3,15 @@
 use super::{counts, read_text};
 use allanite::Accumulator;
 use host_tests::{
-    curve_file::AxisCurve,
+    curve_file::{AxisCurve, CurveFile},
     log::{Log, OCTAVES, Options, TimeUnit},
     unit::Unit,
 };
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use std::fmt::Write as _;
+use std::{fmt::Write as _, fs};
+use tempfile::TempDir;
 
 /// A log of one axis with these stamps.
 fn stamped(header: &str, stamps: impl Iterator<Item = i64>) -> String {
@@ -150,8 +151,39 @@ fn single_lost_rows_leave_all_octaves_and_the_noise() {
         let ratio = octave.variance / all.variance;
         assert!((ratio - 1.0).abs() < 0.02, "m = {}: {ratio}", octave.m);
     }
+    // The spectrum has all its levels too, and counts fewer segments than they have.
+    let spectra = [&curve, &whole].map(|curve| curve.spectrum().unwrap());
+    let [bins, all] = spectra.each_ref().map(|spectrum| spectrum.all());
+    assert_eq!(bins.len(), all.len());
+    assert!(
+        bins.iter()
+            .zip(all)
+            .all(|(bin, whole)| bin.segments < whole.segments)
+    );
+    let ratio = bins
+        .iter()
+        .zip(all)
+        .take(28)
+        .map(|(bin, whole)| bin.density / whole.density);
+    let ratio = ratio.sum::<f64>() / 28.0;
+    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
     let merged = AxisCurve::merged(std::slice::from_ref(&curve)).unwrap();
     assert_eq!(merged.octaves, curve.octaves);
+    let merged = merged.spectrum().unwrap();
+    assert!(
+        merged
+            .all()
+            .iter()
+            .zip(bins)
+            .all(|(one, other)| one.segments == other.segments)
+    );
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("curve.json");
+    let file = CurveFile::new(vec![curve]).to_json().unwrap();
+    assert!(file.contains("segments_of_bins"));
+    fs::write(&path, file).unwrap();
+    let back = CurveFile::read(&path).unwrap();
+    assert_eq!(back.axes[0].spectrum().unwrap(), spectra[0]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Snapshots in flash.
 
-use super::error::Error;
+use super::{envelope::CRC, error::Error};
 use crate::record::octave::Accumulator;
 use core::ops::Range;
 use embedded_storage_async::nor_flash::NorFlash;
@@ -15,9 +15,12 @@ use sequential_storage::{
 /// It works with every driver that implements `embedded_storage_async::nor_flash::NorFlash`. One line with
 /// `embassy_embedded_hal::adapter::BlockingAsync` adapts a driver that blocks. `sequential_storage::map`
 /// decides what is written and where: it appends, page after page, and erases a page only after it has copied
-/// the snapshots that are the newest of their axis. The range must have at least two pages, and one snapshot
-/// of every axis must fit into a page with room to spare. A word whose write was interrupted is overwritten
+/// the snapshots that are the newest of their axis. A word whose write was interrupted is overwritten
 /// with zeros, which flash with error correction allows too.
+///
+/// A snapshot that is longer than [`PIECE`](Self::PIECE), a third of a page, is stored in pieces, beside those of the
+/// snapshot before it: the last thing that is written tells which of the two counts. So the range must have as many
+/// pages as [`pages`](Self::pages) says.
 ///
 /// # Example
 ///
@@ -34,28 +37,79 @@ use sequential_storage::{
 /// ) -> Result<(), StoreError<F::Error>> {
 ///     accumulator.push(count);
 ///     if interval.is_due(accumulator.samples()) {
-///         // One more byte for the number of the axis, rounded up to a multiple of the write size.
-///         let mut buffer = [0; Accumulator::<20>::SNAPSHOT_BYTES.next_multiple_of(32) + 32];
+///         // As much as `SnapshotStore::<F>::buffer` says of a flash with words of up to 32 bytes.
+///         let mut buffer = [0; Accumulator::<20>::SNAPSHOT_BYTES.next_multiple_of(32) + 96];
 ///         store.save(0, accumulator, &mut buffer).await?;
 ///     }
 ///     Ok(())
 /// }
 /// ```
 pub struct SnapshotStore<F: NorFlash> {
-    map: MapStorage<u8, F, Cache<Uncached, Uncached, Uncached, u8>>,
+    map: MapStorage<Key, F, Cache<Uncached, Uncached, Uncached, Key>>,
 }
 
+/// The number of a snapshot, and which part of it is stored there: [`HEAD`], or a piece of one of two snapshots.
+type Key = [u8; 2];
+
+/// The part that is written last.
+const HEAD: u8 = 255;
+
+/// The largest number of pieces.
+const PIECES: usize = 100;
+
+/// The first byte of a head: the snapshot follows, or its length and its place.
+const WHOLE: u8 = 0;
+const IN_PIECES: u8 = 1;
+
+/// What a head adds to a snapshot that follows it: the key, and the first byte.
+const BEFORE: usize = size_of::<Key>() + 1;
+
+/// The head of a snapshot in pieces: the first byte, which of the two places has the pieces, the length, and the checksum
+/// of all of them, because damage may bring an older piece back.
+const HEAD_BYTES: usize = 10;
+
 /// The reason why a snapshot was not stored or not read.
-#[derive(Debug)]
+#[derive(Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum StoreError<E> {
     /// The range does not consist of at least two whole pages within the flash.
     InvalidRange,
-    /// The flash failed, or it was not used as it must be.
-    Flash(sequential_storage::Error<E>),
+    /// The driver of the flash failed.
+    Flash(E),
+    /// The flash was damaged, or something else wrote into the range.
+    Damaged,
+    /// The range has too few pages.
+    Full,
+    /// The snapshot has more than a hundred pieces.
+    TooLong {
+        /// Its length in bytes.
+        found: usize,
+        /// The largest length.
+        longest: usize,
+    },
+    /// The buffer is too small.
+    BufferTooSmall {
+        /// The number of bytes that it must have.
+        needed: usize,
+    },
     /// The snapshot could not be written or restored.
     Snapshot(Error),
+}
+
+impl<E> From<sequential_storage::Error<E>> for StoreError<E> {
+    fn from(error: sequential_storage::Error<E>) -> Self {
+        use sequential_storage::Error as Map;
+        match error {
+            Map::Storage { value, .. } => Self::Flash(value),
+            Map::FullStorage | Map::ItemTooBig => Self::Full,
+            Map::BufferTooSmall(needed) => Self::BufferTooSmall { needed },
+            Map::SerializationError(SerializationError::BufferTooSmall) => {
+                Self::BufferTooSmall { needed: 0 }
+            }
+            _ => Self::Damaged,
+        }
+    }
 }
 
 impl<E: core::fmt::Debug> core::fmt::Display for StoreError<E> {
@@ -69,6 +123,22 @@ impl<E: core::fmt::Debug> core::fmt::Display for StoreError<E> {
                 f,
                 "the flash reports {error:?}: check the driver and the range"
             ),
+            Self::Damaged => write!(
+                f,
+                "the flash is damaged, or something else writes into the range: reset the store, which erases it"
+            ),
+            Self::Full => write!(
+                f,
+                "the range has too few pages: give as many as `SnapshotStore::pages` says"
+            ),
+            Self::TooLong { found, longest } => write!(
+                f,
+                "a snapshot of {found} bytes is longer than {longest}: leave out a part, or use a flash of larger pages"
+            ),
+            Self::BufferTooSmall { needed } => write!(
+                f,
+                "the buffer is too small: give {needed} bytes or more, or as many as `SnapshotStore::buffer` says"
+            ),
             Self::Snapshot(error) => error.fmt(f),
         }
     }
@@ -76,7 +146,7 @@ impl<E: core::fmt::Debug> core::fmt::Display for StoreError<E> {
 
 impl<E: core::fmt::Debug> core::error::Error for StoreError<E> {}
 
-/// The item that the map stores: the bytes that a function writes into a buffer.
+/// A snapshot as a function writes it, behind the first byte of a head.
 struct Stored<W>(W);
 
 impl<'d, W> Value<'d> for Stored<W>
@@ -84,9 +154,13 @@ where
     W: for<'b> Fn(&'b mut [u8]) -> Result<&'b [u8], Error>,
 {
     fn serialize_into(&self, buffer: &mut [u8]) -> Result<usize, SerializationError> {
-        let bytes = (self.0)(buffer);
+        let (first, rest) = buffer
+            .split_first_mut()
+            .ok_or(SerializationError::BufferTooSmall)?;
+        *first = WHOLE;
+        let bytes = (self.0)(rest);
         bytes
-            .map(<[u8]>::len)
+            .map(|bytes| bytes.len().saturating_add(1))
             .map_err(|_| SerializationError::BufferTooSmall)
     }
 
@@ -96,7 +170,65 @@ where
     }
 }
 
+/// What a head says.
+#[derive(Clone, Copy)]
+enum Head {
+    /// The snapshot lies there in the buffer.
+    Whole { start: usize, length: usize },
+    /// The pieces have one of two places.
+    Pieces {
+        place: u8,
+        length: usize,
+        checksum: u32,
+    },
+}
+
 impl<F: NorFlash> SnapshotStore<F> {
+    /// The longest piece of a snapshot, in bytes. Three of them fit into a page.
+    pub const PIECE: usize = {
+        assert!(
+            F::ERASE_SIZE >= 256,
+            "the pages of the flash have fewer than 256 bytes"
+        );
+        F::ERASE_SIZE / 3 - 8 * F::WRITE_SIZE - BEFORE
+    };
+
+    /// The number of pages that a range must have for snapshots of so many numbers, of which none is longer than
+    /// `longest` bytes.
+    pub const fn pages(longest: usize, numbers: usize) -> usize {
+        let pieces = if longest <= Self::PIECE {
+            1
+        } else {
+            // Those of two snapshots, and the head.
+            longest
+                .div_ceil(Self::PIECE)
+                .saturating_mul(2)
+                .saturating_add(1)
+        };
+        // One page is always empty, and another one may be full of older snapshots.
+        pieces.saturating_mul(numbers).div_ceil(3).saturating_add(2)
+    }
+
+    /// The number of bytes that a buffer must have for snapshots of up to `longest` bytes.
+    pub const fn buffer(longest: usize) -> usize {
+        let beside = if longest <= Self::PIECE {
+            0
+        } else {
+            Self::PIECE
+        };
+        let word = if F::WRITE_SIZE > F::READ_SIZE {
+            F::WRITE_SIZE
+        } else {
+            F::READ_SIZE
+        };
+        longest
+            .saturating_add(beside)
+            .saturating_add(2 * BEFORE)
+            .saturating_add(HEAD_BYTES)
+            .next_multiple_of(word)
+            .saturating_add(word)
+    }
+
     /// A store in a range of flash, given in bytes from the start of the flash. Erased flash is an empty
     /// store.
     ///
@@ -111,21 +243,81 @@ impl<F: NorFlash> SnapshotStore<F> {
     }
 
     /// Stores the snapshot that `write` puts into a buffer under a number. For [`Axes`](crate::Axes), write
-    /// `store.save_with(0, |buffer| axes.snapshot(&tests, buffer), &mut buffer)`. The buffer must be one
-    /// byte longer than the snapshot, rounded up to the write size of the flash. The snapshot must fit into
-    /// a page of the flash. A [`Certificate`](super::Certificate) is stored in the same way, under a number of its own:
-    /// `store.save_with(9, |buffer| certificate.encode(buffer), &mut buffer)`.
+    /// `store.save_with(0, |buffer| axes.snapshot(&tests, buffer), &mut buffer)`. The size of the buffer is
+    /// [`buffer`](Self::buffer)` (longest snapshot)`. A [`Certificate`](super::Certificate) is stored in the same way,
+    /// under a number of its own: `store.save_with(9, |buffer| certificate.encode(buffer), &mut buffer)`.
     ///
     /// # Errors
-    /// [`StoreError::Flash`]; the snapshot stored before is then still there.
+    /// [`StoreError::Flash`], [`StoreError::Damaged`], [`StoreError::Full`], [`StoreError::TooLong`],
+    /// [`StoreError::BufferTooSmall`], and [`StoreError::Snapshot`] if `write` fails. The snapshot stored before is then still
+    /// there.
     pub async fn save_with(
         &mut self,
         number: u8,
         write: impl for<'b> Fn(&'b mut [u8]) -> Result<&'b [u8], Error>,
         buffer: &mut [u8],
     ) -> Result<(), StoreError<F::Error>> {
-        let stored = self.map.store_item(buffer, &number, &Stored(write)).await;
-        stored.map_err(StoreError::Flash)
+        let length = write(buffer).map_err(StoreError::Snapshot)?.len();
+        if length <= Self::PIECE {
+            let (key, stored) = ([number, HEAD], Stored(write));
+            self.map.store_item(buffer, &key, &stored).await?;
+            return Ok(());
+        }
+        let longest = Self::PIECE.saturating_mul(PIECES);
+        if length > longest {
+            let found = length;
+            return Err(StoreError::TooLong { found, longest });
+        }
+        let needed = Self::buffer(length);
+        if buffer.len() < needed {
+            return Err(StoreError::BufferTooSmall { needed });
+        }
+        let (snapshot, beside) = buffer.split_at_mut(length);
+        // What a damaged head says does not matter: the new one takes its place.
+        let place = match self.head(number, beside).await {
+            Ok(Some(Head::Pieces { place: 0, .. })) => 1,
+            Err(StoreError::Flash(error)) => return Err(StoreError::Flash(error)),
+            _ => 0,
+        };
+        for (piece, bytes) in (0..PIECES).zip(snapshot.chunks(Self::PIECE)) {
+            let key = key(number, place, piece);
+            self.map.store_item(beside, &key, &bytes).await?;
+        }
+        let [a, b, c, d] = (length as u32).to_le_bytes();
+        let [e, f, g, h] = CRC.checksum(snapshot).to_le_bytes();
+        let head: [u8; HEAD_BYTES] = [IN_PIECES, place, a, b, c, d, e, f, g, h];
+        self.map
+            .store_item(beside, &[number, HEAD], &&head[..])
+            .await?;
+        Ok(())
+    }
+
+    /// Reads a head into a buffer.
+    async fn head(
+        &mut self,
+        number: u8,
+        buffer: &mut [u8],
+    ) -> Result<Option<Head>, StoreError<F::Error>> {
+        let start = buffer.as_ptr().addr();
+        let Some(bytes) = self
+            .map
+            .fetch_item::<&[u8]>(buffer, &[number, HEAD])
+            .await?
+        else {
+            return Ok(None);
+        };
+        match bytes {
+            &[IN_PIECES, place, a, b, c, d, e, f, g, h] => Ok(Some(Head::Pieces {
+                place,
+                length: u32::from_le_bytes([a, b, c, d]) as usize,
+                checksum: u32::from_le_bytes([e, f, g, h]),
+            })),
+            [WHOLE, snapshot @ ..] => Ok(Some(Head::Whole {
+                start: snapshot.as_ptr().addr().wrapping_sub(start),
+                length: snapshot.len(),
+            })),
+            _ => Err(StoreError::Damaged),
+        }
     }
 
     /// Reads the newest snapshot under a number, for [`Axes::restore`](crate::Axes::restore), or the certificate, for
@@ -133,21 +325,58 @@ impl<F: NorFlash> SnapshotStore<F> {
     /// snapshot was stored. The buffer must be as large as for [`save_with`](Self::save_with).
     ///
     /// # Errors
-    /// [`StoreError::Flash`] if the flash cannot be read.
+    /// [`StoreError::Flash`], [`StoreError::BufferTooSmall`], and [`StoreError::Damaged`] if a part of it is not there.
     pub async fn load_bytes<'b>(
         &mut self,
         number: u8,
         buffer: &'b mut [u8],
     ) -> Result<Option<&'b [u8]>, StoreError<F::Error>> {
-        let fetched = self.map.fetch_item::<&[u8]>(buffer, &number).await;
-        fetched.map_err(StoreError::Flash)
+        let (place, length, checksum) = match self.head(number, buffer).await? {
+            None => return Ok(None),
+            Some(Head::Whole { start, length }) => {
+                let whole = buffer.get(start..start.saturating_add(length));
+                return whole.map(Some).ok_or(StoreError::Damaged);
+            }
+            Some(Head::Pieces {
+                place,
+                length,
+                checksum,
+            }) => (place, length, checksum),
+        };
+        let needed = Self::buffer(length);
+        if buffer.len() < needed {
+            return Err(StoreError::BufferTooSmall { needed });
+        }
+        let mut filled = 0;
+        for piece in 0..PIECES {
+            if filled >= length {
+                break;
+            }
+            let rest = buffer.get_mut(filled..).ok_or(StoreError::Damaged)?;
+            let start = rest.as_ptr().addr();
+            let key = key(number, place, piece);
+            let fetched = self.map.fetch_item::<&[u8]>(rest, &key).await;
+            let bytes = fetched?.ok_or(StoreError::Damaged)?;
+            let (start, size) = (bytes.as_ptr().addr().wrapping_sub(start), bytes.len());
+            if size != length.saturating_sub(filled).min(Self::PIECE) {
+                return Err(StoreError::Damaged);
+            }
+            rest.copy_within(start..start.saturating_add(size), 0);
+            filled = filled.saturating_add(size);
+        }
+        let snapshot = buffer.get(..length).ok_or(StoreError::Damaged)?;
+        if CRC.checksum(snapshot) == checksum {
+            Ok(Some(snapshot))
+        } else {
+            Err(StoreError::Damaged)
+        }
     }
 
-    /// Stores the snapshot of an axis. The buffer must have one byte more than
-    /// [`Accumulator::SNAPSHOT_BYTES`], rounded up to the write size of the flash.
+    /// Stores the snapshot of an axis. The size of the buffer is [`buffer`](Self::buffer)`
+    /// (`[`Accumulator::SNAPSHOT_BYTES`]`)`.
     ///
     /// # Errors
-    /// [`StoreError::Flash`]; the snapshot stored before is then still there.
+    /// As of [`save_with`](Self::save_with).
     pub async fn save<const OCTAVES: usize>(
         &mut self,
         axis: u8,
@@ -162,7 +391,7 @@ impl<F: NorFlash> SnapshotStore<F> {
     /// as for [`save`](Self::save).
     ///
     /// # Errors
-    /// [`StoreError::Flash`]; [`StoreError::Snapshot`] with the error of [`Accumulator::restore`].
+    /// As of [`load_bytes`](Self::load_bytes); [`StoreError::Snapshot`] with the error of [`Accumulator::restore`].
     pub async fn load<const OCTAVES: usize>(
         &mut self,
         axis: u8,
@@ -175,8 +404,23 @@ impl<F: NorFlash> SnapshotStore<F> {
         Ok(Some(restored))
     }
 
+    /// Erases the whole range, and all that is stored in it: for a flash that is [damaged](StoreError::Damaged). What can
+    /// still be [loaded](Self::load_bytes), such as a certificate, is to be read before and saved afterwards.
+    ///
+    /// # Errors
+    /// [`StoreError::Flash`].
+    pub async fn reset(&mut self) -> Result<(), StoreError<F::Error>> {
+        Ok(self.map.erase_all().await?)
+    }
+
     /// Returns the flash for other uses.
     pub fn into_flash(self) -> F {
         self.map.destroy().0
     }
+}
+
+/// The key of a piece in one of two places.
+const fn key(number: u8, place: u8, piece: usize) -> Key {
+    let first = if place == 0 { 0 } else { PIECES };
+    [number, first.saturating_add(piece) as u8]
 }

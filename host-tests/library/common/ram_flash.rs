@@ -19,7 +19,7 @@ pub(crate) struct PowerCut {
 /// A flash that reads 0xFF where it is erased. A write clears bits, and an erasure sets all bits of
 /// a page.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct RamFlash {
+pub(crate) struct RamFlash<const PAGE: usize = { self::PAGE }> {
     pub(crate) bytes: Vec<u8>,
     /// The number of bytes that each write and erasure was asked to change.
     pub(crate) operations: Vec<usize>,
@@ -41,7 +41,7 @@ impl NorFlashError for RamError {
     }
 }
 
-impl RamFlash {
+impl<const PAGE: usize> RamFlash<PAGE> {
     pub(crate) fn new(pages: usize) -> Self {
         Self {
             bytes: vec![0xFF; pages * PAGE],
@@ -70,11 +70,11 @@ impl RamFlash {
     }
 }
 
-impl ErrorType for RamFlash {
+impl<const PAGE: usize> ErrorType for RamFlash<PAGE> {
     type Error = RamError;
 }
 
-impl ReadNorFlash for RamFlash {
+impl<const PAGE: usize> ReadNorFlash for RamFlash<PAGE> {
     const READ_SIZE: usize = 1;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), RamError> {
@@ -89,7 +89,7 @@ impl ReadNorFlash for RamFlash {
     }
 }
 
-impl NorFlash for RamFlash {
+impl<const PAGE: usize> NorFlash for RamFlash<PAGE> {
     const WRITE_SIZE: usize = WORD;
     const ERASE_SIZE: usize = PAGE;
 

@@ -147,14 +147,15 @@
 //! [`Axes::gap`] marks the place. No difference spans the gap, and everything before it stays. If it is known how many
 //! samples were lost, [`Axes::lost`] fills up to 64 of them with a mean of those before, so that they cost only what they
 //! touch: short clusters leave out differences that touch them, and the curve of long ones and the spectrum take off what
-//! they change. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the two. [`Accumulator`] has `gap`, `lost` and `merge` too.
+//! they change. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the two. [`Accumulator`] has
+//! `gap`, `lost` and `merge` too.
 //!
 //! # The power may fail
 //!
 //! With the feature `storage`, [`Axes::snapshot`] writes everything that is kept to a buffer, running self-tests
 //! included, and [`Axes::restore`] reads it back. It refuses bytes that have changed. A snapshot of an
 //! [`Accumulator`] alone takes some 250 bytes. With the feature `flash`, a [`storage::SnapshotStore`] keeps
-//! snapshots in flash: a power cut in the middle of a write leaves the one before.
+//! snapshots of any length in flash: a power cut in the middle of a write leaves the one before.
 //! [`storage::SnapshotInterval`] says when the next one is due.
 //!
 //! A [`storage::Certificate`] is a factory calibration in some 600 bytes: device, conditions, coefficients and

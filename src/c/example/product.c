@@ -78,7 +78,7 @@ static void check(AllaniteStatus status, const char *where) {
 }
 
 static void make_test(void) {
-    static const AllaniteLimit limits[] = {{2, 0.5f}, {3, 0.5f}};
+    static const AllaniteLimit limits[] = {{ALLANITE_EFFECT_ANGLE_RANDOM_WALK, 0.5f}, {ALLANITE_EFFECT_BIAS_INSTABILITY, 0.5f}};
     static const AllanitePlan plan = {0.0f, 0.01f, 0.01f, 5.0f, 640.0f};
     check(allanite_self_test_init(&test, sizeof test, &plan, limits, 2, 1.0f / 131.0f, 100.0f), "self-test");
 }

@@ -2,6 +2,49 @@
 
 use core::ffi::{CStr, c_char};
 
+/// The code of `quantization`.
+pub const ALLANITE_EFFECT_QUANTIZATION: i32 = 1;
+/// The code of `angle_random_walk`.
+pub const ALLANITE_EFFECT_ANGLE_RANDOM_WALK: i32 = 2;
+/// The code of `bias_instability`.
+pub const ALLANITE_EFFECT_BIAS_INSTABILITY: i32 = 3;
+/// The code of `rate_random_walk`.
+pub const ALLANITE_EFFECT_RATE_RANDOM_WALK: i32 = 4;
+/// The code of `rate_ramp`.
+pub const ALLANITE_EFFECT_RATE_RAMP: i32 = 5;
+/// The code of `gauss_markov`.
+pub const ALLANITE_EFFECT_GAUSS_MARKOV: i32 = 6;
+/// The code of `sinusoid`.
+pub const ALLANITE_EFFECT_SINUSOID: i32 = 7;
+/// The code of `resonance`.
+pub const ALLANITE_EFFECT_RESONANCE: i32 = 8;
+/// The code of `low_pass`.
+pub const ALLANITE_EFFECT_LOW_PASS: i32 = 9;
+/// The code of `decimation_filter`.
+pub const ALLANITE_EFFECT_DECIMATION_FILTER: i32 = 10;
+/// The code of `random_telegraph`.
+pub const ALLANITE_EFFECT_RANDOM_TELEGRAPH: i32 = 11;
+/// The code of `power_law`.
+pub const ALLANITE_EFFECT_POWER_LAW: i32 = 12;
+/// The code of `notch`.
+pub const ALLANITE_EFFECT_NOTCH: i32 = 13;
+/// The code of `digital_low_pass`.
+pub const ALLANITE_EFFECT_DIGITAL_LOW_PASS: i32 = 14;
+/// The code of `cascade`.
+pub const ALLANITE_EFFECT_CASCADE: i32 = 15;
+/// The code of `mode_split`.
+pub const ALLANITE_EFFECT_MODE_SPLIT: i32 = 16;
+/// The code of `high_pass`.
+pub const ALLANITE_EFFECT_HIGH_PASS: i32 = 17;
+/// The code of `drifting_resonance`.
+pub const ALLANITE_EFFECT_DRIFTING_RESONANCE: i32 = 18;
+/// The code of `drifting_sinusoid`.
+pub const ALLANITE_EFFECT_DRIFTING_SINUSOID: i32 = 19;
+/// The code of `output_low_pass`.
+pub const ALLANITE_EFFECT_OUTPUT_LOW_PASS: i32 = 20;
+/// The code of `moving_average`.
+pub const ALLANITE_EFFECT_MOVING_AVERAGE: i32 = 21;
+
 /// The name of the effect with a code, such as "angle_random_walk"; "other" for a code that this library does not know.
 #[unsafe(no_mangle)]
 pub extern "C" fn allanite_effect_name(code: i32) -> *const c_char {
@@ -18,40 +61,92 @@ pub extern "C" fn allanite_parameter_name(code: i32, parameter: i32) -> *const c
 }
 
 /// A code, its name, and the names of the parameters.
-type Named = (u8, &'static CStr, &'static [&'static CStr]);
+type Named = (i32, &'static CStr, &'static [&'static CStr]);
 
 fn effect(code: i32) -> Named {
-    let known = EFFECTS.iter().find(|(known, ..)| i32::from(*known) == code);
+    let known = EFFECTS.iter().find(|(known, ..)| *known == code);
     known.copied().unwrap_or((0, c"other", &[]))
 }
 
 /// The effects of the catalogue and the five terms of IEEE Std 952. A test compares them with the library.
 const EFFECTS: [Named; 21] = [
-    (1, c"quantization", &[]),
-    (2, c"angle_random_walk", &[]),
-    (3, c"bias_instability", &[]),
-    (4, c"rate_random_walk", &[]),
-    (5, c"rate_ramp", &[]),
-    (6, c"gauss_markov", &[c"correlation_time_s"]),
-    (7, c"sinusoid", &[c"frequency_hz"]),
-    (8, c"resonance", &[c"frequency_hz", c"quality"]),
-    (9, c"low_pass", &[c"time_constant_s", c"poles"]),
-    (10, c"decimation_filter", &[c"width_s", c"stages"]),
-    (11, c"random_telegraph", &[c"correlation_time_s"]),
-    (12, c"power_law", &[c"exponent"]),
-    (13, c"notch", &[c"frequency_hz", c"quality"]),
-    (14, c"digital_low_pass", &[c"time_constant_s", c"poles"]),
-    (15, c"cascade", &[c"time_constant_s", c"stages"]),
-    (16, c"mode_split", &[c"rise_hz", c"corner_hz"]),
-    (17, c"high_pass", &[c"time_constant_s"]),
+    (ALLANITE_EFFECT_QUANTIZATION, c"quantization", &[]),
+    (ALLANITE_EFFECT_ANGLE_RANDOM_WALK, c"angle_random_walk", &[]),
+    (ALLANITE_EFFECT_BIAS_INSTABILITY, c"bias_instability", &[]),
+    (ALLANITE_EFFECT_RATE_RANDOM_WALK, c"rate_random_walk", &[]),
+    (ALLANITE_EFFECT_RATE_RAMP, c"rate_ramp", &[]),
     (
-        18,
+        ALLANITE_EFFECT_GAUSS_MARKOV,
+        c"gauss_markov",
+        &[c"correlation_time_s"],
+    ),
+    (ALLANITE_EFFECT_SINUSOID, c"sinusoid", &[c"frequency_hz"]),
+    (
+        ALLANITE_EFFECT_RESONANCE,
+        c"resonance",
+        &[c"frequency_hz", c"quality"],
+    ),
+    (
+        ALLANITE_EFFECT_LOW_PASS,
+        c"low_pass",
+        &[c"time_constant_s", c"poles"],
+    ),
+    (
+        ALLANITE_EFFECT_DECIMATION_FILTER,
+        c"decimation_filter",
+        &[c"width_s", c"stages"],
+    ),
+    (
+        ALLANITE_EFFECT_RANDOM_TELEGRAPH,
+        c"random_telegraph",
+        &[c"correlation_time_s"],
+    ),
+    (ALLANITE_EFFECT_POWER_LAW, c"power_law", &[c"exponent"]),
+    (
+        ALLANITE_EFFECT_NOTCH,
+        c"notch",
+        &[c"frequency_hz", c"quality"],
+    ),
+    (
+        ALLANITE_EFFECT_DIGITAL_LOW_PASS,
+        c"digital_low_pass",
+        &[c"time_constant_s", c"poles"],
+    ),
+    (
+        ALLANITE_EFFECT_CASCADE,
+        c"cascade",
+        &[c"time_constant_s", c"stages"],
+    ),
+    (
+        ALLANITE_EFFECT_MODE_SPLIT,
+        c"mode_split",
+        &[c"rise_hz", c"corner_hz"],
+    ),
+    (
+        ALLANITE_EFFECT_HIGH_PASS,
+        c"high_pass",
+        &[c"time_constant_s"],
+    ),
+    (
+        ALLANITE_EFFECT_DRIFTING_RESONANCE,
         c"drifting_resonance",
         &[c"frequency_hz", c"quality", c"drift_hz"],
     ),
-    (19, c"drifting_sinusoid", &[c"frequency_hz", c"drift_hz"]),
-    (20, c"output_low_pass", &[c"time_constant_s", c"poles"]),
-    (21, c"moving_average", &[c"samples"]),
+    (
+        ALLANITE_EFFECT_DRIFTING_SINUSOID,
+        c"drifting_sinusoid",
+        &[c"frequency_hz", c"drift_hz"],
+    ),
+    (
+        ALLANITE_EFFECT_OUTPUT_LOW_PASS,
+        c"output_low_pass",
+        &[c"time_constant_s", c"poles"],
+    ),
+    (
+        ALLANITE_EFFECT_MOVING_AVERAGE,
+        c"moving_average",
+        &[c"samples"],
+    ),
 ];
 
 #[cfg(test)]
@@ -64,7 +159,7 @@ mod tests {
         let all = IEEE_952.iter().chain(&CATALOGUE);
         let mut found = 0;
         for effect in all {
-            let code = effect.description().code;
+            let code = i32::from(effect.description().code);
             let Some((_, name, parameters)) = EFFECTS.iter().find(|(known, ..)| *known == code)
             else {
                 panic!("{} (code {code}) has no name here", effect.name());

@@ -44,7 +44,7 @@ unsafe impl Memory for AllaniteLook {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct AllaniteLimit {
-    /// The code of one of the five terms of IEEE Std 952.
+    /// The code of one of the five terms of IEEE Std 952, such as `ALLANITE_EFFECT_ANGLE_RANDOM_WALK`.
     pub effect: i32,
     /// The largest value, in the coefficient's unit.
     pub most: f32,

@@ -17,6 +17,69 @@
 // The largest number of fitted shape parameters in a model.
 #define ALLANITE_MAX_SHAPES 6
 
+// The code of `quantization`.
+#define ALLANITE_EFFECT_QUANTIZATION 1
+
+// The code of `angle_random_walk`.
+#define ALLANITE_EFFECT_ANGLE_RANDOM_WALK 2
+
+// The code of `bias_instability`.
+#define ALLANITE_EFFECT_BIAS_INSTABILITY 3
+
+// The code of `rate_random_walk`.
+#define ALLANITE_EFFECT_RATE_RANDOM_WALK 4
+
+// The code of `rate_ramp`.
+#define ALLANITE_EFFECT_RATE_RAMP 5
+
+// The code of `gauss_markov`.
+#define ALLANITE_EFFECT_GAUSS_MARKOV 6
+
+// The code of `sinusoid`.
+#define ALLANITE_EFFECT_SINUSOID 7
+
+// The code of `resonance`.
+#define ALLANITE_EFFECT_RESONANCE 8
+
+// The code of `low_pass`.
+#define ALLANITE_EFFECT_LOW_PASS 9
+
+// The code of `decimation_filter`.
+#define ALLANITE_EFFECT_DECIMATION_FILTER 10
+
+// The code of `random_telegraph`.
+#define ALLANITE_EFFECT_RANDOM_TELEGRAPH 11
+
+// The code of `power_law`.
+#define ALLANITE_EFFECT_POWER_LAW 12
+
+// The code of `notch`.
+#define ALLANITE_EFFECT_NOTCH 13
+
+// The code of `digital_low_pass`.
+#define ALLANITE_EFFECT_DIGITAL_LOW_PASS 14
+
+// The code of `cascade`.
+#define ALLANITE_EFFECT_CASCADE 15
+
+// The code of `mode_split`.
+#define ALLANITE_EFFECT_MODE_SPLIT 16
+
+// The code of `high_pass`.
+#define ALLANITE_EFFECT_HIGH_PASS 17
+
+// The code of `drifting_resonance`.
+#define ALLANITE_EFFECT_DRIFTING_RESONANCE 18
+
+// The code of `drifting_sinusoid`.
+#define ALLANITE_EFFECT_DRIFTING_SINUSOID 19
+
+// The code of `output_low_pass`.
+#define ALLANITE_EFFECT_OUTPUT_LOW_PASS 20
+
+// The code of `moving_average`.
+#define ALLANITE_EFFECT_MOVING_AVERAGE 21
+
 // The number of axes of a record.
 #define ALLANITE_AXES 3
 
@@ -100,6 +163,8 @@ enum AllaniteStatus
   ALLANITE_STATUS_INVALID_PLAN = 14,
   // Any other error, of a later version.
   ALLANITE_STATUS_OTHER = 15,
+  // The look is not the last one that the self-test began, or was concluded before.
+  ALLANITE_STATUS_OTHER_TEST = 16,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -363,7 +428,7 @@ typedef struct {
 
 // The largest value that a coefficient may have.
 typedef struct {
-  // The code of one of the five terms of IEEE Std 952.
+  // The code of one of the five terms of IEEE Std 952, such as `ALLANITE_EFFECT_ANGLE_RANDOM_WALK`.
   int32_t effect;
   // The largest value, in the coefficient's unit.
   float most;
@@ -566,13 +631,13 @@ AllaniteStatus allanite_self_test_is_due(const AllaniteSelfTest *test, uint64_t 
 AllaniteStatus allanite_self_test_status(const AllaniteSelfTest *test, uint64_t samples, AllaniteTestStatus *to);
 
 // Begins a look of a self-test at the record of its axis. `bytes` is `sizeof(AllaniteLook)`. The record may change
-// afterwards.
+// afterwards. A record of another scale than the test's is refused.
 //
 // # Safety
 // `look` is null, or points to an `AllaniteLook` that nothing else uses; the others are null, or point to what they say.
 AllaniteStatus allanite_look_begin(AllaniteLook *look,
                                    size_t bytes,
-                                   const AllaniteSelfTest *test,
+                                   AllaniteSelfTest *test,
                                    const AllaniteRecord *record);
 
 // Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` tells whether it was the last.
@@ -581,11 +646,12 @@ AllaniteStatus allanite_look_begin(AllaniteLook *look,
 // `look` is null, or points to an `AllaniteLook`; `complete` is null, or points to a `bool`.
 AllaniteStatus allanite_look_advance(AllaniteLook *look, bool *complete);
 
-// Takes up a complete look, and tells how the self-test stands.
+// Takes up a look, and tells how the self-test stands. What the look still lacks is done at once. A look that another
+// self-test began is refused, and so is one that was concluded before.
 //
 // # Safety
 // All are null, or point to what they say.
-AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test, const AllaniteLook *look, AllaniteTestStatus *to);
+AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test, AllaniteLook *look, AllaniteTestStatus *to);
 
 // Writes a snapshot of the record and of a self-test, which may be null, to a buffer of
 // [`ALLANITE_SNAPSHOT_BYTES`](crate::ALLANITE_SNAPSHOT_BYTES). `written` tells how many of them it took.

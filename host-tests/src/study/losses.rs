@@ -87,7 +87,7 @@ pub fn study(preset: Preset, samples: usize, losses: (f64, u64), records: u64) -
         let curves = pair.each().map(|one| fit(&one.curve, &model, options).ok());
         let records = pair
             .each()
-            .map(|one| fit(&one.record(), &model, options).ok());
+            .map(|one| fit(one.record(), &model, options).ok());
         [curves, records].map(|fits| {
             let [Some(whole), Some(lossy)] = fits else {
                 return None;

@@ -191,8 +191,8 @@ fn autocovariance(bins: &[Bin], segment: u32) -> [Real; REACH] {
 
 impl<const B: usize> Spectrum<B> {
     /// The spectrum without what filled gaps change in its densities, for a record of so many samples without those that
-    /// were lost, whose segments go on across filled gaps. [`Axes`](crate::Axes) does this itself. The spectrum stays as it
-    /// is if no gap was filled.
+    /// were lost, whose segments go on across filled gaps. [`Axes`](crate::Axes) treats a loss as a gap of the spectrum
+    /// instead. The spectrum stays as it is if no gap was filled.
     ///
     /// What filled gaps add scatters too. So a bin counts [fewer segments](Bin::segments) than its level has.
     #[must_use]

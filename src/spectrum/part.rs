@@ -3,10 +3,7 @@
 use super::{Spectrum, SpectrumAccumulator};
 use crate::{
     curve::Scale,
-    record::{
-        axis::spectra::{SpectrumPart, SpectrumSums, Waits},
-        octave::Accumulator,
-    },
+    record::axis::spectra::{SpectrumPart, SpectrumSums, Waits},
 };
 use core::fmt::Debug;
 
@@ -23,13 +20,9 @@ pub trait SpectrumReading: SpectrumPart {
     /// The spectrum of an axis: a [`Spectrum`], which has no bins if none is kept.
     type Spectrum: Clone + Debug + PartialEq;
 
-    /// The spectrum at this moment, beside the curve of the same samples.
+    /// The spectrum at this moment.
     #[doc(hidden)]
-    fn spectrum<const OCTAVES: usize>(
-        sums: &Self::Sums,
-        beside: &Accumulator<OCTAVES>,
-        scale: Scale,
-    ) -> Self::Spectrum;
+    fn spectrum(sums: &Self::Sums, scale: Scale) -> Self::Spectrum;
 }
 
 impl<const P: usize, const LEVELS: usize, const BINS: usize> SpectrumReading
@@ -37,24 +30,15 @@ impl<const P: usize, const LEVELS: usize, const BINS: usize> SpectrumReading
 {
     type Spectrum = Spectrum<BINS>;
 
-    fn spectrum<const OCTAVES: usize>(
-        sums: &Self::Sums,
-        beside: &Accumulator<OCTAVES>,
-        scale: Scale,
-    ) -> Self::Spectrum {
-        let spectrum = sums.0.spectrum(scale);
-        spectrum.without_bridges(beside.bridged(), beside.samples())
+    fn spectrum(sums: &Self::Sums, scale: Scale) -> Self::Spectrum {
+        sums.0.spectrum(scale)
     }
 }
 
 impl SpectrumReading for () {
     type Spectrum = Spectrum<0>;
 
-    fn spectrum<const OCTAVES: usize>(
-        (): &Self::Sums,
-        _: &Accumulator<OCTAVES>,
-        _: Scale,
-    ) -> Self::Spectrum {
+    fn spectrum((): &Self::Sums, _: Scale) -> Self::Spectrum {
         Spectrum::EMPTY
     }
 }

@@ -35,9 +35,9 @@ const LONG: u32 = 7;
 /// the variance.
 const ENDS: [i32; 2] = [(BEFORE as i32 - 1) / 2 - 2, BEFORE as i32 / 2 + 2];
 
-/// Where fewer samples than one in so many are filled, the second order of their share moves nothing by a hundredth of its
+/// Where fewer samples than one in so many are filled, the second order of their share moves nothing by a tenth of its
 /// standard error, and a device saves the time.
-const SECOND_ORDER: u64 = 256;
+const SECOND_ORDER: u64 = 64;
 
 /// The largest number of parts in which the starts of a difference are summed.
 const PARTS: i32 = 16;

@@ -37,7 +37,7 @@ const ENDS: [i32; 2] = [(BEFORE as i32 - 1) / 2 - 2, BEFORE as i32 / 2 + 2];
 
 /// Where fewer samples than one in so many are filled, the second order of their share moves nothing by a tenth of its
 /// standard error, and a device saves the time.
-const SECOND_ORDER: u64 = 64;
+const SECOND_ORDER: u64 = 256;
 
 /// The largest number of parts in which the starts of a difference are summed.
 const PARTS: i32 = 16;
@@ -191,11 +191,22 @@ pub(super) fn take_off<const K: usize>(
     places: u64,
 ) {
     let read = octaves.clone();
+    let with_squares = bridged.lost() > places / SECOND_ORDER;
     // The first covariance is that of the filled angle. The second one is closer to that of the angle.
     for _ in 0..2 {
         let covariance = Covariance::of(octaves);
+        let mut last = None;
         for (own, &(_, variance)) in octaves.iter_mut().zip(&read) {
-            own.1 = within(variance, changes(&covariance, bridged, *own, places));
+            // The largest power of two in `m`, where the logarithm of the standard library may panic.
+            let octave = 31_u32.saturating_sub(own.0.leading_zeros());
+            // All long octaves have the same sums.
+            let shortened = octave.min(LONG);
+            let sums = match last {
+                Some((of, sums)) if of == shortened => sums,
+                _ => Sums::of(&covariance, bridged, shortened, with_squares),
+            };
+            last = Some((shortened, sums));
+            own.1 = within(variance, sums.change(octave, *own, places));
         }
     }
 }
@@ -205,37 +216,44 @@ fn within(variance: Real, change: Real) -> Real {
     (variance - change).max(0.5 * variance)
 }
 
-/// What all filled gaps change in the Allan variance of an octave `(m, variance)`.
-fn changes(
-    covariance: &Covariance,
-    bridged: &Bridged,
-    (m, variance): (u32, Real),
-    places: u64,
-) -> Real {
-    // The largest power of two in `m`, where the logarithm of the standard library may panic.
-    let octave = 31_u32.saturating_sub(m.leading_zeros());
-    let shortened = octave.min(LONG);
-    let scale = real(1_u32 << shortened) / (real(m) * places as Real);
-    let classes = bridged.gaps.iter().zip(&bridged.samples);
-    let is_second_order = bridged.lost() > places / SECOND_ORDER;
-    let (mut sum, mut squares, mut share) = (0.0, 0.0, 0.0);
-    for (class, (&gaps, &lost)) in numbered(classes) {
-        if gaps == 0 || (octave as usize) < Bridged::first_octave(class) {
-            continue;
+/// What all filled gaps of a record change in the sum of the squared differences of an octave.
+#[derive(Clone, Copy)]
+struct Sums {
+    change: Real,
+    /// The part that is the square of what they change in a difference, if it is asked for, and the samples in them.
+    squares: Real,
+    lost: Real,
+}
+
+impl Sums {
+    fn of(covariance: &Covariance, bridged: &Bridged, octave: u32, with_squares: bool) -> Self {
+        let mut sums = Self {
+            change: 0.0,
+            squares: 0.0,
+            lost: 0.0,
+        };
+        let classes = bridged.gaps.iter().zip(&bridged.samples);
+        for (class, (&gaps, &lost)) in numbered(classes) {
+            if gaps == 0 || (octave as usize) < Bridged::first_octave(class) {
+                continue;
+            }
+            let length = (lost.wrapping_add(gaps / 2) / gaps).min(64) as i32;
+            let [change, square] = covariance.change(1 << octave, length, with_squares);
+            sums.change += real(gaps) * change;
+            sums.squares += real(gaps) * square;
+            if with_squares {
+                sums.lost += real(lost);
+            }
         }
-        let length = lost.wrapping_add(gaps / 2) / gaps;
-        let [change, square] =
-            covariance.change(1 << shortened, length.min(64) as i32, is_second_order);
-        sum += real(gaps) * change;
-        squares += real(gaps) * square;
-        share += real(lost) / places as Real;
+        sums
     }
-    let second = if is_second_order {
-        share * share * own_share(octave) * variance
-    } else {
-        0.0
-    };
-    (sum - share * squares) * scale + second
+
+    /// What they change in the Allan variance of octave `(m, variance)`.
+    fn change(&self, octave: u32, (m, variance): (u32, Real), places: u64) -> Real {
+        let scale = real(1_u32 << octave.min(LONG)) / (real(m) * places as Real);
+        let share = self.lost / places as Real;
+        (self.change - share * self.squares) * scale + share * share * own_share(octave) * variance
+    }
 }
 
 #[cfg(test)]

@@ -182,8 +182,8 @@ pub(crate) struct Last<'p> {
     receiver: &'p mut Receiver<'static, Sample<3, 1>>,
     /// The number of samples that were taken meanwhile, which belong to no record.
     meanwhile: u32,
-    /// Whether the report is done in one piece, which is longer than the watchdog permits. That is so after the first
-    /// record, if the arguments say so.
+    /// Whether the report and its diagnosis are done in one piece, which is longer than the watchdog permits. That is so
+    /// after the first record, if the arguments say so.
     is_undivided: bool,
 }
 
@@ -205,17 +205,19 @@ impl Product {
 impl Last<'_> {
     /// Does a part of the report. Between its pieces it takes the samples that wait, and feeds the watchdog.
     pub(crate) fn pass(&mut self, watchdog: &mut Watchdog) -> Progress {
-        let mut pause = || {
-            while let Some(queued) = self.receiver.receive() {
-                self.meanwhile += 1;
-                self.stored.counts.lost += queued.lost;
-            }
-            if !self.is_undivided {
-                watchdog.feed();
-            }
-            ControlFlow::Continue(())
-        };
         loop {
+            // The lines before the diagnosis are fed too, so that the reset comes while it computes and not within a line.
+            let is_fed = !(self.is_undivided && self.report.is_diagnosing());
+            let mut pause = || {
+                while let Some(queued) = self.receiver.receive() {
+                    self.meanwhile += 1;
+                    self.stored.counts.lost += queued.lost;
+                }
+                if is_fed {
+                    watchdog.feed();
+                }
+                ControlFlow::Continue(())
+            };
             let _ = pause();
             let progress = self.report.step(&mut log, &mut pause);
             let progress = progress.unwrap_or_else(|failure| fail(failure));

@@ -55,6 +55,11 @@ impl<'r> Report<'r> {
         }
     }
 
+    /// Whether the next part is a step of the diagnosis.
+    pub const fn is_diagnosing(&self) -> bool {
+        matches!(self.next, Next::Diagnosis)
+    }
+
     /// Does one part of the report, such as a step of the diagnosis. A step takes long, so that `pause` is called between
     /// its pieces.
     ///

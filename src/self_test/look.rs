@@ -1,6 +1,6 @@
 //! A look of a self-test: the five terms are fitted to the record so far, and each limit is compared with it.
 
-use super::{Mark, plan::Limit};
+use super::plan::Limit;
 use crate::{
     evidence::axis::AxisRecord,
     fit::{Fitting, LikelihoodRatio, Options},
@@ -12,6 +12,9 @@ use crate::{
     theory::{effect::IEEE_952, model::Model},
 };
 use heapless::Vec;
+
+/// What tells a look from those of other tests: where its test lay when the look began, and which of its looks it is.
+pub(super) type Mark = (usize, u32);
 
 /// A look in progress, for a main loop that has other work to do: one call of
 /// [`advance`](Self::advance) takes as long as one of [`Fitting::advance`]. The calls of a look take as

@@ -24,7 +24,7 @@ use crate::{
     },
     record::integrity::Reason,
 };
-use look::Compared;
+use look::{Compared, Mark};
 use quantile::quantile;
 
 /// Below this p-value of all looks together the five terms do not explain a curve at the last look, whatever the plan
@@ -156,9 +156,6 @@ pub struct SelfTest<const OCTAVES: usize> {
     /// The mark of the look in progress.
     mark: Option<Mark>,
 }
-
-/// What tells a look from those of other tests: where its test lay when the look began, and which of its looks it is.
-type Mark = (usize, u32);
 
 /// The state that changes while a test runs.
 #[derive(Clone, Copy, Debug, PartialEq)]

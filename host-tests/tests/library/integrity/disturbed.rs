@@ -211,16 +211,6 @@ fn the_rails_of_wide_converters_are_known() {
     }
 }
 
-/// Counts about zero that a program widened without their sign lie at both ends of the range.
-#[test]
-fn counts_that_are_read_without_their_sign_are_refused() {
-    for bits in [16, 20, 24] {
-        let misread = mems(2).into_iter().map(|count| count & ((1 << bits) - 1));
-        let verdict = integrity(&misread.collect::<Vec<_>>()).verdict();
-        assert!(verdict.is_some(), "{bits} bits");
-    }
-}
-
 #[test]
 fn the_rails_of_other_sensors_are_configured() {
     let limits = Limits {

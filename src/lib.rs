@@ -146,8 +146,8 @@
 //!
 //! [`Axes::gap`] marks the place. No difference spans the gap, and everything before it stays. If it is known how many
 //! samples were lost, [`Axes::lost`] fills up to 64 of them with a mean of those before, so that they cost only what they
-//! touch: short clusters leave out differences that touch them, and the curve of long ones takes off what they
-//! change. No segment of a spectrum of `Axes` spans them. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the two. [`Accumulator`] has
+//! touch: short clusters leave out differences that touch them, and the curve of long ones and the spectrum take off what
+//! they change. [`Axes::merge`] adds another record of the same sensor, as if a gap lay between the two. [`Accumulator`] has
 //! `gap`, `lost` and `merge` too.
 //!
 //! # The power may fail

@@ -138,7 +138,7 @@ where
             samples: sums.accumulator.samples(),
             scale,
             curve: sums.accumulator.curve(scale),
-            spectrum: S::spectrum(&sums.spectrum, scale),
+            spectrum: S::spectrum(&sums.spectrum, &sums.accumulator, scale),
             course: sums
                 .track
                 .course()

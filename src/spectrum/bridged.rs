@@ -22,7 +22,7 @@ use crate::{
         real::{Real, real},
     },
     record::octave::{
-        Bridged, CLASSES,
+        Bridged,
         bridge::{BEFORE, WINDOW},
     },
 };
@@ -46,17 +46,82 @@ const LEAST: Real = 0.05;
 /// be differences of large numbers.
 const LEFT_OUT: Real = 0.25;
 
+/// Where fewer samples than one in so many are filled, the densities of the filled record give its autocovariance well
+/// enough, and a device saves the time of a second round.
+const SECOND_ROUND: u64 = 256;
+
+/// Up to this frequency, in turns a sample, a parabola in its square through three places gives what changes: the cosines
+/// are those of less than a radian.
+const SLOW: Real = 1.0 / 512.0;
+
 /// The number of levels from which the autocovariance is made. What lies below is the same in a gap and before it.
 const LEVELS: usize = 3;
 
+/// The sine and the cosine of an angle.
+#[derive(Clone, Copy)]
+struct Angle {
+    sine: Real,
+    cosine: Real,
+}
+
+impl Angle {
+    fn of_turns(turns: Real) -> Self {
+        let (sine, cosine) = sincos_of_turns(turns);
+        Self { sine, cosine }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            sine: self.sine * other.cosine + self.cosine * other.sine,
+            cosine: self.cosine * other.cosine - self.sine * other.sine,
+        }
+    }
+
+    /// The angle times a number, by doubling. Each doubling doubles what rounding left.
+    fn multiple(self, times: u32) -> Self {
+        let mut sum = Self {
+            sine: 0.0,
+            cosine: 1.0,
+        };
+        let (mut power, mut left) = (self, times);
+        while left > 0 {
+            if left % 2 == 1 {
+                sum = sum.plus(power);
+            }
+            power = power.plus(power);
+            left /= 2;
+        }
+        sum
+    }
+}
+
+/// The samples in each class of gaps, and the mean length of one of them.
+fn lengths(bridged: &Bridged) -> impl Iterator<Item = (u32, u32)> {
+    let classes = bridged.gaps.iter().zip(&bridged.samples);
+    classes.map(|(&gaps, &lost)| {
+        let mean = lost.wrapping_add(gaps / 2).checked_div(gaps).unwrap_or(1);
+        (lost, mean.clamp(1, LONGEST as u32))
+    })
+}
+
+/// The mean length of the longest gaps of a record.
+fn longest(bridged: &Bridged) -> usize {
+    let present = lengths(bridged).filter(|&(lost, _)| lost > 0);
+    present.map(|(_, length)| length).max().unwrap_or(1) as usize
+}
+
 /// The gaps of a record, and what they do to its density.
 struct Change {
-    /// The share of samples that are filled, and the length of the gaps, class by class.
-    classes: [(Real, u32); CLASSES],
+    /// The share of samples that lie so many places behind the start of a gap.
+    filled: [Real; LONGEST],
     /// The autocovariance of what is left in the gaps alone, for one sample of the record.
     left: [Real; LONGEST],
+    /// The length of the longest class of gaps: what is left does not reach further.
+    longest: usize,
     /// The share of samples that are filled.
     share: Real,
+    /// What changes at no frequency, at half of [`SLOW`], and there.
+    slow: [(Real, Real); 3],
 }
 
 impl Change {
@@ -70,9 +135,10 @@ impl Change {
         }
         of_window /= real(WINDOW * WINDOW);
         // The sums, over the first samples of a gap, of their covariance with the window's mean.
+        let longest = longest(bridged);
         let mut with_window = [0.0; LONGEST + 1];
         let mut sum = 0.0;
-        for (t, place) in numbered(with_window.iter_mut().skip(1)) {
+        for (t, place) in numbered(with_window.iter_mut().skip(1).take(longest)) {
             for end in ENDS {
                 let first = t.wrapping_add(end).wrapping_add(1);
                 let near = (first..first.wrapping_add(window)).map(at);
@@ -83,59 +149,81 @@ impl Change {
         let until = |t: usize| with_window.get(t).copied().unwrap_or(0.0);
 
         let mut change = Self {
-            classes: [(0.0, 1); CLASSES],
+            filled: [0.0; LONGEST],
             left: [0.0; LONGEST],
+            longest,
             share: 0.0,
+            slow: [(1.0, 0.0); 3],
         };
-        let classes = bridged.gaps.iter().zip(&bridged.samples);
-        for (own, (&gaps, &lost)) in change.classes.iter_mut().zip(classes) {
-            if gaps == 0 {
-                continue;
-            }
-            let mean = (lost.wrapping_add(gaps / 2) / gaps).clamp(1, LONGEST as u32);
+        for (lost, mean) in lengths(bridged) {
             let share = real(lost) / real(places);
-            *own = (share, mean);
             let length = mean as usize;
             change.share += share;
-            for (k, left) in numbered(change.left.iter_mut().take(length)) {
+            let both = change.left.iter_mut().zip(&mut change.filled);
+            for (k, (left, filled)) in numbered(both.take(length)) {
                 let rest = length.wrapping_sub(k);
                 let both = until(rest) + until(length) - until(k);
                 let sum = real(rest) * (at(k) + of_window) - both;
                 *left += share / real(length) * sum;
+                *filled += share / real(length);
             }
         }
+        // The mean over no phase at all is 1, which is no quotient.
+        change.slow = [1e-3, 0.5, 1.0].map(|part| change.exactly_at(part * SLOW));
         change
     }
 
     /// The factor of the density, and what is added to it, at a frequency in turns a sample. What is added is the
     /// variance of independent samples that would have as much.
     fn at(&self, turns: Real) -> (Real, Real) {
-        let (_, cosine) = sincos_of_turns(turns);
-        let mut added = 0.0;
-        // The cosines of the multiples of the angle, one after the other.
-        let (mut near, mut before) = (1.0, cosine);
-        let mut sides = 1.0;
-        for left in &self.left {
-            added += sides * left * near;
-            (near, before) = (2.0 * cosine * near - before, near);
-            sides = 2.0;
+        if turns > SLOW {
+            return self.exactly_at(turns);
         }
+        let u = 4.0 * turns * turns / (SLOW * SLOW);
+        let [zero, half, one] = self.slow;
+        let weights = [
+            (u - 1.0) * (u - 4.0) / 4.0,
+            u * (4.0 - u) / 3.0,
+            u * (u - 1.0) / 12.0,
+        ];
+        let mix = |values: [Real; 3]| -> Real {
+            values
+                .iter()
+                .zip(weights)
+                .map(|(value, weight)| value * weight)
+                .sum()
+        };
+        (mix([zero.0, half.0, one.0]), mix([zero.1, half.1, one.1]))
+    }
 
-        // The mean of the phases of neighbouring samples is that of their middle, times this.
-        let (half, _) = sincos_of_turns(0.5 * turns);
-        let mean = |n: u32| sincos_of_turns(0.5 * real(n) * turns).0 / (real(n) * half);
-        let (_, apart) = sincos_of_turns(0.5 * real(ENDS[1] - ENDS[0]) * turns);
-        let window = apart * mean(WINDOW);
-        let (mut re, mut im) = (1.0, 0.0);
-        for &(share, length) in &self.classes {
-            if share > 0.0 {
-                let between = real(ENDS[0] + ENDS[1]) + real(WINDOW) + real(length);
-                let (sine, cosine) = sincos_of_turns(0.5 * between * turns);
-                let filter = window * mean(length);
-                re -= share * (1.0 - filter * cosine);
-                im += share * filter * sine;
-            }
+    fn exactly_at(&self, turns: Real) -> (Real, Real) {
+        let half = Angle::of_turns(0.5 * turns);
+        let one = half.multiple(2);
+        // Sums over multiples of the angle, from the last one on (C. W. Clenshaw, 1955, A note on the summation of Chebyshev
+        // series).
+        let double = 2.0 * one.cosine;
+        let (mut left, mut left_behind) = (0.0, 0.0);
+        let (mut filled, mut filled_behind) = (0.0, 0.0);
+        let both = self.left.iter().zip(&self.filled).take(self.longest);
+        for (own_left, own_filled) in both.skip(1).rev() {
+            (left, left_behind) = (own_left + double * left - left_behind, left);
+            (filled, filled_behind) = (own_filled + double * filled - filled_behind, filled);
         }
+        let added = self.left[0] + 2.0 * (one.cosine * left - left_behind);
+        let gaps = (
+            self.filled[0] + one.cosine * filled - filled_behind,
+            one.sine * filled,
+        );
+
+        // The mean of the phases of the window's samples is that of its middle, times this, also for both distances.
+        let of_window = one.multiple(WINDOW / 2).sine / (real(WINDOW) * half.sine);
+        let apart = half.multiple((ENDS[1] - ENDS[0]) as u32).cosine;
+        let window = of_window * apart;
+        // From the middle of the windows to the first sample of a gap.
+        let between = half.multiple(ENDS[0] as u32 + ENDS[1] as u32 + WINDOW + 1);
+        let re = window * (gaps.0 * between.cosine - gaps.1 * between.sine);
+        let im = window * (gaps.0 * between.sine + gaps.1 * between.cosine);
+        let re = 1.0 - self.share + re;
         (re * re + im * im, (1.0 - self.share) * added)
     }
 
@@ -155,9 +243,9 @@ impl Change {
     }
 }
 
-/// The autocovariance of a record with these densities, up to a constant, in units of half the rate. Each level takes over
-/// below the one of shorter blocks.
-fn autocovariance(bins: &[Bin], segment: u32) -> [Real; REACH] {
+/// The autocovariance of a record with these densities at so many distances, up to a constant, in units of half the rate.
+/// Each level takes over below the one of shorter blocks.
+fn autocovariance(bins: &[Bin], segment: u32, distances: usize) -> [Real; REACH] {
     let mut covariance = [0.0; REACH];
     let length = segment as usize;
     let first = first_bin(length) as u32;
@@ -180,7 +268,7 @@ fn autocovariance(bins: &[Bin], segment: u32) -> [Real; REACH] {
             let power = bin.density * (below + above) * 2.0 / (real(segment) * real(bin.block));
             let (_, cosine) = sincos_of_turns(turns);
             let (mut near, mut before) = (1.0, cosine);
-            for covariance in &mut covariance {
+            for covariance in covariance.iter_mut().take(distances) {
                 *covariance += power * near;
                 (near, before) = (2.0 * cosine * near - before, near);
             }
@@ -191,8 +279,8 @@ fn autocovariance(bins: &[Bin], segment: u32) -> [Real; REACH] {
 
 impl<const B: usize> Spectrum<B> {
     /// The spectrum without what filled gaps change in its densities, for a record of so many samples without those that
-    /// were lost, whose segments go on across filled gaps. [`Axes`](crate::Axes) treats a loss as a gap of the spectrum
-    /// instead. The spectrum stays as it is if no gap was filled.
+    /// were lost, whose segments go on across filled gaps. [`Axes`](crate::Axes) does this itself. The spectrum stays as it
+    /// is if no gap was filled.
     ///
     /// What filled gaps add scatters too. So a bin counts [fewer segments](Bin::segments) than its level has.
     #[must_use]
@@ -212,9 +300,16 @@ impl<const B: usize> Spectrum<B> {
         let bins = self.all_mut();
         let measured: Vec<Real, B> = fill(bins.iter().map(|bin| bin.density));
         let mut left_out = None;
+        // No two samples of a gap and of the windows before it lie further apart.
+        let distances = longest(bridged) + WINDOW as usize + ENDS[1] + 1;
+        let rounds = if bridged.lost() > places / SECOND_ROUND {
+            2
+        } else {
+            1
+        };
         // The first autocovariance is that of the filled record. The second one is closer to that of the record.
-        for is_last in [false, true] {
-            let change = Change::new(bridged, places, &autocovariance(bins, segment));
+        for left_rounds in (0..rounds).rev() {
+            let change = Change::new(bridged, places, &autocovariance(bins, segment, distances));
             let (mut sum, mut number) = (0.0, 0.0);
             for (bin, &measured) in bins.iter_mut().zip(&measured) {
                 let turns = real(bin.index) / (real(segment) * real(bin.block));
@@ -226,7 +321,7 @@ impl<const B: usize> Spectrum<B> {
                     (sum, number) = (0.0, 0.0);
                 }
                 (sum, number) = (sum + share, number + 1.0);
-                if is_last {
+                if left_rounds == 0 {
                     let segments = math::floor(real(bin.segments) * share * share + 0.5);
                     let least = bin.segments.min(Self::SPARSE_SEGMENTS);
                     bin.segments = (segments as u32).max(least);
@@ -239,6 +334,80 @@ impl<const B: usize> Spectrum<B> {
         }
         if let Some(block) = left_out {
             self.leave_out_from(block);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::real::double;
+    use core::f64::consts::TAU;
+
+    /// Gaps of 1, of 7 and of 60 samples, which take 2 % of a record of white noise and of one that moves slowly.
+    fn changes() -> [(Bridged, Change); 2] {
+        let mut bridged = Bridged::NONE;
+        for (class, gaps, lost) in [(0, 300, 300), (3, 100, 700), (6, 20, 1200)] {
+            bridged.gaps[class] = gaps;
+            bridged.samples[class] = lost;
+        }
+        [1.0, 40.0].map(|scale| {
+            let covariance = core::array::from_fn(|k| {
+                let near = libm::exp(-(k as f64) / scale);
+                real(if scale > 1.0 { near } else { f64::from(k == 0) })
+            });
+            (bridged, Change::new(&bridged, 110_000, &covariance))
+        })
+    }
+
+    #[test]
+    fn the_factor_is_that_of_the_mean_before_each_class_of_gaps() {
+        for (bridged, change) in changes() {
+            for place in 1..256 {
+                let turns = f64::from(place) / 512.0;
+                let (mut re, mut im) = (1.0, 0.0);
+                for (lost, length) in lengths(&bridged) {
+                    let share = f64::from(lost) / 110_000.0;
+                    re -= share;
+                    // A sample of the gap is filled by each of a window of samples, at both distances.
+                    let all = f64::from(length * WINDOW) * 2.0;
+                    for inside in 0..length {
+                        for end in ENDS {
+                            for before in 1..=WINDOW {
+                                let distance = f64::from(inside + before) + end as f64;
+                                re += share / all * libm::cos(TAU * turns * distance);
+                                im += share / all * libm::sin(TAU * turns * distance);
+                            }
+                        }
+                    }
+                }
+                let expected = re * re + im * im;
+                let found = double(change.exactly_at(real(turns)).0);
+                assert!(
+                    (found - expected).abs() < 2e-5,
+                    "{place}: {found} {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn slow_bins_lie_on_a_parabola() {
+        for (_, change) in changes() {
+            for place in 1..=100 {
+                let turns = real(place) * SLOW / 100.0;
+                let [exact, near] = [change.exactly_at(turns), change.at(turns)]
+                    .map(|(factor, added)| (double(factor), double(added)));
+                let largest = double(change.slow[0].1.abs()) + 0.02;
+                assert!(
+                    (exact.0 - near.0).abs() < 1e-4,
+                    "{place}: {exact:?} {near:?}"
+                );
+                assert!(
+                    (exact.1 - near.1).abs() < 4e-3 * largest,
+                    "{place}: {exact:?} {near:?}"
+                );
+            }
         }
     }
 }

@@ -3,7 +3,10 @@
 use super::{Spectrum, SpectrumAccumulator};
 use crate::{
     curve::Scale,
-    record::axis::spectra::{SpectrumPart, SpectrumSums, Waits},
+    record::{
+        axis::spectra::{SpectrumPart, SpectrumSums, Waits},
+        octave::Accumulator,
+    },
 };
 use core::fmt::Debug;
 
@@ -20,9 +23,13 @@ pub trait SpectrumReading: SpectrumPart {
     /// The spectrum of an axis: a [`Spectrum`], which has no bins if none is kept.
     type Spectrum: Clone + Debug + PartialEq;
 
-    /// The spectrum at this moment.
+    /// The spectrum at this moment, beside the curve of the same samples.
     #[doc(hidden)]
-    fn spectrum(sums: &Self::Sums, scale: Scale) -> Self::Spectrum;
+    fn spectrum<const OCTAVES: usize>(
+        sums: &Self::Sums,
+        beside: &Accumulator<OCTAVES>,
+        scale: Scale,
+    ) -> Self::Spectrum;
 }
 
 impl<const P: usize, const LEVELS: usize, const BINS: usize> SpectrumReading
@@ -30,15 +37,24 @@ impl<const P: usize, const LEVELS: usize, const BINS: usize> SpectrumReading
 {
     type Spectrum = Spectrum<BINS>;
 
-    fn spectrum(sums: &Self::Sums, scale: Scale) -> Self::Spectrum {
-        sums.0.spectrum(scale)
+    fn spectrum<const OCTAVES: usize>(
+        sums: &Self::Sums,
+        beside: &Accumulator<OCTAVES>,
+        scale: Scale,
+    ) -> Self::Spectrum {
+        let spectrum = sums.0.spectrum(scale);
+        spectrum.without_bridges(beside.bridged(), beside.samples())
     }
 }
 
 impl SpectrumReading for () {
     type Spectrum = Spectrum<0>;
 
-    fn spectrum((): &Self::Sums, _: Scale) -> Self::Spectrum {
+    fn spectrum<const OCTAVES: usize>(
+        (): &Self::Sums,
+        _: &Accumulator<OCTAVES>,
+        _: Scale,
+    ) -> Self::Spectrum {
         Spectrum::EMPTY
     }
 }

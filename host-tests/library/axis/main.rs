@@ -6,12 +6,13 @@ mod seeded;
 mod stored;
 
 use allanite::{
-    Axes, Axis, Model, Real, Scale,
+    Accumulator, Axes, Axis, Model, Real, Scale,
     axis::{GatePart, Gated, MomentPart, Moments, Spectral, SpectrumReading, TrackPart, Tracked},
     course::Course,
     fit::{Options, fit},
     integrity::{Integrity, Reason},
     self_test::{Limit, Plan, SelfTest, Status},
+    spectrum::{Spectrum, SpectrumAccumulator},
 };
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -335,6 +336,56 @@ fn three_axes_at_rest_are_three_single_axes() {
             axis.record_so_far(0, (scale(), [0.01]))
         );
     }
+}
+
+/// The spectrum of an axis beside that of its samples and of the values that fill its gaps.
+#[test]
+fn a_spectrum_goes_on_across_a_few_lost_samples() {
+    let mut axis = Axis::<OCTAVES, 0, (), (), Bins>::new();
+    let mut beside = Accumulator::<OCTAVES>::new();
+    let [mut sums, mut gapped] = [(); 2].map(|()| SpectrumAccumulator::<64, 3>::new());
+    let mut lost = 0;
+    for (n, (counts, _)) in rest().into_iter().enumerate() {
+        if lost > 0 {
+            lost -= 1;
+            continue;
+        }
+        // One in a hundred samples singly, and five more gaps of 20 and of 70, which are too many to be filled.
+        lost = match n {
+            _ if n % 10_000 == 9999 => 20,
+            _ if n % 10_000 == 5000 => 70,
+            _ if n % 100 == 50 => 1,
+            _ => 0,
+        };
+        if lost > 0 {
+            axis.lost(lost);
+            match beside.filling(lost) {
+                Some(filling) => filling.for_each(|count| sums.push_slice(&[count])),
+                None => sums.gap(),
+            }
+            beside.lost(lost);
+            gapped.gap();
+            lost -= 1;
+            continue;
+        }
+        let count = counts[0];
+        axis.push(count);
+        beside.push(count);
+        sums.push_slice(&[count]);
+        gapped.push_slice(&[count]);
+    }
+    let found = axis.record(0, scale()).unwrap().spectrum;
+    let filled: Spectrum<84> = sums.spectrum(scale());
+    assert_eq!(
+        found,
+        filled
+            .clone()
+            .without_bridges(beside.bridged(), beside.samples())
+    );
+    assert_ne!(found, filled);
+    // With a gap at each loss, a level would have no segment whose blocks are of more than one sample.
+    let gapped: Spectrum<84> = gapped.spectrum(scale());
+    assert_eq!((gapped.all().len(), found.all().len()), (28, 84));
 }
 
 #[test]

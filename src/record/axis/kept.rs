@@ -174,8 +174,8 @@ where
             if is_measured {
                 axis.integrity.push(count);
                 axis.track.push(count, sample.covariates);
-                axis.spectrum.push(count);
             }
+            axis.spectrum.push(count);
         }
         let mut completed = [Completed([0; 4]); COVARIATES];
         let covariates = self.covariates.iter_mut().zip(&sample.covariates);
@@ -212,8 +212,8 @@ where
         self.axes.iter_mut().any(|axis| axis.spectrum.advance())
     }
 
-    /// Samples are missing at this place. If they are few, and their number is known, the sums of octaves go on with values
-    /// that fill it. No segment of the spectrum spans it.
+    /// Samples are missing at this place. If they are few, and their number is known, the sums of octaves and the spectrum go
+    /// on with values that fill it.
     #[inline(never)]
     pub(crate) fn miss(&mut self, missing: Missing) {
         let known = if missing.has_more { 0 } else { missing.samples };
@@ -226,7 +226,6 @@ where
         for axis in &mut self.axes {
             axis.add_pending(touched, &self.covariates);
             axis.integrity.gap();
-            axis.spectrum.gap();
             axis.track.gap(known);
         }
         let mut axes = self

@@ -139,13 +139,9 @@ impl<const K: usize, const B: usize> Fitting<K, B> {
         Ok(complete.then_some(&self.fit))
     }
 
-    /// The fit as far as it is complete.
-    pub(crate) const fn so_far(&self) -> &Fit {
-        &self.fit
-    }
-
     /// The problem, the memory of its solution, and the fit as far as it is complete. Once it is complete,
     /// the memory is free for another solution of the same problem.
+    #[cfg(test)]
     pub(crate) fn parts(&mut self) -> (Problem<'_, K, B>, &mut Solver<K, B>, &Fit) {
         let observed = Observed::new(&self.curve, &self.spectrum);
         let problem = Problem::new(observed, &self.model, &self.work.columns);

@@ -45,7 +45,6 @@ pub use peak::Peak;
 pub use result::{Fit, ShapeEstimate};
 
 pub(crate) use fitting::Stage;
-pub(crate) use likelihood_ratio::LikelihoodRatio;
 pub(crate) use problem::{Columns, Problem, check};
 pub(crate) use refinement::Refinement;
 pub(crate) use rows::Rows;

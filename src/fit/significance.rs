@@ -74,7 +74,7 @@ impl Significance {
             return true;
         };
         self.place = place;
-        match LikelihoodRatio::begin_at_zero(problem, solver, fit, self.place) {
+        match LikelihoodRatio::begin(problem, solver, fit, self.place) {
             Ok(test) => self.test = Some(test),
             Err(_) => self.place = self.place.saturating_add(1),
         }

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Name, symbol and twice the exponent of the second in the unit, of each term.
-const NAMES: [(&str, &str, i8); TERMS] = [
+pub(super) const NAMES: [(&str, &str, i8); TERMS] = [
     ("quantization", "Q", 2),
     ("angle_random_walk", "N", 1),
     ("bias_instability", "B", 0),
@@ -48,6 +48,11 @@ impl Scale {
             first: reference * tau_s * tau_s,
             tau_s,
         }
+    }
+
+    /// The unit of a term's square.
+    pub(super) fn unit(self, term: usize) -> Real {
+        (0..term).fold(self.first, |unit, _| unit / self.tau_s)
     }
 }
 
@@ -98,12 +103,9 @@ pub(super) fn all<const K: usize>(
             }
         }
     }
-    let mut unit = scale.first;
-    let all = found.iter().zip(NAMES).map(|(found, names)| {
-        let coefficient = found.coefficient(names, unit);
-        unit /= scale.tau_s;
-        coefficient
-    });
+    let terms = (0..TERMS).zip(NAMES);
+    let all = found.iter().zip(terms);
+    let all = all.map(|(found, (term, names))| found.coefficient(names, scale.unit(term)));
     let mut coefficients = [Estimate::NOTHING.coefficient(NAMES[0], 1.0); TERMS];
     for (place, coefficient) in coefficients.iter_mut().zip(all) {
         *place = coefficient;
@@ -112,7 +114,7 @@ pub(super) fn all<const K: usize>(
 }
 
 /// The root of a unit, which single precision may not hold: only its part from 1 to 4 is rounded.
-fn root_of(unit: Real) -> Real {
+pub(super) fn root_of(unit: Real) -> Real {
     let (mut part, mut scale) = (unit, 1.0);
     for _ in 0..600 {
         if part >= 4.0 {

@@ -29,9 +29,11 @@
 //! # Ok::<(), allanite::Error>(())
 //! ```
 
+mod comparison;
 mod covariance;
 mod estimate;
 mod limits;
+mod memory;
 mod rounds;
 mod row;
 mod rows;
@@ -41,19 +43,19 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use comparison::{above, place};
 pub use limits::{Checked, Limits};
 pub use terms::TERMS;
 
 use crate::{
-    curve::{Curve, Point},
+    curve::Curve,
     error::Error,
     evidence::record::Record,
     fit::{ADEQUATE_P, chi_squared_tail, coefficient::Coefficient},
-    numerics::real::{Real, real, single},
+    numerics::real::{Real, real},
 };
+use memory::{Memory, consecutive};
 use rounds::{begin, solve};
-use row::Row;
-use rows::Rows;
 use tableau::Tableau;
 
 /// How far an octave may be off, relative to its variance, where the scatter alone does not explain the misfit: as in the
@@ -99,23 +101,15 @@ impl Fit {
 pub fn fit<'a, const K: usize, const B: usize>(
     record: impl Into<Record<'a, K, B>>,
 ) -> Result<Fit, Error> {
-    let curve: &Curve<K> = record.into().curve;
+    fit_curve(record.into().curve)
+}
+
+/// [`fit()`] of a curve.
+pub(crate) fn fit_curve<const K: usize>(curve: &Curve<K>) -> Result<Fit, Error> {
     let points = consecutive(curve.points());
     crate::fit::check(points, 2)?;
-    let mut rows = [Row::EMPTY; K];
-    let mut factor = [[0; K]; K];
-    // The variance of a middle octave, so that single precision holds the ratios to it whatever the unit of the rates.
-    let reference = points
-        .get(points.len() / 2)
-        .map_or(1.0, |point| point.variance);
-    for (row, point) in rows.iter_mut().zip(points) {
-        row.measured = single(point.variance / reference);
-        row.model = row.measured;
-        row.differences = point.differences as f32;
-        row.ends = point.stretches as f32 / row.differences;
-    }
-    let rows = rows.get_mut(..points.len()).unwrap_or_default();
-    let mut rows = Rows::<K>::new(rows, &mut factor);
+    let mut memory = Memory::<K>::EMPTY;
+    let (mut rows, reference) = memory.rows(points);
     let mut tableau = Tableau::EMPTY;
     let mut squares = begin(&mut rows, &mut tableau);
     let mut chi_squared = solve(&mut rows, &mut tableau, &mut squares).ok_or(Error::Singular)?;
@@ -142,11 +136,4 @@ pub fn fit<'a, const K: usize, const B: usize>(
         },
         birge_ratio: real(birge_ratio),
     })
-}
-
-/// The first octaves, as far as they follow each other from `m = 1` on.
-fn consecutive(points: &[Point]) -> &[Point] {
-    let missing = (0_u32..32).zip(points).find(|(k, point)| point.m != 1 << k);
-    let known = missing.map_or(points.len(), |(k, _)| k as usize);
-    points.get(..known).unwrap_or_default()
 }

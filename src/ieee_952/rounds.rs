@@ -6,10 +6,10 @@ use super::{rows::Rows, tableau::Tableau, terms::TERMS};
 const ROUNDS: u8 = 8;
 
 /// The terms that most records have, which the solution tries first: quantization, white noise and flicker noise.
-const USUAL: u8 = 0b111;
+pub(super) const USUAL: u8 = 0b111;
 
 /// The rounds end when the relative change of the model is smaller than this.
-const CONVERGED: f32 = 3e-3;
+pub(super) const CONVERGED: f32 = 3e-3;
 
 /// The squared coefficients for independent octaves.
 #[inline(never)]
@@ -45,7 +45,10 @@ pub(super) fn iterate<const K: usize>(
         }
         rows.set_equations(None, tableau);
         solve(tableau);
-        let squares = tableau.squares();
+        let mut squares = tableau.squares();
+        if let Some(square) = squares.get_mut(rows.held.0) {
+            *square += rows.held.1;
+        }
         let (largest, ratio) = rows.change(&squares);
         if largest < converged {
             break;

@@ -29,6 +29,8 @@ pub(super) struct Rows<'a, const K: usize> {
     pub(super) units: Units,
     /// The square of the tolerance: the relative variance that each octave has beside its scatter.
     pub(super) tolerance: f32,
+    /// A term, and the square that is held of its coefficient, where the equations ask for what it differs from that.
+    pub(super) held: (usize, f32),
     /// The units of the whitened columns.
     scales: [f32; TERMS + 1],
 }
@@ -51,7 +53,7 @@ fn places(shorter: &Row, longer: &Row, j: usize, k: usize) -> f32 {
 pub(super) enum Column {
     /// The variance of a term with a coefficient of one.
     Term(usize),
-    /// The curve.
+    /// The curve, less what is held.
     Measured,
     /// The curve, less the model of these squared coefficients.
     Residual([f32; TERMS]),
@@ -64,6 +66,7 @@ impl<'a, const K: usize> Rows<'a, K> {
             rows,
             factor,
             tolerance: 0.0,
+            held: (0, 0.0),
             scales: [0.0; TERMS + 1],
         }
     }
@@ -162,7 +165,7 @@ impl<'a, const K: usize> Rows<'a, K> {
     /// models that are larger by `more` of a term.
     #[inline(never)]
     pub(super) fn whiten(&mut self, place: usize, column: Column, more: Option<(usize, f32)>) {
-        let units = self.units;
+        let (units, held) = (self.units, self.held);
         let value = |octave: usize, row: &Row| {
             let scatter = match more {
                 Some((term, square)) => row.model + square * units.variance(term, octave),
@@ -170,7 +173,7 @@ impl<'a, const K: usize> Rows<'a, K> {
             };
             let own = match column {
                 Column::Term(term) => units.variance(term, octave),
-                Column::Measured => row.measured,
+                Column::Measured => row.measured - held.1 * units.variance(held.0, octave),
                 Column::Residual(squares) => row.measured - units.model(&squares, octave),
             };
             own / scatter * row.certainty
@@ -249,6 +252,16 @@ impl<'a, const K: usize> Rows<'a, K> {
             sum += excess * (1.0 - self.tolerance * row.certainty * row.certainty);
         }
         2.0 * sum
+    }
+
+    /// The square from which on a term alone is this many times the curve in every octave.
+    pub(super) fn beyond(&self, term: usize, times: f32) -> f32 {
+        let mut most = 0.0;
+        for (octave, row) in (0..K).zip(self.rows.iter()) {
+            let square = times * row.measured / self.units.variance(term, octave);
+            most = if square > most { square } else { most };
+        }
+        most
     }
 
     /// Whether the model is above a term with this squared coefficient, in every octave.

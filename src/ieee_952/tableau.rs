@@ -205,33 +205,69 @@ impl Tableau {
             let slope = self.row(i)[TERMS] - curvature * at;
             let root = sqrt(slope * slope + curvature * left);
             let goal = at + if up { slope + root } else { slope - root } / curvature;
-            // The first of the others that falls to zero on the way, or leaves it.
-            let mut next = (if goal > 0.0 { goal } else { 0.0 }, TERMS);
-            for j in 0..TERMS {
-                let row = self.row(j);
-                let change = row.get(i).copied().unwrap_or(0.0);
-                let turns = change != 0.0 && (change > 0.0) == (up == self.has(j));
-                if j == i || !turns || self.pivot_of(j) <= LEAST_PIVOT {
-                    continue;
-                }
-                let place = row[TERMS] / change;
-                let is_on_the_way = if up {
-                    place >= at && place < next.0
-                } else {
-                    place <= at && place > next.0
-                };
-                if is_on_the_way {
-                    next = (place, j);
-                }
-            }
-            let step = next.0 - at;
+            let (next, other) = self.next_change(i, at, if goal > 0.0 { goal } else { 0.0 }, up);
+            let step = next - at;
             left -= step * (curvature * step - 2.0 * slope);
-            at = next.0;
-            if next.1 >= TERMS {
+            at = next;
+            let Some(other) = other else {
                 break;
-            }
-            self.pivot(next.1);
+            };
+            self.pivot(other);
         }
         at * scale
+    }
+
+    /// By how much the squared residuals fall where coefficient `i`, whose square is `held` more than the unknown, which is
+    /// zero, is fitted too, at zero or above; and whether its square grows.
+    #[inline(never)]
+    pub(super) fn fall(mut self, i: usize, held: f32) -> (f32, bool) {
+        let least = -held / self.scale(i);
+        let up = self.row(i)[TERMS] > 0.0;
+        let (mut at, mut fall) = (0.0, 0.0);
+        for _ in 0..MOST_PIVOTS {
+            let curvature = self.pivot_of(i);
+            if curvature <= LEAST_PIVOT {
+                break;
+            }
+            let slope = self.row(i)[TERMS] - curvature * at;
+            if (slope > 0.0) != up {
+                break;
+            }
+            let goal = at + slope / curvature;
+            let (next, other) =
+                self.next_change(i, at, if goal > least { goal } else { least }, up);
+            let step = next - at;
+            fall += step * (2.0 * slope - curvature * step);
+            at = next;
+            let Some(other) = other else {
+                break;
+            };
+            self.pivot(other);
+        }
+        (fall, up)
+    }
+
+    /// Where unknown `i`, which is not solved, goes from `at` to `goal`: the first of the others that falls to zero on the way,
+    /// or leaves it, and the place; or the goal.
+    fn next_change(&self, i: usize, at: f32, goal: f32, up: bool) -> (f32, Option<usize>) {
+        let mut next = (goal, None);
+        for j in 0..TERMS {
+            let row = self.row(j);
+            let change = row.get(i).copied().unwrap_or(0.0);
+            let turns = change != 0.0 && (change > 0.0) == (up == self.has(j));
+            if j == i || !turns || self.pivot_of(j) <= LEAST_PIVOT {
+                continue;
+            }
+            let place = row[TERMS] / change;
+            let is_on_the_way = if up {
+                place >= at && place < next.0
+            } else {
+                place <= at && place > next.0
+            };
+            if is_on_the_way {
+                next = (place, Some(j));
+            }
+        }
+        next
     }
 }

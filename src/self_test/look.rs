@@ -2,24 +2,21 @@
 
 use super::plan::Limit;
 use crate::{
-    evidence::axis::AxisRecord,
-    fit::{Fitting, LikelihoodRatio, Options},
+    curve::Curve,
+    ieee_952::{self, Fit},
     limits::MAX_EFFECTS,
     list,
     numerics::real::Real,
     record::integrity::Reason,
-    spectrum::Spectrum,
-    theory::{effect::IEEE_952, model::Model},
 };
 use heapless::Vec;
 
 /// What tells a look from those of other tests: where its test lay when the look began, and which of its looks it is.
 pub(super) type Mark = (usize, u32);
 
-/// A look in progress, for a main loop that has other work to do: one call of
-/// [`advance`](Self::advance) takes as long as one of [`Fitting::advance`]. The calls of a look take as
-/// long as a fit, and as long again for each limit that is not decided yet. Samples may be pushed
-/// meanwhile; the look is at the record as it was when the look began.
+/// A look in progress, for a main loop that has other work to do: the first call of [`advance`](Self::advance) takes as long
+/// as a [fit of the five terms](crate::ieee_952::fit()), and each other one compares it with a limit that is not decided yet,
+/// in about a third of that. Samples may be pushed meanwhile; the look is at the record as it was when the look began.
 ///
 /// # Example
 ///
@@ -60,24 +57,23 @@ pub struct Look<const OCTAVES: usize> {
     pub(super) samples: u64,
     /// Why its curve is not valid.
     pub(super) invalid: Option<Reason>,
-    /// `None` where the curve cannot be fitted.
-    pub(super) fitting: Option<Fitting<OCTAVES>>,
-    is_fitted: bool,
+    /// `None` where it cannot be fitted.
+    curve: Option<Curve<OCTAVES>>,
+    /// The fit, and its p-value, once they are known.
+    pub(super) fit: Option<(Fit, Real)>,
     /// The limits that were undecided when the look began.
     limits: Vec<Compared, MAX_EFFECTS>,
     /// The place in `limits` of the next comparison.
     next: usize,
-    /// The comparison in progress.
-    ratio: Option<LikelihoodRatio>,
 }
 
 /// A limit, and how far its coefficient lies above it.
 #[derive(Clone, Copy)]
 pub(super) struct Compared {
     pub(super) limit: Limit,
-    /// The coefficient's place in the model.
+    /// The coefficient's place among the five terms.
     pub(super) place: usize,
-    /// The statistic of the [`LikelihoodRatio`], in standard errors. It is `None` until it is known, and
+    /// The signed root of the likelihood ratio, in standard errors. It is `None` until it is known, and
     /// stays so where the curve cannot be compared with the limit.
     pub(super) above: Option<Real>,
 }
@@ -85,75 +81,49 @@ pub(super) struct Compared {
 impl Compared {
     /// The limit of one of the five terms, before the comparison.
     pub(super) fn new(limit: &Limit) -> Option<Self> {
-        let mut effects = IEEE_952.iter();
         Some(Self {
             limit: *limit,
-            place: effects.position(|effect| effect.name() == limit.effect)?,
+            place: ieee_952::place(limit.effect)?,
             above: None,
         })
     }
 }
 
 impl<const OCTAVES: usize> Look<OCTAVES> {
-    pub(super) fn new<const COVARIATES: usize, D>(
+    pub(super) fn new(
         mark: Mark,
-        record: &AxisRecord<OCTAVES, COVARIATES, D>,
+        samples: u64,
+        (curve, invalid): (&Curve<OCTAVES>, Option<Reason>),
         limits: impl Iterator<Item = Compared>,
     ) -> Self {
-        let fitting = match record.invalid {
-            Some(_) => None,
-            None => Some(Fitting::of(
-                record.curve.clone(),
-                Spectrum::EMPTY,
-                Model::ieee_952(),
-                Options::default(),
-            )),
-        };
         Self {
             mark: Some(mark),
-            samples: record.samples,
-            invalid: record.invalid,
-            fitting,
-            is_fitted: false,
+            samples,
+            invalid,
+            curve: invalid.is_none().then(|| curve.clone()),
+            fit: None,
             limits: list::fill(limits),
             next: 0,
-            ratio: None,
         }
     }
 
     /// Does one piece of work, and returns whether the look is complete.
     pub fn advance(&mut self) -> bool {
-        let Some(fitting) = &mut self.fitting else {
+        let Some(curve) = &self.curve else {
             return true;
         };
-        if !self.is_fitted {
-            match fitting.advance() {
-                Ok(fit) => self.is_fitted = fit.is_some(),
-                Err(_) => self.fitting = None,
+        let Some((fit, _)) = &self.fit else {
+            self.fit = fitted(curve);
+            if self.fit.is_none() {
+                self.curve = None;
             }
-            return self.fitting.is_none() || (self.is_fitted && self.limits.is_empty());
-        }
+            return self.curve.is_none() || self.limits.is_empty();
+        };
         let Some(compared) = self.limits.get_mut(self.next) else {
             return true;
         };
-        let (problem, solver, fit) = fitting.parts();
-        let advanced = match &mut self.ratio {
-            Some(ratio) => ratio.advance(&problem, solver),
-            None => {
-                let (place, most) = (compared.place, compared.limit.most);
-                let begun = LikelihoodRatio::begin(&problem, solver, fit, place, most);
-                begun.map(|ratio| {
-                    self.ratio = Some(ratio);
-                    None
-                })
-            }
-        };
-        if let Ok(None) = advanced {
-            return false;
-        }
         // A limit that the curve cannot be compared with stays undecided.
-        compared.above = advanced.unwrap_or(None);
-        self.ratio = None;
+        compared.above = ieee_952::above(curve, fit, compared.place, compared.limit.most);
         self.next = self.next.saturating_add(1);
         self.next >= self.limits.len()
     }
@@ -163,4 +133,11 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
         let mut compared = self.limits.iter();
         compared.find(|compared| compared.limit == *limit)
     }
+}
+
+#[inline(never)]
+fn fitted<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Option<(Fit, Real)> {
+    let fit = ieee_952::fit_curve(curve).ok()?;
+    let p_value = fit.p_value();
+    Some((fit, p_value))
 }

@@ -13,16 +13,19 @@ pub use look::Look;
 pub use plan::{InvalidPlan, Limit, Plan};
 
 use crate::{
-    curve::Scale,
+    curve::{Curve, Scale},
     error::Error,
     evidence::axis::AxisRecord,
-    fit::coefficient::{Coefficient, State},
+    fit::{
+        ADEQUATE_P,
+        coefficient::{Coefficient, State},
+    },
     list::numbered,
     numerics::{
         algebra::Choice,
         real::{Real, real, single},
     },
-    record::integrity::Reason,
+    record::{integrity::Reason, octave::Accumulator},
 };
 use look::{Compared, Mark};
 use quantile::quantile;
@@ -86,7 +89,7 @@ pub enum Failure {
 /// # The statistics
 ///
 /// The test looks at the record at the shortest length, whenever the record has doubled, and at the
-/// longest length. At each look it fits the coefficients, and compares each limit with the curve by the
+/// longest length. At each look it [fits the five terms](crate::ieee_952), and compares each limit with the curve by the
 /// likelihood ratio (Wilks 1938): the curve is fitted once more with the coefficient held at its limit and
 /// the others free, also those that the first fit held at zero. The covariance of the curve is taken at
 /// that fit, because the question is how far chance may carry the curve of a gyro that is at its limit.
@@ -103,7 +106,7 @@ pub enum Failure {
 ///
 /// The test holds no samples. [`is_due`](Self::is_due) says after each sample whether a look is due, at the
 /// cost of one comparison. The caller then takes the [`look`](Self::look) at a curve when it has time for a
-/// [`fit`](crate::fit::fit()) and one more for each undecided limit. A late look loses nothing.
+/// [fit of the five terms](crate::ieee_952::fit()) and a third of one for each undecided limit. A late look loses nothing.
 ///
 /// # Example
 ///
@@ -231,6 +234,31 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         if unit != test {
             return Err(Error::OtherScale { record: unit, test });
         }
+        Ok(self.begin(record.samples, &record.curve, record.invalid))
+    }
+
+    /// Begins a look at an accumulator of counts, whose rate and unit are those of the test: for a sensor that has no room for
+    /// an [`Axis`](crate::Axis). What is wrong with the samples, if anything watches them, such as an
+    /// [`Integrity`](crate::integrity::Integrity), is passed beside. A look that this test has begun before can no longer be
+    /// concluded.
+    pub fn begin_look_at(
+        &mut self,
+        accumulator: &Accumulator<OCTAVES>,
+        invalid: Option<Reason>,
+    ) -> Look<OCTAVES> {
+        self.begin(
+            accumulator.samples(),
+            &accumulator.curve(self.scale),
+            invalid,
+        )
+    }
+
+    fn begin(
+        &mut self,
+        samples: u64,
+        curve: &Curve<OCTAVES>,
+        invalid: Option<Reason>,
+    ) -> Look<OCTAVES> {
         // No two tests that have begun a look lie at one place. A test may move afterwards.
         self.begun = self.begun.wrapping_add(1);
         let mark = (core::ptr::from_ref(self).addr(), self.begun);
@@ -238,7 +266,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let limits = numbered(self.plan.limits.iter());
         let undecided = limits.filter(|&(i, _)| !self.progress.kept.has(i));
         let compared = undecided.filter_map(|(_, limit)| Compared::new(limit));
-        Ok(Look::new(mark, record, compared))
+        Look::new(mark, samples, (curve, invalid), compared)
     }
 
     /// Takes up a look, and says how the test stands. What the look still lacks is done at once, so that a look that was
@@ -250,6 +278,11 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         if self.mark.is_none() || self.mark != look.mark {
             return Err(Error::OtherTest);
         }
+        Ok(self.take_up(look))
+    }
+
+    #[inline(never)]
+    fn take_up(&mut self, look: &mut Look<OCTAVES>) -> Status {
         (self.mark, look.mark) = (None, None);
         while !look.advance() {}
         let samples = look.samples;
@@ -263,7 +296,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
                 self.progress.next = twice.min(self.last.max(samples.saturating_add(1)));
             }
         }
-        Ok(self.status(samples))
+        self.status(samples)
     }
 
     /// Takes a whole look at a record in one go, and says how the test stands: [`begin_look`](Self::begin_look) and
@@ -283,6 +316,43 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         self.conclude(&mut look)
     }
 
+    /// Takes a whole look at an accumulator in one go: [`begin_look_at`](Self::begin_look_at) and
+    /// [`conclude`](Self::conclude).
+    ///
+    /// ```
+    /// use allanite::{Accumulator, Scale, self_test::{Limit, Plan, SelfTest, Status}};
+    ///
+    /// let plan = Plan {
+    ///     limits: [Limit { effect: "angle_random_walk", most: 0.02 }].into_iter().collect(),
+    ///     least_p: 0.0,
+    ///     false_pass: 0.01,
+    ///     false_fail: 0.01,
+    ///     shortest_s: 1.0,
+    ///     longest_s: 256.0,
+    /// };
+    /// let mut test = SelfTest::<14>::new(plan, Scale::new(1.0 / 131.0, 100.0)?)?;
+    /// let mut accumulator = Accumulator::new();
+    /// let mut random = 1_u32;
+    /// while let Status::Running { .. } = test.look_at(&accumulator, None) {
+    ///     random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    ///     accumulator.push((random >> 28) as i32);
+    /// }
+    /// assert_eq!(test.status(accumulator.samples()), Status::Passed);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn look_at(
+        &mut self,
+        accumulator: &Accumulator<OCTAVES>,
+        invalid: Option<Reason>,
+    ) -> Status {
+        let samples = accumulator.samples();
+        if self.is_due(samples) {
+            let mut look = self.begin_look_at(accumulator, invalid);
+            self.take_up(&mut look);
+        }
+        self.status(samples)
+    }
+
     /// Share of the longest record that is there.
     fn share(&self, samples: u64) -> f32 {
         single((samples as Real / self.last as Real).min(1.0))
@@ -293,7 +363,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let samples = look.samples;
         let is_last = samples >= self.last;
         let seconds = samples as Real / self.scale.rate_hz();
-        let Some(fitting) = &look.fitting else {
+        let Some((fit, p_value)) = &look.fit else {
             // Gaps may have left too few differences; the first limit stands for all.
             return if is_last {
                 self.undecided(0, None)
@@ -301,16 +371,12 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
                 self.running(samples, Real::INFINITY)
             };
         };
-        let fit = fitting.so_far();
-        if fit.p_value < self.plan.least_p / real(self.looks) {
-            return Status::Failed(Failure::Misfit {
-                p_value: fit.p_value,
-            });
+        let p_value = *p_value;
+        let misfit = Failure::Misfit { p_value };
+        if p_value < self.plan.least_p / real(self.looks) {
+            return Status::Failed(misfit);
         }
-        let is_misfit = fit.p_value < MISFIT / real(self.looks);
-        let misfit = Failure::Misfit {
-            p_value: fit.p_value,
-        };
+        let is_misfit = p_value < MISFIT / real(self.looks);
         let mut open: Option<(usize, Real)> = None;
         for (i, limit) in numbered(self.plan.limits.iter()) {
             if self.progress.kept.has(i) {
@@ -331,7 +397,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             } else if above > self.fail && coefficient.value > limit.most {
                 // An effect that the five terms lack, such as a vibration, must not be blamed on one of them. The
                 // gyro fails either way, so that the usual threshold of an adequate fit adds no false fail.
-                return Status::Failed(if fit.is_adequate() == Some(false) {
+                return Status::Failed(if p_value < ADEQUATE_P {
                     misfit
                 } else {
                     Failure::Limit {

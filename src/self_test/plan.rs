@@ -2,9 +2,9 @@
 
 use crate::{
     curve::{Curve, Scale},
+    ieee_952,
     limits::MAX_EFFECTS,
     numerics::real::Real,
-    theory::effect::IEEE_952,
 };
 use heapless::Vec;
 
@@ -73,7 +73,7 @@ impl Plan {
             return Err(InvalidPlan::NothingAsked);
         }
         for (i, limit) in self.limits.iter().enumerate() {
-            if !IEEE_952.iter().any(|effect| effect.name() == limit.effect) {
+            if ieee_952::place(limit.effect).is_none() {
                 return Err(InvalidPlan::UnknownEffect(limit.effect));
             }
             let mut others = self.limits.iter().take(i);

@@ -9,7 +9,7 @@ use comfy_table::{Table, presets};
 use serde_json::{Map, Value};
 
 /// The name of a figure of the Cortex-M4F or of this host, its unit and its meaning.
-const FIGURES: [(&str, &str, &str); 23] = [
+const FIGURES: [(&str, &str, &str); 26] = [
     (
         "instructions_per_sample",
         "instructions",
@@ -72,6 +72,17 @@ const FIGURES: [(&str, &str, &str); 23] = [
         "that fit, of 20 octaves",
     ),
     ("stack_of_five_terms_20", "bytes", "stack of that fit"),
+    (
+        "flash_bytes_with_self_test",
+        "bytes",
+        "with curve and a self-test of an accumulator, 14 octaves",
+    ),
+    (
+        "instructions_of_look_20",
+        "instructions",
+        "a look of that test at 20 octaves, with one limit",
+    ),
+    ("stack_of_look_20", "bytes", "stack of that look"),
     ("flash_bytes_with_fit", "bytes", "with curve and fit"),
     (
         "flash_bytes_with_diagnosis",

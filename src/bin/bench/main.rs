@@ -23,6 +23,7 @@ mod image {
         axis::{Gated, Moments, Spectral, Tracked},
         course::Course,
         ieee_952,
+        self_test::Status,
         spectrum::{Spectrum, SpectrumAccumulator},
     };
     use core::hint::black_box;
@@ -193,7 +194,7 @@ mod image {
         defmt::info!("ram_bytes_axis_and_curve {=usize}", axis);
         defmt::info!("instructions_fit_{=usize} {=f64}", OCTAVES, instructions);
         defmt::info!("stack_bytes_fit_{=usize} {=usize}", OCTAVES, stack);
-        fitted && five_terms(clock, &curve)
+        fitted && five_terms(clock, &curve) && self_test::<OCTAVES>(clock)
     }
 
     /// Measures the small fit of the five terms.
@@ -211,6 +212,29 @@ mod image {
         );
         defmt::info!("stack_of_five_terms_{=usize} {=usize}", OCTAVES, stack);
         fitted
+    }
+
+    /// Measures a look of a self-test with a limit.
+    #[inline(never)]
+    fn self_test<const OCTAVES: usize>(clock: &Clock) -> bool {
+        let mut accumulator = Accumulator::<OCTAVES>::new();
+        let mut random = 1_u32;
+        for _ in 0..4096 {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            accumulator.push((random >> 28) as i32);
+        }
+        let mut status = None;
+        let instructions = clock.instructions(|| status = work::look(black_box(&accumulator)));
+        let stack = stack::used_by(|| {
+            black_box(work::look(black_box(&accumulator)));
+        });
+        defmt::info!(
+            "instructions_of_look_{=usize} {=f64}",
+            OCTAVES,
+            instructions
+        );
+        defmt::info!("stack_of_look_{=usize} {=usize}", OCTAVES, stack);
+        status == Some(Status::Passed)
     }
 
     #[inline(never)]

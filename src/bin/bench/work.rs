@@ -6,10 +6,11 @@ use allanite::effect::{
     Resonance, SampledShape, Sinusoid, padded,
 };
 use allanite::{
-    Accumulator, Axes, Curve, Error, Model, Real, Record,
+    Accumulator, Axes, Curve, Error, Model, Real, Record, Scale,
     axis::{GatePart, MomentPart, SpectrumPart, TrackPart},
     diagnosis::{self, Diagnosis, Verdict},
     fit::{Fit, Fitting, Options, fit},
+    self_test::{Limit, Plan, SelfTest, Status},
     spectrum::{Bin, Spectrum, SpectrumAccumulator},
 };
 use core::{hint::black_box, ops::ControlFlow};
@@ -280,6 +281,26 @@ pub(crate) fn curve<const OCTAVES: usize>(hidden: &[Hidden]) -> Option<Curve<OCT
 #[inline(never)]
 pub(crate) fn characterise<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Result<Fit, Error> {
     fit(curve, &Model::ieee_952(), Options::default())
+}
+
+/// The verdict of a self-test on the noise of an accumulator, which keeps its limit by far.
+#[inline(never)]
+pub(crate) fn look<const OCTAVES: usize>(accumulator: &Accumulator<OCTAVES>) -> Option<Status> {
+    let limit = Limit {
+        effect: "angle_random_walk",
+        most: 20.0,
+    };
+    let plan = Plan {
+        limits: [limit].into_iter().collect(),
+        least_p: 0.0,
+        false_pass: 0.01,
+        false_fail: 0.01,
+        shortest_s: 1.0,
+        longest_s: 256.0,
+    };
+    let scale = Scale::new(1.0, 100.0).ok()?;
+    let mut test = SelfTest::new(plan, scale).ok()?;
+    Some(test.look_at(accumulator, None))
 }
 
 /// Diagnoses the curve, and returns whether the diagnosis found an effect.

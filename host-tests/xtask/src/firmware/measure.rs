@@ -6,9 +6,10 @@ use serde_json::{Map, Number, Value, json};
 
 /// The part of the library that each image contains besides the start-up code, and the name of the
 /// figure for it.
-const PARTS: [(&str, &str); 7] = [
+const PARTS: [(&str, &str); 8] = [
     ("footprint_accumulator", "flash_bytes_accumulator"),
     ("footprint_five_terms", "flash_bytes_with_five_terms"),
+    ("footprint_self_test", "flash_bytes_with_self_test"),
     ("footprint_fit", "flash_bytes_with_fit"),
     ("footprint_diagnosis", "flash_bytes_with_diagnosis"),
     ("footprint_spectrum", "flash_bytes_with_spectrum"),
@@ -44,6 +45,8 @@ pub fn figures(core: &Core) -> Result<Map<String, Value>> {
     figures.insert("flash_bytes".into(), flash.into());
     let small = Image::build_for("footprint_five_terms", core)?.flash_bytes()?;
     figures.insert("flash_bytes_five_terms".into(), small.into());
+    let tested = Image::build_for("footprint_self_test", core)?.flash_bytes()?;
+    figures.insert("flash_bytes_self_test".into(), tested.into());
     Ok(figures)
 }
 
@@ -78,6 +81,9 @@ pub fn entry(core: &Core, figures: &Map<String, Value>) -> Result<Value> {
         "instructions_five_terms": largest(figures, "instructions_five_terms_"),
         "flash_bytes_five_terms": whole("flash_bytes_five_terms")?,
         "stack_bytes_five_terms": largest(figures, "stack_of_five_terms_"),
+        "flash_bytes_self_test": whole("flash_bytes_self_test")?,
+        "stack_bytes_look": largest(figures, "stack_of_look_"),
+        "instructions_look": largest(figures, "instructions_of_look_"),
         "instructions_diagnosis": largest(figures, "instructions_diagnosis_"),
         "flash_bytes": whole("flash_bytes")?,
         "parts": figures.get("parts"),

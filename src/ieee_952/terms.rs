@@ -1,5 +1,7 @@
 //! The variances of the five terms, in units in which they are near one.
 
+pub(super) use crate::numerics::math::root as sqrt;
+
 /// The number of terms.
 pub const TERMS: usize = 5;
 
@@ -18,21 +20,6 @@ const NO_LEAK: u32 = 13;
 /// The power of two, for exponents from −126 to 127.
 pub(super) const fn power(exponent: i32) -> f32 {
     f32::from_bits((exponent.wrapping_add(127) as u32).wrapping_shl(23))
-}
-
-/// The square root of a normal number to the last bit or so, and 0 for others: Newton's method from a start that halves the
-/// exponent. That of libm needs a table, and half a kilobyte in all.
-pub(super) fn sqrt(x: f32) -> f32 {
-    let is_normal = x >= f32::MIN_POSITIVE;
-    if !is_normal {
-        return 0.0;
-    }
-    // Within 4 %, which three steps square to 1e-11.
-    let mut root = f32::from_bits((x.to_bits() >> 1).wrapping_add(0x1FBB_67A8));
-    for _ in 0..3 {
-        root = 0.5 * (root + x / root);
-    }
-    root
 }
 
 /// The terms' variances at every octave, in units of the averaging time of a middle one.
@@ -89,19 +76,6 @@ impl Units {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn roots_are_those_of_the_standard_library() {
-        let mut x = 1e-37_f32;
-        while x < 1e37 {
-            let exact = libm::sqrtf(x);
-            assert!((sqrt(x) / exact - 1.0).abs() < 2e-7, "{x}");
-            x *= 1.017;
-        }
-        for none in [0.0, -1.0, f32::NAN, 1e-40] {
-            assert_eq!(sqrt(none), 0.0);
-        }
-    }
 
     #[test]
     fn variances_are_those_of_the_model() {

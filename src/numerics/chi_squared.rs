@@ -34,7 +34,7 @@ pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
     let odd = degrees_of_freedom % 2 == 1;
     let mut sum = 0.0;
     let mut term = if odd {
-        2.0 * math::sqrt(half / PI) * decay
+        2.0 * math::short_sqrt(half / PI) * decay
     } else {
         decay
     };
@@ -45,7 +45,7 @@ pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
         divisor += 1.0;
     }
     let first = if odd {
-        math::erfc(math::sqrt(half))
+        math::erfc(math::short_sqrt(half))
     } else {
         0.0
     };

@@ -1,10 +1,12 @@
 //! The interface for C: its header, a product in C on this host and in QEMU, and calls with hostile arguments.
 
-use std::fs;
+use std::{fs, process::Command};
 use xtask::firmware::{
     CORES, CORTEX_M4F,
     agreement::first_difference,
-    c_library::{folder, host_program, library, rust_example, target_program},
+    c_library::{
+        folder, host_library, host_program, library, package, rust_example, target_program,
+    },
 };
 
 /// Makes the header anew if this variable is set.
@@ -47,6 +49,60 @@ fn a_product_in_c_finds_what_it_finds_in_rust_to_the_bit() {
     let there = target_program(&CORTEX_M4F, folder.path());
     let there = there.unwrap_or_else(|error| panic!("{error:#}"));
     assert_eq!(first_difference(&rust, &there), None);
+}
+
+/// A project in C99 that finds the library as the one of a user does.
+const PROJECT: &str = "cmake_minimum_required(VERSION 3.16)
+project(product C)
+set(CMAKE_C_STANDARD 99)
+set(CMAKE_C_EXTENSIONS OFF)
+add_compile_options(-Wall -Wextra -pedantic -Werror)
+find_package(allanite CONFIG REQUIRED PATHS ${PACKAGE} NO_DEFAULT_PATH)
+add_executable(product main.c)
+target_link_libraries(product allanite::allanite m pthread dl)
+";
+
+const MAIN: &str = r#"#include "allanite.h"
+#include <stdio.h>
+static AllaniteGyro gyro;
+int main(void) {
+    AllaniteStatus made = allanite_gyro_init(&gyro, sizeof gyro);
+    printf("%d %d\n", ALLANITE_OCTAVES, (int)made);
+    return 0;
+}
+"#;
+
+#[test]
+fn a_project_of_cmake_in_c99_finds_the_package() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |name: &str| folder.path().join(name);
+    let library = host_library().unwrap_or_else(|error| panic!("{error:#}"));
+    package(&library, 20, &of("package")).unwrap_or_else(|error| panic!("{error:#}"));
+    fs::write(of("CMakeLists.txt"), PROJECT).expect("a project");
+    fs::write(of("main.c"), MAIN).expect("a program");
+    let run = |program: &str, arguments: &[&str]| {
+        let run = Command::new(program)
+            .args(arguments)
+            .current_dir(folder.path())
+            .output()
+            .unwrap_or_else(|error| panic!("{program}: {error}"));
+        let said = String::from_utf8_lossy(&run.stdout).into_owned();
+        assert!(
+            run.status.success(),
+            "{said}{}",
+            String::from_utf8_lossy(&run.stderr)
+        );
+        said
+    };
+    let place = format!("-DPACKAGE={}", of("package").display());
+    run("cmake", &["-B", "build", &place, "."]);
+    run("cmake", &["--build", "build"]);
+    assert_eq!(run("./build/product", &[]), "20 0\n");
+    // With another number of octaves, the package says so to the compiler.
+    package(&library, 26, &of("package")).expect("a package");
+    run("cmake", &["-B", "build", &place, "."]);
+    run("cmake", &["--build", "build"]);
+    assert!(run("./build/product", &[]).starts_with("26 "));
 }
 
 /// Not every core has every atomic instruction, and the library for C is to ask nothing of its program.

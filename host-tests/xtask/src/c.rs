@@ -3,34 +3,34 @@
 use crate::{
     firmware::{
         CORES, Core,
-        c_library::{feature, folder, library},
+        c_library::{self, library},
     },
     setup,
 };
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use std::path::Path;
 
-/// Builds the library for every core, and puts each beside the header into a folder of its own.
-pub(crate) fn run(octaves: u32, output: &Path) -> Result<()> {
+/// Builds the library for the targets, or for every core if none is named, and puts each beside the header and a package of
+/// CMake into a folder of its own.
+pub(crate) fn run(octaves: u32, targets: &[String], output: &Path) -> Result<()> {
     println!("== set-up");
-    setup::run()?;
-    let mut cores: Vec<&Core> = CORES.iter().collect();
+    setup::compiler()?;
+    let is_wanted = |core: &&Core| targets.is_empty() || targets.iter().any(|it| it == core.target);
+    let mut cores: Vec<&Core> = CORES.iter().filter(is_wanted).collect();
     cores.dedup_by_key(|core| core.target);
     for core in cores {
         let to = output.join(core.target);
-        std::fs::create_dir_all(&to)
-            .and_then(|()| {
-                std::fs::copy(folder().join("include/allanite.h"), to.join("allanite.h"))
-            })
-            .with_context(|| format!("writing to {}", to.display()))?;
         let library = library(core, octaves)?;
-        let copy = to.join("liballanite_c.a");
-        std::fs::copy(&library, &copy).with_context(|| format!("writing {}", copy.display()))?;
-        println!("{}: {}", core.name, copy.display());
+        let package = c_library::package(&library, octaves, &to)?;
+        println!("{}: {}", core.name, package.display());
     }
-    if let Some(feature) = feature(octaves) {
-        let define = feature.replace('-', "_").to_uppercase();
-        println!("compile C code with -DALLANITE_{define}");
+    if let Some(define) = c_library::define(octaves) {
+        println!("compile C code with -D{define}, unless CMake does");
     }
     Ok(())
+}
+
+/// The targets that the library is built for.
+pub(crate) fn targets() -> clap::builder::PossibleValuesParser {
+    CORES.map(|core| core.target).into()
 }

@@ -93,11 +93,14 @@ enum Task {
         #[arg(long, conflicts_with = "json")]
         update_budgets: bool,
     },
-    /// Build the static library for C for every core, and put it beside its header.
+    /// Build the static library for C, and put it beside its header and a package of CMake.
     C {
         /// Octaves of averaging time of a record.
         #[arg(long, default_value = "20", value_parser = ["14", "20", "26"])]
         octaves: String,
+        /// Target to build for, such as thumbv7em-none-eabihf; may be given several times. Without it, all are built.
+        #[arg(long = "target", value_name = "TARGET", value_parser = c::targets())]
+        targets: Vec<String>,
         /// Folder to write to, with a folder for every target in it.
         #[arg(long, value_name = "FOLDER", default_value = "target/c")]
         output: PathBuf,
@@ -160,7 +163,11 @@ impl CommandLine {
                 json,
                 update_budgets,
             } => bench::run(json, update_budgets),
-            Task::C { octaves, output } => c::run(octaves.parse().unwrap_or(20), &output),
+            Task::C {
+                octaves,
+                targets,
+                output,
+            } => c::run(octaves.parse().unwrap_or(20), &targets, &output),
             Task::Results {
                 folder,
                 against,

@@ -16,10 +16,11 @@ const DEBIAN_COMPILER: [&str; 3] = ["rustc-web", "rust-web-src", "rust-web-clipp
 /// Debian's linker, for machines where rustup brings none.
 const DEBIAN_LINKER: &str = "lld";
 /// Programs that the tests run, and the Debian packages that contain them.
-const PROGRAMS: [(&str, &str); 4] = [
+const PROGRAMS: [(&str, &str); 5] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("qemu-system-riscv32", "qemu-system-misc"),
     (ARM_GCC, "gcc-arm-none-eabi"),
+    ("cmake", "cmake"),
     (CHROMIUM, "chromium"),
 ];
 /// The browser that the tests open pages with.
@@ -34,7 +35,7 @@ pub(crate) fn run() -> Result<()> {
 }
 
 /// Installs a compiler for every core, in the first way that works.
-fn compiler() -> Result<()> {
+pub(crate) fn compiler() -> Result<()> {
     let mut troubles = Vec::new();
     for way in Way::allowed()? {
         match prepare(way) {

@@ -111,7 +111,7 @@
 #define ALLANITE_SELF_TEST_WORDS 44
 
 // Words of an `AllaniteLook`.
-#define ALLANITE_LOOK_WORDS (285 + (31 * ALLANITE_OCTAVES))
+#define ALLANITE_LOOK_WORDS (98 + (3 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteDiagnosis`.
 #define ALLANITE_DIAGNOSIS_WORDS (1650 + (10 * ALLANITE_OCTAVES))
@@ -477,7 +477,7 @@ AllaniteStatus allanite_certificate_init(AllaniteCertificate *certificate,
 AllaniteStatus allanite_certificate_add(AllaniteCertificate *certificate,
                                         const AllaniteDiagnosis *diagnosis);
 
-// Writes a certificate to a buffer of [`ALLANITE_CERTIFICATE_BYTES`](crate::ALLANITE_CERTIFICATE_BYTES). `written` tells how
+// Writes a certificate to a buffer of `ALLANITE_CERTIFICATE_BYTES`. `written` tells how
 // many of them it took. `allanite decode` reads them on a workstation.
 //
 // # Safety
@@ -654,7 +654,7 @@ AllaniteStatus allanite_look_advance(AllaniteLook *look, bool *complete);
 AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test, AllaniteLook *look, AllaniteTestStatus *to);
 
 // Writes a snapshot of the record and of a self-test, which may be null, to a buffer of
-// [`ALLANITE_SNAPSHOT_BYTES`](crate::ALLANITE_SNAPSHOT_BYTES). `written` tells how many of them it took.
+// `ALLANITE_SNAPSHOT_BYTES`. `written` tells how many of them it took.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`; `test` is null, or points to an `AllaniteSelfTest`; `buffer` is null, or
@@ -685,7 +685,7 @@ const char *allanite_status_text(int32_t status);
 
 #endif  /* ALLANITE_H */
 
-#ifndef __cplusplus
+#if !defined(__cplusplus) && defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
 _Static_assert(sizeof(AllaniteGyro) == 8 * ALLANITE_GYRO_WORDS, "AllaniteGyro has padding");
 _Static_assert(sizeof(AllaniteRecord) == 8 * ALLANITE_RECORD_WORDS, "AllaniteRecord has padding");
 _Static_assert(sizeof(AllaniteSelfTest) == 8 * ALLANITE_SELF_TEST_WORDS, "AllaniteSelfTest has padding");

@@ -107,7 +107,7 @@ pub unsafe extern "C" fn allanite_certificate_add(
     }
 }
 
-/// Writes a certificate to a buffer of [`ALLANITE_CERTIFICATE_BYTES`](crate::ALLANITE_CERTIFICATE_BYTES). `written` tells how
+/// Writes a certificate to a buffer of `ALLANITE_CERTIFICATE_BYTES`. `written` tells how
 /// many of them it took. `allanite decode` reads them on a workstation.
 ///
 /// # Safety

@@ -25,6 +25,44 @@ pub fn feature(octaves: u32) -> Option<String> {
     (octaves != 20).then(|| format!("octaves-{octaves}"))
 }
 
+/// What C code has to define for a number of octaves; nothing for the usual 20.
+pub fn define(octaves: u32) -> Option<String> {
+    let feature = feature(octaves)?;
+    let feature = feature.replace('-', "_").to_uppercase();
+    Some(format!("ALLANITE_{feature}"))
+}
+
+/// Puts a library, the header and a package of CMake into a folder, and returns the library's path there.
+///
+/// # Errors
+/// Fails if a file cannot be written.
+pub fn package(library: &Path, octaves: u32, to: &Path) -> Result<PathBuf> {
+    let copy = to.join("liballanite_c.a");
+    let defined = define(octaves).map_or(String::new(), |define| {
+        format!("\n    INTERFACE_COMPILE_DEFINITIONS {define}")
+    });
+    let cmake = CMAKE.replace("@DEFINED@", &defined);
+    std::fs::create_dir_all(to)
+        .and_then(|()| {
+            let header = folder().join("include/allanite.h");
+            std::fs::copy(header, to.join("allanite.h"))?;
+            std::fs::copy(library, &copy)?;
+            std::fs::write(to.join("allanite-config.cmake"), cmake)
+        })
+        .with_context(|| format!("writing to {}", to.display()))?;
+    Ok(copy)
+}
+
+/// The package of CMake, as `find_package(allanite CONFIG)` reads it.
+const CMAKE: &str = r#"# allanite, for find_package(allanite CONFIG REQUIRED PATHS ...) and target_link_libraries(... allanite::allanite).
+if(NOT TARGET allanite::allanite)
+  add_library(allanite::allanite STATIC IMPORTED)
+  set_target_properties(allanite::allanite PROPERTIES
+    IMPORTED_LOCATION "${CMAKE_CURRENT_LIST_DIR}/liballanite_c.a"
+    INTERFACE_INCLUDE_DIRECTORIES "${CMAKE_CURRENT_LIST_DIR}"@DEFINED@)
+endif()
+"#;
+
 /// Builds the library for a core, in single precision, for 14, 20 or 26 octaves.
 ///
 /// # Errors

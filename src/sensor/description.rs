@@ -169,7 +169,90 @@ pub struct Description {
     pub fifo: Option<Fifo>,
 }
 
+/// What is wrong with a description.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Flaw {
+    /// There is no identity, or one is 0x00 or 0xFF, which a bus without a sensor reads as well.
+    Identity,
+    /// Nothing is written before the first sample, so that the gyro stays off.
+    StartUp,
+    /// The address over I²C has more than 7 bits or is reserved, or SPI has more than three dummy bytes.
+    Interface,
+    /// No bit of the status tells that a sample is ready.
+    Status,
+    /// Gyro and temperature lie too far apart to be read in one transaction of 24 bytes.
+    Block,
+    /// The temperature has no scale.
+    Temperature,
+    /// The scale is not a positive, finite number.
+    Scale,
+    /// The rate is not a positive, finite number.
+    Rate,
+    /// The noise bandwidth is not a positive, finite number, or the low pass has no pole.
+    Filter,
+    /// The FIFO holds no sample, or a sample takes no time.
+    Fifo,
+}
+
 impl Description {
+    /// Checks what can be checked without a sensor. In a constant, it refuses a description at compile time.
+    ///
+    /// # Errors
+    /// The first [`Flaw`] in the order of the fields.
+    pub const fn check(&self) -> Result<(), Flaw> {
+        let mut left = self.identities;
+        if left.is_empty() {
+            return Err(Flaw::Identity);
+        }
+        while let [first, rest @ ..] = left {
+            if matches!(first, 0x00 | 0xFF) {
+                return Err(Flaw::Identity);
+            }
+            left = rest;
+        }
+        if self.start_up.as_slice().is_empty() {
+            return Err(Flaw::StartUp);
+        }
+        if !matches!(self.interface.i2c_address, 0x08..=0x77) || self.interface.spi_dummies > 3 {
+            return Err(Flaw::Interface);
+        }
+        if self.status.ready == 0 {
+            return Err(Flaw::Status);
+        }
+        let (first, last) = (self.gyro as u16, self.gyro as u16 + GYRO_BYTES as u16);
+        let (mut lowest, mut behind) = (first, last);
+        if let Some(temperature) = self.temperature {
+            let first = temperature.register as u16;
+            let last = first + TEMPERATURE_BYTES as u16;
+            lowest = if first < lowest { first } else { lowest };
+            behind = if last > behind { last } else { behind };
+            if !(temperature.counts_per_k.is_finite() && temperature.counts_per_k != 0.0) {
+                return Err(Flaw::Temperature);
+            }
+        }
+        if behind - lowest > MAX_BLOCK as u16 || behind > 0x100 {
+            return Err(Flaw::Block);
+        }
+        if !(self.scale_dps.is_finite() && self.scale_dps > 0.0) {
+            return Err(Flaw::Scale);
+        }
+        if !(self.rate_hz.is_finite() && self.rate_hz > 0.0) {
+            return Err(Flaw::Rate);
+        }
+        let bandwidth_hz = self.filter.noise_bandwidth_hz;
+        if !(bandwidth_hz.is_finite() && bandwidth_hz > 0.0) || self.filter.poles == 0 {
+            return Err(Flaw::Filter);
+        }
+        if let Some(fifo) = self.fifo
+            && (fifo.capacity == 0 || fifo.tick_ps == 0 || fifo.interval == 0)
+        {
+            return Err(Flaw::Fifo);
+        }
+        Ok(())
+    }
+
     /// The scale that converts the counts of an accumulator to a curve in °/s.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use crate::numerics::real::Real;
 /// The rates and ranges (9.13) with their codes, and the table "Mechanical characteristics". At 833 Hz and above,
 /// the cut-off of LPF2 is no longer 0.319 of the rate.
 const OFFER: Offer<5, 5> = Offer {
-    sensor: "LSM6DSO",
+    sensor: "",
     rates: [(26, 2), (52, 3), (104, 4), (208, 5), (416, 6)],
     // The code is that of FS_G and FS_125, bits 3 to 1.
     ranges: [
@@ -33,6 +33,16 @@ const OFFER: Offer<5, 5> = Offer {
 /// # Errors
 /// [`ConfigurationError`] for all else.
 pub const fn lsm6dso(wanted: Configuration) -> Result<Description, ConfigurationError> {
+    // WHO_AM_I (9.11).
+    family("LSM6DSO", &[0x6C], wanted)
+}
+
+/// The description of a sensor with these registers, by its name and its identities.
+pub(super) const fn family(
+    name: &'static str,
+    identities: &'static [u8],
+    wanted: Configuration,
+) -> Result<Description, ConfigurationError> {
     let low_pass = LowPass {
         code: 0,
         bandwidth_hz: 0,
@@ -43,7 +53,11 @@ pub const fn lsm6dso(wanted: Configuration) -> Result<Description, Configuration
         },
         is_tight: true,
     };
-    let chosen = match OFFER.choose(wanted, &[low_pass]) {
+    let offer = Offer {
+        sensor: name,
+        ..OFFER
+    };
+    let chosen = match offer.choose(wanted, &[low_pass]) {
         Ok(chosen) => chosen,
         Err(refusal) => return Err(refusal),
     };
@@ -81,10 +95,10 @@ pub const fn lsm6dso(wanted: Configuration) -> Result<Description, Configuration
         signal: Signal::High,
     };
     Ok(Description {
-        name: "LSM6DSO",
+        name,
         // WHO_AM_I (9.11).
         identity: 0x0F,
-        identities: &[0x6C],
+        identities,
         start_up: Writes::of([
             // CTRL3_C (9.14): SW_RESET, which takes well below a millisecond.
             Write::new(0x12, 0x01).wait_us(10_000),

@@ -45,10 +45,12 @@
 //! | sensor | rate, Hz | cut-off, Hz | noise bandwidth, Hz | poles | source of the order | FIFO |
 //! |---|---|---|---|---|---|---|
 //! | [`BMI160`] | 200 | 20.2 | ≤ 31.8 | ≥ 1 | not documented | no |
+//! | [`ICM_20948`] | 225 | 23.9 | ≤ 37.7 | ≥ 1 | inferred from the noise bandwidth | no |
 //! | [`ICM_42688_P`] | 100 | 47.6 | 48.1 | 3 | data sheet | 128 samples |
 //! | [`ICM_45686`] | 100 | 6.25 | ≤ 9.8 | ≥ 1 | not documented | 128 samples |
 //! | [`L3GD20`] | 95 | 32 and 25 | ≤ 22.1 | ≥ 2 | not documented | no |
 //! | [`LSM6DSO`] | 104 | 33.0 | 34.7 | 2 | inferred from the data sheet's cut-offs | 256 samples |
+//! | [`LSM6DSR`] | 104 | 33.0 | 34.7 | 2 | that of the LSM6DSO | 256 samples |
 //! | [`LSM6DSV16X`] | 120 | 38 | 40 | 2 | inferred from the LSM6DSO | 128 samples |
 //! | [`MPU_6050`] | 200 | 20 | ≤ 31.4 | ≥ 1 | not documented | no |
 //! | [`MPU_6500`] | 200 | 20 | 31.4 | 1 | inferred from the data sheet's delays | no |
@@ -57,16 +59,58 @@
 //! documentation of each sensor lists its registers, with the data sheet's sections, the public drivers that
 //! they were compared with, and what could not be verified. None of it was measured on a sensor.
 //!
-//! The sensors without a FIFO here have one in silicon. The FIFOs of the MPU-6050, the MPU-6500 and the L3GD20 hold no
+//! The sensors without a FIFO here have one in silicon. The FIFOs of the MPU-6050, the MPU-6500, the ICM-20948 and the L3GD20 hold no
 //! time, and that of the BMI160 holds one only at the end of its content, so that they would not tell what was lost.
-//! These four are read one sample at a time.
+//! These five are read one sample at a time.
 //!
 //! # Another configuration
 //!
-//! The functions [`icm_42688_p`], [`icm_45686`], [`lsm6dso`], [`lsm6dsv16x`], [`mpu_6050`] and [`mpu_6500`] make a
-//! description for another rate, range, low pass and watermark of the FIFO. They refuse what the sensor does not offer,
+//! The functions [`icm_20948`], [`icm_42688_p`], [`icm_45686`], [`lsm6dso`], [`lsm6dsr`], [`lsm6dsv16x`], [`mpu_6050`]
+//! and [`mpu_6500`] make a description for another rate, range, low pass and watermark of the FIFO. They refuse what the sensor does not offer,
 //! in constants at compile time: see [`Configuration`]. The BMI160 and the L3GD20 have the one configuration of the
 //! table, because the bandwidths of their low passes are not documented for others.
+//!
+//! # A sensor of your own
+//!
+//! A sensor that is not in the list needs a value of [`Description`], in the program that uses it. The compiler
+//! [checks](Description::check) what can be checked without the sensor:
+//!
+//! ```
+//! use allanite::sensor::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write, Writes};
+//!
+//! /// ±250 °/s at 200 Hz behind 20 Hz: the registers of the MPU-6500, with an identity of its own.
+//! const MINE: Description = Description {
+//!     name: "ICM-20602",
+//!     identity: 0x75,
+//!     identities: &[0x12],
+//!     start_up: Writes::of([
+//!         Write::new(0x6B, 0x80).wait_us(100_000), // reset
+//!         Write::new(0x70, 0x40).spi_only(),       // no I²C
+//!         Write::new(0x6B, 0x01),                  // awake
+//!         Write::new(0x1A, 0x04),                  // low pass
+//!         Write::new(0x19, 0x04),                  // 1 kHz / 5
+//!         Write::new(0x1B, 0x00),                  // ±250 °/s
+//!         Write::new(0x37, 0x10),                  // a read clears the flags
+//!         Write::new(0x38, 0x01).wait_us(100_000), // data ready; the gyro settles
+//!     ]),
+//!     interface: Interface { spi_read: 0x80, spi_dummies: 0, spi_wake: None, i2c_address: 0x68, i2c_read: 0 },
+//!     status: Status { register: 0x3A, ready: 1, overrun: 0 },
+//!     signal: None,
+//!     gyro: 0x43,
+//!     temperature: Some(Temperature { register: 0x41, at_zero_c: 25.0, counts_per_k: 326.8 }),
+//!     byte_order: ByteOrder::BigEndian,
+//!     scale_dps: 1.0 / 131.0,
+//!     rate_hz: 200.0,
+//!     // The largest that a cut-off of 20 Hz can have, because its order is not known.
+//!     filter: Filter { noise_bandwidth_hz: 31.4, poles: 1 },
+//!     fifo: None,
+//! };
+//! const _: () = assert!(MINE.check().is_ok());
+//! ```
+//!
+//! Registers in banks are reached by writes that choose the bank, as those of the [`ICM_20948`]. What no description says:
+//! bursts that are written at start-up, such as the 8 KiB of a BMI270, frames of 16 bits, and counts of 32 bits. Such a sensor is
+//! read by a driver of its own, whose counts go to [`Axes::push`](crate::Axes::push).
 //!
 //! # Waiting
 //!
@@ -116,11 +160,13 @@ mod error;
 mod fetch;
 mod fifo;
 mod fifo_imu;
+mod icm_20948;
 mod icm_42688_p;
 mod icm_45686;
 mod imu;
 mod l3gd20;
 mod lsm6dso;
+mod lsm6dsr;
 mod lsm6dsv16x;
 mod malformed;
 mod mpu;
@@ -145,15 +191,17 @@ pub use burst::Burst;
 pub use bus::{I2cBus, Registers, SpiBus};
 pub use clock::Clock;
 pub use configuration::{Configuration, ConfigurationError};
-pub use description::{ByteOrder, Description, Filter, Interface, Status, Temperature};
+pub use description::{ByteOrder, Description, Filter, Flaw, Interface, Status, Temperature};
 pub use error::Error;
 pub use fifo::{Fifo, Format};
 pub use fifo_imu::FifoImu;
+pub use icm_20948::{ICM_20948, icm_20948};
 pub use icm_42688_p::{ICM_42688_P, icm_42688_p};
 pub use icm_45686::{ICM_45686, icm_45686};
 pub use imu::Imu;
 pub use l3gd20::L3GD20;
 pub use lsm6dso::{LSM6DSO, lsm6dso};
+pub use lsm6dsr::{LSM6DSR, lsm6dsr};
 pub use lsm6dsv16x::{LSM6DSV16X, lsm6dsv16x};
 pub use malformed::Malformed;
 pub use mpu_6050::{MPU_6050, mpu_6050};
@@ -164,12 +212,14 @@ pub use signal::Signal;
 pub use write::{Bus, Write, Writes};
 
 /// All descriptions of this module.
-pub static CATALOGUE: [&Description; 8] = [
+pub static CATALOGUE: [&Description; 10] = [
     &BMI160,
+    &ICM_20948,
     &ICM_42688_P,
     &ICM_45686,
     &L3GD20,
     &LSM6DSO,
+    &LSM6DSR,
     &LSM6DSV16X,
     &MPU_6050,
     &MPU_6500,

@@ -1,4 +1,4 @@
-//! What the MPU-6050 and the MPU-6500 offer in common.
+//! What the MPU-6050, the MPU-6500 and the ICM-20948 offer in common.
 
 use super::{
     Configuration, ConfigurationError, Filter,
@@ -52,7 +52,7 @@ pub(super) const fn choose(
 }
 
 /// The largest noise bandwidth, that of a first order.
-const fn low_pass(code: u8, bandwidth_hz: u16, rate_hz: u16) -> LowPass {
+pub(super) const fn low_pass(code: u8, bandwidth_hz: u16, rate_hz: u16) -> LowPass {
     LowPass {
         code,
         bandwidth_hz,

@@ -177,7 +177,10 @@ impl<const N: usize> Writes<N> {
     }
 
     /// The writes.
-    pub fn as_slice(&self) -> &[Write] {
-        self.writes.get(..self.length).unwrap_or(&self.writes)
+    pub const fn as_slice(&self) -> &[Write] {
+        match self.writes.as_slice().split_at_checked(self.length) {
+            Some((used, _)) => used,
+            None => &self.writes,
+        }
     }
 }

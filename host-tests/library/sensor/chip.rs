@@ -1,6 +1,6 @@
 //! Sensors with a FIFO, simulated by their data sheets and independently of the library.
 
-use allanite::sensor::{Description, ICM_42688_P, ICM_45686, LSM6DSO, LSM6DSV16X};
+use allanite::sensor::{Description, ICM_42688_P, ICM_45686, LSM6DSO, LSM6DSR, LSM6DSV16X};
 use std::collections::VecDeque;
 
 /// A sensor whose FIFO is simulated.
@@ -9,13 +9,15 @@ pub(crate) enum Kind {
     Icm42688P,
     Icm45686,
     Lsm6dso,
+    Lsm6dsr,
     Lsm6dsv16x,
 }
 
-pub(crate) const KINDS: [Kind; 4] = [
+pub(crate) const KINDS: [Kind; 5] = [
     Kind::Icm42688P,
     Kind::Icm45686,
     Kind::Lsm6dso,
+    Kind::Lsm6dsr,
     Kind::Lsm6dsv16x,
 ];
 
@@ -25,6 +27,7 @@ impl Kind {
             Self::Icm42688P => &ICM_42688_P,
             Self::Icm45686 => &ICM_45686,
             Self::Lsm6dso => &LSM6DSO,
+            Self::Lsm6dsr => &LSM6DSR,
             Self::Lsm6dsv16x => &LSM6DSV16X,
         }
     }
@@ -37,7 +40,7 @@ impl Kind {
     pub(crate) fn rate_and_ticks(self) -> (f64, f64) {
         match self {
             Self::Icm42688P | Self::Icm45686 => (100.0, 10_000.0 / (16.0 * 32.0 / 30.0)),
-            Self::Lsm6dso => (6667.0 / 64.0, 384.0),
+            Self::Lsm6dso | Self::Lsm6dsr => (6667.0 / 64.0, 384.0),
             Self::Lsm6dsv16x => (120.0, 384.0),
         }
     }
@@ -46,7 +49,7 @@ impl Kind {
     pub(crate) fn capacity(self) -> usize {
         match self {
             Self::Icm42688P | Self::Icm45686 | Self::Lsm6dsv16x => 128,
-            Self::Lsm6dso => 256,
+            Self::Lsm6dso | Self::Lsm6dsr => 256,
         }
     }
 
@@ -55,6 +58,7 @@ impl Kind {
             Self::Icm42688P => (0x75, 0x47),
             Self::Icm45686 => (0x72, 0xE9),
             Self::Lsm6dso => (0x0F, 0x6C),
+            Self::Lsm6dsr => (0x0F, 0x6B),
             Self::Lsm6dsv16x => (0x0F, 0x70),
         }
     }
@@ -172,9 +176,9 @@ impl Chip {
                     self.push(packet, 128);
                 }
             }
-            Kind::Lsm6dso | Kind::Lsm6dsv16x => {
+            Kind::Lsm6dso | Kind::Lsm6dsr | Kind::Lsm6dsv16x => {
                 let time_on = match self.kind {
-                    Kind::Lsm6dso => self.is_set(0x19, 0x20, 0x20),
+                    Kind::Lsm6dso | Kind::Lsm6dsr => self.is_set(0x19, 0x20, 0x20),
                     _ => self.is_set(0x50, 0x40, 0x40),
                 };
                 if !self.is_set(0x0A, 0x07, 0x06) || !time_on || !self.is_set(0x0A, 0xC0, 0x40) {
@@ -183,7 +187,7 @@ impl Chip {
                 let word = |kind: Kind, tag: u8, data: [u8; 6]| {
                     let tag = tag << 3 | ((self.taken & 3) as u8) << 1;
                     let parity = match kind {
-                        Kind::Lsm6dso => (tag.count_ones() % 2) as u8,
+                        Kind::Lsm6dso | Kind::Lsm6dsr => (tag.count_ones() % 2) as u8,
                         _ => 0,
                     };
                     [[tag | parity].as_slice(), &data].concat()
@@ -246,7 +250,9 @@ impl Chip {
         let flushed = match self.kind {
             Kind::Icm42688P => register == 0x4B && value & 0x02 != 0,
             Kind::Icm45686 => register == 0x20 && value & 0x80 != 0,
-            Kind::Lsm6dso | Kind::Lsm6dsv16x => register == 0x0A && value & 0x07 == 0,
+            Kind::Lsm6dso | Kind::Lsm6dsr | Kind::Lsm6dsv16x => {
+                register == 0x0A && value & 0x07 == 0
+            }
         };
         if flushed {
             self.fifo.clear();
@@ -267,13 +273,13 @@ impl Chip {
                 let count = std::mem::replace(&mut self.stale_count, units);
                 fill(bytes, &count.to_le_bytes());
             }
-            (Kind::Lsm6dso, 0x3A) | (Kind::Lsm6dsv16x, 0x1B) => {
+            (Kind::Lsm6dso | Kind::Lsm6dsr, 0x3A) | (Kind::Lsm6dsv16x, 0x1B) => {
                 let [low, high] = units.to_le_bytes();
                 let flags = u8::from(std::mem::take(&mut self.overrun)) << 3;
                 fill(bytes, &[low, high | flags]);
             }
             (Kind::Icm42688P, 0x30) | (Kind::Icm45686, 0x14) => self.drain(bytes, 16),
-            (Kind::Lsm6dso | Kind::Lsm6dsv16x, 0x78) => self.drain(bytes, 7),
+            (Kind::Lsm6dso | Kind::Lsm6dsr | Kind::Lsm6dsv16x, 0x78) => self.drain(bytes, 7),
             (Kind::Icm45686, 0x7E) => {
                 let address = self.move_on();
                 bytes[0] = self.pages[address];

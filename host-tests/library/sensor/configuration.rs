@@ -3,9 +3,10 @@
 use crate::chip::{KINDS, Kind};
 use crate::precision::double;
 use crate::wire::{NoDelay, Wire};
+use allanite::Real;
 use allanite::sensor::{
-    Configuration, ConfigurationError, Description, FifoImu, icm_42688_p, icm_45686, lsm6dso,
-    lsm6dsv16x, mpu_6050, mpu_6500,
+    CATALOGUE, Configuration, ConfigurationError, Description, FifoImu, Flaw, LSM6DSO, Writes,
+    icm_42688_p, icm_45686, lsm6dso, lsm6dsr, lsm6dsv16x, mpu_6050, mpu_6500,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -14,6 +15,7 @@ fn describe(kind: Kind, wanted: Configuration) -> Result<Description, Configurat
         Kind::Icm42688P => icm_42688_p(wanted),
         Kind::Icm45686 => icm_45686(wanted),
         Kind::Lsm6dso => lsm6dso(wanted),
+        Kind::Lsm6dsr => lsm6dsr(wanted),
         Kind::Lsm6dsv16x => lsm6dsv16x(wanted),
     }
 }
@@ -25,7 +27,7 @@ fn offered(kind: Kind) -> (&'static [u16], &'static [u16]) {
     match kind {
         Kind::Icm42688P => (&[25, 50, 100, 200, 500, 1000], &RANGES[..8]),
         Kind::Icm45686 => (&[25, 50, 100, 200, 400, 800, 1600], &RANGES),
-        Kind::Lsm6dso => (&[26, 52, 104, 208, 416], &RANGES[3..8]),
+        Kind::Lsm6dso | Kind::Lsm6dsr => (&[26, 52, 104, 208, 416], &RANGES[3..8]),
         Kind::Lsm6dsv16x => (&[30, 60, 120, 240, 480], &RANGES[3..]),
     }
 }
@@ -221,7 +223,7 @@ fn the_sample_interval_follows_from_the_rate() {
             let off = ps * 1e-12 * f64::from(rate_hz) - 1.0;
             assert!(off.abs() < 2e-3, "{kind:?} {rate_hz}: {off}");
             // The rate of the LSM6DSO is 6667 Hz divided by a power of two.
-            let is_rounded = kind == Kind::Lsm6dso;
+            let is_rounded = matches!(kind, Kind::Lsm6dso | Kind::Lsm6dsr);
             assert!(is_rounded || off.abs() < 1e-6, "{kind:?} {rate_hz}: {off}");
         }
     }
@@ -276,5 +278,39 @@ fn the_mpus_divide_their_rate_and_keep_the_low_pass_below_it() {
         assert_eq!(accepted, 7 * 4);
         let asked = describe(Configuration::new(25, 250).bandwidth_hz(5)).unwrap();
         assert_eq!(asked.filter.poles, 1);
+    }
+}
+
+/// Each change of one field is found, and named by it.
+#[test]
+fn a_description_that_cannot_be_right_is_found() {
+    type Change = fn(&mut Description);
+    for description in CATALOGUE {
+        assert_eq!(description.check(), Ok(()), "{}", description.name);
+    }
+    let changes: [(Flaw, Change); 16] = [
+        (Flaw::Identity, |it| it.identities = &[]),
+        (Flaw::Identity, |it| it.identities = &[0x47, 0xFF]),
+        (Flaw::StartUp, |it| it.start_up = Writes::NONE),
+        (Flaw::Interface, |it| it.interface.i2c_address = 0xD0),
+        (Flaw::Interface, |it| it.interface.spi_dummies = 4),
+        (Flaw::Status, |it| it.status.ready = 0),
+        (Flaw::Block, |it| it.gyro = 0xFC),
+        (Flaw::Block, |it| it.gyro = 0x70),
+        (Flaw::Temperature, |it| {
+            it.temperature.as_mut().unwrap().counts_per_k = 0.0;
+        }),
+        (Flaw::Scale, |it| it.scale_dps = 0.0),
+        (Flaw::Scale, |it| it.scale_dps = Real::NAN),
+        (Flaw::Rate, |it| it.rate_hz = Real::INFINITY),
+        (Flaw::Filter, |it| it.filter.noise_bandwidth_hz = -1.0),
+        (Flaw::Filter, |it| it.filter.poles = 0),
+        (Flaw::Fifo, |it| it.fifo.as_mut().unwrap().capacity = 0),
+        (Flaw::Fifo, |it| it.fifo.as_mut().unwrap().interval = 0),
+    ];
+    for (flaw, change) in changes {
+        let mut description = LSM6DSO;
+        change(&mut description);
+        assert_eq!(description.check(), Err(flaw));
     }
 }

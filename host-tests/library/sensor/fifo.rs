@@ -102,7 +102,7 @@ fn a_burst_takes_one_transaction_besides_its_count() {
             Kind::Icm42688P => (0x30, 20 * 16),
             Kind::Icm45686 => (0x14, 19 * 16),
             // Every eighth sample, the first included, comes with a temperature.
-            Kind::Lsm6dso | Kind::Lsm6dsv16x => (0x78, 43 * 7),
+            Kind::Lsm6dso | Kind::Lsm6dsr | Kind::Lsm6dsv16x => (0x78, 43 * 7),
         };
         assert_eq!(wire.0.borrow().log.last(), Some(&expected), "{kind:?}");
     }
@@ -124,7 +124,7 @@ fn temperatures_come_in_the_steps_of_the_registers() {
             // −10 in steps of 1/2.07 K or 1/2 K.
             Kind::Icm42688P => 25.0 - 10.0 / 2.07,
             Kind::Icm45686 => 20.0,
-            Kind::Lsm6dso | Kind::Lsm6dsv16x => 22.5,
+            Kind::Lsm6dso | Kind::Lsm6dsr | Kind::Lsm6dsv16x => 22.5,
         };
         assert!((celsius - expected).abs() < 1e-9, "{kind:?}: {celsius}");
     }

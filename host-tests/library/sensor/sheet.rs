@@ -3,8 +3,8 @@
 use allanite::sensor::{
     BMI160,
     Bus::{self, Any, I2c, Spi},
-    Description, I2cBus, ICM_42688_P, ICM_45686, Imu, L3GD20, LSM6DSO, LSM6DSV16X, Loss, MPU_6050,
-    MPU_6500, Reading,
+    Description, I2cBus, ICM_20948, ICM_42688_P, ICM_45686, Imu, L3GD20, LSM6DSO, LSM6DSR,
+    LSM6DSV16X, Loss, MPU_6050, MPU_6500, Reading,
 };
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock as I2cMock, Transaction as I2cTurn};
@@ -41,7 +41,7 @@ const MPU_WRITES: &[(u8, u8, Bus)] = &[
     (0x38, 0x01, Any),
 ];
 
-pub(crate) const SHEETS: [Sheet; 8] = [
+pub(crate) const SHEETS: [Sheet; 10] = [
     Sheet {
         description: &BMI160,
         bus: (0x68, 0x80, 0),
@@ -52,6 +52,27 @@ pub(crate) const SHEETS: [Sheet; 8] = [
         block: (0x0C, 22, 0, Some(20)),
         big_endian: false,
         ready: 0x40,
+    },
+    Sheet {
+        description: &ICM_20948,
+        bus: (0x68, 0x80, 0),
+        identity: (0x00, 0xEA),
+        writes: &[
+            (0x06, 0x80, Any),
+            (0x03, 0x10, Spi),
+            (0x06, 0x01, Any),
+            (0x7F, 0x20, Any),
+            (0x00, 0x04, Any),
+            (0x01, 0x21, Any),
+            (0x7F, 0x00, Any),
+            (0x0F, 0x10, Any),
+            (0x11, 0x01, Any),
+        ],
+        reads: &[],
+        status: 0x1A,
+        block: (0x33, 8, 0, Some(6)),
+        big_endian: true,
+        ready: 0x01,
     },
     Sheet {
         description: &ICM_42688_P,
@@ -128,6 +149,24 @@ pub(crate) const SHEETS: [Sheet; 8] = [
         description: &LSM6DSO,
         bus: (0x6A, 0x80, 0),
         identity: (0x0F, 0x6C),
+        writes: &[
+            (0x12, 0x01, Any),
+            (0x18, 0xE2, Any),
+            (0x13, 0x04, Spi),
+            (0x12, 0x44, Any),
+            (0x0D, 0x02, Any),
+            (0x11, 0x40, Any),
+        ],
+        reads: &[],
+        status: 0x1E,
+        block: (0x20, 8, 2, Some(0)),
+        big_endian: false,
+        ready: 0x02,
+    },
+    Sheet {
+        description: &LSM6DSR,
+        bus: (0x6A, 0x80, 0),
+        identity: (0x0F, 0x6B),
         writes: &[
             (0x12, 0x01, Any),
             (0x18, 0xE2, Any),

@@ -56,7 +56,7 @@ fn every_sensor_waits_for_what_its_pin_does() {
             // Pulses, active high: INT1_CONFIG2.
             Kind::Icm45686 => "rising",
             // A level until the data are read.
-            Kind::Lsm6dso | Kind::Lsm6dsv16x => "high",
+            Kind::Lsm6dso | Kind::Lsm6dsr | Kind::Lsm6dsv16x => "high",
         };
         let wire = Wire::new(kind);
         let mut pin = Pin::default();

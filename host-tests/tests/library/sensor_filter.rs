@@ -5,8 +5,8 @@ use allanite::{
     diagnosis::{Options, Verdict},
     effect::CATALOGUE as EFFECTS,
     sensor::{
-        BMI160, CATALOGUE, Description, ICM_42688_P, ICM_45686, L3GD20, LSM6DSO, LSM6DSV16X,
-        MPU_6050, MPU_6500,
+        BMI160, CATALOGUE, Description, ICM_20948, ICM_42688_P, ICM_45686, L3GD20, LSM6DSO,
+        LSM6DSR, LSM6DSV16X, MPU_6050, MPU_6500,
     },
 };
 use host_tests::{
@@ -46,13 +46,19 @@ fn sinc_squared(f: f64, rate_hz: f64) -> f64 {
     (x.sin() / x).powi(4)
 }
 
-const LOW_PASSES: [LowPass; 8] = [
+const LOW_PASSES: [LowPass; 10] = [
     LowPass {
         description: &BMI160,
         rate_hz: 200.0,
         poles: 1,
         // 5.06 Hz at 50 Hz, in proportion to the rate.
         response: |f| one_pole(f, 4.0 * 5.06),
+    },
+    LowPass {
+        description: &ICM_20948,
+        rate_hz: 225.0,
+        poles: 1,
+        response: |f| one_pole(f, 24.0),
     },
     LowPass {
         description: &ICM_42688_P,
@@ -74,6 +80,12 @@ const LOW_PASSES: [LowPass; 8] = [
     },
     LowPass {
         description: &LSM6DSO,
+        rate_hz: 104.0,
+        poles: 2,
+        response: |f| sinc_squared(f, 104.0),
+    },
+    LowPass {
+        description: &LSM6DSR,
         rate_hz: 104.0,
         poles: 2,
         response: |f| sinc_squared(f, 104.0),

@@ -93,14 +93,14 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
     pub(super) fn new(
         mark: Mark,
         samples: u64,
-        (curve, invalid): (&Curve<OCTAVES>, Option<Reason>),
+        (curve, invalid): (Curve<OCTAVES>, Option<Reason>),
         limits: impl Iterator<Item = Compared>,
     ) -> Self {
         Self {
             mark: Some(mark),
             samples,
             invalid,
-            curve: invalid.is_none().then(|| curve.clone()),
+            curve: invalid.is_none().then_some(curve),
             fit: None,
             limits: list::fill(limits),
             next: 0,

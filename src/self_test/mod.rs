@@ -67,7 +67,7 @@ pub enum Status {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Failure {
     /// A coefficient is above its limit, and the five terms explain the curve: its p-value is
-    /// [`ADEQUATE_P`](crate::fit::ADEQUATE_P) or more.
+    /// [`ADEQUATE_P`] or more.
     Limit {
         /// The limit that the coefficient exceeds.
         limit: Limit,
@@ -75,7 +75,7 @@ pub enum Failure {
         value: Real,
     },
     /// The five terms do not explain the curve. Either its p-value is below the one that the plan asks for, or it is
-    /// below [`ADEQUATE_P`](crate::fit::ADEQUATE_P) and a coefficient is above its limit, or it is below 10⁻⁶ and a
+    /// below [`ADEQUATE_P`] and a coefficient is above its limit, or it is below 10⁻⁶ and a
     /// coefficient is undecided at the last look. Such a curve has an effect that the five terms lack, such as a
     /// vibration. Of the gyros that the five terms explain and that fail a limit, one in a hundred is called so, too.
     Misfit {
@@ -234,7 +234,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         if unit != test {
             return Err(Error::OtherScale { record: unit, test });
         }
-        Ok(self.begin(record.samples, &record.curve, record.invalid))
+        Ok(self.begin(record.samples, record.curve.clone(), record.invalid))
     }
 
     /// Begins a look at an accumulator of counts, whose rate and unit are those of the test: for a sensor that has no room for
@@ -248,7 +248,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     ) -> Look<OCTAVES> {
         self.begin(
             accumulator.samples(),
-            &accumulator.curve(self.scale),
+            accumulator.curve(self.scale),
             invalid,
         )
     }
@@ -256,7 +256,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     fn begin(
         &mut self,
         samples: u64,
-        curve: &Curve<OCTAVES>,
+        curve: Curve<OCTAVES>,
         invalid: Option<Reason>,
     ) -> Look<OCTAVES> {
         // No two tests that have begun a look lie at one place. A test may move afterwards.

@@ -16,7 +16,7 @@ pub(super) type Mark = (usize, u32);
 
 /// A look in progress, for a main loop that has other work to do: the first call of [`advance`](Self::advance) takes as long
 /// as a [fit of the five terms](crate::ieee_952::fit()), and each other one compares it with a limit that is not decided yet,
-/// in about a third of that. Samples may be pushed meanwhile; the look is at the record as it was when the look began.
+/// which takes no longer. Samples may be pushed meanwhile; the look is at the record as it was when the look began.
 ///
 /// # Example
 ///

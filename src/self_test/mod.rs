@@ -106,7 +106,7 @@ pub enum Failure {
 ///
 /// The test holds no samples. [`is_due`](Self::is_due) says after each sample whether a look is due, at the
 /// cost of one comparison. The caller then takes the [`look`](Self::look) at a curve when it has time for a
-/// [fit of the five terms](crate::ieee_952::fit()) and a third of one for each undecided limit. A late look loses nothing.
+/// [fit of the five terms](crate::ieee_952::fit()) and one more for each undecided limit. A late look loses nothing.
 ///
 /// # Example
 ///

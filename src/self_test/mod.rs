@@ -178,7 +178,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     /// [`InvalidPlan`] if the plan cannot be carried out.
     pub fn new(plan: Plan, scale: Scale) -> Result<Self, InvalidPlan> {
         let (first, last) = plan.check(scale, OCTAVES)?;
-        let looks = 1 + last.div_ceil(first).next_power_of_two().ilog2();
+        let looks = 1 + last.div_ceil(first.max(1)).next_power_of_two().ilog2();
         let limits = plan.limits.len().max(1) as Real;
         Ok(Self {
             scale,

@@ -32,5 +32,7 @@ pub(crate) fn run(octaves: u32, targets: &[String], output: &Path) -> Result<()>
 
 /// The targets that the library is built for.
 pub(crate) fn targets() -> clap::builder::PossibleValuesParser {
-    CORES.map(|core| core.target).into()
+    let mut targets = CORES.map(|core| core.target).to_vec();
+    targets.dedup();
+    targets.into()
 }

@@ -15,7 +15,8 @@ use crate::{
 };
 
 /// A limit at which the term alone would be this many times the curve in every octave is replaced by the lowest limit for
-/// which this is so, as in the general likelihood ratio.
+/// which this is so. The curve is as far below the one as below the other, and the square stays within the range of numbers.
+/// Chosen by hand.
 const BEYOND: f32 = 1e3;
 
 /// The limits that are tried, each lower than the one before by this factor.
@@ -33,7 +34,7 @@ pub(crate) fn place(name: &str) -> Option<usize> {
 /// covariance with the coefficient free. χ² falls by the square. If the coefficient is at the limit, the root is nearly
 /// normal with a variance of one (Wilks 1938), or nearer to zero where the others are at zero too (Chernoff 1954).
 ///
-/// `None` if the covariance at the limit is not positive definite, or if the fit was of another curve.
+/// `None` if neither the covariance at the limit nor one at a lower limit that is out of the question is positive definite.
 #[inline(never)]
 pub(crate) fn above<const K: usize>(
     curve: &Curve<K>,

@@ -13,7 +13,8 @@ pub(crate) use libm::{ceilf as ceil, expf as exp, floorf as floor, logf as log, 
 #[cfg(not(feature = "double"))]
 pub(crate) use root as short_sqrt;
 
-/// The complementary error function, accurate to 2e-5 of its value. That of libm needs five times the flash.
+/// The complementary error function, accurate to 2e-5 of its value. That of libm takes 1.3 KB of
+/// flash on a Cortex-M0.
 ///
 /// For small numbers, it is the series of Abramowitz & Stegun 1964, eq. 7.1.6, and for large ones the continued fraction of
 /// eq. 7.1.14.

@@ -2,7 +2,7 @@ use super::{
     ByteOrder, Configuration, ConfigurationError, Description, Interface, Signal, Status,
     Temperature, Write, Writes,
     configuration::{Offer, checked},
-    mpu::low_pass,
+    mpu::{RANGES, low_pass},
 };
 use crate::numerics::real::Real;
 
@@ -16,7 +16,7 @@ const BANK_2: u8 = 0x20;
 ///
 /// * Rates: 45, 75, 125, 225, 375 and 1125 Hz.
 /// * Ranges: 250, 500, 1000 and 2000 °/s.
-/// * Low passes: 120, 51, 24, 12 and 6 Hz. Those above a ninth of the rate have to be asked for, because a filter of first
+/// * Low passes: 120, 52, 24, 12 and 6 Hz. Those above a ninth of the rate have to be asked for, because a filter of first
 ///   order there would let folded noise raise N by 2 % or more.
 ///
 /// # Errors
@@ -27,12 +27,7 @@ pub const fn icm_20948(wanted: Configuration) -> Result<Description, Configurati
         sensor: "ICM-20948",
         // The gyro runs at 1125 Hz behind these filters, and the rate is that divided by 1 plus the code.
         rates: [(45, 24), (75, 14), (125, 8), (225, 4), (375, 2), (1125, 0)],
-        ranges: [
-            (250, 0, 1.0 / 131.0),
-            (500, 1, 1.0 / 65.5),
-            (1000, 2, 1.0 / 32.8),
-            (2000, 3, 1.0 / 16.4),
-        ],
+        ranges: RANGES,
         most: u16::MAX,
     };
     // GYRO_DLPFCFG 2 to 6: 119.5, 51.2, 23.9, 11.6 and 5.7 Hz, rounded up.

@@ -9,6 +9,14 @@ use crate::numerics::real::{Real, consts::FRAC_PI_2};
 /// Folded noise raises N by less than 2 % if the cut-off of a first order is below this fraction of the rate.
 const TIGHT: u16 = 9;
 
+/// The ranges, with their codes.
+pub(super) const RANGES: [(u16, u8, Real); 4] = [
+    (250, 0, 1.0 / 131.0),
+    (500, 1, 1.0 / 65.5),
+    (1000, 2, 1.0 / 32.8),
+    (2000, 3, 1.0 / 16.4),
+];
+
 /// Looks a configuration up. `bandwidths_hz` are those of `DLPF_CFG` 1 to 6. The rate is 1 kHz divided by 1 plus the
 /// code, because the gyro runs at 1 kHz behind these filters.
 pub(super) const fn choose(
@@ -29,12 +37,7 @@ pub(super) const fn choose(
             (500, 1),
             (1000, 0),
         ],
-        ranges: [
-            (250, 0, 1.0 / 131.0),
-            (500, 1, 1.0 / 65.5),
-            (1000, 2, 1.0 / 32.8),
-            (2000, 3, 1.0 / 16.4),
-        ],
+        ranges: RANGES,
         // The FIFO is not used.
         most: u16::MAX,
     };

@@ -41,6 +41,15 @@ const MPU_WRITES: &[(u8, u8, Bus)] = &[
     (0x38, 0x01, Any),
 ];
 
+const LSM6DSO_WRITES: &[(u8, u8, Bus)] = &[
+    (0x12, 0x01, Any),
+    (0x18, 0xE2, Any),
+    (0x13, 0x04, Spi),
+    (0x12, 0x44, Any),
+    (0x0D, 0x02, Any),
+    (0x11, 0x40, Any),
+];
+
 pub(crate) const SHEETS: [Sheet; 10] = [
     Sheet {
         description: &BMI160,
@@ -149,14 +158,7 @@ pub(crate) const SHEETS: [Sheet; 10] = [
         description: &LSM6DSO,
         bus: (0x6A, 0x80, 0),
         identity: (0x0F, 0x6C),
-        writes: &[
-            (0x12, 0x01, Any),
-            (0x18, 0xE2, Any),
-            (0x13, 0x04, Spi),
-            (0x12, 0x44, Any),
-            (0x0D, 0x02, Any),
-            (0x11, 0x40, Any),
-        ],
+        writes: LSM6DSO_WRITES,
         reads: &[],
         status: 0x1E,
         block: (0x20, 8, 2, Some(0)),
@@ -167,14 +169,7 @@ pub(crate) const SHEETS: [Sheet; 10] = [
         description: &LSM6DSR,
         bus: (0x6A, 0x80, 0),
         identity: (0x0F, 0x6B),
-        writes: &[
-            (0x12, 0x01, Any),
-            (0x18, 0xE2, Any),
-            (0x13, 0x04, Spi),
-            (0x12, 0x44, Any),
-            (0x0D, 0x02, Any),
-            (0x11, 0x40, Any),
-        ],
+        writes: LSM6DSO_WRITES,
         reads: &[],
         status: 0x1E,
         block: (0x20, 8, 2, Some(0)),

@@ -19,9 +19,19 @@ const MOST_GAPS: f64 = 0.2;
 /// exact stamps. Chosen by hand.
 const EXACT: (f64, f64) = (0.1, 0.05);
 
-/// A late stamp is followed by this many rows at most until the stamps are where they would be if it had been on time.
-/// Chosen by hand.
-const MOST_LATE: u64 = 16;
+/// A late stamp is followed by this many rows at most, none of which waited, until the stamps are where they would be if it
+/// had been on time. A reader that is late again while it catches up takes longer, but not more rows than the second number.
+/// Chosen by hand; `cargo xtask study stamps` counts what they miss.
+const MOST_LATE: (u64, u64) = (16, 128);
+
+/// The least of some stamps is early, by about so many times their scatter. Chosen by hand.
+const EARLY: f64 = 0.9;
+
+/// The rows at the end of a log that are too few to tell whether a stamp before them is late.
+const LAST: u64 = 3;
+
+/// A step below this share of the usual one is that of a row that waited for the reader.
+const WAITED: f64 = 0.5;
 
 /// After this many gaps in a row, the log is taken to have changed its rate. Chosen by hand; no study
 /// varies it.
@@ -105,6 +115,8 @@ struct Behind {
     step: f64,
     /// The samples that the stamps behind it leave for lost, at least.
     least: f64,
+    /// The last row behind it that waited for the reader.
+    waited: u64,
 }
 
 impl Behind {
@@ -165,7 +177,7 @@ impl Clock {
             return Ok(Tick::Repeated);
         }
         let rows = 1 + std::mem::take(&mut self.sharing);
-        self.end_delays(stamp);
+        self.end_delays(stamp, step);
         let is_long = step > self.pace.longest;
         let known = self.late.pop_if(|late| late.row == self.rows);
         if let Some(late) = known {
@@ -186,6 +198,7 @@ impl Clock {
                 first: self.rows - rows,
                 step,
                 least: told as f64,
+                waited: self.rows,
             });
             self.off_grid += u64::from((samples - samples.round()).abs() > EXACT.0);
         }
@@ -217,14 +230,21 @@ impl Clock {
 
     /// Finds out which stamps behind the last gaps were late: the rows behind them catch up with their stamps, so that they
     /// leave less for lost.
-    fn end_delays(&mut self, stamp: Stamp) {
+    fn end_delays(&mut self, stamp: Stamp, step: f64) {
         let (now, pace) = (self.rows, self.pace);
+        let early = EARLY * pace.scatter / pace.step;
         for gap in &mut self.behind {
+            if step < WAITED * pace.step {
+                gap.waited = now;
+            }
             let samples = stamp.since(gap.before) / pace.step * pace.rows;
-            gap.least = gap.least.min(samples - (now - gap.first) as f64);
+            gap.least = gap.least.min(samples - (now - gap.first) as f64 + early);
         }
-        let longest = (MOST_LATE as f64 * pace.rows) as u64;
-        let is_settled = |gap: &mut Behind| gap.lost() == 0 || now - gap.row >= longest;
+        let rows = |number: u64| (number as f64 * pace.rows) as u64;
+        let (quiet, most) = (rows(MOST_LATE.0), rows(MOST_LATE.1));
+        let is_settled = |gap: &mut Behind| {
+            gap.lost() == 0 || now - gap.waited >= quiet || now - gap.row >= most
+        };
         let settled: Vec<Behind> = self.behind.extract_if(.., is_settled).collect();
         for gap in settled {
             if let Some(late) = self.late(&gap) {
@@ -245,7 +265,17 @@ impl Clock {
 
     /// The rows whose stamps turned out to be late, in any order.
     pub(super) fn found_late(&self) -> Vec<Late> {
-        let open = self.behind.iter().filter_map(|gap| self.late(gap));
+        // Nothing was lost before the last rows of a log whose other stamps are late.
+        let is_last = |gap: &&Behind| self.rows - gap.row < LAST && !self.found.is_empty();
+        let (last, open): (Vec<&Behind>, Vec<&Behind>) = self.behind.iter().partition(is_last);
+        let last = last.into_iter().map(|gap| Late {
+            row: gap.row,
+            lost: 0,
+        });
+        let open = open
+            .into_iter()
+            .filter_map(|gap| self.late(gap))
+            .chain(last);
         self.found.iter().copied().chain(open).collect()
     }
 

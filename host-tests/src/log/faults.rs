@@ -1,6 +1,6 @@
 //! Watches what a logger did to the samples of the axes, and leaves out samples that it repeated.
 
-use super::Repeats;
+use super::{Places, Repeats};
 use allanite::{
     faults::{JointRepeats, SampleFaults},
     integrity::Reason,
@@ -31,6 +31,8 @@ pub(super) struct Faults {
     axes: Vec<SampleFaults>,
     /// Those of every three axes, if there are only whole sensors.
     joint: Vec<JointRepeats>,
+    /// Which rows repeat the one before: of every sensor, or of every axis.
+    places: Vec<Places>,
     /// The last row, unless a gap follows it.
     last: Vec<i32>,
     rows: u64,
@@ -49,6 +51,7 @@ impl Faults {
                 .map(|axis| SampleFaults::with_zero(zero(axis)))
                 .collect(),
             joint: vec![JointRepeats::new(); sensors],
+            places: vec![Places::default(); if sensors > 0 { sensors } else { axes }],
             last: Vec::new(),
             rows: 0,
             dropped: 0,
@@ -63,9 +66,9 @@ impl Faults {
 
     /// Watches some counts of an axis.
     pub(super) fn push(&mut self, axis: usize, counts: &[i32]) {
-        let faults = &mut self.axes[axis];
+        let (faults, places) = (&mut self.axes[axis], &mut self.places[axis]);
         for &count in counts {
-            faults.push(count);
+            places.push(faults.push(count) == Some(0));
         }
     }
 
@@ -85,10 +88,13 @@ impl Faults {
         }
         let sensors = self.axes.as_chunks_mut::<SENSOR>().0.iter_mut();
         let counts = columns.as_chunks::<SENSOR>().0;
-        for ((axes, joint), [x, y, z]) in sensors.zip(&mut self.joint).zip(counts) {
+        let joint = self.joint.iter_mut().zip(&mut self.places);
+        for ((axes, (joint, places)), [x, y, z]) in sensors.zip(joint).zip(counts) {
             let [of_x, of_y, of_z] = axes;
             for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
-                joint.push([of_x.push(x), of_y.push(y), of_z.push(z)]);
+                let steps = [of_x.push(x), of_y.push(y), of_z.push(z)];
+                joint.push(steps);
+                places.push(steps == [Some(0); SENSOR]);
             }
         }
     }
@@ -118,6 +124,7 @@ impl Faults {
     pub(super) fn gap(&mut self) {
         self.last.clear();
         self.axes.iter_mut().for_each(SampleFaults::gap);
+        self.places.iter_mut().for_each(Places::gap);
         let behind_gap = [None; SENSOR];
         self.joint
             .iter_mut()
@@ -128,10 +135,28 @@ impl Faults {
         (&self.axes[axis], self.joint.get(axis / SENSOR))
     }
 
-    /// Why the curve of an axis is not valid.
+    /// Why the curve of an axis is not valid. How many samples repeat is told by their places, where these are regular.
     pub(super) fn verdict(&self, axis: usize) -> Option<Reason> {
         let (faults, joint) = self.of_axis(axis);
-        faults.verdict(joint)
+        let reason = faults.verdict(joint)?;
+        let Reason::Repeated { times, samples, .. } = reason else {
+            return Some(reason);
+        };
+        let share = self.share_by_places(axis, &faults.repeats(joint));
+        Some(share.map_or(reason, |share| Reason::Repeated {
+            times,
+            changes: samples - (share * samples as f64).round() as u64,
+            samples,
+        }))
+    }
+
+    fn share_by_places(&self, axis: usize, counted: &allanite::faults::Repeats) -> Option<f64> {
+        let place = if self.joint.is_empty() {
+            axis
+        } else {
+            axis / SENSOR
+        };
+        self.places.get(place)?.share(counted)
     }
 
     /// The plan of another pass that leaves out the repeats, if all of them are certain: hardly any is there by chance,
@@ -154,6 +179,7 @@ impl Faults {
             false => self.joint.iter().map(JointRepeats::repeats).collect(),
         };
         let shares = all.iter().map(|repeats| repeats.share);
+        let by_places = all.first().and_then(|first| self.share_by_places(0, first));
         let (least, most) = (
             shares.clone().fold(1.0, f64::min),
             shares.fold(0.0, f64::max),
@@ -161,7 +187,7 @@ impl Faults {
         let certain = all.iter().all(|repeats| repeats.are_certain());
         // The axes of a sensor repeat together.
         (certain && !all.is_empty() && most - least < 0.005).then(|| Plan {
-            left_out: Some(0.5 * (least + most)),
+            left_out: Some(by_places.unwrap_or(0.5 * (least + most))),
             ..self.plan.clone()
         })
     }

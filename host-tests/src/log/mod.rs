@@ -123,6 +123,7 @@ pub mod npy_header;
 mod pace;
 mod part_names;
 mod parts;
+mod places;
 mod preamble;
 mod quantum;
 mod reading;
@@ -164,6 +165,7 @@ pub(crate) use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
+pub(crate) use places::Places;
 
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
 /// records of years.

@@ -19,9 +19,9 @@ const REGULAR: f64 = 0.02;
 /// Rows come in bursts if more rows than this share a stamp. Fewer are rows that were written twice.
 const BURSTS: f64 = 1.3;
 
-/// A gap must exceed the usual step by this many times the usual scatter of steps. Chosen by hand; the
-/// tests of this file hold it to a jitter of half a step.
-const SCATTER: f64 = 5.0;
+/// A gap must exceed the usual step by this many times the scatter that this share of the steps keeps. One late stamp in ten
+/// makes two odd steps, and is no scatter. Chosen by hand; the tests of the clock hold it to a jitter of half a step.
+const SCATTER: (f64, f64) = (10.0, 0.6);
 
 /// The usual distance between stamps, estimated from the first ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +32,8 @@ pub(super) struct Pace {
     pub(super) step: f64,
     /// The longest step that is not a gap, in ticks.
     pub(super) longest: f64,
+    /// The usual distance of a step from the usual one, in ticks.
+    pub(super) scatter: f64,
     /// The number of rows that have the same stamp: 1 unless rows come in bursts.
     pub(super) rows: f64,
 }
@@ -46,11 +48,15 @@ impl Pace {
             .find(|&row| first[row] > first[row - 1]);
         let rows = last.unwrap_or(0) as f64 / steps.len().max(1) as f64;
         let rows = if rows > BURSTS { rows } else { 1.0 };
+        let usual = quantile(&mut steps, 0.5)?;
+        let mut scatter: Vec<f64> = steps.iter().map(|step| (step - usual).abs()).collect();
+        let scatter = quantile(&mut scatter, SCATTER.1)?;
         if let Some((step, longest)) = rounded(&mut steps) {
             return Some(Self {
                 per_second: unit.per_second(),
                 step,
                 longest,
+                scatter,
                 rows,
             });
         }
@@ -59,16 +65,15 @@ impl Pace {
                 per_second: unit.per_second(),
                 step,
                 longest: GAP * step,
+                scatter,
                 rows,
             });
         }
-        let step = quantile(&mut steps, 0.5)?;
-        let mut scatter: Vec<f64> = steps.iter().map(|other| (other - step).abs()).collect();
-        let scatter = quantile(&mut scatter, 0.9)?;
         Some(Self {
             per_second: unit.per_second(),
-            step,
-            longest: (GAP * step).max(step + SCATTER * scatter),
+            step: usual,
+            longest: (GAP * usual).max(usual + SCATTER.0 * scatter),
+            scatter,
             rows,
         })
     }
@@ -189,10 +194,12 @@ fn rounded(steps: &mut [f64]) -> Option<(f64, f64)> {
 /// that are missing, however many they are.
 ///
 /// Stamps with a jitter of half a step have no such step: three quarters of their steps lie within a
-/// quarter of a multiple, and four fifths are needed.
+/// quarter of a multiple, and four fifths are needed. Nor is it the time that a reader takes for a row that waits, which
+/// fits any step if it is short enough: a quarter of the steps are single ones.
 fn lattice(steps: &mut [f64]) -> Option<f64> {
     const NEAR: f64 = 0.25;
     const NEARLY_ALL: f64 = 0.8;
+    const SINGLE: f64 = 0.25;
     let multiple = |long: f64, step: f64| (long / step).round().max(1.0);
     let mut step = quantile(steps, 0.2)?;
     for _ in 0..2 {
@@ -204,14 +211,17 @@ fn lattice(steps: &mut [f64]) -> Option<f64> {
     }
     let is_near = |long: &&f64| (**long / step - multiple(**long, step)).abs() <= NEAR;
     let near = steps.iter().filter(is_near);
-    let (mut count, mut samples, mut sum) = (0, 0.0, 0.0);
+    let (mut count, mut single, mut samples, mut sum) = (0, 0, 0.0, 0.0);
     for &long in near {
         count += 1;
+        single += usize::from(multiple(long, step) == 1.0);
         samples += multiple(long, step);
         sum += long;
     }
     // The mean, because the usual one of rounded stamps may be off by some per cent.
-    (f64::from(count) >= NEARLY_ALL * steps.len() as f64).then(|| sum / samples)
+    let number = steps.len() as f64;
+    (f64::from(count) >= NEARLY_ALL * number && single as f64 >= SINGLE * number)
+        .then(|| sum / samples)
 }
 
 fn quantile(values: &mut [f64], share: f64) -> Option<f64> {

@@ -1,7 +1,7 @@
 //! Studies how often faults of a logger are told, and how often they are told of records that have none.
 
 use super::noise::{butterworth, flicker, normal, normalised};
-use crate::simulate::Random;
+use crate::{log::Places, simulate::Random};
 use allanite::{
     faults::{JointRepeats, SampleFaults},
     integrity::Reason,
@@ -217,13 +217,19 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
     let (faulty, repeated) = spoilt(fault, &record, random);
     let mut axes = [(); 3].map(|()| SampleFaults::new());
     let mut joint = JointRepeats::new();
+    let mut places = [(); 2].map(|()| Places::default());
     let [x, y, z] = &faulty;
     for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
         let [of_x, of_y, of_z] = &mut axes;
-        joint.push([of_x.push(x), of_y.push(y), of_z.push(z)]);
+        let steps = [of_x.push(x), of_y.push(y), of_z.push(z)];
+        joint.push(steps);
+        let [first, all] = &mut places;
+        first.push(steps[0] == Some(0));
+        all.push(steps == [Some(0); 3]);
     }
     let one = |joint: Option<&JointRepeats>, number: usize| {
         let repeats = axes[0].repeats(joint);
+        let places = &places[usize::from(joint.is_some())];
         One {
             chance: chances[..number]
                 .iter()
@@ -232,7 +238,7 @@ fn judge(fault: Fault, resolution: Resolution, random: &mut Random) -> [One; 2] 
                 .iter()
                 .map(|axis| axis.verdict(joint))
                 .collect(),
-            share: repeats.share,
+            share: places.share(&repeats).unwrap_or(repeats.share),
             repeated,
             least: repeats.least,
             noise: format!("{:?} {:.2}", record.colour, record.sigma),
@@ -327,7 +333,7 @@ fn noise(
     normalised(noise)
 }
 
-/// The counts that the logger writes, and the share of samples that it repeats.
+/// The counts that the logger writes, and by how much the sensor's rate is below that of the record, relative to it.
 fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> ([Vec<i32>; 3], f64) {
     let last = SAMPLES - 1;
     // The place of the sensor's sample in each row.
@@ -404,6 +410,7 @@ fn spoilt(fault: Fault, record: &Record, random: &mut Random) -> ([Vec<i32>; 3],
         }
         _ => {}
     }
-    let repeated = places.windows(2).filter(|pair| pair[0] == pair[1]).count();
-    (axes, repeated as f64 / last as f64)
+    // A reader that is late skips samples as well, which does not make the sensor slower.
+    let advanced = places[last] - places[0];
+    (axes, 1.0 - advanced as f64 / last as f64)
 }

@@ -277,6 +277,8 @@ enum AllaniteReason
   ALLANITE_REASON_OTHER = 9,
   // Small values are set to zero.
   ALLANITE_REASON_DEAD_BAND = 10,
+  // The counts were read without their sign, or with their bytes in the wrong order.
+  ALLANITE_REASON_MISREAD = 11,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

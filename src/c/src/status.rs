@@ -113,6 +113,8 @@ pub enum AllaniteReason {
     Other = 9,
     /// Small values are set to zero.
     DeadBand = 10,
+    /// The counts were read without their sign, or with their bytes in the wrong order.
+    Misread = 11,
 }
 
 impl AllaniteReason {
@@ -128,6 +130,7 @@ impl AllaniteReason {
             Some(Reason::Missing { .. }) => Self::Missing,
             Some(Reason::LeftOut { .. }) => Self::LeftOut,
             Some(Reason::DeadBand { .. }) => Self::DeadBand,
+            Some(Reason::Misread { .. }) => Self::Misread,
             Some(_) => Self::Other,
         }
     }

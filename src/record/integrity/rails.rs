@@ -1,5 +1,8 @@
 //! The rails: the values at which a converter clips.
 
+/// The bits of the counts of gyros.
+const FORMATS: [u8; 5] = [16, 18, 19, 20, 24];
+
 /// The extremes of the record, and the number of samples at each of them if it is a rail.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -57,6 +60,26 @@ impl Rails {
         } else {
             self.lowest_hits.saturating_add(self.highest_hits)
         }
+    }
+
+    /// The bits of a range of integers whose ends the extremes are near, and whether it is that of integers without a
+    /// sign.
+    pub(super) fn range(&self) -> Option<(u8, bool)> {
+        let (lowest, highest) = (i64::from(self.lowest), i64::from(self.highest));
+        FORMATS.into_iter().find_map(|bits| {
+            let whole = 1_i64.wrapping_shl(bits.into());
+            let near = whole / 16;
+            let unsigned = (0..near).contains(&lowest) && (whole - near..whole).contains(&highest);
+            let half = whole / 2;
+            let signed =
+                (-half..near - half).contains(&lowest) && (half - near..half).contains(&highest);
+            (unsigned || signed).then_some((bits, unsigned))
+        })
+    }
+
+    /// The distance of the extremes.
+    pub(super) fn span(&self) -> u32 {
+        self.highest.abs_diff(self.lowest)
     }
 
     pub(super) fn merge(&mut self, other: &Self) {

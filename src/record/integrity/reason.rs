@@ -31,6 +31,12 @@ pub enum Reason {
         /// The mean square of the differences of neighbouring samples, in thousandths of a squared count.
         per_mille: u16,
     },
+    /// The counts jump between the ends of a range of whole bits: they were read without their sign, or with their bytes in
+    /// the wrong order.
+    Misread {
+        /// The bits of the range.
+        bits: u8,
+    },
     /// Too many values are extreme values of the converter, or of the record: the rate left the sensor's range, or the
     /// sensor marks bad data with such a value.
     Railed {
@@ -140,6 +146,11 @@ impl core::fmt::Display for Reason {
                  offset; use a finer range",
                 per_mille / 1000,
                 per_mille % 1000
+            ),
+            Self::Misread { bits } => write!(
+                f,
+                "the counts jump between the ends of a range of {bits} bits: they were read without \
+                 their sign, or with their bytes in the wrong order; read them in two's complement"
             ),
             Self::Railed { hits, samples } => write!(
                 f,

@@ -206,6 +206,7 @@ fn is_possible_verdict(verdict: Verdict) -> bool {
             samples,
         } => times <= 4 && changes <= samples,
         Reason::DeadBand { zeros, samples } => zeros <= samples,
+        Reason::Misread { bits } => bits <= 32,
         Reason::Coarse { per_mille } => per_mille < 1000,
     }
 }

@@ -25,6 +25,7 @@ pub(crate) enum WireReason {
     Repeated(u8, u64, u64),
     Coarse(u16),
     DeadBand(u64, u64),
+    Misread(u8),
 }
 
 impl From<Option<Verdict>> for WireVerdict {
@@ -79,6 +80,7 @@ impl From<Reason> for WireReason {
             } => Self::Repeated(times, changes, samples),
             Reason::Coarse { per_mille } => Self::Coarse(per_mille),
             Reason::DeadBand { zeros, samples } => Self::DeadBand(zeros, samples),
+            Reason::Misread { bits } => Self::Misread(bits),
         }
     }
 }
@@ -107,6 +109,7 @@ impl From<WireReason> for Reason {
             },
             WireReason::Coarse(per_mille) => Self::Coarse { per_mille },
             WireReason::DeadBand(zeros, samples) => Self::DeadBand { zeros, samples },
+            WireReason::Misread(bits) => Self::Misread { bits },
         }
     }
 }

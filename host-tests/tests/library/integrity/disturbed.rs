@@ -194,6 +194,47 @@ fn rails_are_refused() {
 }
 
 #[test]
+fn counts_that_are_read_without_their_sign_or_with_swapped_bytes_are_refused() {
+    for seed in 0..10 {
+        for bits in [16, 18, 19, 20, 24] {
+            let mask = (1_i32 << bits) - 1;
+            for offset in [0, 4, -5] {
+                let counts: Vec<_> = mems(seed)
+                    .iter()
+                    .map(|count| (count + offset) & mask)
+                    .collect();
+                let verdict = integrity(&counts).verdict();
+                assert_eq!(
+                    verdict,
+                    Some(Reason::Misread { bits }),
+                    "{bits} bits, {offset}"
+                );
+            }
+        }
+        // Where the noise is below half of the low byte, swapped bytes only look like a larger noise.
+        let swapped = |count: &i32| i32::from((20 * *count as i16).swap_bytes());
+        let counts: Vec<_> = mems(seed).iter().map(swapped).collect();
+        assert_eq!(
+            integrity(&counts).verdict(),
+            Some(Reason::Misread { bits: 16 })
+        );
+    }
+    // A level far from zero has no sign to lose, and a corrupt word is a spike.
+    assert_valid("around 40000 without a sign", 20, |seed| {
+        mems(seed)
+            .iter()
+            .map(|count| (count - 25_536) & 0xFFFF)
+            .collect()
+    });
+    let mut counts: Vec<_> = mems(3).iter().map(|count| count + 2000).collect();
+    counts[700] = 0xFFFF;
+    assert!(matches!(
+        integrity(&counts).verdict(),
+        Some(Reason::Spiked { spikes: 1, .. })
+    ));
+}
+
+#[test]
 fn the_rails_of_wide_converters_are_known() {
     for bits in [20, 24, 32] {
         let most = ((1_i64 << (bits - 1)) - 1) as i32;

@@ -209,7 +209,15 @@ where
         }
     }
 
-    /// Adds another record of the same sensor, as if a gap lay between the two. Both gates first
+    /// Whether another record can be one of the same sensor, read with the same scale and filter: the noise of single samples
+    /// of each axis is [like](crate::octave::OctaveSum::is_like) that of this one.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let mut axes = self.kept.axes.iter().zip(&other.kept.axes);
+        axes.all(|(ours, theirs)| ours.accumulator.is_like(&theirs.accumulator))
+    }
+
+    /// Adds another record of the same sensor, as if a gap lay between the two. Whether it can be one,
+    /// [`is_like`](Self::is_like) tells. Both gates first
     /// release the samples that they hold back. The courses stay those of this record, because another record has
     /// no place in its time.
     pub fn merge(&mut self, other: &Self) {

@@ -317,7 +317,8 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
         self.gaps = self.gaps.saturating_add(1);
     }
 
-    /// Adds another record of the same sensor, as if a gap lay between the two.
+    /// Adds another record of the same sensor, as if a gap lay between the two. Whether it can be one,
+    /// [`is_like`](Self::is_like) tells.
     pub fn merge(&mut self, other: &Self) {
         if other.samples() == 0 {
             return;

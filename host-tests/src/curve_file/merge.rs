@@ -2,7 +2,10 @@
 
 use super::{AxisCurve, Octave, ShortOctave, SpectrumLevel, SpectrumLevels, variances};
 use crate::log::OCTAVES;
-use allanite::{Curve, octave::Bridged};
+use allanite::{
+    Curve,
+    octave::{Bridged, OctaveSum},
+};
 use std::collections::BTreeMap;
 
 /// Differences and the sum of their squares, by averaging factor.
@@ -15,7 +18,7 @@ impl AxisCurve {
     /// arguments changes no bit of them; merging in groups may change the last one.
     ///
     /// # Errors
-    /// When the parts differ in rate, unit or scale, or a sum exceeds its range, with the number of the part.
+    /// When the parts differ in rate, unit, scale or the noise of a sample, or a sum exceeds its range, with the number of the part.
     pub fn merged(parts: &[Self]) -> Result<Self, (usize, String)> {
         let Some(first) = parts.first() else {
             return Err((0, "there is nothing to merge".into()));
@@ -110,7 +113,34 @@ impl AxisCurve {
                 other.unit, self.unit
             ));
         }
+        let finest = self.rate_per_count.min(other.rate_per_count);
+        let [ours, theirs] = [self, other].map(|part| part.first(finest));
+        if let (Some(ours), Some(theirs)) = (ours, theirs)
+            && !ours.is_like(&theirs)
+        {
+            let variance = |octave: &OctaveSum| {
+                let sum = octave.sum.to_u128().unwrap_or(0) as f64;
+                sum / octave.differences as f64
+            };
+            return Err(format!(
+                "the noise of a sample is {:.2} times that of the first file, as of another sensor, range or filter",
+                (variance(&theirs) / variance(&ours)).sqrt()
+            ));
+        }
         Ok(())
+    }
+}
+
+impl AxisCurve {
+    /// The shortest octave, with its sum in counts of this size, which is that of this part or finer.
+    fn first(&self, rate_per_count: f64) -> Option<OctaveSum> {
+        let octave = self.octaves.first().filter(|octave| octave.m == 1)?;
+        let ratio = self.rate_per_count / rate_per_count;
+        Some(OctaveSum {
+            m: 1,
+            differences: octave.differences,
+            sum: octave.sum.checked_mul((ratio * ratio) as u128)?.into(),
+        })
     }
 }
 

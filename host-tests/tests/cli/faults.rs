@@ -1,6 +1,6 @@
 //! What the program says of records whose logger repeated, held, clipped or cut out samples.
 
-use host_tests::program::{json, run};
+use host_tests::program::{json, output, run};
 use serde_json::Value;
 use std::{fs, path::Path};
 use tempfile::TempDir;
@@ -190,6 +190,24 @@ fn repeats_among_coarse_counts_name_the_rate_and_no_filter() {
         let (_, rate) = words.split_once("the sensor runs at ").unwrap();
         let rate: f64 = rate.split(' ').next().unwrap().parse().unwrap();
         assert!((rate / 400.0 - 1.0).abs() < 0.01, "{rate}");
+    }
+}
+
+#[test]
+fn a_change_of_range_within_a_record_is_said() {
+    let folder = TempDir::new().unwrap();
+    for times in [2.0, 8.0] {
+        let mut changed = noise(60_000, 20.0, 3);
+        changed[40_000..].iter_mut().for_each(|rate| *rate /= times);
+        write(folder.path(), "gx", &[changed], 0);
+        let diagnose = [
+            "diagnose", "log.csv", "--rate", "200", "--unit", "deg/s", "--scale", "0.01",
+        ];
+        let said = output(folder.path(), &diagnose);
+        assert!(
+            said.contains("the noise fell to 0.") && said.contains("the record is not stationary"),
+            "{said}"
+        );
     }
 }
 

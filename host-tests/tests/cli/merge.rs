@@ -184,6 +184,29 @@ fn curves_that_do_not_belong_together_are_refused() {
         &[&ABOUT[..], &["--columns", "gy"]].concat(),
         "one-axis.json",
     );
+    let loud: String = fs::read_to_string(here.join("part1.csv"))
+        .unwrap()
+        .lines()
+        .skip(1)
+        .map(|row| {
+            let twice = row
+                .split(',')
+                .map(|count| 2 * count.parse::<i32>().unwrap());
+            let [x, y] = twice.collect::<Vec<_>>()[..] else {
+                panic!("{row}")
+            };
+            format!("{x},{y}\n")
+        })
+        .collect();
+    fs::write(here.join("loud.csv"), format!("gx,gy\n{loud}")).unwrap();
+    output(
+        here,
+        &[
+            &["measure", "loud.csv", "--output", "other-sensor.json"],
+            &ABOUT[..],
+        ]
+        .concat(),
+    );
     fs::write(here.join("broken.json"), "{").unwrap();
     for (other, what) in [
         (
@@ -199,6 +222,10 @@ fn curves_that_do_not_belong_together_are_refused() {
             "rate_per_count 0.06 is not 0.05 times a power of two",
         ),
         ("one-axis.json", "axis \"gx\" is in one of this file"),
+        (
+            "other-sensor.json",
+            "times that of the first file, as of another sensor, range or filter",
+        ),
         ("broken.json", "not a curve file"),
         ("absent.json", "no such file"),
     ] {

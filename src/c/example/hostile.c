@@ -207,10 +207,40 @@ static void with_rubbish(void) {
     EXPECT(NOT_INITIALISED, allanite_gyro_push((AllaniteGyro *)(void *)&diagnosis, counts, 0));
 }
 
+/* A record of noise of this size. */
+static void noise(AllaniteGyro *of, int32_t size) {
+    uint32_t seed = (uint32_t)size;
+    EXPECT(OK, allanite_gyro_init(of, sizeof *of));
+    for (int i = 0; i < 10000; i++) {
+        int32_t sample[3];
+        for (int axis = 0; axis < 3; axis++) {
+            seed = seed * 1664525u + 1013904223u;
+            sample[axis] = (int32_t)(seed >> 16) % size;
+        }
+        EXPECT(OK, allanite_gyro_push(of, sample, 0));
+    }
+    EXPECT(OK, allanite_gyro_release(of));
+}
+
+/* Records of two gyros, or of two ranges of one. */
+static void with_another_sensor(void) {
+    noise(&gyro, 100);
+    noise(&other, 103);
+    EXPECT(OK, allanite_gyro_merge(&gyro, &other));
+    noise(&other, 200);
+    EXPECT(OTHER_SENSOR, allanite_gyro_merge(&gyro, &other));
+    uint64_t samples;
+    EXPECT(OK, allanite_gyro_samples(&gyro, &samples, NULL));
+    if (samples != 20000) {
+        leave(1);
+    }
+}
+
 void product(void) {
     without_values();
     with_values();
     with_damage();
     with_rubbish();
+    with_another_sensor();
     print("refused as they should be\n");
 }

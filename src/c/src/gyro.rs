@@ -121,7 +121,8 @@ pub unsafe extern "C" fn allanite_gyro_release(gyro: *mut AllaniteGyro) -> Allan
     status(unsafe { get_mut(gyro) }.map(Gyro::release))
 }
 
-/// Adds another record of the same gyro, as if a gap lay between the two.
+/// Adds another record of the same gyro, as if a gap lay between the two. Where the noise of an axis differs by more than a
+/// gyro's does, nothing is added, and the status is `ALLANITE_STATUS_OTHER_SENSOR`.
 ///
 /// # Safety
 /// Both are null or point to an `AllaniteGyro`, and not to the same one.
@@ -139,7 +140,10 @@ pub unsafe extern "C" fn allanite_gyro_merge(
         Err(error) => return error,
     };
     // SAFETY: the caller promises what `get_mut` wants, and the two records are not the same.
-    status(unsafe { get_mut(gyro) }.map(|gyro| gyro.merge(other)))
+    match unsafe { get_mut(gyro) } {
+        Ok(gyro) if !gyro.is_like(other) => AllaniteStatus::OtherSensor,
+        gyro => status(gyro.map(|gyro| gyro.merge(other))),
+    }
 }
 
 /// The numbers of samples that are kept and that the gate left out. Either pointer may be null.

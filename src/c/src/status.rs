@@ -41,6 +41,8 @@ pub enum AllaniteStatus {
     Other = 15,
     /// The look is not the last one that the self-test began, or was concluded before.
     OtherTest = 16,
+    /// The noise of the other record is not that of this one: it is of another sensor, scale or filter.
+    OtherSensor = 17,
 }
 
 impl From<Error> for AllaniteStatus {
@@ -159,6 +161,7 @@ pub extern "C" fn allanite_status_text(status: i32) -> *const c_char {
         14 => c"the plan of the self-test cannot be carried out",
         15 => c"another error",
         16 => c"the look is not the one that the self-test has begun: conclude each look once, by its own test",
+        17 => c"the other record has another noise: merge records of one sensor, read with one scale and filter",
         _ => c"unknown status",
     };
     text.as_ptr()

@@ -3,7 +3,51 @@
 use super::{Accumulator, FIRST, Level, OctaveSum, RING, bridged::span, second_difference};
 use crate::record::square_sum::SquareSum;
 
+/// The number of differences from which the variances of two records can be compared. That of white noise is known to 3 %
+/// then.
+const COMPARED: u64 = 4096;
+
+impl OctaveSum {
+    /// Whether the variance of this octave is about that of the same octave of another record: the larger one is below one
+    /// and a half times the smaller one. True where either record has fewer than 4096 differences, or less than half a
+    /// squared count for each, which follows from where between two counts the offset lies.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let [ours, theirs] = [self, other].map(|octave| {
+            let sum = octave.sum.to_u128()?.checked_mul(256)?;
+            let mean = sum.checked_div(octave.differences.into())?;
+            (octave.differences >= COMPARED && mean >= 128).then_some(mean)
+        });
+        let (Some(ours), Some(theirs)) = (ours, theirs) else {
+            return true;
+        };
+        let (least, most) = (ours.min(theirs), ours.max(theirs));
+        most.saturating_mul(2) < least.saturating_mul(3)
+    }
+}
+
 impl<const OCTAVES: usize> Accumulator<OCTAVES> {
+    /// Whether another record can be one of the same sensor, read with the same scale and filter: the noise of single samples
+    /// is [like](OctaveSum::is_like) that of this one. [`merge`](Self::merge) does not ask, and a merged record of two
+    /// sensors has the coefficients of neither.
+    ///
+    /// ```
+    /// use allanite::Accumulator;
+    ///
+    /// let record = |size: i32, mut random: u32| {
+    ///     let mut accumulator = Accumulator::<10>::new();
+    ///     for _ in 0..10_000 {
+    ///         random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    ///         accumulator.push((random >> 16) as i32 * size >> 10);
+    ///     }
+    ///     accumulator
+    /// };
+    /// assert!(record(7, 1).is_like(&record(7, 2)));
+    /// assert!(!record(7, 1).is_like(&record(10, 2)));
+    /// ```
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.read(0).is_like(&other.read(0))
+    }
+
     /// Octave `k`, of averaging factor `2^k`, as it is now. What the schedule has put off is included,
     /// and the state stays as it is. `None` from `OCTAVES` on.
     pub fn octave(&self, k: usize) -> Option<OctaveSum> {

@@ -234,10 +234,12 @@ impl Sums {
         };
         let classes = bridged.gaps.iter().zip(&bridged.samples);
         for (class, (&gaps, &lost)) in numbered(classes) {
-            if gaps == 0 || (octave as usize) < Bridged::first_octave(class) {
+            let length = lost.wrapping_add(gaps / 2).checked_div(gaps);
+            let reached = (octave as usize) >= Bridged::first_octave(class);
+            let Some(length) = length.filter(|_| reached) else {
                 continue;
-            }
-            let length = (lost.wrapping_add(gaps / 2) / gaps).min(64) as i32;
+            };
+            let length = length.min(64) as i32;
             let [change, square] = covariance.change(1 << octave, length, with_squares);
             sums.change += real(gaps) * change;
             sums.squares += real(gaps) * square;

@@ -43,14 +43,17 @@ pub enum Checked {
         /// The place of the first such coefficient among the five terms.
         place: usize,
     },
-    /// The five terms do not explain the curve ([`Fit::is_adequate`]), so that their intervals say nothing about limits.
+    /// The five terms do not explain the curve, so that their intervals say nothing about limits: the
+    /// [`birge_ratio`](Fit::birge_ratio) is above 1, which is where [`Fit::is_adequate`] says so, to the rounding of the quantile
+    /// of χ².
     Misfit,
 }
 
 impl Limits {
     /// Compares the intervals of a fit with the limits. A limit that is not a number is in the guard band.
     pub fn check(&self, fit: &Fit) -> Checked {
-        if fit.is_adequate() == Some(false) {
+        // A p-value would link an exponential function for the same answer.
+        if fit.birge_ratio > 1.0 {
             return Checked::Misfit;
         }
         let mut open = None;

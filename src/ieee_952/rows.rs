@@ -145,7 +145,8 @@ impl<'a, const K: usize> Rows<'a, K> {
                 }
                 let left = left >> FACTOR_BITS;
                 let element = left.wrapping_mul(shorter.reciprocal.into()) >> RECIPROCAL_BITS;
-                let element = element.clamp((-ONE).into(), ONE.into()) as i32;
+                // `clamp` would check its limits, and link the words of that panic.
+                let element = element.max((-ONE).into()).min(ONE.into()) as i32;
                 if let Some(place) = own.get_mut(j) {
                     *place = element;
                 }
@@ -202,7 +203,7 @@ impl<'a, const K: usize> Rows<'a, K> {
             {
                 let element = (left >> FACTOR_BITS).wrapping_mul(row.reciprocal.into());
                 let limit = i64::from(i32::MAX);
-                *white = (element >> RECIPROCAL_BITS).clamp(-limit, limit) as i32;
+                *white = (element >> RECIPROCAL_BITS).max(-limit).min(limit) as i32;
             }
         }
         if let Some(scale) = self.scales.get_mut(place) {

@@ -5,8 +5,10 @@ use xtask::firmware::{
     CORES, CORTEX_M4F, RISCV,
     agreement::first_difference,
     c_library::{
-        folder, host_library, host_program, library, package, rust_example, target_program,
+        Contents, build_for_target, folder, host_library, host_program, library, package,
+        rust_example, target_program,
     },
+    image::flash_of,
 };
 
 /// Makes the header anew if this variable is set.
@@ -46,9 +48,32 @@ fn a_product_in_c_finds_what_it_finds_in_rust_to_the_bit() {
     let here = host_program(&["product.c", "host.c"], folder.path());
     let here = here.unwrap_or_else(|error| panic!("{error:#}"));
     assert_eq!(first_difference(&rust, &here), None);
-    let there = target_program(&CORTEX_M4F, folder.path());
+    let there = target_program(&CORTEX_M4F, "product.c", folder.path());
     let there = there.unwrap_or_else(|error| panic!("{error:#}"));
     assert_eq!(first_difference(&rust, &there), None);
+}
+
+#[test]
+fn one_axis_in_c_finds_the_same_on_every_core_and_is_small() {
+    /// The flash that one axis and the five terms may take of a Cortex-M0+, in bytes.
+    const FLASH: u64 = 24 * 1024;
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = host_program(&["axis.c", "host.c"], folder.path());
+    let here = here.unwrap_or_else(|error| panic!("{error:#}"));
+    assert_eq!(here.last().map(String::as_str), Some("pass"), "{here:?}");
+    assert!(here[2].starts_with("measured "), "{here:?}");
+    let there = target_program(&CORTEX_M4F, "axis.c", folder.path());
+    let there = there.unwrap_or_else(|error| panic!("{error:#}"));
+    assert_eq!(first_difference(&here, &there), None);
+    let contents = Contents {
+        octaves: 14,
+        one_axis: true,
+    };
+    let small = CORES.iter().find(|core| core.small).expect("a small core");
+    let program = build_for_target(small, contents, "axis.c", folder.path());
+    let program = program.unwrap_or_else(|error| panic!("{error:#}"));
+    let flash = flash_of(&program).unwrap_or_else(|error| panic!("{error:#}"));
+    assert!((4096..=FLASH).contains(&flash), "{flash} bytes of flash");
 }
 
 /// A project in C99 that finds the library as the one of a user does.
@@ -77,7 +102,7 @@ fn a_project_of_cmake_in_c99_finds_the_package() {
     let folder = tempfile::tempdir().expect("a folder");
     let of = |name: &str| folder.path().join(name);
     let library = host_library().unwrap_or_else(|error| panic!("{error:#}"));
-    package(&library, 20, &of("package")).unwrap_or_else(|error| panic!("{error:#}"));
+    package(&library, Contents::ALL, &of("package")).unwrap_or_else(|error| panic!("{error:#}"));
     fs::write(of("CMakeLists.txt"), PROJECT).expect("a project");
     fs::write(of("main.c"), MAIN).expect("a program");
     let run = |program: &str, arguments: &[&str]| {
@@ -98,8 +123,12 @@ fn a_project_of_cmake_in_c99_finds_the_package() {
     run("cmake", &["-B", "build", &place, "."]);
     run("cmake", &["--build", "build"]);
     assert_eq!(run("./build/product", &[]), "20 0\n");
+    let contents = Contents {
+        octaves: 26,
+        ..Contents::ALL
+    };
     // With another number of octaves, the package says so to the compiler.
-    package(&library, 26, &of("package")).expect("a package");
+    package(&library, contents, &of("package")).expect("a package");
     run("cmake", &["-B", "build", &place, "."]);
     run("cmake", &["--build", "build"]);
     assert!(run("./build/product", &[]).starts_with("26 "));
@@ -111,7 +140,8 @@ fn a_project_of_cmake_in_c99_finds_the_package() {
 fn the_library_builds_for_cores_without_atomics_and_needs_no_symbol_for_them() {
     let without = CORES.iter().filter(|core| core.small);
     for core in without.chain([&RISCV, &CORTEX_M4F]) {
-        let path = library(core, 20).unwrap_or_else(|error| panic!("{}: {error:#}", core.name));
+        let path =
+            library(core, Contents::ALL).unwrap_or_else(|error| panic!("{}: {error:#}", core.name));
         let bytes = fs::read(&path).expect("a library");
         let holds = |name: &[u8]| bytes.windows(name.len()).any(|part| part == name);
         assert!(holds(b"allanite_diagnosis_advance"), "{}", core.name);

@@ -3,7 +3,7 @@
 use crate::{
     firmware::{
         CORES, Core,
-        c_library::{self, library},
+        c_library::{self, Contents, library},
     },
     setup,
 };
@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Builds the library for the targets, or for every core if none is named, and puts each beside the header and a package of
 /// CMake into a folder of its own.
-pub(crate) fn run(octaves: u32, targets: &[String], output: &Path) -> Result<()> {
+pub(crate) fn run(contents: Contents, targets: &[String], output: &Path) -> Result<()> {
     println!("== set-up");
     setup::compiler()?;
     let is_wanted = |core: &&Core| targets.is_empty() || targets.iter().any(|it| it == core.target);
@@ -20,11 +20,11 @@ pub(crate) fn run(octaves: u32, targets: &[String], output: &Path) -> Result<()>
     cores.dedup_by_key(|core| core.target);
     for core in cores {
         let to = output.join(core.target);
-        let library = library(core, octaves)?;
-        let package = c_library::package(&library, octaves, &to)?;
+        let library = library(core, contents)?;
+        let package = c_library::package(&library, contents, &to)?;
         println!("{}: {}", core.name, package.display());
     }
-    if let Some(define) = c_library::define(octaves) {
+    for define in contents.defines() {
         println!("compile C code with -D{define}, unless CMake does");
     }
     Ok(())

@@ -18,7 +18,7 @@ pub use setup::CHROMIUM;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use firmware::cargo;
+use firmware::{c_library::Contents, cargo};
 use std::path::PathBuf;
 
 /// Tasks of the project.
@@ -98,6 +98,9 @@ enum Task {
         /// Octaves of averaging time of a record.
         #[arg(long, default_value = "20", value_parser = ["14", "20", "26"])]
         octaves: String,
+        /// One axis and the five terms alone, for a core with 32 KiB of flash.
+        #[arg(long)]
+        one_axis: bool,
         /// Target to build for, such as thumbv7em-none-eabihf; may be given several times. Without it, all are built.
         #[arg(long = "target", value_name = "TARGET", value_parser = c::targets())]
         targets: Vec<String>,
@@ -165,9 +168,13 @@ impl CommandLine {
             } => bench::run(json, update_budgets),
             Task::C {
                 octaves,
+                one_axis,
                 targets,
                 output,
-            } => c::run(octaves.parse().unwrap_or(20), &targets, &output),
+            } => {
+                let octaves = octaves.parse().unwrap_or(20);
+                c::run(Contents { octaves, one_axis }, &targets, &output)
+            }
             Task::Results {
                 folder,
                 against,

@@ -236,11 +236,46 @@ static void with_another_sensor(void) {
     }
 }
 
+/* One axis alone. */
+static void with_one_axis(void) {
+    static AllaniteAxis axis;
+    static AllaniteFiveTerms terms;
+    static AllanitePoint points[ALLANITE_OCTAVES];
+    const float most[ALLANITE_TERMS] = {1.0f, 1.0f, 1.0f, 1.0f, 1.0f};
+    AllaniteChecked checked;
+    size_t number, place;
+    EXPECT(NULL_POINTER, allanite_axis_init(NULL, sizeof axis));
+    EXPECT(WRONG_SIZE, allanite_axis_init(&axis, sizeof axis - 8));
+    EXPECT(NOT_INITIALISED, allanite_axis_push(&axis, counts, 3));
+    EXPECT(NOT_INITIALISED, allanite_axis_lost(&axis, 1));
+    EXPECT(NOT_INITIALISED, allanite_axis_curve(&axis, 1.0f, 100.0f, points, ALLANITE_OCTAVES, &number));
+    EXPECT(NOT_INITIALISED, allanite_axis_fit(&axis, 1.0f, 100.0f, &terms));
+    EXPECT(OK, allanite_axis_init(&axis, sizeof axis));
+    EXPECT(NULL_POINTER, allanite_axis_push(&axis, NULL, 3));
+    EXPECT(OK, allanite_axis_push(&axis, NULL, 0));
+    EXPECT(TOO_SHORT, allanite_axis_fit(&axis, 1.0f, 100.0f, &terms));
+    for (int i = 0; i < 1000; i++) {
+        EXPECT(OK, allanite_axis_push(&axis, counts, 3));
+    }
+    EXPECT(INVALID_ARGUMENT, allanite_axis_fit(&axis, 0.0f, 100.0f, &terms));
+    EXPECT(INVALID_ARGUMENT, allanite_axis_fit(&axis, 1.0f, NAN, &terms));
+    EXPECT(NULL_POINTER, allanite_axis_fit(&axis, 1.0f, 100.0f, NULL));
+    EXPECT(OK, allanite_axis_curve(&axis, 1.0f, 100.0f, points, ALLANITE_OCTAVES, &number));
+    EXPECT(BUFFER_TOO_SMALL, allanite_axis_curve(&axis, 1.0f, 100.0f, points, number - 1, &number));
+    EXPECT(NULL_POINTER, allanite_axis_curve(&axis, 1.0f, 100.0f, NULL, ALLANITE_OCTAVES, &number));
+    EXPECT(NULL_POINTER, allanite_axis_check(&axis, 1.0f, 100.0f, NULL, &checked, &place));
+    EXPECT(NULL_POINTER, allanite_axis_check(&axis, 1.0f, 100.0f, most, NULL, &place));
+    EXPECT(NOT_INITIALISED, allanite_axis_push((AllaniteAxis *)(void *)&gyro, counts, 3));
+    EXPECT(NULL_POINTER, allanite_record_curve(&record, NULL, ALLANITE_OCTAVES, &number));
+    EXPECT(OK, allanite_record_curve(&record, points, ALLANITE_OCTAVES, &number));
+}
+
 void product(void) {
     without_values();
     with_values();
     with_damage();
     with_rubbish();
     with_another_sensor();
+    with_one_axis();
     print("refused as they should be\n");
 }

@@ -1,8 +1,8 @@
 /* allanite for C: a gyro's record, its fit, diagnosis, self-test, snapshots and certificates.
  *
  * Made by cbindgen from src/c/src. `cargo xtask c` builds the library that this header declares. All memory belongs to
- * the caller; every function returns a status. Define ALLANITE_OCTAVES_14 or ALLANITE_OCTAVES_26 if the library was built
- * with the feature octaves-14 or octaves-26. */
+ * the caller; every function returns a status. Define ALLANITE_OCTAVES_14, ALLANITE_OCTAVES_26 or ALLANITE_ONE_AXIS if
+ * the library was built with the feature octaves-14, octaves-26 or one-axis. */
 
 #ifndef ALLANITE_H
 #define ALLANITE_H
@@ -11,11 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The largest number of effects in a model.
-#define ALLANITE_MAX_COEFFICIENTS 8
-
-// The largest number of fitted shape parameters in a model.
-#define ALLANITE_MAX_SHAPES 6
+// The number of terms of IEEE Std 952.
+#define ALLANITE_TERMS 5
 
 // The code of `quantization`.
 #define ALLANITE_EFFECT_QUANTIZATION 1
@@ -80,6 +77,16 @@
 // The code of `moving_average`.
 #define ALLANITE_EFFECT_MOVING_AVERAGE 21
 
+#if !defined(ALLANITE_ONE_AXIS)
+// The largest number of effects in a model.
+#define ALLANITE_MAX_COEFFICIENTS 8
+#endif
+
+#if !defined(ALLANITE_ONE_AXIS)
+// The largest number of fitted shape parameters in a model.
+#define ALLANITE_MAX_SHAPES 6
+#endif
+
 // The number of axes of a record.
 #define ALLANITE_AXES 3
 
@@ -103,6 +110,9 @@
 
 // Words of an `AllaniteGyro`.
 #define ALLANITE_GYRO_WORDS (2208 + (66 * ALLANITE_OCTAVES))
+
+// Words of an `AllaniteAxis`.
+#define ALLANITE_AXIS_WORDS (23 + (12 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteRecord`.
 #define ALLANITE_RECORD_WORDS (470 + (7 * ALLANITE_OCTAVES))
@@ -165,45 +175,14 @@ enum AllaniteStatus
   ALLANITE_STATUS_OTHER = 15,
   // The look is not the last one that the self-test began, or was concluded before.
   ALLANITE_STATUS_OTHER_TEST = 16,
+  // The noise of the other record is not that of this one: it is of another sensor, scale or filter.
+  ALLANITE_STATUS_OTHER_SENSOR = 17,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
 typedef enum AllaniteStatus AllaniteStatus;
 #else
 typedef int32_t AllaniteStatus;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
-
-// What a diagnosis has led to.
-enum AllaniteProgress
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : int32_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
-  // The pause ended the work. There is more to do.
-  ALLANITE_PROGRESS_WORKING = 0,
-  // A model is judged: `allanite_diagnosis_fit` gives it. There is more to do.
-  ALLANITE_PROGRESS_STEP = 1,
-  // The five terms explain the record.
-  ALLANITE_PROGRESS_ADEQUATE = 2,
-  // The last model, with effects that were missing, explains the record.
-  ALLANITE_PROGRESS_IMPROVED = 3,
-  // The effects that were found improve the model, but it does not explain the record.
-  ALLANITE_PROGRESS_INCOMPLETE = 4,
-  // The five terms do not explain the record, and no effect helps.
-  ALLANITE_PROGRESS_UNEXPLAINED = 5,
-  // The record is too short to judge the five terms.
-  ALLANITE_PROGRESS_TOO_SHORT = 6,
-  // The record is not that of a gyro at rest.
-  ALLANITE_PROGRESS_INVALID = 7,
-  // Another verdict, of a later version.
-  ALLANITE_PROGRESS_OTHER = 8,
-};
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum AllaniteProgress AllaniteProgress;
-#else
-typedef int32_t AllaniteProgress;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -228,18 +207,101 @@ typedef int32_t AllaniteState;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// What limits say of the five terms.
+enum AllaniteChecked
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // The interval of each coefficient keeps its limit.
+  ALLANITE_CHECKED_PASS = 0,
+  // The interval of a coefficient lies above its limit.
+  ALLANITE_CHECKED_FAIL = 1,
+  // The interval of a coefficient contains its limit: record longer.
+  ALLANITE_CHECKED_GUARD_BAND = 2,
+  // The terms do not explain the curve, so that their intervals say nothing about limits.
+  ALLANITE_CHECKED_MISFIT = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AllaniteChecked AllaniteChecked;
+#else
+typedef int32_t AllaniteChecked;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+#if !defined(ALLANITE_ONE_AXIS)
+// What a diagnosis has led to.
+enum AllaniteProgress
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+#if !defined(ALLANITE_ONE_AXIS)
+  // The pause ended the work. There is more to do.
+  ALLANITE_PROGRESS_WORKING = 0,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
+  // A model is judged: `allanite_diagnosis_fit` gives it. There is more to do.
+  ALLANITE_PROGRESS_STEP = 1,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
+  // The five terms explain the record.
+  ALLANITE_PROGRESS_ADEQUATE = 2,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
+  // The last model, with effects that were missing, explains the record.
+  ALLANITE_PROGRESS_IMPROVED = 3,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
+  // The effects that were found improve the model, but it does not explain the record.
+  ALLANITE_PROGRESS_INCOMPLETE = 4,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
+  // The five terms do not explain the record, and no effect helps.
+  ALLANITE_PROGRESS_UNEXPLAINED = 5,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
+  // The record is too short to judge the five terms.
+  ALLANITE_PROGRESS_TOO_SHORT = 6,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
+  // The record is not that of a gyro at rest.
+  ALLANITE_PROGRESS_INVALID = 7,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
+  // Another verdict, of a later version.
+  ALLANITE_PROGRESS_OTHER = 8,
+#endif
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AllaniteProgress AllaniteProgress;
+#else
+typedef int32_t AllaniteProgress;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+#endif
+
+#if !defined(ALLANITE_ONE_AXIS)
 // Whether a model explains a record.
 enum AllaniteAdequacy
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
+#if !defined(ALLANITE_ONE_AXIS)
   // It does not.
   ALLANITE_ADEQUACY_INADEQUATE = 0,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // It does.
   ALLANITE_ADEQUACY_ADEQUATE = 1,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The record is too short to tell.
   ALLANITE_ADEQUACY_UNKNOWN = 2,
+#endif
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -248,37 +310,63 @@ typedef enum AllaniteAdequacy AllaniteAdequacy;
 typedef int32_t AllaniteAdequacy;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Why a record is not that of a gyro at rest.
 enum AllaniteReason
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
+#if !defined(ALLANITE_ONE_AXIS)
   // The record is valid.
   ALLANITE_REASON_VALID = 0,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The values change too seldom.
   ALLANITE_REASON_STUCK = 1,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // Every sample is there several times.
   ALLANITE_REASON_REPEATED = 2,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The noise is below half a count.
   ALLANITE_REASON_COARSE = 3,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // Too many values are at a rail of the converter.
   ALLANITE_REASON_RAILED = 4,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // Spikes contribute too much.
   ALLANITE_REASON_SPIKED = 5,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The gyro was moved.
   ALLANITE_REASON_MOVED = 6,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // Too many samples were lost.
   ALLANITE_REASON_MISSING = 7,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The gate left out too many samples.
   ALLANITE_REASON_LEFT_OUT = 8,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // Any other reason, of a later version.
   ALLANITE_REASON_OTHER = 9,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // Small values are set to zero.
   ALLANITE_REASON_DEAD_BAND = 10,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The counts were read without their sign, or with their bytes in the wrong order.
   ALLANITE_REASON_MISREAD = 11,
+#endif
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -287,25 +375,39 @@ typedef enum AllaniteReason AllaniteReason;
 typedef int32_t AllaniteReason;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // How a self-test stands.
 enum AllaniteVerdict
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
+#if !defined(ALLANITE_ONE_AXIS)
   // It needs more samples.
   ALLANITE_VERDICT_RUNNING = 0,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The gyro keeps every limit.
   ALLANITE_VERDICT_PASSED = 1,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // A coefficient is above its limit.
   ALLANITE_VERDICT_FAILED_LIMIT = 2,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The five terms do not explain the record.
   ALLANITE_VERDICT_FAILED_MISFIT = 3,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The longest record did not decide.
   ALLANITE_VERDICT_UNDECIDED = 4,
+#endif
+#if !defined(ALLANITE_ONE_AXIS)
   // The record is not that of a gyro at rest.
   ALLANITE_VERDICT_INVALID = 5,
+#endif
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -314,43 +416,26 @@ typedef enum AllaniteVerdict AllaniteVerdict;
 typedef int32_t AllaniteVerdict;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
+#endif
 
-// A certificate.
+// The record of one axis: its octaves alone, without a watch for motion, stuck values and spikes. It may be copied and
+// moved while no function works on it.
 typedef struct {
   // Nothing for the caller to read.
-  uint64_t words[ALLANITE_CERTIFICATE_WORDS];
-} AllaniteCertificate;
+  uint64_t words[ALLANITE_AXIS_WORDS];
+} AllaniteAxis;
 
-// The conditions of a measurement. The rates are in deg/s.
+// An octave of a curve.
 typedef struct {
-  // The duration in seconds.
-  double duration_s;
-  // The number of samples per second.
-  double rate_hz;
-  // The number of samples.
-  uint64_t samples;
-  // The number of gaps among them.
-  uint64_t gaps;
-  // The lowest temperature in °C, or NaN if it was not measured.
-  float lowest_c;
-  // The highest temperature in °C, or NaN if it was not measured.
-  float highest_c;
-  // The version of the firmware: major, minor, patch.
-  uint16_t firmware[3];
-} AllaniteConditions;
-
-// A diagnosis of one axis. It must stay where it is.
-typedef struct {
-  // Nothing for the caller to read.
-  uint64_t words[ALLANITE_DIAGNOSIS_WORDS];
-} AllaniteDiagnosis;
-
-// What a record says about one axis at a moment. It must stay where it is, unchanged, while a look or a diagnosis uses
-// it.
-typedef struct {
-  // Nothing for the caller to read.
-  uint64_t words[ALLANITE_RECORD_WORDS];
-} AllaniteRecord;
+  // The averaging factor: samples in a cluster.
+  uint32_t m;
+  // The averaging time, in seconds.
+  float tau_s;
+  // The Allan variance, in rate units squared.
+  float variance;
+  // The number of differences that it is the mean of.
+  uint64_t differences;
+} AllanitePoint;
 
 // A coefficient, in the unit rate · s^(half_seconds/2).
 typedef struct {
@@ -368,6 +453,66 @@ typedef struct {
   float upper;
 } AllaniteCoefficient;
 
+// The five terms of a curve.
+typedef struct {
+  // Quantization, angle random walk, bias instability, rate random walk and rate ramp.
+  AllaniteCoefficient coefficients[ALLANITE_TERMS];
+  // The squared residuals in units of their covariance.
+  float chi_squared;
+  // Its degrees of freedom.
+  int32_t degrees_of_freedom;
+  // The tolerance that was granted to the model, relative to a variance.
+  float tolerance;
+  // The factor by which the intervals are widened because the terms do not explain the curve.
+  float birge_ratio;
+} AllaniteFiveTerms;
+
+#if !defined(ALLANITE_ONE_AXIS)
+// A certificate.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_CERTIFICATE_WORDS];
+} AllaniteCertificate;
+#endif
+
+#if !defined(ALLANITE_ONE_AXIS)
+// The conditions of a measurement. The rates are in deg/s.
+typedef struct {
+  // The duration in seconds.
+  double duration_s;
+  // The number of samples per second.
+  double rate_hz;
+  // The number of samples.
+  uint64_t samples;
+  // The number of gaps among them.
+  uint64_t gaps;
+  // The lowest temperature in °C, or NaN if it was not measured.
+  float lowest_c;
+  // The highest temperature in °C, or NaN if it was not measured.
+  float highest_c;
+  // The version of the firmware: major, minor, patch.
+  uint16_t firmware[3];
+} AllaniteConditions;
+#endif
+
+#if !defined(ALLANITE_ONE_AXIS)
+// A diagnosis of one axis. It must stay where it is.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_DIAGNOSIS_WORDS];
+} AllaniteDiagnosis;
+#endif
+
+#if !defined(ALLANITE_ONE_AXIS)
+// What a record says about one axis at a moment. It must stay where it is, unchanged, while a look or a diagnosis uses
+// it.
+typedef struct {
+  // Nothing for the caller to read.
+  uint64_t words[ALLANITE_RECORD_WORDS];
+} AllaniteRecord;
+#endif
+
+#if !defined(ALLANITE_ONE_AXIS)
 // A fitted shape parameter of an effect.
 typedef struct {
   // The place of the effect among the coefficients.
@@ -381,7 +526,9 @@ typedef struct {
   // The upper end of the interval.
   float upper;
 } AllaniteShape;
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // A fitted model.
 typedef struct {
   // The coefficients, of which `coefficient_count` are valid.
@@ -401,19 +548,25 @@ typedef struct {
   // The probability of a larger χ² if the model is true; NaN without degrees of freedom.
   float p_value;
 } AllaniteFit;
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // The record of a gyro. It may be copied and moved while no function works on it.
 typedef struct {
   // Nothing for the caller to read.
   uint64_t words[ALLANITE_GYRO_WORDS];
 } AllaniteGyro;
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // A self-test of one axis.
 typedef struct {
   // Nothing for the caller to read.
   uint64_t words[ALLANITE_SELF_TEST_WORDS];
 } AllaniteSelfTest;
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // The plan of a self-test, as `allanite::self_test::Plan` explains it.
 typedef struct {
   // The smallest p-value of the fit of five terms; 0 requires nothing.
@@ -427,7 +580,9 @@ typedef struct {
   // The length of the record at the last look, in seconds.
   float longest_s;
 } AllanitePlan;
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // The largest value that a coefficient may have.
 typedef struct {
   // The code of one of the five terms of IEEE Std 952, such as `ALLANITE_EFFECT_ANGLE_RANDOM_WALK`.
@@ -435,7 +590,9 @@ typedef struct {
   // The largest value, in the coefficient's unit.
   float most;
 } AllaniteLimit;
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // How a self-test stands, with numbers.
 typedef struct {
   // How it stands.
@@ -449,17 +606,72 @@ typedef struct {
   // Why the record is not valid.
   AllaniteReason reason;
 } AllaniteTestStatus;
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // A look of a self-test at a record, in progress.
 typedef struct {
   // Nothing for the caller to read.
   uint64_t words[ALLANITE_LOOK_WORDS];
 } AllaniteLook;
+#endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
 
+// Makes an empty record. `bytes` is `sizeof(AllaniteAxis)`.
+//
+// # Safety
+// `axis` is null, or points to an `AllaniteAxis` that nothing else uses.
+AllaniteStatus allanite_axis_init(AllaniteAxis *axis, size_t bytes);
+
+// Adds counts, oldest first.
+//
+// # Safety
+// `axis` is null, or points to an `AllaniteAxis`; `counts` is null, or points to `length` counts.
+AllaniteStatus allanite_axis_push(AllaniteAxis *axis, const int32_t *counts, size_t length);
+
+// Notes that so many samples were lost before the next one. Long octaves go on across a few.
+//
+// # Safety
+// `axis` is null, or points to an `AllaniteAxis`.
+AllaniteStatus allanite_axis_lost(AllaniteAxis *axis, uint64_t samples);
+
+// Writes the octaves of the Allan curve, shortest first, and their number. `rate_per_count` is the rate of one count, and
+// `rate_hz` the number of samples per second. [`ALLANITE_OCTAVES`] points always suffice.
+//
+// # Safety
+// `axis` is null, or points to an `AllaniteAxis`; `points` is null, or points to `capacity` points; `number` is null, or points
+// to a number.
+AllaniteStatus allanite_axis_curve(const AllaniteAxis *axis,
+                                   float rate_per_count,
+                                   float rate_hz,
+                                   AllanitePoint *points,
+                                   size_t capacity,
+                                   size_t *number);
+
+// Fits the five terms of IEEE Std 952 to the curve: some 3 million instructions on a Cortex-M0+, and 1 million on a
+// Cortex-M4F.
+//
+// # Safety
+// `axis` is null, or points to an `AllaniteAxis`; `to` is null, or points to an `AllaniteFiveTerms`.
+AllaniteStatus allanite_axis_fit(const AllaniteAxis *axis, float rate_per_count, float rate_hz, AllaniteFiveTerms *to);
+
+// Compares the five terms of a curve with limits: the largest value that each may have, where an infinite one requires
+// nothing. `place` becomes that of the first term that fails or is in the guard band.
+//
+// # Safety
+// `axis` is null, or points to an `AllaniteAxis`; `most` is null, or points to [`ALLANITE_TERMS`] limits; `checked` and `place`
+// are null, or point to what they say.
+AllaniteStatus allanite_axis_check(const AllaniteAxis *axis,
+                                   float rate_per_count,
+                                   float rate_hz,
+                                   const float *most,
+                                   AllaniteChecked *checked,
+                                   size_t *place);
+
+#if !defined(ALLANITE_ONE_AXIS)
 // Makes a certificate without axes, for a device with an identity of up to 16 bytes. `bytes` is
 // `sizeof(AllaniteCertificate)`.
 //
@@ -471,14 +683,18 @@ AllaniteStatus allanite_certificate_init(AllaniteCertificate *certificate,
                                          const uint8_t *device,
                                          size_t length,
                                          const AllaniteConditions *conditions);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Adds the next axis, as a diagnosis that has ended describes it.
 //
 // # Safety
 // `certificate` is null, or points to an `AllaniteCertificate`; `diagnosis` is null, or points to an `AllaniteDiagnosis`.
 AllaniteStatus allanite_certificate_add(AllaniteCertificate *certificate,
                                         const AllaniteDiagnosis *diagnosis);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Writes a certificate to a buffer of `ALLANITE_CERTIFICATE_BYTES`. `written` tells how
 // many of them it took. `allanite decode` reads them on a workstation.
 //
@@ -489,21 +705,27 @@ AllaniteStatus allanite_certificate_encode(const AllaniteCertificate *certificat
                                            uint8_t *buffer,
                                            size_t capacity,
                                            size_t *written);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Begins a diagnosis of an axis: what do the five terms lack? `bytes` is `sizeof(AllaniteDiagnosis)`.
 //
 // # Safety
 // `diagnosis` is null, or points to an `AllaniteDiagnosis` that nothing else uses; `record` is null, or points to an
 // `AllaniteRecord` that stays there, unchanged, for as long as the diagnosis is used.
 AllaniteStatus allanite_diagnosis_begin(AllaniteDiagnosis *diagnosis, size_t bytes, const AllaniteRecord *record);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Works until the next step of a diagnosis and tells what it has led to. That takes long;
 // `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it tells the verdict again.
 //
 // # Safety
 // `diagnosis` is null, or points to an `AllaniteDiagnosis`; `progress` is null, or points to an `AllaniteProgress`.
 AllaniteStatus allanite_diagnosis_advance(AllaniteDiagnosis *diagnosis, AllaniteProgress *progress);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Does what `allanite_diagnosis_advance` does, and calls `pause` with `context` between two pieces of work, for the
 // watchdog and the next samples. A piece takes at most 2 million instructions on a Cortex-M4F, except for the one that
 // reports a step, which takes as much as a fit for the correlations of a certificate. If `pause` returns false, the work in
@@ -516,13 +738,17 @@ AllaniteStatus allanite_diagnosis_advance_with(AllaniteDiagnosis *diagnosis,
                                                AllaniteProgress *progress,
                                                bool (*pause)(void *context),
                                                void *context);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // The model of the last step, fitted.
 //
 // # Safety
 // `diagnosis` is null, or points to an `AllaniteDiagnosis`; `to` is null, or points to an `AllaniteFit`.
 AllaniteStatus allanite_diagnosis_fit(const AllaniteDiagnosis *diagnosis, AllaniteFit *to);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Takes the record of an axis from a gyro, to which it does not belong afterwards. `bytes` is
 // `sizeof(AllaniteRecord)`. `rate_per_count` is the rate of one count, `rate_hz` the number of samples per second, and
 // `kelvin_per_count` the temperature of one count of the thermometer.
@@ -537,76 +763,117 @@ AllaniteStatus allanite_record_take(AllaniteRecord *record,
                                     float rate_per_count,
                                     float rate_hz,
                                     float kelvin_per_count);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // The number of samples of the record, and whether it is that of a gyro at rest. Either pointer may be null.
 //
 // # Safety
 // `record` is null, or points to an `AllaniteRecord`; the others are null, or point to what they say.
 AllaniteStatus allanite_record_summary(const AllaniteRecord *record, uint64_t *samples, AllaniteReason *reason);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
+// Writes the octaves of the Allan curve of a record, shortest first, and their number. [`ALLANITE_OCTAVES`] points always
+// suffice.
+//
+// # Safety
+// `record` is null, or points to an `AllaniteRecord`; `points` is null, or points to `capacity` points; `number` is null, or
+// points to a number.
+AllaniteStatus allanite_record_curve(const AllaniteRecord *record,
+                                     AllanitePoint *points,
+                                     size_t capacity,
+                                     size_t *number);
+#endif
+
+#if !defined(ALLANITE_ONE_AXIS)
 // Fits the five terms of IEEE Std 952 to the curve and to the spectrum of an axis, in one go: some 20 million
 // instructions on a Cortex-M4F. A diagnosis begins with the same fit and does it in pieces.
 //
 // # Safety
 // `record` is null, or points to an `AllaniteRecord`; `to` is null, or points to an `AllaniteFit`.
 AllaniteStatus allanite_fit(const AllaniteRecord *record, AllaniteFit *to);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro` that nothing else uses.
 AllaniteStatus allanite_gyro_init(AllaniteGyro *gyro, size_t bytes);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Adds one sample: a count of every axis, and one of the thermometer.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`; `counts` is null, or points to [`ALLANITE_AXES`] counts.
 AllaniteStatus allanite_gyro_push(AllaniteGyro *gyro, const int32_t *counts, int32_t temperature);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Notes that the next sample does not adjoin the one before it.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`.
 AllaniteStatus allanite_gyro_gap(AllaniteGyro *gyro);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Notes that so many samples are missing at this place. Does nothing for 0.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`.
 AllaniteStatus allanite_gyro_lost(AllaniteGyro *gyro, uint64_t samples);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` tells whether there is
 // more; it may be null.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`; `more` is null, or points to a `bool`.
 AllaniteStatus allanite_gyro_advance(AllaniteGyro *gyro, bool *more);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Adds the samples that the gate holds back, at the end of a record.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`.
 AllaniteStatus allanite_gyro_release(AllaniteGyro *gyro);
+#endif
 
-// Adds another record of the same gyro, as if a gap lay between the two.
+#if !defined(ALLANITE_ONE_AXIS)
+// Adds another record of the same gyro, as if a gap lay between the two. Where the noise of an axis differs by more than a
+// gyro's does, nothing is added, and the status is `ALLANITE_STATUS_OTHER_SENSOR`.
 //
 // # Safety
 // Both are null or point to an `AllaniteGyro`, and not to the same one.
-AllaniteStatus allanite_gyro_merge(AllaniteGyro *gyro, const AllaniteGyro *other);
+AllaniteStatus allanite_gyro_merge(AllaniteGyro *gyro,
+                                   const AllaniteGyro *other);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // The numbers of samples that are kept and that the gate left out. Either pointer may be null.
 //
 // # Safety
 // `gyro` is null, or points to an `AllaniteGyro`; the others are null, or point to a `uint64_t`.
 AllaniteStatus allanite_gyro_samples(const AllaniteGyro *gyro, uint64_t *kept, uint64_t *left_out);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // The name of the effect with a code, such as "angle_random_walk"; "other" for a code that this library does not know.
 const char *allanite_effect_name(int32_t code);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // The name of a parameter of the effect with a code, such as "frequency_hz"; an empty text if there is no such parameter.
 const char *allanite_parameter_name(int32_t code,
                                     int32_t parameter);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Makes a self-test of a plan with so many limits. `bytes` is `sizeof(AllaniteSelfTest)`.
 //
 // # Safety
@@ -619,19 +886,25 @@ AllaniteStatus allanite_self_test_init(AllaniteSelfTest *test,
                                        size_t count,
                                        float rate_per_count,
                                        float rate_hz);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Whether a look is due at this number of samples.
 //
 // # Safety
 // `test` is null, or points to an `AllaniteSelfTest`; `due` is null, or points to a `bool`.
 AllaniteStatus allanite_self_test_is_due(const AllaniteSelfTest *test, uint64_t samples, bool *due);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // How the self-test stands at this number of samples.
 //
 // # Safety
 // `test` is null, or points to an `AllaniteSelfTest`; `to` is null, or points to an `AllaniteTestStatus`.
 AllaniteStatus allanite_self_test_status(const AllaniteSelfTest *test, uint64_t samples, AllaniteTestStatus *to);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Begins a look of a self-test at the record of its axis. `bytes` is `sizeof(AllaniteLook)`. The record may change
 // afterwards. A record of another scale than the test's is refused.
 //
@@ -641,20 +914,26 @@ AllaniteStatus allanite_look_begin(AllaniteLook *look,
                                    size_t bytes,
                                    AllaniteSelfTest *test,
                                    const AllaniteRecord *record);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` tells whether it was the last.
 //
 // # Safety
 // `look` is null, or points to an `AllaniteLook`; `complete` is null, or points to a `bool`.
 AllaniteStatus allanite_look_advance(AllaniteLook *look, bool *complete);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Takes up a look, and tells how the self-test stands. What the look still lacks is done at once. A look that another
 // self-test began is refused, and so is one that was concluded before.
 //
 // # Safety
 // All are null, or point to what they say.
 AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test, AllaniteLook *look, AllaniteTestStatus *to);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Writes a snapshot of the record and of a self-test, which may be null, to a buffer of
 // `ALLANITE_SNAPSHOT_BYTES`. `written` tells how many of them it took.
 //
@@ -666,7 +945,9 @@ AllaniteStatus allanite_gyro_snapshot(const AllaniteGyro *gyro,
                                       uint8_t *buffer,
                                       size_t capacity,
                                       size_t *written);
+#endif
 
+#if !defined(ALLANITE_ONE_AXIS)
 // Restores a snapshot into a record and into a self-test of the same plan, which must be null if the snapshot was taken
 // without one. After an error, the record is empty and the self-test must be made anew.
 //
@@ -677,6 +958,7 @@ AllaniteStatus allanite_gyro_restore(AllaniteGyro *gyro,
                                      AllaniteSelfTest *test,
                                      const uint8_t *bytes,
                                      size_t length);
+#endif
 
 // What a status means, as a sentence that ends with NUL. An unknown number gives "unknown status".
 const char *allanite_status_text(int32_t status);
@@ -688,11 +970,14 @@ const char *allanite_status_text(int32_t status);
 #endif  /* ALLANITE_H */
 
 #if !defined(__cplusplus) && defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+_Static_assert(sizeof(AllaniteAxis) == 8 * ALLANITE_AXIS_WORDS, "AllaniteAxis has padding");
+#if !defined(ALLANITE_ONE_AXIS)
 _Static_assert(sizeof(AllaniteGyro) == 8 * ALLANITE_GYRO_WORDS, "AllaniteGyro has padding");
 _Static_assert(sizeof(AllaniteRecord) == 8 * ALLANITE_RECORD_WORDS, "AllaniteRecord has padding");
 _Static_assert(sizeof(AllaniteSelfTest) == 8 * ALLANITE_SELF_TEST_WORDS, "AllaniteSelfTest has padding");
 _Static_assert(sizeof(AllaniteLook) == 8 * ALLANITE_LOOK_WORDS, "AllaniteLook has padding");
 _Static_assert(sizeof(AllaniteDiagnosis) == 8 * ALLANITE_DIAGNOSIS_WORDS, "AllaniteDiagnosis has padding");
 _Static_assert(sizeof(AllaniteCertificate) == 8 * ALLANITE_CERTIFICATE_WORDS, "AllaniteCertificate has padding");
+#endif
 _Static_assert(sizeof(AllaniteStatus) == 4, "compile without -fshort-enums, or with the type int32_t for enumerations");
 #endif

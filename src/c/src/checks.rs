@@ -1,6 +1,7 @@
 //! Checks at compile time that the sizes in the header suffice.
 
 use crate::{
+    axis::AllaniteAxis,
     certificate::AllaniteCertificate,
     diagnosis::AllaniteDiagnosis,
     fit::AllaniteRecord,
@@ -8,9 +9,9 @@ use crate::{
     memory::Memory,
     self_test::{AllaniteLook, AllaniteSelfTest},
     sizes::{
-        ALLANITE_CERTIFICATE_BYTES, ALLANITE_CERTIFICATE_WORDS, ALLANITE_DIAGNOSIS_WORDS,
-        ALLANITE_GYRO_WORDS, ALLANITE_LOOK_WORDS, ALLANITE_RECORD_WORDS, ALLANITE_SELF_TEST_WORDS,
-        ALLANITE_SNAPSHOT_BYTES,
+        ALLANITE_AXIS_WORDS, ALLANITE_CERTIFICATE_BYTES, ALLANITE_CERTIFICATE_WORDS,
+        ALLANITE_DIAGNOSIS_WORDS, ALLANITE_GYRO_WORDS, ALLANITE_LOOK_WORDS, ALLANITE_RECORD_WORDS,
+        ALLANITE_SELF_TEST_WORDS, ALLANITE_SNAPSHOT_BYTES,
     },
 };
 use allanite::{Real, storage::Certificate};
@@ -29,7 +30,8 @@ const fn suits(limit: usize, needed: usize) -> bool {
 const _: () = assert!(
     size_of::<Real>() > 4
         || size_of::<usize>() < 8
-        || (suits(ALLANITE_GYRO_WORDS, words::<AllaniteGyro>())
+        || (suits(ALLANITE_AXIS_WORDS, words::<AllaniteAxis>())
+            && suits(ALLANITE_GYRO_WORDS, words::<AllaniteGyro>())
             && suits(ALLANITE_RECORD_WORDS, words::<AllaniteRecord>())
             && suits(ALLANITE_SELF_TEST_WORDS, words::<AllaniteSelfTest>())
             && suits(ALLANITE_LOOK_WORDS, words::<AllaniteLook>())
@@ -39,7 +41,8 @@ const _: () = assert!(
 // No core needs more than the host.
 const _: () = assert!(
     size_of::<Real>() > 4
-        || (ALLANITE_GYRO_WORDS >= words::<AllaniteGyro>()
+        || (ALLANITE_AXIS_WORDS >= words::<AllaniteAxis>()
+            && ALLANITE_GYRO_WORDS >= words::<AllaniteGyro>()
             && ALLANITE_RECORD_WORDS >= words::<AllaniteRecord>()
             && ALLANITE_SELF_TEST_WORDS >= words::<AllaniteSelfTest>()
             && ALLANITE_LOOK_WORDS >= words::<AllaniteLook>()

@@ -1,15 +1,18 @@
 //! The record of an axis, and fits of models to it.
 
 use crate::{
+    coefficient::{AllaniteCoefficient, AllaniteState},
+    curve::{AllanitePoint, write_points},
     gyro::{AllaniteGyro, BINS},
     memory::{self, Memory, get, put, status},
+    reason::AllaniteReason,
     sizes::{ALLANITE_OCTAVES, ALLANITE_RECORD_WORDS},
-    status::{AllaniteReason, AllaniteStatus},
+    status::AllaniteStatus,
 };
 use allanite::{
     Model, Real, Scale,
     axis::AxisRecord,
-    fit::{Fit, Options, State, fit},
+    fit::{Fit, Options, fit},
     spectrum::Spectrum,
     storage::EffectCode,
 };
@@ -88,40 +91,29 @@ pub unsafe extern "C" fn allanite_record_summary(
     status(unsafe { put(reason, AllaniteReason::of(record.invalid)) })
 }
 
+/// Writes the octaves of the Allan curve of a record, shortest first, and their number. [`ALLANITE_OCTAVES`] points always
+/// suffice.
+///
+/// # Safety
+/// `record` is null, or points to an `AllaniteRecord`; `points` is null, or points to `capacity` points; `number` is null, or
+/// points to a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn allanite_record_curve(
+    record: *const AllaniteRecord,
+    points: *mut AllanitePoint,
+    capacity: usize,
+    number: *mut usize,
+) -> AllaniteStatus {
+    // SAFETY: the caller promises what `get` wants.
+    let record = unsafe { get(record) };
+    // SAFETY: the caller promises what `write_points` wants.
+    status(record.and_then(|it| unsafe { write_points(&it.curve, points, capacity, number) }))
+}
+
 /// The largest number of effects in a model.
 pub const ALLANITE_MAX_COEFFICIENTS: usize = 8;
 /// The largest number of fitted shape parameters in a model.
 pub const ALLANITE_MAX_SHAPES: usize = 6;
-
-/// What a record says about a coefficient.
-#[repr(i32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AllaniteState {
-    /// The 95 % interval excludes zero.
-    Measured = 0,
-    /// The interval includes zero, and `upper` is a one-sided 95 % bound.
-    UpperBound = 1,
-    /// The record says nothing about it.
-    NotObservable = 2,
-}
-
-/// A coefficient, in the unit rate · s^(half_seconds/2).
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct AllaniteCoefficient {
-    /// The code of the effect, for `allanite_effect_name`. A code never changes its meaning.
-    pub effect: i32,
-    /// What the record says about it.
-    pub state: AllaniteState,
-    /// Twice the exponent of the second in the unit.
-    pub half_seconds: i32,
-    /// The best value.
-    pub value: f32,
-    /// The lower end of the 95 % interval; 0 unless the coefficient is measured.
-    pub lower: f32,
-    /// The upper end of the interval, or a one-sided 95 % bound.
-    pub upper: f32,
-}
 
 /// A fitted shape parameter of an effect.
 #[repr(C)]
@@ -214,18 +206,8 @@ impl AllaniteFit {
         };
         let pairs = fit.coefficients.iter().zip(model.terms());
         for (slot, (coefficient, term)) in to.coefficients.iter_mut().zip(pairs) {
-            *slot = AllaniteCoefficient {
-                effect: EffectCode::of(term.effect).number().into(),
-                state: match coefficient.state {
-                    State::Measured => AllaniteState::Measured,
-                    State::UpperBound => AllaniteState::UpperBound,
-                    State::NotObservable { .. } => AllaniteState::NotObservable,
-                },
-                half_seconds: coefficient.half_seconds.into(),
-                value: coefficient.value as f32,
-                lower: coefficient.lower as f32,
-                upper: coefficient.upper as f32,
-            };
+            let code = EffectCode::of(term.effect).number();
+            *slot = AllaniteCoefficient::of(coefficient, code.into());
             to.coefficient_count = to.coefficient_count.wrapping_add(1);
         }
         for (slot, shape) in to.shapes.iter_mut().zip(&fit.shape) {

@@ -30,6 +30,9 @@
 //! library, and memory in which no value was made. It cannot check that a pointer points to as much memory as its type
 //! says, and that nothing else uses it: the callers' duties stand under *Safety*.
 //!
+//! A core with little memory records one axis and fits the five terms alone: `AllaniteAxis`. A library with the feature
+//! `one-axis` has nothing else, and C code then defines `ALLANITE_ONE_AXIS`.
+//!
 //! A static library computes in single precision and for one number of octaves: 20, or 14 or 26 with the feature
 //! `octaves-14` or `octaves-26`, for which C code defines `ALLANITE_OCTAVES_14` or `ALLANITE_OCTAVES_26`.
 
@@ -37,25 +40,52 @@
 // A value of C is behind a pointer. Each block says why it is sound.
 #![allow(unsafe_code)]
 
+mod axis;
+#[cfg(not(feature = "one-axis"))]
 mod certificate;
+#[cfg(not(feature = "one-axis"))]
 mod checks;
+mod codes;
+mod coefficient;
+mod curve;
+#[cfg(not(feature = "one-axis"))]
 mod diagnosis;
+#[cfg(not(feature = "one-axis"))]
 mod fit;
+#[cfg(not(feature = "one-axis"))]
 mod gyro;
 mod memory;
+#[cfg(not(feature = "one-axis"))]
 mod names;
+#[cfg(not(feature = "one-axis"))]
+mod reason;
+#[cfg(not(feature = "one-axis"))]
 mod self_test;
 mod sizes;
+#[cfg(not(feature = "one-axis"))]
 mod snapshot;
 mod status;
 
+pub use axis::*;
+#[cfg(not(feature = "one-axis"))]
 pub use certificate::*;
+pub use codes::*;
+pub use coefficient::*;
+pub use curve::*;
+#[cfg(not(feature = "one-axis"))]
 pub use diagnosis::*;
+#[cfg(not(feature = "one-axis"))]
 pub use fit::*;
+#[cfg(not(feature = "one-axis"))]
 pub use gyro::*;
+#[cfg(not(feature = "one-axis"))]
 pub use names::*;
+#[cfg(not(feature = "one-axis"))]
+pub use reason::*;
+#[cfg(not(feature = "one-axis"))]
 pub use self_test::*;
 pub use sizes::*;
+#[cfg(not(feature = "one-axis"))]
 pub use snapshot::*;
 pub use status::*;
 

@@ -3,8 +3,9 @@
 use crate::{
     fit::AllaniteRecord,
     memory::{self, Memory, get, get_mut, put, slice, status},
+    reason::AllaniteReason,
     sizes::{ALLANITE_LOOK_WORDS, ALLANITE_OCTAVES, ALLANITE_SELF_TEST_WORDS},
-    status::{AllaniteReason, AllaniteStatus},
+    status::AllaniteStatus,
 };
 use allanite::{
     Real, Scale,

@@ -18,6 +18,8 @@ pub const ALLANITE_OCTAVES: usize = 20;
 
 /// Words of an `AllaniteGyro`.
 pub const ALLANITE_GYRO_WORDS: usize = 2208 + 66 * ALLANITE_OCTAVES;
+/// Words of an `AllaniteAxis`.
+pub const ALLANITE_AXIS_WORDS: usize = 23 + 12 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteRecord`.
 pub const ALLANITE_RECORD_WORDS: usize = 470 + 7 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteSelfTest`.

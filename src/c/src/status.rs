@@ -1,6 +1,6 @@
 //! What functions return, as codes that never change their meaning.
 
-use allanite::{Error, integrity::Reason, self_test::InvalidPlan, storage};
+use allanite::{Error, self_test::InvalidPlan, storage};
 use core::ffi::{CStr, c_char};
 
 /// What a function returns. A code never changes its meaning.
@@ -89,58 +89,10 @@ impl From<InvalidPlan> for AllaniteStatus {
     }
 }
 
-/// Why a record is not that of a gyro at rest.
-#[repr(i32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AllaniteReason {
-    /// The record is valid.
-    Valid = 0,
-    /// The values change too seldom.
-    Stuck = 1,
-    /// Every sample is there several times.
-    Repeated = 2,
-    /// The noise is below half a count.
-    Coarse = 3,
-    /// Too many values are at a rail of the converter.
-    Railed = 4,
-    /// Spikes contribute too much.
-    Spiked = 5,
-    /// The gyro was moved.
-    Moved = 6,
-    /// Too many samples were lost.
-    Missing = 7,
-    /// The gate left out too many samples.
-    LeftOut = 8,
-    /// Any other reason, of a later version.
-    Other = 9,
-    /// Small values are set to zero.
-    DeadBand = 10,
-    /// The counts were read without their sign, or with their bytes in the wrong order.
-    Misread = 11,
-}
-
-impl AllaniteReason {
-    pub(crate) fn of(reason: Option<Reason>) -> Self {
-        match reason {
-            None => Self::Valid,
-            Some(Reason::Stuck { .. }) => Self::Stuck,
-            Some(Reason::Repeated { .. }) => Self::Repeated,
-            Some(Reason::Coarse { .. }) => Self::Coarse,
-            Some(Reason::Railed { .. }) => Self::Railed,
-            Some(Reason::Spiked { .. }) => Self::Spiked,
-            Some(Reason::Moved { .. }) => Self::Moved,
-            Some(Reason::Missing { .. }) => Self::Missing,
-            Some(Reason::LeftOut { .. }) => Self::LeftOut,
-            Some(Reason::DeadBand { .. }) => Self::DeadBand,
-            Some(Reason::Misread { .. }) => Self::Misread,
-            Some(_) => Self::Other,
-        }
-    }
-}
-
 /// What a status means, as a sentence that ends with NUL. An unknown number gives "unknown status".
 #[unsafe(no_mangle)]
 pub extern "C" fn allanite_status_text(status: i32) -> *const c_char {
+    // One axis alone has no use for the others, which would take half a kilobyte.
     let text: &CStr = match status {
         0 => c"all is well",
         1 => c"a pointer is null",
@@ -150,17 +102,26 @@ pub extern "C" fn allanite_status_text(status: i32) -> *const c_char {
         }
         4 => c"the memory holds no such value: call the function that makes it",
         5 => c"an argument is outside of its range",
+        #[cfg(not(feature = "one-axis"))]
         6 => c"there is no such axis: count them from 0",
         7 => c"the record is too short: record longer",
         8 => c"there is no noise, because the counts do not change: check the sensor",
+        #[cfg(not(feature = "one-axis"))]
         9 => c"the effects of a model cannot be told apart",
         10 => c"the buffer is too small",
+        #[cfg(not(feature = "one-axis"))]
         11 => c"the stored bytes are damaged or of something else",
+        #[cfg(not(feature = "one-axis"))]
         12 => c"the stored bytes have an unknown version",
+        #[cfg(not(feature = "one-axis"))]
         13 => c"the stored bytes are of a record with other parts or of another plan",
+        #[cfg(not(feature = "one-axis"))]
         14 => c"the plan of the self-test cannot be carried out",
+        #[cfg(not(feature = "one-axis"))]
         15 => c"another error",
+        #[cfg(not(feature = "one-axis"))]
         16 => c"the look is not the one that the self-test has begun: conclude each look once, by its own test",
+        #[cfg(not(feature = "one-axis"))]
         17 => c"the other record has another noise: merge records of one sensor, read with one scale and filter",
         _ => c"unknown status",
     };

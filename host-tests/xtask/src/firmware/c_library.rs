@@ -20,27 +20,50 @@ pub fn folder() -> PathBuf {
     workspace().join("src/c")
 }
 
-/// The feature for a number of octaves; none for the usual 20.
-pub fn feature(octaves: u32) -> Option<String> {
-    (octaves != 20).then(|| format!("octaves-{octaves}"))
+/// What a library for C holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Contents {
+    /// The number of octaves of a record: 14, 20 or 26.
+    pub octaves: u32,
+    /// Whether it has one axis and the five terms alone.
+    pub one_axis: bool,
 }
 
-/// What C code has to define for a number of octaves; nothing for the usual 20.
-pub fn define(octaves: u32) -> Option<String> {
-    let feature = feature(octaves)?;
-    let feature = feature.replace('-', "_").to_uppercase();
-    Some(format!("ALLANITE_{feature}"))
+impl Contents {
+    /// Everything, with the usual number of octaves.
+    pub const ALL: Self = Self {
+        octaves: 20,
+        one_axis: false,
+    };
+
+    /// The features of the package.
+    fn features(self) -> Vec<String> {
+        let octaves = (self.octaves != 20).then(|| format!("octaves-{}", self.octaves));
+        let one_axis = self.one_axis.then(|| "one-axis".to_owned());
+        octaves.into_iter().chain(one_axis).collect()
+    }
+
+    /// What C code has to define for it.
+    pub fn defines(self) -> Vec<String> {
+        let name = |feature: String| feature.replace('-', "_").to_uppercase();
+        let names = self.features().into_iter().map(name);
+        names.map(|name| format!("ALLANITE_{name}")).collect()
+    }
 }
 
 /// Puts a library, the header and a package of CMake into a folder, and returns the library's path there.
 ///
 /// # Errors
 /// Fails if a file cannot be written.
-pub fn package(library: &Path, octaves: u32, to: &Path) -> Result<PathBuf> {
+pub fn package(library: &Path, contents: Contents, to: &Path) -> Result<PathBuf> {
     let copy = to.join("liballanite_c.a");
-    let defined = define(octaves).map_or(String::new(), |define| {
-        format!("\n    INTERFACE_COMPILE_DEFINITIONS {define}")
-    });
+    let defined = match &contents.defines()[..] {
+        [] => String::new(),
+        names => format!(
+            "\n    INTERFACE_COMPILE_DEFINITIONS \"{}\"",
+            names.join(";")
+        ),
+    };
     let cmake = CMAKE.replace("@DEFINED@", &defined);
     std::fs::create_dir_all(to)
         .and_then(|()| {
@@ -63,16 +86,16 @@ if(NOT TARGET allanite::allanite)
 endif()
 "#;
 
-/// Builds the library for a core, in single precision, for 14, 20 or 26 octaves.
+/// Builds the library for a core, in single precision.
 ///
 /// # Errors
 /// Fails if the build fails.
-pub fn library(core: &Core, octaves: u32) -> Result<PathBuf> {
-    let mut command = Toolchain::find(core)?.cargo("build")?;
+pub fn library(core: &Core, contents: Contents) -> Result<PathBuf> {
+    let mut command = Toolchain::find(core)?.cargo("rustc")?;
     command.args(["--package", "allanite-c", "--lib", "--profile", "firmware"]);
-    if let Some(feature) = feature(octaves) {
-        command.args(["--features", &feature]);
-    }
+    // As one of several kinds, a static library would not be optimised as a whole.
+    command.args(["--crate-type", "staticlib"]);
+    command.args(["--features", &contents.features().join(",")]);
     let _lock = exclusive()?;
     let _heartbeat = Heartbeat::new(format!("the library for C for {}", core.name));
     succeed(&mut command)?;
@@ -154,12 +177,21 @@ pub fn host_program(sources: &[&str], into: &Path) -> Result<Vec<String>> {
     lines(&mut Command::new(&program))
 }
 
-/// Compiles the example for a Cortex-M4F, and returns the lines that it prints in QEMU.
+/// The options by which GCC compiles for a Cortex-M4F, and for a Cortex-M0+.
+const CORTEX_M4F_OPTIONS: &[&str] = &["-mcpu=cortex-m4", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"];
+const CORTEX_M0_OPTIONS: &[&str] = &["-mcpu=cortex-m0plus"];
+
+/// Compiles an example for a Cortex-M4F, or for a Cortex-M0+ if the core is small.
 ///
 /// # Errors
-/// Fails if it cannot be built, or if it ends with a failure.
-pub fn target_program(core: &Core, into: &Path) -> Result<Vec<String>> {
-    let library = library(core, 20)?;
+/// Fails if it cannot be built.
+pub fn build_for_target(
+    core: &Core,
+    contents: Contents,
+    source: &str,
+    into: &Path,
+) -> Result<PathBuf> {
+    let library = library(core, contents)?;
     let program = into.join("program.elf");
     let example = folder().join("example");
     let mut gcc = Command::new(ARM_GCC);
@@ -171,12 +203,13 @@ pub fn target_program(core: &Core, into: &Path) -> Result<Vec<String>> {
         "-Os",
         "-ffreestanding",
     ])
-    .args([
-        "-mcpu=cortex-m4",
-        "-mthumb",
-        "-mfloat-abi=hard",
-        "-mfpu=fpv4-sp-d16",
-    ])
+    .arg("-mthumb")
+    .args(if core.small {
+        CORTEX_M0_OPTIONS
+    } else {
+        CORTEX_M4F_OPTIONS
+    })
+    .args(contents.defines().iter().map(|name| format!("-D{name}")))
     .args([
         "-ffunction-sections",
         "-fdata-sections",
@@ -187,11 +220,20 @@ pub fn target_program(core: &Core, into: &Path) -> Result<Vec<String>> {
     .arg(example.join("cortex_m.ld"))
     .arg("-I")
     .arg(folder().join("include"))
-    .args(["product.c", "cortex_m.c"].map(|name| example.join(name)))
+    .args([source, "cortex_m.c"].map(|name| example.join(name)))
     .arg(library)
     .args(["-lgcc", "-o"])
     .arg(&program);
     succeed(&mut gcc)?;
+    Ok(program)
+}
+
+/// Compiles an example for a Cortex-M4F, and returns the lines that it prints in QEMU.
+///
+/// # Errors
+/// Fails if it cannot be built, or if it ends with a failure.
+pub fn target_program(core: &Core, source: &str, into: &Path) -> Result<Vec<String>> {
+    let program = build_for_target(core, Contents::ALL, source, into)?;
     let _heartbeat = Heartbeat::new(format!("the product in C on {core} in QEMU"));
     lines(
         Command::new(core.qemu)

@@ -155,15 +155,7 @@ impl Image {
     /// # Errors
     /// Fails if the file is not an ELF file.
     pub fn flash_bytes(&self) -> Result<u64> {
-        self.sum(|kind| {
-            matches!(
-                kind,
-                SectionKind::Text
-                    | SectionKind::ReadOnlyData
-                    | SectionKind::ReadOnlyString
-                    | SectionKind::Data
-            )
-        })
+        self.sum(is_in_flash)
     }
 
     fn sum(&self, counts: impl Fn(SectionKind) -> bool) -> Result<u64> {
@@ -171,6 +163,29 @@ impl Image {
         let sections = file.sections().filter(|section| counts(section.kind()));
         Ok(sections.map(|section| section.size()).sum())
     }
+}
+
+/// The size of a program in flash, in bytes: instructions, constants and initial values.
+///
+/// # Errors
+/// Fails if the file is not an ELF file.
+pub fn flash_of(program: &Path) -> Result<u64> {
+    let elf = std::fs::read(program).with_context(|| format!("reading {}", program.display()))?;
+    let file = object::File::parse(&*elf)?;
+    let sections = file
+        .sections()
+        .filter(|section| is_in_flash(section.kind()));
+    Ok(sections.map(|section| section.size()).sum())
+}
+
+fn is_in_flash(kind: SectionKind) -> bool {
+    matches!(
+        kind,
+        SectionKind::Text
+            | SectionKind::ReadOnlyData
+            | SectionKind::ReadOnlyString
+            | SectionKind::Data
+    )
 }
 
 /// Replaces a file by a new one. A program that is running the old file keeps it.

@@ -134,6 +134,64 @@ fn a_project_of_cmake_in_c99_finds_the_package() {
     assert!(run("./build/product", &[]).starts_with("26 "));
 }
 
+/// What Zephyr does with a module, as far as a module can go wrong: its CMake code is run with functions that tell their
+/// arguments.
+const ZEPHYR: &str = "function(zephyr_library_import name path)
+  if(NOT EXISTS ${path})
+    message(FATAL_ERROR \"no library ${path}\")
+  endif()
+  message(STATUS \"library ${name}\")
+endfunction()
+function(zephyr_include_directories path)
+  if(NOT EXISTS ${path}/allanite.h)
+    message(FATAL_ERROR \"no header\")
+  endif()
+  message(STATUS \"header\")
+endfunction()
+function(zephyr_compile_definitions)
+  message(STATUS \"define ${ARGN}\")
+endfunction()
+include(${PACKAGE}/zephyr/CMakeLists.txt)
+";
+
+#[test]
+fn the_package_is_a_module_of_zephyr() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |name: &str| folder.path().join(name);
+    fs::write(of("library.a"), "").expect("a file");
+    let contents = Contents {
+        octaves: 14,
+        one_axis: true,
+    };
+    package(&of("library.a"), contents, &of("package")).unwrap_or_else(|error| panic!("{error:#}"));
+    let module = fs::read_to_string(of("package/zephyr/module.yml")).expect("a module");
+    assert!(module.contains("kconfig: zephyr/Kconfig"), "{module}");
+    fs::write(of("zephyr.cmake"), ZEPHYR).expect("a script");
+    let said = |configured: &str| {
+        let run = Command::new("cmake")
+            .arg(format!("-DPACKAGE={}", of("package").display()))
+            .args([configured, "-P"])
+            .arg(of("zephyr.cmake"))
+            .output()
+            .unwrap_or_else(|error| panic!("cmake: {error}"));
+        assert!(
+            run.status.success(),
+            "{}",
+            String::from_utf8_lossy(&run.stderr)
+        );
+        String::from_utf8_lossy(&run.stdout).into_owned()
+    };
+    let linked = said("-DCONFIG_ALLANITE=y");
+    for wanted in [
+        "library allanite",
+        "header",
+        "define ALLANITE_OCTAVES_14;ALLANITE_ONE_AXIS",
+    ] {
+        assert!(linked.contains(wanted), "{linked}");
+    }
+    assert_eq!(said("-DCONFIG_ALLANITE=n"), "");
+}
+
 /// Not every core has every atomic instruction, and the library for C is to ask nothing of its program. The others have what a
 /// Cortex-M4F has, and take a minute each.
 #[test]

@@ -51,7 +51,7 @@ impl Contents {
     }
 }
 
-/// Puts a library, the header and a package of CMake into a folder, and returns the library's path there.
+/// Puts a library, the header, a package of CMake and a module of Zephyr into a folder, and returns the library's path there.
 ///
 /// # Errors
 /// Fails if a file cannot be written.
@@ -65,12 +65,18 @@ pub fn package(library: &Path, contents: Contents, to: &Path) -> Result<PathBuf>
         ),
     };
     let cmake = CMAKE.replace("@DEFINED@", &defined);
+    let zephyr = to.join("zephyr");
+    let module = ZEPHYR.replace("@DEFINES@", &contents.defines().join(" "));
     std::fs::create_dir_all(to)
         .and_then(|()| {
             let header = folder().join("include/allanite.h");
             std::fs::copy(header, to.join("allanite.h"))?;
             std::fs::copy(library, &copy)?;
-            std::fs::write(to.join("allanite-config.cmake"), cmake)
+            std::fs::write(to.join("allanite-config.cmake"), cmake)?;
+            std::fs::create_dir_all(&zephyr)?;
+            std::fs::write(zephyr.join("module.yml"), ZEPHYR_MODULE)?;
+            std::fs::write(zephyr.join("Kconfig"), ZEPHYR_KCONFIG)?;
+            std::fs::write(zephyr.join("CMakeLists.txt"), module)
         })
         .with_context(|| format!("writing to {}", to.display()))?;
     Ok(copy)
@@ -85,6 +91,24 @@ if(NOT TARGET allanite::allanite)
     INTERFACE_INCLUDE_DIRECTORIES "${CMAKE_CURRENT_LIST_DIR}"@DEFINED@)
 endif()
 "#;
+
+/// What makes the folder a module of Zephyr, for `-DZEPHYR_EXTRA_MODULES=...` and `CONFIG_ALLANITE=y`.
+const ZEPHYR_MODULE: &str = "name: allanite
+build:
+  cmake: zephyr
+  kconfig: zephyr/Kconfig
+";
+const ZEPHYR_KCONFIG: &str = "config ALLANITE
+	bool \"Gyro self-characterisation\"
+	help
+	  Links liballanite_c.a, which needs no heap, no C library and no other module.
+";
+const ZEPHYR: &str = "if(CONFIG_ALLANITE)
+  zephyr_library_import(allanite ${CMAKE_CURRENT_LIST_DIR}/../liballanite_c.a)
+  zephyr_include_directories(${CMAKE_CURRENT_LIST_DIR}/..)
+  zephyr_compile_definitions(@DEFINES@)
+endif()
+";
 
 /// Builds the library for a core, in single precision.
 ///

@@ -144,6 +144,6 @@ fn limits_pass_fail_or_stay_open_by_the_intervals() {
     let mut both = with(1, 0.5 * white.lower);
     both.most[0] = found.coefficients[0].value;
     assert_eq!(both.check(&found), Checked::Fail { place });
-    found.chi_squared = 1e3;
+    found.birge_ratio = 1.2;
     assert_eq!(with(1, white.upper).check(&found), Checked::Misfit);
 }

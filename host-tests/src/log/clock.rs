@@ -232,7 +232,13 @@ impl Clock {
     /// leave less for lost.
     fn end_delays(&mut self, stamp: Stamp, step: f64) {
         let (now, pace) = (self.rows, self.pace);
-        let early = EARLY * pace.scatter / pace.step;
+        // The rows of a burst are not that regular.
+        let is_burst = pace.rows > 1.0;
+        let early = if is_burst {
+            0.0
+        } else {
+            EARLY * pace.scatter / pace.step
+        };
         for gap in &mut self.behind {
             if step < WAITED * pace.step {
                 gap.waited = now;

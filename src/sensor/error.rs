@@ -24,6 +24,17 @@ pub enum Error<E> {
         /// The values expected in that register.
         expected: &'static [u8],
     },
+    /// The sensor did not accept what was uploaded.
+    Upload {
+        /// The name of the sensor.
+        sensor: &'static str,
+        /// The address of its status register.
+        register: u8,
+        /// The bits found in that register.
+        found: u8,
+        /// The bits expected in that register.
+        expected: u8,
+    },
     /// The registers of gyro and temperature in a description lie too far apart to be read at once.
     TooWide {
         /// The name of the described sensor.
@@ -81,6 +92,16 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                      select, SPI mode and supply"
                 )
             }
+            Self::Upload {
+                sensor,
+                register,
+                found,
+                expected,
+            } => write!(
+                f,
+                "{sensor} did not accept the image: its register {register:#04x} says {found:#04x} instead of \
+                 {expected:#04x}; check that the image is complete and that it belongs to this sensor"
+            ),
             Self::TooWide { sensor, registers } => write!(
                 f,
                 "gyro and temperature of {sensor} span {registers} registers, but only {MAX_BLOCK} can be \

@@ -25,6 +25,7 @@ pub const fn icm_20602(wanted: Configuration) -> Result<Description, Configurati
         // WHO_AM_I.
         identity: 0x75,
         identities: &[0x12],
+        upload: None,
         start_up: Writes::of([
             // PWR_MGMT_1: DEVICE_RESET.
             Write::new(0x6B, 0x80).wait_us(100_000),

@@ -31,6 +31,7 @@ pub static LSM9DS1: Description = Description {
     // WHO_AM_I (7.11).
     identity: 0x0F,
     identities: &[0x68],
+    upload: None,
     start_up: Writes::of([
         // CTRL_REG8 (7.26): SW_RESET; IF_ADD_INC as after reset.
         Write::new(0x22, 0x05).wait_us(10_000),

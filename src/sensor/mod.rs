@@ -45,6 +45,7 @@
 //! | sensor | rate, Hz | cut-off, Hz | noise bandwidth, Hz | poles | source of the order | FIFO |
 //! |---|---|---|---|---|---|---|
 //! | [`BMI160`] | 200 | 20.2 | ≤ 31.8 | ≥ 1 | not documented | no |
+//! | [`bmi270`] | 200 | ≤ 22 | ≤ 34.6 | ≥ 1 | not documented | no |
 //! | [`ICM_20602`] | 200 | 20 | ≤ 31.4 | ≥ 1 | not documented | no |
 //! | [`ICM_20948`] | 225 | 23.9 | ≤ 37.7 | ≥ 1 | inferred from the noise bandwidth | no |
 //! | [`ICM_42688_P`] | 100 | 47.6 | 48.1 | 3 | data sheet | 128 samples |
@@ -61,15 +62,15 @@
 //! documentation of each sensor lists its registers, with the data sheet's sections, the public drivers that
 //! they were compared with, and what could not be verified. None of it was measured on a sensor.
 //!
-//! The sensors without a FIFO here have one in silicon. The FIFO of the BMI160 holds a time only at the end of its content,
-//! and the others hold none, so that they would not tell what was lost. These sensors are read one sample at a time.
+//! The sensors without a FIFO here have one in silicon. The FIFOs of the BMI160 and the BMI270 hold a time only at the
+//! end of their content, and the others hold none, so that they would not tell what was lost. These sensors are read one sample at a time.
 //!
 //! # Another configuration
 //!
 //! The functions [`icm_20602`], [`icm_20948`], [`icm_42688_p`], [`icm_45686`], [`lsm6dso`], [`lsm6dsr`], [`lsm6dsv16x`],
 //! [`mpu_6050`] and [`mpu_6500`] make a description for another rate, range, low pass and watermark of the FIFO. They refuse what the sensor does not offer,
-//! in constants at compile time: see [`Configuration`]. The BMI160, the L3GD20 and the LSM9DS1 have the one configuration of the
-//! table. The bandwidths of the first two are not documented for others.
+//! in constants at compile time: see [`Configuration`]. The BMI160, the BMI270, the L3GD20 and the LSM9DS1 have the one
+//! configuration of the table. The bandwidths of the first three are not documented for others.
 //!
 //! # A sensor of your own
 //!
@@ -84,6 +85,7 @@
 //!     name: "ICM-20689",
 //!     identity: 0x75,
 //!     identities: &[0x98],
+//!     upload: None,
 //!     start_up: Writes::of([
 //!         Write::new(0x6B, 0x80).wait_us(100_000), // reset
 //!         Write::new(0x70, 0x40).spi_only(),       // no I²C
@@ -109,8 +111,8 @@
 //! const _: () = assert!(MINE.check().is_ok());
 //! ```
 //!
-//! Registers in banks are reached by writes that choose the bank, as those of the [`ICM_20948`]. What no description says:
-//! bursts that are written at start-up, such as the 8 KiB of a BMI270, frames of 16 bits, and counts of 32 bits. Such a sensor is
+//! Registers in banks are reached by writes that choose the bank, as those of the [`ICM_20948`]. An image that a sensor needs at
+//! every start is an [`Upload`]. What no description says: frames of 16 bits, and counts of 32 bits. Such a sensor is
 //! read by a driver of its own, whose counts go to [`Axes::push`](crate::Axes::push).
 //!
 //! # Waiting
@@ -151,6 +153,7 @@
 #[cfg(feature = "async")]
 mod async_bus;
 mod bmi160;
+mod bmi270;
 mod burst;
 mod bus;
 mod clock;
@@ -183,6 +186,7 @@ mod signal;
 mod stamps;
 mod start;
 mod transfer;
+mod upload;
 #[cfg(feature = "async")]
 mod wait;
 mod write;
@@ -190,6 +194,7 @@ mod write;
 #[cfg(feature = "async")]
 pub use async_bus::AsyncRegisters;
 pub use bmi160::BMI160;
+pub use bmi270::bmi270;
 pub use burst::Burst;
 pub use bus::{I2cBus, Registers, SpiBus};
 pub use clock::Clock;
@@ -214,9 +219,10 @@ pub use mpu_6500::{MPU_6500, mpu_6500};
 pub use pace::Pace;
 pub use reading::{Loss, Reading};
 pub use signal::Signal;
+pub use upload::Upload;
 pub use write::{Bus, Write, Writes};
 
-/// All descriptions of this module.
+/// All descriptions of this module. That of the BMI270 is made by [`bmi270`], because it needs an image.
 pub static CATALOGUE: [&Description; 12] = [
     &BMI160,
     &ICM_20602,

@@ -8,6 +8,8 @@
 //!   configured rate that differs from the true one, from the times at which the host reads.
 //! * A [`FifoImu`] reads bursts from the sensor's FIFO. Every sample has the sensor's own time, so that lost samples
 //!   are known in number, and a [`Clock`] measures the sensor's rate.
+//! * An [`Adis16470`] is read by a driver of its own, because it has frames of 16 bits and counts of 32 bits. Its counter of
+//!   samples tells what was lost in number.
 //!
 //! [`Axes`](crate::Axes) turns what was lost into gaps.
 //!
@@ -65,6 +67,9 @@
 //! The sensors without a FIFO here have one in silicon. The FIFOs of the BMI160 and the BMI270 hold a time only at the
 //! end of their content, and the others hold none, so that they would not tell what was lost. These sensors are read one sample at a time.
 //!
+//! The [`Adis16470`] has a range of ±2000 °/s and rates up to 1000 Hz. It averages the samples that it leaves out, so that no noise
+//! folds back either.
+//!
 //! # Another configuration
 //!
 //! The functions [`icm_20602`], [`icm_20948`], [`icm_42688_p`], [`icm_45686`], [`lsm6dso`], [`lsm6dsr`], [`lsm6dsv16x`],
@@ -113,7 +118,8 @@
 //!
 //! Registers in banks are reached by writes that choose the bank, as those of the [`ICM_20948`]. An image that a sensor needs at
 //! every start is an [`Upload`]. What no description says: frames of 16 bits, and counts of 32 bits. Such a sensor is
-//! read by a driver of its own, whose counts go to [`Axes::push`](crate::Axes::push).
+//! read by a driver of its own, as the [`Adis16470`] is. The counts of any driver go to [`Axes::push`](crate::Axes::push), or as
+//! a [`Reading`] to [`Axes::record_outcome`](crate::Axes::record_outcome).
 //!
 //! # Waiting
 //!
@@ -150,6 +156,7 @@
 //! This module is not a driver for all functions of a sensor. The samples of any other driver can be given
 //! to [`Axes::push`](crate::Axes::push).
 
+mod adis16470;
 #[cfg(feature = "async")]
 mod async_bus;
 mod bmi160;
@@ -164,6 +171,7 @@ mod error;
 mod fetch;
 mod fifo;
 mod fifo_imu;
+mod frames;
 mod icm_20602;
 mod icm_20948;
 mod icm_42688_p;
@@ -191,6 +199,7 @@ mod upload;
 mod wait;
 mod write;
 
+pub use adis16470::Adis16470;
 #[cfg(feature = "async")]
 pub use async_bus::AsyncRegisters;
 pub use bmi160::BMI160;

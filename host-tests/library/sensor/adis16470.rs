@@ -1,5 +1,6 @@
 //! The ADIS16470, simulated frame by frame and independently of the library.
 
+use crate::precision::double;
 use crate::wire::Fault;
 use allanite::sensor::{Adis16470, Error, Loss, Reading};
 use allanite::{Accumulator, Axes};
@@ -337,10 +338,10 @@ fn a_sample_has_32_bits_of_either_sign_and_comes_once() {
         assert_eq!(outcome, Ok(Some(expected)));
     }
     // One count is a 65 536th of 0.1 °/s.
-    let full = f64::from(i32::MAX) * f64::from(Adis16470::<Wire>::SCALE_DPS);
+    let full = f64::from(i32::MAX) * double(Adis16470::<Wire>::SCALE_DPS);
     assert!((full - 3276.8).abs() < 1e-3, "{full}");
     let celsius = Adis16470::<Wire>::TEMPERATURE.celsius(247);
-    assert!((f64::from(celsius) - 24.7).abs() < 1e-5);
+    assert!((double(celsius) - 24.7).abs() < 1e-5);
 }
 
 #[test]

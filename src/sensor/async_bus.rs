@@ -31,6 +31,14 @@ pub trait AsyncRegisters {
         bytes: &mut [u8],
     ) -> Result<(), Self::Error>;
 
+    /// Writes in one transaction: a register, which is the first byte, and what follows it to this register and those
+    /// after it, or to a memory behind the register.
+    ///
+    /// # Errors
+    /// The error of the bus.
+    async fn write_frame(&mut self, interface: &Interface, frame: &[u8])
+    -> Result<(), Self::Error>;
+
     /// Writes one register.
     ///
     /// # Errors
@@ -40,7 +48,9 @@ pub trait AsyncRegisters {
         interface: &Interface,
         register: u8,
         value: u8,
-    ) -> Result<(), Self::Error>;
+    ) -> Result<(), Self::Error> {
+        self.write_frame(interface, &[register, value]).await
+    }
 }
 
 impl<SPI: SpiDevice> AsyncRegisters for SpiBus<SPI> {
@@ -59,8 +69,8 @@ impl<SPI: SpiDevice> AsyncRegisters for SpiBus<SPI> {
         self.0.transaction(&mut operations).await
     }
 
-    async fn write(&mut self, _: &Interface, register: u8, value: u8) -> Result<(), Self::Error> {
-        self.0.write(&[register, value]).await
+    async fn write_frame(&mut self, _: &Interface, frame: &[u8]) -> Result<(), Self::Error> {
+        self.0.write(frame).await
     }
 }
 
@@ -81,13 +91,12 @@ impl<I2C: I2c> AsyncRegisters for I2cBus<I2C> {
             .await
     }
 
-    async fn write(
+    async fn write_frame(
         &mut self,
         interface: &Interface,
-        register: u8,
-        value: u8,
+        frame: &[u8],
     ) -> Result<(), Self::Error> {
         let address = self.address(interface);
-        self.i2c.write(address, &[register, value]).await
+        self.i2c.write(address, frame).await
     }
 }

@@ -22,6 +22,7 @@ pub static BMI160: Description = Description {
     // Register (0x00) CHIPID.
     identity: 0x00,
     identities: &[0xD1],
+    upload: None,
     // There is no soft reset, because it would return the interface to I²C. It is not needed: every register
     // that matters is written, and the offsets that a reset clears are constants, which cancel.
     start_up: Writes::of([

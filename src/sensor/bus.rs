@@ -26,11 +26,20 @@ pub trait Registers {
         bytes: &mut [u8],
     ) -> Result<(), Self::Error>;
 
+    /// Writes in one transaction: a register, which is the first byte, and what follows it to this register and those
+    /// after it, or to a memory behind the register.
+    ///
+    /// # Errors
+    /// The error of the bus.
+    fn write_frame(&mut self, interface: &Interface, frame: &[u8]) -> Result<(), Self::Error>;
+
     /// Writes one register.
     ///
     /// # Errors
     /// The error of the bus.
-    fn write(&mut self, interface: &Interface, register: u8, value: u8) -> Result<(), Self::Error>;
+    fn write(&mut self, interface: &Interface, register: u8, value: u8) -> Result<(), Self::Error> {
+        self.write_frame(interface, &[register, value])
+    }
 }
 
 /// The address of a read over SPI, and the dummy bytes that follow it.
@@ -86,8 +95,8 @@ impl<SPI: SpiDevice> Registers for SpiBus<SPI> {
         self.0.transaction(&mut operations)
     }
 
-    fn write(&mut self, _: &Interface, register: u8, value: u8) -> Result<(), Self::Error> {
-        self.0.write(&[register, value])
+    fn write_frame(&mut self, _: &Interface, frame: &[u8]) -> Result<(), Self::Error> {
+        self.0.write(frame)
     }
 }
 
@@ -138,8 +147,8 @@ impl<I2C: I2c> Registers for I2cBus<I2C> {
             .write_read(address, &[register | interface.i2c_read], bytes)
     }
 
-    fn write(&mut self, interface: &Interface, register: u8, value: u8) -> Result<(), Self::Error> {
+    fn write_frame(&mut self, interface: &Interface, frame: &[u8]) -> Result<(), Self::Error> {
         let address = self.address(interface);
-        self.i2c.write(address, &[register, value])
+        self.i2c.write(address, frame)
     }
 }

@@ -1,4 +1,4 @@
-use super::{Fifo, Signal, Writes};
+use super::{Fifo, Signal, Upload, Writes};
 use crate::{
     Error, Scale, Term,
     numerics::real::{
@@ -142,6 +142,8 @@ pub struct Description {
     pub identity: u8,
     /// The values that the identity register may have.
     pub identities: &'static [u8],
+    /// What is uploaded before the start-up writes; `None` for a sensor that needs no upload.
+    pub upload: Option<Upload>,
     /// The writes before the first sample, in this order. The last one turns the gyro on and waits until it has
     /// settled.
     pub start_up: Writes<MAX_START_UP>,
@@ -176,6 +178,8 @@ pub struct Description {
 pub enum Flaw {
     /// There is no identity, or one is 0x00 or 0xFF, which a bus without a sensor reads as well.
     Identity,
+    /// The image to upload is empty, odd in length or longer than 8192 bytes, or it cannot be accepted.
+    Upload,
     /// Nothing is written before the first sample, so that the gyro stays off.
     StartUp,
     /// The address over I²C has more than 7 bits or is reserved, or SPI has more than three dummy bytes.
@@ -211,6 +215,11 @@ impl Description {
                 return Err(Flaw::Identity);
             }
             left = rest;
+        }
+        if let Some(upload) = &self.upload
+            && !upload.is_possible()
+        {
+            return Err(Flaw::Upload);
         }
         if self.start_up.as_slice().is_empty() {
             return Err(Flaw::StartUp);

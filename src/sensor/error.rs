@@ -24,6 +24,54 @@ pub enum Error<E> {
         /// The values expected in that register.
         expected: &'static [u8],
     },
+    /// The sensor did not accept what was uploaded.
+    Upload {
+        /// The name of the sensor.
+        sensor: &'static str,
+        /// The address of its status register.
+        register: u8,
+        /// The bits found in that register.
+        found: u8,
+        /// The bits expected in that register.
+        expected: u8,
+    },
+    /// A register of 16 bits does not hold what it should: another sensor answered, no sensor did, or a setting did not arrive.
+    WrongWord {
+        /// The name of the expected sensor.
+        sensor: &'static str,
+        /// The address of the register.
+        register: u8,
+        /// The value found in that register.
+        found: u16,
+        /// The value expected in that register.
+        expected: u16,
+    },
+    /// The sensor has no such rate.
+    Rate {
+        /// The name of the sensor.
+        sensor: &'static str,
+        /// The rate, in samples per second.
+        rate_hz: u16,
+    },
+    /// The checksum of a burst is wrong, or the burst holds nothing but zeros.
+    Checksum {
+        /// The checksum found.
+        found: u16,
+        /// The checksum of what was found before it.
+        expected: u16,
+    },
+    /// The sensor reports that it has failed.
+    Failure {
+        /// The name of the sensor.
+        sensor: &'static str,
+        /// The flags of its diagnostic register.
+        flags: u16,
+    },
+    /// The sensor took the next sample before all parts of one were read, twice.
+    Overtaken {
+        /// The name of the sensor.
+        sensor: &'static str,
+    },
     /// The registers of gyro and temperature in a description lie too far apart to be read at once.
     TooWide {
         /// The name of the described sensor.
@@ -81,6 +129,42 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                      select, SPI mode and supply"
                 )
             }
+            Self::Upload {
+                sensor,
+                register,
+                found,
+                expected,
+            } => write!(
+                f,
+                "{sensor} did not accept the image: its register {register:#04x} says {found:#04x} instead of \
+                 {expected:#04x}; check that the image is complete and that it belongs to this sensor"
+            ),
+            Self::WrongWord {
+                sensor,
+                register,
+                found,
+                expected,
+            } => write!(
+                f,
+                "the register {register:#04x} of {sensor} says {found:#06x} instead of {expected:#06x}; 0x0000 and \
+                 0xffff mean that nobody answered: check chip select, SPI mode and supply"
+            ),
+            Self::Rate { sensor, rate_hz } => {
+                write!(f, "{sensor} is not described at a rate of {rate_hz} Hz")
+            }
+            Self::Checksum { found, expected } => write!(
+                f,
+                "the checksum of a burst is {found:#06x} instead of {expected:#06x}; both 0x0000 mean that nobody \
+                 answered: check clock and wiring of the bus, then read again"
+            ),
+            Self::Failure { sensor, flags } => write!(
+                f,
+                "{sensor} reports a failure by the flags {flags:#06x}: check its supply, then start it again"
+            ),
+            Self::Overtaken { sensor } => write!(
+                f,
+                "{sensor} took a sample before the one before it was read: choose a lower rate or a faster bus"
+            ),
             Self::TooWide { sensor, registers } => write!(
                 f,
                 "gyro and temperature of {sensor} span {registers} registers, but only {MAX_BLOCK} can be \

@@ -47,6 +47,7 @@ pub const fn icm_20948(wanted: Configuration) -> Result<Description, Configurati
         // WHO_AM_I of bank 0.
         identity: 0x00,
         identities: &[0xEA],
+        upload: None,
         start_up: Writes::of([
             // PWR_MGMT_1: DEVICE_RESET.
             Write::new(0x06, 0x80).wait_us(100_000),

@@ -122,6 +122,7 @@ pub const fn icm_42688_p(wanted: Configuration) -> Result<Description, Configura
         // WHO_AM_I (section 14.58).
         identity: 0x75,
         identities: &[0x47],
+        upload: None,
         start_up: Writes::of([
             // DEVICE_CONFIG (14.1): SOFT_RESET_CONFIG, done within 1 ms.
             Write::new(0x11, 0x01).wait_us(2_000),

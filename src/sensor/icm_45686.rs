@@ -124,6 +124,7 @@ pub const fn icm_45686(wanted: Configuration) -> Result<Description, Configurati
         // WHO_AM_I.
         identity: 0x72,
         identities: &[0xE9],
+        upload: None,
         start_up: Writes::of([
             // REG_MISC2: soft_rst, done within 1 ms.
             Write::new(0x7F, 0x02).wait_us(2_000),

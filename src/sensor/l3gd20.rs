@@ -25,6 +25,7 @@ pub static L3GD20: Description = Description {
     // WHO_AM_I.
     identity: 0x0F,
     identities: &[0xD4],
+    upload: None,
     start_up: Writes::of([
         // There is no reset: only a power cycle clears these registers.
         // CTRL_REG2: no high-pass.

@@ -99,6 +99,7 @@ pub(super) const fn family(
         // WHO_AM_I (9.11).
         identity: 0x0F,
         identities,
+        upload: None,
         start_up: Writes::of([
             // CTRL3_C (9.14): SW_RESET, which takes well below a millisecond.
             Write::new(0x12, 0x01).wait_us(10_000),

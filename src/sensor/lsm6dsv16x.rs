@@ -85,6 +85,7 @@ pub const fn lsm6dsv16x(wanted: Configuration) -> Result<Description, Configurat
         // WHO_AM_I.
         identity: 0x0F,
         identities: &[0x70],
+        upload: None,
         start_up: Writes::of([
             // CTRL3: SW_RESET.
             Write::new(0x12, 0x01).wait_us(10_000),

@@ -8,6 +8,8 @@
 //!   configured rate that differs from the true one, from the times at which the host reads.
 //! * A [`FifoImu`] reads bursts from the sensor's FIFO. Every sample has the sensor's own time, so that lost samples
 //!   are known in number, and a [`Clock`] measures the sensor's rate.
+//! * An [`Adis16470`] is read by a driver of its own, because it has frames of 16 bits and counts of 32 bits. Its counter of
+//!   samples tells what was lost in number.
 //!
 //! [`Axes`](crate::Axes) turns what was lost into gaps.
 //!
@@ -45,6 +47,8 @@
 //! | sensor | rate, Hz | cut-off, Hz | noise bandwidth, Hz | poles | source of the order | FIFO |
 //! |---|---|---|---|---|---|---|
 //! | [`BMI160`] | 200 | 20.2 | ≤ 31.8 | ≥ 1 | not documented | no |
+//! | [`bmi270`] | 200 | ≤ 22 | ≤ 34.6 | ≥ 1 | not documented | no |
+//! | [`ICM_20602`] | 200 | 20 | ≤ 31.4 | ≥ 1 | not documented | no |
 //! | [`ICM_20948`] | 225 | 23.9 | ≤ 37.7 | ≥ 1 | inferred from the noise bandwidth | no |
 //! | [`ICM_42688_P`] | 100 | 47.6 | 48.1 | 3 | data sheet | 128 samples |
 //! | [`ICM_45686`] | 100 | 6.25 | ≤ 9.8 | ≥ 1 | not documented | 128 samples |
@@ -52,6 +56,7 @@
 //! | [`LSM6DSO`] | 104 | 33.0 | 34.7 | 2 | inferred from the data sheet's cut-offs | 256 samples |
 //! | [`LSM6DSR`] | 104 | 33.0 | 34.7 | 2 | that of the LSM6DSO | 256 samples |
 //! | [`LSM6DSV16X`] | 120 | 38 | 40 | 2 | inferred from the LSM6DSO | 128 samples |
+//! | [`LSM9DS1`] | 119 | 38 and 31 | ≤ 26.8 | ≥ 2 | not documented | no |
 //! | [`MPU_6050`] | 200 | 20 | ≤ 31.4 | ≥ 1 | not documented | no |
 //! | [`MPU_6500`] | 200 | 20 | 31.4 | 1 | inferred from the data sheet's delays | no |
 //!
@@ -59,16 +64,18 @@
 //! documentation of each sensor lists its registers, with the data sheet's sections, the public drivers that
 //! they were compared with, and what could not be verified. None of it was measured on a sensor.
 //!
-//! The sensors without a FIFO here have one in silicon. The FIFOs of the MPU-6050, the MPU-6500, the ICM-20948 and the L3GD20 hold no
-//! time, and that of the BMI160 holds one only at the end of its content, so that they would not tell what was lost.
-//! These five are read one sample at a time.
+//! The sensors without a FIFO here have one in silicon. The FIFOs of the BMI160 and the BMI270 hold a time only at the
+//! end of their content, and the others hold none, so that they would not tell what was lost. These sensors are read one sample at a time.
+//!
+//! The [`Adis16470`] has a range of ±2000 °/s and rates up to 1000 Hz. It averages the samples that it leaves out, so that no noise
+//! folds back either.
 //!
 //! # Another configuration
 //!
-//! The functions [`icm_20948`], [`icm_42688_p`], [`icm_45686`], [`lsm6dso`], [`lsm6dsr`], [`lsm6dsv16x`], [`mpu_6050`]
-//! and [`mpu_6500`] make a description for another rate, range, low pass and watermark of the FIFO. They refuse what the sensor does not offer,
-//! in constants at compile time: see [`Configuration`]. The BMI160 and the L3GD20 have the one configuration of the
-//! table, because the bandwidths of their low passes are not documented for others.
+//! The functions [`icm_20602`], [`icm_20948`], [`icm_42688_p`], [`icm_45686`], [`lsm6dso`], [`lsm6dsr`], [`lsm6dsv16x`],
+//! [`mpu_6050`] and [`mpu_6500`] make a description for another rate, range, low pass and watermark of the FIFO. They refuse what the sensor does not offer,
+//! in constants at compile time: see [`Configuration`]. The BMI160, the BMI270, the L3GD20 and the LSM9DS1 have the one
+//! configuration of the table. The bandwidths of the first three are not documented for others.
 //!
 //! # A sensor of your own
 //!
@@ -78,11 +85,12 @@
 //! ```
 //! use allanite::sensor::{ByteOrder, Description, Filter, Interface, Status, Temperature, Write, Writes};
 //!
-//! /// ±250 °/s at 200 Hz behind 20 Hz: the registers of the MPU-6500, with an identity of its own.
+//! /// ±250 °/s at 200 Hz behind 20 Hz: the registers of the ICM-20602, with an identity of its own.
 //! const MINE: Description = Description {
-//!     name: "ICM-20602",
+//!     name: "ICM-20689",
 //!     identity: 0x75,
-//!     identities: &[0x12],
+//!     identities: &[0x98],
+//!     upload: None,
 //!     start_up: Writes::of([
 //!         Write::new(0x6B, 0x80).wait_us(100_000), // reset
 //!         Write::new(0x70, 0x40).spi_only(),       // no I²C
@@ -108,9 +116,10 @@
 //! const _: () = assert!(MINE.check().is_ok());
 //! ```
 //!
-//! Registers in banks are reached by writes that choose the bank, as those of the [`ICM_20948`]. What no description says:
-//! bursts that are written at start-up, such as the 8 KiB of a BMI270, frames of 16 bits, and counts of 32 bits. Such a sensor is
-//! read by a driver of its own, whose counts go to [`Axes::push`](crate::Axes::push).
+//! Registers in banks are reached by writes that choose the bank, as those of the [`ICM_20948`]. An image that a sensor needs at
+//! every start is an [`Upload`]. What no description says: frames of 16 bits, and counts of 32 bits. Such a sensor is
+//! read by a driver of its own, as the [`Adis16470`] is. The counts of any driver go to [`Axes::push`](crate::Axes::push), or as
+//! a [`Reading`] to [`Axes::record_outcome`](crate::Axes::record_outcome).
 //!
 //! # Waiting
 //!
@@ -147,9 +156,11 @@
 //! This module is not a driver for all functions of a sensor. The samples of any other driver can be given
 //! to [`Axes::push`](crate::Axes::push).
 
+mod adis16470;
 #[cfg(feature = "async")]
 mod async_bus;
 mod bmi160;
+mod bmi270;
 mod burst;
 mod bus;
 mod clock;
@@ -160,6 +171,8 @@ mod error;
 mod fetch;
 mod fifo;
 mod fifo_imu;
+mod frames;
+mod icm_20602;
 mod icm_20948;
 mod icm_42688_p;
 mod icm_45686;
@@ -168,6 +181,7 @@ mod l3gd20;
 mod lsm6dso;
 mod lsm6dsr;
 mod lsm6dsv16x;
+mod lsm9ds1;
 mod malformed;
 mod mpu;
 mod mpu_6050;
@@ -180,13 +194,16 @@ mod signal;
 mod stamps;
 mod start;
 mod transfer;
+mod upload;
 #[cfg(feature = "async")]
 mod wait;
 mod write;
 
+pub use adis16470::Adis16470;
 #[cfg(feature = "async")]
 pub use async_bus::AsyncRegisters;
 pub use bmi160::BMI160;
+pub use bmi270::bmi270;
 pub use burst::Burst;
 pub use bus::{I2cBus, Registers, SpiBus};
 pub use clock::Clock;
@@ -195,6 +212,7 @@ pub use description::{ByteOrder, Description, Filter, Flaw, Interface, Status, T
 pub use error::Error;
 pub use fifo::{Fifo, Format};
 pub use fifo_imu::FifoImu;
+pub use icm_20602::{ICM_20602, icm_20602};
 pub use icm_20948::{ICM_20948, icm_20948};
 pub use icm_42688_p::{ICM_42688_P, icm_42688_p};
 pub use icm_45686::{ICM_45686, icm_45686};
@@ -203,17 +221,20 @@ pub use l3gd20::L3GD20;
 pub use lsm6dso::{LSM6DSO, lsm6dso};
 pub use lsm6dsr::{LSM6DSR, lsm6dsr};
 pub use lsm6dsv16x::{LSM6DSV16X, lsm6dsv16x};
+pub use lsm9ds1::LSM9DS1;
 pub use malformed::Malformed;
 pub use mpu_6050::{MPU_6050, mpu_6050};
 pub use mpu_6500::{MPU_6500, mpu_6500};
 pub use pace::Pace;
 pub use reading::{Loss, Reading};
 pub use signal::Signal;
+pub use upload::Upload;
 pub use write::{Bus, Write, Writes};
 
-/// All descriptions of this module.
-pub static CATALOGUE: [&Description; 10] = [
+/// All descriptions of this module. That of the BMI270 is made by [`bmi270`], because it needs an image.
+pub static CATALOGUE: [&Description; 12] = [
     &BMI160,
+    &ICM_20602,
     &ICM_20948,
     &ICM_42688_P,
     &ICM_45686,
@@ -221,6 +242,7 @@ pub static CATALOGUE: [&Description; 10] = [
     &LSM6DSO,
     &LSM6DSR,
     &LSM6DSV16X,
+    &LSM9DS1,
     &MPU_6050,
     &MPU_6500,
 ];

@@ -1,4 +1,4 @@
-//! What the MPU-6050, the MPU-6500 and the ICM-20948 offer in common.
+//! What the MPU-6050, the MPU-6500, the ICM-20602 and the ICM-20948 offer in common.
 
 use super::{
     Configuration, ConfigurationError, Filter,

@@ -25,6 +25,7 @@ pub const fn mpu_6050(wanted: Configuration) -> Result<Description, Configuratio
         // Register 117, WHO_AM_I.
         identity: 0x75,
         identities: &[0x68],
+        upload: None,
         start_up: Writes::of([
             // Register 107, PWR_MGMT_1: DEVICE_RESET.
             Write::new(0x6B, 0x80).wait_us(100_000),

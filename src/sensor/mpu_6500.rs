@@ -25,6 +25,7 @@ pub const fn mpu_6500(wanted: Configuration) -> Result<Description, Configuratio
         // Register 117, WHO_AM_I; 0x71 is the MPU-9250's (RM-MPU-9250A-00).
         identity: 0x75,
         identities: &[0x70, 0x71],
+        upload: None,
         start_up: Writes::of([
             // Register 107, PWR_MGMT_1: DEVICE_RESET.
             Write::new(0x6B, 0x80).wait_us(100_000),

@@ -3,7 +3,8 @@
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reading {
     /// The rates about x, y and z, as [`Accumulator::push`](crate::Accumulator::push) takes them.
-    /// One count is [`Description::scale_dps`](super::Description::scale_dps) °/s.
+    /// One count is [`Description::scale_dps`](super::Description::scale_dps) °/s, or
+    /// [`Adis16470::SCALE_DPS`](super::Adis16470::SCALE_DPS).
     pub gyro: [i32; 3],
     /// The temperature count, which [`Temperature::celsius`](super::Temperature::celsius) converts;
     /// `None` if the sensor has no temperature, or has not sent one yet.

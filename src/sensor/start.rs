@@ -2,10 +2,16 @@ use super::{
     Description, Error, Write,
     sample::Sample,
     transfer::{Procedure, Step},
+    upload::BLOCK,
     write::Access,
 };
 
-/// The start of a sensor: its identity, its start-up writes, and the removal of what is outdated by then.
+/// The pause after a read that wakes a sensor on SPI, in µs. The BMI270 needs 450 µs between accesses until its power save
+/// is off.
+const WAKE_US: u32 = 500;
+
+/// The start of a sensor: its identity, its image if it needs one, its start-up writes, and the removal of what is outdated
+/// by then.
 pub(super) struct Start {
     description: &'static Description,
     over_spi: bool,
@@ -14,6 +20,8 @@ pub(super) struct Start {
     stage: Stage,
     /// What was read last.
     byte: [u8; 1],
+    /// A register and a block of bytes for it.
+    frame: [u8; 1 + BLOCK],
     /// The outdated sample.
     sample: Sample,
 }
@@ -21,15 +29,51 @@ pub(super) struct Start {
 #[derive(Clone, Copy)]
 enum Stage {
     /// The sensor is to listen to the bus.
-    Wake,
+    Wake { is_reset: bool },
+    /// The sensor was woken.
+    Awake { is_reset: bool },
     /// The identity is to be read.
     Identify,
     /// The identity was read.
     Compare,
-    /// The accesses of the write `index` are being made; `access` is the next of them.
-    Write { index: usize, access: usize },
+    /// The accesses of the write `index` of a list are being made; `access` is the next of them.
+    Write {
+        list: List,
+        index: usize,
+        access: usize,
+    },
+    /// Every block takes four steps, which are counted: its address, a pause, its bytes, and a pause.
+    Upload { step: usize },
+    /// All blocks were written, and the status is to be read.
+    Status,
+    /// The status was read.
+    Accept,
     /// All writes were made.
     Discard,
+}
+
+/// A list of writes.
+#[derive(Clone, Copy)]
+enum List {
+    /// The reset before an upload.
+    Reset,
+    /// The writes between that and the first block.
+    Open,
+    /// The write after the last block.
+    Close,
+    /// The start-up writes.
+    StartUp,
+}
+
+impl Stage {
+    /// The first write of a list is to be made.
+    const fn first(list: List) -> Self {
+        Self::Write {
+            list,
+            index: 0,
+            access: 0,
+        }
+    }
 }
 
 impl Start {
@@ -42,15 +86,55 @@ impl Start {
             description,
             over_spi,
             with_fifo,
-            stage: Stage::Wake,
+            stage: Stage::Wake { is_reset: false },
             byte: [0],
+            frame: [0; 1 + BLOCK],
             sample: Sample::new(description),
         }
     }
 
-    /// The write at `index`. The set-up of the FIFO comes before the last start-up write, because some sensors
+    /// The write at `index` of a list.
+    fn write(&self, list: List, index: usize) -> Option<&'static Write> {
+        let upload = self.description.upload.as_ref();
+        match list {
+            List::Reset => upload.map(|it| &it.reset).filter(|_| index == 0),
+            List::Open => upload?.open.as_slice().get(index),
+            List::Close => upload.map(|it| &it.close).filter(|_| index == 0),
+            List::StartUp => self.start_up(index),
+        }
+    }
+
+    /// The stage after the last write of a list.
+    const fn after(list: List) -> Stage {
+        match list {
+            List::Reset => Stage::Wake { is_reset: true },
+            List::Open => Stage::Upload { step: 0 },
+            List::Close => Stage::Status,
+            List::StartUp => Stage::Discard,
+        }
+    }
+
+    /// The stage after the sensor has been told to listen to the bus.
+    const fn listening(is_reset: bool) -> Stage {
+        match is_reset {
+            true => Stage::first(List::Open),
+            false => Stage::Identify,
+        }
+    }
+
+    /// Makes a frame of a register and at most a block of bytes for it. It returns the number of the bytes.
+    fn put(&mut self, register: u8, bytes: &[u8]) -> usize {
+        let [first, places @ ..] = &mut self.frame;
+        *first = register;
+        for (place, byte) in places.iter_mut().zip(bytes) {
+            *place = *byte;
+        }
+        bytes.len().min(BLOCK)
+    }
+
+    /// The start-up write at `index`. The set-up of the FIFO comes before the last start-up write, because some sensors
     /// take it only while the gyro is off. The FIFO is turned on and emptied after that write.
-    fn write(&self, index: usize) -> Option<&'static Write> {
+    fn start_up(&self, index: usize) -> Option<&'static Write> {
         let start_up = self.description.start_up.as_slice();
         let fifo = self.description.fifo.as_ref().filter(|_| self.with_fifo);
         let Some((fifo, (last, first))) = fifo.zip(start_up.split_last()) else {
@@ -66,18 +150,29 @@ impl Start {
     }
 }
 
+/// The address of the block at byte `at`, in words: the lowest four bits, and the eight above.
+const fn block_address(at: usize) -> [u8; 2] {
+    let word = at / 2;
+    [(word & 0x0F) as u8, (word >> 4) as u8]
+}
+
 impl Procedure for Start {
     fn step<E>(&mut self) -> Result<Step<'_>, Error<E>> {
         let description = self.description;
         loop {
             match self.stage {
-                Stage::Wake => {
-                    self.stage = Stage::Identify;
+                Stage::Wake { is_reset } => {
                     if let (true, Some(register)) = (self.over_spi, description.interface.spi_wake)
                     {
+                        self.stage = Stage::Awake { is_reset };
                         let bytes = &mut self.byte;
                         return Ok(Step::Read { register, bytes });
                     }
+                    self.stage = Self::listening(is_reset);
+                }
+                Stage::Awake { is_reset } => {
+                    self.stage = Self::listening(is_reset);
+                    return Ok(Step::Wait { us: WAKE_US });
                 }
                 Stage::Identify => {
                     self.stage = Stage::Compare;
@@ -96,25 +191,31 @@ impl Procedure for Start {
                             expected: description.identities,
                         });
                     }
-                    self.stage = Stage::Write {
-                        index: 0,
-                        access: 0,
-                    };
+                    self.stage = Stage::first(match description.upload {
+                        Some(_) => List::Reset,
+                        None => List::StartUp,
+                    });
                 }
-                Stage::Write { index, access } => {
-                    let Some(write) = self.write(index) else {
-                        self.stage = Stage::Discard;
+                Stage::Write {
+                    list,
+                    index,
+                    access,
+                } => {
+                    let Some(write) = self.write(list, index) else {
+                        self.stage = Self::after(list);
                         continue;
                     };
                     let next = write.accesses().get(access);
                     let Some(next) = next.filter(|_| write.is_sent(self.over_spi)) else {
                         self.stage = Stage::Write {
+                            list,
                             index: index.saturating_add(1),
                             access: 0,
                         };
                         continue;
                     };
                     self.stage = Stage::Write {
+                        list,
                         index,
                         access: access.saturating_add(1),
                     };
@@ -133,6 +234,47 @@ impl Procedure for Start {
                         Access::Pause => return Ok(Step::Wait { us: write.wait_us }),
                     };
                     return Ok(Step::Write { register, value });
+                }
+                Stage::Upload { step } => {
+                    let at = step / 4 * BLOCK;
+                    let upload = description.upload.as_ref();
+                    let Some(upload) = upload.filter(|it| at < it.image.len()) else {
+                        self.stage = Stage::first(List::Close);
+                        continue;
+                    };
+                    self.stage = Stage::Upload {
+                        step: step.saturating_add(1),
+                    };
+                    let bytes = match step % 4 {
+                        0 => self.put(upload.address, &block_address(at)),
+                        2 => self.put(upload.data, upload.image.get(at..).unwrap_or_default()),
+                        _ if upload.wait_us == 0 => continue,
+                        _ => return Ok(Step::Wait { us: upload.wait_us }),
+                    };
+                    return Ok(Step::Frame {
+                        frame: self.frame.get(..=bytes).unwrap_or(&self.frame),
+                    });
+                }
+                Stage::Status => {
+                    self.stage = Stage::Accept;
+                    return Ok(Step::Read {
+                        register: description.upload.map_or(0, |it| it.status),
+                        bytes: &mut self.byte,
+                    });
+                }
+                Stage::Accept => {
+                    if let Some(upload) = description.upload {
+                        let found = self.byte[0] & upload.mask;
+                        if found != upload.accepted {
+                            return Err(Error::Upload {
+                                sensor: description.name,
+                                register: upload.status,
+                                found,
+                                expected: upload.accepted,
+                            });
+                        }
+                    }
+                    self.stage = Stage::first(List::StartUp);
                 }
                 // The FIFO was emptied by its last write.
                 Stage::Discard if self.with_fifo => return Ok(Step::Done),

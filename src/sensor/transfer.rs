@@ -12,6 +12,8 @@ pub(super) enum Step<'a> {
     Read { register: u8, bytes: &'a mut [u8] },
     /// Write `value` to `register`.
     Write { register: u8, value: u8 },
+    /// Write a register, which is the first byte, and what follows it.
+    Frame { frame: &'a [u8] },
     /// Wait for this number of µs.
     Wait { us: u32 },
     /// The procedure has ended.
@@ -39,6 +41,12 @@ impl embedded_hal_async::delay::DelayNs for NoDelay {
     async fn delay_ns(&mut self, _: u32) {}
 }
 
+/// The error of the bus at a frame.
+fn failed<E>(frame: &[u8], error: E) -> Error<E> {
+    let register = frame.first().copied().unwrap_or(0);
+    Error::Bus { register, error }
+}
+
 /// Carries a procedure out on a blocking bus.
 pub(super) fn run<B: Registers>(
     bus: &mut B,
@@ -54,6 +62,9 @@ pub(super) fn run<B: Registers>(
             Step::Write { register, value } => bus
                 .write(interface, register, value)
                 .map_err(|error| Error::Bus { register, error })?,
+            Step::Frame { frame } => bus
+                .write_frame(interface, frame)
+                .map_err(|error| failed(frame, error))?,
             Step::Wait { us } => delay.delay_us(us),
             Step::Done => return Ok(()),
         }
@@ -78,6 +89,10 @@ pub(super) async fn run_async<B: AsyncRegisters>(
                 .write(interface, register, value)
                 .await
                 .map_err(|error| Error::Bus { register, error })?,
+            Step::Frame { frame } => bus
+                .write_frame(interface, frame)
+                .await
+                .map_err(|error| failed(frame, error))?,
             Step::Wait { us } => delay.delay_us(us).await,
             Step::Done => return Ok(()),
         }

@@ -6,7 +6,7 @@ use crate::wire::{NoDelay, Wire};
 use allanite::Real;
 use allanite::sensor::{
     CATALOGUE, Configuration, ConfigurationError, Description, FifoImu, Flaw, LSM6DSO, Writes,
-    icm_42688_p, icm_45686, lsm6dso, lsm6dsr, lsm6dsv16x, mpu_6050, mpu_6500,
+    icm_20602, icm_42688_p, icm_45686, lsm6dso, lsm6dsr, lsm6dsv16x, mpu_6050, mpu_6500,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -229,11 +229,12 @@ fn the_sample_interval_follows_from_the_rate() {
     }
 }
 
-/// Both MPUs, whose gyro runs at 1 kHz before the divider.
+/// The MPUs and their successor, whose gyro runs at 1 kHz before the divider.
 #[test]
 fn the_mpus_divide_their_rate_and_keep_the_low_pass_below_it() {
     type Function = fn(Configuration) -> Result<Description, ConfigurationError>;
-    let cases: [(Function, [u16; 6]); 2] = [
+    let cases: [(Function, [u16; 6]); 3] = [
+        (icm_20602, [176, 92, 41, 20, 10, 5]),
         (mpu_6050, [188, 98, 42, 20, 10, 5]),
         (mpu_6500, [184, 92, 41, 20, 10, 5]),
     ];

@@ -1,6 +1,8 @@
 //! Tests sensors on mocked and simulated buses: the transfers, the decoded samples, FIFOs, configurations, the handling
 //! of errors, and samples that come at the wrong time.
 
+mod adis16470;
+mod bmi270;
 mod chip;
 mod configuration;
 mod driver;

@@ -3,8 +3,8 @@
 use allanite::sensor::{
     BMI160,
     Bus::{self, Any, I2c, Spi},
-    Description, I2cBus, ICM_20948, ICM_42688_P, ICM_45686, Imu, L3GD20, LSM6DSO, LSM6DSR,
-    LSM6DSV16X, Loss, MPU_6050, MPU_6500, Reading,
+    Description, I2cBus, ICM_20602, ICM_20948, ICM_42688_P, ICM_45686, Imu, L3GD20, LSM6DSO,
+    LSM6DSR, LSM6DSV16X, LSM9DS1, Loss, MPU_6050, MPU_6500, Reading,
 };
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock as I2cMock, Transaction as I2cTurn};
@@ -50,7 +50,7 @@ const LSM6DSO_WRITES: &[(u8, u8, Bus)] = &[
     (0x11, 0x40, Any),
 ];
 
-pub(crate) const SHEETS: [Sheet; 10] = [
+pub(crate) const SHEETS: [Sheet; 12] = [
     Sheet {
         description: &BMI160,
         bus: (0x68, 0x80, 0),
@@ -61,6 +61,26 @@ pub(crate) const SHEETS: [Sheet; 10] = [
         block: (0x0C, 22, 0, Some(20)),
         big_endian: false,
         ready: 0x40,
+    },
+    Sheet {
+        description: &ICM_20602,
+        bus: (0x68, 0x80, 0),
+        identity: (0x75, 0x12),
+        writes: &[
+            (0x6B, 0x80, Any),
+            (0x70, 0x40, Spi),
+            (0x6B, 0x01, Any),
+            (0x1A, 0x04, Any),
+            (0x19, 0x04, Any),
+            (0x1B, 0x00, Any),
+            (0x37, 0x10, Any),
+            (0x38, 0x01, Any),
+        ],
+        reads: &[],
+        status: 0x3A,
+        block: (0x41, 8, 2, Some(0)),
+        big_endian: true,
+        ready: 0x01,
     },
     Sheet {
         description: &ICM_20948,
@@ -191,6 +211,25 @@ pub(crate) const SHEETS: [Sheet; 10] = [
         reads: &[],
         status: 0x1E,
         block: (0x20, 8, 2, Some(0)),
+        big_endian: false,
+        ready: 0x02,
+    },
+    Sheet {
+        description: &LSM9DS1,
+        bus: (0x6A, 0x80, 0),
+        identity: (0x0F, 0x68),
+        writes: &[
+            (0x22, 0x05, Any),
+            (0x23, 0x04, Spi),
+            (0x22, 0x44, Any),
+            (0x11, 0x02, Any),
+            (0x12, 0x00, Any),
+            (0x0C, 0x02, Any),
+            (0x10, 0x61, Any),
+        ],
+        reads: &[],
+        status: 0x17,
+        block: (0x15, 9, 3, Some(0)),
         big_endian: false,
         ready: 0x02,
     },

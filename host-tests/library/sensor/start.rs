@@ -149,6 +149,7 @@ fn a_description_too_wide_for_one_read_is_refused() {
         name: "wide",
         identity: 0,
         identities: &[0xD1],
+        upload: None,
         start_up: Writes::NONE,
         interface: Interface {
             spi_read: 0x80,

@@ -3,7 +3,8 @@
 use crate::precision::double;
 use allanite::Real;
 use allanite::sensor::{
-    BMI160, CATALOGUE, Description, ICM_42688_P, L3GD20, LSM6DSO, MPU_6050, MPU_6500, Temperature,
+    BMI160, CATALOGUE, Description, ICM_20602, ICM_42688_P, L3GD20, LSM6DSO, LSM9DS1, MPU_6050,
+    MPU_6500, Temperature,
 };
 
 #[test]
@@ -22,8 +23,10 @@ fn temperatures_are_those_of_the_data_sheets() {
     };
     near(celsius(&BMI160, 0), 23.0);
     near(celsius(&BMI160, 0x7FFF), 87.0 - 1.0 / 512.0);
+    near(celsius(&ICM_20602, 3268), 35.0);
     near(celsius(&ICM_42688_P, -1325), 25.0 - 1325.0 / 132.48);
     near(celsius(&LSM6DSO, -2560), 15.0);
+    near(celsius(&LSM9DS1, -16), 24.0);
     near(celsius(&MPU_6050, -3400), 26.53);
     near(celsius(&MPU_6500, 0), 21.0);
     assert_eq!(celsius(&L3GD20, 0), None);

@@ -5,8 +5,8 @@ use allanite::{
     diagnosis::{Options, Verdict},
     effect::CATALOGUE as EFFECTS,
     sensor::{
-        BMI160, CATALOGUE, Description, ICM_20948, ICM_42688_P, ICM_45686, L3GD20, LSM6DSO,
-        LSM6DSR, LSM6DSV16X, MPU_6050, MPU_6500,
+        BMI160, CATALOGUE, Description, ICM_20602, ICM_20948, ICM_42688_P, ICM_45686, L3GD20,
+        LSM6DSO, LSM6DSR, LSM6DSV16X, LSM9DS1, MPU_6050, MPU_6500,
     },
 };
 use host_tests::{
@@ -46,13 +46,19 @@ fn sinc_squared(f: f64, rate_hz: f64) -> f64 {
     (x.sin() / x).powi(4)
 }
 
-const LOW_PASSES: [LowPass; 10] = [
+const LOW_PASSES: [LowPass; 12] = [
     LowPass {
         description: &BMI160,
         rate_hz: 200.0,
         poles: 1,
         // 5.06 Hz at 50 Hz, in proportion to the rate.
         response: |f| one_pole(f, 4.0 * 5.06),
+    },
+    LowPass {
+        description: &ICM_20602,
+        rate_hz: 200.0,
+        poles: 1,
+        response: |f| one_pole(f, 20.0),
     },
     LowPass {
         description: &ICM_20948,
@@ -95,6 +101,12 @@ const LOW_PASSES: [LowPass; 10] = [
         rate_hz: 120.0,
         poles: 2,
         response: |f| sinc_squared(f, 120.0),
+    },
+    LowPass {
+        description: &LSM9DS1,
+        rate_hz: 119.0,
+        poles: 2,
+        response: |f| one_pole(f, 38.0) * one_pole(f, 31.0),
     },
     LowPass {
         description: &MPU_6050,

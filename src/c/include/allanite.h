@@ -2,7 +2,7 @@
  *
  * Made by cbindgen from src/c/src. `cargo xtask c` builds the library that this header declares. All memory belongs to
  * the caller; every function returns a status. Define ALLANITE_OCTAVES_14, ALLANITE_OCTAVES_26 or ALLANITE_ONE_AXIS if
- * the library was built with the feature octaves-14, octaves-26 or one-axis. */
+ * the library was built with the feature octaves-14 or octaves-26, or without the feature whole. */
 
 #ifndef ALLANITE_H
 #define ALLANITE_H
@@ -10,6 +10,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#if !defined(ALLANITE_ONE_AXIS)
+#define ALLANITE_WHOLE
+#endif
 
 // The number of terms of IEEE Std 952.
 #define ALLANITE_TERMS 5
@@ -77,12 +81,12 @@
 // The code of `moving_average`.
 #define ALLANITE_EFFECT_MOVING_AVERAGE 21
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The largest number of effects in a model.
 #define ALLANITE_MAX_COEFFICIENTS 8
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The largest number of fitted shape parameters in a model.
 #define ALLANITE_MAX_SHAPES 6
 #endif
@@ -230,46 +234,46 @@ typedef int32_t AllaniteChecked;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // What a diagnosis has led to.
 enum AllaniteProgress
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The pause ended the work. There is more to do.
   ALLANITE_PROGRESS_WORKING = 0,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // A model is judged: `allanite_diagnosis_fit` gives it. There is more to do.
   ALLANITE_PROGRESS_STEP = 1,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The five terms explain the record.
   ALLANITE_PROGRESS_ADEQUATE = 2,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The last model, with effects that were missing, explains the record.
   ALLANITE_PROGRESS_IMPROVED = 3,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The effects that were found improve the model, but it does not explain the record.
   ALLANITE_PROGRESS_INCOMPLETE = 4,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The five terms do not explain the record, and no effect helps.
   ALLANITE_PROGRESS_UNEXPLAINED = 5,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The record is too short to judge the five terms.
   ALLANITE_PROGRESS_TOO_SHORT = 6,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The record is not that of a gyro at rest.
   ALLANITE_PROGRESS_INVALID = 7,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // Another verdict, of a later version.
   ALLANITE_PROGRESS_OTHER = 8,
 #endif
@@ -283,22 +287,22 @@ typedef int32_t AllaniteProgress;
 #endif // __cplusplus
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Whether a model explains a record.
 enum AllaniteAdequacy
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // It does not.
   ALLANITE_ADEQUACY_INADEQUATE = 0,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // It does.
   ALLANITE_ADEQUACY_ADEQUATE = 1,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The record is too short to tell.
   ALLANITE_ADEQUACY_UNKNOWN = 2,
 #endif
@@ -312,58 +316,58 @@ typedef int32_t AllaniteAdequacy;
 #endif // __cplusplus
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Why a record is not that of a gyro at rest.
 enum AllaniteReason
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The record is valid.
   ALLANITE_REASON_VALID = 0,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The values change too seldom.
   ALLANITE_REASON_STUCK = 1,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // Every sample is there several times.
   ALLANITE_REASON_REPEATED = 2,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The noise is below half a count.
   ALLANITE_REASON_COARSE = 3,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // Too many values are at a rail of the converter.
   ALLANITE_REASON_RAILED = 4,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // Spikes contribute too much.
   ALLANITE_REASON_SPIKED = 5,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The gyro was moved.
   ALLANITE_REASON_MOVED = 6,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // Too many samples were lost.
   ALLANITE_REASON_MISSING = 7,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The gate left out too many samples.
   ALLANITE_REASON_LEFT_OUT = 8,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // Any other reason, of a later version.
   ALLANITE_REASON_OTHER = 9,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // Small values are set to zero.
   ALLANITE_REASON_DEAD_BAND = 10,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The counts were read without their sign, or with their bytes in the wrong order.
   ALLANITE_REASON_MISREAD = 11,
 #endif
@@ -377,34 +381,34 @@ typedef int32_t AllaniteReason;
 #endif // __cplusplus
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // How a self-test stands.
 enum AllaniteVerdict
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // It needs more samples.
   ALLANITE_VERDICT_RUNNING = 0,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The gyro keeps every limit.
   ALLANITE_VERDICT_PASSED = 1,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // A coefficient is above its limit.
   ALLANITE_VERDICT_FAILED_LIMIT = 2,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The five terms do not explain the record.
   ALLANITE_VERDICT_FAILED_MISFIT = 3,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The longest record did not decide.
   ALLANITE_VERDICT_UNDECIDED = 4,
 #endif
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
   // The record is not that of a gyro at rest.
   ALLANITE_VERDICT_INVALID = 5,
 #endif
@@ -467,7 +471,7 @@ typedef struct {
   float birge_ratio;
 } AllaniteFiveTerms;
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // A certificate.
 typedef struct {
   // Nothing for the caller to read.
@@ -475,7 +479,7 @@ typedef struct {
 } AllaniteCertificate;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The conditions of a measurement. The rates are in deg/s.
 typedef struct {
   // The duration in seconds.
@@ -495,7 +499,7 @@ typedef struct {
 } AllaniteConditions;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // A diagnosis of one axis. It must stay where it is.
 typedef struct {
   // Nothing for the caller to read.
@@ -503,7 +507,7 @@ typedef struct {
 } AllaniteDiagnosis;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // What a record says about one axis at a moment. It must stay where it is, unchanged, while a look or a diagnosis uses
 // it.
 typedef struct {
@@ -512,7 +516,7 @@ typedef struct {
 } AllaniteRecord;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // A fitted shape parameter of an effect.
 typedef struct {
   // The place of the effect among the coefficients.
@@ -528,7 +532,7 @@ typedef struct {
 } AllaniteShape;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // A fitted model.
 typedef struct {
   // The coefficients, of which `coefficient_count` are valid.
@@ -550,7 +554,7 @@ typedef struct {
 } AllaniteFit;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The record of a gyro. It may be copied and moved while no function works on it.
 typedef struct {
   // Nothing for the caller to read.
@@ -558,7 +562,7 @@ typedef struct {
 } AllaniteGyro;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // A self-test of one axis.
 typedef struct {
   // Nothing for the caller to read.
@@ -566,7 +570,7 @@ typedef struct {
 } AllaniteSelfTest;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The plan of a self-test, as `allanite::self_test::Plan` explains it.
 typedef struct {
   // The smallest p-value of the fit of five terms; 0 requires nothing.
@@ -582,7 +586,7 @@ typedef struct {
 } AllanitePlan;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The largest value that a coefficient may have.
 typedef struct {
   // The code of one of the five terms of IEEE Std 952, such as `ALLANITE_EFFECT_ANGLE_RANDOM_WALK`.
@@ -592,7 +596,7 @@ typedef struct {
 } AllaniteLimit;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // How a self-test stands, with numbers.
 typedef struct {
   // How it stands.
@@ -608,7 +612,7 @@ typedef struct {
 } AllaniteTestStatus;
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // A look of a self-test at a record, in progress.
 typedef struct {
   // Nothing for the caller to read.
@@ -671,7 +675,7 @@ AllaniteStatus allanite_axis_check(const AllaniteAxis *axis,
                                    AllaniteChecked *checked,
                                    size_t *place);
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Makes a certificate without axes, for a device with an identity of up to 16 bytes. `bytes` is
 // `sizeof(AllaniteCertificate)`.
 //
@@ -685,7 +689,7 @@ AllaniteStatus allanite_certificate_init(AllaniteCertificate *certificate,
                                          const AllaniteConditions *conditions);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Adds the next axis, as a diagnosis that has ended describes it.
 //
 // # Safety
@@ -694,7 +698,7 @@ AllaniteStatus allanite_certificate_add(AllaniteCertificate *certificate,
                                         const AllaniteDiagnosis *diagnosis);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Writes a certificate to a buffer of `ALLANITE_CERTIFICATE_BYTES`. `written` tells how
 // many of them it took. `allanite decode` reads them on a workstation.
 //
@@ -707,7 +711,7 @@ AllaniteStatus allanite_certificate_encode(const AllaniteCertificate *certificat
                                            size_t *written);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Begins a diagnosis of an axis: what do the five terms lack? `bytes` is `sizeof(AllaniteDiagnosis)`.
 //
 // # Safety
@@ -716,7 +720,7 @@ AllaniteStatus allanite_certificate_encode(const AllaniteCertificate *certificat
 AllaniteStatus allanite_diagnosis_begin(AllaniteDiagnosis *diagnosis, size_t bytes, const AllaniteRecord *record);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Works until the next step of a diagnosis and tells what it has led to. That takes long;
 // `allanite_diagnosis_advance_with` pauses meanwhile. After the end, it tells the verdict again.
 //
@@ -725,7 +729,7 @@ AllaniteStatus allanite_diagnosis_begin(AllaniteDiagnosis *diagnosis, size_t byt
 AllaniteStatus allanite_diagnosis_advance(AllaniteDiagnosis *diagnosis, AllaniteProgress *progress);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Does what `allanite_diagnosis_advance` does, and calls `pause` with `context` between two pieces of work, for the
 // watchdog and the next samples. A piece takes at most 2 million instructions on a Cortex-M4F, except for the one that
 // reports a step, which takes as much as a fit for the correlations of a certificate. If `pause` returns false, the work in
@@ -740,7 +744,7 @@ AllaniteStatus allanite_diagnosis_advance_with(AllaniteDiagnosis *diagnosis,
                                                void *context);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The model of the last step, fitted.
 //
 // # Safety
@@ -748,7 +752,7 @@ AllaniteStatus allanite_diagnosis_advance_with(AllaniteDiagnosis *diagnosis,
 AllaniteStatus allanite_diagnosis_fit(const AllaniteDiagnosis *diagnosis, AllaniteFit *to);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Takes the record of an axis from a gyro, to which it does not belong afterwards. `bytes` is
 // `sizeof(AllaniteRecord)`. `rate_per_count` is the rate of one count, `rate_hz` the number of samples per second, and
 // `kelvin_per_count` the temperature of one count of the thermometer.
@@ -765,7 +769,7 @@ AllaniteStatus allanite_record_take(AllaniteRecord *record,
                                     float kelvin_per_count);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The number of samples of the record, and whether it is that of a gyro at rest. Either pointer may be null.
 //
 // # Safety
@@ -773,7 +777,7 @@ AllaniteStatus allanite_record_take(AllaniteRecord *record,
 AllaniteStatus allanite_record_summary(const AllaniteRecord *record, uint64_t *samples, AllaniteReason *reason);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Writes the octaves of the Allan curve of a record, shortest first, and their number. [`ALLANITE_OCTAVES`] points always
 // suffice.
 //
@@ -786,7 +790,7 @@ AllaniteStatus allanite_record_curve(const AllaniteRecord *record,
                                      size_t *number);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Fits the five terms of IEEE Std 952 to the curve and to the spectrum of an axis, in one go: some 20 million
 // instructions on a Cortex-M4F. A diagnosis begins with the same fit and does it in pieces.
 //
@@ -795,7 +799,7 @@ AllaniteStatus allanite_record_curve(const AllaniteRecord *record,
 AllaniteStatus allanite_fit(const AllaniteRecord *record, AllaniteFit *to);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Makes an empty record. `bytes` is `sizeof(AllaniteGyro)`.
 //
 // # Safety
@@ -803,7 +807,7 @@ AllaniteStatus allanite_fit(const AllaniteRecord *record, AllaniteFit *to);
 AllaniteStatus allanite_gyro_init(AllaniteGyro *gyro, size_t bytes);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Adds one sample: a count of every axis, and one of the thermometer.
 //
 // # Safety
@@ -811,7 +815,7 @@ AllaniteStatus allanite_gyro_init(AllaniteGyro *gyro, size_t bytes);
 AllaniteStatus allanite_gyro_push(AllaniteGyro *gyro, const int32_t *counts, int32_t temperature);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Notes that the next sample does not adjoin the one before it.
 //
 // # Safety
@@ -819,7 +823,7 @@ AllaniteStatus allanite_gyro_push(AllaniteGyro *gyro, const int32_t *counts, int
 AllaniteStatus allanite_gyro_gap(AllaniteGyro *gyro);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Notes that so many samples are missing at this place. Does nothing for 0.
 //
 // # Safety
@@ -827,7 +831,7 @@ AllaniteStatus allanite_gyro_gap(AllaniteGyro *gyro);
 AllaniteStatus allanite_gyro_lost(AllaniteGyro *gyro, uint64_t samples);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Does a part of the spectra's work that waits, for a main loop with nothing else to do. `more` tells whether there is
 // more; it may be null.
 //
@@ -836,7 +840,7 @@ AllaniteStatus allanite_gyro_lost(AllaniteGyro *gyro, uint64_t samples);
 AllaniteStatus allanite_gyro_advance(AllaniteGyro *gyro, bool *more);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Adds the samples that the gate holds back, at the end of a record.
 //
 // # Safety
@@ -844,7 +848,7 @@ AllaniteStatus allanite_gyro_advance(AllaniteGyro *gyro, bool *more);
 AllaniteStatus allanite_gyro_release(AllaniteGyro *gyro);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Adds another record of the same gyro, as if a gap lay between the two. Where the noise of an axis differs by more than a
 // gyro's does, nothing is added, and the status is `ALLANITE_STATUS_OTHER_SENSOR`.
 //
@@ -854,7 +858,7 @@ AllaniteStatus allanite_gyro_merge(AllaniteGyro *gyro,
                                    const AllaniteGyro *other);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The numbers of samples that are kept and that the gate left out. Either pointer may be null.
 //
 // # Safety
@@ -862,18 +866,18 @@ AllaniteStatus allanite_gyro_merge(AllaniteGyro *gyro,
 AllaniteStatus allanite_gyro_samples(const AllaniteGyro *gyro, uint64_t *kept, uint64_t *left_out);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The name of the effect with a code, such as "angle_random_walk"; "other" for a code that this library does not know.
 const char *allanite_effect_name(int32_t code);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // The name of a parameter of the effect with a code, such as "frequency_hz"; an empty text if there is no such parameter.
 const char *allanite_parameter_name(int32_t code,
                                     int32_t parameter);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Makes a self-test of a plan with so many limits. `bytes` is `sizeof(AllaniteSelfTest)`.
 //
 // # Safety
@@ -888,7 +892,7 @@ AllaniteStatus allanite_self_test_init(AllaniteSelfTest *test,
                                        float rate_hz);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Whether a look is due at this number of samples.
 //
 // # Safety
@@ -896,7 +900,7 @@ AllaniteStatus allanite_self_test_init(AllaniteSelfTest *test,
 AllaniteStatus allanite_self_test_is_due(const AllaniteSelfTest *test, uint64_t samples, bool *due);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // How the self-test stands at this number of samples.
 //
 // # Safety
@@ -904,7 +908,7 @@ AllaniteStatus allanite_self_test_is_due(const AllaniteSelfTest *test, uint64_t 
 AllaniteStatus allanite_self_test_status(const AllaniteSelfTest *test, uint64_t samples, AllaniteTestStatus *to);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Begins a look of a self-test at the record of its axis. `bytes` is `sizeof(AllaniteLook)`. The record may change
 // afterwards. A record of another scale than the test's is refused.
 //
@@ -916,7 +920,7 @@ AllaniteStatus allanite_look_begin(AllaniteLook *look,
                                    const AllaniteRecord *record);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Does one piece of a look, at most 2 million instructions on a Cortex-M4F. `complete` tells whether it was the last.
 //
 // # Safety
@@ -924,7 +928,7 @@ AllaniteStatus allanite_look_begin(AllaniteLook *look,
 AllaniteStatus allanite_look_advance(AllaniteLook *look, bool *complete);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Takes up a look, and tells how the self-test stands. What the look still lacks is done at once. A look that another
 // self-test began is refused, and so is one that was concluded before.
 //
@@ -933,7 +937,7 @@ AllaniteStatus allanite_look_advance(AllaniteLook *look, bool *complete);
 AllaniteStatus allanite_look_conclude(AllaniteSelfTest *test, AllaniteLook *look, AllaniteTestStatus *to);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Writes a snapshot of the record and of a self-test, which may be null, to a buffer of
 // `ALLANITE_SNAPSHOT_BYTES`. `written` tells how many of them it took.
 //
@@ -947,7 +951,7 @@ AllaniteStatus allanite_gyro_snapshot(const AllaniteGyro *gyro,
                                       size_t *written);
 #endif
 
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 // Restores a snapshot into a record and into a self-test of the same plan, which must be null if the snapshot was taken
 // without one. After an error, the record is empty and the self-test must be made anew.
 //
@@ -971,7 +975,7 @@ const char *allanite_status_text(int32_t status);
 
 #if !defined(__cplusplus) && defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
 _Static_assert(sizeof(AllaniteAxis) == 8 * ALLANITE_AXIS_WORDS, "AllaniteAxis has padding");
-#if !defined(ALLANITE_ONE_AXIS)
+#if defined(ALLANITE_WHOLE)
 _Static_assert(sizeof(AllaniteGyro) == 8 * ALLANITE_GYRO_WORDS, "AllaniteGyro has padding");
 _Static_assert(sizeof(AllaniteRecord) == 8 * ALLANITE_RECORD_WORDS, "AllaniteRecord has padding");
 _Static_assert(sizeof(AllaniteSelfTest) == 8 * ALLANITE_SELF_TEST_WORDS, "AllaniteSelfTest has padding");

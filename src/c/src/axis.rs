@@ -177,7 +177,7 @@ pub unsafe extern "C" fn allanite_axis_check(
         most: [Real::INFINITY; TERMS],
     };
     for (to, &from) in limits.most.iter_mut().zip(most) {
-        *to = from.into();
+        *to = Real::from(from);
     }
     // SAFETY: the caller promises what `fit` wants.
     let (said, at) = match unsafe { fit(axis, rate_per_count, rate_hz) } {

@@ -30,8 +30,8 @@
 //! library, and memory in which no value was made. It cannot check that a pointer points to as much memory as its type
 //! says, and that nothing else uses it: the callers' duties stand under *Safety*.
 //!
-//! A core with little memory records one axis and fits the five terms alone: `AllaniteAxis`. A library with the feature
-//! `one-axis` has nothing else, and C code then defines `ALLANITE_ONE_AXIS`.
+//! A core with little memory records one axis and fits the five terms alone: `AllaniteAxis`. A library without the
+//! feature `whole` has nothing else, and C code then defines `ALLANITE_ONE_AXIS`.
 //!
 //! A static library computes in single precision and for one number of octaves: 20, or 14 or 26 with the feature
 //! `octaves-14` or `octaves-26`, for which C code defines `ALLANITE_OCTAVES_14` or `ALLANITE_OCTAVES_26`.
@@ -41,51 +41,51 @@
 #![allow(unsafe_code)]
 
 mod axis;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod certificate;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod checks;
 mod codes;
 mod coefficient;
 mod curve;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod diagnosis;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod fit;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod gyro;
 mod memory;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod names;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod reason;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod self_test;
 mod sizes;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 mod snapshot;
 mod status;
 
 pub use axis::*;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 pub use certificate::*;
 pub use codes::*;
 pub use coefficient::*;
 pub use curve::*;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 pub use diagnosis::*;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 pub use fit::*;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 pub use gyro::*;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 pub use names::*;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 pub use reason::*;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 pub use self_test::*;
 pub use sizes::*;
-#[cfg(not(feature = "one-axis"))]
+#[cfg(feature = "whole")]
 pub use snapshot::*;
 pub use status::*;
 

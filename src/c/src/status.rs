@@ -102,26 +102,26 @@ pub extern "C" fn allanite_status_text(status: i32) -> *const c_char {
         }
         4 => c"the memory holds no such value: call the function that makes it",
         5 => c"an argument is outside of its range",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         6 => c"there is no such axis: count them from 0",
         7 => c"the record is too short: record longer",
         8 => c"there is no noise, because the counts do not change: check the sensor",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         9 => c"the effects of a model cannot be told apart",
         10 => c"the buffer is too small",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         11 => c"the stored bytes are damaged or of something else",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         12 => c"the stored bytes have an unknown version",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         13 => c"the stored bytes are of a record with other parts or of another plan",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         14 => c"the plan of the self-test cannot be carried out",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         15 => c"another error",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         16 => c"the look is not the one that the self-test has begun: conclude each look once, by its own test",
-        #[cfg(not(feature = "one-axis"))]
+        #[cfg(feature = "whole")]
         17 => c"the other record has another noise: merge records of one sensor, read with one scale and filter",
         _ => c"unknown status",
     };

@@ -36,18 +36,16 @@ impl Contents {
         one_axis: false,
     };
 
-    /// The features of the package.
-    fn features(self) -> Vec<String> {
-        let octaves = (self.octaves != 20).then(|| format!("octaves-{}", self.octaves));
-        let one_axis = self.one_axis.then(|| "one-axis".to_owned());
-        octaves.into_iter().chain(one_axis).collect()
+    /// The features of the package, besides the default ones.
+    fn features(self) -> Option<String> {
+        (self.octaves != 20).then(|| format!("octaves-{}", self.octaves))
     }
 
     /// What C code has to define for it.
     pub fn defines(self) -> Vec<String> {
-        let name = |feature: String| feature.replace('-', "_").to_uppercase();
-        let names = self.features().into_iter().map(name);
-        names.map(|name| format!("ALLANITE_{name}")).collect()
+        let octaves = (self.octaves != 20).then(|| format!("ALLANITE_OCTAVES_{}", self.octaves));
+        let one_axis = self.one_axis.then(|| "ALLANITE_ONE_AXIS".to_owned());
+        octaves.into_iter().chain(one_axis).collect()
     }
 }
 
@@ -119,7 +117,12 @@ pub fn library(core: &Core, contents: Contents) -> Result<PathBuf> {
     command.args(["--package", "allanite-c", "--lib", "--profile", "firmware"]);
     // As one of several kinds, a static library would not be optimised as a whole.
     command.args(["--crate-type", "staticlib"]);
-    command.args(["--features", &contents.features().join(",")]);
+    if let Some(features) = contents.features() {
+        command.args(["--features", &features]);
+    }
+    if contents.one_axis {
+        command.arg("--no-default-features");
+    }
     let _lock = exclusive()?;
     let _heartbeat = Heartbeat::new(format!("the library for C for {}", core.name));
     succeed(&mut command)?;

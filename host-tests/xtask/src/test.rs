@@ -2,7 +2,7 @@
 
 use crate::{
     bench,
-    firmware::{CORTEX_M4F, RISCV, Toolchain, cargo, target_directory, workspace},
+    firmware::{BOARDS, CORTEX_M4F, RISCV, Toolchain, cargo, target_directory, workspace},
     setup,
     step::step,
 };
@@ -35,7 +35,9 @@ pub(crate) fn run() -> Result<()> {
         "format",
         cargo()
             .args(["fmt", "--all", "--", "--check"])
-            .args(effects()?),
+            .args(effects()?)
+            // The boards are projects of their own.
+            .args(BOARDS.map(|board| board.folder().join("src/main.rs"))),
     )?;
     step(
         "lints, on the host",

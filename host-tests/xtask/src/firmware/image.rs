@@ -158,6 +158,28 @@ impl Image {
         self.sum(is_in_flash)
     }
 
+    /// The size of all statics in RAM, in bytes.
+    ///
+    /// # Errors
+    /// Fails if the file is not an ELF file.
+    pub fn ram_bytes(&self) -> Result<u64> {
+        self.sum(|kind| matches!(kind, SectionKind::Data | SectionKind::UninitializedData))
+    }
+
+    /// The first two words of the vector table of a Cortex-M: the end of its stack, and the address of its first instruction.
+    ///
+    /// # Errors
+    /// Fails if the image has no vector table.
+    pub fn vectors(&self) -> Result<[u32; 2]> {
+        let file = self.file()?;
+        let table = file.section_by_name(".vector_table");
+        let table = table.context("the image has no vector table")?;
+        let [a, b, c, d, e, f, g, h, ..] = *table.data()? else {
+            bail!("the vector table is empty");
+        };
+        Ok([[a, b, c, d], [e, f, g, h]].map(u32::from_le_bytes))
+    }
+
     fn sum(&self, counts: impl Fn(SectionKind) -> bool) -> Result<u64> {
         let file = self.file()?;
         let sections = file.sections().filter(|section| counts(section.kind()));

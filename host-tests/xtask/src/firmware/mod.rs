@@ -1,6 +1,7 @@
 //! Builds the images of `src/bin` for a core and runs them in QEMU.
 
 pub mod agreement;
+pub mod board;
 pub mod budgets;
 pub mod c_library;
 mod core;
@@ -11,6 +12,7 @@ pub mod image;
 pub mod measure;
 pub mod toolchain;
 
+pub use board::{BOARDS, Board};
 pub use core::{CORES, CORTEX_M4F, Core, Precision, RISCV};
 pub use emulator::{Run, run, run_with, start};
 pub use heartbeat::{Heartbeat, PERIOD};

@@ -1,6 +1,6 @@
 //! Names of effects and of their parameters, which end with NUL.
 
-use crate::codes::*;
+use crate::codes;
 use core::ffi::{CStr, c_char};
 
 /// The name of the effect with a code, such as "angle_random_walk"; "other" for a code that this library does not know.
@@ -28,80 +28,100 @@ fn effect(code: i32) -> Named {
 
 /// The effects of the catalogue and the five terms of IEEE Std 952. A test compares them with the library.
 const EFFECTS: [Named; 21] = [
-    (ALLANITE_EFFECT_QUANTIZATION, c"quantization", &[]),
-    (ALLANITE_EFFECT_ANGLE_RANDOM_WALK, c"angle_random_walk", &[]),
-    (ALLANITE_EFFECT_BIAS_INSTABILITY, c"bias_instability", &[]),
-    (ALLANITE_EFFECT_RATE_RANDOM_WALK, c"rate_random_walk", &[]),
-    (ALLANITE_EFFECT_RATE_RAMP, c"rate_ramp", &[]),
+    (codes::ALLANITE_EFFECT_QUANTIZATION, c"quantization", &[]),
     (
-        ALLANITE_EFFECT_GAUSS_MARKOV,
+        codes::ALLANITE_EFFECT_ANGLE_RANDOM_WALK,
+        c"angle_random_walk",
+        &[],
+    ),
+    (
+        codes::ALLANITE_EFFECT_BIAS_INSTABILITY,
+        c"bias_instability",
+        &[],
+    ),
+    (
+        codes::ALLANITE_EFFECT_RATE_RANDOM_WALK,
+        c"rate_random_walk",
+        &[],
+    ),
+    (codes::ALLANITE_EFFECT_RATE_RAMP, c"rate_ramp", &[]),
+    (
+        codes::ALLANITE_EFFECT_GAUSS_MARKOV,
         c"gauss_markov",
         &[c"correlation_time_s"],
     ),
-    (ALLANITE_EFFECT_SINUSOID, c"sinusoid", &[c"frequency_hz"]),
     (
-        ALLANITE_EFFECT_RESONANCE,
+        codes::ALLANITE_EFFECT_SINUSOID,
+        c"sinusoid",
+        &[c"frequency_hz"],
+    ),
+    (
+        codes::ALLANITE_EFFECT_RESONANCE,
         c"resonance",
         &[c"frequency_hz", c"quality"],
     ),
     (
-        ALLANITE_EFFECT_LOW_PASS,
+        codes::ALLANITE_EFFECT_LOW_PASS,
         c"low_pass",
         &[c"time_constant_s", c"poles"],
     ),
     (
-        ALLANITE_EFFECT_DECIMATION_FILTER,
+        codes::ALLANITE_EFFECT_DECIMATION_FILTER,
         c"decimation_filter",
         &[c"width_s", c"stages"],
     ),
     (
-        ALLANITE_EFFECT_RANDOM_TELEGRAPH,
+        codes::ALLANITE_EFFECT_RANDOM_TELEGRAPH,
         c"random_telegraph",
         &[c"correlation_time_s"],
     ),
-    (ALLANITE_EFFECT_POWER_LAW, c"power_law", &[c"exponent"]),
     (
-        ALLANITE_EFFECT_NOTCH,
+        codes::ALLANITE_EFFECT_POWER_LAW,
+        c"power_law",
+        &[c"exponent"],
+    ),
+    (
+        codes::ALLANITE_EFFECT_NOTCH,
         c"notch",
         &[c"frequency_hz", c"quality"],
     ),
     (
-        ALLANITE_EFFECT_DIGITAL_LOW_PASS,
+        codes::ALLANITE_EFFECT_DIGITAL_LOW_PASS,
         c"digital_low_pass",
         &[c"time_constant_s", c"poles"],
     ),
     (
-        ALLANITE_EFFECT_CASCADE,
+        codes::ALLANITE_EFFECT_CASCADE,
         c"cascade",
         &[c"time_constant_s", c"stages"],
     ),
     (
-        ALLANITE_EFFECT_MODE_SPLIT,
+        codes::ALLANITE_EFFECT_MODE_SPLIT,
         c"mode_split",
         &[c"rise_hz", c"corner_hz"],
     ),
     (
-        ALLANITE_EFFECT_HIGH_PASS,
+        codes::ALLANITE_EFFECT_HIGH_PASS,
         c"high_pass",
         &[c"time_constant_s"],
     ),
     (
-        ALLANITE_EFFECT_DRIFTING_RESONANCE,
+        codes::ALLANITE_EFFECT_DRIFTING_RESONANCE,
         c"drifting_resonance",
         &[c"frequency_hz", c"quality", c"drift_hz"],
     ),
     (
-        ALLANITE_EFFECT_DRIFTING_SINUSOID,
+        codes::ALLANITE_EFFECT_DRIFTING_SINUSOID,
         c"drifting_sinusoid",
         &[c"frequency_hz", c"drift_hz"],
     ),
     (
-        ALLANITE_EFFECT_OUTPUT_LOW_PASS,
+        codes::ALLANITE_EFFECT_OUTPUT_LOW_PASS,
         c"output_low_pass",
         &[c"time_constant_s", c"poles"],
     ),
     (
-        ALLANITE_EFFECT_MOVING_AVERAGE,
+        codes::ALLANITE_EFFECT_MOVING_AVERAGE,
         c"moving_average",
         &[c"samples"],
     ),

@@ -26,7 +26,7 @@ const BARS: [Bars; 2] = [
         name: "stm32g030",
         ram_end: 0x2000_2000,
         flash: 0x0800_0000..0x0800_8000,
-        flash_bytes: 24 << 10,
+        flash_bytes: 25 << 10,
         ram_bytes: (6 << 10) - 4556,
     },
 ];

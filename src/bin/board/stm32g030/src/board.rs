@@ -58,10 +58,11 @@ pub struct Bus {
 
 impl Bus {
     /// Sends bytes, and then receives others.
-    fn transfer(&mut self, sent: &mut [u8], received: &mut [u8]) -> Result<(), spi::Error> {
+    fn transfer(&mut self, sent: &[u8], received: &mut [u8]) -> Result<(), spi::Error> {
         self.select.set_low();
         // One function for both directions saves flash. The sensor ignores what it gets while it sends.
-        let result = self.spi.blocking_transfer_in_place(sent);
+        let mut bytes = sent.iter();
+        let result = bytes.try_for_each(|&byte| self.spi.blocking_transfer_in_place(&mut [byte]));
         let result = result.and_then(|()| self.spi.blocking_transfer_in_place(received));
         self.select.set_high();
         result
@@ -80,11 +81,11 @@ impl Registers for &mut Bus {
         bytes: &mut [u8],
     ) -> Result<(), spi::Error> {
         // This sensor sends no dummy bytes.
-        self.transfer(&mut [register | interface.spi_read], bytes)
+        self.transfer(&[register | interface.spi_read], bytes)
     }
 
-    fn write(&mut self, _: &Interface, register: u8, value: u8) -> Result<(), spi::Error> {
-        self.transfer(&mut [register, value], &mut [])
+    fn write_frame(&mut self, _: &Interface, frame: &[u8]) -> Result<(), spi::Error> {
+        self.transfer(frame, &mut [])
     }
 }
 

@@ -274,6 +274,21 @@ impl<const K: usize> Accumulator<K> {
     /// The Allan curve so far, of the octaves with at least `min_differences` differences, and at least
     /// one.
     pub fn curve_of(&self, scale: Scale, min_differences: u64) -> Curve<K> {
+        let curve = self.sums(scale, min_differences);
+        curve.without_bridges(self.bridged(), self.samples())
+    }
+
+    /// The Allan curve so far of a record in which no gap was filled: the same as [`curve`](Self::curve), which also takes
+    /// off what filled gaps change. `None` if one was.
+    ///
+    /// For a sensor that never calls [`lost`](Self::lost), and has no room for the 2.5 KB of what it does not need.
+    pub fn unbridged_curve(&self, scale: Scale) -> Option<Curve<K>> {
+        let is_whole = self.bridged().is_empty();
+        is_whole.then(|| self.sums(scale, Curve::<K>::MIN_DIFFERENCES))
+    }
+
+    /// The curve with what filled gaps change.
+    fn sums(&self, scale: Scale, min_differences: u64) -> Curve<K> {
         let mut points = Vec::new();
         for octave in self.octaves() {
             if octave.differences < min_differences.max(1) {
@@ -293,12 +308,11 @@ impl<const K: usize> Accumulator<K> {
             let _ = points.push(point);
         }
         set_stretches(&mut points, K);
-        let curve = Curve {
+        Curve {
             rate_hz: scale.rate_hz,
             variance_unit: power_of_four(&points),
             points,
-        };
-        curve.without_bridges(self.bridged(), self.samples())
+        }
     }
 }
 

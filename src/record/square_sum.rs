@@ -32,22 +32,29 @@ impl SquareSum {
         // The difference is upper · 2^32 + lower, with both parts signed.
         let lower = difference as i32;
         let upper = ((difference >> 32) as i32).wrapping_add(i32::from(lower < 0));
-        let square = product(lower, lower) as u64;
         if upper == 0 {
             // A gyro at rest takes this path, with one multiplication and one digit.
-            self.add_low(square);
+            self.add_low(product(lower, lower) as u64);
         } else {
-            // The square is split into a digit of 64 bits and the one above it.
-            let cross = sum_signed(product(lower, upper.wrapping_mul(2)), (square >> 32) as i64);
-            let sum_low = square & 0xFFFF_FFFF | (cross as u64) << 32;
-            let sum_high = sum_signed(product(upper, upper), cross >> 32) as u64;
-            let low = sum(self.low, sum_low & DIGIT);
-            let carried = sum(sum_high << 1 | sum_low >> 63, low >> 63);
-            let middle = sum(self.middle, carried);
-            self.low = low & DIGIT;
-            self.middle = middle & DIGIT;
-            self.high = self.high.wrapping_add((middle >> 63) as u32);
+            self.add_wide(lower, upper);
         }
+    }
+
+    /// Adds the square of `upper · 2^32 + lower`. Apart, so that a push does not hold it once for each octave.
+    #[cold]
+    #[inline(never)]
+    fn add_wide(&mut self, lower: i32, upper: i32) {
+        // The square is split into a digit of 64 bits and the one above it.
+        let square = product(lower, lower) as u64;
+        let cross = sum_signed(product(lower, upper.wrapping_mul(2)), (square >> 32) as i64);
+        let sum_low = square & 0xFFFF_FFFF | (cross as u64) << 32;
+        let sum_high = sum_signed(product(upper, upper), cross >> 32) as u64;
+        let low = sum(self.low, sum_low & DIGIT);
+        let carried = sum(sum_high << 1 | sum_low >> 63, low >> 63);
+        let middle = sum(self.middle, carried);
+        self.low = low & DIGIT;
+        self.middle = middle & DIGIT;
+        self.high = self.high.wrapping_add((middle >> 63) as u32);
     }
 
     /// Adds a sum of squares of at most 2^63.

@@ -26,7 +26,7 @@ impl Bridged {
 
     /// Whether no gap was filled.
     pub fn is_empty(&self) -> bool {
-        *self == Self::NONE
+        self.gaps == [0; CLASSES]
     }
 
     /// The number of samples that were lost in all gaps.

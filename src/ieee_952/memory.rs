@@ -27,7 +27,8 @@ impl<const K: usize> Memory<K> {
             row.measured = single(point.variance / reference);
             row.model = row.measured;
             row.differences = point.differences as f32;
-            row.ends = point.stretches as f32 / row.differences;
+            row.per_difference = 1.0 / row.differences;
+            row.ends = point.stretches as f32 * row.per_difference;
         }
         let rows = self.rows.get_mut(..points.len()).unwrap_or_default();
         (Rows::new(rows, &mut self.factor), reference)

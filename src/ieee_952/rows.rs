@@ -4,7 +4,7 @@ use super::{
     covariance::{SHARE_BITS, covariance},
     row::Row,
     tableau::Tableau,
-    terms::{TERMS, Units, WALK, WHITE, power, sqrt},
+    terms::{TERMS, Units, WALK, WHITE, power, sqrt, truncated},
 };
 
 /// A number of the factor is in units of 2^-30: the covariance is scaled to a diagonal of one.
@@ -35,28 +35,28 @@ pub(super) struct Rows<'a, const K: usize> {
     scales: [f32; TERMS + 1],
 }
 
-/// The number of places at which a shorter difference is taken to start beside a longer one: more than it has, if its octave
-/// leaves out those across filled gaps.
-fn places(shorter: &Row, longer: &Row, j: usize, k: usize) -> f32 {
+/// One over the number of places at which a shorter difference is taken to start beside a longer one: more than it has, if
+/// its octave leaves out those across filled gaps.
+fn per_place(shorter: &Row, longer: &Row, j: usize, k: usize) -> f32 {
     // Differences start a quarter of a cluster apart, and one sample at least.
-    let bits = k.max(2).wrapping_sub(j.max(2)) as i32;
-    let beside = longer.differences * power(bits);
-    if beside > shorter.differences {
+    let bits = j.max(2).wrapping_sub(k.max(2)) as i32;
+    let beside = longer.per_difference * power(bits);
+    if beside < shorter.per_difference {
         beside
     } else {
-        shorter.differences
+        shorter.per_difference
     }
 }
 
 /// A column of the equations.
 #[derive(Clone, Copy)]
-pub(super) enum Column {
+pub(super) enum Column<'a> {
     /// The variance of a term with a coefficient of one.
     Term(usize),
     /// The curve, less what is held.
     Measured,
     /// The curve, less the model of these squared coefficients.
-    Residual([f32; TERMS]),
+    Residual(&'a [f32; TERMS]),
 }
 
 impl<'a, const K: usize> Rows<'a, K> {
@@ -75,19 +75,19 @@ impl<'a, const K: usize> Rows<'a, K> {
     #[inline(never)]
     pub(super) fn set_models(&mut self, squares: &[f32; TERMS]) {
         let units = self.units;
-        let walk = squares[WALK];
         for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
-            row.model = units.model(squares, octave);
+            let mut parts = [0.0; TERMS];
+            for (term, (part, &square)) in (0..TERMS).zip(parts.iter_mut().zip(squares)) {
+                *part = square * units.variance(term, octave);
+            }
+            row.model = parts.iter().sum();
+            let leak = squares[WALK] * units.leak(octave);
+            parts[WHITE] += leak;
+            parts[WALK] -= leak;
             let per_model = power(-SHARE_BITS) / row.model;
-            let leak = walk * units.leak(octave);
-            for (term, (share, &square)) in (0..TERMS).zip(row.shares.iter_mut().zip(squares)) {
-                let own = match term {
-                    WHITE => square * units.variance(term, octave) + leak,
-                    WALK => square * units.variance(term, octave) - leak,
-                    _ => square * units.variance(term, octave),
-                };
+            for (share, part) in row.shares.iter_mut().zip(parts) {
                 // Not negative, and at most 2^15.
-                *share = (own * per_model + 0.5) as u16;
+                *share = truncated(part * per_model + 0.5) as u16;
             }
         }
     }
@@ -126,8 +126,8 @@ impl<'a, const K: usize> Rows<'a, K> {
             let (Some(row), Some(own)) = (rest.first_mut(), own.first_mut()) else {
                 return false;
             };
-            let variance = 0.5 * covariance(row, row, k, 0) / row.differences + self.tolerance;
-            let is_positive = variance >= f32::MIN_POSITIVE;
+            let variance = 0.5 * covariance(row, row, k, 0) * row.per_difference + self.tolerance;
+            let is_positive = f32::MIN_POSITIVE < variance;
             if !is_positive {
                 return false;
             }
@@ -136,11 +136,11 @@ impl<'a, const K: usize> Rows<'a, K> {
             let mut pivot = i64::from(ONE) << FACTOR_BITS;
             for (j, shorter) in (0..K).zip(before.iter()) {
                 let common =
-                    covariance(shorter, row, j, k.wrapping_sub(j)) / places(shorter, row, j, k);
+                    covariance(shorter, row, j, k.wrapping_sub(j)) * per_place(shorter, row, j, k);
                 let correlation = common * per_row * shorter.certainty;
-                let mut left = i64::from(correlation as i32) << FACTOR_BITS;
-                let its = above.get(j).map_or(&[][..], |row| &row[..]);
-                for (own, its) in own.iter().zip(its).take(j) {
+                let mut left = i64::from(truncated(correlation)) << FACTOR_BITS;
+                let its = above.get(j).and_then(|row| row.get(..j));
+                for (own, its) in own.iter().zip(its.unwrap_or_default()) {
                     left = left.wrapping_sub(i64::from(*own).wrapping_mul((*its).into()));
                 }
                 let left = left >> FACTOR_BITS;
@@ -153,48 +153,52 @@ impl<'a, const K: usize> Rows<'a, K> {
                 pivot = pivot.wrapping_sub(i64::from(element).wrapping_mul(element.into()));
             }
             let pivot = pivot as f32 * power(-2 * FACTOR_BITS as i32);
-            let is_positive = pivot > LEAST_PIVOT;
+            let is_positive = LEAST_PIVOT < pivot;
             if !is_positive {
                 return false;
             }
-            row.reciprocal = (power(RECIPROCAL_BITS as i32) / sqrt(pivot)) as i32;
+            row.reciprocal = truncated(power(RECIPROCAL_BITS as i32) / sqrt(pivot));
         }
         true
     }
 
-    /// Whitens a column, and keeps it as column `place`. The scatter of the octaves is that of the factored covariance, for
-    /// models that are larger by `more` of a term.
+    /// Sets what whitens an octave: one over the scatter that it has by the factored covariance, for models that are larger
+    /// by `more` of a term.
     #[inline(never)]
-    pub(super) fn whiten(&mut self, place: usize, column: Column, more: Option<(usize, f32)>) {
+    fn set_weights(&mut self, more: Option<(usize, f32)>) {
+        let units = self.units;
+        for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
+            let more = more.map_or(0.0, |(term, square)| square * units.variance(term, octave));
+            row.weight = row.certainty / (row.model + more);
+        }
+    }
+
+    /// Whitens a column, and keeps it as column `place`.
+    #[inline(never)]
+    fn whiten(&mut self, place: usize, column: Column<'_>) {
         let (units, held) = (self.units, self.held);
         let value = |octave: usize, row: &Row| {
-            let scatter = match more {
-                Some((term, square)) => row.model + square * units.variance(term, octave),
-                None => row.model,
-            };
             let own = match column {
                 Column::Term(term) => units.variance(term, octave),
                 Column::Measured => row.measured - held.1 * units.variance(held.0, octave),
-                Column::Residual(squares) => row.measured - units.model(&squares, octave),
+                Column::Residual(squares) => row.measured - units.model(squares, octave),
             };
-            own / scatter * row.certainty
+            own * row.weight
         };
         let mut values = [0.0; K];
-        let mut largest = f32::MIN_POSITIVE;
+        // Sizes of floats compare as their bits do, without a call on a core that has no unit for floats.
+        let mut largest = f32::MIN_POSITIVE.to_bits();
         for ((octave, row), kept) in (0..K).zip(self.rows.iter()).zip(&mut values) {
             let value = value(octave, row);
             *kept = value;
-            largest = if value.abs() > largest {
-                value.abs()
-            } else {
-                largest
-            };
+            largest = largest.max(value.abs().to_bits());
         }
+        let largest = f32::from_bits(largest);
         let per_scale = power(WHITE_BITS as i32) / largest;
         for (k, value) in (0..K).zip(&values).take(self.rows.len()) {
-            let mut left = i64::from((value * per_scale) as i32) << FACTOR_BITS;
-            let factors = self.factor.get(k).map_or(&[][..], |row| &row[..]);
-            for (factor, before) in factors.iter().zip(self.rows.iter()).take(k) {
+            let mut left = i64::from(truncated(value * per_scale)) << FACTOR_BITS;
+            let factors = self.factor.get(k).and_then(|row| row.get(..k));
+            for (factor, before) in factors.unwrap_or_default().iter().zip(self.rows.iter()) {
                 let its = before.white.get(place).copied().unwrap_or(0);
                 left = left.wrapping_sub(i64::from(*factor).wrapping_mul(its.into()));
             }
@@ -226,17 +230,18 @@ impl<'a, const K: usize> Rows<'a, K> {
     /// Whitens the columns of all terms and of the curve, and sets the normal equations.
     #[inline(never)]
     pub(super) fn set_equations(&mut self, more: Option<(usize, f32)>, tableau: &mut Tableau) {
+        self.set_weights(more);
         for term in 0..TERMS {
-            self.whiten(term, Column::Term(term), more);
+            self.whiten(term, Column::Term(term));
         }
-        self.whiten(TERMS, Column::Measured, more);
+        self.whiten(TERMS, Column::Measured);
         tableau.set(|a, b| self.product(a, b));
     }
 
     /// The gradient of the squared residuals with the residual as the last column, by the tableau's scales, and their sum.
     #[inline(never)]
     pub(super) fn residuals(&mut self, squares: &[f32; TERMS]) -> ([f32; TERMS], f32) {
-        self.whiten(TERMS, Column::Residual(*squares), None);
+        self.whiten(TERMS, Column::Residual(squares));
         let mut gradient = [0.0; TERMS];
         for (term, gradient) in (0..TERMS).zip(&mut gradient) {
             *gradient = self.product(term, TERMS);
@@ -260,7 +265,7 @@ impl<'a, const K: usize> Rows<'a, K> {
         let mut most = 0.0;
         for (octave, row) in (0..K).zip(self.rows.iter()) {
             let square = times * row.measured / self.units.variance(term, octave);
-            most = if square > most { square } else { most };
+            most = if most < square { square } else { most };
         }
         most
     }
@@ -275,18 +280,15 @@ impl<'a, const K: usize> Rows<'a, K> {
     /// one, and the ratio of the change to that of the round before.
     #[inline(never)]
     pub(super) fn change(&mut self, squares: &[f32; TERMS]) -> (f32, f32) {
-        let (mut largest, mut product, mut square) = (0.0, 0.0, 0.0);
+        let (mut largest, mut product, mut square) = (0, 0.0, 0.0);
         for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
             let change = self.units.model(squares, octave) / row.model - 1.0;
             product += change * row.change;
             square += row.change * row.change;
-            largest = if change.abs() > largest {
-                change.abs()
-            } else {
-                largest
-            };
+            largest = largest.max(change.abs().to_bits());
             row.change = change;
         }
+        let largest = f32::from_bits(largest);
         (largest, if square > 0.0 { product / square } else { 0.0 })
     }
 }

@@ -11,19 +11,23 @@ const LEAST_GRADIENT: f32 = 1e-6;
 /// The equations of an interval's end, which never takes as many pivots.
 const MOST_PIVOTS: usize = 12;
 
+/// The numbers of a row.
+const WIDTH: usize = TERMS + 1;
+
 /// The equations `w = b − Hx` with unknowns scaled so that the diagonal of `H` is one, some of them solved for their `x`. The
 /// last number of a row is the value of `x` if the row is solved, and of `w`, half of what the squared residuals fall by
 /// where `x` grows, if it is not: with all `x` that are not solved at zero.
 #[derive(Clone, Copy)]
 pub(super) struct Tableau {
-    rows: [[f32; TERMS + 1]; TERMS],
+    /// Row by row, in one piece, so that an element is one step away.
+    elements: [f32; WIDTH * TERMS],
     scale: [f32; TERMS],
     free: u8,
 }
 
 impl Tableau {
     pub(super) const EMPTY: Self = Self {
-        rows: [[0.0; TERMS + 1]; TERMS],
+        elements: [0.0; WIDTH * TERMS],
         scale: [0.0; TERMS],
         free: 0,
     };
@@ -41,30 +45,40 @@ impl Tableau {
                 }
             }
         }
-        for (a, (scale, row)) in (0..TERMS).zip(self.scale.iter_mut().zip(&self.rows)) {
-            *scale = 1.0 / sqrt(row.get(a).copied().unwrap_or(0.0));
+        for a in 0..TERMS {
+            let scale = 1.0 / sqrt(self.pivot_of(a));
+            if let Some(place) = self.scale.get_mut(a) {
+                *place = scale;
+            }
         }
-        let scale = self.scale;
-        for (row, own) in self.rows.iter_mut().zip(scale) {
-            for (element, other) in row.iter_mut().zip(scale) {
+        for (row, own) in self.elements.chunks_exact_mut(WIDTH).zip(self.scale) {
+            let others = self.scale.iter().chain([&1.0]);
+            for (element, other) in row.iter_mut().zip(others) {
                 *element *= own * other;
             }
-            row[TERMS] *= own;
         }
     }
 
     fn put(&mut self, i: usize, j: usize, element: f32) {
-        if let Some(place) = self.rows.get_mut(i).and_then(|row| row.get_mut(j)) {
+        if let Some(place) = self.elements.get_mut(i.wrapping_mul(WIDTH).wrapping_add(j)) {
             *place = element;
         }
     }
 
-    fn row(&self, i: usize) -> [f32; TERMS + 1] {
-        self.rows.get(i).copied().unwrap_or_default()
+    /// The element in row `i` and column `j`.
+    #[inline(never)]
+    fn at(&self, i: usize, j: usize) -> f32 {
+        let place = i.wrapping_mul(WIDTH).wrapping_add(j);
+        self.elements.get(place).copied().unwrap_or(0.0)
     }
 
     fn pivot_of(&self, i: usize) -> f32 {
-        self.row(i).get(i).copied().unwrap_or(0.0)
+        self.at(i, i)
+    }
+
+    /// The last number of row `i`.
+    fn value(&self, i: usize) -> f32 {
+        self.at(i, TERMS)
     }
 
     pub(super) fn scale(&self, i: usize) -> f32 {
@@ -85,20 +99,15 @@ impl Tableau {
     #[inline(never)]
     fn pivot(&mut self, p: usize) {
         let reciprocal = 1.0 / self.pivot_of(p);
-        let mut own = self.row(p).map(|element| element * reciprocal);
-        if let Some(diagonal) = own.get_mut(p) {
-            *diagonal = reciprocal;
+        for j in 0..WIDTH {
+            let element = if j == p { 1.0 } else { self.at(p, j) };
+            self.put(p, j, element * reciprocal);
         }
-        for (i, row) in (0..TERMS).zip(&mut self.rows) {
-            if i == p {
-                *row = own;
-                continue;
-            }
-            let Some(factor) = row.get_mut(p).map(core::mem::take) else {
-                continue;
-            };
-            for (element, own) in row.iter_mut().zip(own) {
-                *element -= factor * own;
+        for i in (0..TERMS).filter(|i| *i != p) {
+            let factor = self.at(i, p);
+            self.put(i, p, 0.0);
+            for j in 0..WIDTH {
+                self.put(i, j, self.at(i, j) - factor * self.at(p, j));
             }
         }
         self.free ^= 1_u8.wrapping_shl(p as u32);
@@ -125,7 +134,7 @@ impl Tableau {
         }
         for _ in 0..40 {
             let is_wrong = |i: &usize| {
-                let value = self.row(*i)[TERMS];
+                let value = self.value(*i);
                 if self.has(*i) {
                     value <= 0.0
                 } else {
@@ -142,7 +151,7 @@ impl Tableau {
 
     /// Lets an unknown change sides, if it can be told from the others. Returns by how much the squared residuals fall.
     fn change(&mut self, i: usize) -> f32 {
-        let (value, own, was_free) = (self.row(i)[TERMS], self.pivot_of(i), self.has(i));
+        let (value, own, was_free) = (self.value(i), self.pivot_of(i), self.has(i));
         if !was_free && own <= LEAST_PIVOT {
             return 0.0;
         }
@@ -154,9 +163,9 @@ impl Tableau {
     /// The squared coefficients.
     pub(super) fn squares(&self) -> [f32; TERMS] {
         let mut squares = [0.0; TERMS];
-        for (i, (square, row)) in (0..TERMS).zip(squares.iter_mut().zip(&self.rows)) {
+        for (i, square) in (0..TERMS).zip(&mut squares) {
             if self.has(i) {
-                *square = row[TERMS] * self.scale(i);
+                *square = self.value(i) * self.scale(i);
             }
         }
         squares
@@ -165,14 +174,14 @@ impl Tableau {
     /// Takes back what rounding left in squared coefficients, by the gradient that they have.
     pub(super) fn refine(&self, squares: &mut [f32; TERMS], gradient: &[f32; TERMS]) -> f32 {
         let mut fall = 0.0;
-        for (i, (square, row)) in (0..TERMS).zip(squares.iter_mut().zip(&self.rows)) {
+        for (i, square) in (0..TERMS).zip(squares) {
             if !self.has(i) {
                 continue;
             }
             let mut step = 0.0;
-            for (j, (element, gradient)) in (0..TERMS).zip(row.iter().zip(gradient)) {
+            for (j, gradient) in (0..TERMS).zip(gradient) {
                 if self.has(j) {
-                    step += element * gradient * self.scale(j);
+                    step += self.at(i, j) * gradient * self.scale(j);
                 }
             }
             let step = step * self.scale(i);
@@ -202,7 +211,7 @@ impl Tableau {
         let mut at = square / scale;
         for _ in 0..MOST_PIVOTS {
             let curvature = self.pivot_of(i);
-            let slope = self.row(i)[TERMS] - curvature * at;
+            let slope = self.value(i) - curvature * at;
             let root = sqrt(slope * slope + curvature * left);
             let goal = at + if up { slope + root } else { slope - root } / curvature;
             let (next, other) = self.next_change(i, at, if goal > 0.0 { goal } else { 0.0 }, up);
@@ -222,14 +231,14 @@ impl Tableau {
     #[inline(never)]
     pub(super) fn fall(mut self, i: usize, held: f32) -> (f32, bool) {
         let least = -held / self.scale(i);
-        let up = self.row(i)[TERMS] > 0.0;
+        let up = self.value(i) > 0.0;
         let (mut at, mut fall) = (0.0, 0.0);
         for _ in 0..MOST_PIVOTS {
             let curvature = self.pivot_of(i);
             if curvature <= LEAST_PIVOT {
                 break;
             }
-            let slope = self.row(i)[TERMS] - curvature * at;
+            let slope = self.value(i) - curvature * at;
             if (slope > 0.0) != up {
                 break;
             }
@@ -252,13 +261,12 @@ impl Tableau {
     fn next_change(&self, i: usize, at: f32, goal: f32, up: bool) -> (f32, Option<usize>) {
         let mut next = (goal, None);
         for j in 0..TERMS {
-            let row = self.row(j);
-            let change = row.get(i).copied().unwrap_or(0.0);
+            let change = self.at(j, i);
             let turns = change != 0.0 && (change > 0.0) == (up == self.has(j));
             if j == i || !turns || self.pivot_of(j) <= LEAST_PIVOT {
                 continue;
             }
-            let place = row[TERMS] / change;
+            let place = self.value(j) / change;
             let is_on_the_way = if up {
                 place >= at && place < next.0
             } else {

@@ -236,14 +236,21 @@ fn set_stretches(points: &mut [Point], capacity: usize) {
         };
         // The octave before is half as far away as the one behind, and has as many stretches or more.
         let stretches = match (before, after) {
-            (Some(before), Some(after)) => (2.0 * before + after.min(before)) / 3.0,
+            (Some(before), Some(after)) => (2.0 * before + lesser(after, before)) / 3.0,
             (Some(one), None) | (None, Some(one)) => one,
             (None, None) => 1.0,
         };
-        first.stretches = (stretches.min(first.differences as Real).max(1.0) + 0.5) as u32;
+        let stretches = lesser(stretches, first.differences as Real);
+        first.stretches = if stretches > 1.0 { (stretches + 0.5) as u32 } else { 1 };
         before = after;
         left = rest;
     }
+}
+
+/// The smaller number. What `min` does for one that is no number is a further call on a core that has no unit for floats.
+#[inline(never)]
+fn lesser(one: Real, other: Real) -> Real {
+    if one < other { one } else { other }
 }
 
 /// The power of four nearest to the smallest positive variance, or 1 if there is none. It is a normal number, even if
@@ -252,7 +259,7 @@ fn power_of_four(points: &[Point]) -> Real {
     let positive = points.iter().map(|point| point.variance);
     let least = positive
         .filter(|&variance| variance > 0.0)
-        .fold(Real::INFINITY, Real::min);
+        .fold(Real::INFINITY, lesser);
     let mut unit = 1.0;
     if least < Real::INFINITY {
         while least < unit && unit > Real::MIN_POSITIVE {

@@ -82,12 +82,10 @@ pub(super) fn all<const K: usize>(
     birge_ratio: f32,
     scale: Scale,
 ) -> [Coefficient; TERMS] {
+    let fitted = *tableau;
     let mut found = [Estimate::NOTHING; TERMS];
     for (term, (found, &square)) in (0..TERMS).zip(found.iter_mut().zip(squares)) {
-        *found = Estimate::of(tableau, term, square, birge_ratio);
-    }
-    let fitted = *tableau;
-    for (term, found) in (0..TERMS).zip(&mut found) {
+        *found = Estimate::of(&fitted, term, square, birge_ratio);
         if found.lower <= 0.0 && found.upper < f32::INFINITY {
             found.bound(rows, tableau, (fitted.free(), term), birge_ratio);
         }
@@ -103,14 +101,12 @@ pub(super) fn all<const K: usize>(
             }
         }
     }
-    let terms = (0..TERMS).zip(NAMES);
-    let all = found.iter().zip(terms);
-    let all = all.map(|(found, (term, names))| found.coefficient(names, scale.unit(term)));
-    let mut coefficients = [Estimate::NOTHING.coefficient(NAMES[0], 1.0); TERMS];
-    for (place, coefficient) in coefficients.iter_mut().zip(all) {
-        *place = coefficient;
-    }
-    coefficients
+    // One after the other, because they would be copied from what makes an array.
+    let of = |term: usize| {
+        let found = found.get(term).unwrap_or(&Estimate::NOTHING);
+        found.coefficient(term, scale)
+    };
+    [of(0), of(1), of(2), of(3), of(4)]
 }
 
 /// The root of a unit, which single precision may not hold: only its part from 1 to 4 is rounded.
@@ -214,11 +210,10 @@ impl Estimate {
         }
     }
 
-    fn coefficient(
-        &self,
-        (name, symbol, half_seconds): (&'static str, &'static str, i8),
-        unit: Real,
-    ) -> Coefficient {
+    #[inline(never)]
+    fn coefficient(&self, term: usize, scale: Scale) -> Coefficient {
+        let (name, symbol, half_seconds) = NAMES.get(term).copied().unwrap_or(NAMES[0]);
+        let unit = scale.unit(term);
         let root_of_unit = root_of(unit);
         // The root of the product, whose factors may be far from one.
         let root = |square: f32| real(sqrt(square)) * root_of_unit;

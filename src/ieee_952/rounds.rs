@@ -54,15 +54,28 @@ pub(super) fn iterate<const K: usize>(
             break;
         }
         if round > 0 {
-            stride = (stride / (1.0 - ratio.min(0.5))).clamp(0.3, 2.0);
+            stride /= 1.0 - within(ratio, f32::MIN, 0.5);
+            stride = within(stride, 0.3, 2.0);
         }
         for (from, to) in assumed.iter_mut().zip(squares) {
             // However far a step goes, it loses no term that both ends of it have.
-            let least = 0.5 * from.min(to);
-            *from = (*from + (to - *from) * stride).max(least);
+            let least = 0.5 * within(to, 0.0, *from);
+            *from = within(*from + (to - *from) * stride, least, f32::INFINITY);
         }
     }
     Some(())
+}
+
+/// The number, or the limit that it lies beyond.
+#[inline(never)]
+fn within(number: f32, least: f32, most: f32) -> f32 {
+    if number < least {
+        least
+    } else if most < number {
+        most
+    } else {
+        number
+    }
 }
 
 /// Finds the squared coefficients by rounds of covariance and solution, and returns χ². `None` if the covariance is not

@@ -10,7 +10,7 @@ use crate::{
     list::{fill, numbered},
     numerics::{
         math,
-        real::{Real, real},
+        real::{Real, real, single},
     },
     record::octave::{Accumulator, Bridged},
 };
@@ -223,7 +223,7 @@ fn set_stretches(points: &mut [Point], capacity: usize) {
     let between = |one: &Point, next: &Point| {
         let lost = places(one).saturating_sub(places(next)) as Real;
         let rounded = if one.m < 4 { 1.0 } else { 16.0 / 15.0 };
-        lost * rounded / real(next.m.saturating_sub(one.m).saturating_mul(2).max(1))
+        lost * rounded / real(next.m.saturating_sub(one.m).wrapping_mul(2).max(1))
     };
     let is_complete = points.len() < capacity;
     let mut before: Option<Real> = None;
@@ -235,13 +235,13 @@ fn set_stretches(points: &mut [Point], capacity: usize) {
             None => None,
         };
         // The octave before is half as far away as the one behind, and has as many stretches or more.
-        let stretches = match (before, after) {
-            (Some(before), Some(after)) => (2.0 * before + lesser(after, before)) / 3.0,
-            (Some(one), None) | (None, Some(one)) => one,
-            (None, None) => 1.0,
-        };
+        // Where one of them is not known, the other stands for it.
+        let behind = after.or(before).unwrap_or(1.0);
+        let ahead = before.unwrap_or(behind);
+        let stretches = (2.0 * ahead + lesser(behind, ahead)) / 3.0;
         let stretches = lesser(stretches, first.differences as Real);
-        first.stretches = if stretches > 1.0 { (stretches + 0.5) as u32 } else { 1 };
+        // Rounded, and 1 at least.
+        first.stretches = (math::truncated(single(stretches + 0.5)) as u32).max(1);
         before = after;
         left = rest;
     }
@@ -261,11 +261,15 @@ fn power_of_four(points: &[Point]) -> Real {
         .filter(|&variance| variance > 0.0)
         .fold(Real::INFINITY, lesser);
     let mut unit = 1.0;
-    if least < Real::INFINITY {
+    if least.to_bits() < Real::INFINITY.to_bits() {
         while least < unit && unit > Real::MIN_POSITIVE {
             unit *= 0.25;
         }
-        while least >= 4.0 * unit {
+        let is_large = |unit: Real| {
+            let is_near = least < 4.0 * unit;
+            !is_near
+        };
+        while is_large(unit) {
             unit *= 4.0;
         }
     }

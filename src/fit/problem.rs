@@ -290,7 +290,11 @@ pub(crate) fn check(points: &[Point], needed: usize) -> Result<(), Error> {
             needed,
         });
     }
-    if let Some(point) = points.iter().find(|point| point.variance == 0.0) {
+    let is_silent = |point: &&Point| {
+        let has_noise = 0.0 < point.variance;
+        !has_noise
+    };
+    if let Some(point) = points.iter().find(is_silent) {
         return Err(Error::NoNoise { m: point.m });
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use super::{
     Fit,
-    estimate::{NAMES, Scale, root_of},
+    estimate::{NAMES, Scale},
     memory::{Memory, consecutive},
     rounds::{CONVERGED, USUAL, iterate},
     rows::Rows,
@@ -47,7 +47,7 @@ pub(crate) fn above<const K: usize>(
     let (mut rows, reference) = memory.rows(points);
     rows.tolerance = single(fit.tolerance * fit.tolerance);
     let scale = Scale::new(reference, curve.interval_s(), rows.units);
-    let root = single(limit / root_of(scale.unit(term)));
+    let root = single(limit / scale.root(term));
     let beyond = rows.beyond(term, BEYOND);
     // Not even its square may be beyond the range of numbers.
     let mut square = if root < sqrt(beyond) {
@@ -57,7 +57,8 @@ pub(crate) fn above<const K: usize>(
     };
     let mut start = [0.0; TERMS];
     for (other, (start, own)) in (0..TERMS).zip(start.iter_mut().zip(&fit.coefficients)) {
-        *start = single(own.square / scale.unit(other));
+        let root = single(own.value / scale.root(other));
+        *start = root * root;
     }
     // A ramp far above the curve scatters so little that there is no covariance. The root falls with the limit, so that one
     // below zero at a lower limit is one here too.

@@ -4,12 +4,12 @@ use super::{
     rounds::iterate,
     rows::Rows,
     tableau::Tableau,
-    terms::{TERMS, Units, power, sqrt},
+    terms::{TERMS, Units, is_positive, power, sqrt},
 };
 use crate::{
     fit::coefficient::{Coefficient, State},
     limits::{CHI_SQUARED_95, ONE_SIDED_95},
-    numerics::real::{Real, real, single},
+    numerics::{math::short_sqrt, real::{Real, real}},
 };
 
 /// Name, symbol and twice the exponent of the second in the unit, of each term.
@@ -33,26 +33,26 @@ const ROUGHLY: f32 = 0.03;
 /// The normal deviate that is exceeded with the probability of [`ADEQUATE_P`](crate::fit::ADEQUATE_P).
 const INADEQUATE: f32 = 2.326_348;
 
-/// Turns squares of the fit into squared coefficients.
+/// Turns what the fit finds into coefficients. Roots are kept, because their squares may be beyond the range of numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Scale {
-    /// The unit of the first term's square, and the averaging time by which it falls from term to term.
+    /// The root of the unit of the first term's square, and that of the averaging time by which it falls from term to term.
     first: Real,
-    tau_s: Real,
+    step: Real,
 }
 
 impl Scale {
     pub(super) fn new(reference: Real, interval_s: Real, units: Units) -> Self {
         let tau_s = interval_s * real(power(units.middle()));
         Self {
-            first: reference * tau_s * tau_s,
-            tau_s,
+            first: short_sqrt(reference) * tau_s,
+            step: short_sqrt(tau_s),
         }
     }
 
-    /// The unit of a term's square.
-    pub(super) fn unit(self, term: usize) -> Real {
-        (0..term).fold(self.first, |unit, _| unit / self.tau_s)
+    /// The root of the unit of a term's square.
+    pub(super) fn root(self, term: usize) -> Real {
+        (0..term).fold(self.first, |root, _| root / self.step)
     }
 }
 
@@ -86,11 +86,13 @@ pub(super) fn all<const K: usize>(
     let mut found = [Estimate::NOTHING; TERMS];
     for (term, (found, &square)) in (0..TERMS).zip(found.iter_mut().zip(squares)) {
         *found = Estimate::of(&fitted, term, square, birge_ratio);
-        if found.lower <= 0.0 && found.upper < f32::INFINITY {
+        let has_end = found.upper.to_bits() < f32::INFINITY.to_bits();
+        if !is_positive(found.lower) && has_end {
             found.bound(rows, tableau, (fitted.free(), term), birge_ratio);
         }
     }
-    if birge_ratio <= 1.0 {
+    let is_widened = 1.0 < birge_ratio;
+    if !is_widened {
         for (term, found) in (0..TERMS).zip(&mut found) {
             // Of squares, so that no root is needed.
             if found.lower > 0.0 && found.lower < NARROW * NARROW * found.square {
@@ -107,21 +109,6 @@ pub(super) fn all<const K: usize>(
         found.coefficient(term, scale)
     };
     [of(0), of(1), of(2), of(3), of(4)]
-}
-
-/// The root of a unit, which single precision may not hold: only its part from 1 to 4 is rounded.
-pub(super) fn root_of(unit: Real) -> Real {
-    let (mut part, mut scale) = (unit, 1.0);
-    for _ in 0..600 {
-        if part >= 4.0 {
-            (part, scale) = (0.25 * part, 2.0 * scale);
-        } else if part < 1.0 && part > 0.0 {
-            (part, scale) = (4.0 * part, 0.5 * scale);
-        } else {
-            break;
-        }
-    }
-    real(sqrt(single(part))) * scale
 }
 
 /// A squared coefficient with its interval, in units of the fit.
@@ -213,10 +200,10 @@ impl Estimate {
     #[inline(never)]
     fn coefficient(&self, term: usize, scale: Scale) -> Coefficient {
         let (name, symbol, half_seconds) = NAMES.get(term).copied().unwrap_or(NAMES[0]);
-        let unit = scale.unit(term);
-        let root_of_unit = root_of(unit);
+        let root_of_unit = scale.root(term);
         // The root of the product, whose factors may be far from one.
         let root = |square: f32| real(sqrt(square)) * root_of_unit;
+        let squared = |square: f32| real(square) * root_of_unit * root_of_unit;
         Coefficient {
             name,
             symbol,
@@ -225,8 +212,8 @@ impl Estimate {
             lower: root(self.lower),
             upper: root(self.upper),
             state: self.state,
-            square: real(self.square) * unit,
-            square_error: real(self.error) * unit,
+            square: squared(self.square),
+            square_error: squared(self.error),
         }
     }
 }

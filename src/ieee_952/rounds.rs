@@ -1,6 +1,6 @@
 //! Rounds of covariance and solution.
 
-use super::{rows::Rows, tableau::Tableau, terms::TERMS};
+use super::{rows::Rows, tableau::Tableau, terms::{TERMS, is_positive}};
 
 /// The rounds of covariance and solution.
 const ROUNDS: u8 = 8;
@@ -36,7 +36,7 @@ pub(super) fn iterate<const K: usize>(
 ) -> Option<()> {
     let (mut assumed, mut stride) = (start, 1.0);
     for round in 0..ROUNDS {
-        if assumed.iter().all(|square| *square <= 0.0) {
+        if !assumed.iter().any(|square| is_positive(*square)) {
             return None;
         }
         rows.set_models(&assumed);

@@ -1,6 +1,6 @@
 //! Least squares whose unknowns cannot be negative, and intervals by the likelihood ratio, by pivots of one tableau.
 
-use super::terms::{TERMS, sqrt};
+use super::terms::{TERMS, is_positive, sqrt};
 
 /// An unknown can be told from the others if its pivot, relative to one, is larger.
 const LEAST_PIVOT: f32 = 1e-5;
@@ -76,6 +76,11 @@ impl Tableau {
         self.at(i, i)
     }
 
+    /// Whether unknown `i`, which is not solved, can be told from those that are.
+    fn can_be_told(&self, i: usize) -> bool {
+        LEAST_PIVOT < self.pivot_of(i)
+    }
+
     /// The last number of row `i`.
     fn value(&self, i: usize) -> f32 {
         self.at(i, TERMS)
@@ -136,9 +141,9 @@ impl Tableau {
             let is_wrong = |i: &usize| {
                 let value = self.value(*i);
                 if self.has(*i) {
-                    value <= 0.0
+                    !is_positive(value)
                 } else {
-                    !is_in(held, *i) && value > LEAST_GRADIENT && self.pivot_of(*i) > LEAST_PIVOT
+                    !is_in(held, *i) && LEAST_GRADIENT < value && self.can_be_told(*i)
                 }
             };
             let Some(i) = (0..TERMS).find(is_wrong) else {
@@ -152,7 +157,7 @@ impl Tableau {
     /// Lets an unknown change sides, if it can be told from the others. Returns by how much the squared residuals fall.
     fn change(&mut self, i: usize) -> f32 {
         let (value, own, was_free) = (self.value(i), self.pivot_of(i), self.has(i));
-        if !was_free && own <= LEAST_PIVOT {
+        if !was_free && !self.can_be_told(i) {
             return 0.0;
         }
         self.pivot(i);
@@ -200,7 +205,7 @@ impl Tableau {
     pub(super) fn variance(&self, i: usize) -> Option<f32> {
         let own = self.pivot_of(i);
         let scale = self.scale(i);
-        (own > LEAST_PIVOT).then(|| scale * scale / own)
+        self.can_be_told(i).then(|| scale * scale / own)
     }
 
     /// The square of coefficient `i`, which is held at zero, and was `square`, where the squared residuals are by `rise`
@@ -235,7 +240,7 @@ impl Tableau {
         let (mut at, mut fall) = (0.0, 0.0);
         for _ in 0..MOST_PIVOTS {
             let curvature = self.pivot_of(i);
-            if curvature <= LEAST_PIVOT {
+            if !self.can_be_told(i) {
                 break;
             }
             let slope = self.value(i) - curvature * at;
@@ -262,17 +267,18 @@ impl Tableau {
         let mut next = (goal, None);
         for j in 0..TERMS {
             let change = self.at(j, i);
-            let turns = change != 0.0 && (change > 0.0) == (up == self.has(j));
-            if j == i || !turns || self.pivot_of(j) <= LEAST_PIVOT {
+            let (grows, is_zero) = (is_positive(change), change.to_bits().wrapping_shl(1) == 0);
+            let turns = !is_zero && grows == (up == self.has(j));
+            if j == i || !turns || !self.can_be_told(j) {
                 continue;
             }
             let place = self.value(j) / change;
-            let is_on_the_way = if up {
-                place >= at && place < next.0
+            let (is_behind, is_nearer) = if up {
+                (place < at, place < next.0)
             } else {
-                place <= at && place > next.0
+                (at < place, next.0 < place)
             };
-            if is_on_the_way {
+            if is_nearer && !is_behind {
                 next = (place, Some(j));
             }
         }

@@ -1,6 +1,6 @@
 //! The variances of the five terms, in units in which they are near one.
 
-pub(super) use crate::numerics::math::root as sqrt;
+pub(super) use crate::numerics::math::{root as sqrt, truncated};
 
 /// The number of terms.
 pub const TERMS: usize = 5;
@@ -22,20 +22,9 @@ pub(super) const fn power(exponent: i32) -> f32 {
     f32::from_bits((exponent.wrapping_add(127) as u32).wrapping_shl(23))
 }
 
-/// The integer part. What `as` does for a float costs three comparisons, and each of them is a call on a core that has no
-/// unit for floats.
-#[inline(never)]
-pub(super) fn truncated(value: f32) -> i32 {
-    let bits = value.to_bits();
-    let mantissa = (bits & 0x7F_FFFF | 0x80_0000) as i32;
-    // The mantissa is the size times this power of two.
-    let shift = 150_i32.wrapping_sub((bits.wrapping_shr(23) & 0xFF) as i32);
-    let size = match shift {
-        0.. => mantissa.wrapping_shr(shift.min(31) as u32),
-        -7..0 => mantissa.wrapping_shl(shift.wrapping_neg() as u32),
-        _ => i32::MAX,
-    };
-    if (bits as i32) < 0 { size.wrapping_neg() } else { size }
+/// Whether a number is above zero, by its bits: a comparison is a call on a core that has no unit for floats.
+pub(super) const fn is_positive(number: f32) -> bool {
+    number.to_bits() as i32 > 0
 }
 
 /// The terms' variances at every octave, in units of the averaging time of a middle one.
@@ -92,18 +81,6 @@ impl Units {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn integer_parts_are_those_of_the_language() {
-        let mut random = 1_u32;
-        for _ in 0..100_000 {
-            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let value = f32::from_bits(random);
-            let expected = if value.is_nan() { continue } else { value as i32 };
-            // The language's range is not symmetric.
-            assert_eq!(truncated(value), expected.max(-i32::MAX), "{value}");
-        }
-    }
 
     #[test]
     fn variances_are_those_of_the_model() {

@@ -45,10 +45,28 @@ pub(crate) fn erfc(x: f32) -> f32 {
     if x < 0.0 { 2.0 - above } else { above }
 }
 
+/// The integer part. What `as` does for a float costs three comparisons, and each of them is a call on a core that has no
+/// unit for floats.
+#[inline(never)]
+pub(crate) fn truncated(value: f32) -> i32 {
+    let bits = value.to_bits();
+    let mantissa = (bits & 0x7F_FFFF | 0x80_0000) as i32;
+    // The mantissa is the size times this power of two.
+    let shift = 150_i32.wrapping_sub((bits.wrapping_shr(23) & 0xFF) as i32);
+    let size = match shift {
+        0.. => mantissa.wrapping_shr(shift.min(31) as u32),
+        -7..0 => mantissa.wrapping_shl(shift.wrapping_neg() as u32),
+        _ => i32::MAX,
+    };
+    if (bits as i32) < 0 { size.wrapping_neg() } else { size }
+}
+
 /// The square root of a normal number to the last bit or so, and 0 for others: Newton's method from a start that halves the
 /// exponent. That of libm needs a table, and half a kilobyte in all.
 pub(crate) fn root(x: f32) -> f32 {
-    let is_normal = x >= f32::MIN_POSITIVE;
+    // A number above zero that is normal, by its bits: a comparison is a call on a core that has no unit for floats.
+    let least = f32::MIN_POSITIVE.to_bits();
+    let is_normal = x.to_bits().wrapping_sub(least) < f32::INFINITY.to_bits().wrapping_sub(least);
     if !is_normal {
         return 0.0;
     }
@@ -203,6 +221,18 @@ mod tests {
         }
         assert_eq!(sincos_of_turns(0.25), (1.0, 0.0));
         assert_eq!(sincos_of_turns(-0.5), (0.0, -1.0));
+    }
+
+    #[test]
+    fn integer_parts_are_those_of_the_language() {
+        let mut random = 1_u32;
+        for _ in 0..100_000 {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let value = f32::from_bits(random);
+            let expected = if value.is_nan() { continue } else { value as i32 };
+            // The language's range is not symmetric.
+            assert_eq!(truncated(value), expected.max(-i32::MAX), "{value}");
+        }
     }
 
     #[test]

@@ -26,7 +26,7 @@ impl Bridged {
 
     /// Whether no gap was filled.
     pub fn is_empty(&self) -> bool {
-        self.gaps == [0; CLASSES]
+        self.gaps.iter().all(|&gaps| gaps == 0)
     }
 
     /// The number of samples that were lost in all gaps.

@@ -9,7 +9,10 @@ use super::{
 use crate::{
     fit::coefficient::{Coefficient, State},
     limits::{CHI_SQUARED_95, ONE_SIDED_95},
-    numerics::{math::short_sqrt, real::{Real, real}},
+    numerics::{
+        math::short_sqrt,
+        real::{Real, real},
+    },
 };
 
 /// Name, symbol and twice the exponent of the second in the unit, of each term.

@@ -1,6 +1,10 @@
 //! Rounds of covariance and solution.
 
-use super::{rows::Rows, tableau::Tableau, terms::{TERMS, is_positive}};
+use super::{
+    rows::Rows,
+    tableau::Tableau,
+    terms::{TERMS, is_positive},
+};
 
 /// The rounds of covariance and solution.
 const ROUNDS: u8 = 8;

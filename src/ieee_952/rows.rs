@@ -185,30 +185,36 @@ impl<'a, const K: usize> Rows<'a, K> {
             };
             own * row.weight
         };
-        let mut values = [0.0; K];
         // Sizes of floats compare as their bits do, without a call on a core that has no unit for floats.
         let mut largest = f32::MIN_POSITIVE.to_bits();
-        for ((octave, row), kept) in (0..K).zip(self.rows.iter()).zip(&mut values) {
+        for (octave, row) in (0..K).zip(self.rows.iter_mut()) {
             let value = value(octave, row);
-            *kept = value;
             largest = largest.max(value.abs().to_bits());
+            // The column keeps its floats until it is whitened.
+            if let Some(white) = row.white.get_mut(place) {
+                *white = value.to_bits() as i32;
+            }
         }
         let largest = f32::from_bits(largest);
         let per_scale = power(WHITE_BITS as i32) / largest;
-        for (k, value) in (0..K).zip(&values).take(self.rows.len()) {
+        for k in 0..self.rows.len() {
+            let (before, rest) = self.rows.split_at_mut(k);
+            let own = rest
+                .first_mut()
+                .map(|row| (row.reciprocal, row.white.get_mut(place)));
+            let Some((reciprocal, Some(white))) = own else {
+                continue;
+            };
+            let value = f32::from_bits(*white as u32);
             let mut left = i64::from(truncated(value * per_scale)) << FACTOR_BITS;
             let factors = self.factor.get(k).and_then(|row| row.get(..k));
-            for (factor, before) in factors.unwrap_or_default().iter().zip(self.rows.iter()) {
+            for (factor, before) in factors.unwrap_or_default().iter().zip(before) {
                 let its = before.white.get(place).copied().unwrap_or(0);
                 left = left.wrapping_sub(i64::from(*factor).wrapping_mul(its.into()));
             }
-            if let Some(row) = self.rows.get_mut(k)
-                && let Some(white) = row.white.get_mut(place)
-            {
-                let element = (left >> FACTOR_BITS).wrapping_mul(row.reciprocal.into());
-                let limit = i64::from(i32::MAX);
-                *white = (element >> RECIPROCAL_BITS).max(-limit).min(limit) as i32;
-            }
+            let element = (left >> FACTOR_BITS).wrapping_mul(reciprocal.into());
+            let limit = i64::from(i32::MAX);
+            *white = (element >> RECIPROCAL_BITS).max(-limit).min(limit) as i32;
         }
         if let Some(scale) = self.scales.get_mut(place) {
             *scale = largest;

@@ -267,8 +267,8 @@ impl Tableau {
         let mut next = (goal, None);
         for j in 0..TERMS {
             let change = self.at(j, i);
-            let (grows, is_zero) = (is_positive(change), change.to_bits().wrapping_shl(1) == 0);
-            let turns = !is_zero && grows == (up == self.has(j));
+            let is_turning = is_positive(change) == (up == self.has(j));
+            let turns = is_turning && change.abs().to_bits() >= f32::MIN_POSITIVE.to_bits();
             if j == i || !turns || !self.can_be_told(j) {
                 continue;
             }

@@ -58,7 +58,11 @@ pub(crate) fn truncated(value: f32) -> i32 {
         -7..0 => mantissa.wrapping_shl(shift.wrapping_neg() as u32),
         _ => i32::MAX,
     };
-    if (bits as i32) < 0 { size.wrapping_neg() } else { size }
+    if (bits as i32) < 0 {
+        size.wrapping_neg()
+    } else {
+        size
+    }
 }
 
 /// The square root of a normal number to the last bit or so, and 0 for others: Newton's method from a start that halves the
@@ -229,7 +233,11 @@ mod tests {
         for _ in 0..100_000 {
             random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let value = f32::from_bits(random);
-            let expected = if value.is_nan() { continue } else { value as i32 };
+            let expected = if value.is_nan() {
+                continue;
+            } else {
+                value as i32
+            };
             // The language's range is not symmetric.
             assert_eq!(truncated(value), expected.max(-i32::MAX), "{value}");
         }

@@ -1,4 +1,5 @@
-//! The smallest image that takes counts, computes the curve and fits the five terms of IEEE Std 952 to it.
+//! The smallest image that takes counts, computes the curve fits the five terms of IEEE Std 952 to it, and compares
+//! them with limits.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -7,7 +8,10 @@ fn main() {}
 
 #[cfg(target_os = "none")]
 mod image {
-    use allanite::{Accumulator, Scale, ieee_952};
+    use allanite::{
+        Accumulator, Scale,
+        ieee_952::{self, Limits},
+    };
     use core::hint::black_box;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
@@ -17,9 +21,14 @@ mod image {
         while let Some(count) = black_box(None) {
             accumulator.push(count);
         }
-        let curve = Scale::new(1.0, 100.0).ok().and_then(|scale| accumulator.unbridged_curve(scale));
+        let curve = Scale::new(1.0, 100.0)
+            .ok()
+            .and_then(|scale| accumulator.unbridged_curve(scale));
         let fit = curve.and_then(|curve| ieee_952::fit(&curve).ok());
-        black_box(&fit);
+        let limits = black_box(Limits {
+            most: [1.0; ieee_952::TERMS],
+        });
+        black_box(fit.map(|fit| (limits.check(&fit), fit)));
         semihosting::process::exit(0)
     }
 }

@@ -9,8 +9,8 @@ use super::{
 /// The value of one of a term's shares of an octave.
 pub(super) const SHARE_BITS: i32 = -15;
 
-/// With fewer differences, the starts that both ends cut are left out of the sums.
-const FEW: f32 = 12.0;
+/// One over the number of differences below which the starts that both ends cut are left out of the sums.
+const PER_FEW: f32 = 1.0 / 12.0;
 
 /// Ends that cost less than this share of the differences move no covariance by a thousandth.
 const FEW_ENDS: f32 = 1.0 / 8192.0;
@@ -26,7 +26,7 @@ const SUM_BITS: i32 = SHARE_BITS + STEP_BITS;
 pub(super) fn covariance(shorter: &Row, longer: &Row, j: usize, distance: usize) -> f32 {
     let near = distance.min(DISTANCES - 1);
     let beyond = distance.saturating_sub(near);
-    let row = if j >= 2 && longer.differences < FEW {
+    let row = if j >= 2 && PER_FEW < longer.per_difference {
         3
     } else {
         j.min(2)

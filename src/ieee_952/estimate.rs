@@ -98,10 +98,10 @@ pub(super) fn all<const K: usize>(
     if !is_widened {
         for (term, found) in (0..TERMS).zip(&mut found) {
             // Of squares, so that no root is needed.
-            if found.lower > 0.0 && found.lower < NARROW * NARROW * found.square {
+            if is_positive(found.lower) && found.lower < NARROW * NARROW * found.square {
                 *tableau = fitted;
                 if may_be_zero(rows, tableau, term) {
-                    (found.lower, found.state) = (0.0, State::UpperBound);
+                    (found.lower, found.is_bound) = (0.0, true);
                 }
             }
         }
@@ -121,7 +121,8 @@ struct Estimate {
     lower: f32,
     upper: f32,
     error: f32,
-    state: State,
+    /// Whether `upper` is a bound that says something. A coefficient whose `lower` is above zero is measured.
+    is_bound: bool,
 }
 
 impl Estimate {
@@ -130,7 +131,7 @@ impl Estimate {
         lower: 0.0,
         upper: f32::INFINITY,
         error: f32::INFINITY,
-        state: State::NotObservable { after_s: None },
+        is_bound: false,
     };
 
     /// The interval by the likelihood ratio.
@@ -147,13 +148,13 @@ impl Estimate {
         let error = sqrt(variance) * birge_ratio;
         let rise = CHI_SQUARED_95 as f32 * birge_ratio * birge_ratio;
         let lower = beside.end(term, square, rise, false);
-        if lower > 0.0 {
+        if is_positive(lower) {
             return Self {
                 square,
                 lower,
                 upper: beside.end(term, square, rise, true),
                 error,
-                state: State::Measured,
+                ..Self::NOTHING
             };
         }
         Self {
@@ -186,24 +187,25 @@ impl Estimate {
             };
             bound = square + ONE_SIDED_95 as f32 * sqrt(variance);
         }
-        bound = if bound > self.square {
-            bound
-        } else {
-            self.square
-        };
-        if rows.all_above(term, bound) {
-            self.state = State::UpperBound;
+        if bound < self.square {
+            bound = self.square;
         }
-        self.upper = bound;
-        if birge_ratio > 1.0 && self.state == State::UpperBound && widened > bound {
-            self.upper = widened;
-        }
+        self.is_bound = rows.all_above(term, bound);
+        let is_widened = 1.0 < birge_ratio && self.is_bound && bound < widened;
+        self.upper = if is_widened { widened } else { bound };
     }
 
     #[inline(never)]
     fn coefficient(&self, term: usize, scale: Scale) -> Coefficient {
         let (name, symbol, half_seconds) = NAMES.get(term).copied().unwrap_or(NAMES[0]);
         let root_of_unit = scale.root(term);
+        let state = if is_positive(self.lower) {
+            State::Measured
+        } else if self.is_bound {
+            State::UpperBound
+        } else {
+            State::NotObservable { after_s: None }
+        };
         // The root of the product, whose factors may be far from one.
         let root = |square: f32| real(sqrt(square)) * root_of_unit;
         let squared = |square: f32| real(square) * root_of_unit * root_of_unit;
@@ -214,7 +216,7 @@ impl Estimate {
             value: root(self.square),
             lower: root(self.lower),
             upper: root(self.upper),
-            state: self.state,
+            state,
             square: squared(self.square),
             square_error: squared(self.error),
         }

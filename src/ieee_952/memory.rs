@@ -9,7 +9,7 @@ use crate::{
 /// What a fit needs for each octave.
 pub(super) struct Memory<const K: usize> {
     rows: [Row; K],
-    factor: [[i32; K]; K],
+    factor: [[u16; K]; K],
 }
 
 impl<const K: usize> Memory<K> {
@@ -26,8 +26,7 @@ impl<const K: usize> Memory<K> {
         for (row, point) in self.rows.iter_mut().zip(points) {
             row.measured = single(point.variance / reference);
             row.model = row.measured;
-            row.differences = point.differences as f32;
-            row.per_difference = 1.0 / row.differences;
+            row.per_difference = 1.0 / point.differences as f32;
             row.ends = point.stretches as f32 * row.per_difference;
         }
         let rows = self.rows.get_mut(..points.len()).unwrap_or_default();

@@ -32,6 +32,7 @@
 mod comparison;
 mod covariance;
 mod estimate;
+mod factor;
 mod limits;
 mod memory;
 mod rounds;
@@ -117,23 +118,21 @@ pub(crate) fn fit_curve<const K: usize>(curve: &Curve<K>) -> Result<Fit, Error> 
         let free = tableau.free().count_ones() as usize;
         points.len().saturating_sub(free)
     };
+    let mut tolerance = 0.0;
     if estimate::birge_ratio(chi_squared, degrees(&tableau)) > 1.0 {
+        tolerance = real(TOLERANCE);
         rows.tolerance = TOLERANCE * TOLERANCE;
         chi_squared = solve(&mut rows, &mut tableau, &mut squares).ok_or(Error::Singular)?;
     }
     let degrees_of_freedom = degrees(&tableau);
     let birge_ratio = estimate::birge_ratio(chi_squared, degrees_of_freedom);
     let scale = estimate::Scale::new(reference, curve.interval_s(), rows.units);
-    let coefficients = estimate::all(&mut rows, &mut tableau, &squares, birge_ratio, scale);
     Ok(Fit {
-        coefficients,
         chi_squared: real(chi_squared),
         degrees_of_freedom,
-        tolerance: if rows.tolerance > 0.0 {
-            real(TOLERANCE)
-        } else {
-            0.0
-        },
+        tolerance,
         birge_ratio: real(birge_ratio),
+        // Written where it stays.
+        coefficients: estimate::all(&mut rows, &mut tableau, &squares, birge_ratio, scale),
     })
 }

@@ -3,7 +3,7 @@
 use super::{
     rows::Rows,
     tableau::Tableau,
-    terms::{TERMS, is_positive},
+    terms::{TERMS, is_positive, positive},
 };
 
 /// The rounds of covariance and solution.
@@ -97,5 +97,5 @@ pub(super) fn solve<const K: usize>(
     let (gradient, residuals) = rows.residuals(squares);
     let fall = tableau.refine(squares, &gradient);
     let chi_squared = residuals - fall - rows.excess(squares);
-    Some(if chi_squared > 0.0 { chi_squared } else { 0.0 })
+    Some(positive(chi_squared))
 }

@@ -7,8 +7,7 @@ use super::terms::TERMS;
 pub(super) struct Row {
     /// The Allan variance, in units of the reference.
     pub(super) measured: f32,
-    /// The number of differences, one over it, and the number of stretches over it.
-    pub(super) differences: f32,
+    /// One over the number of differences, and the number of stretches over it.
     pub(super) per_difference: f32,
     pub(super) ends: f32,
     /// The model's variance, and each term's share of it in units of 2^-15.
@@ -29,7 +28,6 @@ pub(super) struct Row {
 impl Row {
     pub(super) const EMPTY: Self = Self {
         measured: 0.0,
-        differences: 0.0,
         per_difference: 0.0,
         ends: 0.0,
         model: 0.0,

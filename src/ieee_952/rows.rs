@@ -2,9 +2,10 @@
 
 use super::{
     covariance::{SHARE_BITS, covariance},
+    factor::Factor,
     row::Row,
     tableau::Tableau,
-    terms::{TERMS, Units, WALK, WHITE, power, sqrt, truncated},
+    terms::{TERMS, Units, WALK, WHITE, is_positive, power, sqrt, truncated},
 };
 
 /// A number of the factor is in units of 2^-30: the covariance is scaled to a diagonal of one.
@@ -24,8 +25,7 @@ const PRODUCT_BITS: u32 = 8;
 /// The octaves of a curve, and the factor of their covariance.
 pub(super) struct Rows<'a, const K: usize> {
     pub(super) rows: &'a mut [Row],
-    /// The factor below the diagonal, row by row.
-    factor: &'a mut [[i32; K]; K],
+    factor: Factor<'a>,
     pub(super) units: Units,
     /// The square of the tolerance: the relative variance that each octave has beside its scatter.
     pub(super) tolerance: f32,
@@ -60,11 +60,11 @@ pub(super) enum Column<'a> {
 }
 
 impl<'a, const K: usize> Rows<'a, K> {
-    pub(super) fn new(rows: &'a mut [Row], factor: &'a mut [[i32; K]; K]) -> Self {
+    pub(super) fn new(rows: &'a mut [Row], factor: &'a mut [[u16; K]; K]) -> Self {
         Self {
             units: Units::new(rows.len()),
             rows,
-            factor,
+            factor: Factor::new(factor),
             tolerance: 0.0,
             held: (0, 0.0),
             scales: [0.0; TERMS + 1],
@@ -102,13 +102,11 @@ impl<'a, const K: usize> Rows<'a, K> {
                 1 => 0.5,
                 _ => 0.25,
             };
-            let clusters = (row.differences - 1.0) * quarter + 1.0;
+            let clusters = (1.0 / row.per_difference - 1.0) * quarter + 1.0;
             row.certainty = sqrt(2.0 * clusters);
             row.reciprocal = 1 << RECIPROCAL_BITS;
         }
-        for row in self.factor.iter_mut() {
-            row.fill(0);
-        }
+        self.factor.clear();
     }
 
     /// Factors the covariance at the present models. `false` if it cannot be made positive definite.
@@ -122,8 +120,7 @@ impl<'a, const K: usize> Rows<'a, K> {
     fn factor(&mut self, kept: f32) -> bool {
         for k in 0..self.rows.len() {
             let (before, rest) = self.rows.split_at_mut(k);
-            let (above, own) = self.factor.split_at_mut(k.min(K));
-            let (Some(row), Some(own)) = (rest.first_mut(), own.first_mut()) else {
+            let Some(row) = rest.first_mut() else {
                 return false;
             };
             let variance = 0.5 * covariance(row, row, k, 0) * row.per_difference + self.tolerance;
@@ -138,18 +135,13 @@ impl<'a, const K: usize> Rows<'a, K> {
                 let common =
                     covariance(shorter, row, j, k.wrapping_sub(j)) * per_place(shorter, row, j, k);
                 let correlation = common * per_row * shorter.certainty;
-                let mut left = i64::from(truncated(correlation)) << FACTOR_BITS;
-                let its = above.get(j).and_then(|row| row.get(..j));
-                for (own, its) in own.iter().zip(its.unwrap_or_default()) {
-                    left = left.wrapping_sub(i64::from(*own).wrapping_mul((*its).into()));
-                }
+                let common = i64::from(truncated(correlation)) << FACTOR_BITS;
+                let left = self.factor.left(common, k, self.factor.row(j));
                 let left = left >> FACTOR_BITS;
                 let element = left.wrapping_mul(shorter.reciprocal.into()) >> RECIPROCAL_BITS;
                 // `clamp` would check its limits, and link the words of that panic.
                 let element = element.max((-ONE).into()).min(ONE.into()) as i32;
-                if let Some(place) = own.get_mut(j) {
-                    *place = element;
-                }
+                self.factor.put(k, j, element);
                 pivot = pivot.wrapping_sub(i64::from(element).wrapping_mul(element.into()));
             }
             let pivot = pivot as f32 * power(-2 * FACTOR_BITS as i32);
@@ -206,12 +198,11 @@ impl<'a, const K: usize> Rows<'a, K> {
                 continue;
             };
             let value = f32::from_bits(*white as u32);
-            let mut left = i64::from(truncated(value * per_scale)) << FACTOR_BITS;
-            let factors = self.factor.get(k).and_then(|row| row.get(..k));
-            for (factor, before) in factors.unwrap_or_default().iter().zip(before) {
-                let its = before.white.get(place).copied().unwrap_or(0);
-                left = left.wrapping_sub(i64::from(*factor).wrapping_mul(its.into()));
-            }
+            let column = before
+                .iter()
+                .map(|row| row.white.get(place).copied().unwrap_or(0));
+            let number = i64::from(truncated(value * per_scale)) << FACTOR_BITS;
+            let left = self.factor.left(number, k, column);
             let element = (left >> FACTOR_BITS).wrapping_mul(reciprocal.into());
             let limit = i64::from(i32::MAX);
             *white = (element >> RECIPROCAL_BITS).max(-limit).min(limit) as i32;
@@ -295,6 +286,13 @@ impl<'a, const K: usize> Rows<'a, K> {
             row.change = change;
         }
         let largest = f32::from_bits(largest);
-        (largest, if square > 0.0 { product / square } else { 0.0 })
+        (
+            largest,
+            if is_positive(square) {
+                product / square
+            } else {
+                0.0
+            },
+        )
     }
 }

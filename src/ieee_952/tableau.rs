@@ -1,6 +1,6 @@
 //! Least squares whose unknowns cannot be negative, and intervals by the likelihood ratio, by pivots of one tableau.
 
-use super::terms::{TERMS, is_positive, sqrt};
+use super::terms::{TERMS, is_positive, positive, sqrt};
 
 /// An unknown can be told from the others if its pivot, relative to one, is larger.
 const LEAST_PIVOT: f32 = 1e-5;
@@ -191,11 +191,10 @@ impl Tableau {
             }
             let step = step * self.scale(i);
             fall += step * gradient.get(i).copied().unwrap_or(0.0);
-            *square = if *square + step > 0.0 {
-                *square + step
-            } else {
-                *square
-            };
+            let refined = *square + step;
+            if is_positive(refined) {
+                *square = refined;
+            }
         }
         fall
     }
@@ -219,7 +218,7 @@ impl Tableau {
             let slope = self.value(i) - curvature * at;
             let root = sqrt(slope * slope + curvature * left);
             let goal = at + if up { slope + root } else { slope - root } / curvature;
-            let (next, other) = self.next_change(i, at, if goal > 0.0 { goal } else { 0.0 }, up);
+            let (next, other) = self.next_change(i, at, positive(goal), up);
             let step = next - at;
             left -= step * (curvature * step - 2.0 * slope);
             at = next;
@@ -236,7 +235,7 @@ impl Tableau {
     #[inline(never)]
     pub(super) fn fall(mut self, i: usize, held: f32) -> (f32, bool) {
         let least = -held / self.scale(i);
-        let up = self.value(i) > 0.0;
+        let up = is_positive(self.value(i));
         let (mut at, mut fall) = (0.0, 0.0);
         for _ in 0..MOST_PIVOTS {
             let curvature = self.pivot_of(i);
@@ -244,7 +243,7 @@ impl Tableau {
                 break;
             }
             let slope = self.value(i) - curvature * at;
-            if (slope > 0.0) != up {
+            if is_positive(slope) != up {
                 break;
             }
             let goal = at + slope / curvature;

@@ -27,6 +27,11 @@ pub(super) const fn is_positive(number: f32) -> bool {
     number.to_bits() as i32 > 0
 }
 
+/// The number, or zero if it is not above.
+pub(super) const fn positive(number: f32) -> f32 {
+    if is_positive(number) { number } else { 0.0 }
+}
+
 /// The terms' variances at every octave, in units of the averaging time of a middle one.
 #[derive(Clone, Copy)]
 pub(super) struct Units {
@@ -70,7 +75,7 @@ impl Units {
     pub(super) fn model(self, squares: &[f32; TERMS], octave: usize) -> f32 {
         let mut sum = 0.0;
         for (term, &square) in (0..TERMS).zip(squares) {
-            if square > 0.0 {
+            if is_positive(square) {
                 sum += square * self.variance(term, octave);
             }
         }

@@ -85,9 +85,7 @@ fn compared<const K: usize>(
     }
     let set = 1_u8.wrapping_shl(term as u32);
     let mut tableau = Tableau::EMPTY;
-    iterate(rows, &mut tableau, start, CONVERGED, &|tableau| {
-        tableau.solve(USUAL, set);
-    })?;
+    iterate(rows, &mut tableau, start, CONVERGED, [USUAL, set])?;
     let (fall, is_above) = tableau.fall(term, square);
     let root = sqrt(fall);
     Some(if is_above { root } else { -root })

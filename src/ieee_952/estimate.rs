@@ -232,10 +232,7 @@ fn may_be_zero<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tableau, te
     tableau.hold(term);
     tableau.solve(0, held);
     let start = tableau.squares();
-    let rounds = iterate(rows, tableau, start, ROUGHLY, &|tableau| {
-        tableau.solve(guess, held);
-    });
-    if rounds.is_none() {
+    if iterate(rows, tableau, start, ROUGHLY, [guess, held]).is_none() {
         return false;
     }
     let fall = tableau.solve(0, 0);

@@ -25,7 +25,7 @@ pub(super) fn begin<const K: usize>(rows: &mut Rows<'_, K>, tableau: &mut Tablea
 }
 
 /// Alternates between the covariance at a model and the solution with it, until the relative change of the model is smaller
-/// than `converged`. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
+/// than `converged`. The terms of `held` stay at zero, and those of `guess` are tried first. The weights are those of the last round. `None` if the covariance is not positive definite, or if a
 /// solution has no term.
 ///
 /// The changes of rounds that swing to and fro, or that creep, have a ratio, and the next round starts where it leads (Aitken
@@ -36,7 +36,7 @@ pub(super) fn iterate<const K: usize>(
     tableau: &mut Tableau,
     start: [f32; TERMS],
     converged: f32,
-    solve: &dyn Fn(&mut Tableau),
+    [guess, held]: [u8; 2],
 ) -> Option<()> {
     let (mut assumed, mut stride) = (start, 1.0);
     for round in 0..ROUNDS {
@@ -48,7 +48,7 @@ pub(super) fn iterate<const K: usize>(
             return None;
         }
         rows.set_equations(None, tableau);
-        solve(tableau);
+        tableau.solve(guess, held);
         let mut squares = tableau.squares();
         if let Some(square) = squares.get_mut(rows.held.0) {
             *square += rows.held.1;
@@ -90,9 +90,7 @@ pub(super) fn solve<const K: usize>(
     tableau: &mut Tableau,
     squares: &mut [f32; TERMS],
 ) -> Option<f32> {
-    iterate(rows, tableau, *squares, CONVERGED, &|tableau| {
-        tableau.solve(USUAL, 0);
-    })?;
+    iterate(rows, tableau, *squares, CONVERGED, [USUAL, 0])?;
     *squares = tableau.squares();
     let (gradient, residuals) = rows.residuals(squares);
     let fall = tableau.refine(squares, &gradient);

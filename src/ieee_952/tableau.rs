@@ -210,22 +210,23 @@ impl Tableau {
     /// The square of coefficient `i`, which is held at zero, and was `square`, where the squared residuals are by `rise`
     /// above their minimum, with the others fitted anew, at zero or above.
     #[inline(never)]
-    pub(super) fn end(mut self, i: usize, square: f32, rise: f32, up: bool) -> f32 {
+    pub(super) fn end(&self, i: usize, square: f32, rise: f32, up: bool) -> f32 {
+        let mut path = *self;
         let (scale, mut left) = (self.scale(i), rise);
         let mut at = square / scale;
         for _ in 0..MOST_PIVOTS {
-            let curvature = self.pivot_of(i);
-            let slope = self.value(i) - curvature * at;
+            let curvature = path.pivot_of(i);
+            let slope = path.value(i) - curvature * at;
             let root = sqrt(slope * slope + curvature * left);
             let goal = at + if up { slope + root } else { slope - root } / curvature;
-            let (next, other) = self.next_change(i, at, positive(goal), up);
+            let (next, other) = path.next_change(i, at, positive(goal), up);
             let step = next - at;
             left -= step * (curvature * step - 2.0 * slope);
             at = next;
             let Some(other) = other else {
                 break;
             };
-            self.pivot(other);
+            path.pivot(other);
         }
         at * scale
     }

@@ -213,7 +213,8 @@ pub(super) fn take_off<const K: usize>(
 
 /// The variance without a change. Where noise is nearly nothing, the change may be wrong by more than the noise.
 fn within(variance: Real, change: Real) -> Real {
-    (variance - change).max(0.5 * variance)
+    let (left, half) = (variance - change, 0.5 * variance);
+    if left < half { half } else { left }
 }
 
 /// What all filled gaps of a record change in the sum of the squared differences of an octave.

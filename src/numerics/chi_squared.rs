@@ -19,10 +19,11 @@ pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
     if degrees_of_freedom == 0 || x.is_nan() {
         return Real::NAN;
     }
-    if x <= 0.0 {
+    let (is_positive, is_finite) = (0.0 < x, x < Real::INFINITY);
+    if !is_positive {
         return 1.0;
     }
-    if x == Real::INFINITY {
+    if !is_finite {
         return 0.0;
     }
     let half = 0.5 * x;
@@ -53,7 +54,9 @@ pub fn chi_squared_tail(x: Real, degrees_of_freedom: usize) -> Real {
     if decay == 0.0 {
         return 0.0;
     }
-    (first + sum * decay).min(1.0)
+    // What rounding adds is taken off without `min`, which minds numbers that are none.
+    let tail = first + sum * decay;
+    if 1.0 < tail { 1.0 } else { tail }
 }
 
 #[cfg(test)]

@@ -3,8 +3,7 @@
 use super::plan::Limit;
 use crate::{
     curve::Curve,
-    ieee_952::{self, Fit},
-    limits::MAX_EFFECTS,
+    ieee_952::{self, Fit, TERMS},
     list,
     numerics::real::Real,
     record::integrity::Reason,
@@ -59,10 +58,10 @@ pub struct Look<const OCTAVES: usize> {
     pub(super) invalid: Option<Reason>,
     /// `None` where it cannot be fitted.
     curve: Option<Curve<OCTAVES>>,
-    /// The fit, and its p-value, once they are known.
-    pub(super) fit: Option<(Fit, Real)>,
+    /// The fit, once it is known.
+    pub(super) fit: Option<Fit>,
     /// The limits that were undecided when the look began.
-    limits: Vec<Compared, MAX_EFFECTS>,
+    limits: Vec<Compared, TERMS>,
     /// The place in `limits` of the next comparison.
     next: usize,
 }
@@ -70,7 +69,7 @@ pub struct Look<const OCTAVES: usize> {
 /// A limit, and how far its coefficient lies above it.
 #[derive(Clone, Copy)]
 pub(super) struct Compared {
-    pub(super) limit: Limit,
+    most: Real,
     /// The coefficient's place among the five terms.
     pub(super) place: usize,
     /// The signed root of the likelihood ratio, in standard errors. It is `None` until it is known, and
@@ -82,7 +81,7 @@ impl Compared {
     /// The limit of one of the five terms, before the comparison.
     pub(super) fn new(limit: &Limit) -> Option<Self> {
         Some(Self {
-            limit: *limit,
+            most: limit.most,
             place: ieee_952::place(limit.effect)?,
             above: None,
         })
@@ -112,10 +111,10 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
         let Some(curve) = &self.curve else {
             return true;
         };
-        let Some((fit, _)) = &self.fit else {
-            self.fit = fitted(curve);
-            if self.fit.is_none() {
-                self.curve = None;
+        let Some(fit) = &self.fit else {
+            match ieee_952::fit_curve(curve) {
+                Ok(fit) => self.fit = Some(fit),
+                Err(_) => self.curve = None,
             }
             return self.curve.is_none() || self.limits.is_empty();
         };
@@ -123,21 +122,17 @@ impl<const OCTAVES: usize> Look<OCTAVES> {
             return true;
         };
         // A limit that the curve cannot be compared with stays undecided.
-        compared.above = ieee_952::above(curve, fit, compared.place, compared.limit.most);
+        compared.above = ieee_952::above(curve, fit, compared.place, compared.most);
         self.next = self.next.saturating_add(1);
         self.next >= self.limits.len()
     }
 
     /// The comparison with a limit. It is `None` if the look has none with this limit.
     pub(super) fn compared(&self, limit: &Limit) -> Option<&Compared> {
+        let place = ieee_952::place(limit.effect)?;
         let mut compared = self.limits.iter();
-        compared.find(|compared| compared.limit == *limit)
+        compared.find(|compared| {
+            compared.place == place && compared.most.to_bits() == limit.most.to_bits()
+        })
     }
-}
-
-#[inline(never)]
-fn fitted<const OCTAVES: usize>(curve: &Curve<OCTAVES>) -> Option<(Fit, Real)> {
-    let fit = ieee_952::fit_curve(curve).ok()?;
-    let p_value = fit.p_value();
-    Some((fit, p_value))
 }

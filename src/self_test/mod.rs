@@ -176,9 +176,14 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     ///
     /// # Errors
     /// [`InvalidPlan`] if the plan cannot be carried out.
+    #[inline(never)]
     pub fn new(plan: Plan, scale: Scale) -> Result<Self, InvalidPlan> {
         let (first, last) = plan.check(scale, OCTAVES)?;
-        let looks = 1 + last.div_ceil(first.max(1)).next_power_of_two().ilog2();
+        // Each record is twice as long as the one before. A count needs no division of 64 bits.
+        let (mut looks, mut samples) = (1, first.max(1));
+        while samples < last {
+            (looks, samples) = (looks + 1, samples.saturating_mul(2));
+        }
         let limits = plan.limits.len().max(1) as Real;
         Ok(Self {
             scale,
@@ -241,6 +246,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     /// an [`Axis`](crate::Axis). What is wrong with the samples, if anything watches them, such as an
     /// [`Integrity`](crate::integrity::Integrity), is passed beside. A look that this test has begun before can no longer be
     /// concluded.
+    #[inline(never)]
     pub fn begin_look_at(
         &mut self,
         accumulator: &Accumulator<OCTAVES>,
@@ -253,6 +259,8 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         )
     }
 
+    // Apart, so that no copy of the curve lies on the stack while a look is taken up.
+    #[inline(never)]
     fn begin(
         &mut self,
         samples: u64,
@@ -340,6 +348,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     /// assert_eq!(test.status(accumulator.samples()), Status::Passed);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    #[inline(never)]
     pub fn look_at(
         &mut self,
         accumulator: &Accumulator<OCTAVES>,
@@ -355,7 +364,11 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
 
     /// Share of the longest record that is there.
     fn share(&self, samples: u64) -> f32 {
-        single((samples as Real / self.last as Real).min(1.0))
+        if samples < self.last {
+            single(samples as Real / self.last as Real)
+        } else {
+            1.0
+        }
     }
 
     #[inline(never)]
@@ -363,7 +376,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let samples = look.samples;
         let is_last = samples >= self.last;
         let seconds = samples as Real / self.scale.rate_hz();
-        let Some((fit, p_value)) = &look.fit else {
+        let Some(fit) = &look.fit else {
             // Gaps may have left too few differences; the first limit stands for all.
             return if is_last {
                 self.undecided(0, None)
@@ -371,7 +384,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
                 self.running(samples, Real::INFINITY)
             };
         };
-        let p_value = *p_value;
+        let p_value = fit.p_value();
         let misfit = Failure::Misfit { p_value };
         if p_value < self.plan.least_p / real(self.looks) {
             return Status::Failed(misfit);
@@ -420,7 +433,7 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
             Some((_, needed)) if !is_last => self.running(samples, needed),
             // A longer record would not tell more of a gyro that the five terms do not explain.
             Some(_) if is_misfit => Status::Failed(misfit),
-            Some((i, needed)) => self.undecided(i, needed.is_finite().then_some(needed)),
+            Some((i, needed)) => self.undecided(i, (needed < Real::INFINITY).then_some(needed)),
         }
     }
 
@@ -438,10 +451,10 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
         let factor = enough / standard_errors;
         let longest = (1_u64 << 30) as Real / self.scale.rate_hz();
         let needed = seconds * factor * factor;
-        if needed <= longest {
-            needed
-        } else {
+        if longest < needed {
             Real::INFINITY
+        } else {
+            needed
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::{
     curve::{Curve, Scale},
     ieee_952,
-    limits::MAX_EFFECTS,
+    ieee_952::TERMS,
     numerics::real::Real,
 };
 use heapless::Vec;
@@ -23,7 +23,7 @@ pub struct Limit {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Plan {
     /// The limits of coefficients, at most one for each coefficient.
-    pub limits: Vec<Limit, MAX_EFFECTS>,
+    pub limits: Vec<Limit, TERMS>,
     /// The smallest p-value of the five-term fit, 0 ≤ `least_p` < 1. It is divided among the looks, and a
     /// gyro with a smaller p-value fails. 0 requires nothing: a gyro with a vibration passes as long as no coefficient
     /// that stands for it is above its limit.
@@ -94,7 +94,8 @@ impl Plan {
         }
         // A longer record adds no octave.
         let most = (8_u64 << octaves.min(MAX_SAMPLES.ilog2() as usize - 3)).min(MAX_SAMPLES);
-        let samples = |seconds: Real| (seconds * scale.rate_hz()) as u64;
+        // Beyond 32 bits, a record is too long in any case.
+        let samples = |seconds: Real| u64::from((seconds * scale.rate_hz()) as u32);
         let (first, last) = (samples(self.shortest_s), samples(self.longest_s));
         // The number of samples that two octaves need, those of one and of two samples.
         let least = Curve::<2>::MIN_DIFFERENCES + 4;

@@ -4,11 +4,11 @@ use super::{
     rounds::iterate,
     rows::Rows,
     tableau::Tableau,
-    terms::{TERMS, Units, is_positive, power, sqrt},
+    terms::{TERMS, Units, is_positive, positive, power, sqrt},
 };
 use crate::{
     fit::coefficient::{Coefficient, State},
-    limits::{CHI_SQUARED_95, ONE_SIDED_95},
+    limits::{CHI_SQUARED_95, ONE_SIDED_95, TWO_SIDED_95},
     numerics::{
         math::short_sqrt,
         real::{Real, real},
@@ -106,17 +106,25 @@ pub(super) fn all<const K: usize>(
             }
         }
     }
+    coefficients(scale, |term| {
+        found.get(term).copied().unwrap_or(Estimate::NOTHING)
+    })
+}
+
+/// The coefficients of all terms.
+#[inline(always)]
+pub(super) fn coefficients(
+    scale: Scale,
+    estimate: impl Fn(usize) -> Estimate,
+) -> [Coefficient; TERMS] {
     // One after the other, because they would be copied from what makes an array.
-    let of = |term: usize| {
-        let found = found.get(term).unwrap_or(&Estimate::NOTHING);
-        found.coefficient(term, scale)
-    };
+    let of = |term: usize| estimate(term).coefficient(term, scale);
     [of(0), of(1), of(2), of(3), of(4)]
 }
 
 /// A squared coefficient with its interval, in units of the fit.
 #[derive(Clone, Copy)]
-struct Estimate {
+pub(super) struct Estimate {
     square: f32,
     lower: f32,
     upper: f32,
@@ -126,13 +134,35 @@ struct Estimate {
 }
 
 impl Estimate {
-    const NOTHING: Self = Self {
+    pub(super) const NOTHING: Self = Self {
         square: 0.0,
         lower: 0.0,
         upper: f32::INFINITY,
         error: f32::INFINITY,
         is_bound: false,
     };
+
+    /// A square that may be negative, with its standard error.
+    pub(super) fn normal(square: f32, error: f32) -> Self {
+        let width = TWO_SIDED_95 as f32 * error;
+        let lower = square - width;
+        if is_positive(lower) {
+            return Self {
+                square,
+                lower,
+                upper: square + width,
+                error,
+                ..Self::NOTHING
+            };
+        }
+        Self {
+            square,
+            lower: 0.0,
+            upper: positive(square) + ONE_SIDED_95 as f32 * error,
+            error,
+            is_bound: true,
+        }
+    }
 
     /// The interval by the likelihood ratio.
     #[inline(never)]

@@ -35,6 +35,7 @@ mod estimate;
 mod factor;
 mod limits;
 mod memory;
+mod paper;
 mod rounds;
 mod row;
 mod rows;
@@ -46,6 +47,7 @@ mod tests;
 
 pub(crate) use comparison::{above, place};
 pub use limits::{Checked, Limits};
+pub use paper::fit_by_relative_accuracy;
 pub use terms::TERMS;
 
 use crate::{

@@ -118,6 +118,17 @@ impl Tableau {
         self.free ^= 1_u8.wrapping_shl(p as u32);
     }
 
+    /// Solves all unknowns, of any sign. `false` if one of them cannot be told from the others.
+    pub(super) fn free_all(&mut self) -> bool {
+        for i in 0..TERMS {
+            if !self.can_be_told(i) {
+                return false;
+            }
+            self.pivot(i);
+        }
+        true
+    }
+
     /// Holds an unknown at zero, and solves the others.
     pub(super) fn hold(&mut self, i: usize) {
         if self.has(i) {
@@ -197,6 +208,12 @@ impl Tableau {
             }
         }
         fall
+    }
+
+    /// The variance of a squared coefficient where all are solved.
+    pub(super) fn solved_variance(&self, i: usize) -> f32 {
+        let scale = self.scale(i);
+        self.pivot_of(i) * scale * scale
     }
 
     /// The variance of a squared coefficient with the others that are solved; `None` if it cannot be told from them. It is

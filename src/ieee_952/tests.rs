@@ -147,3 +147,26 @@ fn limits_pass_fail_or_stay_open_by_the_intervals() {
     found.birge_ratio = 1.2;
     assert_eq!(with(1, white.upper).check(&found), Checked::Misfit);
 }
+
+#[test]
+fn the_papers_fit_has_the_numbers_of_the_general_one() {
+    let options = Options {
+        method: crate::fit::Method::RelativeAccuracy,
+        ..Options::default()
+    };
+    for seed in 0..40 {
+        let curve = record(seed, 3000 << (seed % 4), if seed % 3 == 0 { 3 } else { 0 });
+        let small = fit_by_relative_accuracy(&curve).expect("a fit");
+        let general = crate::fit::fit(&curve, &Model::ieee_952(), options).expect("a fit");
+        for (one, other) in general.coefficients.iter().zip(&small.coefficients) {
+            let off = double((one.square - other.square) / one.square_error).abs();
+            assert!(off < 0.02, "{seed}: {one:?} {other:?}");
+            let ratio = double(one.square_error / other.square_error);
+            assert!((ratio - 1.0).abs() < 0.01, "{seed}: {one:?} {other:?}");
+            assert_eq!(one.state, other.state, "{seed}");
+        }
+        let off = double(general.chi_squared - small.chi_squared).abs();
+        assert!(off < 0.02, "{seed}: {off}");
+        assert_eq!(general.degrees_of_freedom, small.degrees_of_freedom);
+    }
+}

@@ -7,8 +7,8 @@
 //! [table](self#the-covariance) instead of a sum over their differences. It computes in single precision and in integers
 //! alone, in any build, so that every core comes to the same bits.
 //!
-//! What it leaves out: a spectrum, any model but this one, the length of a record that would measure more, and the correction
-//! of the test against zero for the skewness of variances. [`Fit::p_value`] links an exponential function, and nothing else does.
+//! What it leaves out: a spectrum, any model but this one, and the correction of the test against zero for the skewness of
+//! variances. The length of a record that would measure more is [asked for](Fit::measured_after_s). [`Fit::p_value`] links an exponential function, and nothing else does.
 //!
 //! # The covariance
 //!
@@ -36,6 +36,7 @@ mod factor;
 mod limits;
 mod memory;
 mod paper;
+mod record_length;
 mod rounds;
 mod row;
 mod rows;

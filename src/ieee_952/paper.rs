@@ -9,6 +9,9 @@ use super::{
 };
 use crate::{error::Error, evidence::record::Record, numerics::real::real};
 
+/// The set of all terms.
+const ALL: u8 = (1 << TERMS) - 1;
+
 /// Fits the five terms by the weighted normal equations of Lv, Liu, Lai & Huang (Optik 2015): every octave has a standard error
 /// of its relative accuracy `δ = 1/√(2(N/m − 1))` times its value, and all octaves are independent. Only octaves that follow
 /// each other from `m = 1` on are fitted.
@@ -31,7 +34,7 @@ pub fn fit_by_relative_accuracy<'a, const K: usize, const B: usize>(
     let mut tableau = Tableau::EMPTY;
     rows.weigh_independent();
     rows.set_equations(None, &mut tableau);
-    if !tableau.free_all() {
+    if !tableau.release(ALL) {
         return Err(Error::Singular);
     }
     let mut squares = tableau.squares();

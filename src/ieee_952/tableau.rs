@@ -118,15 +118,14 @@ impl Tableau {
         self.free ^= 1_u8.wrapping_shl(p as u32);
     }
 
-    /// Solves all unknowns, of any sign. `false` if one of them cannot be told from the others.
-    pub(super) fn free_all(&mut self) -> bool {
+    /// Solves the unknowns of a set, of any sign, as far as they can be told from each other. Returns whether all can.
+    pub(super) fn release(&mut self, set: u8) -> bool {
         for i in 0..TERMS {
-            if !self.can_be_told(i) {
-                return false;
+            if set.wrapping_shr(i as u32) & 1 == 1 && self.can_be_told(i) {
+                self.pivot(i);
             }
-            self.pivot(i);
         }
-        true
+        self.free == set
     }
 
     /// Holds an unknown at zero, and solves the others.

@@ -170,3 +170,32 @@ fn the_papers_fit_has_the_numbers_of_the_general_one() {
         assert_eq!(general.degrees_of_freedom, small.degrees_of_freedom);
     }
 }
+
+#[test]
+fn a_record_that_would_measure_more_is_as_long_as_the_general_fit_says() {
+    let (mut told, mut same) = (0, 0);
+    for seed in 0..60 {
+        let curve = record(seed, 3000 << (seed % 4), 0);
+        let small = fit(&curve).expect("a fit");
+        let general = crate::fit::fit(&curve, &Model::ieee_952(), Options::default());
+        for (place, one) in general.expect("a fit").coefficients.iter().enumerate() {
+            let State::NotObservable { after_s } = one.state else {
+                continue;
+            };
+            told += 1;
+            let near = |(one, other): (Real, Real)| double(one / other - 1.0).abs() < 1e-4;
+            let found = small.measured_after_s(&curve, place);
+            same += usize::from(match after_s.zip(found) {
+                Some(both) => near(both),
+                None => after_s.is_none() && found.is_none(),
+            });
+        }
+    }
+    // Bounds differ by some hundredths of a standard error, so that one doubling more may be needed.
+    assert!(told >= 60 && same * 20 >= told * 19, "{same} of {told}");
+    let curve = record(1, 3000, 0);
+    assert_eq!(
+        fit(&curve).expect("a fit").measured_after_s(&curve, 9),
+        None
+    );
+}

@@ -38,7 +38,7 @@ struct Slot {
 
 /// What makes a reading.
 struct Parts {
-    gyro: [i16; 3],
+    gyro: [i32; 3],
     time: u32,
     rate_changed: bool,
 }
@@ -68,6 +68,14 @@ impl Decoder {
             Format::Icm456xx => self.packet(unit, i16::from_le_bytes)?,
             Format::Lsm6dso => self.word(unit, true)?,
             Format::Lsm6dsv => self.word(unit, false)?,
+            Format::Packets(own) => own.packets.decode(unit)?.map(|packet| {
+                self.temperature = packet.temperature.or(self.temperature);
+                Parts {
+                    gyro: packet.gyro,
+                    time: packet.time,
+                    rate_changed: packet.is_rate_changed,
+                }
+            }),
         };
         let Some(parts) = parts else {
             return Ok(None);
@@ -75,7 +83,7 @@ impl Decoder {
         let found = parts.time;
         let (ticks, loss) = self.stamps.take(found).ok_or(Malformed::Time { found })?;
         Ok(Some(Reading {
-            gyro: parts.gyro.map(i32::from),
+            gyro: parts.gyro,
             temperature: self.temperature,
             loss: if parts.rate_changed {
                 Loss::Unknown
@@ -125,7 +133,7 @@ impl Decoder {
             return Ok(None);
         }
         Ok(Some(Parts {
-            gyro,
+            gyro: gyro.map(i32::from),
             time: u32::from(number([t0, t1]).cast_unsigned()),
             rate_changed: header & RATE_CHANGED != 0,
         }))
@@ -158,7 +166,7 @@ impl Decoder {
         };
         (slot.gyro, slot.time) = (None, None);
         Ok(Some(Parts {
-            gyro,
+            gyro: gyro.map(i32::from),
             time,
             rate_changed: false,
         }))

@@ -255,7 +255,10 @@ impl Description {
             return Err(Flaw::Filter);
         }
         if let Some(fifo) = self.fifo
-            && (fifo.capacity == 0 || fifo.tick_ps == 0 || fifo.interval == 0)
+            && (fifo.capacity == 0
+                || fifo.tick_ps == 0
+                || fifo.interval == 0
+                || !fifo.format.is_possible())
         {
             return Err(Flaw::Fifo);
         }

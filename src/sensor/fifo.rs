@@ -1,4 +1,4 @@
-use super::{Signal, Writes};
+use super::{PacketCount, PacketFormat, Signal, Writes};
 
 /// The FIFO of a sensor: how it is set up, emptied and read, and what its time is.
 ///
@@ -49,6 +49,8 @@ pub enum Format {
     Lsm6dso,
     /// The same words without parity. So does the LSM6DSV16X.
     Lsm6dsv,
+    /// Packets of a sensor of your own.
+    Packets(PacketFormat),
 }
 
 /// The bytes of an [`Icm426xx`](Format::Icm426xx) packet.
@@ -68,18 +70,31 @@ pub(super) struct Level {
 }
 
 impl Format {
+    /// Whether there can be such a format.
+    pub(super) const fn is_possible(&self) -> bool {
+        match self {
+            Self::Packets(own) => own.is_possible(),
+            _ => true,
+        }
+    }
+
     /// The number of bytes that are read at once at least.
     pub(super) const fn unit(self) -> usize {
         match self {
             Self::Icm426xx | Self::Icm456xx => PACKET,
             Self::Lsm6dso | Self::Lsm6dsv => WORD,
+            // A length of zero would never come to the end of a burst.
+            Self::Packets(PacketFormat {
+                packet_bytes: 0, ..
+            }) => 1,
+            Self::Packets(own) => own.packet_bytes as usize,
         }
     }
 
     /// The number of units of a sample.
     const fn units_per_sample(self) -> usize {
         match self {
-            Self::Icm426xx | Self::Icm456xx => 1,
+            Self::Icm426xx | Self::Icm456xx | Self::Packets(_) => 1,
             // The gyro and the time.
             Self::Lsm6dso | Self::Lsm6dsv => 2,
         }
@@ -89,6 +104,7 @@ impl Format {
     pub(super) const fn head(self) -> usize {
         match self {
             Self::Icm426xx => 3,
+            Self::Packets(own) => own.count_bytes as usize,
             _ => 2,
         }
     }
@@ -103,7 +119,11 @@ impl Format {
 
     /// Whether a full FIFO is emptied instead of read, because a packet may be replaced while it is read.
     pub(super) const fn is_flushed_when_full(self) -> bool {
-        matches!(self, Self::Icm426xx | Self::Icm456xx)
+        match self {
+            Self::Icm426xx | Self::Icm456xx => true,
+            Self::Lsm6dso | Self::Lsm6dsv => false,
+            Self::Packets(own) => own.is_flushed_when_full,
+        }
     }
 
     /// What count and flags say.
@@ -123,6 +143,10 @@ impl Format {
                 usize::from(u16::from_le_bytes([a, b & 0x01])),
                 b & 0x48 != 0,
             ),
+            Self::Packets(own) => {
+                let PacketCount { packets, is_full } = own.packets.count([a, b, c]);
+                (packets, is_full)
+            }
         };
         let samples = units / self.units_per_sample();
         Level {

@@ -117,7 +117,7 @@
 //! ```
 //!
 //! Registers in banks are reached by writes that choose the bank, as those of the [`ICM_20948`]. An image that a sensor needs at
-//! every start is an [`Upload`]. What no description says: frames of 16 bits, and counts of 32 bits. Such a sensor is
+//! every start is an [`Upload`], and a FIFO with packets of its own is described by [`Packets`]. What no description says: frames of 16 bits, and counts of 32 bits. Such a sensor is
 //! read by a driver of its own, as the [`Adis16470`] is. The counts of any driver go to [`Axes::push`](crate::Axes::push), or as
 //! a [`Reading`] to [`Axes::record_outcome`](crate::Axes::record_outcome).
 //!
@@ -187,6 +187,7 @@ mod mpu;
 mod mpu_6050;
 mod mpu_6500;
 mod pace;
+mod packets;
 mod reading;
 mod record;
 mod sample;
@@ -226,6 +227,7 @@ pub use malformed::Malformed;
 pub use mpu_6050::{MPU_6050, mpu_6050};
 pub use mpu_6500::{MPU_6500, mpu_6500};
 pub use pace::Pace;
+pub use packets::{Packet, PacketCount, PacketFormat, Packets};
 pub use reading::{Loss, Reading};
 pub use signal::Signal;
 pub use upload::Upload;

@@ -10,6 +10,7 @@ mod fault;
 mod fifo;
 mod hostile;
 mod pace;
+mod packets;
 #[path = "../common/precision.rs"]
 mod precision;
 mod record;

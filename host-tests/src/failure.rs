@@ -19,6 +19,12 @@ pub enum Failure {
         /// What to do about it.
         remedy: String,
     },
+    /// A coefficient is not known to keep its limit. What was found is printed, and the command ends without a message.
+    #[error("a limit is not kept")]
+    Limit {
+        /// Whether a coefficient exceeds its limit. It may also be that the record does not tell.
+        is_exceeded: bool,
+    },
     /// The reader of standard output has closed it. The command ends without a message.
     #[error("standard output was closed")]
     Closed,
@@ -103,7 +109,7 @@ impl Failure {
                 what,
                 remedy,
             } => place.failure(format!("{what}, and {more}"), remedy),
-            Self::Closed => self,
+            Self::Closed | Self::Limit { .. } => self,
         }
     }
 
@@ -133,7 +139,7 @@ impl Failure {
                 Some(row) => format!("row {row}: {what}"),
                 None => what.clone(),
             },
-            Self::Closed => self.to_string(),
+            Self::Closed | Self::Limit { .. } => self.to_string(),
         }
     }
 

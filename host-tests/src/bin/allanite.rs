@@ -19,6 +19,8 @@ fn main() -> ExitCode {
     };
     match line.run() {
         Ok(()) | Err(Failure::Closed) => ExitCode::SUCCESS,
+        Err(Failure::Limit { is_exceeded: true }) => ExitCode::from(1),
+        Err(Failure::Limit { is_exceeded: false }) => ExitCode::from(3),
         Err(failure) => {
             failure::report(failure);
             ExitCode::from(2)

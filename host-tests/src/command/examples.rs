@@ -30,6 +30,7 @@ pub(super) const FIT: &str = examples! {
     "allanite fit log.csv --rate 100 --scale 0.05 --unit deg/s --columns gx,gy,gz"
     "allanite fit log1.csv log2.csv curve.json"
     "allanite fit --json-lines log1.csv log2.csv"
+    "allanite fit curve.json --limit N=0.33°/√h --limit B=58°/h"
 };
 
 pub(super) const EXPORT: &str = examples! {

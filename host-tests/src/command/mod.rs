@@ -11,6 +11,7 @@ mod export;
 mod fit;
 mod input;
 mod known_filter;
+mod limit;
 mod lot;
 mod measure;
 mod merge;
@@ -32,7 +33,8 @@ use std::io::{self, BufWriter, Write};
 ///
 /// Exit status: 0 on success; 2 for bad input, with one line on standard error that names the file, the
 /// row and the remedy. If only some of several files are bad, the others are processed and printed, and
-/// each bad file has its own line.
+/// each bad file has its own line. With `fit --limit`, 1 if a coefficient exceeds its limit, and 3 if one is not known to
+/// keep it.
 ///
 /// The environment variable NO_COLOR turns colours off.
 #[derive(Debug, Parser)]

@@ -30,6 +30,7 @@ mod faults;
 mod formats;
 mod help;
 mod known_filter;
+mod limits;
 mod log;
 mod lost_rows;
 mod lot;

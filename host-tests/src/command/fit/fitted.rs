@@ -1,5 +1,6 @@
 //! The five terms fitted to an axis.
 
+use super::judged::Judged;
 use crate::{
     command::{
         input::record,
@@ -66,6 +67,8 @@ pub(crate) struct Fitted {
     pub(crate) invalid: Option<String>,
     /// The covariates that were tried.
     pub(crate) tried: Vec<TriedCovariate>,
+    /// What the limits that were asked for say.
+    pub(crate) limits: Vec<Judged>,
 }
 
 impl Fitted {
@@ -98,6 +101,7 @@ impl Fitted {
                 fit,
                 invalid: None,
                 tried: Vec::new(),
+                limits: Vec::new(),
             }),
             Err(error) => Err(record::library_failure(path, &axis.axis, error)),
         }

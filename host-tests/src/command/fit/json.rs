@@ -1,6 +1,9 @@
 //! The JSON document of a fit.
 
-use super::fitted::Fitted;
+use super::{
+    fitted::{Fitted, MethodName},
+    judged::Judged,
+};
 use crate::{
     command::{
         known_filter::{Shape, known_filter},
@@ -32,12 +35,17 @@ struct Axis<'a> {
     chi2: Option<f64>,
     dof: Option<usize>,
     p_value: Option<f64>,
+    /// Whether the five terms explain a valid curve; `null` if the record does not tell, or the method does not.
+    adequate: Option<bool>,
     /// The factor by which intervals and bounds are widened.
     birge_ratio: f64,
     /// Why the curve is not valid; `null` if it is, or if the input is a curve file.
     invalid: Option<&'a str>,
     /// The covariates that were tried.
     covariates: Vec<tried::Document>,
+    /// What the limits that were asked for say.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    limits: &'a [Judged],
     notes: Vec<String>,
 }
 
@@ -77,6 +85,7 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         fit,
         invalid,
         tried,
+        limits,
     } = fitted;
     let finite = |value: f64| value.is_finite().then_some(value);
     Axis {
@@ -103,9 +112,15 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         chi2: finite(fit.chi_squared),
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
         p_value: finite(fit.p_value),
+        adequate: match invalid {
+            None if *method == MethodName::Covariance => fit.is_adequate(),
+            None => None,
+            Some(_) => Some(false),
+        },
         birge_ratio: fit.birge_ratio,
         invalid: invalid.as_deref(),
         covariates: tried.iter().map(TriedCovariate::document).collect(),
+        limits,
         notes: invalid
             .iter()
             .cloned()

@@ -2,6 +2,7 @@
 
 pub(super) mod fitted;
 pub(super) mod json;
+mod judged;
 mod summary;
 pub(super) mod table;
 
@@ -13,11 +14,13 @@ use crate::{
             record::{self, CovariateArguments, LogArguments},
         },
         known_filter::KnownFilter,
+        limit::LimitArgument,
     },
     failure::Failure,
 };
 use clap::Args;
 use fitted::{Fitted, MethodName};
+use judged::{Judged, Worst};
 use std::{
     io::{self, Write},
     path::Path,
@@ -32,6 +35,11 @@ pub(super) struct Arguments {
     /// Method that weights the octaves
     #[arg(long, default_value = "covariance")]
     method: MethodName,
+    /// The largest value that a coefficient may have, by its symbol or its name, in the unit of the input or in the customary
+    /// one: N=0.005, N=0.3°/√h, B=10deg/h. May be given several times. Exit status: 1 if a limit is exceeded, 3 if one is not
+    /// known to be kept
+    #[arg(long = "limit", value_name = "EFFECT=VALUE")]
+    limits: Vec<String>,
     #[command(flatten)]
     filter: KnownFilter,
     #[command(flatten)]
@@ -59,12 +67,20 @@ impl Findings for Vec<Fitted> {
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let model = arguments.filter.model()?;
+    let limits = LimitArgument::all(&arguments.limits)?;
+    let worst = Worst::default();
     let work = |path: &Path| {
         let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
         let axes = record::read_for_fit(path, about_log, covariates)?.into_iter();
         let method = arguments.method;
-        axes.map(|(axis, evidence)| Fitted::with_evidence(path, axis, &model, method, evidence))
-            .collect::<Result<Vec<_>, _>>()
+        axes.map(|(axis, evidence)| {
+            let mut fitted = Fitted::with_evidence(path, axis, &model, method, evidence)?;
+            fitted.limits = Judged::all(&fitted, &limits)?;
+            worst.note(&fitted.limits);
+            Ok(fitted)
+        })
+        .collect::<Result<Vec<_>, _>>()
     };
-    many::run(&arguments.files, work, output)
+    many::run(&arguments.files, work, output)?;
+    worst.end()
 }

@@ -47,7 +47,22 @@ pub(super) fn print(found: &[(&Path, Vec<Fitted>)], output: &mut impl Write) -> 
             writeln!(output, "{row}")?;
         }
     }
-    writeln!(output, "<: upper bound; –: not observable in that record")
+    writeln!(output, "<: upper bound; –: not observable in that record")?;
+    for (path, axes) in found {
+        for (fitted, limit) in axes
+            .iter()
+            .flat_map(|one| one.limits.iter().map(move |limit| (one, limit)))
+        {
+            writeln!(
+                output,
+                "{}, {}: {}",
+                shown(path),
+                fitted.axis.axis,
+                limit.words()
+            )?;
+        }
+    }
+    Ok(())
 }
 
 fn row(fitted: &Fitted) -> Vec<String> {

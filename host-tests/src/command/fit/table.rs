@@ -57,6 +57,9 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
         for note in fitted.covariate_notes() {
             writeln!(output, "Note: {note}.")?;
         }
+        for limit in &fitted.limits {
+            writeln!(output, "{}", limit.words())?;
+        }
     }
     Ok(())
 }

@@ -2,12 +2,12 @@
 
 use super::{
     device::Device,
-    limit::Limit,
     limited::{Limited, Rule},
     unusual::{Drift, Drifts, Outlier, outliers, unit_of, worst_first},
 };
 use crate::{
     command::decode,
+    command::limit::Limit,
     confidence::share_is_at_most,
     lot::{Decision, Measurement},
     unit::Unit,

@@ -1,7 +1,8 @@
 //! A coefficient of a lot beside its limit.
 
-use super::{device::Device, limit::Limit};
+use super::device::Device;
 use crate::{
+    command::limit::Limit,
     command::{decode, output::units},
     lot::{Capability, Decision, ErrorModel, Measurement, Sample, acceptance_limit},
     unit::Unit,

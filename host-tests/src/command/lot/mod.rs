@@ -2,7 +2,6 @@
 
 mod device;
 mod judgement;
-mod limit;
 mod limited;
 mod text;
 mod unusual;
@@ -12,13 +11,13 @@ use crate::{
         decode::{self, certificate},
         examples,
         input::many,
+        limit::{Limit, LimitArgument},
     },
     failure::{Failure, Place},
 };
 use clap::Args;
 use device::Device;
 use judgement::Lot;
-use limit::{Limit, LimitArgument};
 use std::{
     collections::BTreeMap,
     fs,
@@ -57,25 +56,7 @@ pub(super) struct Arguments {
 
 /// Runs the command. Files that cannot be decoded are named, and the lot is that of the others.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let limits: Vec<LimitArgument> = arguments
-        .limits
-        .iter()
-        .map(|text| LimitArgument::parse(text))
-        .collect::<Result<_, _>>()?;
-    if let Some((i, limit)) = (limits.iter().enumerate()).find(|(i, limit)| {
-        limits[..*i]
-            .iter()
-            .any(|other| other.name() == limit.name())
-    }) {
-        return Err(Failure::option(
-            format!(
-                "--limit {}: {} has two limits",
-                arguments.limits[i],
-                limit.name()
-            ),
-            "give one",
-        ));
-    }
+    let limits = LimitArgument::all(&arguments.limits)?;
     if !(arguments.risk > 0.0 && arguments.risk < 0.5) {
         return Err(Failure::option(
             format!("--risk {}: this is no risk", arguments.risk),

@@ -9,21 +9,21 @@ use allanite::effect::{CATALOGUE, Effect, IEEE_952};
 
 /// The largest value that a coefficient may have, as it was given.
 #[derive(Clone)]
-pub(super) struct LimitArgument {
+pub(crate) struct LimitArgument {
     text: String,
     effect: &'static dyn Effect,
     value: f64,
-    /// The name of the unit; empty for that of the certificates.
+    /// The name of the unit; empty for that of the input.
     unit: String,
 }
 
-/// The largest value that a coefficient may have, in the unit of the certificates.
+/// The largest value that a coefficient may have, in the unit of the input.
 #[derive(Clone, Copy)]
-pub(super) struct Limit {
+pub(crate) struct Limit {
     /// The effect.
-    pub(super) effect: &'static dyn Effect,
+    pub(crate) effect: &'static dyn Effect,
     /// The limit, in rate unit · s^(half_seconds/2) of the effect.
-    pub(super) value: f64,
+    pub(crate) value: f64,
 }
 
 impl LimitArgument {
@@ -31,7 +31,7 @@ impl LimitArgument {
     ///
     /// # Errors
     /// When there is no such effect, or the value is not a positive number.
-    pub(super) fn parse(text: &str) -> Result<Self, Failure> {
+    pub(crate) fn parse(text: &str) -> Result<Self, Failure> {
         let Some((name, value)) = text.split_once('=') else {
             return Err(refused(
                 text,
@@ -65,16 +65,42 @@ impl LimitArgument {
         })
     }
 
+    /// Reads limits, at most one for each effect.
+    ///
+    /// # Errors
+    /// As of [`parse`](Self::parse), and when an effect has two limits.
+    pub(crate) fn all(texts: &[String]) -> Result<Vec<Self>, Failure> {
+        let mut limits: Vec<Self> = Vec::new();
+        for text in texts {
+            let limit = Self::parse(text)?;
+            if limits.iter().any(|other| other.name() == limit.name()) {
+                let name = limit.name();
+                return Err(Failure::option(
+                    format!("--limit {text}: {name} has two limits"),
+                    "give one",
+                ));
+            }
+            limits.push(limit);
+        }
+        Ok(limits)
+    }
+
+    /// The failure of a limit whose effect is not fitted.
+    pub(crate) fn of_another_model(&self) -> Failure {
+        let what = format!("the five terms do not have the effect {}", self.name());
+        refused(&self.text, &what, "limit Q, N, B, K or R")
+    }
+
     /// The name of the effect.
-    pub(super) fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         self.effect.name()
     }
 
-    /// The limit for certificates in this unit.
+    /// The limit for rates in this unit.
     ///
     /// # Errors
     /// When the coefficient has no such unit.
-    pub(super) fn of_unit(&self, unit: Unit) -> Result<Limit, Failure> {
+    pub(crate) fn of_unit(&self, unit: Unit) -> Result<Limit, Failure> {
         let (effect, own) = (self.effect, units::unit(unit, self.effect.half_seconds()));
         let customary = units::customary(unit, effect.half_seconds());
         let given = plain(&self.unit);

@@ -1,0 +1,119 @@
+//! A coefficient beside its limit, for a station that measures once and decides.
+
+use super::fitted::Fitted;
+use crate::{
+    command::{
+        limit::LimitArgument,
+        output::{number::number, units},
+    },
+    failure::Failure,
+    unit::Unit,
+};
+use allanite::Coefficient;
+use serde::Serialize;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// What a limit says of an axis. The rule is that of `allanite::ieee_952::Limits`, which decides on a device: what is known to
+/// keep a limit passes, and what is known to exceed one fails (ISO 14253-1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Verdict {
+    /// The 95 % interval keeps the limit.
+    Pass,
+    /// The interval contains the limit, or the coefficient is not observable in this record.
+    GuardBand,
+    /// The curve is not valid, or the five terms do not explain it, so that the interval says nothing about a limit.
+    Misfit,
+    /// The interval lies above the limit.
+    Fail,
+}
+
+impl Verdict {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::GuardBand => "guard band: a longer record may decide",
+            Self::Misfit => {
+                "not decided, because the five terms do not explain the record: see `diagnose`"
+            }
+            Self::Fail => "fail",
+        }
+    }
+}
+
+/// A limit of an axis, and what it says.
+#[derive(Clone, Serialize)]
+pub(crate) struct Judged {
+    effect: &'static str,
+    symbol: &'static str,
+    most: f64,
+    unit: String,
+    pub(crate) verdict: Verdict,
+}
+
+impl Judged {
+    /// An axis beside all limits.
+    ///
+    /// # Errors
+    /// When a limit is of an effect that is not fitted, or in a unit that its coefficient does not have.
+    pub(crate) fn all(fitted: &Fitted, limits: &[LimitArgument]) -> Result<Vec<Self>, Failure> {
+        let unit = fitted.axis.unit;
+        let judged = limits.iter().map(|limit| {
+            let mut coefficients = fitted.fit.coefficients.iter();
+            let found = coefficients.find(|found| found.name == limit.name());
+            let found = found.ok_or_else(|| limit.of_another_model())?;
+            Ok(Self::new(fitted, found, limit.of_unit(unit)?.value, unit))
+        });
+        judged.collect()
+    }
+
+    fn new(fitted: &Fitted, found: &Coefficient, most: f64, unit: Unit) -> Self {
+        let is_explained = fitted.invalid.is_none() && fitted.fit.is_adequate() != Some(false);
+        let verdict = if !is_explained {
+            Verdict::Misfit
+        } else if found.lower > most {
+            Verdict::Fail
+        } else if found.upper <= most {
+            Verdict::Pass
+        } else {
+            Verdict::GuardBand
+        };
+        Self {
+            effect: found.name,
+            symbol: found.symbol,
+            most,
+            unit: units::unit(unit, found.half_seconds),
+            verdict,
+        }
+    }
+
+    /// The limit and the verdict in one line.
+    pub(crate) fn words(&self) -> String {
+        let (symbol, most, unit) = (self.symbol, number(self.most), &self.unit);
+        format!("limit {symbol} ≤ {most} {unit}: {}", self.verdict.words())
+    }
+}
+
+/// The worst verdict of all axes of all files, for the exit status.
+#[derive(Default)]
+pub(crate) struct Worst(AtomicU8);
+
+impl Worst {
+    pub(crate) fn note(&self, judged: &[Judged]) {
+        for one in judged {
+            self.0.fetch_max(one.verdict as u8, Ordering::Relaxed);
+        }
+    }
+
+    /// # Errors
+    /// [`Failure::Limit`] if an axis does not pass.
+    pub(crate) fn end(&self) -> Result<(), Failure> {
+        let worst = self.0.load(Ordering::Relaxed);
+        if worst == Verdict::Pass as u8 {
+            return Ok(());
+        }
+        Err(Failure::Limit {
+            is_exceeded: worst == Verdict::Fail as u8,
+        })
+    }
+}

@@ -1,0 +1,116 @@
+//! `fit --limit`: the verdicts of a station, and the exit status that tells them.
+
+use host_tests::program::{ADIS16405, output, refusal, run};
+use serde_json::Value;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A record whose white noise is 0.005 °/s/√Hz, and whose random walk is too small to be seen.
+fn record(folder: &Path) {
+    output(
+        folder,
+        &[
+            "simulate",
+            "mems",
+            "--seed",
+            "3",
+            "--duration",
+            "300",
+            "--output",
+            "log.csv",
+        ],
+    );
+}
+
+/// The exit status and the lines on standard output that tell of limits.
+fn judged(folder: &Path, arguments: &[&str]) -> (Option<i32>, Vec<String>) {
+    let run = run(folder, arguments);
+    assert!(
+        run.status.code() == Some(2) || run.stderr.is_empty(),
+        "{run:?}"
+    );
+    let text = String::from_utf8(run.stdout).unwrap();
+    let lines = text
+        .lines()
+        .filter(|line| line.contains("limit ") && line.contains('≤'));
+    (run.status.code(), lines.map(str::to_owned).collect())
+}
+
+#[test]
+fn limits_pass_fail_or_stay_open_and_the_status_says_so() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    record(folder);
+    for (limits, status, words) in [
+        (&["N=0.4°/√h"][..], 0, &["pass"][..]),
+        (&["N=0.006", "B=0.1"], 0, &["pass", "pass"]),
+        (&["angle_random_walk=0.2°/√h"], 1, &["fail"]),
+        // The customary unit of every keyboard, and a limit that the record cannot show.
+        (&["N=0.4deg/sqrth", "K=1e-9"], 3, &["pass", "guard band"]),
+        // One limit that is exceeded counts more than one that is open.
+        (&["K=1e-9", "N=0.004"], 1, &["guard band", "fail"]),
+    ] {
+        let mut arguments = vec!["-q", "fit", "log.csv"];
+        arguments.extend(limits.iter().flat_map(|limit| ["--limit", limit]));
+        let (found, lines) = judged(folder, &arguments);
+        assert_eq!(found, Some(status), "{limits:?}: {lines:?}");
+        assert_eq!(lines.len(), words.len());
+        for (line, word) in lines.iter().zip(words) {
+            let (_, verdict) = line.split_once(": ").unwrap();
+            assert!(verdict.starts_with(word), "{limits:?}: {line}");
+        }
+    }
+    // The JSON says the same.
+    let run = run(
+        folder,
+        &["-q", "fit", "log.csv", "--json", "--limit", "N=0.2°/√h"],
+    );
+    assert_eq!(run.status.code(), Some(1));
+    let document: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let axis = &document["axes"][0];
+    assert_eq!(axis["adequate"], true);
+    let limit = &axis["limits"][0];
+    assert_eq!(limit["verdict"], "fail");
+    assert_eq!(limit["unit"], "deg/s/√Hz");
+    assert!((limit["most"].as_f64().unwrap() * 60.0 - 0.2).abs() < 1e-9);
+}
+
+#[test]
+fn the_worst_of_several_files_counts_and_a_bad_file_more() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    record(folder);
+    // Of the real gyro, the five terms say nothing that a limit could be held against.
+    let (status, lines) = judged(
+        folder,
+        &["-q", "fit", "log.csv", ADIS16405, "--limit", "N=1"],
+    );
+    assert_eq!(status, Some(3), "{lines:?}");
+    assert!(
+        lines[0].starts_with("log.csv, ") && lines[0].ends_with("pass"),
+        "{lines:?}"
+    );
+    assert!(
+        lines[1..].iter().all(|line| line.contains("not decided")),
+        "{lines:?}"
+    );
+    let (status, _) = judged(
+        folder,
+        &["-q", "fit", "log.csv", "missing.csv", "--limit", "N=1e-9"],
+    );
+    assert_eq!(status, Some(2));
+}
+
+#[test]
+fn limits_that_cannot_be_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let refusal = |limits: &[&str]| {
+        let mut arguments = vec!["fit", ADIS16405];
+        arguments.extend(limits.iter().flat_map(|limit| ["--limit", limit]));
+        refusal(folder.path(), &arguments)
+    };
+    assert!(refusal(&["N"]).contains("there is no value"));
+    assert!(refusal(&["N=1", "angle_random_walk=2"]).contains("has two limits"));
+    assert!(refusal(&["sinusoid=1"]).contains("limit Q, N, B, K or R"));
+    assert!(refusal(&["N=1 °/h"]).contains("has no such unit"));
+}

@@ -92,7 +92,7 @@ impl Stages {
     }
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "cascade",
     symbol: "N",
     coefficient: "angle_random_walk",

@@ -123,7 +123,7 @@ impl Filter {
     }
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "decimation_filter",
     symbol: "N",
     coefficient: "angle_random_walk",

@@ -113,7 +113,7 @@ fn turns(direction: Complex<Real>, near: Real) -> Real {
     turns
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "digital_low_pass",
     symbol: "N",
     coefficient: "angle_random_walk",

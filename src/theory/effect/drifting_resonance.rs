@@ -46,7 +46,7 @@ pub(super) fn distinct_drift(drift_hz: Real, frequency_hz: Real) -> Real {
     drift_hz.min(BELOW * WIDEST * frequency_hz)
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "drifting_resonance",
     symbol: "s",
     coefficient: "rms",

@@ -28,7 +28,7 @@ fn pole(shape: &SampledShape) -> DriftingPole {
     )
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "drifting_sinusoid",
     symbol: "Ω",
     coefficient: "amplitude",

@@ -18,7 +18,7 @@ fn pole(shape: &SampledShape) -> Pole {
     Pole::new(shape.parameters[0], 0.0, shape.interval_s)
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "gauss_markov",
     symbol: "s",
     coefficient: "rms",

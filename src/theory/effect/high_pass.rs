@@ -59,7 +59,7 @@ impl Angle {
     }
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "high_pass",
     symbol: "N",
     coefficient: "angle_random_walk",

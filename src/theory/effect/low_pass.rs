@@ -65,7 +65,7 @@ pub(super) const POLES: Parameter = Parameter {
     reciprocal: None,
 };
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "low_pass",
     symbol: "N",
     coefficient: "angle_random_walk",

@@ -29,7 +29,7 @@ use nalgebra::Complex;
 #[derive(Clone, Copy, Debug)]
 pub struct ModeSplit;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "mode_split",
     symbol: "N",
     coefficient: "angle_random_walk",

@@ -23,7 +23,7 @@ fn stage(shape: &SampledShape) -> SampledShape {
     }
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "moving_average",
     symbol: "N",
     coefficient: "angle_random_walk",

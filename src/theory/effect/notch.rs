@@ -57,7 +57,7 @@ const ABOVE: Real = 1.02;
 /// has the precision of the type after seven.
 const STEPS: usize = 7;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "notch",
     symbol: "N",
     coefficient: "angle_random_walk",

@@ -15,7 +15,7 @@ use crate::numerics::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct OutputLowPass;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "output_low_pass",
     symbol: "N",
     coefficient: "angle_random_walk",

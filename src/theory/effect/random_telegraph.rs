@@ -13,7 +13,7 @@ use crate::numerics::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct RandomTelegraph;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "random_telegraph",
     symbol: "s",
     coefficient: "rms",

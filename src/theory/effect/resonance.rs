@@ -49,7 +49,7 @@ pub(super) const QUALITY: Parameter = Parameter {
     reciprocal: None,
 };
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "resonance",
     symbol: "s",
     coefficient: "rms",

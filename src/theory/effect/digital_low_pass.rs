@@ -2,9 +2,10 @@ use super::{
     Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
     SampledShape, SearchRange,
     angle_random_walk::AngleRandomWalk,
-    filter::{Filter, Output},
+    filter::Output,
     low_pass::{LowPass, POLES, Place, butterworth},
     pole::Pole,
+    stationary::Stationary,
 };
 use crate::numerics::{
     math,
@@ -144,10 +145,12 @@ pub(super) static DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Filter for DigitalLowPass {
+impl Stationary for DigitalLowPass {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
 
-    fn output(shape: &SampledShape) -> Output {
+    type Process = Output;
+
+    fn process(shape: &SampledShape) -> Output {
         let [time_s, poles, ..] = shape.parameters;
         let cycles = (shape.interval_s / (2.0 * PI * time_s)).min(HIGHEST);
         let (sine, cosine) = math::sincos_of_turns(0.5 * cycles);
@@ -168,12 +171,7 @@ impl Filter for DigitalLowPass {
                 second.map(|second| cutoff.pair(second)),
             ),
         };
-        Output {
-            white,
-            gain: 1.0,
-            first,
-            second,
-        }
+        Output::new(white, first, second)
     }
 }
 

@@ -1,9 +1,7 @@
 use super::{
     Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
-    SampledShape, SearchRange,
-    angle_random_walk::AngleRandomWalk,
-    filter::{Filter, Output},
-    pole::Pole,
+    SampledShape, SearchRange, angle_random_walk::AngleRandomWalk, filter::Output, pole::Pole,
+    stationary::Stationary,
 };
 use crate::numerics::real::{
     Real, by_precision,
@@ -96,10 +94,12 @@ pub(super) static DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Filter for LowPass {
+impl Stationary for LowPass {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
 
-    fn output(shape: &SampledShape) -> Output {
+    type Process = Output;
+
+    fn process(shape: &SampledShape) -> Output {
         let [time_s, poles, ..] = shape.parameters;
         let samples = shape.interval_s / time_s;
         let pole = |Place { decay, turn }: Place| {

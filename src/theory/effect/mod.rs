@@ -20,6 +20,7 @@ mod filter;
 mod pole;
 mod sampled_shape;
 mod search_range;
+mod stationary;
 
 pub use crate::curve::Span;
 pub use crate::{limits::MAX_PARAMETERS, theory::lattice::SecondDifferences};

@@ -231,7 +231,5 @@ pub(crate) fn is_curve(path: &Path) -> bool {
 
 /// The failure for an error of the library about an axis.
 pub(crate) fn library_failure(path: &Path, axis: &str, error: allanite::Error) -> Failure {
-    let (text, remedy) = (error.to_string(), error.remedy());
-    let what = text.trim_end_matches(remedy).trim_end_matches(": ");
-    Place::file(path).failure(format!("axis {axis}: {what}"), remedy)
+    Place::file(path).failure(format!("axis {axis}: {error:#}"), error.remedy())
 }

@@ -1,9 +1,9 @@
 use super::{
-    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
-    SampledShape, SearchRange,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange,
     angle_random_walk::AngleRandomWalk,
     filter::Output,
-    low_pass::{LowPass, POLES, Place, butterworth},
+    low_pass::{CUTOFF, LowPass, POLES, Place, butterworth},
     pole::Pole,
     stationary::Stationary,
 };
@@ -130,11 +130,7 @@ pub(super) static DESCRIPTION: Description = Description {
                 high: (LONGEST_SAMPLES * span.interval_s).min(0.1 * span.longest_tau_s),
                 steps_per_octave: 3.0,
             },
-            reciprocal: Some(Reciprocal {
-                name: "cutoff_hz",
-                unit: "Hz",
-                product: 0.5 / PI,
-            }),
+            reciprocal: Some(CUTOFF),
         },
         POLES,
     ],

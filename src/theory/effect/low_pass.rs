@@ -50,6 +50,13 @@ pub(super) fn butterworth(poles: Real) -> (Place, Option<Place>) {
     }
 }
 
+/// The cut-off frequency, which is known as well as a time constant.
+pub(super) const CUTOFF: Reciprocal = Reciprocal {
+    name: "cutoff_hz",
+    unit: "Hz",
+    product: 0.5 / PI,
+};
+
 /// The number of poles.
 pub(super) const POLES: Parameter = Parameter {
     name: "poles",
@@ -79,11 +86,7 @@ pub(super) static DESCRIPTION: Description = Description {
                 high: (64.0 * span.interval_s).min(0.1 * span.longest_tau_s),
                 steps_per_octave: 3.0,
             },
-            reciprocal: Some(Reciprocal {
-                name: "cutoff_hz",
-                unit: "Hz",
-                product: 0.5 / PI,
-            }),
+            reciprocal: Some(CUTOFF),
         },
         POLES,
     ],

@@ -3,7 +3,7 @@
 #[doc(inline)]
 pub use crate::{
     record::axis::{
-        Axes, Axis, GatePart, Gated, MomentPart, Moments, Sample, SpectrumPart, TrackPart, Tracked,
+        Axes, Axis, CoursePart, Courses, GatePart, Gated, MomentPart, Moments, Sample, SpectrumPart,
     },
     spectrum::{Spectral, SpectrumReading},
 };
@@ -15,9 +15,9 @@ use crate::{
     numerics::real::Real,
     record::{
         axis::{
+            courses::CourseSums as _,
             gate::{Gate, Passing as _},
             moments::MomentSums as _,
-            track::Track as _,
         },
         integrity::{Integrity, Reason, exceeds},
     },
@@ -95,7 +95,7 @@ where
     G: GatePart,
     M: MomentPart,
     S: SpectrumReading,
-    T: TrackPart,
+    T: CoursePart,
 {
     /// The record of an axis at its end: [releases](Self::release) the samples that the gate still holds back. `units` is
     /// the [`Scale`], or, with covariates, `(scale, [unit per count of each])`.
@@ -140,7 +140,7 @@ where
             curve: sums.accumulator.curve(scale),
             spectrum: S::spectrum(&sums.spectrum, &sums.accumulator, scale),
             course: sums
-                .track
+                .course
                 .course()
                 .and_then(|course| course.cosine_transform(scale)),
             kurtosis: moments.map(|moments| moments.kurtosis(&sums.accumulator)),

@@ -1,18 +1,18 @@
 //! One axis, or several axes that are recorded together: one `push` feeds everything that is kept of a
 //! record.
 
+pub(crate) mod courses;
 pub(crate) mod gate;
 pub(crate) mod kept;
 pub(crate) mod moments;
 mod sample;
 pub(crate) mod spectra;
-pub(crate) mod track;
 
+pub use courses::{CoursePart, Courses};
 pub use gate::{GatePart, Gated};
 pub use moments::{MomentPart, Moments};
 pub use sample::Sample;
 pub use spectra::SpectrumPart;
-pub use track::{TrackPart, Tracked};
 
 use crate::{
     record::course::Course,
@@ -21,9 +21,9 @@ use crate::{
         octave::Accumulator,
     },
 };
+use courses::CourseSums as _;
 use gate::{Missing, Passed, Passing};
 use kept::AxesSums;
-use track::Track as _;
 
 /// One axis: [`Axes`] for a gyro of which a single axis is recorded.
 pub type Axis<
@@ -58,7 +58,7 @@ pub type Axis<
 /// | `M` | [`Moments`], or `()`: then telegraph and Gauss–Markov noise cannot be told apart | [`Moments`] |
 /// | `AXES` | axes that share the gate's decision and the covariates; see [`Axis`] for one | 3 |
 /// | `S` | [`Spectral`](crate::spectrum::Spectral), or `()`: then the diagnosis sees octaves alone | `()` |
-/// | `T` | [`Tracked`], or `()`: then it is not known when something happened | `()` |
+/// | `T` | [`Courses`], or `()`: then it is not known when something happened | `()` |
 ///
 /// A part that is left out takes no memory, no flash and no time. If only the curve is needed, an
 /// [`Accumulator`] is enough.
@@ -109,7 +109,7 @@ pub struct Axes<
     M: MomentPart = Moments,
     const AXES: usize = 3,
     S: SpectrumPart = (),
-    T: TrackPart = (),
+    T: CoursePart = (),
 > {
     pub(crate) gate: G::State<AXES, COVARIATES>,
     pub(crate) kept: AxesSums<OCTAVES, COVARIATES, M, AXES, S, T>,
@@ -122,7 +122,7 @@ where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     /// An empty record that is judged by the [default limits](Limits::DEFAULT).
     pub const fn new() -> Self {
@@ -278,7 +278,7 @@ where
 
     /// The course of every axis, if it is kept. Samples that were left out or are known to be missing count as time.
     pub fn courses(&self) -> [Option<&Course<COVARIATES>>; AXES] {
-        self.kept.axes.each_ref().map(|axis| axis.track.course())
+        self.kept.axes.each_ref().map(|axis| axis.course.course())
     }
 
     /// The integrity of all samples, for every axis: the gate counts the spikes and motions of the
@@ -297,7 +297,7 @@ where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     fn default() -> Self {
         Self::new()

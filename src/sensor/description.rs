@@ -48,6 +48,20 @@ pub struct Interface {
     pub i2c_read: u8,
 }
 
+impl Interface {
+    /// The interface of most sensors, at this 7-bit I²C address: bit 7 of the address marks a read over SPI, and nothing
+    /// else is needed.
+    pub const fn usual(i2c_address: u8) -> Self {
+        Self {
+            spi_read: 0x80,
+            spi_dummies: 0,
+            spi_wake: None,
+            i2c_address,
+            i2c_read: 0,
+        }
+    }
+}
+
 /// The register and the bits that tell whether a sample is ready.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

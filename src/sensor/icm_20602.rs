@@ -44,14 +44,8 @@ pub const fn icm_20602(wanted: Configuration) -> Result<Description, Configurati
             // INT_ENABLE: DATA_RDY_INT_EN; the gyro settles.
             Write::new(0x38, 0x01).wait_us(100_000),
         ]),
-        interface: Interface {
-            spi_read: 0x80,
-            spi_dummies: 0,
-            spi_wake: None,
-            // The address with the SA0 pin at ground.
-            i2c_address: 0x68,
-            i2c_read: 0,
-        },
+        // The address with the SA0 pin at ground.
+        interface: Interface::usual(0x68),
         // INT_STATUS: DATA_RDY_INT.
         status: Status {
             register: 0x3A,

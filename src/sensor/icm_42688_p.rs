@@ -155,14 +155,8 @@ pub const fn icm_42688_p(wanted: Configuration) -> Result<Description, Configura
             // off (12.9). No write within 200 µs; the gyro settles.
             Write::new(0x4E, 0x0C).wait_us(100_000),
         ]),
-        interface: Interface {
-            spi_read: 0x80,
-            spi_dummies: 0,
-            spi_wake: None,
-            // The address with the AP_AD0 pin at ground (section 9.3).
-            i2c_address: 0x68,
-            i2c_read: 0,
-        },
+        // The address with the AP_AD0 pin at ground (section 9.3).
+        interface: Interface::usual(0x68),
         // INT_STATUS (14.21): DATA_RDY_INT, bit 3. Reading it clears it, reading the sample does not.
         status: Status {
             register: 0x2D,

@@ -141,14 +141,8 @@ pub const fn icm_45686(wanted: Configuration) -> Result<Description, Configurati
             // PWR_MGMT0: gyro_mode 0b11 (low noise); the gyro settles.
             Write::new(0x10, 0x0C).wait_us(100_000),
         ]),
-        interface: Interface {
-            spi_read: 0x80,
-            spi_dummies: 0,
-            spi_wake: None,
-            // The address with the AP_AD0 pin at ground.
-            i2c_address: 0x68,
-            i2c_read: 0,
-        },
+        // The address with the AP_AD0 pin at ground.
+        interface: Interface::usual(0x68),
         // INT1_STATUS0: int1_status_drdy, bit 2. Reading it clears it, reading the sample does not.
         status: Status {
             register: 0x19,

@@ -114,14 +114,8 @@ pub(super) const fn family(
             // CTRL2_G (9.13): ODR_G, FS_G and FS_125; the gyro settles.
             Write::new(0x11, chosen.rate << 4 | chosen.range << 1).wait_us(100_000),
         ]),
-        interface: Interface {
-            spi_read: 0x80,
-            spi_dummies: 0,
-            spi_wake: None,
-            // The address with the SDO/SA0 pin at ground.
-            i2c_address: 0x6A,
-            i2c_read: 0,
-        },
+        // The address with the SDO/SA0 pin at ground.
+        interface: Interface::usual(0x6A),
         // STATUS_REG (9.26): GDA, bit 1, is reset when a high byte is read.
         status: Status {
             register: 0x1E,

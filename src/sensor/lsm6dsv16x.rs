@@ -100,14 +100,8 @@ pub const fn lsm6dsv16x(wanted: Configuration) -> Result<Description, Configurat
             // CTRL2: OP_MODE_G 0b000 (high performance), ODR_G; the gyro settles.
             Write::new(0x11, chosen.rate).wait_us(100_000),
         ]),
-        interface: Interface {
-            spi_read: 0x80,
-            spi_dummies: 0,
-            spi_wake: None,
-            // The address with the SDO/SA0 pin at ground.
-            i2c_address: 0x6A,
-            i2c_read: 0,
-        },
+        // The address with the SDO/SA0 pin at ground.
+        interface: Interface::usual(0x6A),
         // STATUS_REG: GDA, bit 1, is reset when a high byte is read.
         status: Status {
             register: 0x1E,

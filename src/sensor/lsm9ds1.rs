@@ -48,14 +48,8 @@ pub static LSM9DS1: Description = Description {
         // CTRL_REG1_G (7.12): ODR_G 0b011 (119 Hz), FS_G 0b00 (±245 °/s), BW_G 0b01 (LPF2 at 31 Hz); the gyro settles.
         Write::new(0x10, 0x61).wait_us(300_000),
     ]),
-    interface: Interface {
-        spi_read: 0x80,
-        spi_dummies: 0,
-        spi_wake: None,
-        // The address with the SDO_A/G pin at ground.
-        i2c_address: 0x6A,
-        i2c_read: 0,
-    },
+    // The address with the SDO_A/G pin at ground.
+    interface: Interface::usual(0x6A),
     // STATUS_REG (7.18): GDA, bit 1.
     status: Status {
         register: 0x17,

@@ -1,7 +1,8 @@
 //! What the MPU-6050, the MPU-6500, the ICM-20602 and the ICM-20948 offer in common.
 
 use super::{
-    Configuration, ConfigurationError, Filter,
+    ByteOrder, Configuration, ConfigurationError, Description, Filter, Interface, Signal, Status,
+    Write, Writes,
     configuration::{Chosen, LowPass, Offer},
 };
 use crate::numerics::real::{Real, consts::FRAC_PI_2};
@@ -52,6 +53,57 @@ pub(super) const fn choose(
         low_pass(6, f, rate_hz),
     ];
     offer.choose(wanted, &low_passes)
+}
+
+/// What the MPU-6050 and the MPU-6500 have in common, with the numbers of the registers in both register maps: a
+/// description without name, identities and temperature.
+pub(super) const fn description(chosen: &Chosen) -> Description {
+    Description {
+        name: "",
+        // Register 117, WHO_AM_I.
+        identity: 0x75,
+        identities: &[],
+        upload: None,
+        start_up: Writes::of([
+            // Register 107, PWR_MGMT_1: DEVICE_RESET.
+            Write::new(0x6B, 0x80).wait_us(100_000),
+            // Register 104, SIGNAL_PATH_RESET: gyro, accelerometer and temperature, as SPI needs.
+            Write::new(0x68, 0x07).wait_us(100_000).spi_only(),
+            // Register 106, USER_CTRL: I2C_IF_DIS. This bit must stay zero in an MPU-6050, which has no SPI.
+            Write::new(0x6A, 0x10).spi_only(),
+            // Register 107, PWR_MGMT_1: awake, with the clock of the x gyro, or the best one available.
+            Write::new(0x6B, 0x01),
+            // Register 26, CONFIG: DLPF_CFG, gyro at 1 kHz. The divider after it only leaves samples out, so that at
+            // 100 Hz, the filter of 42 Hz could pass noise beyond Nyquist and raise N by 20 %.
+            Write::new(0x1A, chosen.low_pass.code),
+            // Register 25, SMPLRT_DIV: 1 kHz / (1 + SMPLRT_DIV).
+            Write::new(0x19, chosen.rate),
+            // Register 27, GYRO_CONFIG: FS_SEL, and in the MPU-6500 FCHOICE_B 0 (low pass on).
+            Write::new(0x1B, chosen.range << 3),
+            // Register 55, INT_PIN_CFG: any read clears the flags.
+            Write::new(0x37, 0x10),
+            // Register 56, INT_ENABLE: data ready; the gyro settles.
+            Write::new(0x38, 0x01).wait_us(100_000),
+        ]),
+        // The address with the AD0 pin at ground.
+        interface: Interface::usual(0x68),
+        // Register 58, INT_STATUS: data ready.
+        status: Status {
+            register: 0x3A,
+            ready: 1,
+            overrun: 0,
+        },
+        // INT is high for 50 µs, push-pull, as INT_PIN_CFG has it.
+        signal: Some(Signal::Rising),
+        // Registers 67 to 72: GYRO_XOUT_H.
+        gyro: 0x43,
+        temperature: None,
+        byte_order: ByteOrder::BigEndian,
+        scale_dps: chosen.scale_dps,
+        rate_hz: chosen.rate_hz as Real,
+        filter: chosen.low_pass.filter,
+        fifo: None,
+    }
 }
 
 /// The largest noise bandwidth, that of a first order.

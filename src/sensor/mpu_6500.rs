@@ -1,8 +1,6 @@
 use super::{
-    ByteOrder, Configuration, ConfigurationError, Description, Interface, Signal, Status,
-    Temperature, Write, Writes, configuration::checked, mpu,
+    Configuration, ConfigurationError, Description, Temperature, configuration::checked, mpu,
 };
-use crate::numerics::real::Real;
 
 /// The description of an MPU-6500 with another configuration than that of [`MPU_6500`], whose documentation lists the
 /// registers. The FIFO is not used, so that the watermark is of no consequence.
@@ -25,46 +23,6 @@ pub const fn mpu_6500(wanted: Configuration) -> Result<Description, Configuratio
         // Register 117, WHO_AM_I; 0x71 is the MPU-9250's (RM-MPU-9250A-00).
         identity: 0x75,
         identities: &[0x70, 0x71],
-        upload: None,
-        start_up: Writes::of([
-            // Register 107, PWR_MGMT_1: DEVICE_RESET.
-            Write::new(0x6B, 0x80).wait_us(100_000),
-            // Register 104, SIGNAL_PATH_RESET: gyro, accelerometer and temperature, as SPI needs.
-            Write::new(0x68, 0x07).wait_us(100_000).spi_only(),
-            // Register 106, USER_CTRL: I2C_IF_DIS.
-            Write::new(0x6A, 0x10).spi_only(),
-            // Register 107, PWR_MGMT_1: awake, with the best clock available.
-            Write::new(0x6B, 0x01),
-            // Register 26, CONFIG: DLPF_CFG, gyro at 1 kHz. The divider after it only leaves samples out, so that at
-            // 100 Hz, the filter of 42 Hz could pass noise beyond Nyquist and raise N by 20 %.
-            Write::new(0x1A, chosen.low_pass.code),
-            // Register 25, SMPLRT_DIV: 1 kHz / (1 + SMPLRT_DIV).
-            Write::new(0x19, chosen.rate),
-            // Register 27, GYRO_CONFIG: GYRO_FS_SEL, FCHOICE_B 0 (low pass on).
-            Write::new(0x1B, chosen.range << 3),
-            // Register 55, INT_PIN_CFG: INT_ANYRD_2CLEAR, any read clears the flags.
-            Write::new(0x37, 0x10),
-            // Register 56, INT_ENABLE: RAW_RDY_EN; the gyro settles.
-            Write::new(0x38, 0x01).wait_us(100_000),
-        ]),
-        interface: Interface {
-            spi_read: 0x80,
-            spi_dummies: 0,
-            spi_wake: None,
-            // The address with the AD0 pin at ground.
-            i2c_address: 0x68,
-            i2c_read: 0,
-        },
-        // Register 58, INT_STATUS: RAW_DATA_RDY_INT.
-        status: Status {
-            register: 0x3A,
-            ready: 1,
-            overrun: 0,
-        },
-        // INT is high for 50 µs, push-pull, as INT_PIN_CFG has it.
-        signal: Some(Signal::Rising),
-        // Registers 67 to 72: GYRO_XOUT_H.
-        gyro: 0x43,
         // Registers 65 and 66, TEMP_OUT, and the product specification's sensitivity: zero at 21 °C,
         // 333.87 LSB/°C.
         temperature: Some(Temperature {
@@ -72,13 +30,9 @@ pub const fn mpu_6500(wanted: Configuration) -> Result<Description, Configuratio
             at_zero_c: 21.0,
             counts_per_k: 333.87,
         }),
-        byte_order: ByteOrder::BigEndian,
         // Product specification, table "Gyroscope specifications": 131 LSB/(°/s) for FS_SEL 0, and half as
         // many for each further code.
-        scale_dps: chosen.scale_dps,
-        rate_hz: chosen.rate_hz as Real,
-        filter: chosen.low_pass.filter,
-        fifo: None,
+        ..mpu::description(&chosen)
     })
 }
 

@@ -1,7 +1,7 @@
 //! Records what a sensor's driver returns.
 
 use super::{Burst, Error, Loss, Malformed, Reading};
-use crate::record::axis::{Axes, GatePart, MomentPart, SpectrumPart, TrackPart};
+use crate::record::axis::{Axes, CoursePart, GatePart, MomentPart, SpectrumPart};
 
 impl<const OCTAVES: usize, const COVARIATES: usize, G, M, S, T>
     Axes<OCTAVES, COVARIATES, G, M, 3, S, T>
@@ -9,7 +9,7 @@ where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     /// Records the result of [`Imu::read`](super::Imu::read), so that no loss goes unnoticed. A sample is
     /// pushed, after a gap if samples were lost before it. An error becomes a gap. `covariates` returns the

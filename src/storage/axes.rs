@@ -33,8 +33,8 @@ use super::{
 use crate::{
     record::{
         axis::{
-            Axes, GatePart, MomentPart, SpectrumPart, TrackPart, gate::Passing, kept::AxisSums,
-            moments::MomentSums, spectra::SpectrumSums, track::Track,
+            Axes, CoursePart, GatePart, MomentPart, SpectrumPart, courses::CourseSums,
+            gate::Passing, kept::AxisSums, moments::MomentSums, spectra::SpectrumSums,
         },
         course::Course,
         cross_sums::ProductSum,
@@ -86,11 +86,11 @@ where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     const HAS_GATE: bool = <G::State<AXES, COVARIATES> as Passing<AXES, COVARIATES>>::EXISTS;
     const HAS_MOMENTS: bool = <M::Sums<OCTAVES> as MomentSums<OCTAVES>>::EXIST;
-    const HAS_COURSE: bool = <T::Track<COVARIATES> as Track<COVARIATES>>::EXISTS;
+    const HAS_COURSE: bool = <T::Sums<COVARIATES> as CourseSums<COVARIATES>>::EXISTS;
 
     /// The size in bytes of a buffer that holds a snapshot of any record with this number of self-tests.
     /// The snapshot of a gyro at rest takes about a third of it.
@@ -181,7 +181,7 @@ where
                 }
             }
             writer.push_with(|rest| axis.spectrum.write(rest))?;
-            if let Some(course) = axis.track.course() {
+            if let Some(course) = axis.course.course() {
                 writer.push_with(|rest| course.write(rest))?;
             }
         }
@@ -290,7 +290,7 @@ where
                 *sum = ProductSum::from_parts(low, upper);
             }
             reader.0 = axis.spectrum.read(reader.0).ok_or(Error::Impossible)?;
-            if let Some(course) = axis.track.course_mut() {
+            if let Some(course) = axis.course.course_mut() {
                 reader.0 = course.read(reader.0).ok_or(Error::Impossible)?;
             }
         }

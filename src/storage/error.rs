@@ -59,7 +59,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// What to do about it, as the last words of the message.
+    /// What to do about it, as the last words of the message. The alternate form `{:#}` leaves them out.
     pub const fn remedy(&self) -> &'static str {
         match self {
             Self::BufferTooSmall { .. } => "give it as many",
@@ -127,7 +127,10 @@ impl core::fmt::Display for Error {
                 "the checksum is right, but no gyro can have stored these contents"
             ),
         }?;
-        write!(f, ": {}", self.remedy())
+        match f.alternate() {
+            true => Ok(()),
+            false => write!(f, ": {}", self.remedy()),
+        }
     }
 }
 

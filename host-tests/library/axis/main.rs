@@ -7,7 +7,7 @@ mod stored;
 
 use allanite::{
     Accumulator, Axes, Axis, Model, Real, Scale,
-    axis::{GatePart, Gated, MomentPart, Moments, Spectral, SpectrumReading, TrackPart, Tracked},
+    axis::{CoursePart, Courses, GatePart, Gated, MomentPart, Moments, Spectral, SpectrumReading},
     course::Course,
     fit::{Options, fit},
     integrity::{Integrity, Reason},
@@ -139,7 +139,7 @@ fn plan() -> Plan {
 }
 
 /// Takes a look at the first axis if one is due.
-fn look<G: GatePart, M: MomentPart, S: SpectrumReading, T: TrackPart>(
+fn look<G: GatePart, M: MomentPart, S: SpectrumReading, T: CoursePart>(
     axes: &Axes<OCTAVES, 1, G, M, 3, S, T>,
     test: &mut SelfTest<OCTAVES>,
     looks: &mut Vec<(u64, Status)>,
@@ -391,7 +391,7 @@ fn a_spectrum_goes_on_across_a_few_lost_samples() {
 #[test]
 fn samples_that_are_left_out_or_missing_count_as_time_of_the_course() {
     let samples = disturbed();
-    let mut gyro = Whole::<Gated, Tracked>::new();
+    let mut gyro = Whole::<Gated, Courses>::new();
     let mut cleaning = Cleaning::new();
     for (n, &sample) in samples.iter().enumerate() {
         // A hundred samples are lost on the way, and their number is known.

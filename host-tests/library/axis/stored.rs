@@ -3,7 +3,7 @@
 use super::{Counts, OCTAVES, Whole, plan, rest, scale, seeded::seeded};
 use allanite::{
     Axes, Axis,
-    axis::{GatePart, Tracked},
+    axis::{Courses, GatePart},
     integrity::Limits,
     self_test::{Plan, SelfTest},
     storage::Error,
@@ -106,7 +106,7 @@ proptest! {
 }
 
 fn merge_and_restore<G: GatePart>(stretches: &[Vec<Counts>]) -> Result<(), TestCaseError> {
-    type Gyro<G> = Whole<G, Tracked>;
+    type Gyro<G> = Whole<G, Courses>;
     let mut batch = Gyro::<G>::new();
     let mut merged = Gyro::<G>::new();
     let mut restored = Gyro::<G>::new();

@@ -12,9 +12,9 @@ pub struct Moment {
     text: String,
 }
 
-/// A stretch of a log, written `311s..313s`.
+/// A range of time that is left out of a log, written `311s..313s`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stretch {
+pub struct TimeRange {
     from: Moment,
     to: Moment,
 }
@@ -27,7 +27,7 @@ pub struct Cuts {
     /// Where the record ends.
     pub to: Option<Moment>,
     /// Stretches between these that are no part of the record.
-    pub drop: Vec<Stretch>,
+    pub drop: Vec<TimeRange>,
 }
 
 impl FromStr for Moment {
@@ -59,7 +59,7 @@ impl FromStr for Moment {
     }
 }
 
-impl FromStr for Stretch {
+impl FromStr for TimeRange {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -132,7 +132,7 @@ impl Cuts {
                 format!("give {given} within the log"),
             ));
         }
-        let stretch = |one: &Stretch| {
+        let stretch = |one: &TimeRange| {
             let text = format!("{}..{}", one.from.text, one.to.text);
             (one.from.in_log(end_s), one.to.in_log(end_s), text)
         };
@@ -234,7 +234,7 @@ mod tests {
             assert!(text.parse::<Moment>().is_err(), "{text}");
         }
         for text in ["10s", "20s..10s", "-10s..-20s", "10s..10s", "..10s"] {
-            assert!(text.parse::<Stretch>().is_err(), "{text}");
+            assert!(text.parse::<TimeRange>().is_err(), "{text}");
         }
     }
 }

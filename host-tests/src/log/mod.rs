@@ -160,7 +160,7 @@ use allanite::{
     spectrum::SpectrumAccumulator,
 };
 pub use covariate::{CovariateChoice, Covariates};
-pub use cuts::{Cuts, Moment, Stretch};
+pub use cuts::{Cuts, Moment, TimeRange};
 pub(crate) use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;

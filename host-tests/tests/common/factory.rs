@@ -2,7 +2,7 @@
 
 use allanite::{
     Accumulator, Axis, Model, Scale,
-    axis::{Gated, Moments, Spectral, Tracked},
+    axis::{Courses, Gated, Moments, Spectral},
     course::events,
     diagnosis::Options,
     effect::CATALOGUE,
@@ -47,7 +47,7 @@ pub(crate) fn axis(disturbance: Option<Disturbance>, seed: u64) -> AxisCertifica
 
 /// An axis of a gyro that follows its temperature and has a line, with all that its diagnosis found.
 pub(crate) fn followed() -> AxisCertificate {
-    type Gyro = Axis<17, 1, Gated, Moments, Spectral<64, 4, 112>, Tracked>;
+    type Gyro = Axis<17, 1, Gated, Moments, Spectral<64, 4, 112>, Courses>;
     let scale = Scale::new(1.0 / 131.0, 100.0).unwrap();
     let mut gyro = Box::new(Gyro::new());
     let counts = SimulatedGyro::disturbed(AMPLITUDES, Some(SINUSOID), 6).take(SAMPLES);

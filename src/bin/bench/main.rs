@@ -20,7 +20,7 @@ mod image {
     use crate::{stack, work};
     use allanite::{
         Accumulator, Axes, Curve, Model, Real,
-        axis::{Gated, Moments, Spectral, Tracked},
+        axis::{Courses, Gated, Moments, Spectral},
         course::Course,
         ieee_952,
         self_test::Status,
@@ -107,7 +107,7 @@ mod image {
             with_spectrum
         );
         let with_course =
-            work::mean_of_axes::<1, Gated, Moments, 3, Spectral, Tracked>(clock, work::ROUNDS);
+            work::mean_of_axes::<1, Gated, Moments, 3, Spectral, Courses>(clock, work::ROUNDS);
         defmt::info!(
             "instructions_per_sample_three_axes_with_spectrum_and_course {=f64}",
             with_course

@@ -24,8 +24,8 @@ mod image {
     use allanite::{
         Axes, Model,
         axis::{
-            GatePart, Gated, MomentPart, Moments, Sample, Spectral, SpectrumPart, TrackPart,
-            Tracked,
+            CoursePart, Courses, GatePart, Gated, MomentPart, Moments, Sample, Spectral,
+            SpectrumPart,
         },
         queue::{self, Queued},
     };
@@ -61,7 +61,7 @@ mod image {
         part::<0, (), (), (), ()>(clock, "bare");
         part::<0, Gated, (), (), ()>(clock, "gate");
         part::<0, (), Moments, (), ()>(clock, "moments");
-        part::<0, (), (), (), Tracked>(clock, "course");
+        part::<0, (), (), (), Courses>(clock, "course");
         part::<1, (), (), (), ()>(clock, "covariate");
         part::<0, (), (), Spectral<32>, ()>(clock, "spectrum_32");
         part::<0, (), (), Spectral<64>, ()>(clock, "spectrum_64");
@@ -109,7 +109,7 @@ mod image {
         G: GatePart,
         M: MomentPart,
         S: SpectrumPart,
-        T: TrackPart,
+        T: CoursePart,
     {
         defmt::info!(
             "{=str}_instructions_1 {=f64}",

@@ -7,7 +7,7 @@ use allanite::effect::{
 };
 use allanite::{
     Accumulator, Axes, Curve, Error, Model, Real, Record, Scale,
-    axis::{GatePart, MomentPart, SpectrumPart, TrackPart},
+    axis::{CoursePart, GatePart, MomentPart, SpectrumPart},
     diagnosis::{self, Diagnosis, Verdict},
     fit::{Fit, Fitting, Options, fit},
     self_test::{Limit, Plan, SelfTest, Status},
@@ -66,7 +66,7 @@ where
     G: GatePart,
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     let counts = counts();
     let mut axes = Axes::<20, COVARIATES, G, M, AXES, S, T>::new();

@@ -6,7 +6,7 @@
 use super::{AMPLITUDES, lines, simulated::SimulatedGyro};
 use allanite::{
     Axes, Error, Model, Real, Scale,
-    axis::{Gated, Moments, Sample, Spectral, Tracked},
+    axis::{Courses, Gated, Moments, Sample, Spectral},
     course::analyse,
     diagnosis::{Diagnosis, Options},
     effect::CATALOGUE,
@@ -22,7 +22,7 @@ use heapless::{Vec, spsc::Queue};
 pub const OCTAVES: usize = 16;
 
 /// Three axes and a temperature, with a gate, fourth moments, a spectrum and the course.
-pub type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 84>, Tracked>;
+pub type Gyro = Axes<OCTAVES, 1, Gated, Moments, 3, Spectral<64, 7, 84>, Courses>;
 
 /// The number of samples that the sensor makes: 11 minutes.
 pub const SAMPLES: u32 = 1 << 16;

@@ -13,7 +13,7 @@ mod image {
     use allanite::self_test::{Plan, SelfTest};
     use allanite::{
         Accumulator, Axes, Model, Scale,
-        axis::{Gated, Moments, Spectral, Tracked},
+        axis::{Courses, Gated, Moments, Spectral},
         course::analyse,
         diagnosis::{self, Diagnosis},
         fit::{Options, fit},
@@ -22,7 +22,7 @@ mod image {
     use heapless::{Vec, spsc::Queue};
 
     /// Three axes and a temperature, with every part.
-    type Gyro = Axes<20, 1, Gated, Moments, 3, Spectral, Tracked>;
+    type Gyro = Axes<20, 1, Gated, Moments, 3, Spectral, Courses>;
 
     #[cfg_attr(target_arch = "arm", cortex_m_rt::entry)]
     #[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]

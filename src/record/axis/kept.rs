@@ -1,11 +1,11 @@
 //! The sums of a record, which receive the samples that pass the gate.
 
 use super::{
+    courses::{CoursePart, CourseSums},
     gate::Missing,
     moments::{MomentPart, MomentSums},
     sample::Sample,
     spectra::{SpectrumPart, SpectrumSums, Waits},
-    track::{Track, TrackPart},
 };
 use crate::record::{
     cross_sums::CrossSums,
@@ -26,7 +26,7 @@ pub(crate) struct AxesSums<
 > where
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     pub(crate) axes: [AxisSums<OCTAVES, COVARIATES, M, S, T>; AXES],
     /// One accumulator for each covariate, shared by all axes.
@@ -39,14 +39,14 @@ pub(crate) struct AxisSums<const OCTAVES: usize, const COVARIATES: usize, M, S, 
 where
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     pub(crate) accumulator: Accumulator<OCTAVES>,
     pub(crate) integrity: Integrity,
     pub(crate) moments: M::Sums<OCTAVES>,
     pub(crate) cross: [CrossSums<OCTAVES>; COVARIATES],
     pub(crate) spectrum: S::Sums,
-    pub(crate) track: T::Track<COVARIATES>,
+    pub(crate) course: T::Sums<COVARIATES>,
 }
 
 /// The differences of a covariate that one sample completes: those of octaves 0, 1 and 2, and at most one
@@ -94,7 +94,7 @@ impl<const OCTAVES: usize, const COVARIATES: usize, M, S, T> AxisSums<OCTAVES, C
 where
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     const NEW: Self = Self {
         accumulator: Accumulator::new(),
@@ -102,7 +102,7 @@ where
         moments: M::Sums::NEW,
         cross: [const { CrossSums::NEW }; COVARIATES],
         spectrum: S::Sums::NEW,
-        track: T::Track::NEW,
+        course: T::Sums::NEW,
     };
 
     #[inline(always)]
@@ -142,7 +142,7 @@ impl<const OCTAVES: usize, const COVARIATES: usize, M, const AXES: usize, S, T>
 where
     M: MomentPart,
     S: SpectrumPart,
-    T: TrackPart,
+    T: CoursePart,
 {
     pub(crate) const NEW: Self = Self {
         axes: [const { AxisSums::NEW }; AXES],
@@ -173,7 +173,7 @@ where
         for (axis, &count) in self.axes.iter_mut().zip(&sample.counts) {
             if is_measured {
                 axis.integrity.push(count);
-                axis.track.push(count, sample.covariates);
+                axis.course.push(count, sample.covariates);
             }
             axis.spectrum.push(count);
         }
@@ -226,7 +226,7 @@ where
         for axis in &mut self.axes {
             axis.add_pending(touched, &self.covariates);
             axis.integrity.gap();
-            axis.track.gap(known);
+            axis.course.gap(known);
         }
         let mut axes = self
             .axes
@@ -257,7 +257,7 @@ where
             axis.accumulator.gap();
             axis.integrity.gap();
             axis.spectrum.gap();
-            axis.track.gap(missing);
+            axis.course.gap(missing);
         }
         self.covariates.iter_mut().for_each(Accumulator::gap);
     }

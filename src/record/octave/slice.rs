@@ -62,11 +62,10 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
 
         self.angle = base.wrapping_add(distance);
         self.number = n + BATCH as u32;
-        let [single, double, fourfold] = lowest_squares(&offsets);
-        self.short[0].add_low(single);
-        self.short[1].add_low(double);
+        self.short[0].add_low(squares::<1, BATCH>(&offsets));
+        self.short[1].add_low(squares::<2, BATCH>(&offsets));
         if OCTAVES > FIRST {
-            self.levels[0].sum.add_low(fourfold);
+            self.levels[0].sum.add_low(squares::<4, BATCH>(&offsets));
         }
         self.store::<BATCH>(0, n + 1, base, &offsets);
 
@@ -161,64 +160,6 @@ impl<const OCTAVES: usize> Accumulator<OCTAVES> {
             self.levels[level].ring[b as usize % RING] = base.wrapping_add(u64::from(offset));
         }
     }
-}
-
-/// The sums of squared second differences at the distances 1, 2 and 4 over the batch.
-#[inline(always)]
-fn lowest_squares(offsets: &Offsets) -> [u64; 3] {
-    #[cfg(target_pointer_width = "64")]
-    if let Some(angles) = near(offsets) {
-        return [
-            near_squares::<1>(&angles),
-            near_squares::<2>(&angles),
-            near_squares::<4>(&angles),
-        ];
-    }
-    [
-        squares::<1, BATCH>(offsets),
-        squares::<2, BATCH>(offsets),
-        squares::<4, BATCH>(offsets),
-    ]
-}
-
-/// The range of counts that are near each other. A second difference at a distance of `m ≤ 4` samples lies within `m`
-/// times the range, which is 2^13.
-#[cfg(target_pointer_width = "64")]
-const NEAR: u32 = 1 << 11;
-
-/// The angles modulo 2^16, if the counts between them are near each other. A processor of 64 bits usually squares
-/// eight numbers of 16 bits at once, and four of 32.
-#[cfg(target_pointer_width = "64")]
-#[inline(always)]
-fn near(offsets: &Offsets) -> Option<[i16; RING + BATCH]> {
-    let first = offsets[1].wrapping_sub(offsets[0]).wrapping_sub(NEAR / 2);
-    let mut bits = 0;
-    for i in 1..RING + BATCH {
-        bits |= offsets[i].wrapping_sub(offsets[i - 1]).wrapping_sub(first);
-    }
-    (bits < NEAR).then(|| offsets.map(|offset| offset as i16))
-}
-
-/// The sum of squared second differences at distance `LAG` over the batch, of angles whose counts are [`near`].
-#[cfg(target_pointer_width = "64")]
-#[inline(never)]
-fn near_squares<const LAG: usize>(angles: &[i16; RING + BATCH]) -> u64 {
-    // The squares of 32 differences below 2^13 add up to at most 2^31.
-    const PART: usize = 32;
-    let mut sum = 0_u64;
-    for part in 0..BATCH / PART {
-        let mut squares = 0_u32;
-        for j in 0..PART {
-            let i = RING + part * PART + j;
-            let middle = angles[i - LAG];
-            let newest = angles[i].wrapping_sub(middle);
-            let difference = newest.wrapping_sub(middle.wrapping_sub(angles[i - 2 * LAG]));
-            let square = i32::from(difference).wrapping_mul(i32::from(difference));
-            squares = squares.wrapping_add(square as u32);
-        }
-        sum = sum.wrapping_add(squares.into());
-    }
-    sum
 }
 
 /// The sum of squared second differences at distance `LAG`, over the `COUNT` angles after the older

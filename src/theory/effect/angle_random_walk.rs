@@ -10,7 +10,7 @@ use crate::numerics::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct AngleRandomWalk;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "angle_random_walk",
     symbol: "N",
     coefficient: "angle_random_walk",

@@ -1,10 +1,11 @@
 use super::{
-    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
-    SampledShape, SearchRange,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange,
     angle_random_walk::AngleRandomWalk,
-    filter::{Filter, Output},
-    low_pass::LowPass,
+    filter::Output,
+    low_pass::{CUTOFF, LowPass},
     pole::{Pole, rest},
+    stationary::Stationary,
 };
 use crate::numerics::real::{
     Real, by_precision,
@@ -34,6 +35,10 @@ const SINE_60: Real = by_precision(0.866_025_403_784_438_6, 0.866_025_4);
 
 /// The largest exponent of a stage per sample: nothing is left of a filter that is faster.
 const FASTEST: Real = 30.0;
+
+/// The exponent at which the autocovariance is as good as gone. A pole of fourth order leaves
+/// (1 + x + 2x²/5 + x³/15) e^(−x), which is 5e-4 here.
+const GONE: Real = 13.0;
 
 /// The filter with simple poles.
 struct Stages {
@@ -92,7 +97,7 @@ impl Stages {
     }
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "cascade",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -108,11 +113,7 @@ pub(super) const DESCRIPTION: Description = Description {
                 high: (32.0 * span.interval_s).min(0.1 * span.longest_tau_s),
                 steps_per_octave: 3.0,
             },
-            reciprocal: Some(Reciprocal {
-                name: "cutoff_hz",
-                unit: "Hz",
-                product: 0.5 / PI,
-            }),
+            reciprocal: Some(CUTOFF),
         },
         Parameter {
             name: "stages",
@@ -133,20 +134,18 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Filter for Cascade {
+impl Stationary for Cascade {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
-    // A pole of fourth order leaves (1 + x + 2x²/5 + x³/15) e^(−x), which is 5e-4 here.
-    const GONE: Real = 13.0;
 
-    fn output(shape: &SampledShape) -> Output {
+    type Process = Output;
+
+    fn process(shape: &SampledShape) -> Output {
         let [time_s, stages, ..] = shape.parameters;
         let stages = Stages::new((shape.interval_s / time_s).min(FASTEST), stages);
-        Output {
-            white: 0.0,
-            gain: 1.0,
-            first: stages.pole(stages.first),
-            second: stages.second.map(|second| stages.pole(second)),
-        }
+        let second = stages.second.map(|second| stages.pole(second));
+        let mut output = Output::new(0.0, stages.pole(stages.first), second);
+        output.gone = GONE;
+        output
     }
 }
 

@@ -1,6 +1,8 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, Tail, angle_random_walk::AngleRandomWalk,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange, SecondDifferences, Tail,
+    angle_random_walk::AngleRandomWalk,
+    stationary::{Process, Stationary},
 };
 use crate::{numerics::math, numerics::real::Real};
 
@@ -37,8 +39,8 @@ fn spline(x: Real, stages: Real) -> Real {
     }
 }
 
-/// The sampled autocovariance `r_i`, scaled so that its sum over all lags is 1.
-struct Filter {
+/// White noise behind boxcars in series: the sampled autocovariance `r_i`, scaled so that its sum over all lags is 1.
+pub(super) struct Boxcars {
     /// The reciprocal of a stage's length in samples.
     per_sample: Real,
     /// The number of stages.
@@ -51,29 +53,28 @@ struct Filter {
     moment: Real,
 }
 
-impl Filter {
-    fn new(shape: &SampledShape) -> Self {
-        let [width_s, stages, ..] = shape.parameters;
-        let width = width_s / (shape.interval_s * math::sqrt(stages.max(1.0)));
+impl Boxcars {
+    /// So many boxcars, each of this width in samples.
+    fn new(width: Real, stages: Real) -> Self {
         let width = width.clamp(1e-3, WIDEST);
-        let mut filter = Self {
+        let mut boxcars = Self {
             per_sample: 1.0 / width,
             stages,
             support: math::ceil(width * if stages < 1.5 { 1.0 } else { 2.0 }),
             scale: 1.0,
             moment: 0.0,
         };
-        let (mut sum, mut moment) = (filter.at(0.0), 0.0);
+        let (mut sum, mut moment) = (boxcars.at(0.0), 0.0);
         let mut i = 1.0;
-        while i < filter.support {
-            let here = 2.0 * filter.at(i);
+        while i < boxcars.support {
+            let here = 2.0 * boxcars.at(i);
             sum += here;
             moment += i * here;
             i += 1.0;
         }
-        filter.scale = 1.0 / sum;
-        filter.moment = moment * filter.scale;
-        filter
+        boxcars.scale = 1.0 / sum;
+        boxcars.moment = moment * boxcars.scale;
+        boxcars
     }
 
     /// The autocovariance `r_i`.
@@ -123,7 +124,7 @@ impl Filter {
     }
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "decimation_filter",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -160,17 +161,19 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Effect for DecimationFilter {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
-    }
-
+impl Process for Boxcars {
     fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        -0.5 * shape.interval_s * Filter::new(shape).sum(lag)
+        -0.5 * shape.interval_s * self.sum(lag)
     }
 
     fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        -0.5 * shape.interval_s * Filter::new(shape).second_difference(x, m)
+        -0.5 * shape.interval_s * self.second_difference(x, m)
+    }
+
+    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
+        let tau_s = m * shape.interval_s;
+        let difference = |x| Process::second_difference(self, x, m, shape);
+        (difference(m) - difference(0.0)) / (tau_s * tau_s)
     }
 
     fn variances(
@@ -179,14 +182,13 @@ impl Effect for DecimationFilter {
         shape: &SampledShape,
         each: &mut dyn FnMut(Real),
     ) {
-        let filter = Filter::new(shape);
         let mut last: Option<(Real, Real)> = None;
         for m in factors {
             let own = match last {
                 Some((before, sum)) if before == m => sum,
-                _ => filter.sum(m),
+                _ => self.sum(m),
             };
-            let double = filter.sum(2.0 * m);
+            let double = self.sum(2.0 * m);
             last = Some((2.0 * m, double));
             // σ² = [3 G(0) − 4 G(m) + G(2m)]/τ².
             each(0.5 * (4.0 * own - double) / (m * m * shape.interval_s));
@@ -200,27 +202,36 @@ impl Effect for DecimationFilter {
         shape: &SampledShape,
         sum: &mut SecondDifferences,
     ) {
-        let filter = Filter::new(shape);
         let weight = -0.5 * shape.interval_s * weight;
-        sum.add_below(m, m + filter.support, |x| {
-            weight * filter.second_difference(x, m)
+        sum.add_below(m, m + self.support, |x| {
+            weight * self.second_difference(x, m)
         });
     }
 
-    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
-        let support = Filter::new(shape).support;
-        // The autocovariance may end within the part of the lattice that is coarse.
-        (support > 2.0 * m).then(|| Tail::none(m + support))
+    /// The autocovariance may end within the part of the lattice that is coarse.
+    fn tail(&self, m: Real, _: &SampledShape) -> Option<Tail> {
+        (self.support > 2.0 * m).then(|| Tail::none(m + self.support))
     }
 
     fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        let filter = Filter::new(shape);
-        let at_zero = filter.of_means(0.0, m);
+        let at_zero = self.of_means(0.0, m);
         let mut distance = m;
         for value in values {
-            *value = (at_zero - filter.of_means(distance, m)) / shape.interval_s;
+            *value = (at_zero - self.of_means(distance, m)) / shape.interval_s;
             distance += m;
         }
+    }
+}
+
+impl Stationary for DecimationFilter {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
+
+    type Process = Boxcars;
+
+    fn process(shape: &SampledShape) -> Boxcars {
+        let [width_s, stages, ..] = shape.parameters;
+        let width = width_s / (shape.interval_s * math::sqrt(stages.max(1.0)));
+        Boxcars::new(width, stages)
     }
 }
 

@@ -7,7 +7,7 @@ use core::fmt;
 
 /// The name of an effect and its relations to others: everything about it except its mathematics.
 ///
-/// Each effect has one constant of this type. The format of certificates, the command line, the search for
+/// Each effect has one static of this type, at one address. The format of certificates, the command line, the search for
 /// shapes, the simulator and the reports read it, so that none of them needs to know any effect by
 /// name.
 pub struct Description {

@@ -1,10 +1,11 @@
 use super::{
-    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
-    SampledShape, SearchRange,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange,
     angle_random_walk::AngleRandomWalk,
-    filter::{Filter, Output},
-    low_pass::{LowPass, POLES, Place, butterworth},
+    filter::Output,
+    low_pass::{CUTOFF, LowPass, POLES, Place, butterworth},
     pole::Pole,
+    stationary::Stationary,
 };
 use crate::numerics::{
     math,
@@ -113,7 +114,7 @@ fn turns(direction: Complex<Real>, near: Real) -> Real {
     turns
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "digital_low_pass",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -129,11 +130,7 @@ pub(super) const DESCRIPTION: Description = Description {
                 high: (LONGEST_SAMPLES * span.interval_s).min(0.1 * span.longest_tau_s),
                 steps_per_octave: 3.0,
             },
-            reciprocal: Some(Reciprocal {
-                name: "cutoff_hz",
-                unit: "Hz",
-                product: 0.5 / PI,
-            }),
+            reciprocal: Some(CUTOFF),
         },
         POLES,
     ],
@@ -144,10 +141,12 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Filter for DigitalLowPass {
+impl Stationary for DigitalLowPass {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
 
-    fn output(shape: &SampledShape) -> Output {
+    type Process = Output;
+
+    fn process(shape: &SampledShape) -> Output {
         let [time_s, poles, ..] = shape.parameters;
         let cycles = (shape.interval_s / (2.0 * PI * time_s)).min(HIGHEST);
         let (sine, cosine) = math::sincos_of_turns(0.5 * cycles);
@@ -168,12 +167,7 @@ impl Filter for DigitalLowPass {
                 second.map(|second| cutoff.pair(second)),
             ),
         };
-        Output {
-            white,
-            gain: 1.0,
-            first,
-            second,
-        }
+        Output::new(white, first, second)
     }
 }
 

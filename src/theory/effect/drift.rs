@@ -1,8 +1,9 @@
 //! The kernel of a pole whose frequency ran evenly over a range.
 
 use super::{
-    Tail,
+    SampledShape, SecondDifferences, Tail,
     pole::{Pole, power},
+    stationary::Process,
 };
 use crate::numerics::real::{Real, by_precision, consts::PI, real};
 use nalgebra::Complex;
@@ -49,8 +50,10 @@ const LEAST_DECAY: Real = 1e-6;
 /// G(n) = τ₀² Re [ a_0 − zⁿ Σ i^l a_l j_l(κ) ] − ½ τ₀² n ⟨(1+z)/(1−z)⟩
 /// ```
 ///
-/// All functions leave the factor τ₀² to the caller.
+/// The functions of the pole itself are for a mean square of one and leave the factor τ₀² out.
 pub(super) struct DriftingPole {
+    /// The mean square of the rate, which is the factor of all functions of the process.
+    power: Real,
     /// The decay per sample, and the cycles per sample in the middle of the range.
     decay: Real,
     cycles: Real,
@@ -65,8 +68,9 @@ pub(super) struct DriftingPole {
 }
 
 impl DriftingPole {
-    /// A pole of weight one with this decay per sample, whose frequency ran over a range around these cycles per sample.
-    pub(super) fn new(decay: Real, cycles: Real, drift: Real) -> Self {
+    /// A pole with this mean square and this decay per sample, whose frequency ran over a range around these cycles per
+    /// sample.
+    pub(super) fn new(power: Real, decay: Real, cycles: Real, drift: Real) -> Self {
         let drift = drift.min(WIDEST * cycles);
         let one = Complex::new(1.0, 0.0);
         let mut long = 0.0;
@@ -90,6 +94,7 @@ impl DriftingPole {
         let [zero, first, second, third] = coefficients;
         let quarter = Complex::new(0.0, 1.0);
         Self {
+            power,
             decay,
             cycles,
             drift,
@@ -97,6 +102,11 @@ impl DriftingPole {
             long,
             coefficients: [zero, first * quarter, -second, -third * quarter],
         }
+    }
+
+    /// τ₀² times the mean square.
+    fn square(&self, shape: &SampledShape) -> Real {
+        self.power * shape.interval_s * shape.interval_s
     }
 
     /// The change of the phase, or the decay, within a block of `m` samples.
@@ -132,7 +142,7 @@ impl DriftingPole {
     }
 
     /// `G(n)/τ₀²`.
-    pub(super) fn kernel(&self, n: Real) -> Real {
+    fn kernel(&self, n: Real) -> Real {
         if self.is_slow(n) {
             return self.middle.kernel(n);
         }
@@ -141,7 +151,7 @@ impl DriftingPole {
     }
 
     /// `[G(x + m) − 2 G(x) + G(|x − m|)]/τ₀²`.
-    pub(super) fn second_difference(&self, x: Real, m: Real) -> Real {
+    fn second_difference(&self, x: Real, m: Real) -> Real {
         if self.is_slow(m) {
             return self.middle.second_difference(x, m) * (1.0 - self.lost(x));
         }
@@ -154,7 +164,7 @@ impl DriftingPole {
     }
 
     /// The Allan variance `σ²(mτ₀)`.
-    pub(super) fn variance(&self, m: Real) -> Real {
+    fn variance(&self, m: Real) -> Real {
         if self.is_slow(m) {
             let at_m = self.middle.second_difference(m, m);
             return self.middle.variance(m) - at_m * self.lost(m) / (m * m);
@@ -163,7 +173,7 @@ impl DriftingPole {
     }
 
     /// Writes `scale` times the semivariogram of the means of blocks of `m` samples.
-    pub(super) fn variogram(&self, m: Real, scale: Real, values: &mut [Real]) {
+    fn variogram(&self, m: Real, scale: Real, values: &mut [Real]) {
         let block = power(self.decay, self.cycles, m);
         let turn = power(0.0, self.turns(m), 1.0);
         let (mut own, mut turned) = (block, turn);
@@ -199,9 +209,42 @@ impl DriftingPole {
 
     /// The tail of a pole that keeps its frequency and forgets its phase as fast: the squares of its autocovariance have
     /// the same sum, `∫ sinc²(π drift t) dt = 1/(2 drift)` on one side.
-    pub(super) fn tail(&self, m: Real) -> Tail {
+    fn tail(&self, m: Real) -> Tail {
         let decay = (self.decay + self.drift).max(LEAST_DECAY);
         Pole::at(Complex::new(1.0, 0.0), decay, self.cycles).tail(m)
+    }
+}
+
+impl Process for DriftingPole {
+    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
+        self.square(shape) * self.kernel(lag)
+    }
+
+    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
+        self.square(shape) * self.second_difference(x, m)
+    }
+
+    fn variance(&self, m: Real, _: &SampledShape) -> Real {
+        self.power * self.variance(m)
+    }
+
+    fn add_second_differences(
+        &self,
+        m: Real,
+        weight: Real,
+        shape: &SampledShape,
+        sum: &mut SecondDifferences,
+    ) {
+        let weight = weight * self.square(shape);
+        sum.add(m, |x| weight * self.second_difference(x, m));
+    }
+
+    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
+        Some(self.tail(m).scaled(self.square(shape)))
+    }
+
+    fn variogram(&self, m: Real, _: &SampledShape, values: &mut [Real]) {
+        self.variogram(m, self.power, values);
     }
 }
 

@@ -1,8 +1,9 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, Tail,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange,
     drift::{DriftingPole, WIDEST},
     resonance::{self, Resonance},
+    stationary::Stationary,
 };
 use crate::numerics::real::{Real, consts::PI};
 
@@ -18,12 +19,6 @@ use crate::numerics::real::{Real, consts::PI};
 /// constant `1/(1/T + drift)`.
 #[derive(Clone, Copy, Debug)]
 pub struct DriftingResonance;
-
-fn pole(shape: &SampledShape) -> DriftingPole {
-    let [frequency_hz, quality, drift_hz] = shape.parameters;
-    let cycles = frequency_hz * shape.interval_s;
-    DriftingPole::new(PI * cycles / quality, cycles, drift_hz * shape.interval_s)
-}
 
 /// The width of the range.
 pub(super) const DRIFT: Parameter = Parameter {
@@ -46,7 +41,7 @@ pub(super) fn distinct_drift(drift_hz: Real, frequency_hz: Real) -> Real {
     drift_hz.min(BELOW * WIDEST * frequency_hz)
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "drifting_resonance",
     symbol: "s",
     coefficient: "rms",
@@ -60,53 +55,26 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Swept,
 };
 
-impl Effect for DriftingResonance {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+impl Stationary for DriftingResonance {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const NEEDS_SPECTRUM: bool = true;
+
+    type Process = DriftingPole;
+
+    fn process(shape: &SampledShape) -> DriftingPole {
+        let [frequency_hz, quality, drift_hz] = shape.parameters;
+        let cycles = frequency_hz * shape.interval_s;
+        let decay = PI * cycles / quality;
+        DriftingPole::new(1.0, decay, cycles, drift_hz * shape.interval_s)
     }
 
-    fn needs_spectrum(&self) -> bool {
-        true
-    }
-
-    fn canonical(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+    fn canonical(shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
         let [frequency_hz, quality, drift_hz] = shape.parameters;
         [
             frequency_hz,
             quality,
             distinct_drift(drift_hz, frequency_hz),
         ]
-    }
-
-    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        square(shape) * pole(shape).kernel(lag)
-    }
-
-    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        square(shape) * pole(shape).second_difference(x, m)
-    }
-
-    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
-        pole(shape).variance(m)
-    }
-
-    fn add_second_differences(
-        &self,
-        m: Real,
-        weight: Real,
-        shape: &SampledShape,
-        sum: &mut SecondDifferences,
-    ) {
-        let (pole, weight) = (pole(shape), weight * square(shape));
-        sum.add(m, |x| weight * pole.second_difference(x, m));
-    }
-
-    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
-        Some(pole(shape).tail(m).scaled(square(shape)))
-    }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        pole(shape).variogram(m, 1.0, values);
     }
 }
 
@@ -122,9 +90,4 @@ impl Explain for DriftingResonance {
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
         &[[20.0, 14.0, 1.0], [6.0, 30.0, 2.0]]
     }
-}
-
-/// τ₀².
-fn square(shape: &SampledShape) -> Real {
-    shape.interval_s * shape.interval_s
 }

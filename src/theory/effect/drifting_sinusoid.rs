@@ -1,10 +1,10 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, SampledShape,
-    SecondDifferences, Tail,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, SampledShape,
     drift::DriftingPole,
     drifting_resonance::{DRIFT, distinct_drift},
     resonance,
     sinusoid::Sinusoid,
+    stationary::Stationary,
 };
 use crate::numerics::real::Real;
 
@@ -14,21 +14,12 @@ use crate::numerics::real::Real;
 ///
 /// The autocovariance is the average of that of the sinusoid over the range,
 /// `r(n) = ½ Ω₀² cos(2πf nτ₀) sinc(π drift nτ₀)` with `sinc x = sin x / x`. Unlike a sinusoid's, the phase is forgotten, so
-/// that the effect has no [response](Effect::response). To the covariance of a curve it is a resonance of one frequency
+/// that the effect has no [response](super::Effect::response). To the covariance of a curve it is a resonance of one frequency
 /// with the time constant `1/drift`.
 #[derive(Clone, Copy, Debug)]
 pub struct DriftingSinusoid;
 
-fn pole(shape: &SampledShape) -> DriftingPole {
-    let [frequency_hz, drift_hz, ..] = shape.parameters;
-    DriftingPole::new(
-        0.0,
-        frequency_hz * shape.interval_s,
-        drift_hz * shape.interval_s,
-    )
-}
-
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "drifting_sinusoid",
     symbol: "Ω",
     coefficient: "amplitude",
@@ -42,49 +33,22 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Swept,
 };
 
-impl Effect for DriftingSinusoid {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
+impl Stationary for DriftingSinusoid {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const NEEDS_SPECTRUM: bool = true;
+
+    type Process = DriftingPole;
+
+    /// The mean square of a sinusoid is half the square of its amplitude.
+    fn process(shape: &SampledShape) -> DriftingPole {
+        let [frequency_hz, drift_hz, ..] = shape.parameters;
+        let (cycles, drift) = (frequency_hz * shape.interval_s, drift_hz * shape.interval_s);
+        DriftingPole::new(0.5, 0.0, cycles, drift)
     }
 
-    fn needs_spectrum(&self) -> bool {
-        true
-    }
-
-    fn canonical(&self, shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
+    fn canonical(shape: &SampledShape) -> [Real; MAX_PARAMETERS] {
         let [frequency_hz, drift_hz, ..] = shape.parameters;
         [frequency_hz, distinct_drift(drift_hz, frequency_hz), 0.0]
-    }
-
-    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        square(shape) * pole(shape).kernel(lag)
-    }
-
-    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        square(shape) * pole(shape).second_difference(x, m)
-    }
-
-    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
-        0.5 * pole(shape).variance(m)
-    }
-
-    fn add_second_differences(
-        &self,
-        m: Real,
-        weight: Real,
-        shape: &SampledShape,
-        sum: &mut SecondDifferences,
-    ) {
-        let (pole, weight) = (pole(shape), weight * square(shape));
-        sum.add(m, |x| weight * pole.second_difference(x, m));
-    }
-
-    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
-        Some(pole(shape).tail(m).scaled(square(shape)))
-    }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        pole(shape).variogram(m, 0.5, values);
     }
 }
 
@@ -100,9 +64,4 @@ impl Explain for DriftingSinusoid {
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
         &[[20.0, 2.0, 0.0], [7.7, 0.5, 0.0]]
     }
-}
-
-/// τ₀²/2: the variance of a sinusoid is half the square of its amplitude.
-fn square(shape: &SampledShape) -> Real {
-    0.5 * shape.interval_s * shape.interval_s
 }

@@ -1,6 +1,6 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, low_pass::LowPass, pole::Pole,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange, low_pass::LowPass, pole::Pole, stationary::Stationary,
 };
 use crate::numerics::real::Real;
 
@@ -14,11 +14,7 @@ use crate::numerics::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct GaussMarkov;
 
-fn pole(shape: &SampledShape) -> Pole {
-    Pole::new(shape.parameters[0], 0.0, shape.interval_s)
-}
-
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "gauss_markov",
     symbol: "s",
     coefficient: "rms",
@@ -43,45 +39,14 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Effect for GaussMarkov {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
-    }
+impl Stationary for GaussMarkov {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
 
-    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        squared(shape.interval_s) * pole(shape).kernel(lag)
-    }
+    type Process = Pole;
 
-    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        squared(shape.interval_s) * pole(shape).second_difference(x, m)
-    }
-
-    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
-        pole(shape).variance(m)
-    }
-
-    fn variances(
-        &self,
-        factors: &mut dyn Iterator<Item = Real>,
-        shape: &SampledShape,
-        each: &mut dyn FnMut(Real),
-    ) {
-        pole(shape).variances(factors, each);
-    }
-
-    fn add_second_differences(
-        &self,
-        m: Real,
-        weight: Real,
-        shape: &SampledShape,
-        sum: &mut SecondDifferences,
-    ) {
-        let weight = weight * squared(shape.interval_s);
-        pole(shape).add_second_differences(m, weight, sum);
-    }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        pole(shape).variogram(m, 1.0, values);
+    fn process(shape: &SampledShape) -> Pole {
+        let [correlation_time_s, ..] = shape.parameters;
+        Pole::new(correlation_time_s, 0.0, shape.interval_s)
     }
 }
 
@@ -97,8 +62,4 @@ impl Explain for GaussMarkov {
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
         &[[0.1, 0.0, 0.0], [1.0, 0.0, 0.0]]
     }
-}
-
-fn squared(x: Real) -> Real {
-    x * x
 }

@@ -1,11 +1,12 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
+    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
     SampledShape, SearchRange, SecondDifferences,
     angle_random_walk::AngleRandomWalk,
+    low_pass::CUTOFF,
     pole::{power, rest},
 };
 use crate::{
-    numerics::real::{Real, consts::PI, real},
+    numerics::real::{Real, real},
     theory::lattice,
 };
 
@@ -59,7 +60,7 @@ impl Angle {
     }
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "high_pass",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -74,11 +75,7 @@ pub(super) const DESCRIPTION: Description = Description {
             high: 0.2 * span.longest_tau_s,
             steps_per_octave: 2.0,
         },
-        reciprocal: Some(Reciprocal {
-            name: "cutoff_hz",
-            unit: "Hz",
-            product: 0.5 / PI,
-        }),
+        reciprocal: Some(CUTOFF),
     }],
     code: 17,
     replaces: Some(&AngleRandomWalk),

@@ -1,9 +1,7 @@
 use super::{
     Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, Reciprocal,
-    SampledShape, SearchRange,
-    angle_random_walk::AngleRandomWalk,
-    filter::{Filter, Output},
-    pole::Pole,
+    SampledShape, SearchRange, angle_random_walk::AngleRandomWalk, filter::Output, pole::Pole,
+    stationary::Stationary,
 };
 use crate::numerics::real::{
     Real, by_precision,
@@ -52,6 +50,13 @@ pub(super) fn butterworth(poles: Real) -> (Place, Option<Place>) {
     }
 }
 
+/// The cut-off frequency, which is known as well as a time constant.
+pub(super) const CUTOFF: Reciprocal = Reciprocal {
+    name: "cutoff_hz",
+    unit: "Hz",
+    product: 0.5 / PI,
+};
+
 /// The number of poles.
 pub(super) const POLES: Parameter = Parameter {
     name: "poles",
@@ -65,7 +70,7 @@ pub(super) const POLES: Parameter = Parameter {
     reciprocal: None,
 };
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "low_pass",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -81,11 +86,7 @@ pub(super) const DESCRIPTION: Description = Description {
                 high: (64.0 * span.interval_s).min(0.1 * span.longest_tau_s),
                 steps_per_octave: 3.0,
             },
-            reciprocal: Some(Reciprocal {
-                name: "cutoff_hz",
-                unit: "Hz",
-                product: 0.5 / PI,
-            }),
+            reciprocal: Some(CUTOFF),
         },
         POLES,
     ],
@@ -96,10 +97,12 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Filter for LowPass {
+impl Stationary for LowPass {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
 
-    fn output(shape: &SampledShape) -> Output {
+    type Process = Output;
+
+    fn process(shape: &SampledShape) -> Output {
         let [time_s, poles, ..] = shape.parameters;
         let samples = shape.interval_s / time_s;
         let pole = |Place { decay, turn }: Place| {

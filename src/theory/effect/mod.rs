@@ -7,7 +7,7 @@
 //! that `G` exists even for an effect whose autocovariance does not.
 //!
 //! A new effect takes one file beside the others and one line in the catalogue below. The file
-//! defines the type, its [`Effect`], its [`Explain`] and a constant `DESCRIPTION`. A firmware can define
+//! defines the type, its [`Effect`], its [`Explain`] and a static `DESCRIPTION`. A firmware can define
 //! an effect of its own in the same way, in any file, and add it to the list that it gives to
 //! [`Diagnosis`](crate::diagnosis::Diagnosis).
 
@@ -20,6 +20,7 @@ mod filter;
 mod pole;
 mod sampled_shape;
 mod search_range;
+mod stationary;
 
 pub use crate::curve::Span;
 pub use crate::{limits::MAX_PARAMETERS, theory::lattice::SecondDifferences};

@@ -1,10 +1,7 @@
 use super::{
     Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
-    SearchRange,
-    angle_random_walk::AngleRandomWalk,
-    filter::{Filter, Output},
-    low_pass::LowPass,
-    pole::Pole,
+    SearchRange, angle_random_walk::AngleRandomWalk, filter::Output, low_pass::LowPass, pole::Pole,
+    stationary::Stationary,
 };
 use crate::numerics::real::{
     Real,
@@ -29,7 +26,7 @@ use nalgebra::Complex;
 #[derive(Clone, Copy, Debug)]
 pub struct ModeSplit;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "mode_split",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -66,10 +63,12 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Filter for ModeSplit {
+impl Stationary for ModeSplit {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
 
-    fn output(shape: &SampledShape) -> Output {
+    type Process = Output;
+
+    fn process(shape: &SampledShape) -> Output {
         let [rise_hz, corner_hz, ..] = shape.parameters;
         let ratio = corner_hz / rise_hz;
         let square = ratio * ratio;

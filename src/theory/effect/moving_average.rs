@@ -1,7 +1,9 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, Tail, angle_random_walk::AngleRandomWalk,
-    decimation_filter::DecimationFilter,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange,
+    angle_random_walk::AngleRandomWalk,
+    decimation_filter::{Boxcars, DecimationFilter},
+    stationary::Stationary,
 };
 use crate::numerics::real::Real;
 
@@ -10,20 +12,11 @@ use crate::numerics::real::Real;
 /// number of samples of a mean, up to 64.
 ///
 /// The kernel is that of the white noise, which is a [`DecimationFilter`] of one stage. What the average leaves of the other
-/// terms follows from it ([`passes_all`](Effect::passes_all)).
+/// terms follows from it ([`passes_all`](super::Effect::passes_all)).
 #[derive(Clone, Copy, Debug)]
 pub struct MovingAverage;
 
-/// The shape of the filter of white noise.
-fn stage(shape: &SampledShape) -> SampledShape {
-    let [samples, ..] = shape.parameters;
-    SampledShape {
-        parameters: [samples * shape.interval_s, 1.0, 0.0],
-        ..*shape
-    }
-}
-
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "moving_average",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -47,52 +40,19 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Effect for MovingAverage {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
-    }
+impl Stationary for MovingAverage {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const NEEDS_SPECTRUM: bool = true;
+    const PASSES_ALL: bool = true;
 
-    fn needs_spectrum(&self) -> bool {
-        true
-    }
+    type Process = Boxcars;
 
-    fn passes_all(&self) -> bool {
-        true
-    }
-
-    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        DecimationFilter.kernel(lag, &stage(shape))
-    }
-
-    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        DecimationFilter.second_difference(x, m, &stage(shape))
-    }
-
-    fn variances(
-        &self,
-        factors: &mut dyn Iterator<Item = Real>,
-        shape: &SampledShape,
-        each: &mut dyn FnMut(Real),
-    ) {
-        DecimationFilter.variances(factors, &stage(shape), each);
-    }
-
-    fn add_second_differences(
-        &self,
-        m: Real,
-        weight: Real,
-        shape: &SampledShape,
-        sum: &mut SecondDifferences,
-    ) {
-        DecimationFilter.add_second_differences(m, weight, &stage(shape), sum);
-    }
-
-    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
-        DecimationFilter.tail(m, &stage(shape))
-    }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        DecimationFilter.variogram(m, &stage(shape), values);
+    fn process(shape: &SampledShape) -> Boxcars {
+        let [samples, ..] = shape.parameters;
+        DecimationFilter::process(&SampledShape {
+            parameters: [samples * shape.interval_s, 1.0, 0.0],
+            ..*shape
+        })
     }
 }
 

@@ -1,9 +1,7 @@
 use super::{
     Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
-    SearchRange,
-    angle_random_walk::AngleRandomWalk,
-    filter::{Filter, Output},
-    pole::Pole,
+    SearchRange, angle_random_walk::AngleRandomWalk, filter::Output, pole::Pole,
+    stationary::Stationary,
 };
 use crate::numerics::{
     math,
@@ -57,7 +55,7 @@ const ABOVE: Real = 1.02;
 /// has the precision of the type after seven.
 const STEPS: usize = 7;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "notch",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -96,11 +94,13 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Filter for Notch {
+impl Stationary for Notch {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
     const NEEDS_SPECTRUM: bool = true;
 
-    fn output(shape: &SampledShape) -> Output {
+    type Process = Output;
+
+    fn process(shape: &SampledShape) -> Output {
         let [frequency_hz, quality, ..] = shape.parameters;
         let turns = frequency_hz * shape.interval_s;
         let (sine, cosine) = math::sincos_of_turns(turns);
@@ -124,12 +124,8 @@ impl Filter for Notch {
         let weight = (one - p * p) * lost / (p * Complex::new(0.0, 4.0 * p.im));
         let decay = -0.5 * math::log(square);
         let sum = 1.0 + square;
-        Output {
-            white: 0.25 * sum * sum / square,
-            gain: 1.0,
-            first: Pole::at(weight, decay, cycles),
-            second: None,
-        }
+        let white = 0.25 * sum * sum / square;
+        Output::new(white, Pole::at(weight, decay, cycles), None)
     }
 
     fn canonical(shape: &SampledShape) -> [Real; MAX_PARAMETERS] {

@@ -2,7 +2,8 @@ use super::{
     Description, Distribution, Explain, Explanation, MAX_PARAMETERS, SampledShape,
     angle_random_walk::AngleRandomWalk,
     digital_low_pass::{self, DigitalLowPass},
-    filter::{Filter, Output},
+    filter::Output,
+    stationary::Stationary,
 };
 use crate::numerics::real::Real;
 
@@ -15,7 +16,7 @@ use crate::numerics::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct OutputLowPass;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "output_low_pass",
     symbol: "N",
     coefficient: "angle_random_walk",
@@ -29,13 +30,15 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Filter for OutputLowPass {
+impl Stationary for OutputLowPass {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
     const NEEDS_SPECTRUM: bool = true;
     const PASSES_ALL: bool = true;
 
-    fn output(shape: &SampledShape) -> Output {
-        DigitalLowPass::output(shape)
+    type Process = Output;
+
+    fn process(shape: &SampledShape) -> Output {
+        DigitalLowPass::process(shape)
     }
 }
 

@@ -12,7 +12,7 @@ pub struct Quantization;
 /// rounding would be larger.
 const FORGOTTEN: Real = 256.0;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "quantization",
     symbol: "Q",
     coefficient: "quantization",

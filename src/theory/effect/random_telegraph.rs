@@ -1,6 +1,8 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, SampledShape,
-    SecondDifferences, gauss_markov, gauss_markov::GaussMarkov,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, SampledShape,
+    gauss_markov::{self, GaussMarkov},
+    pole::Pole,
+    stationary::Stationary,
 };
 use crate::numerics::real::Real;
 
@@ -13,7 +15,7 @@ use crate::numerics::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct RandomTelegraph;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "random_telegraph",
     symbol: "s",
     coefficient: "rms",
@@ -27,44 +29,13 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::TwoLevels,
 };
 
-impl Effect for RandomTelegraph {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
-    }
+impl Stationary for RandomTelegraph {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
 
-    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        GaussMarkov.kernel(lag, shape)
-    }
+    type Process = Pole;
 
-    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        GaussMarkov.second_difference(x, m, shape)
-    }
-
-    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
-        GaussMarkov.variance(m, shape)
-    }
-
-    fn variances(
-        &self,
-        factors: &mut dyn Iterator<Item = Real>,
-        shape: &SampledShape,
-        each: &mut dyn FnMut(Real),
-    ) {
-        GaussMarkov.variances(factors, shape, each);
-    }
-
-    fn add_second_differences(
-        &self,
-        m: Real,
-        weight: Real,
-        shape: &SampledShape,
-        sum: &mut SecondDifferences,
-    ) {
-        GaussMarkov.add_second_differences(m, weight, shape, sum);
-    }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        GaussMarkov.variogram(m, shape, values);
+    fn process(shape: &SampledShape) -> Pole {
+        GaussMarkov::process(shape)
     }
 }
 

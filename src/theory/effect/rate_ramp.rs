@@ -8,7 +8,7 @@ use crate::numerics::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct RateRamp;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "rate_ramp",
     symbol: "R",
     coefficient: "rate_ramp",

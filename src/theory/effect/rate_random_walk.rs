@@ -11,7 +11,7 @@ use crate::numerics::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct RateRandomWalk;
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "rate_random_walk",
     symbol: "K",
     coefficient: "rate_random_walk",

@@ -1,8 +1,9 @@
 use super::{
-    Description, Distribution, Effect, Explain, Explanation, MAX_PARAMETERS, Parameter,
-    SampledShape, SearchRange, SecondDifferences, Tail,
+    Description, Distribution, Explain, Explanation, MAX_PARAMETERS, Parameter, SampledShape,
+    SearchRange,
     pole::Pole,
     sinusoid::{Sinusoid, frequencies},
+    stationary::Stationary,
 };
 use crate::numerics::real::{Real, consts::PI};
 
@@ -14,15 +15,6 @@ use crate::numerics::real::{Real, consts::PI};
 /// (Gillespie 1996 for the real pole). A frequency above half the sample rate appears at its alias.
 #[derive(Clone, Copy, Debug)]
 pub struct Resonance;
-
-fn pole(shape: &SampledShape) -> Pole {
-    let [frequency_hz, quality, ..] = shape.parameters;
-    Pole::new(
-        quality / (PI * frequency_hz),
-        frequency_hz,
-        shape.interval_s,
-    )
-}
 
 /// The frequency. A resonance is broader than a line, so that a coarser grid finds it.
 pub(super) const FREQUENCY: Parameter = Parameter {
@@ -49,7 +41,7 @@ pub(super) const QUALITY: Parameter = Parameter {
     reciprocal: None,
 };
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "resonance",
     symbol: "s",
     coefficient: "rms",
@@ -63,49 +55,15 @@ pub(super) const DESCRIPTION: Description = Description {
     distribution: Distribution::Gaussian,
 };
 
-impl Effect for Resonance {
-    fn description(&self) -> &'static Description {
-        &DESCRIPTION
-    }
+impl Stationary for Resonance {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
 
-    fn kernel(&self, lag: Real, shape: &SampledShape) -> Real {
-        squared(shape.interval_s) * pole(shape).kernel(lag)
-    }
+    type Process = Pole;
 
-    fn second_difference(&self, x: Real, m: Real, shape: &SampledShape) -> Real {
-        squared(shape.interval_s) * pole(shape).second_difference(x, m)
-    }
-
-    fn variance(&self, m: Real, shape: &SampledShape) -> Real {
-        pole(shape).variance(m)
-    }
-
-    fn variances(
-        &self,
-        factors: &mut dyn Iterator<Item = Real>,
-        shape: &SampledShape,
-        each: &mut dyn FnMut(Real),
-    ) {
-        pole(shape).variances(factors, each);
-    }
-
-    fn add_second_differences(
-        &self,
-        m: Real,
-        weight: Real,
-        shape: &SampledShape,
-        sum: &mut SecondDifferences,
-    ) {
-        let weight = weight * squared(shape.interval_s);
-        pole(shape).add_second_differences(m, weight, sum);
-    }
-
-    fn tail(&self, m: Real, shape: &SampledShape) -> Option<Tail> {
-        Some(pole(shape).tail(m).scaled(squared(shape.interval_s)))
-    }
-
-    fn variogram(&self, m: Real, shape: &SampledShape, values: &mut [Real]) {
-        pole(shape).variogram(m, 1.0, values);
+    fn process(shape: &SampledShape) -> Pole {
+        let [frequency_hz, quality, ..] = shape.parameters;
+        let time_s = quality / (PI * frequency_hz);
+        Pole::new(time_s, frequency_hz, shape.interval_s)
     }
 }
 
@@ -121,8 +79,4 @@ impl Explain for Resonance {
     fn typical_shapes(&self) -> &'static [[Real; MAX_PARAMETERS]] {
         &[[3.0, 3.0, 0.0]]
     }
-}
-
-fn squared(x: Real) -> Real {
-    x * x
 }

@@ -29,7 +29,7 @@ fn kernel_root(n: Real, shape: &SampledShape) -> Real {
     sine * sine / sine_of_turns(cycles)
 }
 
-pub(super) const DESCRIPTION: Description = Description {
+pub(super) static DESCRIPTION: Description = Description {
     name: "sinusoid",
     symbol: "Ω",
     coefficient: "amplitude",

@@ -10,7 +10,7 @@ use crate::{
 };
 use allanite::{
     Model,
-    comparison::{ComparedOctave, Stretch as Side},
+    comparison::{self, ComparedOctave},
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -142,10 +142,10 @@ fn octave(octave: &ComparedOctave, model: &Model) -> Octave {
     }
 }
 
-fn stretch(side: Side) -> Stretch {
+fn stretch(one: comparison::Stretch) -> Stretch {
     Stretch {
-        side: if side.above { "above" } else { "below" },
-        from_s: side.from_s,
-        to_s: side.to_s,
+        side: if one.above { "above" } else { "below" },
+        from_s: one.from_s,
+        to_s: one.to_s,
     }
 }

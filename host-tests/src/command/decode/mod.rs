@@ -88,9 +88,5 @@ fn decode(path: &Path) -> Result<Stored, Failure> {
         }),
         Err(error) => Err(error),
     };
-    stored.map_err(|error| {
-        let (text, remedy) = (error.to_string(), error.remedy());
-        let what = text.trim_end_matches(remedy).trim_end_matches(": ");
-        Place::file(path).failure(what, remedy)
-    })
+    stored.map_err(|error| Place::file(path).failure(format!("{error:#}"), error.remedy()))
 }

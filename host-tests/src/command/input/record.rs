@@ -6,7 +6,7 @@ use crate::{
     failure::{Failure, Place, one_line, report},
     log::{
         self, ColumnChoice, CovariateChoice, Covariates, Cuts, Evidence, Log, Moment, Repeats,
-        Stretch, TimeUnit,
+        TimeRange, TimeUnit,
     },
     unit::{Sensor, Unit},
 };
@@ -58,7 +58,7 @@ pub(crate) struct LogArguments {
     to: Option<Moment>,
     /// Leave out a stretch of the log, such as `311s..313s`, which becomes a gap; may be given several times
     #[arg(long, value_name = "FROM..TO", allow_hyphen_values = true)]
-    drop: Vec<Stretch>,
+    drop: Vec<TimeRange>,
 }
 
 impl LogArguments {
@@ -231,7 +231,5 @@ pub(crate) fn is_curve(path: &Path) -> bool {
 
 /// The failure for an error of the library about an axis.
 pub(crate) fn library_failure(path: &Path, axis: &str, error: allanite::Error) -> Failure {
-    let (text, remedy) = (error.to_string(), error.remedy());
-    let what = text.trim_end_matches(remedy).trim_end_matches(": ");
-    Place::file(path).failure(format!("axis {axis}: {what}"), remedy)
+    Place::file(path).failure(format!("axis {axis}: {error:#}"), error.remedy())
 }

@@ -5,25 +5,25 @@ use core::fmt::Debug;
 
 /// Keeps the course of every axis over time: `T` of [`Axes`](super::Axes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Tracked;
+pub struct Courses;
 
-/// What can stand for `T` of [`Axes`](super::Axes): [`Tracked`], or `()` for none.
-pub trait TrackPart: Clone + Debug + PartialEq + Eq {
+/// What can stand for `T` of [`Axes`](super::Axes): [`Courses`], or `()` for none.
+pub trait CoursePart: Clone + Debug + PartialEq + Eq {
     /// The course of one axis.
     #[doc(hidden)]
-    type Track<const COVARIATES: usize>: Track<COVARIATES>;
+    type Sums<const COVARIATES: usize>: CourseSums<COVARIATES>;
 }
 
-impl TrackPart for Tracked {
-    type Track<const COVARIATES: usize> = Course<COVARIATES>;
+impl CoursePart for Courses {
+    type Sums<const COVARIATES: usize> = Course<COVARIATES>;
 }
 
-impl TrackPart for () {
-    type Track<const COVARIATES: usize> = ();
+impl CoursePart for () {
+    type Sums<const COVARIATES: usize> = ();
 }
 
 /// The course of one axis, or nothing.
-pub trait Track<const COVARIATES: usize>: Clone + Debug + PartialEq + Eq {
+pub trait CourseSums<const COVARIATES: usize>: Clone + Debug + PartialEq + Eq {
     /// Nothing seen yet.
     const NEW: Self;
 
@@ -44,7 +44,7 @@ pub trait Track<const COVARIATES: usize>: Clone + Debug + PartialEq + Eq {
     fn course_mut(&mut self) -> Option<&mut Course<COVARIATES>>;
 }
 
-impl<const COVARIATES: usize> Track<COVARIATES> for Course<COVARIATES> {
+impl<const COVARIATES: usize> CourseSums<COVARIATES> for Course<COVARIATES> {
     const NEW: Self = Self::new();
     const EXISTS: bool = true;
 
@@ -68,7 +68,7 @@ impl<const COVARIATES: usize> Track<COVARIATES> for Course<COVARIATES> {
     }
 }
 
-impl<const COVARIATES: usize> Track<COVARIATES> for () {
+impl<const COVARIATES: usize> CourseSums<COVARIATES> for () {
     const NEW: Self = ();
     const EXISTS: bool = false;
 

@@ -106,19 +106,17 @@ pub(super) fn all<const K: usize>(
             }
         }
     }
-    coefficients(scale, |term| {
-        found.get(term).copied().unwrap_or(Estimate::NOTHING)
-    })
+    coefficients(scale, &found)
 }
 
 /// The coefficients of all terms.
 #[inline(always)]
-pub(super) fn coefficients(
-    scale: Scale,
-    estimate: impl Fn(usize) -> Estimate,
-) -> [Coefficient; TERMS] {
+pub(super) fn coefficients(scale: Scale, estimates: &[Estimate; TERMS]) -> [Coefficient; TERMS] {
     // One after the other, because they would be copied from what makes an array.
-    let of = |term: usize| estimate(term).coefficient(term, scale);
+    let of = |term: usize| {
+        let found = estimates.get(term).unwrap_or(&Estimate::NOTHING);
+        found.coefficient(term, scale)
+    };
     [of(0), of(1), of(2), of(3), of(4)]
 }
 

@@ -41,16 +41,15 @@ pub fn fit_by_relative_accuracy<'a, const K: usize, const B: usize>(
     let (gradient, residuals) = rows.residuals(&squares);
     let fall = tableau.refine(&mut squares, &gradient);
     let scale = Scale::new(reference, curve.interval_s(), rows.units);
-    let estimate = |term: usize| {
-        let square = squares.get(term).copied().unwrap_or(0.0);
-        let error = sqrt(tableau.solved_variance(term));
-        Estimate::normal(square, error)
-    };
+    let mut estimates = [Estimate::NOTHING; TERMS];
+    for (term, (estimate, square)) in (0..TERMS).zip(estimates.iter_mut().zip(squares)) {
+        *estimate = Estimate::normal(square, sqrt(tableau.solved_variance(term)));
+    }
     Ok(Fit {
         chi_squared: real(residuals - fall),
         degrees_of_freedom: points.len().saturating_sub(TERMS),
         tolerance: 0.0,
         birge_ratio: 1.0,
-        coefficients: coefficients(scale, estimate),
+        coefficients: coefficients(scale, &estimates),
     })
 }

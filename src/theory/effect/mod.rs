@@ -7,9 +7,10 @@
 //! that `G` exists even for an effect whose autocovariance does not.
 //!
 //! A new effect takes one file beside the others and one line in the catalogue below. The file
-//! defines the type, its [`Effect`], its [`Explain`] and a static `DESCRIPTION`. A firmware can define
-//! an effect of its own in the same way, in any file, and add it to the list that it gives to
-//! [`Diagnosis`](crate::diagnosis::Diagnosis).
+//! defines the type, its [`Effect`], its [`Explain`] and a static `DESCRIPTION`. If the rate is a stationary
+//! process that the shape determines, such as white noise behind a filter, the file names the process in the
+//! place of the [`Effect`]. A firmware can define an effect of its own, in any file, and add it to the list that
+//! it gives to [`Diagnosis`](crate::diagnosis::Diagnosis).
 
 mod behind;
 mod check;

@@ -122,10 +122,10 @@
 #define ALLANITE_RECORD_WORDS (470 + (7 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteSelfTest`.
-#define ALLANITE_SELF_TEST_WORDS 44
+#define ALLANITE_SELF_TEST_WORDS 36
 
 // Words of an `AllaniteLook`.
-#define ALLANITE_LOOK_WORDS (98 + (3 * ALLANITE_OCTAVES))
+#define ALLANITE_LOOK_WORDS (74 + (3 * ALLANITE_OCTAVES))
 
 // Words of an `AllaniteDiagnosis`.
 #define ALLANITE_DIAGNOSIS_WORDS (1650 + (10 * ALLANITE_OCTAVES))

@@ -23,9 +23,9 @@ pub const ALLANITE_AXIS_WORDS: usize = 23 + 12 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteRecord`.
 pub const ALLANITE_RECORD_WORDS: usize = 470 + 7 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteSelfTest`.
-pub const ALLANITE_SELF_TEST_WORDS: usize = 44;
+pub const ALLANITE_SELF_TEST_WORDS: usize = 36;
 /// Words of an `AllaniteLook`.
-pub const ALLANITE_LOOK_WORDS: usize = 98 + 3 * ALLANITE_OCTAVES;
+pub const ALLANITE_LOOK_WORDS: usize = 74 + 3 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteDiagnosis`.
 pub const ALLANITE_DIAGNOSIS_WORDS: usize = 1650 + 10 * ALLANITE_OCTAVES;
 /// Words of an `AllaniteCertificate`.

@@ -1,6 +1,5 @@
 //! A coefficient beside its limit, for a station that measures once and decides.
 
-use super::fitted::Fitted;
 use crate::{
     command::{
         limit::LimitArgument,
@@ -9,7 +8,7 @@ use crate::{
     failure::Failure,
     unit::Unit,
 };
-use allanite::Coefficient;
+use allanite::{Coefficient, fit::Fit};
 use serde::Serialize;
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -52,23 +51,27 @@ pub(crate) struct Judged {
 }
 
 impl Judged {
-    /// An axis beside all limits.
+    /// The fit of an axis beside all limits. Of a curve that is not valid, it says nothing.
     ///
     /// # Errors
     /// When a limit is of an effect that is not fitted, or in a unit that its coefficient does not have.
-    pub(crate) fn all(fitted: &Fitted, limits: &[LimitArgument]) -> Result<Vec<Self>, Failure> {
-        let unit = fitted.axis.unit;
+    pub(crate) fn all(
+        (fit, is_valid): (&Fit, bool),
+        unit: Unit,
+        limits: &[LimitArgument],
+    ) -> Result<Vec<Self>, Failure> {
+        let is_explained = is_valid && fit.is_adequate() != Some(false);
         let judged = limits.iter().map(|limit| {
-            let mut coefficients = fitted.fit.coefficients.iter();
+            let mut coefficients = fit.coefficients.iter();
             let found = coefficients.find(|found| found.name == limit.name());
             let found = found.ok_or_else(|| limit.of_another_model())?;
-            Ok(Self::new(fitted, found, limit.of_unit(unit)?.value, unit))
+            let most = limit.of_unit(unit)?.value;
+            Ok(Self::new(is_explained, found, most, unit))
         });
         judged.collect()
     }
 
-    fn new(fitted: &Fitted, found: &Coefficient, most: f64, unit: Unit) -> Self {
-        let is_explained = fitted.invalid.is_none() && fitted.fit.is_adequate() != Some(false);
+    fn new(is_explained: bool, found: &Coefficient, most: f64, unit: Unit) -> Self {
         let verdict = if !is_explained {
             Verdict::Misfit
         } else if found.lower > most {

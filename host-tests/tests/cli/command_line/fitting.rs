@@ -18,6 +18,8 @@ fn fit_prints_the_documented_json() {
     for axis in &document.axes {
         assert_eq!((axis.rate_hz, axis.unit.as_str()), (100.0, "deg/s"));
         assert_eq!(axis.method, "covariance");
+        assert_eq!(axis.adequate, axis.p_value.map(|p| p >= 0.01));
+        assert!(axis.adequate.is_some());
         assert!(axis.birge_ratio >= 1.0 && axis.notes.is_empty());
         assert!(axis.invalid.is_none() && axis.covariates.is_empty());
         assert_eq!(axis.octaves[0].differences, 19_999);
@@ -132,6 +134,7 @@ fn every_method_is_named_and_reports_its_statistics() {
                 axis.p_value.is_some(),
             ];
             assert_eq!(judged, [judges; 3], "{method}");
+            assert_eq!(axis.adequate.is_some(), method == "covariance");
         }
         output(folder.path(), &["fit", "curve.json", "--method", method]);
     }

@@ -51,6 +51,7 @@ struct Axis {
     chi2: Option<f64>,
     dof: Option<u32>,
     p_value: Option<f64>,
+    adequate: Option<bool>,
     birge_ratio: f64,
     invalid: Option<String>,
     covariates: Vec<serde_json::Value>,

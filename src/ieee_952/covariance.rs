@@ -53,18 +53,20 @@ pub(super) fn covariance(shorter: &Row, longer: &Row, j: usize, distance: usize)
             continue;
         }
         let others = longer.shares.get(a..).unwrap_or_default();
+        let (mut its_sum, mut its_ends) = (0_i32, 0_i32);
         for ((&[t0, t1], &fall), &other) in its.iter().zip(fall).zip(others) {
             if other == 0 {
                 continue;
             }
-            // Below 2^16 · 2^16, and the table below 2^15: a sum of all pairs is below 2^31, because shares add to one.
-            let product = u32::from(own).wrapping_mul(other.into());
-            let rounded = product.wrapping_add(1 << 14).wrapping_shr(15);
             let shift = (beyond as u32).wrapping_mul(fall.into()).min(31);
-            let share = rounded.wrapping_shr(shift) as i32;
-            sum = sum.wrapping_add(share.wrapping_mul(t0.into()));
-            ends = ends.wrapping_add(share.wrapping_mul(t1.into()));
+            let other = u32::from(other).wrapping_shr(shift) as i32;
+            its_sum = its_sum.wrapping_add(other.wrapping_mul(t0.into()));
+            its_ends = its_ends.wrapping_add(other.wrapping_mul(t1.into()));
         }
+        // Shares are at most 2^15 and add to one, and the table is below 2^15, so that all sums stay below 2^31.
+        let of = |its: i32| i32::from(own).wrapping_mul(its.wrapping_add(1 << 14) >> 15);
+        sum = sum.wrapping_add(of(its_sum));
+        ends = ends.wrapping_add(of(its_ends));
     }
     let mut all = sum as f32 * power(SUM_BITS);
     if longer.ends > FEW_ENDS {

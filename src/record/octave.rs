@@ -91,9 +91,9 @@ impl Level {
 /// The accumulator uses integers only: a constant offset cancels exactly, host and target agree to the
 /// bit, and the order in which records are [merged](Self::merge) does not matter.
 ///
-/// On a Cortex-M4F [`push`](Self::push) takes 148 instructions per sample, whatever the number of
+/// On a Cortex-M4F [`push`](Self::push) takes 144 instructions per sample, whatever the number of
 /// octaves and the position in the schedule, as long as no difference exceeds 31 bits. It takes at most
-/// 244 with full-scale input. [`push_slice`](Self::push_slice) takes 130, built for size. The state
+/// 270 with full-scale input. [`push_slice`](Self::push_slice) takes 116, built for size. The state
 /// takes `176 + 96 · OCTAVES` bytes, which is 2480 for 24 octaves. `cargo xtask bench` measures this.
 ///
 /// # Example

@@ -180,9 +180,9 @@ impl<const OCTAVES: usize> SelfTest<OCTAVES> {
     pub fn new(plan: Plan, scale: Scale) -> Result<Self, InvalidPlan> {
         let (first, last) = plan.check(scale, OCTAVES)?;
         // Each record is twice as long as the one before. A count needs no division of 64 bits.
-        let (mut looks, mut samples) = (1, first.max(1));
+        let (mut looks, mut samples) = (1_u32, first.max(1));
         while samples < last {
-            (looks, samples) = (looks + 1, samples.saturating_mul(2));
+            (looks, samples) = (looks.saturating_add(1), samples.saturating_mul(2));
         }
         let limits = plan.limits.len().max(1) as Real;
         Ok(Self {

@@ -292,7 +292,7 @@ impl<const K: usize> Accumulator<K> {
     /// The Allan curve so far of a record in which no gap was filled: the same as [`curve`](Self::curve), which also takes
     /// off what filled gaps change. `None` if one was.
     ///
-    /// For a sensor that never calls [`lost`](Self::lost), and has no room for the 2.5 KB of what it does not need.
+    /// For a sensor that never calls [`lost`](Self::lost), and has no room for the 2.8 KB of what it does not need.
     pub fn unbridged_curve(&self, scale: Scale) -> Option<Curve<K>> {
         let is_whole = self.bridged().is_empty();
         is_whole.then(|| self.sums(scale, Curve::<K>::MIN_DIFFERENCES))

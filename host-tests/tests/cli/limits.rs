@@ -114,3 +114,28 @@ fn limits_that_cannot_be_are_refused() {
     assert!(refusal(&["sinusoid=1"]).contains("limit Q, N, B, K or R"));
     assert!(refusal(&["N=1 °/h"]).contains("has no such unit"));
 }
+
+#[test]
+fn a_record_that_is_not_valid_passes_no_limit() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    record(folder);
+    // Steps of three times the noise of a sample, which rounding hides.
+    let log = std::fs::read_to_string(folder.join("log.csv")).unwrap();
+    let rounded = log.lines().map(|line| match line.parse::<f64>() {
+        Ok(rate) => format!("{}\n", ((rate + 0.04) / 0.15).round() * 0.15),
+        Err(_) => format!("{line}\n"),
+    });
+    std::fs::write(folder.join("log.csv"), rounded.collect::<String>()).unwrap();
+    let arguments = ["-q", "fit", "log.csv", "--limit", "N=1"];
+    let (status, lines) = judged(folder, &arguments);
+    assert_eq!(status, Some(3), "{lines:?}");
+    assert!(
+        lines[0].ends_with("because the curve is not valid"),
+        "{lines:?}"
+    );
+    let run = run(folder, &[&arguments[..], &["--json"]].concat());
+    let document: Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!(document["axes"][0]["adequate"], false);
+    assert_eq!(document["axes"][0]["limits"][0]["verdict"], "invalid");
+}

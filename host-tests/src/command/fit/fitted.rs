@@ -4,7 +4,7 @@ use super::judged::Judged;
 use crate::{
     command::{
         input::record,
-        output::disturbance::invalid,
+        output::{disturbance::invalid, rounding},
         tried::{self, TriedCovariate},
     },
     curve_file::AxisCurve,
@@ -132,6 +132,11 @@ impl Fitted {
             tried: tried.map_err(|error| record::library_failure(path, name, error))?,
             ..fitted
         })
+    }
+
+    /// Whether the curve is valid: the samples are, and rounding does not hide their noise.
+    pub(crate) fn is_valid(&self) -> bool {
+        self.invalid.is_none() && !rounding::is_coarse(&self.axis)
     }
 
     /// Notes on what was recorded alongside, a sentence each.

@@ -112,10 +112,10 @@ fn axis(fitted: &Fitted) -> Axis<'_> {
         chi2: finite(fit.chi_squared),
         dof: finite(fit.chi_squared).map(|_| fit.degrees_of_freedom),
         p_value: finite(fit.p_value),
-        adequate: match invalid {
-            None if *method == MethodName::Covariance => fit.is_adequate(),
-            None => None,
-            Some(_) => Some(false),
+        adequate: match *method {
+            _ if !fitted.is_valid() => Some(false),
+            MethodName::Covariance => fit.is_adequate(),
+            _ => None,
         },
         birge_ratio: fit.birge_ratio,
         invalid: invalid.as_deref(),

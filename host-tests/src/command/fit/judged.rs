@@ -8,21 +8,23 @@ use crate::{
     failure::Failure,
     unit::Unit,
 };
-use allanite::{Coefficient, fit::Fit};
+use allanite::fit::Fit;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 /// What a limit says of an axis. The rule is that of `allanite::ieee_952::Limits`, which decides on a device: what is known to
 /// keep a limit passes, and what is known to exceed one fails (ISO 14253-1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Verdict {
+enum Verdict {
     /// The 95 % interval keeps the limit.
     Pass,
     /// The interval contains the limit, or the coefficient is not observable in this record.
     GuardBand,
-    /// The curve is not valid, or the five terms do not explain it, so that the interval says nothing about a limit.
+    /// The five terms do not explain the curve, so that the interval says nothing about a limit.
     Misfit,
+    /// The curve is not valid.
+    Invalid,
     /// The interval lies above the limit.
     Fail,
 }
@@ -35,6 +37,7 @@ impl Verdict {
             Self::Misfit => {
                 "not decided, because the five terms do not explain the record: see `diagnose`"
             }
+            Self::Invalid => "not decided, because the curve is not valid",
             Self::Fail => "fail",
         }
     }
@@ -47,11 +50,11 @@ pub(crate) struct Judged {
     symbol: &'static str,
     most: f64,
     unit: String,
-    pub(crate) verdict: Verdict,
+    verdict: Verdict,
 }
 
 impl Judged {
-    /// The fit of an axis beside all limits. Of a curve that is not valid, it says nothing.
+    /// The fit of an axis, and whether its curve is valid, beside all limits.
     ///
     /// # Errors
     /// When a limit is of an effect that is not fitted, or in a unit that its coefficient does not have.
@@ -60,34 +63,28 @@ impl Judged {
         unit: Unit,
         limits: &[LimitArgument],
     ) -> Result<Vec<Self>, Failure> {
-        let is_explained = is_valid && fit.is_adequate() != Some(false);
         let judged = limits.iter().map(|limit| {
             let mut coefficients = fit.coefficients.iter();
             let found = coefficients.find(|found| found.name == limit.name());
             let found = found.ok_or_else(|| limit.of_another_model())?;
             let most = limit.of_unit(unit)?.value;
-            Ok(Self::new(is_explained, found, most, unit))
+            let (lower, upper) = (found.lower, found.upper);
+            let verdict = match fit.is_adequate() {
+                _ if !is_valid => Verdict::Invalid,
+                Some(false) => Verdict::Misfit,
+                _ if lower > most => Verdict::Fail,
+                _ if upper <= most => Verdict::Pass,
+                _ => Verdict::GuardBand,
+            };
+            Ok(Self {
+                effect: found.name,
+                symbol: found.symbol,
+                most,
+                unit: units::unit(unit, found.half_seconds),
+                verdict,
+            })
         });
         judged.collect()
-    }
-
-    fn new(is_explained: bool, found: &Coefficient, most: f64, unit: Unit) -> Self {
-        let verdict = if !is_explained {
-            Verdict::Misfit
-        } else if found.lower > most {
-            Verdict::Fail
-        } else if found.upper <= most {
-            Verdict::Pass
-        } else {
-            Verdict::GuardBand
-        };
-        Self {
-            effect: found.name,
-            symbol: found.symbol,
-            most,
-            unit: units::unit(unit, found.half_seconds),
-            verdict,
-        }
     }
 
     /// The limit and the verdict in one line.

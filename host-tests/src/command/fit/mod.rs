@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
         let method = arguments.method;
         axes.map(|(axis, evidence)| {
             let mut fitted = Fitted::with_evidence(path, axis, &model, method, evidence)?;
-            let fit = (&fitted.fit, fitted.invalid.is_none());
+            let fit = (&fitted.fit, fitted.is_valid());
             fitted.limits = Judged::all(fit, fitted.axis.unit, &limits)?;
             worst.note(&fitted.limits);
             Ok(fitted)

@@ -75,10 +75,10 @@ fn row(fitted: &Fitted) -> Vec<String> {
     } else {
         "–".into()
     });
-    row.push(if fitted.invalid.is_some() {
-        "not valid".into()
-    } else {
+    row.push(if fitted.is_valid() {
         adequate(fit).into()
+    } else {
+        "not valid".into()
     });
     row
 }

@@ -43,7 +43,7 @@ pub(crate) fn print(fitted: &[Fitted], output: &mut impl Write) -> io::Result<()
         let note = rounding::note(axis, &fitted.fit);
         // Whether the model explains a curve that is not valid does not matter.
         let is_coarse = rounding::is_coarse(axis);
-        let is_invalid = is_coarse || fitted.invalid.is_some();
+        let is_invalid = !fitted.is_valid();
         let lines = verdict(fitted);
         for line in lines.iter().take(if is_invalid { 1 } else { lines.len() }) {
             writeln!(output, "{line}")?;

@@ -37,6 +37,11 @@ impl ModelArguments {
         }
     }
 
+    /// Whether the options change the five terms by more than a known filter.
+    pub(in crate::command) fn changes(&self) -> bool {
+        !self.with.is_empty() || !self.without.is_empty()
+    }
+
     /// Builds the model. A shape of zeros that is to be fitted is to be looked for in its whole range.
     ///
     /// # Errors

@@ -70,19 +70,7 @@ pub(super) fn ardupilot(known: &Characterisation, arguments: &Arguments) -> Stri
 fn parameters(known: &Characterisation, arguments: &Arguments, of: &Autopilot) -> String {
     let interval_s = arguments.prediction_interval.unwrap_or(of.interval_s);
     let per_step = 1.0 / interval_s.sqrt();
-    let mut text = summary::comment(known, "#");
-    let _ = writeln!(
-        text,
-        "#\n# Discrete-time, for a prediction every {} s ({}):\n\
-         # {} = N/sqrt(dt) in rad/s, {} = K/sqrt(dt) in rad/s^2.",
-        decimal(interval_s),
-        of.interval,
-        of.noise,
-        of.bias_noise
-    );
-    for note in of.notes {
-        let _ = writeln!(text, "# {note}");
-    }
+    let mut text = String::new();
     let (live, beside) = known.chosen(arguments.overbound);
     for (choice, mark) in [(live, ""), (beside, "# ")] {
         let _ = writeln!(text, "# {}:", choice.name);
@@ -101,5 +89,17 @@ fn parameters(known: &Characterisation, arguments: &Arguments, of: &Autopilot) -
             }
         }
     }
-    text
+    let _ = writeln!(
+        text,
+        "#\n# Discrete-time, for a prediction every {} s ({}):\n\
+         # {} = N/sqrt(dt) in rad/s, {} = K/sqrt(dt) in rad/s^2.",
+        decimal(interval_s),
+        of.interval,
+        of.noise,
+        of.bias_noise
+    );
+    for note in of.notes {
+        let _ = writeln!(text, "# {note}");
+    }
+    text + &summary::below(known, "#")
 }

@@ -1,28 +1,37 @@
 //! The noise of one axis in radians and seconds: best fit, limits and overbounds.
 
-use super::given::Given;
+use super::{
+    explained::Explained,
+    filter_states::{self, FilterStates},
+    given::Given,
+};
 use crate::{
-    command::{fit::fitted::Fitted, output::number::duration},
+    command::output::number::duration,
     confidence::{Limits, limits},
-    curve_file::AxisCurve,
     equivalent::Equivalent,
     log::{BINS, OCTAVES},
-    overbound::Overbound,
+    overbound::{GaussMarkovProcess, Overbound},
     plot::relative_error,
 };
-use allanite::{
-    Coefficient, Comparison, Curve, Model, Record, Scale,
-    course::Course,
-    fit::{Fit, State},
-};
+use allanite::{Coefficient, Comparison, Record, Scale, course::Course, fit::State};
+
+/// The ratio of neighbouring correlation times of processes that stand for flicker noise. Chosen by hand: the sum differs
+/// from flicker noise by some per cent in between.
+const FLICKER_STEP: f64 = 4.0;
 
 /// The noise of one axis.
 pub(super) struct AxisNoise {
     pub(super) name: String,
     pub(super) rate_hz: f64,
     pub(super) samples: u64,
-    /// The five coefficients, in radians and seconds.
+    /// The model in words, and what is said of it.
+    pub(super) model: String,
+    pub(super) verdict: String,
+    /// The coefficients of the model, in radians and seconds.
     pub(super) coefficients: Vec<Coefficient>,
+    /// What the model has beside its noise: what a filter carries, takes out or leaves.
+    pub(super) states: FilterStates,
+    pub(super) is_adequate: Option<bool>,
     pub(super) p_value: f64,
     pub(super) overbound: Overbound,
     pub(super) overbound_with_process: Overbound,
@@ -67,12 +76,13 @@ pub(super) struct Octave {
     pub(super) overbound: f64,
 }
 
-/// The bins of an axis beside the fit of its five terms, in order of their frequencies.
-fn bins(axis: &AxisCurve, curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> Option<Vec<Bin>> {
-    let spectrum = axis.spectrum().ok()?;
-    let observed = Record::<OCTAVES, BINS>::new(curve, &spectrum);
-    let comparison = Comparison::new(observed, model, fit).ok()?;
-    let radians = axis.unit.in_si();
+/// The bins of an axis beside its model, in order of their frequencies.
+fn bins(explained: &Explained) -> Vec<Bin> {
+    let observed = Record::<OCTAVES, BINS>::new(&explained.curve, &explained.spectrum);
+    let Ok(comparison) = Comparison::new(observed, &explained.model, &explained.fit) else {
+        return Vec::new();
+    };
+    let radians = explained.axis.unit.in_si();
     let bins = comparison.bins.iter().map(|compared| {
         let density = radians * compared.bin.density.sqrt();
         Bin {
@@ -88,34 +98,65 @@ fn bins(axis: &AxisCurve, curve: &Curve<OCTAVES>, model: &Model, fit: &Fit) -> O
     });
     let mut bins: Vec<Bin> = bins.collect();
     bins.sort_by(|one, other| one.frequency_hz.total_cmp(&other.frequency_hz));
-    Some(bins)
+    bins
+}
+
+/// The blocks of a course that have samples.
+fn blocks(course: Option<&Course>, scale: Option<Scale>, radians: f64) -> Vec<Block> {
+    let both = course.zip(scale);
+    let blocks = both.map_or_else(Vec::new, |(course, scale)| course.blocks(scale).collect());
+    let blocks = blocks.into_iter().filter(|block| block.samples > 0);
+    let blocks = blocks.map(|block| Block {
+        start_s: block.start_s,
+        duration_s: block.duration_s,
+        samples: block.samples,
+        mean: radians * block.mean,
+        noise: radians * (0.5 * block.mean_square_difference).sqrt(),
+    });
+    blocks.collect()
+}
+
+/// The limits of every octave without what is taken out before a filter. The share of the rest is that of the model.
+fn without_oscillations(explained: &Explained, limits: &[Limits]) -> Vec<Limits> {
+    let Explained {
+        curve, model, fit, ..
+    } = explained;
+    let all = fit.squares();
+    let mut rest = all;
+    for (square, term) in rest.iter_mut().zip(model.terms()) {
+        if filter_states::is_oscillation(term) {
+            *square = 0.0;
+        }
+    }
+    let interval_s = curve.interval_s();
+    let octaves = curve.points().iter().zip(limits);
+    let of_rest = octaves.map(|(point, limits)| {
+        let [rest, all] = [&rest, &all].map(|squares| model.variance(squares, point.m, interval_s));
+        let share = rest / all;
+        Limits {
+            lower: share * limits.lower,
+            upper: share * limits.upper,
+        }
+    });
+    of_rest.collect()
 }
 
 impl AxisNoise {
-    /// The noise of a fitted axis, or `None` if the limits of its curve are not finite.
-    /// The course is that of a log.
-    pub(super) fn of(fitted: Fitted, course: Option<Course>) -> Option<Self> {
-        let Fitted {
+    /// The noise of an axis, or `None` if the limits of its curve are not finite.
+    pub(super) fn of(explained: &Explained) -> Option<Self> {
+        let Explained {
             axis,
             curve,
             model,
             fit,
             ..
-        } = fitted;
+        } = explained;
         let radians = axis.unit.in_si();
-        let bins = bins(&axis, &curve, &model, &fit);
-        let scale = Scale::new(axis.rate_per_count, axis.rate_hz).ok()?;
-        let blocks = course.iter().flat_map(|course| course.blocks(scale));
-        let blocks = blocks.filter(|block| block.samples > 0).map(|block| Block {
-            start_s: block.start_s,
-            duration_s: block.duration_s,
-            samples: block.samples,
-            mean: radians * block.mean,
-            noise: radians * (0.5 * block.mean_square_difference).sqrt(),
-        });
-        let limits = limits(&curve, &model, &fit);
-        let overbound = Overbound::of(&curve, &limits)?;
-        let with_process = Overbound::with_gauss_markov(&curve, &limits)?;
+        let scale = Scale::new(axis.rate_per_count, axis.rate_hz).ok();
+        let limits = limits(curve, model, fit);
+        let rest = without_oscillations(explained, &limits);
+        let overbound = Overbound::of(curve, &rest)?;
+        let with_process = Overbound::with_gauss_markov(curve, &rest)?;
         let squares = fit.squares();
         let interval_s = curve.interval_s();
         let octave = |(point, limits): (&allanite::curve::Point, &Limits)| Octave {
@@ -128,32 +169,35 @@ impl AxisNoise {
             model: radians * model.variance(&squares, point.m, interval_s).sqrt(),
             overbound: radians * overbound.variance(point.m, interval_s).sqrt(),
         };
-        let octaves = curve.points().iter().zip(&limits).map(octave).collect();
         let flicker = fit.coefficients.iter().find(|one| one.symbol == "B");
         let flicker = flicker.and_then(|one| usable(one).value());
-        let equivalent = flicker.and_then(|b| Equivalent::of(&curve, &model, &squares, b));
+        let equivalent = flicker.and_then(|b| Equivalent::of(curve, model, &squares, b));
         Some(Self {
             rate_hz: axis.rate_hz,
             samples: axis.samples,
-            name: axis.axis,
+            name: axis.axis.clone(),
+            model: explained.model_name.clone(),
+            verdict: explained.verdict.clone(),
             coefficients: fit
                 .coefficients
                 .iter()
                 .map(|one| scaled(one, radians))
                 .collect(),
+            states: FilterStates::of(explained),
+            is_adequate: fit.is_adequate(),
             p_value: fit.p_value,
             overbound: overbound.scaled(radians),
             overbound_with_process: with_process.scaled(radians),
             equivalent: equivalent.map(|found| Equivalent {
-                process: crate::overbound::GaussMarkovProcess {
+                process: GaussMarkovProcess {
                     sigma: radians * found.process.sigma,
                     ..found.process
                 },
                 ..found
             }),
-            octaves,
-            bins: bins.unwrap_or_default(),
-            blocks: blocks.collect(),
+            octaves: curve.points().iter().zip(&limits).map(octave).collect(),
+            bins: bins(explained),
+            blocks: blocks(explained.course.as_ref(), scale, radians),
         })
     }
 
@@ -167,6 +211,53 @@ impl AxisNoise {
             },
             usable,
         )
+    }
+
+    /// The random walk for a filter that has no other state for the bias, in rad/s²/√Hz: a Gauss–Markov process is driven
+    /// by white noise of density `σ √(2/T)`, and a random walk that is driven by as much changes as fast.
+    pub(super) fn walk(&self) -> Given {
+        let own = self.best("K");
+        let driving = |process: &filter_states::Process| {
+            let GaussMarkovProcess {
+                sigma,
+                correlation_time_s,
+            } = process.process;
+            2.0 * sigma * sigma / correlation_time_s
+        };
+        let processes: f64 = self.states.processes.iter().map(driving).sum();
+        if processes == 0.0 {
+            return own;
+        }
+        let measured = self.measured("K").unwrap_or(0.0);
+        Given::Number {
+            value: measured.hypot(processes.sqrt()),
+            remark: "as fast as K and the Gauss-Markov process change the bias".into(),
+        }
+    }
+
+    /// Gauss–Markov processes whose sum stands for the bias instability, from the sample interval to the length of the
+    /// record; none if B is not measured. Flicker noise is a sum over the logarithm of the correlation time, with a
+    /// variance of `B²/π` for each unit of it (Bernamont, Proc. Phys. Soc. 49, 138, 1937): `∫ 2T/(1 + ω²T²) dT/T = π/ω`.
+    pub(super) fn flicker(&self) -> Vec<GaussMarkovProcess> {
+        let Some(coefficient) = self.measured("B") else {
+            return Vec::new();
+        };
+        let (shortest, longest) = (1.0 / self.rate_hz, self.samples as f64 / self.rate_hz);
+        let steps = (longest / shortest).ln() / FLICKER_STEP.ln();
+        let sigma = coefficient * (FLICKER_STEP.ln() / std::f64::consts::PI).sqrt();
+        (0..=steps.ceil() as i32)
+            .map(|step| GaussMarkovProcess {
+                sigma,
+                correlation_time_s: shortest * FLICKER_STEP.powi(step),
+            })
+            .collect()
+    }
+
+    /// The value of a coefficient that is measured.
+    pub(super) fn measured(&self, symbol: &str) -> Option<f64> {
+        let mut coefficients = self.coefficients.iter();
+        let found = coefficients.find(|one| one.symbol == symbol)?;
+        (found.state == State::Measured).then_some(found.value)
     }
 
     /// White noise of the overbound, in rad/s/√Hz.

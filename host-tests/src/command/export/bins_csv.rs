@@ -5,7 +5,7 @@ use csv::{QuoteStyle, WriterBuilder};
 
 /// The comment that explains the columns of the spectrum.
 const SPECTRUM: &str = "# density: root of the one-sided power spectral density, in rad/s/sqrt(Hz), with its standard \
-                        error; expected: best fit of the five terms; z: measured less expected density, in standard \
+                        error; expected: that of the model; z: measured less expected density, in standard \
                         errors; block: samples in a block mean\n";
 
 /// The comment that explains the columns of the course.

@@ -1,21 +1,22 @@
 //! A C header with a macro for every number and its unit in a comment.
 
 use super::{
-    axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal, given::Given,
-    summary,
+    axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal,
+    filter_states::FilterStates, given::Given, summary,
 };
 use crate::overbound::{GaussMarkovProcess, Overbound};
 use std::fmt::Write;
 
+/// The symbols of the five terms.
+const IEEE_952: [&str; 5] = ["Q", "N", "B", "K", "R"];
+
 /// The header.
 pub(super) fn header(known: &Characterisation, name: &str) -> String {
     let prefix = identifier(name);
-    let mut text = summary::comment(known, "//");
-    let _ = write!(
-        text,
-        "//\n// *_SIGMA and *_STEP are discrete-time, at {prefix}_RATE_HZ: the standard deviations of a sample and of\n\
-         // the change of the bias from one sample to the next. *_ALL_* is the largest of the axes.\n\n\
-         #ifndef {prefix}_NOISE_H\n#define {prefix}_NOISE_H\n\n"
+    let mut text = format!(
+        "#ifndef {prefix}_NOISE_H\n#define {prefix}_NOISE_H\n\n\
+         // *_SIGMA and *_STEP are discrete-time, at {prefix}_RATE_HZ: the standard deviations of a sample and of\n\
+         // the change of the bias from one sample to the next. *_ALL_* is the largest of the axes.\n"
     );
     define(
         &mut text,
@@ -34,7 +35,8 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
         let _ = writeln!(text, "\n// axis {:?}", axis.name);
         let prefix = format!("{prefix}_AXIS_{own}");
         taken.push(own);
-        for coefficient in &axis.coefficients {
+        let of_noise = axis.coefficients.iter();
+        for coefficient in of_noise.filter(|one| IEEE_952.contains(&one.symbol)) {
             let (symbol, unit) = (coefficient.symbol, summary::unit(coefficient.half_seconds));
             let name = match symbol {
                 "N" => "NOISE_DENSITY".into(),
@@ -46,6 +48,7 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
         }
         let (density, walk) = (axis.best("N"), axis.best("K"));
         discrete(&mut text, &prefix, known.rate_hz, density, walk);
+        of_model(&mut text, &prefix, &axis.states);
         if let Some(equivalent) = axis.equivalent {
             process(
                 &mut text,
@@ -81,6 +84,7 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
         above.noise_density,
         above.random_walk,
     );
+    text += &summary::below(known, "//");
     let _ = writeln!(text, "\n#endif");
     text
 }
@@ -117,6 +121,40 @@ fn discrete(text: &mut String, prefix: &str, rate_hz: f64, density: Given, walk:
         &step,
         "rad/s, discrete",
     );
+}
+
+/// Defines what the model has beside the five terms: processes, notches, and what is subtracted.
+fn of_model(text: &mut String, prefix: &str, states: &FilterStates) {
+    // The first of each kind has no number.
+    let numbered = |at: usize| match at {
+        0 => String::new(),
+        at => format!("_{}", at + 1),
+    };
+    for (at, one) in states.processes.iter().enumerate() {
+        process(text, &format!("{prefix}{}", numbered(at)), one.process);
+    }
+    for (at, one) in states.oscillations.iter().enumerate() {
+        let of = format!("{prefix}_NOTCH{}", numbered(at));
+        let frequency = Given::plain(one.frequency_hz.value);
+        number(text, &format!("{of}_FREQUENCY_HZ"), &frequency, "Hz");
+        let size = format!("{of}_{}", one.size_name.to_uppercase());
+        number(text, &size, &Given::plain(one.size.value), "rad/s");
+    }
+    for (at, one) in states.dependences.iter().enumerate() {
+        let of = format!(
+            "{prefix}_SUBTRACT{}_{}",
+            numbered(at),
+            one.kind.name().to_uppercase()
+        );
+        let column = format!("rad/s per unit of column {:?}", one.column);
+        define(text, &format!("{of}_SLOPE"), &decimal(one.slope.value), &column);
+        if let Some(reference) = one.reference {
+            define(text, &format!("{of}_REFERENCE"), &decimal(reference), "");
+        }
+        if let Some(lag_s) = one.lag_s {
+            number(text, &format!("{of}_LAG_S"), &Given::plain(lag_s), "s");
+        }
+    }
 }
 
 fn process(text: &mut String, prefix: &str, process: GaussMarkovProcess) {

@@ -1,16 +1,7 @@
 //! The characterisation of a gyro, from which every format is written.
 
-use super::{arguments::Arguments, axis_noise::AxisNoise, given::Given};
-use crate::{
-    command::{
-        fit::fitted::{Fitted, MethodName},
-        input::record,
-        output::progress,
-        tried::TriedCovariate,
-    },
-    failure::{Failure, Place, one_line, report},
-    unit::Sensor,
-};
+use super::{arguments::Arguments, axis_noise::AxisNoise, explained::explained, given::Given};
+use crate::failure::{Failure, Place};
 
 /// The characterisation of a gyro, in radians and seconds.
 pub(super) struct Characterisation {
@@ -32,7 +23,7 @@ impl Characterisation {
     pub(super) fn best(&self) -> Pair {
         Pair {
             noise_density: self.common(|axis| axis.best("N")),
-            random_walk: self.common(|axis| axis.best("K")),
+            random_walk: self.common(AxisNoise::walk),
         }
     }
 
@@ -76,43 +67,19 @@ pub(super) struct Choice {
     pub(super) pair: Pair,
 }
 
-/// Reads the input, and fits and bounds every axis.
+/// Reads the input, explains every axis and bounds it.
 ///
 /// # Errors
-/// When the input cannot be read or fitted, is of an accelerometer, or has axes of different rates.
+/// As of [`explained`], and when an axis has no finite limits or the axes have different rates.
 pub(super) fn characterise(arguments: &Arguments) -> Result<Characterisation, Failure> {
     let path = &arguments.input;
-    let model = arguments.filter.model()?;
     let mut axes = Vec::new();
-    let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
-    for (axis, mut evidence) in record::read_with_evidence(path, about_log, covariates)? {
-        if axis.unit.sensor() != Sensor::Gyro {
+    for explained in explained(arguments)? {
+        let noise = AxisNoise::of(&explained).ok_or_else(|| {
             let what = format!(
-                "axis {} is from an accelerometer, in {}",
-                axis.axis, axis.unit
+                "axis {}: its curve has no finite confidence limits",
+                explained.axis.axis
             );
-            let remedy = "export a gyro; `fit` prints the coefficients of an accelerometer";
-            return Err(Place::file(path).failure(what, remedy));
-        }
-        let course = evidence.course.take();
-        let fitted = Fitted::with_evidence(path, axis, &model, MethodName::Covariance, evidence)?;
-        let name = fitted.axis.axis.clone();
-        let what = |text: &str| format!("axis {name}: {text}");
-        let reason = fitted.invalid.as_deref().map(what);
-        if let Some(reason) = reason.as_ref().filter(|_| !arguments.despite_invalid) {
-            let remedy = "record again, or export all the same with --despite-invalid";
-            return Err(Place::file(path).failure(reason, remedy));
-        }
-        if !progress::is_quiet() {
-            let acts = fitted.tried.iter().any(TriedCovariate::acts);
-            let notes = fitted.covariate_notes();
-            let notes = notes.iter().filter(|_| acts).map(|note| what(note));
-            for note in reason.into_iter().chain(notes) {
-                report(format_args!("{}{}", Place::file(path), one_line(&note)));
-            }
-        }
-        let noise = AxisNoise::of(fitted, course).ok_or_else(|| {
-            let what = format!("axis {name}: its curve has no finite confidence limits");
             Place::file(path).failure(what, "record longer")
         })?;
         axes.push(noise);

@@ -4,8 +4,8 @@ use super::characterisation::Characterisation;
 use csv::{QuoteStyle, WriterBuilder};
 
 /// The comment that explains the columns.
-const COMMENT: &str = "# deviations in rad/s; lower and upper: 95 % interval of each octave; model: best \
-                       fit of the five terms; overbound: white noise and random walk above every upper limit\n";
+const COMMENT: &str = "# deviations in rad/s; lower and upper: 95 % interval of each octave; model: that of the \
+                       fitted model; overbound: white noise and random walk above every upper limit\n";
 
 /// The table of every octave of every axis: the measured Allan deviation, its 95 % interval, the best
 /// fit and the overbound.

@@ -19,16 +19,15 @@ const ACCELEROMETER: &str = "not part of a gyro record: fill it in, or give it w
 
 /// Kalibr's imu.yaml.
 pub(super) fn kalibr(known: &Characterisation, arguments: &Arguments) -> String {
-    let mut text = summary::comment(known, "#");
-    text.push('\n');
+    let mut text = String::new();
     body(&mut text, "", known, arguments);
-    text
+    text + &summary::below(known, "#")
 }
 
 /// OpenVINS' kalibr_imu_chain.yaml, which has the same entries under `imu0`, in the YAML dialect of
 /// OpenCV.
 pub(super) fn openvins(known: &Characterisation, arguments: &Arguments) -> String {
-    let mut text = format!("%YAML:1.0\n\n{}\nimu0:\n", summary::comment(known, "#"));
+    let mut text = "%YAML:1.0\n\nimu0:\n".to_owned();
     matrix(&mut text, "T_i_b", 4, "1.0");
     body(&mut text, "  ", known, arguments);
     text += "  time_offset: 0.0\n  model: \"kalibr\"\n";
@@ -37,7 +36,7 @@ pub(super) fn openvins(known: &Characterisation, arguments: &Arguments) -> Strin
         matrix(&mut text, name, 3, "1.0");
     }
     matrix(&mut text, "Tg", 3, "0.0");
-    text
+    text + &summary::below(known, "#")
 }
 
 /// Writes a square matrix with one number on the diagonal and zeros elsewhere.
@@ -51,29 +50,6 @@ fn matrix(text: &mut String, name: &str, size: usize, diagonal: &str) {
 }
 
 fn body(text: &mut String, indent: &str, known: &Characterisation, arguments: &Arguments) {
-    let accelerometer = [
-        (
-            "accelerometer_noise_density",
-            "--accelerometer-noise-density",
-            arguments.accelerometer_noise_density,
-            "m/s^2/sqrt(Hz)",
-        ),
-        (
-            "accelerometer_random_walk",
-            "--accelerometer-random-walk",
-            arguments.accelerometer_random_walk,
-            "m/s^3/sqrt(Hz)",
-        ),
-    ];
-    for (key, option, value, unit) in accelerometer {
-        let given = value.map_or_else(
-            || Given::Missing {
-                why: format!("{ACCELEROMETER} {option}"),
-            },
-            Given::plain,
-        );
-        line(text, indent, "", key, &given, unit);
-    }
     let (live, beside) = known.chosen(arguments.overbound);
     for (choice, mark) in [(live, ""), (beside, "# ")] {
         let Choice { name, pair } = choice;
@@ -100,6 +76,29 @@ fn body(text: &mut String, indent: &str, known: &Characterisation, arguments: &A
                 "{indent}# discrete-time: {sigma} rad/s is the standard deviation of a sample at update_rate"
             );
         }
+    }
+    let accelerometer = [
+        (
+            "accelerometer_noise_density",
+            "--accelerometer-noise-density",
+            arguments.accelerometer_noise_density,
+            "m/s^2/sqrt(Hz)",
+        ),
+        (
+            "accelerometer_random_walk",
+            "--accelerometer-random-walk",
+            arguments.accelerometer_random_walk,
+            "m/s^3/sqrt(Hz)",
+        ),
+    ];
+    for (key, option, value, unit) in accelerometer {
+        let given = value.map_or_else(
+            || Given::Missing {
+                why: format!("{ACCELEROMETER} {option}"),
+            },
+            Given::plain,
+        );
+        line(text, indent, "", key, &given, unit);
     }
     // A JSON string is also a YAML string.
     let topic = serde_json::Value::from(arguments.rostopic.as_str());

@@ -29,9 +29,7 @@ pub(super) fn json(known: &Characterisation, arguments: &Arguments) -> String {
     property(known, &mut best, &mut notes, "BiasInstability", |axis| {
         axis.best("B")
     });
-    property(known, &mut best, &mut notes, "RandomWalk", |axis| {
-        axis.best("K")
-    });
+    property(known, &mut best, &mut notes, "RandomWalk", AxisNoise::walk);
     let mut above = Map::new();
     property(
         known,

@@ -1,4 +1,4 @@
-//! `export`: writes coefficients in the formats of other programs.
+//! `export`: writes a model in the formats of other programs.
 
 mod arguments;
 mod autopilot;
@@ -8,9 +8,16 @@ mod c_header;
 mod characterisation;
 mod curve_csv;
 mod decimal;
+mod explained;
+mod filter_states;
 mod given;
+mod gtsam;
 mod kalibr;
+mod kf_gins;
 mod matlab;
+mod model_json;
+mod odometry;
+mod ros;
 mod summary;
 
 use crate::{
@@ -24,25 +31,7 @@ use std::{io::Write, path::Path};
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let positive = [
-        (
-            "--accelerometer-noise-density",
-            arguments.accelerometer_noise_density,
-        ),
-        (
-            "--accelerometer-random-walk",
-            arguments.accelerometer_random_walk,
-        ),
-        ("--prediction-interval", arguments.prediction_interval),
-    ];
-    for (option, value) in positive {
-        if value.is_some_and(|value| !(value.is_finite() && value > 0.0)) {
-            return Err(Failure::option(
-                format!("{option} is impossible"),
-                "give a positive, finite number",
-            ));
-        }
-    }
+    arguments.check()?;
     // The file comes first, so that an output that cannot be written is refused before the fit.
     let create = |path| OutputFile::create(path, [&*arguments.input]);
     let file = arguments.output.as_deref().map(create).transpose()?;
@@ -50,6 +39,12 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let text = match arguments.format {
         Format::Kalibr => kalibr::kalibr(&known, arguments),
         Format::Openvins => kalibr::openvins(&known, arguments),
+        Format::VinsFusion => odometry::vins_fusion(&known, arguments),
+        Format::LioSam => odometry::lio_sam(&known, arguments),
+        Format::Gtsam => gtsam::python(&known, arguments),
+        Format::KfGins => kf_gins::yaml(&known, arguments),
+        Format::Ros => ros::yaml(&known, arguments),
+        Format::Json => model_json::text(&known),
         Format::Px4 => autopilot::px4(&known, arguments),
         Format::Ardupilot => autopilot::ardupilot(&known, arguments),
         Format::Matlab => matlab::json(&known, arguments),

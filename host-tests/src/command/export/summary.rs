@@ -1,12 +1,8 @@
 //! The comments of every format, which tell axis by axis where the numbers come from.
 
 use super::{axis_noise::AxisNoise, characterisation::Characterisation, decimal::decimal};
-use crate::{
-    command::output::number::{number, probability},
-    overbound::Overbound,
-};
+use crate::{command::output::number::number, failure::one_line, overbound::Overbound};
 use allanite::Coefficient;
-use allanite::fit::ADEQUATE_P;
 
 /// The lines of the comments, without comment marks. Names are quoted, so that no name can end a
 /// comment.
@@ -25,8 +21,13 @@ pub(super) fn lines(known: &Characterisation) -> Vec<String> {
     lines
 }
 
+/// The lines as a block of comments below the numbers, with a blank line before it.
+pub(super) fn below(known: &Characterisation, mark: &str) -> String {
+    format!("\n{}", comment(known, mark))
+}
+
 /// The lines as a block of comments.
-pub(super) fn comment(known: &Characterisation, mark: &str) -> String {
+fn comment(known: &Characterisation, mark: &str) -> String {
     let lines = lines(known).into_iter();
     lines
         .map(|line| format!("{mark} {line}").trim_end().to_owned() + "\n")
@@ -35,20 +36,17 @@ pub(super) fn comment(known: &Characterisation, mark: &str) -> String {
 
 fn of_axis(axis: &AxisNoise) -> Vec<String> {
     let mut lines = vec![format!(
-        "Axis {:?}: {} samples at {} Hz",
+        "Axis {:?}: {} samples at {} Hz; {}",
         axis.name,
         axis.samples,
-        decimal(axis.rate_hz)
+        decimal(axis.rate_hz),
+        axis.model
     )];
+    lines.push(format!("  {}", one_line(&axis.verdict)));
     for coefficient in &axis.coefficients {
         lines.push(of_coefficient(axis, coefficient));
     }
-    if axis.p_value < ADEQUATE_P {
-        lines.push(format!(
-            "  not adequate (p {}): the record has another effect, and the overbound is the safer choice",
-            probability(axis.p_value)
-        ));
-    }
+    lines.extend(axis.states.lines().iter().map(|line| format!("  {line}")));
     if let Some(equivalent) = axis.equivalent {
         lines.push(format!(
             "  B as a Gauss-Markov process: sigma {} rad/s, correlation time {} s; this replacement \
@@ -67,7 +65,7 @@ fn of_axis(axis: &AxisNoise) -> Vec<String> {
     lines.push(format!(
         "  overbound with a Gauss-Markov process: {with_process}"
     ));
-    lines.push("  (both lie above the upper end of the 95 % interval of every octave)".into());
+    lines.push("  (both lie above the upper end of the 95 % interval of every octave, notches and subtracted parts aside)".into());
     lines
 }
 

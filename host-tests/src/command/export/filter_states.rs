@@ -1,0 +1,250 @@
+//! What a model has beside white noise and a random walk, sorted by what a filter does with it: states that it carries,
+//! oscillations that a notch takes out, dependences that are subtracted, and what it leaves.
+
+use super::explained::{Dependence, Explained};
+use crate::{
+    command::{known_filter::is_filter, output::words::plain},
+    dependence::candidates::Form,
+    overbound::GaussMarkovProcess,
+};
+use allanite::{
+    Term,
+    effect::{AngleRandomWalk, Effect, GaussMarkov, RateRandomWalk},
+    fit::ShapeEstimate,
+};
+
+/// What a model has beside its white noise and its random walk, in radians and seconds.
+#[derive(Default)]
+pub(super) struct FilterStates {
+    pub(super) processes: Vec<Process>,
+    pub(super) oscillations: Vec<Oscillation>,
+    pub(super) dependences: Vec<Correction>,
+    /// The filters that the white noise has passed.
+    pub(super) filters: Vec<Term>,
+    /// The effects that are in none of these places, by name.
+    pub(super) left: Vec<&'static str>,
+}
+
+/// A value with its 95 % interval.
+#[derive(Clone, Copy)]
+pub(super) struct Interval {
+    pub(super) value: f64,
+    pub(super) lower: f64,
+    pub(super) upper: f64,
+}
+
+/// A Gauss–Markov process of the model.
+pub(super) struct Process {
+    pub(super) process: GaussMarkovProcess,
+    /// The intervals of σ, in rad/s, and of the correlation time, in seconds.
+    pub(super) sigma: Interval,
+    pub(super) time_s: Interval,
+}
+
+/// An oscillation that a notch takes out.
+pub(super) struct Oscillation {
+    pub(super) effect: &'static str,
+    pub(super) frequency_hz: Interval,
+    /// Amplitude of a sinusoid or root-mean-square of a resonance, in rad/s, and the name of that number.
+    pub(super) size: Interval,
+    pub(super) size_name: &'static str,
+}
+
+/// A dependence that is subtracted before the filter.
+pub(super) struct Correction {
+    pub(super) column: String,
+    /// The power of the column less its reference.
+    pub(super) kind: Kind,
+    /// The coefficient in rad/s per unit of the column to that power, with its 95 % interval.
+    pub(super) slope: Interval,
+    /// What is subtracted from the column: the centre of a square, or else its mean. `None` if that is not known.
+    pub(super) reference: Option<f64>,
+    pub(super) lag_s: Option<f64>,
+}
+
+/// What of a column the rate follows.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Column,
+    RateOfChange,
+    Square,
+}
+
+impl Kind {
+    /// The name in files.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Column => "column",
+            Self::RateOfChange => "rate_of_change",
+            Self::Square => "square",
+        }
+    }
+}
+
+/// Whether a term is a line or another hump at a frequency of its own, which a notch takes out.
+pub(super) fn is_oscillation(term: &Term) -> bool {
+    let description = term.effect.description();
+    let first = description.parameters.first();
+    first.is_some_and(|first| first.name == "frequency_hz") && description.replaces.is_none()
+}
+
+impl FilterStates {
+    /// Sorts the terms of a model.
+    pub(super) fn of(explained: &Explained) -> Self {
+        let radians = explained.axis.unit.in_si();
+        let fit = &explained.fit;
+        let shape = |at: usize, place: usize| {
+            let term = &explained.model.terms()[at];
+            let value = term.parameters[place];
+            let name = term.effect.parameters().get(place).map(|one| one.name);
+            let mut fitted = fit.shape.iter();
+            let estimate = fitted.find(|one| one.term == at && Some(one.name) == name);
+            let ends = estimate.map_or([value; 2], |ShapeEstimate { lower, upper, .. }| {
+                [*lower, *upper]
+            });
+            Interval {
+                value,
+                lower: ends[0],
+                upper: ends[1],
+            }
+        };
+        let size = |at: usize| {
+            let one = &fit.coefficients[at];
+            Interval {
+                value: radians * one.value,
+                lower: radians * one.lower,
+                upper: radians * one.upper,
+            }
+        };
+        let mut states = Self {
+            dependences: explained
+                .dependences
+                .iter()
+                .map(|one| Correction::of(one, radians))
+                .collect(),
+            ..Self::default()
+        };
+        let carried = [
+            AngleRandomWalk.description().name,
+            RateRandomWalk.description().name,
+        ];
+        for (at, term) in explained.model.terms().iter().enumerate() {
+            let name = term.effect.name();
+            if fit.coefficients[at].value == 0.0 || carried.contains(&name) {
+                continue;
+            }
+            if name == GaussMarkov.description().name {
+                let (sigma, time_s) = (size(at), shape(at, 0));
+                states.processes.push(Process {
+                    process: GaussMarkovProcess {
+                        sigma: sigma.value,
+                        correlation_time_s: time_s.value,
+                    },
+                    sigma,
+                    time_s,
+                });
+            } else if is_oscillation(term) {
+                states.oscillations.push(Oscillation {
+                    effect: name,
+                    frequency_hz: shape(at, 0),
+                    size: size(at),
+                    size_name: term.effect.coefficient(),
+                });
+            } else if is_filter(term.effect) {
+                states.filters.push(*term);
+            } else {
+                states.left.push(name);
+            }
+        }
+        states
+    }
+
+    /// What the model has beside white noise, random walk and bias instability, a line each.
+    pub(super) fn lines(&self) -> Vec<String> {
+        use crate::command::output::number::number;
+        let interval = |one: &Interval, unit: &str| {
+            format!(
+                "{} {unit} ({} to {}, 95 %)",
+                number(one.value),
+                number(one.lower),
+                number(one.upper)
+            )
+        };
+        let mut lines = Vec::new();
+        for Process { sigma, time_s, .. } in &self.processes {
+            lines.push(format!(
+                "Gauss-Markov process: sigma {}, correlation time {}",
+                interval(sigma, "rad/s"),
+                interval(time_s, "s")
+            ));
+        }
+        for one in &self.oscillations {
+            lines.push(format!(
+                "notch at {}: {}, {} {}",
+                interval(&one.frequency_hz, "Hz"),
+                plain(one.effect),
+                plain(one.size_name),
+                interval(&one.size, "rad/s")
+            ));
+        }
+        for one in &self.dependences {
+            lines.push(format!("subtract {}", one.words()));
+        }
+        for filter in &self.filters {
+            lines.push(format!(
+                "white noise has passed a filter ({}): N is its density far below the cutoff, and what a sample scatters \
+                 by is less than N times the root of the rate",
+                plain(filter.effect.name())
+            ));
+        }
+        lines
+    }
+}
+
+impl Correction {
+    fn of(dependence: &Dependence, radians: f64) -> Self {
+        let (lower, upper) = dependence.slope.interval();
+        let (kind, reference, lag_s) = match &dependence.series.form {
+            Form::Itself => (Kind::Column, dependence.mean, None),
+            Form::Behind(lag) => (Kind::Column, dependence.mean, Some(lag.lag_s)),
+            Form::RateOfChange => (Kind::RateOfChange, None, None),
+            Form::Square { centre, lag_s } => (Kind::Square, Some(*centre), *lag_s),
+        };
+        Self {
+            column: dependence.series.column.clone(),
+            kind,
+            slope: Interval {
+                value: radians * dependence.slope.value,
+                lower: radians * lower,
+                upper: radians * upper,
+            },
+            reference,
+            lag_s,
+        }
+    }
+
+    /// The dependence as a formula.
+    fn words(&self) -> String {
+        use crate::command::output::number::number;
+        let column = format!("{:?}", self.column);
+        let column = match self.lag_s {
+            Some(lag_s) => format!("{column} behind a lag of {} s", number(lag_s)),
+            None => column,
+        };
+        let from = self.reference.map_or_else(
+            || column.clone(),
+            |reference| format!("({column} - {})", number(reference)),
+        );
+        let of = match self.kind {
+            Kind::Column => from,
+            Kind::RateOfChange => format!("the change per second of {from}"),
+            Kind::Square => format!("{from}^2"),
+        };
+        format!(
+            "{} rad/s ({} to {}, 95 %) times {of}",
+            number(self.slope.value),
+            number(self.slope.lower),
+            number(self.slope.upper)
+        )
+    }
+}

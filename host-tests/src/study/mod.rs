@@ -8,6 +8,7 @@ pub mod confusion;
 pub mod course;
 pub mod detection;
 pub mod efficiency;
+pub mod export;
 pub mod faults;
 pub mod five_terms;
 pub mod hidden_effect;

@@ -31,11 +31,10 @@ fn folder() -> (TempDir, String) {
     (folder, hostile)
 }
 
+/// Exports the five terms, which `fit` has too.
 fn export(folder: &Path, input: &str, arguments: &[&str]) -> String {
-    output(
-        folder,
-        &[&["export", input, "--format"], arguments].concat(),
-    )
+    let model = ["export", input, "--model", "five-terms", "--format"];
+    output(folder, &[&model[..], arguments].concat())
 }
 
 /// The coefficient of each axis that a filter may use, in radians: the value, or else the upper
@@ -373,6 +372,8 @@ fn output_file_is_written_completely_and_bad_options_are_refused() {
     let arguments = [
         "export",
         "curve.json",
+        "--model",
+        "five-terms",
         "--format",
         "kalibr",
         "--output",

@@ -25,6 +25,7 @@ mod evidence;
 mod explore;
 mod explore_server;
 mod export;
+mod export_model;
 mod export_tables;
 mod faults;
 mod formats;

@@ -7,6 +7,7 @@ mod confusion;
 mod course;
 mod detection;
 mod efficiency;
+mod export;
 mod faults;
 mod five_terms;
 mod hidden_effect;
@@ -164,6 +165,21 @@ enum Study {
     Allanite {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
+    },
+    /// Give exported models to a Kalman filter, and count whether it knows its errors
+    Export {
+        /// Number of gyros
+        #[arg(long, default_value_t = 100)]
+        gyros: u64,
+        /// Seed of the first one
+        #[arg(long, default_value_t = 1000)]
+        seed: u64,
+        /// The preset whose white noise and quantization the gyros have
+        #[arg(long, default_value = "mems")]
+        preset: Preset,
+        /// Add the bias instability and the random walk of the preset
+        #[arg(long)]
+        real: bool,
     },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
@@ -383,6 +399,12 @@ fn main() -> Result<()> {
             let name = [OsString::from("allanite")];
             CommandLine::try_parse_from(name.into_iter().chain(arguments))?.run()?;
         }
+        Study::Export {
+            gyros,
+            seed,
+            preset,
+            real,
+        } => export::print(preset, gyros, seed, real)?,
         Study::Lines { records } => lines::print(records),
         Study::Clean {
             records,

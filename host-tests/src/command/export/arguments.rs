@@ -81,7 +81,10 @@ impl Arguments {
                 "--accelerometer-noise-density",
                 self.accelerometer_noise_density,
             ),
-            ("--accelerometer-random-walk", self.accelerometer_random_walk),
+            (
+                "--accelerometer-random-walk",
+                self.accelerometer_random_walk,
+            ),
             ("--prediction-interval", self.prediction_interval),
         ];
         for (option, value) in positive {

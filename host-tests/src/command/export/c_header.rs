@@ -147,7 +147,12 @@ fn of_model(text: &mut String, prefix: &str, states: &FilterStates) {
             one.kind.name().to_uppercase()
         );
         let column = format!("rad/s per unit of column {:?}", one.column);
-        define(text, &format!("{of}_SLOPE"), &decimal(one.slope.value), &column);
+        define(
+            text,
+            &format!("{of}_SLOPE"),
+            &decimal(one.slope.value),
+            &column,
+        );
         if let Some(reference) = one.reference {
             define(text, &format!("{of}_REFERENCE"), &decimal(reference), "");
         }

@@ -6,14 +6,12 @@ use crate::{
         compare::compared::Compared,
         diagnose::{
             diagnosed::Diagnosed,
-            words::{disagreement, verdict},
+            words::{unexplained, verdict},
         },
         fit::fitted::{Fitted, MethodName},
         input::record,
         known_filter,
-        output::{
-            disturbance::invalid as words_of_invalid, number::probability, progress, words,
-        },
+        output::{disturbance::invalid as words_of_invalid, number::probability, progress, words},
         tried::TriedCovariate,
     },
     curve_file::AxisCurve,
@@ -23,8 +21,8 @@ use crate::{
     unit::Sensor,
 };
 use allanite::{
-    Curve, Error, Model, course::Course, covariate::Slope, diagnosis::Verdict, fit::Fit,
-    spectrum::Spectrum,
+    Comparison, Curve, Error, Model, course::Course, covariate::Slope, diagnosis::Verdict,
+    fit::Fit, spectrum::Spectrum,
 };
 use std::path::Path;
 
@@ -110,8 +108,8 @@ impl Explained {
             series: series.clone(),
             mean: mean(&diagnosed.columns, &series.column),
         });
-        let rest = match diagnosed.verdict {
-            Verdict::Unexplained | Verdict::Incomplete => Some(disagreement(&step.comparison)),
+        let unexplained = match diagnosed.verdict {
+            Verdict::Unexplained | Verdict::Incomplete => Some(rest(&step.comparison)),
             _ if diagnosed.stationarity.is_disturbed() => {
                 diagnosed.stationarity.strongest(diagnosed.axis.unit)
             }
@@ -119,7 +117,7 @@ impl Explained {
         };
         Ok(Self {
             dependences: dependences.collect(),
-            unexplained: rest,
+            unexplained,
             warnings: Vec::new(),
             course: diagnosed.course.take(),
             axis: diagnosed.axis,
@@ -202,7 +200,7 @@ impl Explained {
         });
         let unexplained = self.unexplained.iter().map(|rest| {
             (
-                format!("axis {name}: no model explains it: {rest}"),
+                format!("axis {name}: the diagnosis leaves something unexplained: {rest}"),
                 arguments.despite_unexplained,
                 "see `diagnose`; --despite-unexplained exports it all the same, best with --overbound, and --model \
                  five-terms leaves the diagnosis out",
@@ -226,6 +224,15 @@ impl Explained {
 fn say(path: &Path, what: &str) {
     if !progress::is_quiet() {
         report(format_args!("{}{}", Place::file(path), one_line(what)));
+    }
+}
+
+/// Where a record differs from its model most: in octaves, or else in the spectrum.
+fn rest(comparison: &Comparison<OCTAVES, BINS>) -> String {
+    let bands = unexplained(comparison);
+    match comparison.stretches().next() {
+        None if !bands.is_empty() => format!("the spectrum is {}", bands.join(", ")),
+        _ => comparison.to_string(),
     }
 }
 

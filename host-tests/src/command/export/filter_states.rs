@@ -9,7 +9,7 @@ use crate::{
 };
 use allanite::{
     Term,
-    effect::{AngleRandomWalk, Effect, GaussMarkov, RateRandomWalk},
+    effect::{AngleRandomWalk, BiasInstability, Effect, GaussMarkov, RateRandomWalk},
     fit::ShapeEstimate,
 };
 
@@ -21,7 +21,7 @@ pub(super) struct FilterStates {
     pub(super) dependences: Vec<Correction>,
     /// The filters that the white noise has passed.
     pub(super) filters: Vec<Term>,
-    /// The effects that are in none of these places, by name.
+    /// The effects that are in none of these places, by name. Bias instability has a place of its own.
     pub(super) left: Vec<&'static str>,
 }
 
@@ -126,6 +126,7 @@ impl FilterStates {
         };
         let carried = [
             AngleRandomWalk.description().name,
+            BiasInstability.description().name,
             RateRandomWalk.description().name,
         ];
         for (at, term) in explained.model.terms().iter().enumerate() {

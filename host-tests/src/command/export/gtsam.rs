@@ -43,7 +43,12 @@ pub(super) fn python(known: &Characterisation, arguments: &Arguments) -> String 
             ("setBiasOmegaCovariance", walk, "K^2 in rad^2/s^3"),
         ];
         for (member, given, unit) in both {
-            set(&mut text, &format!("    {mark}params.{member}"), given, unit);
+            set(
+                &mut text,
+                &format!("    {mark}params.{member}"),
+                given,
+                unit,
+            );
         }
     }
     text += "    return params\n";
@@ -54,7 +59,10 @@ pub(super) fn python(known: &Characterisation, arguments: &Arguments) -> String 
 fn set(text: &mut String, call: &str, given: &[Given], unit: &str) {
     let values = given.iter().filter_map(Given::value);
     let squares: Vec<String> = values.map(|value| decimal(value * value)).collect();
-    let words = given.iter().map(Given::words).filter(|words| !words.is_empty());
+    let words = given
+        .iter()
+        .map(Given::words)
+        .filter(|words| !words.is_empty());
     let words = words.collect::<Vec<_>>().join("; ");
     let remark = if words.is_empty() {
         String::new()

@@ -22,7 +22,11 @@ pub(super) fn yaml(known: &Characterisation, arguments: &Arguments) -> String {
         } else {
             "# "
         };
-        let name = if is_overbound { "overbound" } else { "best fit" };
+        let name = if is_overbound {
+            "overbound"
+        } else {
+            "best fit"
+        };
         let _ = writeln!(text, "  # {name}:");
         body(&mut text, &format!("  {mark}"), known, is_overbound);
     }

@@ -144,7 +144,11 @@ fn axis(axis: &AxisNoise) -> Axis<'_> {
         notches: states.oscillations.iter().map(notch).collect(),
         subtract: states.dependences.iter().map(subtract).collect(),
         not_carried: &states.left,
-        overbound: bound(&axis.overbound, axis.overbound_density(), axis.overbound_walk()),
+        overbound: bound(
+            &axis.overbound,
+            axis.overbound_density(),
+            axis.overbound_walk(),
+        ),
         overbound_with_process: bound(
             &axis.overbound_with_process,
             Given::plain(axis.overbound_with_process.noise_density),

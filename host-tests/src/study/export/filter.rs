@@ -1,0 +1,270 @@
+//! A Kalman filter for the angle and the bias of one axis, with a model that `export` wrote.
+//!
+//! Every second it adds the angle that the gyro shows, less what is to be subtracted, and is told the angle with an error.
+//! Its states are the angle, a constant bias that walks, and the Gauss–Markov processes of the model.
+
+use super::gyro::{RATE_HZ, Truth};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use serde_json::Value;
+use std::f64::consts::TAU;
+
+/// The time between two updates, in seconds.
+const STEP_S: f64 = 1.0;
+
+/// The samples between two updates.
+const SAMPLES: usize = 100;
+
+/// The error of the angle that the filter is told, over the white noise of one second.
+const REFERENCE: f64 = 3.0;
+
+/// The standard deviation of the bias before the first update, in rad/s; far above all biases.
+const UNKNOWN: f64 = 0.1;
+
+/// The share of a record in which the filter settles.
+const SETTLES: f64 = 0.25;
+
+/// The width of a notch over its frequency.
+const NOTCH: f64 = 0.05;
+
+/// What the filter takes of a model, in radians and seconds.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    noise_density: f64,
+    random_walk: f64,
+    /// σ and correlation time of each process.
+    processes: Vec<(f64, f64)>,
+    notches_hz: Vec<f64>,
+    subtracted: Vec<Subtracted>,
+}
+
+/// A part of the rate that follows the temperature.
+#[derive(Clone, Debug)]
+struct Subtracted {
+    kind: String,
+    slope: f64,
+    reference: f64,
+    lag_s: Option<f64>,
+}
+
+impl Model {
+    /// Takes a model from an axis of the exported JSON. With `alone`, it takes white noise and random walk, which are all
+    /// that most formats have. A bound is no measurement, and is not used.
+    pub fn of(axis: &Value, alone: bool) -> Self {
+        let all = |name: &str| axis[name].as_array().cloned().unwrap_or_default();
+        let number = |value: &Value| value.as_f64().unwrap_or_default();
+        let measured = |symbol: &str| {
+            let coefficients = all("coefficients");
+            let mut found = coefficients
+                .iter()
+                .filter(|one| one["symbol"] == symbol && one["state"] == "measured");
+            found.next().map_or(0.0, |one| number(&one["value"]))
+        };
+        let mut model = Self {
+            noise_density: measured("N"),
+            random_walk: measured("K"),
+            ..Self::default()
+        };
+        if alone {
+            return model;
+        }
+        for list in ["processes", "flicker_processes"] {
+            let processes = all(list);
+            // What is faster than a step is white noise to the filter, and belongs to the flicker noise's short end.
+            let slow = processes
+                .iter()
+                .map(|one| (number(&one["sigma"]), number(&one["correlation_time_s"])));
+            model
+                .processes
+                .extend(slow.filter(|(_, time_s)| list == "processes" || *time_s >= STEP_S));
+        }
+        model.notches_hz = all("notches")
+            .iter()
+            .map(|one| number(&one["frequency_hz"]))
+            .collect();
+        model.subtracted = all("subtract")
+            .iter()
+            .map(|one| Subtracted {
+                kind: one["kind"].as_str().unwrap_or_default().to_owned(),
+                slope: number(&one["slope"]),
+                reference: number(&one["reference"]),
+                lag_s: one["lag_s"].as_f64(),
+            })
+            .collect();
+        model
+    }
+}
+
+/// How a filter fared.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    /// The mean of `eᵀ P⁻¹ e / 2` over the errors of angle and bias: one if the filter knows its errors.
+    pub nees: f64,
+    /// The root-mean-square error of the angle, in radians.
+    pub angle_error: f64,
+}
+
+impl Run {
+    /// Runs a filter over a record.
+    pub fn of(model: &Model, record: &[Truth]) -> Self {
+        let rates = prepared(model, record);
+        let mut filter = Filter::new(model);
+        let steps = rates.len() / SAMPLES;
+        let settled = (SETTLES * steps as f64) as usize;
+        let (mut sum, mut squares) = (0.0, 0.0);
+        // The reference's errors are drawn from the record itself: a gyro's noise is none of its own.
+        let mut reference = crate::simulate::Simulator::new(
+            crate::simulate::Coefficients {
+                angle_random_walk: filter.reference,
+                ..Default::default()
+            },
+            1.0,
+            rates.len() as u64 ^ record.first().map_or(0, |one| one.rate.to_bits()),
+        );
+        for (step, block) in rates.chunks_exact(SAMPLES).enumerate() {
+            let angle: f64 = block.iter().map(|(rate, _)| rate / RATE_HZ).sum();
+            filter.predict(angle);
+            filter.update(reference.next().unwrap_or_default());
+            if step >= settled {
+                let bias = block.last().map_or(0.0, |(_, bias)| *bias);
+                let (nees, error) = filter.compared(bias);
+                sum += nees;
+                squares += error * error;
+            }
+        }
+        let count = (steps - settled) as f64;
+        Self {
+            nees: sum / count,
+            angle_error: (squares / count).sqrt(),
+        }
+    }
+}
+
+/// The rates without what is subtracted and behind the notches, each with its true bias, in rad/s.
+fn prepared(model: &Model, record: &[Truth]) -> Vec<(f64, f64)> {
+    let mut rates: Vec<(f64, f64)> = record
+        .iter()
+        .map(|one| (one.rate.to_radians(), one.bias.to_radians()))
+        .collect();
+    for part in &model.subtracted {
+        let mut behind = record.first().map_or(0.0, |one| one.temperature);
+        let mut before = behind;
+        for (one, (rate, bias)) in record.iter().zip(&mut rates) {
+            // The thermometer's noise is smoothed over a second, as the means of a diagnosis smooth it.
+            let lag_s = part.lag_s.unwrap_or(STEP_S);
+            before = behind;
+            behind += (one.temperature - behind) / (lag_s * RATE_HZ);
+            let x = match part.kind.as_str() {
+                "rate_of_change" => (behind - before) * RATE_HZ,
+                "square" => (behind - part.reference).powi(2),
+                _ => behind - part.reference,
+            };
+            *rate -= part.slope * x;
+            *bias -= part.slope * x;
+        }
+    }
+    for &frequency_hz in &model.notches_hz {
+        notch(&mut rates, frequency_hz);
+    }
+    rates
+}
+
+/// Takes out a frequency (Bristow-Johnson, Cookbook formulae for audio equalizer biquad filter coefficients, notch).
+fn notch(rates: &mut [(f64, f64)], frequency_hz: f64) {
+    let angle = TAU * frequency_hz / RATE_HZ;
+    let alpha = 0.5 * NOTCH * angle.sin();
+    let (gain, middle) = (1.0 / (1.0 + alpha), -2.0 * angle.cos());
+    let first = rates.first().map_or(0.0, |(rate, _)| *rate);
+    let (mut x, mut y) = ([first; 2], [first; 2]);
+    for (rate, _) in rates {
+        let out = gain * (*rate + middle * x[0] + x[1] - middle * y[0] - (1.0 - alpha) * y[1]);
+        x = [*rate, x[0]];
+        y = [out, y[0]];
+        *rate = out;
+    }
+}
+
+/// The filter: angle, constant bias, and the processes.
+struct Filter {
+    state: DVector<f64>,
+    covariance: DMatrix<f64>,
+    transition: DMatrix<f64>,
+    noise: DMatrix<f64>,
+    /// The standard deviation of the angle that it is told, in radians.
+    reference: f64,
+}
+
+impl Filter {
+    fn new(model: &Model) -> Self {
+        let size = 2 + model.processes.len();
+        let mut transition = DMatrix::<f64>::identity(size, size);
+        let mut noise = DMatrix::<f64>::zeros(size, size);
+        let mut covariance = DMatrix::<f64>::zeros(size, size);
+        let h = STEP_S;
+        // The angle loses what the biases add to the rate.
+        transition[(0, 1)] = -h;
+        let walk = model.random_walk.powi(2);
+        noise[(0, 0)] = model.noise_density.powi(2) * h + walk * h.powi(3) / 3.0;
+        noise[(1, 1)] = walk * h;
+        noise[(0, 1)] = -0.5 * walk * h * h;
+        noise[(1, 0)] = noise[(0, 1)];
+        let reference = REFERENCE * model.noise_density * h.sqrt();
+        covariance[(0, 0)] = reference * reference;
+        covariance[(1, 1)] = UNKNOWN * UNKNOWN;
+        for (at, &(sigma, time_s)) in model.processes.iter().enumerate() {
+            let at = at + 2;
+            // The exact integral of a first-order process over a step (Gelb, Applied Optimal Estimation, 1974, 3.6).
+            let kept = (-h / time_s).exp();
+            let square = sigma * sigma;
+            transition[(at, at)] = kept;
+            transition[(0, at)] = -time_s * (1.0 - kept);
+            noise[(at, at)] = square * (1.0 - kept * kept);
+            noise[(0, at)] = -square * time_s * (1.0 - kept).powi(2);
+            noise[(at, 0)] = noise[(0, at)];
+            noise[(0, 0)] +=
+                square * time_s * (2.0 * h - time_s * (3.0 - 4.0 * kept + kept * kept));
+            covariance[(at, at)] = square;
+        }
+        Self {
+            state: DVector::zeros(size),
+            covariance,
+            transition,
+            noise,
+            reference,
+        }
+    }
+
+    /// Adds the angle that the gyro shows over a step.
+    fn predict(&mut self, angle: f64) {
+        self.state = &self.transition * &self.state;
+        self.state[0] += angle;
+        self.covariance =
+            &self.transition * &self.covariance * self.transition.transpose() + &self.noise;
+    }
+
+    /// Takes an angle that has this error: the gyro does not turn.
+    fn update(&mut self, angle: f64) {
+        let variance = self.covariance[(0, 0)] + self.reference * self.reference;
+        let gain = self.covariance.column(0) / variance;
+        let innovation = angle - self.state[0];
+        self.state += &gain * innovation;
+        self.covariance -= &gain * gain.transpose() * variance;
+    }
+
+    /// The normalised error squared of angle and bias, over two, and the error of the angle. `bias` is the true one.
+    fn compared(&self, bias: f64) -> (f64, f64) {
+        let biases = self.state.rows(1, self.state.len() - 1).sum();
+        let error = Vector2::new(self.state[0], biases - bias);
+        let size = self.state.len();
+        let mut covariance = Matrix2::zeros();
+        covariance[(0, 0)] = self.covariance[(0, 0)];
+        for i in 1..size {
+            covariance[(0, 1)] += self.covariance[(0, i)];
+            for j in 1..size {
+                covariance[(1, 1)] += self.covariance[(i, j)];
+            }
+        }
+        covariance[(1, 0)] = covariance[(0, 1)];
+        let inverse = covariance.try_inverse().unwrap_or_else(Matrix2::zeros);
+        (0.5 * error.dot(&(inverse * error)), error[0])
+    }
+}

@@ -4,7 +4,7 @@
 //! Its states are the angle, a constant bias that walks, and the Gauss–Markov processes of the model.
 
 use super::gyro::{RATE_HZ, Truth};
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -25,6 +25,9 @@ const SETTLES: f64 = 0.25;
 
 /// The width of a notch over its frequency.
 const NOTCH: f64 = 0.05;
+
+/// The most states: angle, bias and processes. States that a model does not need stay at zero.
+const STATES: usize = 16;
 
 /// What the filter takes of a model, in radians and seconds.
 #[derive(Clone, Debug, Default)]
@@ -147,11 +150,10 @@ fn prepared(model: &Model, record: &[Truth]) -> Vec<(f64, f64)> {
         .collect();
     for part in &model.subtracted {
         let mut behind = record.first().map_or(0.0, |one| one.temperature);
-        let mut before = behind;
         for (one, (rate, bias)) in record.iter().zip(&mut rates) {
             // The thermometer's noise is smoothed over a second, as the means of a diagnosis smooth it.
             let lag_s = part.lag_s.unwrap_or(STEP_S);
-            before = behind;
+            let before = behind;
             behind += (one.temperature - behind) / (lag_s * RATE_HZ);
             let x = match part.kind.as_str() {
                 "rate_of_change" => (behind - before) * RATE_HZ,
@@ -185,20 +187,19 @@ fn notch(rates: &mut [(f64, f64)], frequency_hz: f64) {
 
 /// The filter: angle, constant bias, and the processes.
 struct Filter {
-    state: DVector<f64>,
-    covariance: DMatrix<f64>,
-    transition: DMatrix<f64>,
-    noise: DMatrix<f64>,
+    state: SVector<f64, STATES>,
+    covariance: SMatrix<f64, STATES, STATES>,
+    transition: SMatrix<f64, STATES, STATES>,
+    noise: SMatrix<f64, STATES, STATES>,
     /// The standard deviation of the angle that it is told, in radians.
     reference: f64,
 }
 
 impl Filter {
     fn new(model: &Model) -> Self {
-        let size = 2 + model.processes.len();
-        let mut transition = DMatrix::<f64>::identity(size, size);
-        let mut noise = DMatrix::<f64>::zeros(size, size);
-        let mut covariance = DMatrix::<f64>::zeros(size, size);
+        let mut transition = SMatrix::<f64, STATES, STATES>::identity();
+        let mut noise = SMatrix::<f64, STATES, STATES>::zeros();
+        let mut covariance = SMatrix::<f64, STATES, STATES>::zeros();
         let h = STEP_S;
         // The angle loses what the biases add to the rate.
         transition[(0, 1)] = -h;
@@ -210,7 +211,7 @@ impl Filter {
         let reference = REFERENCE * model.noise_density * h.sqrt();
         covariance[(0, 0)] = reference * reference;
         covariance[(1, 1)] = UNKNOWN * UNKNOWN;
-        for (at, &(sigma, time_s)) in model.processes.iter().enumerate() {
+        for (at, &(sigma, time_s)) in model.processes.iter().enumerate().take(STATES - 2) {
             let at = at + 2;
             // The exact integral of a first-order process over a step (Gelb, Applied Optimal Estimation, 1974, 3.6).
             let kept = (-h / time_s).exp();
@@ -225,7 +226,7 @@ impl Filter {
             covariance[(at, at)] = square;
         }
         Self {
-            state: DVector::zeros(size),
+            state: SVector::zeros(),
             covariance,
             transition,
             noise,
@@ -235,31 +236,30 @@ impl Filter {
 
     /// Adds the angle that the gyro shows over a step.
     fn predict(&mut self, angle: f64) {
-        self.state = &self.transition * &self.state;
+        self.state = self.transition * self.state;
         self.state[0] += angle;
         self.covariance =
-            &self.transition * &self.covariance * self.transition.transpose() + &self.noise;
+            self.transition * self.covariance * self.transition.transpose() + self.noise;
     }
 
     /// Takes an angle that has this error: the gyro does not turn.
     fn update(&mut self, angle: f64) {
         let variance = self.covariance[(0, 0)] + self.reference * self.reference;
-        let gain = self.covariance.column(0) / variance;
+        let gain: SVector<f64, STATES> = self.covariance.column(0) / variance;
         let innovation = angle - self.state[0];
-        self.state += &gain * innovation;
-        self.covariance -= &gain * gain.transpose() * variance;
+        self.state += gain * innovation;
+        self.covariance -= gain * gain.transpose() * variance;
     }
 
     /// The normalised error squared of angle and bias, over two, and the error of the angle. `bias` is the true one.
     fn compared(&self, bias: f64) -> (f64, f64) {
-        let biases = self.state.rows(1, self.state.len() - 1).sum();
+        let biases = self.state.iter().skip(1).sum::<f64>();
         let error = Vector2::new(self.state[0], biases - bias);
-        let size = self.state.len();
         let mut covariance = Matrix2::zeros();
         covariance[(0, 0)] = self.covariance[(0, 0)];
-        for i in 1..size {
+        for i in 1..STATES {
             covariance[(0, 1)] += self.covariance[(0, i)];
-            for j in 1..size {
+            for j in 1..STATES {
                 covariance[(1, 1)] += self.covariance[(i, j)];
             }
         }

@@ -1,9 +1,14 @@
 //! A Kalman filter for the angle and the bias of one axis, with a model that `export` wrote.
 //!
 //! Every second it adds the angle that the gyro shows, less what is to be subtracted, and is told the angle with an error.
-//! Its states are the angle, a constant bias that walks, and the Gauss–Markov processes of the model.
+//! Its states are the angle, a constant bias that walks, the Gauss–Markov processes of the model, and the errors of the
+//! slopes with which it subtracts what follows the temperature.
 
 use super::gyro::{RATE_HZ, Truth};
+use crate::{
+    confidence::TWO_SIDED_95,
+    simulate::{Coefficients, Simulator},
+};
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -14,14 +19,14 @@ const STEP_S: f64 = 1.0;
 /// The samples between two updates.
 const SAMPLES: usize = 100;
 
-/// The error of the angle that the filter is told, over the white noise of one second.
-const REFERENCE: f64 = 3.0;
-
 /// The standard deviation of the bias before the first update, in rad/s; far above all biases.
 const UNKNOWN: f64 = 0.1;
 
 /// The share of a record in which the filter settles.
 const SETTLES: f64 = 0.25;
+
+/// The time over which a temperature is smoothed for its rate of change, in seconds.
+const SMOOTH_S: f64 = 1.0;
 
 /// The width of a notch over its frequency.
 const NOTCH: f64 = 0.05;
@@ -45,6 +50,8 @@ pub struct Model {
 struct Subtracted {
     kind: String,
     slope: f64,
+    /// The standard error of the slope.
+    error: f64,
     reference: f64,
     lag_s: Option<f64>,
 }
@@ -63,7 +70,7 @@ impl Model {
             found.next().map_or(0.0, |one| number(&one["value"]))
         };
         let mut model = Self {
-            noise_density: measured("N"),
+            noise_density: number(&axis["noise_density"]),
             random_walk: measured("K"),
             ..Self::default()
         };
@@ -89,6 +96,8 @@ impl Model {
             .map(|one| Subtracted {
                 kind: one["kind"].as_str().unwrap_or_default().to_owned(),
                 slope: number(&one["slope"]),
+                error: (number(&one["slope_upper"]) - number(&one["slope_lower"]))
+                    / (2.0 * TWO_SIDED_95),
                 reference: number(&one["reference"]),
                 lag_s: one["lag_s"].as_f64(),
             })
@@ -107,29 +116,36 @@ pub struct Run {
 }
 
 impl Run {
-    /// Runs a filter over a record.
-    pub fn of(model: &Model, record: &[Truth]) -> Self {
-        let rates = prepared(model, record);
-        let mut filter = Filter::new(model);
-        let steps = rates.len() / SAMPLES;
+    /// Runs a filter over a record. Every update tells it the angle with this standard deviation, in radians.
+    pub fn of(model: &Model, record: &[Truth], reference: f64) -> Self {
+        let prepared = Prepared::new(model, record);
+        let mut filter = Filter::new(model, reference);
+        let steps = record.len() / SAMPLES;
         let settled = (SETTLES * steps as f64) as usize;
         let (mut sum, mut squares) = (0.0, 0.0);
-        // The reference's errors are drawn from the record itself: a gyro's noise is none of its own.
-        let mut reference = crate::simulate::Simulator::new(
-            crate::simulate::Coefficients {
-                angle_random_walk: filter.reference,
-                ..Default::default()
+        let mut told = Simulator::new(
+            Coefficients {
+                angle_random_walk: reference,
+                ..Coefficients::default()
             },
             1.0,
-            rates.len() as u64 ^ record.first().map_or(0, |one| one.rate.to_bits()),
+            record.first().map_or(0, |one| one.rate.to_bits()),
         );
-        for (step, block) in rates.chunks_exact(SAMPLES).enumerate() {
-            let angle: f64 = block.iter().map(|(rate, _)| rate / RATE_HZ).sum();
-            filter.predict(angle);
-            filter.update(reference.next().unwrap_or_default());
+        for step in 0..steps {
+            let block = step * SAMPLES..(step + 1) * SAMPLES;
+            let rates = &prepared.rates[block.clone()];
+            let angle: f64 = rates.iter().map(|(rate, _)| rate / RATE_HZ).sum();
+            let means: Vec<f64> = prepared
+                .series
+                .iter()
+                .map(|series| series[block.clone()].iter().sum::<f64>() / SAMPLES as f64)
+                .collect();
+            filter.predict(angle, &means);
+            filter.update(told.next().unwrap_or_default());
             if step >= settled {
-                let bias = block.last().map_or(0.0, |(_, bias)| *bias);
-                let (nees, error) = filter.compared(bias);
+                let last = block.end - 1;
+                let now: Vec<f64> = prepared.series.iter().map(|one| one[last]).collect();
+                let (nees, error) = filter.compared(prepared.rates[last].1, &now);
                 sum += nees;
                 squares += error * error;
             }
@@ -142,32 +158,62 @@ impl Run {
     }
 }
 
-/// The rates without what is subtracted and behind the notches, each with its true bias, in rad/s.
-fn prepared(model: &Model, record: &[Truth]) -> Vec<(f64, f64)> {
-    let mut rates: Vec<(f64, f64)> = record
-        .iter()
-        .map(|one| (one.rate.to_radians(), one.bias.to_radians()))
-        .collect();
-    for part in &model.subtracted {
-        let mut behind = record.first().map_or(0.0, |one| one.temperature);
-        for (one, (rate, bias)) in record.iter().zip(&mut rates) {
-            // The thermometer's noise is smoothed over a second, as the means of a diagnosis smooth it.
-            let lag_s = part.lag_s.unwrap_or(STEP_S);
-            let before = behind;
-            behind += (one.temperature - behind) / (lag_s * RATE_HZ);
-            let x = match part.kind.as_str() {
-                "rate_of_change" => (behind - before) * RATE_HZ,
-                "square" => (behind - part.reference).powi(2),
-                _ => behind - part.reference,
-            };
-            *rate -= part.slope * x;
-            *bias -= part.slope * x;
+/// A record as the filter takes it.
+struct Prepared {
+    /// The rates without what is subtracted and behind the notches, each with its true bias, in rad/s.
+    rates: Vec<(f64, f64)>,
+    /// What each slope is multiplied by.
+    series: Vec<Vec<f64>>,
+}
+
+impl Prepared {
+    fn new(model: &Model, record: &[Truth]) -> Self {
+        let mut rates: Vec<(f64, f64)> = record
+            .iter()
+            .map(|one| (one.rate.to_radians(), one.bias.to_radians()))
+            .collect();
+        let series: Vec<Vec<f64>> = model
+            .subtracted
+            .iter()
+            .map(|part| part.series(record))
+            .collect();
+        for (part, series) in model.subtracted.iter().zip(&series) {
+            for ((rate, bias), x) in rates.iter_mut().zip(series) {
+                *rate -= part.slope * x;
+                *bias -= part.slope * x;
+            }
         }
+        for &frequency_hz in &model.notches_hz {
+            notch(&mut rates, frequency_hz);
+        }
+        Self { rates, series }
     }
-    for &frequency_hz in &model.notches_hz {
-        notch(&mut rates, frequency_hz);
+}
+
+impl Subtracted {
+    /// What the slope is multiplied by, sample by sample.
+    fn series(&self, record: &[Truth]) -> Vec<f64> {
+        let first = record.first().map_or(0.0, |one| one.temperature);
+        // A rate of change is that of a smooth temperature: the thermometer's noise has a large one.
+        let lag_s = match self.kind.as_str() {
+            "rate_of_change" => Some(SMOOTH_S),
+            _ => self.lag_s,
+        };
+        let mut behind = first;
+        let one = |truth: &Truth| {
+            let before = behind;
+            behind = match lag_s {
+                Some(lag_s) => behind + (truth.temperature - behind) / (lag_s * RATE_HZ),
+                None => truth.temperature,
+            };
+            match self.kind.as_str() {
+                "rate_of_change" => (behind - before) * RATE_HZ,
+                "square" => (behind - self.reference).powi(2),
+                _ => behind - self.reference,
+            }
+        };
+        record.iter().map(one).collect()
     }
-    rates
 }
 
 /// Takes out a frequency (Bristow-Johnson, Cookbook formulae for audio equalizer biquad filter coefficients, notch).
@@ -185,8 +231,10 @@ fn notch(rates: &mut [(f64, f64)], frequency_hz: f64) {
     }
 }
 
-/// The filter: angle, constant bias, and the processes.
+/// The filter: angle, constant bias, processes, and errors of slopes.
 struct Filter {
+    /// The place of the first error of a slope.
+    slopes: usize,
     state: SVector<f64, STATES>,
     covariance: SMatrix<f64, STATES, STATES>,
     transition: SMatrix<f64, STATES, STATES>,
@@ -196,7 +244,7 @@ struct Filter {
 }
 
 impl Filter {
-    fn new(model: &Model) -> Self {
+    fn new(model: &Model, reference: f64) -> Self {
         let mut transition = SMatrix::<f64, STATES, STATES>::identity();
         let mut noise = SMatrix::<f64, STATES, STATES>::zeros();
         let mut covariance = SMatrix::<f64, STATES, STATES>::zeros();
@@ -208,7 +256,6 @@ impl Filter {
         noise[(1, 1)] = walk * h;
         noise[(0, 1)] = -0.5 * walk * h * h;
         noise[(1, 0)] = noise[(0, 1)];
-        let reference = REFERENCE * model.noise_density * h.sqrt();
         covariance[(0, 0)] = reference * reference;
         covariance[(1, 1)] = UNKNOWN * UNKNOWN;
         for (at, &(sigma, time_s)) in model.processes.iter().enumerate().take(STATES - 2) {
@@ -225,7 +272,12 @@ impl Filter {
                 square * time_s * (2.0 * h - time_s * (3.0 - 4.0 * kept + kept * kept));
             covariance[(at, at)] = square;
         }
+        let slopes = 2 + model.processes.len().min(STATES - 2);
+        for (part, at) in model.subtracted.iter().zip(slopes..STATES) {
+            covariance[(at, at)] = part.error * part.error;
+        }
         Self {
+            slopes,
             state: SVector::zeros(),
             covariance,
             transition,
@@ -234,8 +286,11 @@ impl Filter {
         }
     }
 
-    /// Adds the angle that the gyro shows over a step.
-    fn predict(&mut self, angle: f64) {
+    /// Adds the angle that the gyro shows over a step, in which what the slopes are multiplied by has these means.
+    fn predict(&mut self, angle: f64, means: &[f64]) {
+        for (mean, at) in means.iter().zip(self.slopes..STATES) {
+            self.transition[(0, at)] = -STEP_S * mean;
+        }
         self.state = self.transition * self.state;
         self.state[0] += angle;
         self.covariance =
@@ -251,19 +306,20 @@ impl Filter {
         self.covariance -= gain * gain.transpose() * variance;
     }
 
-    /// The normalised error squared of angle and bias, over two, and the error of the angle. `bias` is the true one.
-    fn compared(&self, bias: f64) -> (f64, f64) {
-        let biases = self.state.iter().skip(1).sum::<f64>();
-        let error = Vector2::new(self.state[0], biases - bias);
-        let mut covariance = Matrix2::zeros();
-        covariance[(0, 0)] = self.covariance[(0, 0)];
-        for i in 1..STATES {
-            covariance[(0, 1)] += self.covariance[(0, i)];
-            for j in 1..STATES {
-                covariance[(1, 1)] += self.covariance[(i, j)];
-            }
+    /// The normalised error squared of angle and bias, over two, and the error of the angle. `bias` is the true one, and
+    /// `series` is what the slopes are multiplied by.
+    fn compared(&self, bias: f64, series: &[f64]) -> (f64, f64) {
+        // The bias is the sum of the states behind the angle, the errors of slopes times their series.
+        let mut sums = SMatrix::<f64, 2, STATES>::zeros();
+        sums[(0, 0)] = 1.0;
+        for at in 1..self.slopes {
+            sums[(1, at)] = 1.0;
         }
-        covariance[(1, 0)] = covariance[(0, 1)];
+        for (x, at) in series.iter().zip(self.slopes..STATES) {
+            sums[(1, at)] = *x;
+        }
+        let error = sums * self.state - Vector2::new(0.0, bias);
+        let covariance: Matrix2<f64> = sums * self.covariance * sums.transpose();
         let inverse = covariance.try_inverse().unwrap_or_else(Matrix2::zeros);
         (0.5 * error.dot(&(inverse * error)), error[0])
     }

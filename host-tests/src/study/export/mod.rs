@@ -22,6 +22,9 @@ use std::{fs, io, path::Path};
 /// The number of samples of a record, which is 44 minutes long.
 pub const SAMPLES: usize = 1 << 18;
 
+/// The standard deviation of the angle that a filter is told every second, over the white noise of one second.
+const REFERENCE: f64 = 3.0;
+
 /// What became of one gyro.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -83,12 +86,12 @@ fn one(base: Coefficients, seed: u64) -> io::Result<Outcome> {
     let record = gyro.record(SAMPLES, 2 * seed + 1);
     let fares = |axis: &Value, alone: bool| {
         let model = Model::of(axis, alone);
-        let run = Run::of(&model, &record);
+        let truth = base.angle_random_walk.to_radians();
+        let run = Run::of(&model, &record, REFERENCE * truth);
         let white = axis["coefficients"]
             .as_array()
             .and_then(|all| all.iter().find(|one| one["symbol"] == "N"));
         let of_white = |name: &str| white.and_then(|one| one[name].as_f64());
-        let truth = base.angle_random_walk.to_radians();
         let (lower, upper) = (of_white("lower"), of_white("upper"));
         Exported {
             density: of_white("value").unwrap_or(f64::NAN) / truth,

@@ -2,7 +2,7 @@
 
 use super::{
     explained::Explained,
-    filter_states::{self, FilterStates},
+    filter_states::{self, FilterStates, Interval, Process},
     given::Given,
 };
 use crate::{
@@ -213,24 +213,40 @@ impl AxisNoise {
         )
     }
 
-    /// The random walk for a filter that has no other state for the bias, in rad/s²/√Hz: a Gauss–Markov process is driven
-    /// by white noise of density `σ √(2/T)`, and a random walk that is driven by as much changes as fast.
-    pub(super) fn walk(&self) -> Given {
-        let own = self.best("K");
-        let driving = |process: &filter_states::Process| {
-            let GaussMarkovProcess {
-                sigma,
-                correlation_time_s,
-            } = process.process;
-            2.0 * sigma * sigma / correlation_time_s
-        };
-        let processes: f64 = self.states.processes.iter().map(driving).sum();
-        if processes == 0.0 {
+    /// White noise for a filter, in rad/s/√Hz: N and the processes that are too fast for it.
+    pub(super) fn white(&self) -> Given {
+        let own = self.best("N");
+        if self.states.fast.is_empty() {
             return own;
         }
-        let measured = self.measured("K").unwrap_or(0.0);
         Given::Number {
-            value: measured.hypot(processes.sqrt()),
+            value: self.white_interval().value,
+            remark: "N and the Gauss-Markov process that is white noise to a filter".into(),
+        }
+    }
+
+    /// White noise for a filter with its 95 % interval; infinite above if the record does not bound N.
+    pub(super) fn white_interval(&self) -> Interval {
+        let own = self.coefficients.iter().find(|one| one.symbol == "N");
+        let own = own.map_or(Interval::default(), |one| Interval {
+            value: one.value,
+            lower: one.lower,
+            upper: one.upper,
+        });
+        self.states.with_fast(own)
+    }
+
+    /// The random walk for a filter that has no other state for the bias, in rad/s²/√Hz: one that is driven by as much
+    /// white noise as K and the Gauss–Markov processes together changes as fast.
+    pub(super) fn walk(&self) -> Given {
+        let own = self.best("K");
+        let driving = self.states.processes.iter().map(Process::driving);
+        let driving = driving.fold(0.0, f64::hypot);
+        if driving == 0.0 {
+            return own;
+        }
+        Given::Number {
+            value: self.measured("K").unwrap_or(0.0).hypot(driving),
             remark: "as fast as K and the Gauss-Markov process change the bias".into(),
         }
     }

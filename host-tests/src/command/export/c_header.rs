@@ -43,10 +43,13 @@ pub(super) fn header(known: &Characterisation, name: &str) -> String {
                 "K" => "RANDOM_WALK".into(),
                 _ => coefficient.name.to_uppercase(),
             };
-            let given = axis.best(symbol);
+            let given = match symbol {
+                "N" => axis.white(),
+                _ => axis.best(symbol),
+            };
             number(&mut text, &format!("{prefix}_{name}"), &given, unit);
         }
-        let (density, walk) = (axis.best("N"), axis.best("K"));
+        let (density, walk) = (axis.white(), axis.best("K"));
         discrete(&mut text, &prefix, known.rate_hz, density, walk);
         of_model(&mut text, &prefix, &axis.states);
         if let Some(equivalent) = axis.equivalent {

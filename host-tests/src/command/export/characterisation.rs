@@ -22,7 +22,7 @@ impl Characterisation {
     /// White noise and random walk of the best fit.
     pub(super) fn best(&self) -> Pair {
         Pair {
-            noise_density: self.common(|axis| axis.best("N")),
+            noise_density: self.common(AxisNoise::white),
             random_walk: self.common(AxisNoise::walk),
         }
     }

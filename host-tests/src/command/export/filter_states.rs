@@ -16,7 +16,10 @@ use allanite::{
 /// What a model has beside its white noise and its random walk, in radians and seconds.
 #[derive(Default)]
 pub(super) struct FilterStates {
+    /// Processes that a filter can follow.
     pub(super) processes: Vec<Process>,
+    /// Processes that are white noise to every filter.
+    pub(super) fast: Vec<Process>,
     pub(super) oscillations: Vec<Oscillation>,
     pub(super) dependences: Vec<Correction>,
     /// The filters that the white noise has passed.
@@ -25,8 +28,13 @@ pub(super) struct FilterStates {
     pub(super) left: Vec<&'static str>,
 }
 
+/// A process whose correlation time is no longer than this number of samples is white noise to a filter: that of the
+/// density which it has at low frequencies. White noise behind a low pass of one pole is such a process. Chosen by hand:
+/// no filter is told the angle more than once in ten samples.
+const FAST_SAMPLES: f64 = 10.0;
+
 /// A value with its 95 % interval.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Interval {
     pub(super) value: f64,
     pub(super) lower: f64,
@@ -136,7 +144,12 @@ impl FilterStates {
             }
             if name == GaussMarkov.description().name {
                 let (sigma, time_s) = (size(at), shape(at, 0));
-                states.processes.push(Process {
+                let is_fast = time_s.value * explained.axis.rate_hz <= FAST_SAMPLES;
+                let list = match is_fast {
+                    true => &mut states.fast,
+                    false => &mut states.processes,
+                };
+                list.push(Process {
                     process: GaussMarkovProcess {
                         sigma: sigma.value,
                         correlation_time_s: time_s.value,
@@ -172,9 +185,14 @@ impl FilterStates {
             )
         };
         let mut lines = Vec::new();
-        for Process { sigma, time_s, .. } in &self.processes {
+        let slow = self.processes.iter().map(|one| (one, ""));
+        let fast = self
+            .fast
+            .iter()
+            .map(|one| (one, ", which is white noise to a filter"));
+        for (Process { sigma, time_s, .. }, remark) in slow.chain(fast) {
             lines.push(format!(
-                "Gauss-Markov process: sigma {}, correlation time {}",
+                "Gauss-Markov process: sigma {}, correlation time {}{remark}",
                 interval(sigma, "rad/s"),
                 interval(time_s, "s")
             ));
@@ -199,6 +217,37 @@ impl FilterStates {
             ));
         }
         lines
+    }
+}
+
+impl Process {
+    /// The density of the process far below its corner, `σ √(2T)` in rad/s/√Hz, with the ends of both intervals.
+    fn density(&self) -> Interval {
+        let density = |sigma: f64, time_s: f64| sigma * (2.0 * time_s).sqrt();
+        Interval {
+            value: density(self.sigma.value, self.time_s.value),
+            lower: density(self.sigma.lower, self.time_s.lower),
+            upper: density(self.sigma.upper, self.time_s.upper),
+        }
+    }
+
+    /// The density of the white noise that drives the process, `σ √(2/T)` in rad/s²/√Hz.
+    pub(super) fn driving(&self) -> f64 {
+        self.sigma.value * (2.0 / self.time_s.value).sqrt()
+    }
+}
+
+impl FilterStates {
+    /// White noise of a density together with the fast processes.
+    pub(super) fn with_fast(&self, white: Interval) -> Interval {
+        self.fast.iter().fold(white, |sum, process| {
+            let density = process.density();
+            Interval {
+                value: sum.value.hypot(density.value),
+                lower: sum.lower.hypot(density.lower),
+                upper: sum.upper.hypot(density.upper),
+            }
+        })
     }
 }
 

@@ -5,8 +5,8 @@
 //! names in C++.
 
 use super::{
-    arguments::Arguments, characterisation::Characterisation, decimal::decimal, given::Given,
-    summary,
+    arguments::Arguments, axis_noise::AxisNoise, characterisation::Characterisation,
+    decimal::decimal, given::Given, summary,
 };
 use std::fmt::Write;
 
@@ -15,7 +15,7 @@ pub(super) fn python(known: &Characterisation, arguments: &Arguments) -> String 
     let mut text = "import numpy as np\n\n\ndef set_gyro_noise(params):\n    \
          \"\"\"Sets the noise of a gyro in a gtsam.PreintegrationCombinedParams.\"\"\"\n"
         .to_owned();
-    let per_axis = |of: &dyn Fn(&super::axis_noise::AxisNoise) -> Given| -> Vec<Given> {
+    let per_axis = |of: &dyn Fn(&AxisNoise) -> Given| -> Vec<Given> {
         match known.axes.len() {
             3 => known.axes.iter().map(of).collect(),
             // One number stands for the three axes of a filter.
@@ -25,13 +25,13 @@ pub(super) fn python(known: &Characterisation, arguments: &Arguments) -> String 
     let pairs = [
         (
             "best fit",
-            per_axis(&|axis| axis.best("N")),
-            per_axis(&|axis| axis.walk()),
+            per_axis(&AxisNoise::white),
+            per_axis(&AxisNoise::walk),
         ),
         (
             "overbound",
-            per_axis(&|axis| axis.overbound_density()),
-            per_axis(&|axis| axis.overbound_walk()),
+            per_axis(&AxisNoise::overbound_density),
+            per_axis(&AxisNoise::overbound_walk),
         ),
     ];
     let is_live = |name: &str| (name == "overbound") == arguments.overbound;

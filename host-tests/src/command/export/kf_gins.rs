@@ -36,7 +36,7 @@ pub(super) fn yaml(known: &Characterisation, arguments: &Arguments) -> String {
 
 fn body(text: &mut String, start: &str, known: &Characterisation, is_overbound: bool) {
     let density = |axis: &AxisNoise| match is_overbound {
-        false => axis.best("N"),
+        false => axis.white(),
         true => Given::plain(axis.overbound_with_process.noise_density),
     };
     // N in rad/√s is N · 60 in rad/√h.

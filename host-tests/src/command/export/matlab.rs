@@ -23,9 +23,13 @@ pub(super) fn json(known: &Characterisation, arguments: &Arguments) -> String {
     let mut notes: Vec<String> = NOTES.map(str::to_owned).into();
     notes.push(format!("SampleRate {} Hz", known.rate_hz));
     let mut best = Map::new();
-    property(known, &mut best, &mut notes, "NoiseDensity", |axis| {
-        axis.best("N")
-    });
+    property(
+        known,
+        &mut best,
+        &mut notes,
+        "NoiseDensity",
+        AxisNoise::white,
+    );
     property(known, &mut best, &mut notes, "BiasInstability", |axis| {
         axis.best("B")
     });

@@ -32,8 +32,10 @@ struct Axis<'a> {
     /// Whether the model explains the record; `null` if there are too few octaves to tell.
     adequate: Option<bool>,
     p_value: f64,
-    /// White noise N and random walk K for a filter; `null` if the record does not give them.
+    /// White noise for a filter, which is N with the fast processes, and random walk K; `null` if the record does not give them.
     noise_density: Option<f64>,
+    noise_density_lower: f64,
+    noise_density_upper: Option<f64>,
     random_walk: Option<f64>,
     /// The random walk of a filter that has no state for the processes.
     random_walk_alone: Option<f64>,
@@ -42,6 +44,8 @@ struct Axis<'a> {
     filters: Vec<Shape>,
     /// States of the bias beside the random walk.
     processes: Vec<GaussMarkov>,
+    /// Processes that are white noise to a filter, and that `noise_density` has.
+    fast_processes: Vec<GaussMarkov>,
     /// Processes whose sum stands for the bias instability over the times of the record.
     flicker_processes: Vec<State2>,
     /// What a notch takes out.
@@ -126,6 +130,7 @@ pub(super) fn text(known: &Characterisation) -> String {
 
 fn axis(axis: &AxisNoise) -> Axis<'_> {
     let states = &axis.states;
+    let white = axis.white_interval();
     Axis {
         axis: &axis.name,
         rate_hz: axis.rate_hz,
@@ -134,12 +139,15 @@ fn axis(axis: &AxisNoise) -> Axis<'_> {
         verdict: &axis.verdict,
         adequate: axis.is_adequate,
         p_value: axis.p_value,
-        noise_density: axis.best("N").value(),
+        noise_density: axis.white().value(),
+        noise_density_lower: white.lower,
+        noise_density_upper: white.upper.is_finite().then_some(white.upper),
         random_walk: axis.best("K").value(),
         random_walk_alone: axis.walk().value(),
         coefficients: axis.coefficients.iter().map(term).collect(),
         filters: states.filters.iter().map(Shape::of).collect(),
         processes: states.processes.iter().map(gauss_markov).collect(),
+        fast_processes: states.fast.iter().map(gauss_markov).collect(),
         flicker_processes: axis.flicker().into_iter().map(state).collect(),
         notches: states.oscillations.iter().map(notch).collect(),
         subtract: states.dependences.iter().map(subtract).collect(),

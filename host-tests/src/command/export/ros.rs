@@ -22,7 +22,7 @@ pub(super) fn yaml(known: &Characterisation, arguments: &Arguments) -> String {
         };
         let density = |axis: &AxisNoise| match is_overbound {
             true => axis.overbound_density(),
-            false => axis.best("N"),
+            false => axis.white(),
         };
         let _ = writeln!(text, "# {name}, at {} Hz:", decimal(known.rate_hz));
         let given: Vec<Given> = match known.axes.len() {

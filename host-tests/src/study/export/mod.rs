@@ -88,13 +88,11 @@ fn one(base: Coefficients, seed: u64) -> io::Result<Outcome> {
         let model = Model::of(axis, alone);
         let truth = base.angle_random_walk.to_radians();
         let run = Run::of(&model, &record, REFERENCE * truth);
-        let white = axis["coefficients"]
-            .as_array()
-            .and_then(|all| all.iter().find(|one| one["symbol"] == "N"));
-        let of_white = |name: &str| white.and_then(|one| one[name].as_f64());
-        let (lower, upper) = (of_white("lower"), of_white("upper"));
+        let of_white = |name: &str| axis[name].as_f64();
+        let lower = of_white("noise_density_lower");
+        let upper = of_white("noise_density_upper");
         Exported {
-            density: of_white("value").unwrap_or(f64::NAN) / truth,
+            density: of_white("noise_density").unwrap_or(f64::NAN) / truth,
             inside: lower.is_some_and(|x| x <= truth) && upper.is_some_and(|x| truth <= x),
             nees: run.nees,
             angle_error: run.angle_error.to_degrees(),

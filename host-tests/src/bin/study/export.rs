@@ -37,11 +37,12 @@ pub(crate) fn print(preset: Preset, gyros: u64, seed: u64, real: bool) -> Result
             density,
             inside,
             nees,
+            ref model,
             ..
         } = one.diagnosed;
         let inside = if inside { "inside" } else { "outside" };
         println!(
-            "seed {}: N {density:.4} {inside}, NEES {nees:.2}: {}",
+            "seed {}: N {density:.4} {inside}, NEES {nees:.2}: {}; said: {model}",
             one.seed, one.truth
         );
         if let Some(refused) = &one.refused {

@@ -2,7 +2,7 @@
 
 use super::{
     explained::Explained,
-    filter_states::{self, FilterStates, Interval, Process},
+    filter_states::{self, FilterStates, Interval, Oscillation, Process},
     given::Given,
 };
 use crate::{
@@ -124,7 +124,7 @@ fn without_oscillations(explained: &Explained, limits: &[Limits]) -> Vec<Limits>
     let all = fit.squares();
     let mut rest = all;
     for (square, term) in rest.iter_mut().zip(model.terms()) {
-        if filter_states::is_oscillation(term) {
+        if filter_states::is_notched(term, explained.axis.rate_hz) {
             *square = 0.0;
         }
     }
@@ -240,14 +240,15 @@ impl AxisNoise {
     /// white noise as K and the Gauss–Markov processes together changes as fast.
     pub(super) fn walk(&self) -> Given {
         let own = self.best("K");
-        let driving = self.states.processes.iter().map(Process::driving);
-        let driving = driving.fold(0.0, f64::hypot);
+        let processes = self.states.processes.iter().map(Process::driving);
+        let slow = self.states.slow.iter().map(Oscillation::driving);
+        let driving = processes.chain(slow).fold(0.0, f64::hypot);
         if driving == 0.0 {
             return own;
         }
         Given::Number {
             value: self.measured("K").unwrap_or(0.0).hypot(driving),
-            remark: "as fast as K and the Gauss-Markov process change the bias".into(),
+            remark: "as fast as K and the slow processes change the bias".into(),
         }
     }
 

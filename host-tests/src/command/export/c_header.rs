@@ -136,7 +136,7 @@ fn of_model(text: &mut String, prefix: &str, states: &FilterStates) {
     for (at, one) in states.processes.iter().enumerate() {
         process(text, &format!("{prefix}{}", numbered(at)), one.process);
     }
-    for (at, one) in states.oscillations.iter().enumerate() {
+    for (at, one) in states.notched.iter().enumerate() {
         let of = format!("{prefix}_NOTCH{}", numbered(at));
         let frequency = Given::plain(one.frequency_hz.value);
         number(text, &format!("{of}_FREQUENCY_HZ"), &frequency, "Hz");

@@ -9,9 +9,10 @@ use crate::{
 };
 use allanite::{
     Term,
-    effect::{AngleRandomWalk, BiasInstability, Effect, GaussMarkov, RateRandomWalk},
+    effect::{AngleRandomWalk, BiasInstability, Effect, GaussMarkov, RateRandomWalk, Resonance},
     fit::ShapeEstimate,
 };
+use std::f64::consts::PI;
 
 /// What a model has beside its white noise and its random walk, in radians and seconds.
 #[derive(Default)]
@@ -20,7 +21,10 @@ pub(super) struct FilterStates {
     pub(super) processes: Vec<Process>,
     /// Processes that are white noise to every filter.
     pub(super) fast: Vec<Process>,
-    pub(super) oscillations: Vec<Oscillation>,
+    /// Oscillations that a notch takes out.
+    pub(super) notched: Vec<Oscillation>,
+    /// Oscillations that are too slow for a notch.
+    pub(super) slow: Vec<Oscillation>,
     pub(super) dependences: Vec<Correction>,
     /// The filters that the white noise has passed.
     pub(super) filters: Vec<Term>,
@@ -41,7 +45,7 @@ pub(super) struct Interval {
     pub(super) upper: f64,
 }
 
-/// A Gauss–Markov process of the model.
+/// A Gauss–Markov process of the model, or one with its covariances.
 pub(super) struct Process {
     pub(super) process: GaussMarkovProcess,
     /// The intervals of σ, in rad/s, and of the correlation time, in seconds.
@@ -49,13 +53,15 @@ pub(super) struct Process {
     pub(super) time_s: Interval,
 }
 
-/// An oscillation that a notch takes out.
+/// An oscillation.
 pub(super) struct Oscillation {
     pub(super) effect: &'static str,
     pub(super) frequency_hz: Interval,
     /// Amplitude of a sinusoid or root-mean-square of a resonance, in rad/s, and the name of that number.
     pub(super) size: Interval,
     pub(super) size_name: &'static str,
+    /// The time in seconds in which its phase is lost; `None` for a line, whose phase lasts.
+    pub(super) time_s: Option<f64>,
 }
 
 /// A dependence that is subtracted before the filter.
@@ -89,11 +95,27 @@ impl Kind {
     }
 }
 
-/// Whether a term is a line or another hump at a frequency of its own, which a notch takes out.
-pub(super) fn is_oscillation(term: &Term) -> bool {
+/// An oscillation with a period of more samples is too slow for a notch, which would take out motion, and a filter
+/// carries it as two states. Chosen by hand.
+const SLOW_SAMPLES: f64 = 100.0;
+
+/// Whether a term is a line or another hump at a frequency of its own.
+fn is_oscillation(term: &Term) -> bool {
     let description = term.effect.description();
     let first = description.parameters.first();
     first.is_some_and(|first| first.name == "frequency_hz") && description.replaces.is_none()
+}
+
+/// Whether a term is an oscillation that a notch takes out at this sample rate.
+pub(super) fn is_notched(term: &Term, rate_hz: f64) -> bool {
+    is_oscillation(term) && term.parameters[0] * SLOW_SAMPLES >= rate_hz
+}
+
+/// Whether a term is Gauss–Markov noise, or has its covariances: a Kalman filter knows no more of a noise.
+fn is_first_order(term: &Term) -> bool {
+    let gauss_markov = GaussMarkov.description().name;
+    let mirror = term.effect.mirror().map(|mirror| mirror.name());
+    term.effect.name() == gauss_markov || mirror == Some(gauss_markov)
 }
 
 impl FilterStates {
@@ -142,7 +164,7 @@ impl FilterStates {
             if fit.coefficients[at].value == 0.0 || carried.contains(&name) {
                 continue;
             }
-            if name == GaussMarkov.description().name {
+            if is_first_order(term) {
                 let (sigma, time_s) = (size(at), shape(at, 0));
                 let is_fast = time_s.value * explained.axis.rate_hz <= FAST_SAMPLES;
                 let list = match is_fast {
@@ -158,11 +180,17 @@ impl FilterStates {
                     time_s,
                 });
             } else if is_oscillation(term) {
-                states.oscillations.push(Oscillation {
+                let list = match is_notched(term, explained.axis.rate_hz) {
+                    true => &mut states.notched,
+                    false => &mut states.slow,
+                };
+                let quality = (name == Resonance.description().name).then_some(term.parameters[1]);
+                list.push(Oscillation {
                     effect: name,
                     frequency_hz: shape(at, 0),
                     size: size(at),
                     size_name: term.effect.coefficient(),
+                    time_s: quality.map(|quality| quality / (PI * term.parameters[0])),
                 });
             } else if is_filter(term.effect) {
                 states.filters.push(*term);
@@ -197,9 +225,14 @@ impl FilterStates {
                 interval(time_s, "s")
             ));
         }
-        for one in &self.oscillations {
+        let notched = self.notched.iter().map(|one| (one, "notch at"));
+        let slow = self
+            .slow
+            .iter()
+            .map(|one| (one, "two states, too slow for a notch, at"));
+        for (one, what) in notched.chain(slow) {
             lines.push(format!(
-                "notch at {}: {}, {} {}",
+                "{what} {}: {}, {} {}",
                 interval(&one.frequency_hz, "Hz"),
                 plain(one.effect),
                 plain(one.size_name),
@@ -234,6 +267,14 @@ impl Process {
     /// The density of the white noise that drives the process, `σ √(2/T)` in rad/s²/√Hz.
     pub(super) fn driving(&self) -> f64 {
         self.sigma.value * (2.0 / self.time_s.value).sqrt()
+    }
+}
+
+impl Oscillation {
+    /// The density of the white noise that drives it, `σ √(2/T)` in rad/s²/√Hz; zero for a line, whose phase lasts.
+    pub(super) fn driving(&self) -> f64 {
+        self.time_s
+            .map_or(0.0, |time_s| self.size.value * (2.0 / time_s).sqrt())
     }
 }
 

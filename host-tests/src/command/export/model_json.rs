@@ -50,6 +50,8 @@ struct Axis<'a> {
     flicker_processes: Vec<State2>,
     /// What a notch takes out.
     notches: Vec<Notch>,
+    /// Oscillations that are too slow for a notch: two states each, with the size of one coordinate of a circular process.
+    oscillators: Vec<Notch>,
     /// What is subtracted: `slope` times what `kind` makes of the column less the reference.
     subtract: Vec<Subtract<'a>>,
     /// Effects of the model that are in none of these places.
@@ -97,6 +99,8 @@ struct Notch {
     value: f64,
     lower: f64,
     upper: f64,
+    /// The time in which the phase is lost; `null` for a line.
+    correlation_time_s: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -149,7 +153,8 @@ fn axis(axis: &AxisNoise) -> Axis<'_> {
         processes: states.processes.iter().map(gauss_markov).collect(),
         fast_processes: states.fast.iter().map(gauss_markov).collect(),
         flicker_processes: axis.flicker().into_iter().map(state).collect(),
-        notches: states.oscillations.iter().map(notch).collect(),
+        notches: states.notched.iter().map(notch).collect(),
+        oscillators: states.slow.iter().map(notch).collect(),
         subtract: states.dependences.iter().map(subtract).collect(),
         not_carried: &states.left,
         overbound: bound(
@@ -214,6 +219,7 @@ const fn notch(one: &Oscillation) -> Notch {
         value: one.size.value,
         lower: one.size.lower,
         upper: one.size.upper,
+        correlation_time_s: one.time_s,
     }
 }
 

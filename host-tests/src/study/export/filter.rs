@@ -9,9 +9,9 @@ use crate::{
     confidence::TWO_SIDED_95,
     simulate::{Coefficients, Simulator},
 };
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
 use serde_json::Value;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 /// The time between two updates, in seconds.
 const STEP_S: f64 = 1.0;
@@ -41,6 +41,8 @@ pub struct Model {
     random_walk: f64,
     /// σ and correlation time of each process.
     processes: Vec<(f64, f64)>,
+    /// Root-mean-square, frequency and correlation time of slow oscillations.
+    oscillators: Vec<(f64, f64, f64)>,
     notches_hz: Vec<f64>,
     subtracted: Vec<Subtracted>,
 }
@@ -87,6 +89,21 @@ impl Model {
                 .processes
                 .extend(slow.filter(|(_, time_s)| list == "processes" || *time_s >= STEP_S));
         }
+        model.oscillators = all("oscillators")
+            .iter()
+            .map(|one| {
+                let rms = match one["size"].as_str() {
+                    Some("amplitude") => FRAC_1_SQRT_2,
+                    _ => 1.0,
+                };
+                let time_s = one["correlation_time_s"].as_f64().unwrap_or(f64::INFINITY);
+                (
+                    rms * number(&one["value"]),
+                    number(&one["frequency_hz"]),
+                    time_s,
+                )
+            })
+            .collect();
         model.notches_hz = all("notches")
             .iter()
             .map(|one| number(&one["frequency_hz"]))
@@ -233,6 +250,8 @@ fn notch(rates: &mut [(f64, f64)], frequency_hz: f64) {
 
 /// The filter: angle, constant bias, processes, and errors of slopes.
 struct Filter {
+    /// The places of the states that are parts of the bias.
+    biases: Vec<usize>,
     /// The place of the first error of a slope.
     slopes: usize,
     state: SVector<f64, STATES>,
@@ -272,11 +291,24 @@ impl Filter {
                 square * time_s * (2.0 * h - time_s * (3.0 - 4.0 * kept + kept * kept));
             covariance[(at, at)] = square;
         }
-        let slopes = 2 + model.processes.len().min(STATES - 2);
+        let mut next = 2 + model.processes.len().min(STATES - 2);
+        // The places of the biases: every oscillation adds its first coordinate.
+        let mut biases: Vec<usize> = (1..next).collect();
+        for &oscillator in &model.oscillators {
+            if next + 2 <= STATES {
+                oscillate(&mut transition, &mut noise, next, oscillator);
+                covariance[(next, next)] = oscillator.0.powi(2);
+                covariance[(next + 1, next + 1)] = oscillator.0.powi(2);
+                biases.push(next);
+                next += 2;
+            }
+        }
+        let slopes = next;
         for (part, at) in model.subtracted.iter().zip(slopes..STATES) {
             covariance[(at, at)] = part.error * part.error;
         }
         Self {
+            biases,
             slopes,
             state: SVector::zeros(),
             covariance,
@@ -312,7 +344,7 @@ impl Filter {
         // The bias is the sum of the states behind the angle, the errors of slopes times their series.
         let mut sums = SMatrix::<f64, 2, STATES>::zeros();
         sums[(0, 0)] = 1.0;
-        for at in 1..self.slopes {
+        for &at in &self.biases {
             sums[(1, at)] = 1.0;
         }
         for (x, at) in series.iter().zip(self.slopes..STATES) {
@@ -322,5 +354,50 @@ impl Filter {
         let covariance: Matrix2<f64> = sums * self.covariance * sums.transpose();
         let inverse = covariance.try_inverse().unwrap_or_else(Matrix2::zeros);
         (0.5 * error.dot(&(inverse * error)), error[0])
+    }
+}
+
+/// The parts of a step into which that of an oscillation is divided.
+const PARTS: usize = 50;
+
+/// Enters a circular process that decays and turns, whose first coordinate adds to the rate, at a place of the state.
+fn oscillate(
+    transition: &mut SMatrix<f64, STATES, STATES>,
+    noise: &mut SMatrix<f64, STATES, STATES>,
+    at: usize,
+    (rms, frequency_hz, time_s): (f64, f64, f64),
+) {
+    let h = STEP_S / PARTS as f64;
+    let kept = (-h / time_s).exp();
+    let (sine, cosine) = (TAU * frequency_hz * h).sin_cos();
+    // The angle and the two coordinates over a part of a step.
+    let turn = Matrix3::new(
+        1.0,
+        -0.5 * h * (1.0 + kept * cosine),
+        0.5 * h * kept * sine,
+        0.0,
+        kept * cosine,
+        -kept * sine,
+        0.0,
+        kept * sine,
+        kept * cosine,
+    );
+    let driven = rms * rms * (1.0 - kept * kept);
+    let input = Matrix3::from_diagonal(&Vector3::new(0.0, driven, driven));
+    let (mut whole, mut sum) = (Matrix3::identity(), Matrix3::zeros());
+    for _ in 0..PARTS {
+        whole = turn * whole;
+        sum = turn * sum * turn.transpose() + input;
+    }
+    let places = [0, at, at + 1];
+    for (i, &row) in places.iter().enumerate() {
+        for (j, &column) in places.iter().enumerate() {
+            if row == 0 && column == 0 {
+                noise[(0, 0)] += sum[(0, 0)];
+            } else {
+                transition[(row, column)] = whole[(i, j)];
+                noise[(row, column)] = sum[(i, j)];
+            }
+        }
     }
 }

@@ -43,6 +43,8 @@ pub struct Outcome {
 /// A model that was exported, and how a filter fares with it.
 #[derive(Clone, Debug)]
 pub struct Exported {
+    /// The model in words.
+    pub model: String,
     /// N over its true value.
     pub density: f64,
     /// Whether the interval of N has the true value.
@@ -92,6 +94,7 @@ fn one(base: Coefficients, seed: u64) -> io::Result<Outcome> {
         let lower = of_white("noise_density_lower");
         let upper = of_white("noise_density_upper");
         Exported {
+            model: axis["model"].as_str().unwrap_or_default().to_owned(),
             density: of_white("noise_density").unwrap_or(f64::NAN) / truth,
             inside: lower.is_some_and(|x| x <= truth) && upper.is_some_and(|x| truth <= x),
             nees: run.nees,

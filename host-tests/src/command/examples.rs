@@ -35,6 +35,8 @@ pub(super) const FIT: &str = examples! {
 
 pub(super) const EXPORT: &str = examples! {
     "allanite export curve.json --format kalibr --output imu.yaml"
+    "allanite export log.csv --rate 200 --format json --output model.json"
+    "allanite export log.csv --rate 200 --format vins-fusion --with sinusoid --despite-unexplained"
     "allanite export log.csv --rate 200 --format px4 --overbound --output gyro.params"
     "allanite export curve.json --format c --name bmi160 --output noise.h"
 };

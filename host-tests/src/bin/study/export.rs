@@ -1,10 +1,10 @@
 //! Whether a filter with an exported model knows its errors.
 
 use crate::origin::Origin;
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use host_tests::{
     simulate::Preset,
-    study::export::{Exported, Outcome, study},
+    study::export::{Exported, Outcome, consumers, study},
 };
 use std::time::Instant;
 
@@ -72,4 +72,23 @@ fn row(name: &str, model: &str, group: &[&Outcome], of: impl Fn(&Outcome) -> &Ex
         median(|one| one.nees),
         mean(|one| one.angle_error.powi(2)).sqrt()
     );
+}
+
+/// Prints what the parsers of other programs read of an exported model.
+pub(crate) fn print_consumers() -> Result<()> {
+    let folder = tempfile::tempdir()?;
+    println!("| format | parser | number | read | relative difference |");
+    println!("|---|---|---|---|---|");
+    let mut largest = 0_f64;
+    for number in consumers(folder.path())? {
+        let difference = (number.read / number.expected - 1.0).abs();
+        largest = largest.max(difference);
+        println!(
+            "| {} | {} | `{}` | {:e} | {difference:.1e} |",
+            number.format, number.parser, number.name, number.read
+        );
+    }
+    println!("\nThe largest relative difference is {largest:.1e}.");
+    ensure!(largest < 1e-9, "a program reads another number");
+    Ok(())
 }

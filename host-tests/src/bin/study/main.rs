@@ -180,6 +180,9 @@ enum Study {
         /// Add the bias instability and the random walk of the preset
         #[arg(long)]
         real: bool,
+        /// Instead, read every format by the parser of the program that it is for
+        #[arg(long)]
+        consumers: bool,
     },
     /// Count what is said about records with one line of random frequency and amplitude
     Lines {
@@ -404,7 +407,11 @@ fn main() -> Result<()> {
             seed,
             preset,
             real,
-        } => export::print(preset, gyros, seed, real)?,
+            consumers,
+        } => match consumers {
+            true => export::print_consumers()?,
+            false => export::print(preset, gyros, seed, real)?,
+        },
         Study::Lines { records } => lines::print(records),
         Study::Clean {
             records,

@@ -216,12 +216,12 @@ impl AxisNoise {
     /// White noise for a filter, in rad/s/√Hz: N and the processes that are too fast for it.
     pub(super) fn white(&self) -> Given {
         let own = self.best("N");
-        if self.states.fast.is_empty() {
+        if !self.states.has_fast() {
             return own;
         }
         Given::Number {
             value: self.white_interval().value,
-            remark: "N and the Gauss-Markov process that is white noise to a filter".into(),
+            remark: "N and what else is white noise to a filter".into(),
         }
     }
 

@@ -25,6 +25,8 @@ pub(super) struct FilterStates {
     pub(super) notched: Vec<Oscillation>,
     /// Oscillations that are too slow for a notch.
     pub(super) slow: Vec<Oscillation>,
+    /// Oscillations that are white noise to every filter.
+    pub(super) damped: Vec<Oscillation>,
     pub(super) dependences: Vec<Correction>,
     /// The filters that the white noise has passed.
     pub(super) filters: Vec<Term>,
@@ -60,8 +62,14 @@ pub(super) struct Oscillation {
     /// Amplitude of a sinusoid or root-mean-square of a resonance, in rad/s, and the name of that number.
     pub(super) size: Interval,
     pub(super) size_name: &'static str,
-    /// The time in seconds in which its phase is lost; `None` for a line, whose phase lasts.
-    pub(super) time_s: Option<f64>,
+    /// The time in seconds in which its phase is lost, with the quality factor; `None` for a line, whose phase lasts.
+    pub(super) decay: Option<Decay>,
+}
+
+/// How an oscillation loses its phase.
+pub(super) struct Decay {
+    pub(super) time_s: f64,
+    pub(super) quality: Interval,
 }
 
 /// A dependence that is subtracted before the filter.
@@ -180,18 +188,25 @@ impl FilterStates {
                     time_s,
                 });
             } else if is_oscillation(term) {
-                let list = match is_notched(term, explained.axis.rate_hz) {
-                    true => &mut states.notched,
-                    false => &mut states.slow,
-                };
-                let quality = (name == Resonance.description().name).then_some(term.parameters[1]);
-                list.push(Oscillation {
+                let is_resonance = name == Resonance.description().name;
+                let oscillation = Oscillation {
                     effect: name,
                     frequency_hz: shape(at, 0),
                     size: size(at),
                     size_name: term.effect.coefficient(),
-                    time_s: quality.map(|quality| quality / (PI * term.parameters[0])),
-                });
+                    decay: is_resonance.then(|| Decay {
+                        time_s: term.parameters[1] / (PI * term.parameters[0]),
+                        quality: shape(at, 1),
+                    }),
+                };
+                let list = if oscillation.is_white(explained.axis.rate_hz) {
+                    &mut states.damped
+                } else if is_notched(term, explained.axis.rate_hz) {
+                    &mut states.notched
+                } else {
+                    &mut states.slow
+                };
+                list.push(oscillation);
             } else if is_filter(term.effect) {
                 states.filters.push(*term);
             } else {
@@ -230,7 +245,11 @@ impl FilterStates {
             .slow
             .iter()
             .map(|one| (one, "two states, too slow for a notch, at"));
-        for (one, what) in notched.chain(slow) {
+        let damped = self
+            .damped
+            .iter()
+            .map(|one| (one, "white noise to a filter, without a notch, at"));
+        for (one, what) in notched.chain(slow).chain(damped) {
             lines.push(format!(
                 "{what} {}: {}, {} {}",
                 interval(&one.frequency_hz, "Hz"),
@@ -271,24 +290,75 @@ impl Process {
 }
 
 impl Oscillation {
+    /// The time in which its phase is lost, in seconds.
+    pub(super) fn time_s(&self) -> Option<f64> {
+        self.decay.as_ref().map(|decay| decay.time_s)
+    }
+
     /// The density of the white noise that drives it, `σ √(2/T)` in rad/s²/√Hz; zero for a line, whose phase lasts.
     pub(super) fn driving(&self) -> f64 {
-        self.time_s
+        self.time_s()
             .map_or(0.0, |time_s| self.size.value * (2.0 / time_s).sqrt())
+    }
+
+    /// Whether it dies away within a period and within the samples that no filter resolves, so that it is a rounded step
+    /// in the spectrum, and nothing that a notch takes out.
+    fn is_white(&self, rate_hz: f64) -> bool {
+        let samples = |decay: &Decay| decay.time_s * rate_hz;
+        self.decay
+            .as_ref()
+            .is_some_and(|decay| decay.quality.value < 1.0 && samples(decay) <= FAST_SAMPLES)
+    }
+
+    /// Its density far below its frequency, `σ √(2T / (1 + (2πfT)²))` in rad/s/√Hz with `2πfT` twice the quality factor,
+    /// with the ends of the three intervals; zero for a line. No notch takes this part out.
+    fn density(&self) -> Interval {
+        let Some(decay) = &self.decay else {
+            return Interval::default();
+        };
+        let density = |sigma: f64, frequency_hz: f64, quality: f64| {
+            let time_s = quality / (PI * frequency_hz);
+            sigma * (2.0 * time_s / (1.0 + 4.0 * quality * quality)).sqrt()
+        };
+        let Interval {
+            value: frequency_hz,
+            lower: slowest_hz,
+            upper: fastest_hz,
+        } = self.frequency_hz;
+        // It falls with the frequency, and with the quality factor above a half.
+        let Interval {
+            value: quality,
+            lower: broadest,
+            upper: narrowest,
+        } = decay.quality;
+        Interval {
+            value: density(self.size.value, frequency_hz, quality),
+            lower: density(self.size.lower, fastest_hz, narrowest),
+            upper: density(self.size.upper, slowest_hz, broadest.max(0.5)),
+        }
     }
 }
 
 impl FilterStates {
-    /// White noise of a density together with the fast processes.
+    /// White noise of a density together with what is white noise to a filter: the fast processes, and what the
+    /// oscillations have far below their frequencies.
     pub(super) fn with_fast(&self, white: Interval) -> Interval {
-        self.fast.iter().fold(white, |sum, process| {
-            let density = process.density();
-            Interval {
+        let processes = self.fast.iter().map(Process::density);
+        let oscillations = self.damped.iter().chain(&self.notched);
+        let oscillations = oscillations.map(Oscillation::density);
+        processes
+            .chain(oscillations)
+            .fold(white, |sum, density| Interval {
                 value: sum.value.hypot(density.value),
                 lower: sum.lower.hypot(density.lower),
                 upper: sum.upper.hypot(density.upper),
-            }
-        })
+            })
+    }
+
+    /// Whether anything but N is white noise to a filter.
+    pub(super) fn has_fast(&self) -> bool {
+        let mut oscillations = self.damped.iter().chain(&self.notched);
+        !self.fast.is_empty() || oscillations.any(|one| one.decay.is_some())
     }
 }
 

@@ -52,6 +52,8 @@ struct Axis<'a> {
     notches: Vec<Notch>,
     /// Oscillations that are too slow for a notch: two states each, with the size of one coordinate of a circular process.
     oscillators: Vec<Notch>,
+    /// Oscillations that are white noise to a filter, and that `noise_density` has.
+    fast_oscillations: Vec<Notch>,
     /// What is subtracted: `slope` times what `kind` makes of the column less the reference.
     subtract: Vec<Subtract<'a>>,
     /// Effects of the model that are in none of these places.
@@ -155,6 +157,7 @@ fn axis(axis: &AxisNoise) -> Axis<'_> {
         flicker_processes: axis.flicker().into_iter().map(state).collect(),
         notches: states.notched.iter().map(notch).collect(),
         oscillators: states.slow.iter().map(notch).collect(),
+        fast_oscillations: states.damped.iter().map(notch).collect(),
         subtract: states.dependences.iter().map(subtract).collect(),
         not_carried: &states.left,
         overbound: bound(
@@ -204,7 +207,7 @@ const fn state(process: GaussMarkovProcess) -> State2 {
     }
 }
 
-const fn notch(one: &Oscillation) -> Notch {
+fn notch(one: &Oscillation) -> Notch {
     let Interval {
         value,
         lower,
@@ -219,7 +222,7 @@ const fn notch(one: &Oscillation) -> Notch {
         value: one.size.value,
         lower: one.size.lower,
         upper: one.size.upper,
-        correlation_time_s: one.time_s,
+        correlation_time_s: one.time_s(),
     }
 }
 

@@ -3,9 +3,11 @@
 //! A record with a random line, filter, temperature and Gauss–Markov noise is written as a log, and `export` reads it. A
 //! Kalman filter with that model then runs over another record of the same gyro, whose angle and bias are known.
 
+mod consumers;
 mod filter;
 mod gyro;
 
+pub use consumers::{Number, consumers};
 pub use filter::{Model, Run};
 pub use gyro::{Gyro, RATE_HZ, Truth};
 
@@ -113,11 +115,19 @@ fn one(base: Coefficients, seed: u64) -> io::Result<Outcome> {
 /// The first axis that `export` writes as JSON.
 fn exported(log: &Path, folder: &Path, more: &[&str]) -> Result<Value, Failure> {
     let output = folder.join("model.json");
-    let _ = fs::remove_file(&output);
+    export_as("json", log, &output, more)?;
+    let text = fs::read_to_string(&output).unwrap_or_default();
+    let document: Value = serde_json::from_str(&text).unwrap_or_default();
+    Ok(document["axes"][0].clone())
+}
+
+/// Exports the log of a gyro in a format.
+fn export_as(format: &str, log: &Path, output: &Path, more: &[&str]) -> Result<(), Failure> {
+    let _ = fs::remove_file(output);
     let rate = RATE_HZ.to_string();
     let line: Vec<&str> = ["allanite", "--quiet", "export"].into();
     let paths = [log.to_str(), output.to_str()];
-    let [log, output_text] = paths.map(Option::unwrap_or_default);
+    let [log, output] = paths.map(Option::unwrap_or_default);
     let options = [
         log,
         "--rate",
@@ -127,15 +137,12 @@ fn exported(log: &Path, folder: &Path, more: &[&str]) -> Result<Value, Failure> 
         "--columns",
         "gx",
         "--format",
-        "json",
+        format,
         "--output",
-        output_text,
+        output,
     ];
     let line = line.into_iter().chain(options).chain(more.iter().copied());
     let command = CommandLine::try_parse_from(line)
         .map_err(|error| Failure::option(error.to_string(), "mend the study"))?;
-    command.run()?;
-    let text = fs::read_to_string(&output).unwrap_or_default();
-    let document: Value = serde_json::from_str(&text).unwrap_or_default();
-    Ok(document["axes"][0].clone())
+    command.run()
 }

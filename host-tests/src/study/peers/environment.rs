@@ -1,17 +1,13 @@
 //! The peers, how they are installed and how they are run.
 
+use super::python::{FOLDER, Python, run, text};
 use crate::study::resources::Resources;
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Context as _, Result, anyhow, ensure};
 use serde_json::Value;
 use std::{
-    ffi::OsStr,
-    fs,
     path::{Path, PathBuf},
     process::Command,
 };
-
-/// The folder with the programs that run the peers.
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peers");
 
 /// Which differences a peer takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,7 +97,7 @@ pub const PEERS: [Peer; 7] = [
 
 /// The installed peers.
 pub struct Environment {
-    python: PathBuf,
+    python: Result<Python, String>,
     crates: PathBuf,
     /// The peers that could be installed.
     pub peers: Vec<Peer>,
@@ -112,17 +108,11 @@ pub struct Environment {
 impl Environment {
     /// Installs the Python packages into a virtual environment in this folder, and builds the crates there.
     pub fn new(folder: &Path) -> Result<Self> {
-        fs::create_dir_all(folder)?;
         let mut environment = Self {
-            python: folder.join("venv/bin/python"),
+            python: Python::new(folder).map_err(|error| last_line(&error)),
             crates: folder.join("crates/release/peers"),
             peers: Vec::new(),
             missing: Vec::new(),
-        };
-        let python = environment.python.clone();
-        let made = match python.exists() {
-            true => Ok(()),
-            false => run("python3", &["-m", "venv", &text(&folder.join("venv"))]),
         };
         let manifest = format!("{FOLDER}/Cargo.toml");
         let target = text(&folder.join("crates"));
@@ -138,20 +128,12 @@ impl Environment {
         let built = run("cargo", &build).map_err(|error| last_line(&error));
         let constraints = format!("{FOLDER}/constraints.txt");
         for peer in PEERS {
-            let installed = match (peer.python, &made) {
+            let installed = match (peer.python, &environment.python) {
                 (false, _) => built.clone(),
-                (true, Err(error)) => Err(last_line(error)),
-                (true, Ok(())) => {
-                    let install = [
-                        "-m",
-                        "pip",
-                        "install",
-                        "--quiet",
-                        "-c",
-                        &constraints,
-                        peer.package,
-                    ];
-                    run(&python, &install).map_err(|error| last_line(&error))
+                (true, Err(error)) => Err(error.clone()),
+                (true, Ok(python)) => {
+                    let install = ["-c", &constraints, peer.package];
+                    python.install(&install).map_err(|error| last_line(&error))
                 }
             };
             match installed {
@@ -172,8 +154,10 @@ impl Environment {
         files: &[PathBuf],
     ) -> Result<(Vec<Value>, Resources)> {
         let mut command = if peer.python {
-            let mut python = Command::new(&self.python);
-            python.arg(format!("{FOLDER}/peer.py"));
+            let python = self.python.as_ref();
+            let mut python = python
+                .map_err(|error| anyhow!("{error}"))?
+                .command("peer.py");
             // One thread, so that CPU time is that of one core, and figures without a screen.
             python
                 .env("OMP_NUM_THREADS", "1")
@@ -199,18 +183,6 @@ pub(super) fn printed(command: &mut Command) -> Result<(Vec<Value>, Resources)> 
     let mut values = values?;
     let used = values.pop().context("a program printed nothing")?;
     Ok((values, serde_json::from_value(used)?))
-}
-
-fn run(program: impl AsRef<OsStr>, arguments: &[&str]) -> Result<()> {
-    let output = Command::new(&program).args(arguments).output();
-    let output = output.with_context(|| program.as_ref().to_string_lossy().into_owned())?;
-    let errors = String::from_utf8_lossy(&output.stderr);
-    ensure!(output.status.success(), "{errors}");
-    Ok(())
-}
-
-fn text(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
 }
 
 fn last_line(error: &anyhow::Error) -> String {

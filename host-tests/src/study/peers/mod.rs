@@ -5,6 +5,8 @@ pub mod bootstrap;
 pub mod coefficients;
 pub mod cost;
 mod environment;
+mod python;
 mod record;
 
 pub use environment::{Environment, Overlap, PEERS, Peer};
+pub use python::Python;

@@ -95,8 +95,8 @@ impl CommandLine {
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
             Command::Explore(arguments) => explore::run(arguments, &mut output),
             Command::Watch(arguments) => watch::run(arguments, &mut output),
-            Command::Report(arguments) => report::run(arguments),
-            Command::Plot(arguments) => plot::run(arguments),
+            Command::Report(arguments) => report::run(arguments, &mut output),
+            Command::Plot(arguments) => plot::run(arguments, &mut output),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
             Command::Lot(arguments) => lot::run(arguments, &mut output),
             Command::Completions(arguments) => {

@@ -3,6 +3,7 @@
 use crate::{
     command::{
         diagnose::{
+            conclusion::print_written,
             diagnosed::{Diagnosed, DiagnosisArguments},
             pictures::Pictures,
             words::shown_p,
@@ -75,7 +76,7 @@ impl Format {
 }
 
 /// Runs the command.
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let format = Format::of(&arguments.output)?;
     // The file comes first, so that an output that cannot be written is refused before the diagnosis.
     let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
@@ -102,7 +103,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let written = file.write_all(&bytes);
     written.map_err(|error| place().io(&error))?;
-    file.commit()
+    file.commit()?;
+    let next = "`diagnose` tells the steps in words, and `report` on a page";
+    print_written(&diagnosed, (&arguments.output, next), output)
 }
 
 #[cfg(feature = "pictures")]
@@ -157,11 +160,10 @@ fn drawing(diagnosed: &Diagnosed, arguments: &Arguments) -> Result<Drawing, Fail
     let drawing = Drawing {
         title: format!("{}: {}", axis.axis, diagnosed.model_name(at)),
         subtitle: format!(
-            "χ² {:.1}, {} degrees of freedom, p {}, misfit {:.1} % rms; {record}",
+            "χ² {:.1}, {} degrees of freedom, p {}; {record}",
             step.fit.chi_squared,
             step.fit.degrees_of_freedom,
             shown_p(step.fit.p_value),
-            step.comparison.rms_percent,
         ),
         warning: diagnosed.invalid(),
         unit: axis.unit,

@@ -275,13 +275,13 @@ fn interval(slope: &Slope, per: &str) -> String {
     )
 }
 
-/// The unit of a slope: `deg/s/K` for a temperature in degrees Celsius or kelvin, and `deg/s per unit` for a column
+/// The unit of a slope: `deg/s per K` for a temperature in degrees Celsius or kelvin, and `deg/s per unit` for a column
 /// without a known unit.
 pub(crate) fn per(column: &str, form: &Form, unit: Unit) -> String {
     match (is_degrees_column(column), form) {
-        (true, Form::Itself | Form::Behind(_)) => format!("{unit}/K"),
+        (true, Form::Itself | Form::Behind(_)) => format!("{unit} per K"),
         (true, Form::RateOfChange) => format!("{unit} per K/s"),
-        (true, Form::Square { .. }) => format!("{unit}/K²"),
+        (true, Form::Square { .. }) => format!("{unit} per K²"),
         (false, Form::Square { .. }) => format!("{unit} per unit²"),
         (false, _) => format!("{unit} per unit"),
     }

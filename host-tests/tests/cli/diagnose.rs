@@ -246,7 +246,7 @@ fn json_has_the_documented_fields_and_no_others() {
     let step = &axis["steps"][0];
     assert_eq!(
         keys(step),
-        "added birge_ratio candidates chi2 coefficients dof effects p_value rms_percent worst"
+        "added birge_ratio candidates chi2 coefficients dof effects error p_value rms_percent worst"
     );
     assert_eq!(keys(&step["worst"]), "percent tau_s z");
     assert_eq!(keys(&step["effects"][0]), "name parameters");
@@ -278,12 +278,10 @@ fn text_and_json_agree() {
             let added = pair[0]["added"].as_str().unwrap().replace('_', " ");
             let added = added.replace("gauss markov", "Gauss–Markov");
             let line = format!(
-                "{}. + {added}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p",
+                "{}. + {added}: χ² {:.1} → {:.1}, p",
                 number_of_step + 1,
-                number(&pair[0]["chi2"]),
-                number(&pair[1]["chi2"]),
-                number(&pair[0]["rms_percent"]),
-                number(&pair[1]["rms_percent"])
+                number(&pair[0]["error"]),
+                number(&pair[1]["error"])
             );
             assert!(text.contains(&line), "{line}");
         }

@@ -239,7 +239,7 @@ fn a_temperature_and_its_rate_are_tried_without_being_asked_for() {
                 _ => "tried temp_C: the rate follows it with 0.0",
             };
             assert!(
-                text.contains(of_temperature) && text.contains(" deg/s/K"),
+                text.contains(of_temperature) && text.contains(" deg/s per K"),
                 "{text}"
             );
             assert!(

@@ -44,4 +44,5 @@ mod record_over_time;
 mod report;
 mod report_figures;
 mod simulate;
+mod views;
 mod watch;

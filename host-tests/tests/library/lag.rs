@@ -89,7 +89,7 @@ fn a_lag_is_told_with_its_interval_and_no_sinusoid_takes_its_place() {
     );
     assert!(
         text.contains("tried temp_C: the rate follows it with a lag of ")
-            && text.contains("deg/s/K ("),
+            && text.contains("deg/s per K ("),
         "{text}"
     );
     assert!(

@@ -11,14 +11,14 @@ use crate::{
     },
     plot::{Figure, Frame, Plot, Quantity, View},
 };
-use allanite::fit::State;
+use allanite::fit::{ADEQUATE_P, State};
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use std::io::{self, Write};
 
 /// A smaller share of the model's variance is shown as a dot: it would round to 0 %.
 const LEAST_SHARE: f32 = 0.005;
 
-/// Prints a table and a plot of every axis, then what misfit and χ² weigh.
+/// Prints a table and a plot of every axis, and what to do next.
 pub(super) fn print(compared: &[Compared], output: &mut impl Write) -> io::Result<()> {
     for (i, compared) in compared.iter().enumerate() {
         if i > 0 {
@@ -26,7 +26,15 @@ pub(super) fn print(compared: &[Compared], output: &mut impl Write) -> io::Resul
         }
         print_axis(compared, output)?;
     }
-    writeln!(output, "\n{}", words::MISFIT)
+    let differs = compared.iter().any(|one| {
+        let p = one.comparison.p_value;
+        p.is_finite() && p < ADEQUATE_P
+    });
+    let next = match differs {
+        true => "next: `diagnose` looks for what the model lacks; --with adds an effect by hand",
+        false => "next: `export` writes the model for a filter, with the same --with and --without",
+    };
+    writeln!(output, "\n{next}")
 }
 
 fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
@@ -51,8 +59,8 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
     if let Some(held_out) = held_out {
         writeln!(
             output,
-            "\nin the fitted part: χ² {:.1}, {} degrees of freedom, misfit {:.1} % rms",
-            fit.chi_squared, fit.degrees_of_freedom, held_out.fitted_rms_percent
+            "\nin the fitted part: χ² {:.1}, {} degrees of freedom",
+            fit.chi_squared, fit.degrees_of_freedom
         )?;
         let rest = &held_out.axis;
         let record = words::record(rest.samples, rest.rate_hz, rest.octaves.len());
@@ -91,8 +99,8 @@ fn print_axis(compared: &Compared, output: &mut impl Write) -> io::Result<()> {
     };
     writeln!(
         output,
-        "{}: χ² {:.1}, {} degrees of freedom{p}, misfit {:.1} % rms",
-        axis.axis, comparison.chi_squared, comparison.degrees_of_freedom, comparison.rms_percent
+        "{}: χ² {:.1}, {} degrees of freedom{p}",
+        axis.axis, comparison.chi_squared, comparison.degrees_of_freedom
     )?;
     writeln!(output, "{}: {comparison}", axis.axis)
 }

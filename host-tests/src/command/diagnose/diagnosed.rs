@@ -286,6 +286,26 @@ impl Diagnosed {
         self.disturbance.iter().filter(|one| one.is_motion)
     }
 
+    /// What the last model subtracts of what was recorded alongside, and how much of χ² that explains: the sum of the
+    /// squares of its slopes in standard errors. `None` if the rate follows nothing.
+    pub(crate) fn dependence(&self) -> Option<(String, f64)> {
+        let followed = self.steps.last()?.covariate.as_ref()?;
+        let squares = self.slopes(followed).into_iter();
+        let squares = squares.map(|(slope, _)| slope.z().powi(2)).sum();
+        Some((self.covariate(followed).join(" and "), squares))
+    }
+
+    /// The error of a step, which falls from step to step: χ² of the curve and the spectrum, and, as long as it is not
+    /// subtracted, what the rate follows of a covariate. Twice a logarithm of a likelihood ratio is the sum of both.
+    pub(crate) fn chi_squared(&self, at: usize) -> f64 {
+        let step = &self.steps[at];
+        let dependence = match step.covariate {
+            Some(_) => 0.0,
+            None => self.dependence().map_or(0.0, |(_, squares)| squares),
+        };
+        step.fit.chi_squared + dependence
+    }
+
     /// The model of a step in words: `five terms + sinusoid`.
     pub(crate) fn model_name(&self, step: usize) -> String {
         let Some(step) = self.steps.get(step) else {

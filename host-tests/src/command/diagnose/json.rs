@@ -104,6 +104,8 @@ struct Step {
     effects: Vec<Effect>,
     coefficients: Vec<fit::json::Term>,
     chi2: f64,
+    /// `chi2`, and what the rate follows of a covariate as long as that is not subtracted: it falls from step to step.
+    error: f64,
     dof: usize,
     p_value: f64,
     /// The factor by which intervals and bounds are widened.
@@ -156,7 +158,8 @@ fn axis(diagnosed: &Diagnosed) -> Axis<'_> {
         steps: diagnosed
             .steps
             .iter()
-            .map(|one| step(one, diagnosed, unit))
+            .enumerate()
+            .map(|(at, one)| step(at, one, diagnosed, unit))
             .collect(),
         spectrum: diagnosed.ends().map_or(Vec::new(), |(_, last)| {
             let bins = last.comparison.bins.iter();
@@ -228,7 +231,7 @@ fn limits(diagnosed: &Diagnosed) -> Vec<DetectionLimit> {
     ranges.as_slice().iter().map(with_shapes).collect()
 }
 
-fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step {
+fn step(at: usize, step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step {
     let covariates = step.covariate.iter().flat_map(|followed| {
         let slopes = diagnosed.slopes(followed).into_iter();
         slopes.map(|(slope, series)| model_json::covariate(&slope, series))
@@ -239,6 +242,7 @@ fn step(step: &Taken<OCTAVES, BINS>, diagnosed: &Diagnosed, unit: Unit) -> Step 
             .collect(),
         coefficients: model_json::coefficients(&step.fit, unit),
         chi2: step.fit.chi_squared,
+        error: diagnosed.chi_squared(at),
         dof: step.fit.degrees_of_freedom,
         p_value: step.fit.p_value,
         birge_ratio: step.fit.birge_ratio,

@@ -1,5 +1,6 @@
 //! `diagnose`: finds the effects of a curve that the five terms do not describe.
 
+pub(super) mod conclusion;
 pub(super) mod diagnosed;
 pub(super) mod found;
 mod given_filter;

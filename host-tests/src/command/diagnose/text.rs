@@ -1,6 +1,7 @@
 //! The text of a diagnosis.
 
 use super::{
+    conclusion,
     diagnosed::Diagnosed,
     pictures::Pictures,
     words::{Finding, candidate_name, limits, shown_p, unexplained, verdict},
@@ -14,18 +15,23 @@ use crate::{
     log::{BINS, OCTAVES},
     plot::{Frame, Plot, Timeline},
 };
-use allanite::diagnosis::{Candidate, Step};
+use allanite::{
+    diagnosis::{Candidate, Step},
+    fit::Fit,
+};
 use std::io::{self, Write};
 
-/// Prints the steps of every axis, from the five terms to the last model, then what misfit and χ² weigh.
+/// Prints the conclusion of all axes, then the steps of every axis, from the five terms to the last model.
 pub(crate) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
-    for (i, diagnosed) in diagnosed.iter().enumerate() {
-        if i > 0 {
-            writeln!(output)?;
-        }
+    for line in conclusion::lines(diagnosed) {
+        writeln!(output, "{line}")?;
+    }
+    writeln!(output, "{}", conclusion::NEXT)?;
+    for diagnosed in diagnosed {
+        writeln!(output)?;
         print_axis(diagnosed, output)?;
     }
-    writeln!(output, "\n{}", words::MISFIT)
+    Ok(())
 }
 
 fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> {
@@ -43,19 +49,17 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     }
     writeln!(
         output,
-        "{}: χ² {:.1}, {} degrees of freedom, p {}; misfit {:.1} % rms",
+        "{}: {}",
         diagnosed.model_name(0),
-        first.fit.chi_squared,
-        first.fit.degrees_of_freedom,
-        shown_p(first.fit.p_value),
-        first.comparison.rms_percent
+        beginning(diagnosed, &first.fit)
     )?;
     writeln!(output, "  {}", first.comparison)?;
     print_unexplained(first, output)?;
     for (number, pair) in diagnosed.steps.windows(2).enumerate() {
         let [before, after] = pair else { continue };
         if let Some(finding) = Finding::new(diagnosed, before, after) {
-            print_step(number + 1, before, after, &finding, output)?;
+            let errors = [number, number + 1].map(|at| diagnosed.chi_squared(at));
+            print_step(number + 1, errors, [before, after], &finding, output)?;
         }
     }
     if last.added.is_none() && !last.candidates.is_empty() {
@@ -102,6 +106,23 @@ fn print_axis(diagnosed: &Diagnosed, output: &mut impl Write) -> io::Result<()> 
     Ok(())
 }
 
+/// χ² of the five terms, with the part that a covariate explains.
+fn beginning(diagnosed: &Diagnosed, fit: &Fit) -> String {
+    let of_curve = format!(
+        "{:.1}, {} degrees of freedom, p {}",
+        fit.chi_squared,
+        fit.degrees_of_freedom,
+        shown_p(fit.p_value)
+    );
+    match diagnosed.dependence() {
+        Some((channels, squares)) => format!(
+            "χ² {:.1}: {of_curve}, and {squares:.1} of what follows {channels}",
+            diagnosed.chi_squared(0)
+        ),
+        None => format!("χ² {of_curve}"),
+    }
+}
+
 /// Prints the record beside the model of a step, and the record over time.
 fn print_plots(
     diagnosed: &Diagnosed,
@@ -133,19 +154,17 @@ fn print_plots(
 /// candidates.
 fn print_step(
     number: usize,
-    before: &Step<OCTAVES, BINS>,
-    after: &Step<OCTAVES, BINS>,
+    errors: [f64; 2],
+    [before, after]: [&Step<OCTAVES, BINS>; 2],
     finding: &Finding,
     output: &mut impl Write,
 ) -> io::Result<()> {
     writeln!(
         output,
-        "\n{number}. + {}: χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms, p {}",
+        "\n{number}. + {}: χ² {:.1} → {:.1}, p {}",
         finding.name,
-        before.fit.chi_squared,
-        after.fit.chi_squared,
-        before.comparison.rms_percent,
-        after.comparison.rms_percent,
+        errors[0],
+        errors[1],
         shown_p(after.fit.p_value)
     )?;
     if let Some(found) = &finding.found {
@@ -155,8 +174,9 @@ fn print_step(
     for line in finding.lines().iter().map(labelled) {
         writeln!(output, "{line}")?;
     }
-    if !before.candidates.is_empty() {
-        writeln!(output, "  candidates, best first:")?;
+    // A single candidate is the addition.
+    if before.candidates.len() > 1 {
+        writeln!(output, "  candidates by a quick fit, best first:")?;
         print_candidates(before, output)?;
     }
     if let Some(ambiguous) = &finding.ambiguous {

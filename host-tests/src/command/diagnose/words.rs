@@ -8,6 +8,7 @@ use crate::{
             number::{self, probability},
             words,
         },
+        tried::per,
     },
     dependence::candidates::{Form, seconds},
     log::{BINS, OCTAVES},
@@ -66,8 +67,10 @@ impl Finding {
     fn covariate(diagnosed: &Diagnosed, followed: &FollowedCovariate) -> Self {
         let channels = diagnosed.covariate(followed);
         let found = diagnosed.slopes(followed).into_iter();
+        let unit = diagnosed.axis.unit;
         let found = found.map(|(slope, series)| {
             let (lower, upper) = slope.interval();
+            let per = per(&series.column, &series.form, unit);
             let lag = match &series.form {
                 Form::Behind(lag) => format!(
                     "lag {} ({} … {}); ",
@@ -78,9 +81,8 @@ impl Finding {
                 _ => String::new(),
             };
             format!(
-                "{lag}slope {} {} per unit of {} ({} … {}), 95 % interval; {:.1} standard errors",
+                "{lag}slope {} {per} of {} ({} … {}), 95 % interval; {:.1} standard errors",
                 number::number(slope.value),
-                diagnosed.axis.unit,
                 series.name,
                 number::number(lower),
                 number::number(upper),
@@ -175,6 +177,37 @@ pub(crate) fn shown_p(p: f64) -> String {
     }
 }
 
+/// By how much χ² fell when a term of the last model was added, or the covariate. `None` if no step added it as it is.
+pub(crate) fn added_chi_squared(diagnosed: &Diagnosed, term: Option<&Term>) -> Option<f64> {
+    let is_it = |added: &Addition| match (added, term) {
+        (Addition::Effect(added), Some(term)) => {
+            let near = |a: f64, b: f64| (a / b - 1.0).abs() < SAME_SHAPE || a == b;
+            added.effect.name() == term.effect.name()
+                && near(added.parameters[0], term.parameters[0])
+        }
+        (Addition::Covariate(_), None) => true,
+        _ => false,
+    };
+    let mut steps = diagnosed.steps.iter();
+    let at = steps.position(|step| step.added.as_ref().is_some_and(is_it))?;
+    let after = at + 1;
+    (after < diagnosed.steps.len())
+        .then(|| diagnosed.chi_squared(at) - diagnosed.chi_squared(after))
+}
+
+/// A shape of an effect changes by less than this share while others are added beside it. Chosen by hand.
+const SAME_SHAPE: f64 = 0.2;
+
+/// An effect, with its frequency if it is at one: `sinusoid (31.00 Hz)`.
+fn with_frequency(term: &Term) -> String {
+    let name = words::plain(term.effect.name());
+    let first = term.effect.parameters().first();
+    match first.filter(|first| first.name == "frequency_hz") {
+        Some(_) => format!("{name} ({} Hz)", number::number(term.parameters[0])),
+        None => name,
+    }
+}
+
 /// The covariate and the effects that were added, in words. Lines that are one comb are said as one.
 fn missing(diagnosed: &Diagnosed) -> Vec<String> {
     let Some((_, last)) = diagnosed.ends() else {
@@ -199,7 +232,7 @@ fn missing(diagnosed: &Diagnosed) -> Vec<String> {
         format!("{lines} ({})", comb_words(comb))
     });
     let single = diagnosed.added().filter(|term| !in_a_comb(term));
-    let single = single.map(|term| words::plain(term.effect.name()));
+    let single = single.map(with_frequency);
     covariate.into_iter().chain(combs).chain(single).collect()
 }
 
@@ -280,11 +313,9 @@ fn verdict_on_curve(diagnosed: &Diagnosed) -> String {
                 ""
             };
             let error = format!(
-                "χ² {:.1} → {:.1}, misfit {:.1} % → {:.1} % rms",
-                first.fit.chi_squared,
-                last.fit.chi_squared,
-                first.comparison.rms_percent,
-                last.comparison.rms_percent
+                "χ² {:.1} → {:.1}",
+                diagnosed.chi_squared(0),
+                last.fit.chi_squared
             );
             let missing = if first.fit.is_adequate() == Some(true) {
                 format!("{effects}: {names}{alike}, although the {terms} fit the curve; {error}")

@@ -20,11 +20,10 @@ pub(super) fn drawing(fitted: &Fitted, question: &Question) -> String {
         Drawing {
             title: format!("{}: {}", record.axis.axis, model(fitted, question)),
             subtitle: format!(
-                "{role}χ² {:.1}, {} degrees of freedom, p {}, misfit {:.1} % rms; {}",
+                "{role}χ² {:.1}, {} degrees of freedom, p {}; {}",
                 comparison.chi_squared,
                 comparison.degrees_of_freedom,
                 shown_p(comparison.p_value),
-                comparison.rms_percent,
                 record.size(),
             ),
             warning: None,

@@ -4,7 +4,7 @@ use super::judged::Judged;
 use crate::{
     command::{
         input::record,
-        output::{disturbance::invalid, rounding},
+        output::{disturbance::invalid, rounding, words},
         tried::{self, TriedCovariate},
     },
     curve_file::AxisCurve,
@@ -141,6 +141,12 @@ impl Fitted {
 
     /// Notes on what was recorded alongside, a sentence each.
     pub(crate) fn covariate_notes(&self) -> Vec<String> {
+        // Beside a model that does not explain the record, nothing is told of what a slope might be.
+        let explains = self.fit.is_adequate() != Some(false);
+        let (told, untold): (Vec<_>, Vec<_>) = self
+            .tried
+            .iter()
+            .partition(|tried| explains || tried.acts());
         let note = |tried: &TriedCovariate| {
             let remedy = if tried.acts() {
                 "; the coefficients include what follows it, and `diagnose` subtracts it"
@@ -149,6 +155,13 @@ impl Fitted {
             };
             format!("tried {}{remedy}", tried.words(self.axis.unit))
         };
-        self.tried.iter().map(note).collect()
+        let columns = untold.iter().map(|tried| tried.channel.clone()).collect();
+        let hidden = (!untold.is_empty()).then(|| {
+            format!(
+                "whether the rate follows {} is told by `diagnose`, because this model hides it",
+                words::list_of(columns)
+            )
+        });
+        told.into_iter().map(note).chain(hidden).collect()
     }
 }

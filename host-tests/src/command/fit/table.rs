@@ -204,7 +204,7 @@ fn verdict(fitted: &Fitted) -> Vec<String> {
     } else {
         format!(
             "The five-term model{behind} is not adequate: the record has another effect, which \
-             distorts the coefficients. `diagnose` looks for it."
+             distorts the coefficients. `compare` shows where, and `diagnose` looks for it."
         )
     };
     [first, judgement]

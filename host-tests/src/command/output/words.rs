@@ -81,11 +81,6 @@ pub(crate) fn in_sentence(name: &str) -> String {
     format!("{article}{}{noise}", plain(name))
 }
 
-/// What the misfit and χ² of a comparison weigh, to be printed below both.
-pub(crate) const MISFIT: &str = "\
-Misfit is the rms difference of the variances in percent: the longest octaves,
-whose scatter is largest, dominate it. χ² weights each octave by its error.";
-
 /// The shape parameters of a term: `frequency 19.6 Hz (19.5 … 19.7), quality 4`. Intervals are shown
 /// where a fit gives them. A parameter that is known by its reciprocal as well is shown as both:
 /// `cutoff 42 Hz, time constant 0.003789 s`.

@@ -29,7 +29,7 @@ pub(super) struct Arguments {
 }
 
 /// Runs the command.
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let place = || Place::file(&arguments.output);
     if !is_page(&arguments.output) {
         return Err(place().failure("a page must end in .html", "rename the output"));
@@ -48,7 +48,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         text: &String::from_utf8_lossy(&text),
     });
     file.write_all(page.as_bytes()).map_err(fail)?;
-    file.commit()
+    file.commit()?;
+    let next = "open it in a browser; `explore` changes the effects by hand";
+    diagnose::conclusion::print_written(&diagnosed, (&arguments.output, next), output)
 }
 
 fn is_page(path: &Path) -> bool {

@@ -3,6 +3,7 @@
 use crate::{
     command::{
         diagnose::{
+            conclusion,
             diagnosed::Diagnosed,
             words::{lead, limits},
         },
@@ -59,6 +60,9 @@ pub(super) fn page(content: &Content) -> String {
             body {
                 header {
                     h1 { "Gyro noise of " span.name { (name) } }
+                    div.conclusion {
+                        @for line in conclusion::lines(content.diagnosed) { p { (line) } }
+                    }
                     (summary(content.diagnosed))
                 }
                 main {
@@ -121,9 +125,8 @@ fn introduction() -> Markup {
                 "are standard errors of the measurement. χ² is the squared distance of the dots from the "
                 "line, each weighted by its error: for an adequate model, χ² is about as large as the "
                 "number of degrees of freedom. All steps share one scale of residuals, linear near zero "
-                "and logarithmic beyond, so that the error is seen to fall. The misfit is the rms "
-                "difference of the Allan variances in percent. The longest octaves, whose scatter is largest, dominate it, so it can rise "
-                "while χ² falls. Each step adds the effect that explains most."
+                "and logarithmic beyond, so that the error is seen to fall. χ² is the one number that falls from step to step; what "
+                "follows a recorded temperature counts for it until it is subtracted. Each step adds the effect that explains most."
             }
             fieldset #units hidden {
                 legend { "Units" }

@@ -81,18 +81,18 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     // The file comes first, so that an output that cannot be written is refused before the diagnosis.
     let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
     let diagnosed = arguments.diagnosis.diagnosed()?;
-    let drawings = chosen(&diagnosed, arguments)?;
-    if matches!(format, Format::Png) && drawings.len() > MOST_AXES {
+    let chosen = chosen(&diagnosed, arguments)?;
+    if matches!(format, Format::Png) && chosen.len() > MOST_AXES {
         return Err(Place::file(&arguments.output).failure(
             format!(
                 "the picture would have {} axes, more than {MOST_AXES}",
-                drawings.len()
+                chosen.len()
             ),
             "draw one axis with --axis, or an .svg",
         ));
     }
-    let drawings: Vec<Drawing> = drawings
-        .into_iter()
+    let drawings: Vec<Drawing> = chosen
+        .iter()
         .map(|diagnosed| drawing(diagnosed, arguments))
         .collect::<Result<_, _>>()?;
     let drawing = svg(&drawings);
@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     written.map_err(|error| place().io(&error))?;
     file.commit()?;
     let next = "`diagnose` tells the steps in words, and `report` on a page";
-    print_written(&diagnosed, (&arguments.output, next), output)
+    print_written(&chosen, (&arguments.output, next), output)
 }
 
 #[cfg(feature = "pictures")]

@@ -18,7 +18,7 @@ fn record(folder: &Path) {
         "--axes",
         "1",
         "--seed",
-        "11",
+        "12",
         "--effect",
         "sinusoid:frequency_hz=31,amplitude=0.03",
         "--effect",

@@ -53,9 +53,9 @@ pub(crate) const NEXT: &str =
     "next: `report` shows every step on a page, and `export` writes the model for a filter";
 
 /// The conclusion: the verdicts, and the findings beginning with what explains most.
-pub(crate) fn lines(diagnosed: &[Diagnosed]) -> Vec<String> {
+pub(crate) fn lines(diagnosed: &[&Diagnosed]) -> Vec<String> {
     let mut lines = verdicts(diagnosed);
-    let found = grouped(diagnosed.iter().flat_map(found).collect());
+    let found = grouped(diagnosed.iter().flat_map(|one| found(one)).collect());
     let room = MOST_LINES.saturating_sub(lines.len() + 1).max(1);
     let shown = found.iter().take(room);
     lines.extend(shown.map(|group| sentence(group, diagnosed.len())));
@@ -70,7 +70,7 @@ pub(crate) fn lines(diagnosed: &[Diagnosed]) -> Vec<String> {
 /// # Errors
 /// When standard output cannot be written.
 pub(crate) fn print_written(
-    diagnosed: &[Diagnosed],
+    diagnosed: &[&Diagnosed],
     (path, next): (&Path, &str),
     output: &mut impl Write,
 ) -> Result<(), Failure> {
@@ -89,7 +89,7 @@ pub(crate) fn print_written(
 }
 
 /// The verdict of the axes, a line for all axes of which the same is said.
-fn verdicts(diagnosed: &[Diagnosed]) -> Vec<String> {
+fn verdicts(diagnosed: &[&Diagnosed]) -> Vec<String> {
     let mut groups: Vec<(String, Vec<&Diagnosed>)> = Vec::new();
     for one in diagnosed {
         let said = said(one);
@@ -104,7 +104,13 @@ fn verdicts(diagnosed: &[Diagnosed]) -> Vec<String> {
         let p: Vec<String> = p.map(|(_, last)| shown_p(last.fit.p_value)).collect();
         let p = match matches!(axes[0].verdict, Verdict::Invalid(_) | Verdict::TooShort) {
             true => String::new(),
-            false => format!(" (p {})", words::list_of(p)),
+            // The sign is said once: `p = 0.103, 0.053 and 0.997`.
+            false => format!(
+                " (p {})",
+                words::list_of(p)
+                    .replace(", = ", ", ")
+                    .replace(" and = ", " and ")
+            ),
         };
         format!("{}: {said}{p}", words::list_of(names))
     };
@@ -124,6 +130,10 @@ fn said(diagnosed: &Diagnosed) -> String {
     let event = stationarity.strongest(diagnosed.axis.unit);
     let disturbed = event.filter(|_| stationarity.is_disturbed());
     let of_curve = match diagnosed.verdict {
+        // What happened is no part of the noise that the terms stand for.
+        Verdict::Adequate if disturbed.is_some() => {
+            format!("its curve looks like that of the {terms}, which stand for a mixture")
+        }
         Verdict::Adequate => format!("the {terms} explain the record, no effect is missing"),
         Verdict::TooShort => format!("too short to judge the {terms}"),
         Verdict::Improved => format!("the {terms} and what follows explain the record"),
@@ -349,7 +359,11 @@ fn sentence(group: &[Found], axes: usize) -> String {
 /// Values of several axes with their unit; a single one has its interval.
 fn values<'a>(all: impl Iterator<Item = &'a Value>, first: &Value) -> String {
     let all: Vec<&Value> = all.collect();
-    let numbers = words::list_of(all.iter().map(|one| number(one.value)).collect());
+    let numbers = all.iter().map(|one| match one.value.fract() {
+        0.0 => one.value.to_string(),
+        _ => number(one.value),
+    });
+    let numbers = words::list_of(numbers.collect());
     let unit = match first.unit.as_str() {
         "" => String::new(),
         unit => format!(" {unit}"),

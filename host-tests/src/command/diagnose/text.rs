@@ -23,7 +23,7 @@ use std::io::{self, Write};
 
 /// Prints the conclusion of all axes, then the steps of every axis, from the five terms to the last model.
 pub(crate) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Result<()> {
-    for line in conclusion::lines(diagnosed) {
+    for line in conclusion::lines(&diagnosed.iter().collect::<Vec<_>>()) {
         writeln!(output, "{line}")?;
     }
     writeln!(output, "{}", conclusion::NEXT)?;

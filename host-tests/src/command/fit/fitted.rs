@@ -141,12 +141,10 @@ impl Fitted {
 
     /// Notes on what was recorded alongside, a sentence each.
     pub(crate) fn covariate_notes(&self) -> Vec<String> {
-        // Beside a model that does not explain the record, nothing is told of what a slope might be.
+        // Where a model does not explain the record, a slope that does not stand out may do so beside another one.
         let explains = self.fit.is_adequate() != Some(false);
-        let (told, untold): (Vec<_>, Vec<_>) = self
-            .tried
-            .iter()
-            .partition(|tried| explains || tried.acts());
+        let tells = explains || self.tried.iter().any(TriedCovariate::acts);
+        let (told, untold): (Vec<_>, Vec<_>) = self.tried.iter().partition(|_| tells);
         let note = |tried: &TriedCovariate| {
             let remedy = if tried.acts() {
                 "; the coefficients include what follows it, and `diagnose` subtracts it"

@@ -50,7 +50,11 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     file.write_all(page.as_bytes()).map_err(fail)?;
     file.commit()?;
     let next = "open it in a browser; `explore` changes the effects by hand";
-    diagnose::conclusion::print_written(&diagnosed, (&arguments.output, next), output)
+    diagnose::conclusion::print_written(
+        &diagnosed.iter().collect::<Vec<_>>(),
+        (&arguments.output, next),
+        output,
+    )
 }
 
 fn is_page(path: &Path) -> bool {

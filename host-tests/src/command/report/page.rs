@@ -61,7 +61,7 @@ pub(super) fn page(content: &Content) -> String {
                 header {
                     h1 { "Gyro noise of " span.name { (name) } }
                     div.conclusion {
-                        @for line in conclusion::lines(content.diagnosed) { p { (line) } }
+                        @for line in conclusion::lines(&content.diagnosed.iter().collect::<Vec<_>>()) { p { (line) } }
                     }
                     (summary(content.diagnosed))
                 }

@@ -123,7 +123,7 @@ fn one_number_falls_and_every_view_says_the_same() {
         3,
         "{fitted}"
     );
-    assert!(!fitted.contains("no dependence"), "{fitted}");
+    assert!(!fitted.contains("tried temp_C: no dependence"), "{fitted}");
     let compared = json(folder, &["compare", "log.csv"]);
     let report = output(folder, &["report", "log.csv", "--output", "report.html"]);
     let page = fs::read_to_string(folder.join("report.html")).unwrap();

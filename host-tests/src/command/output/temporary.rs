@@ -19,8 +19,13 @@ fn existing() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     EXISTING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Nothing interrupts a program in a page but the end of its worker, with which its files go.
+#[cfg(target_family = "wasm")]
+pub(crate) fn remove_when_interrupted() {}
+
 /// From now on, an interruption (SIGINT, SIGTERM or SIGHUP) removes all temporary files and ends the
 /// program. Where interruptions cannot be caught, they end the program as usual.
+#[cfg(not(target_family = "wasm"))]
 pub(crate) fn remove_when_interrupted() {
     let _ = ctrlc::set_handler(|| {
         // The lock is held until the program has ended, so that no further file is created.

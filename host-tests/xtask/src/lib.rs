@@ -7,6 +7,7 @@ mod c;
 pub mod cost;
 mod fuzz;
 mod miri;
+pub mod page;
 mod results;
 mod setup;
 mod soak;
@@ -108,6 +109,8 @@ enum Task {
         #[arg(long, value_name = "FOLDER", default_value = "target/c")]
         output: PathBuf,
     },
+    /// Build the page that reads logs without a server: target/page/allanite.html. This needs rustup.
+    Page,
     /// Ask the command line everything about some 70 records, and compare the answers with those of an earlier run: for
     /// changes that should change no result.
     Results {
@@ -175,6 +178,7 @@ impl CommandLine {
                 let octaves = octaves.parse().unwrap_or(20);
                 c::run(Contents { octaves, one_axis }, &targets, &output)
             }
+            Task::Page => page::page().map(drop),
             Task::Results {
                 folder,
                 against,

@@ -4,7 +4,6 @@ use std::{
     collections::BTreeSet,
     io::{self, Write},
     path::{Path, PathBuf},
-    process,
     sync::{Mutex, MutexGuard, PoisonError},
 };
 use tempfile::{Builder, NamedTempFile};
@@ -13,6 +12,7 @@ use tempfile::{Builder, NamedTempFile};
 static EXISTING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// The exit status of a program that was interrupted, by the convention of shells.
+#[cfg(not(target_family = "wasm"))]
 const INTERRUPTED: i32 = 130;
 
 fn existing() -> MutexGuard<'static, BTreeSet<PathBuf>> {
@@ -33,7 +33,7 @@ pub(crate) fn remove_when_interrupted() {
         for path in existing.iter() {
             let _ = std::fs::remove_file(path);
         }
-        process::exit(INTERRUPTED);
+        std::process::exit(INTERRUPTED);
     });
 }
 
@@ -47,6 +47,10 @@ pub(crate) struct Temporary {
 impl Temporary {
     /// Creates a file in a folder.
     pub(crate) fn create_in(folder: &Path) -> io::Result<Self> {
+        #[cfg_attr(
+            not(unix),
+            expect(unused_mut, reason = "only Unix has permissions to set")
+        )]
         let mut builder = Builder::new();
         #[cfg(unix)]
         {

@@ -67,6 +67,11 @@ pub(super) const PLOT: &str = examples! {
     "allanite plot log.csv --what rate,spectrum --output gyro.svg"
 };
 
+pub(super) const CERTIFY: &str = examples! {
+    "allanite certify log.csv --rate 100 --scale 0.05 --device SN-0042 --output SN-0042.bin"
+    "allanite certify SN-0001.csv SN-0002.json --firmware 1.2.0 --temperature 22.5..24 --output certificates"
+};
+
 pub(super) const DECODE: &str = examples! {
     "allanite decode device1.bin device2.bin"
     "allanite decode --json snapshot.bin"

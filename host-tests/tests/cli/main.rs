@@ -14,6 +14,7 @@ mod sealed;
 mod served;
 
 mod bad_input;
+mod certify;
 mod command_line;
 mod compare;
 mod curve_file;

@@ -44,5 +44,6 @@ mod readme;
 mod record_over_time;
 mod report;
 mod report_figures;
+mod schema;
 mod simulate;
 mod watch;

@@ -17,8 +17,8 @@ const MOST_DOTS: usize = 200;
 /// The number of groups.
 const GROUPS: usize = 50;
 
-/// So many devices that have drifted are named in a picture.
-const NAMED: usize = 6;
+/// So many devices are named in a picture.
+const NAMED: usize = 5;
 
 /// The coefficient over the devices in their order. A production that drifts shows here.
 pub(super) fn in_order(quantity: &Quantity<'_>) -> Markup {
@@ -44,6 +44,9 @@ pub(super) fn in_order(quantity: &Quantity<'_>) -> Markup {
         (dots("fail", placed(Decision::Failed)))
         @let y = at(scale.place(quantity.limit));
         line.limit x1=(at(ACROSS.0)) x2=(at(ACROSS.1)) y1=(y) y2=(y) {}
+        @for (device, at_x, at_y) in worst(quantity, &scale, x) {
+            (label(device, at_x, at_y))
+        }
         @for (i, anchor) in [(0, "start"), (last, "end")] {
             text.tick x=(at(x(i))) y=(at(UP.0 + 14.0)) text-anchor=(anchor) {
                 (quantity.devices.get(i).map_or("", |one| one.device))
@@ -54,6 +57,33 @@ pub(super) fn in_order(quantity: &Quantity<'_>) -> Markup {
     let (effect, axis) = (&quantity.effect, &quantity.axis);
     let name = format!("{effect} of axis {axis} over the devices in their order");
     picture(&name, &content)
+}
+
+/// The devices that are farthest above the limit, with their places.
+fn worst<'a>(
+    quantity: &Quantity<'a>,
+    scale: &Scale,
+    x: impl Fn(usize) -> f64,
+) -> Vec<(&'a str, f64, f64)> {
+    let all = quantity.devices.iter().enumerate();
+    let mut failed: Vec<(f64, usize, &'a str)> = all
+        .filter(|(_, one)| one.decision == Decision::Failed)
+        .filter_map(|(i, one)| Some((quantity.value(one.known)?, i, one.device)))
+        .collect();
+    failed.sort_by(|(one, ..), (other, ..)| other.total_cmp(one));
+    let named = failed.into_iter().take(NAMED);
+    named
+        .map(|(value, i, device)| (device, x(i), scale.place(value)))
+        .collect()
+}
+
+/// The name of a device beside its dot, on the side on which there is room.
+fn label(device: &str, x: f64, y: f64) -> Markup {
+    let is_right = x > f64::midpoint(ACROSS.0, ACROSS.1);
+    html! {
+        text.tick x=(at(if is_right { x - 6.0 } else { x + 6.0 })) y=(at(y + 4.0))
+            text-anchor=(if is_right { "end" } else { "start" }) { (device) }
+    }
 }
 
 /// Medians and the band from 5 to 95 % of groups of devices.
@@ -107,9 +137,7 @@ pub(super) fn since(quantity: &Quantity<'_>) -> Option<Markup> {
         (dots("plain", places(false)))
         (dots("fail", places(true)))
         @for (device, x, y) in placed(true).take(NAMED) {
-            @let is_right = x > f64::midpoint(ACROSS.0, ACROSS.1);
-            text.tick x=(at(if is_right { x - 6.0 } else { x + 6.0 })) y=(at(y + 4.0))
-                text-anchor=(if is_right { "end" } else { "start" }) { (device) }
+            (label(device, x, y))
         }
     };
     let count = placed(true).count();

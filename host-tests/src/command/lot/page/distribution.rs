@@ -3,7 +3,7 @@
 use super::{
     quantity::Quantity,
     scale::Scale,
-    sheet::{ACROSS, UP, across, at, picture},
+    sheet::{ACROSS, UP, across, at, picture, short},
 };
 use crate::{
     command::output::number::number,
@@ -31,19 +31,26 @@ pub(super) fn distribution(quantity: &Quantity<'_>) -> Markup {
     let measured = quantity.values().count();
     let bars = ((measured as f64).sqrt() as usize * 2).clamp(BARS.0, BARS.1);
     let width = (ACROSS.1 - ACROSS.0) / bars as f64;
-    let mut counts = vec![[0_usize; STACKED.len()]; bars];
+    // The limit lies between two bars, so that none has devices on both of its sides.
+    let first = (scale.place(limit) - ACROSS.0) % width - width;
+    let mut counts = vec![[0_usize; STACKED.len()]; bars + 2];
     for one in &quantity.devices {
         let Some(value) = quantity.value(one.known) else {
             continue;
         };
-        let bar = ((scale.place(value) - ACROSS.0) / width) as usize;
+        let bar = ((scale.place(value) - ACROSS.0 - first) / width) as usize;
         let kind = STACKED
             .iter()
             .position(|(decision, _)| *decision == one.decision);
-        if let (Some(counts), Some(kind)) = (counts.get_mut(bar.min(bars - 1)), kind) {
+        if let (Some(counts), Some(kind)) = (counts.get_mut(bar), kind) {
             counts[kind] += 1;
         }
     }
+    // The ends of a bar, which the scale cuts off.
+    let ends = |bar: usize| {
+        let from = ACROSS.0 + first + width * bar as f64;
+        (from.max(ACROSS.0), (from + width).min(ACROSS.1))
+    };
     let most = counts.iter().map(|all| all.iter().sum::<usize>()).max();
     let most = most.unwrap_or(0).max(1);
     let height = |count: usize| (UP.0 - UP.1) * count as f64 / most as f64;
@@ -56,7 +63,8 @@ pub(super) fn distribution(quantity: &Quantity<'_>) -> Markup {
             @for (kind, (_, class)) in STACKED.iter().enumerate() {
                 @let below: usize = all[..kind].iter().sum();
                 @if all[kind] > 0 {
-                    rect class=(class) x=(at(ACROSS.0 + width * i as f64 + 0.5)) width=(at(width - 1.0))
+                    @let (from, to) = ends(i);
+                    rect class=(class) x=(at(from + 0.5)) width=(at((to - from - 1.0).max(0.5)))
                         y=(at(UP.0 - height(below + all[kind]))) height=(at(height(all[kind]))) {}
                 }
             }
@@ -82,7 +90,7 @@ fn limit_mark(scale: &Scale, limit: f64) -> Markup {
     html! {
         line.limit x1=(at(x)) x2=(at(x)) y1=(at(UP.0)) y2=(at(UP.1 - 8.0)) {}
         text.limit-word x=(at(x + shift)) y=(at(UP.1 - 2.0)) text-anchor=(anchor) {
-            "limit " (number(limit))
+            "limit " (short(limit))
         }
     }
 }

@@ -16,6 +16,15 @@ pub(super) fn at(place: f64) -> String {
     format!("{place:.1}")
 }
 
+/// A number without the zeros at its end.
+pub(super) fn short(value: f64) -> String {
+    let text = number(value);
+    if text.contains('e') || !text.contains('.') {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
 /// A picture with its name for those who do not see it.
 pub(super) fn picture(name: &str, content: &Markup) -> Markup {
     html! {
@@ -32,7 +41,7 @@ pub(super) fn across(scale: &Scale, name: &str) -> Markup {
         @for tick in scale.ticks() {
             @let x = at(scale.place(tick));
             line.grid x1=(x) x2=(x) y1=(at(UP.0)) y2=(at(UP.1)) {}
-            text.tick x=(x) y=(at(UP.0 + 14.0)) text-anchor="middle" { (number(tick)) }
+            text.tick x=(x) y=(at(UP.0 + 14.0)) text-anchor="middle" { (short(tick)) }
         }
         (named_across(name))
     }
@@ -53,7 +62,7 @@ pub(super) fn up(scale: &Scale, name: &str) -> Markup {
         @for tick in scale.ticks() {
             @let y = scale.place(tick);
             line.grid x1=(at(ACROSS.0)) x2=(at(ACROSS.1)) y1=(at(y)) y2=(at(y)) {}
-            text.tick x=(at(ACROSS.0 - 5.0)) y=(at(y + 4.0)) text-anchor="end" { (number(tick)) }
+            text.tick x=(at(ACROSS.0 - 5.0)) y=(at(y + 4.0)) text-anchor="end" { (short(tick)) }
         }
         text.tick x="2" y="13" { (name) }
     }

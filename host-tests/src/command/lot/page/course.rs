@@ -20,6 +20,12 @@ const GROUPS: usize = 50;
 /// So many devices are named in a picture.
 const NAMED: usize = 5;
 
+/// So many devices are looked at for them.
+const LOOKED_AT: usize = 100;
+
+/// The width and the height of a name.
+const LABEL: (f64, f64) = (62.0, 13.0);
+
 /// The coefficient over the devices in their order. A production that drifts shows here.
 pub(super) fn in_order(quantity: &Quantity<'_>) -> Markup {
     let Some(scale) = Scale::of(quantity.values().chain([quantity.limit]), UP) else {
@@ -39,14 +45,12 @@ pub(super) fn in_order(quantity: &Quantity<'_>) -> Markup {
             (groups(quantity, &scale, x))
         } @else {
             (dots("pass", placed(Decision::Passed)))
+            (dots("guard", placed(Decision::Guarded)))
         }
-        (dots("guard", placed(Decision::Guarded)))
-        (dots("fail", placed(Decision::Failed)))
+        (dots(if is_grouped { "fail small" } else { "fail" }, placed(Decision::Failed)))
         @let y = at(scale.place(quantity.limit));
         line.limit x1=(at(ACROSS.0)) x2=(at(ACROSS.1)) y1=(y) y2=(y) {}
-        @for (device, at_x, at_y) in worst(quantity, &scale, x) {
-            (label(device, at_x, at_y))
-        }
+        (labels(worst(quantity, &scale, x)))
         @for (i, anchor) in [(0, "start"), (last, "end")] {
             text.tick x=(at(x(i))) y=(at(UP.0 + 14.0)) text-anchor=(anchor) {
                 (quantity.devices.get(i).map_or("", |one| one.device))
@@ -71,10 +75,26 @@ fn worst<'a>(
         .filter_map(|(i, one)| Some((quantity.value(one.known)?, i, one.device)))
         .collect();
     failed.sort_by(|(one, ..), (other, ..)| other.total_cmp(one));
-    let named = failed.into_iter().take(NAMED);
+    let named = failed.into_iter();
     named
         .map(|(value, i, device)| (device, x(i), scale.place(value)))
         .collect()
+}
+
+/// The names of some devices at their dots, so far apart that none covers another one.
+fn labels(devices: Vec<(&str, f64, f64)>) -> Markup {
+    let mut named: Vec<(&str, f64, f64)> = Vec::new();
+    for (device, x, y) in devices.into_iter().take(LOOKED_AT) {
+        let covers = |(_, other_x, other_y): &(&str, f64, f64)| {
+            (x - other_x).abs() < 2.0 * LABEL.0 && (y - other_y).abs() < LABEL.1
+        };
+        if named.len() < NAMED && !named.iter().any(covers) {
+            named.push((device, x, y));
+        }
+    }
+    html! {
+        @for (device, x, y) in named { (label(device, x, y)) }
+    }
 }
 
 /// The name of a device beside its dot, on the side on which there is room.
@@ -136,9 +156,7 @@ pub(super) fn since(quantity: &Quantity<'_>) -> Option<Markup> {
         line.median x1=(at(ACROSS.0)) x2=(at(ACROSS.1)) y1=(at(UP.0)) y2=(at(UP.1)) {}
         (dots("plain", places(false)))
         (dots("fail", places(true)))
-        @for (device, x, y) in placed(true).take(NAMED) {
-            (label(device, x, y))
-        }
+        (labels(placed(true).collect()))
     };
     let count = placed(true).count();
     let name = format!(

@@ -9,7 +9,7 @@ use allanite::effect::{CATALOGUE, Effect, IEEE_952};
 use maud::{Markup, html};
 
 /// So many devices of a list are named. The CSV and the JSON document have all.
-const SHOWN: usize = 40;
+const SHOWN: usize = 15;
 
 /// A coefficient with the factor and the unit in which the page shows it.
 fn unit_of(judged: &Judged<'_>, effect: &str) -> (f64, String) {

@@ -53,8 +53,7 @@ const DISTRIBUTIONS: &str = "Each bar counts devices. The solid line is the limi
     uncertainty is usual for the lot; between the lines lies the guard band, where the record is too short to tell. Devices \
     that only bound the coefficient are not drawn.";
 const IN_ORDER: &str = "The devices stand in the order in which they were given, folders by the names of their files. Of many \
-    devices, the line is the median of groups and the band has 90 % of each group; those in the guard band and those \
-    that fail are dots.";
+    devices, the line is the median of groups and the band has 90 % of each group; those that fail are dots.";
 const SINCE: &str = "A device on the line has not changed. Those whose change is too large for the errors of both records \
     have drifted, and are named.";
 

@@ -80,6 +80,7 @@ pub(super) const DECODE: &str = examples! {
 pub(super) const LOT: &str = examples! {
     "allanite lot --limit N=0.005 --limit B=10°/h device1.bin device2.bin"
     "allanite lot --limit N=0.3°/√h --risk 0.01 now --earlier before --json"
+    "allanite lot --limit N=0.3°/√h logs SN-0042.json certificates --output lot.csv --output lot.html"
 };
 
 pub(super) const WATCH: &str = examples! {

@@ -137,7 +137,13 @@ fn what_has_no_certificate_is_refused_in_a_line() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
     simulate(folder, "SN-1", 1, &[]);
-    simulate(folder, "many", 1, &["--axes", "4"]);
+    let noise = |i: u32| (i * 7919) % 101;
+    let four = (0..4000).map(|i| {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|axis| noise(4 * i + axis));
+        format!("{a},{b},{c},{d}\n")
+    });
+    let many = "# rate_hz=100 unit=deg/s\na,b,c,d\n".to_owned() + &four.collect::<String>();
+    fs::write(folder.join("many.csv"), many).unwrap();
     simulate(folder, "a-name-of-many-letters", 1, &[]);
     fs::write(
         folder.join("accelerometer.csv"),

@@ -134,7 +134,7 @@ pub(super) fn since(quantity: &Quantity<'_>) -> Option<Markup> {
         let before = quantity.value(one.earlier)?;
         Some((before, quantity.value(one.known)?))
     };
-    let both = quantity.devices.iter().filter_map(|one| pair(one));
+    let both = quantity.devices.iter().filter_map(pair);
     let all: Vec<f64> = both.flat_map(|(before, now)| [before, now]).collect();
     let (x, y) = (
         Scale::of(all.iter().copied(), ACROSS)?,

@@ -69,6 +69,11 @@ pub(super) const PLOT: &str = examples! {
     "allanite plot log.csv --what rate,spectrum --output gyro.svg"
 };
 
+pub(super) const CERTIFY: &str = examples! {
+    "allanite certify log.csv --rate 100 --scale 0.05 --device SN-0042 --output SN-0042.bin"
+    "allanite certify SN-0001.csv SN-0002.json --temperature 22.5..24 --output certificates"
+};
+
 pub(super) const DECODE: &str = examples! {
     "allanite decode device1.bin device2.bin"
     "allanite decode --json snapshot.bin"
@@ -77,6 +82,7 @@ pub(super) const DECODE: &str = examples! {
 pub(super) const LOT: &str = examples! {
     "allanite lot --limit N=0.005 --limit B=10°/h device1.bin device2.bin"
     "allanite lot --limit N=0.3°/√h --risk 0.01 now --earlier before --json"
+    "allanite lot --limit N=0.3°/√h logs SN-0042.json --output lot.csv --output lot.html"
 };
 
 pub(super) const WATCH: &str = examples! {

@@ -7,7 +7,9 @@ use crate::{
             many,
             record::{self, CovariateArguments, LogArguments},
         },
-        output::{disturbance::invalid, file::OutputFile, number::number, progress},
+        output::{
+            disturbance::invalid, file::OutputFile, number::number, places::places, progress,
+        },
     },
     curve_file::{AxisCurve, CurveFile},
     failure::{Failure, Place, one_line, report},
@@ -15,7 +17,6 @@ use crate::{
 };
 use clap::Args;
 use std::{
-    collections::HashMap,
     io::{self, Write},
     path::{Path, PathBuf},
 };
@@ -42,7 +43,10 @@ pub(super) struct Arguments {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
-    let places = places(&arguments.logs, &arguments.output)?;
+    if !arguments.output.is_dir() && arguments.logs.len() < 2 {
+        check_name(&arguments.output)?;
+    }
+    let places = places(&arguments.logs, &arguments.output, "json", "measure")?;
     let several = places.len() > 1;
     let work = |log: &Path| {
         let place = places.get(log).unwrap_or(&arguments.output);
@@ -89,47 +93,6 @@ fn measured(log: &Path, about_log: &LogArguments) -> Result<Vec<AxisCurve>, Fail
         curve
     };
     Ok(axes.into_iter().map(curve).collect())
-}
-
-/// The output path of each log.
-///
-/// # Errors
-/// When the output is no folder but there are several logs, when its extension is not that of a curve
-/// file, or when two logs would get the same path.
-fn places(logs: &[PathBuf], output: &Path) -> Result<HashMap<PathBuf, PathBuf>, Failure> {
-    if !output.is_dir() {
-        if logs.len() > 1 {
-            return Err(Place::file(output).failure(
-                "several logs need a folder as output, and this one does not exist",
-                "create the folder first",
-            ));
-        }
-        check_name(output)?;
-    }
-    let mut places: HashMap<PathBuf, PathBuf> = HashMap::new();
-    for log in logs {
-        let place = if output.is_dir() {
-            // The name without its extension; `.csv.gz` counts as one extension.
-            let stem = Path::new(log.file_stem().unwrap_or_default());
-            let stem = match stem.extension() {
-                Some(extension) if extension.eq_ignore_ascii_case("csv") => stem.with_extension(""),
-                _ => stem.to_owned(),
-            };
-            let mut name = stem.into_os_string();
-            name.push(".json");
-            output.join(name)
-        } else {
-            output.to_owned()
-        };
-        if places.values().any(|other| *other == place) {
-            return Err(Place::file(&place).failure(
-                "two logs would write this file",
-                "measure them one by one, each with its own --output",
-            ));
-        }
-        places.insert(log.clone(), place);
-    }
-    Ok(places)
 }
 
 /// Refuses the path of a curve file that the other commands would take for a log.

@@ -1,5 +1,7 @@
 //! The commands of `allanite`.
 
+mod certified;
+mod certify;
 mod compare;
 mod completions;
 mod decode;
@@ -60,6 +62,7 @@ enum Command {
     Watch(watch::Arguments),
     Report(report::Arguments),
     Plot(plot::Arguments),
+    Certify(certify::Arguments),
     Decode(decode::Arguments),
     Lot(lot::Arguments),
     Completions(completions::Arguments),
@@ -97,6 +100,7 @@ impl CommandLine {
             Command::Watch(arguments) => watch::run(arguments, &mut output),
             Command::Report(arguments) => report::run(arguments, &mut output),
             Command::Plot(arguments) => plot::run(arguments, &mut output),
+            Command::Certify(arguments) => certify::run(arguments, &mut output),
             Command::Decode(arguments) => decode::run(arguments, &mut output),
             Command::Lot(arguments) => lot::run(arguments, &mut output),
             Command::Completions(arguments) => {

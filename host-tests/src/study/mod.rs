@@ -16,6 +16,7 @@ pub mod lag;
 pub mod lines;
 pub mod long;
 pub mod losses;
+pub mod lot;
 pub mod measured;
 pub mod mixtures;
 pub mod motion;

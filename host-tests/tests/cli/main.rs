@@ -14,6 +14,7 @@ mod sealed;
 mod served;
 
 mod bad_input;
+mod certify;
 mod command_line;
 mod compare;
 mod curve_file;
@@ -43,6 +44,7 @@ mod readme;
 mod record_over_time;
 mod report;
 mod report_figures;
+mod schema;
 mod simulate;
 mod views;
 mod watch;

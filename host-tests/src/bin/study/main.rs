@@ -14,6 +14,7 @@ mod hidden_effect;
 mod lines;
 mod long;
 mod losses;
+mod lot;
 mod motion;
 mod origin;
 mod own;
@@ -106,6 +107,15 @@ enum Study {
         /// Hide every kind of the catalogue, rare ones too
         #[arg(long)]
         every_kind: bool,
+    },
+    /// Judge a lot of thousands of devices, with its table and its page, and measure time and memory
+    Lot {
+        /// Number of devices, each of three axes
+        #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(10..=100_000))]
+        devices: u64,
+        /// The folder for the files of the devices, and for those of the lot [default: a temporary one]
+        #[arg(long)]
+        folder: Option<PathBuf>,
     },
     /// Count what is said of slow Gauss–Markov noise: a published benchmark, and noise of a size near its ideal limit
     Slow {
@@ -375,6 +385,7 @@ fn main() -> Result<()> {
             };
             pairs::print(records, preset, kinds);
         }
+        Study::Lot { devices, folder } => lot::print(devices, folder.as_deref(), &allanite()?)?,
         Study::Slow {
             records,
             limits,

@@ -37,7 +37,7 @@ pub(super) fn hex(record: &Certificate) -> String {
 }
 
 /// The version of a device's firmware, such as `1.2.0`.
-pub(super) fn firmware(record: &Certificate) -> String {
+pub(crate) fn firmware(record: &Certificate) -> String {
     record.firmware.map(|part| part.to_string()).join(".")
 }
 

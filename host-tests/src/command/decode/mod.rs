@@ -12,7 +12,7 @@ use crate::{
 use allanite::storage::{self, Certificate, Snapshot};
 use clap::Args;
 use decoded::{Decoded, Stored, StoredSnapshot};
-pub(super) use decoded::{axis_name, device};
+pub(super) use decoded::{axis_name, device, firmware};
 use std::{
     io::{Read, Write},
     path::{Path, PathBuf},
@@ -45,16 +45,38 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
             Err(failure) => failures.push(failure),
         }
     }
-    if !decoded.is_empty() {
-        let printed = if arguments.json {
-            json::print(&decoded, output)
-        } else {
-            text::print(&decoded, output)
-        };
-        let printed = printed.and_then(|()| output.flush());
-        printed.map_err(|error| Failure::standard_output(&error))?;
-    }
+    print(&decoded, arguments.json, output)?;
     many::failed(failures)
+}
+
+/// Prints certificates with the files that have them.
+///
+/// # Errors
+/// When standard output cannot be written.
+pub(super) fn print_certificates(
+    certificates: Vec<(PathBuf, Certificate)>,
+    json: bool,
+    output: &mut impl Write,
+) -> Result<(), Failure> {
+    let certificates = certificates.into_iter();
+    let decoded = certificates.map(|(file, certificate)| Decoded {
+        file,
+        stored: Stored::Certificate(Box::new(certificate)),
+    });
+    print(&decoded.collect::<Vec<_>>(), json, output)
+}
+
+fn print(decoded: &[Decoded], json: bool, output: &mut impl Write) -> Result<(), Failure> {
+    if decoded.is_empty() {
+        return Ok(());
+    }
+    let printed = if json {
+        json::print(decoded, output)
+    } else {
+        text::print(decoded, output)
+    };
+    let printed = printed.and_then(|()| output.flush());
+    printed.map_err(|error| Failure::standard_output(&error))
 }
 
 /// Decodes a file that must have a certificate.

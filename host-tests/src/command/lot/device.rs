@@ -10,11 +10,32 @@ use std::path::PathBuf;
 /// What a coefficient of an axis is called: the place of the axis, and the name of the effect.
 pub(super) type Place = (usize, &'static str);
 
+/// What the results of a device were read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    Certificate,
+    Curve,
+    Log,
+}
+
+impl Source {
+    /// The source as it is written in tables.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Certificate => "certificate",
+            Self::Curve => "curve",
+            Self::Log => "log",
+        }
+    }
+}
+
 /// A device of a lot.
 pub(super) struct Device {
+    /// Its identity; that of a log or a curve file is the name of the file.
     pub(super) id: String,
     pub(super) unit: Unit,
     pub(super) file: PathBuf,
+    pub(super) source: Source,
     pub(super) certificate: Certificate,
 }
 
@@ -48,6 +69,7 @@ impl Device {
     }
 }
 
-fn is_invalid(axis: &AxisCertificate) -> bool {
+/// Whether the record of an axis is not valid.
+pub(super) fn is_invalid(axis: &AxisCertificate) -> bool {
     matches!(axis.verdict, Some(Verdict::Invalid(_)))
 }

@@ -7,7 +7,6 @@ use super::{
 };
 use crate::{
     command::decode,
-    command::limit::Limit,
     confidence::share_is_at_most,
     lot::{Decision, Measurement},
     unit::Unit,
@@ -15,6 +14,16 @@ use crate::{
 use allanite::diagnosis::Verdict;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
+
+/// A lot with all that its judgement follows from.
+pub(super) struct Judged<'a> {
+    pub(super) devices: &'a [Device],
+    /// The earlier results of these devices, by their identities.
+    pub(super) before: &'a BTreeMap<&'a str, &'a Device>,
+    pub(super) unit: Unit,
+    pub(super) rules: &'a [Rule],
+    pub(super) lot: &'a Lot,
+}
 
 /// The judgement of a lot. Coefficients are in the unit that is told beside them.
 #[derive(Serialize)]
@@ -77,19 +86,15 @@ pub(super) struct Named {
 }
 
 impl Lot {
-    /// Judges devices by limits at a risk, and compares them with their earlier certificates. Of several earlier ones of a
+    /// Judges devices by the rules of their limits at a risk, and compares them with their earlier certificates. Of several earlier ones of a
     /// device the last one counts.
     pub(super) fn new(
         devices: &[Device],
         earlier: &[Device],
         unit: Unit,
-        limits: &[Limit],
+        rules: &[Rule],
         risk: f64,
     ) -> Self {
-        let rules: Vec<Rule> = limits
-            .iter()
-            .map(|limit| Rule::of(devices, *limit, risk))
-            .collect();
         let worst = |device: &Device| {
             let axes = 0..device.certificate.axes.len();
             let decisions = axes.flat_map(|axis| {
@@ -120,8 +125,8 @@ impl Lot {
             // At either end lies half of the 5 %.
             yield_interval: [1.0 - at_most(1.0 - share), at_most(share)],
             limits: rows.collect(),
-            failures: failures(devices, &rules),
-            undecided: undecided(devices, &rules),
+            failures: failures(devices, rules),
+            undecided: undecided(devices, rules),
             invalid: named(devices, |verdict| matches!(verdict, Verdict::Invalid(_))),
             unexplained: named(devices, |verdict| {
                 matches!(verdict, Verdict::Unexplained | Verdict::Incomplete)

@@ -75,6 +75,11 @@ impl Rule {
         self.errors.get(axis).copied().unwrap_or(0.0)
     }
 
+    /// The probability that a coefficient of which this is known keeps the limit.
+    pub(super) fn conformity(&self, axis: usize, known: Option<Measurement>) -> Option<f64> {
+        known.map(|one| one.conformity(self.limit.value, self.error(axis)))
+    }
+
     /// What is decided of a coefficient of which this is known. A certificate without the coefficient decides nothing.
     pub(super) fn decision(&self, axis: usize, known: Option<Measurement>) -> Decision {
         known.map_or(Decision::Guarded, |one| {

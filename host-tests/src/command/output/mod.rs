@@ -7,6 +7,7 @@ pub(super) mod event_json;
 pub(super) mod file;
 pub(super) mod model_json;
 pub(super) mod number;
+pub(super) mod places;
 pub(super) mod progress;
 pub(super) mod rounding;
 pub(super) mod shell;

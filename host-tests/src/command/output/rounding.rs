@@ -14,11 +14,18 @@ const LEAST_PERCENT: f64 = 1.0;
 
 /// Whether the noise is below half a count. The result of a fit then follows from the constant offset.
 pub(crate) fn is_coarse(axis: &AxisCurve) -> bool {
+    coarse_per_mille(axis).is_some()
+}
+
+/// The mean square of the differences of neighbours in thousandths of a count², if it is so small that the noise is below
+/// half a count.
+pub(crate) fn coarse_per_mille(axis: &AxisCurve) -> Option<u16> {
     let square = axis.rate_per_count * axis.rate_per_count;
     // A difference of neighbours has twice their Allan variance.
-    let first = axis.octaves.first().filter(|octave| octave.m == 1);
-    let least = f64::from(Limits::DEFAULT.difference_per_mille) / 1000.0;
-    first.is_some_and(|first| 2.0 * first.variance / square < least)
+    let first = axis.octaves.first().filter(|octave| octave.m == 1)?;
+    let per_mille = 1000.0 * 2.0 * first.variance / square;
+    let is_coarse = per_mille < f64::from(Limits::DEFAULT.difference_per_mille);
+    is_coarse.then_some(per_mille as u16)
 }
 
 /// A note on the share of rounding in an axis, or `None` if there is nothing to tell.

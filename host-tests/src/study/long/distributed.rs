@@ -32,7 +32,11 @@ pub struct Program {
 }
 
 impl Program {
-    fn run(&self, folder: &Path, arguments: &[&str]) -> Result<()> {
+    /// Runs a command in a folder.
+    ///
+    /// # Errors
+    /// When the command fails.
+    pub fn run(&self, folder: &Path, arguments: &[&str]) -> Result<()> {
         let mut command = Command::new(&self.file);
         command.current_dir(folder).args(&self.first).arg("--quiet");
         let output = command.args(arguments).output().context("allanite")?;

@@ -1,6 +1,7 @@
 //! Tests `lot`: what it says of hundreds of devices follows from their certificates alone.
 
 mod devices;
+mod outputs;
 
 use allanite::{diagnosis::Verdict, effect::IEEE_952, integrity::Reason, storage::CertifiedTerm};
 use devices::{
@@ -308,7 +309,7 @@ fn what_is_no_lot_is_refused_in_a_line() {
         (&["missing.bin", "--limit", "N=1"], "missing.bin"),
         (
             &["empty", "--limit", "N=1"],
-            "there is no certificate in this folder",
+            "there is no certificate, curve file or log in this folder",
         ),
     ] {
         let refusal = refusal(path, &[&["lot"], arguments].concat());

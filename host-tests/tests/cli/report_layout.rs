@@ -78,7 +78,7 @@ fn pages(data: &str) -> usize {
         .as_bytes()
         .chunks(4)
         .flat_map(|four| {
-            let all = four.iter().fold(0, |all, byte| all << 6 | digit(*byte));
+            let all = four.iter().fold(0, |all, byte| (all << 6) | digit(*byte));
             let [_, bytes @ ..] = all.to_be_bytes();
             bytes
         })

@@ -293,10 +293,14 @@ fn octaves_and_bins_are_a_table_and_a_file_that_runs_no_formula() {
     browser.click(&format!("{SPECTRUM} .points summary"));
     let frame = &data["axes"][2]["frames"][1];
     let bins = frame["measured"]["x"].as_array().unwrap();
-    let rows = browser.value(&format!(
-        "document.querySelectorAll('{SPECTRUM} .points tbody tr').length"
-    ));
-    assert_eq!(rows, bins.len());
+    // The browser tells a little later that the table was opened.
+    let rows = format!("document.querySelectorAll('{SPECTRUM} .points tbody tr').length");
+    let begin = Instant::now();
+    while browser.value(&rows) == 0 {
+        assert!(begin.elapsed() < Duration::from_secs(10), "no rows");
+        thread::sleep(Duration::from_millis(10));
+    }
+    assert_eq!(browser.value(&rows), bins.len());
     let failing = browser.text(&format!("{SPECTRUM} .failing"));
     let worst = data["axes"][2]["steps"][0]["figures"][1]["worst"]
         .as_u64()

@@ -31,6 +31,7 @@ function show() {
   showJudged(before);
   showLegend(before, named);
   drawPlaces();
+  drawHistory();
 }
 
 /// Says the result to a screen reader, once the changes rest.
@@ -47,39 +48,64 @@ const modelName = () => {
   return `five terms${without}${state.added.map(({ effect }) => ` + ${plain(effect)}`).join("")}`;
 };
 
+/// The figures with their tables, by what they show. Each keeps its cursor and what is seen of it.
+const figures = new Map();
+
+function figureOf(quantity) {
+  if (!figures.has(quantity)) {
+    const pick = quantity === "spectrum" ? { words: (x) => `Add a line at ${number(x)} Hz`, act: addLine } : null;
+    const [plot, table] = [new Plot({ pick }), new PointTable(fileName)];
+    plot.root.append(table.root);
+    figures.set(quantity, { plot, table });
+  }
+  return figures.get(quantity);
+}
+
+/// Adds a line at a frequency, from which its shape is fitted.
+function addLine(x) {
+  const { ranges: { [state.record]: [low, high] } } = effectNamed.get("sinusoid").parameters[0];
+  const frequency = rounded(Math.min(high, Math.max(low, x)));
+  change(null, (of) => of.added.push({ effect: "sinusoid", values: [frequency], fitted: true }));
+}
+
 function drawPlaces() {
   if (!answer) return;
-  const places = byId("places");
-  while (places.childElementCount < answer.frames.length) places.append(html("div", { class: "place" }));
-  while (places.childElementCount > answer.frames.length) places.lastChild.remove();
   const { before } = reference();
+  const places = byId("places");
+  const shown = answer.frames.map(({ quantity }) => figureOf(quantity).plot.root);
+  if (shown.some((root, at) => places.children[at] !== root) || places.childElementCount !== shown.length) places.replaceChildren(...shown);
   answer.frames.forEach((frame, at) => {
-    const place = places.children[at];
-    if (place.clientWidth < 100) return;
+    const { plot, table } = figureOf(frame.quantity);
+    const record = ({ measured, z, up, expected }, number, name) => ({ name, points: measured, z, up, expected, colour: number });
+    const judged = answer.judged.map((one) => record(one.records[at], colour(one.record), data.records[one.record]?.name ?? ""));
+    const scene = { title: `${frame.up} and residual, ${modelName()}: ${answer.words}`, model_name: modelName(), model: answer.models[at].model,
+      shares: answer.models[at].shares, before: before && before !== answer ? before.models[at]?.model ?? null : null,
+      records: [record(answer.records[at], 0, data.records[state.record].name), ...judged] };
     const unit = frame.units[Math.min(unitIndex(), frame.units.length - 1)];
-    const judged = answer.judged.map((one) => ({ drawn: one.records[at], colour: colour(one.record) }));
-    const shown = { model: answer.models[at], before: before && before !== answer ? before.models[at]?.model ?? null : null, words: `${modelName()}: ${answer.words}`,
-      records: [{ drawn: answer.records[at], colour: 0 }, ...judged] };
-    place.replaceChildren(drawRecords(frame, shown, unit, Math.round(place.clientWidth)));
+    plot.set(frame, scene, unit);
+    table.set(frame, scene, unit);
   });
+}
+
+/// Draws χ² of the models so far of this record, the newest ones if they are many.
+function drawHistory() {
+  const place = byId("history");
+  const width = Math.round(place.clientWidth);
+  if (!answer || width < 100) return;
+  const earlier = undone.past.filter((one) => one.state.record === state.record && one.answer).map((one) => one.answer);
+  const all = [...earlier, answer].filter((one, at, list) => one !== list[at - 1]).slice(-24);
+  place.replaceChildren(drawStairs(all, width));
 }
 
 const unitIndex = () => Number(byId("unit").value);
 
 function showLegend(before, named) {
-  const entry = (words, ...marks) => html("li", {}, draw("svg", { width: 34, height: 14, "aria-hidden": "true" }, ...marks), words);
-  const line = (name) => draw("line", { x1: 1, y1: 7, x2: 33, y2: 7, class: name });
-  const shares = new Map(answer.models.flatMap((model) => model.shares).map((share) => [share.effect, share]));
-  const many = answer.judged.length > 0;
-  byId("legend").replaceChildren(
-    entry(many ? `${data.records[state.record].name}, fitted` : "measured ± standard error",
-      draw("line", { x1: 17, y1: 0, x2: 17, y2: 14, class: "bar" }), draw("circle", { cx: 17, cy: 7, r: 3.5, class: "dot" })),
-    ...answer.judged.map(({ record }) => entry(data.records[record]?.name ?? "",
-      draw("circle", { cx: 17, cy: 7, r: 4, class: `other record-${colour(record)}` }))),
-    entry("model", line("line model")),
-    ...(before && before !== answer ? [entry(named === "before" ? "model before" : "five terms", line("line before"))] : []),
-    ...[...shares.values()].map((share) => entry(plain(share.effect), line(`line effect-${share.colour}`))),
-    entry("within ± 2 standard errors", draw("rect", { x: 1, y: 1, width: 32, height: 12, class: "band" })));
+  const judged = answer.judged.length > MANY
+    ? [legendEntry(`${answer.judged.length} records that judge`, draw("circle", { cx: 17, cy: 7, r: 4, class: "other record-1" }))]
+    : answer.judged.map(({ record }) => legendEntry(data.records[record]?.name ?? "", draw("circle", { cx: 17, cy: 7, r: 4, class: `other record-${colour(record)}` })));
+  const earlier = before && before !== answer ? [legendEntry(named === "before" ? "model before" : "five terms", legendLine("line before"))] : [];
+  const measured = answer.judged.length > 0 ? `${data.records[state.record].name}, fitted` : "measured ± standard error";
+  byId("legend").replaceChildren(...legendEntries(answer.models.flatMap((model) => model.shares), measured, ...judged, ...earlier));
 }
 
 function showJudged(before) {
@@ -92,9 +118,11 @@ function showJudged(before) {
   const others = answer.judged.map((one) =>
     row(one.record, "judges", one, before?.judged.find((other) => other.record === one.record)));
   const head = ["record", "χ²", "dof", "p", "misfit %"];
-  byId("judged").replaceChildren(html("table", {},
+  const table = html("table", {},
     html("thead", {}, html("tr", {}, ...head.map((words, at) => html("th", { scope: "col", class: at > 0 ? "number" : null }, words)))),
-    html("tbody", {}, row(state.record, "fitted", answer, before), ...others)));
+    html("tbody", {}, row(state.record, "fitted", answer, before), ...others));
+  byId("judged").replaceChildren(answer.judged.length > MANY
+    ? html("div", { class: "many", tabindex: 0, role: "region", "aria-label": "Records that judge" }, table) : table);
 }
 
 /// The coefficients beside those of the reference, and what changed. A filter has the coefficient of what it replaces;

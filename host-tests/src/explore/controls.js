@@ -1,4 +1,4 @@
-// The controls: the records, the terms and effects of the model, and the catalogue.
+// The controls: the terms and effects of the model, and the catalogue.
 "use strict";
 
 /// The steps of a slider. Chosen by hand: a key moves a frequency by a third of a percent or less.
@@ -13,46 +13,6 @@ function fill(place, shown, children) {
   place.replaceChildren(...children());
   if (focused) byId(focused)?.focus();
 }
-
-// The records.
-
-function showRecords() {
-  fill(byId("records"), [state.record, state.judged], recordRows);
-}
-
-function recordRows() {
-  if (data.records.length === 1) {
-    const [{ name, size }] = data.records;
-    return [html("p", {}, name), html("p", { class: "record" }, size)];
-  }
-  const fitted = data.records[state.record];
-  const row = (record, at) => {
-    const fit = html("input", { type: "radio", name: "fitted", id: `fit-${at}`, "aria-label": `fit to ${record.name}`, checked: at === state.record });
-    fit.addEventListener("change", () => change(null, (of) => {
-      // The record that was fitted judges, if the new one did.
-      const others = of.judged.includes(at) ? [...of.judged.filter((other) => other !== at), of.record] : of.judged;
-      Object.assign(of, { record: at, judged: others.sort((a, b) => a - b) });
-    }));
-    const judge = html("input", { type: "checkbox", id: `judge-${at}`, "aria-label": `judge on ${record.name}`, checked: state.judged.includes(at),
-      disabled: at === state.record || record.unit !== fitted.unit });
-    judge.addEventListener("change", () => change(null, (of) => {
-      of.judged = judge.checked ? [...of.judged, at].sort((a, b) => a - b) : of.judged.filter((other) => other !== at);
-    }));
-    return html("tr", {}, html("td", {}, fit), html("td", {}, judge),
-      html("td", { title: record.size }, sample(at), record.name));
-  };
-  return [
-    html("table", {},
-      html("thead", {}, html("tr", {}, html("th", { scope: "col" }, "fit"), html("th", { scope: "col" }, "judge"),
-        html("th", { scope: "col" }, "record"))),
-      html("tbody", {}, ...data.records.map(row))),
-    html("p", { class: "record" }, fitted.size)];
-}
-
-/// The colour of a record: 0 for the fitted one.
-const colour = (record) => (record === state.record ? 0 : 1 + (state.judged.indexOf(record) % 4));
-const sample = (record) => (state.judged.includes(record)
-  ? html("span", { class: `sample record-${colour(record)}`, "aria-hidden": "true" }) : null);
 
 // The model.
 

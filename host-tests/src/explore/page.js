@@ -125,6 +125,9 @@ window.addEventListener("hashchange", () => {
 });
 
 for (const id of ["reference", "unit"]) byId(id).addEventListener("change", show);
-new ResizeObserver(drawPlaces).observe(byId("places"));
+new ResizeObserver(() => {
+  drawPlaces();
+  drawHistory();
+}).observe(byId("places"));
 showCatalogue();
 refresh();

@@ -1,7 +1,6 @@
 // The state of the page: the records and the model, in the words of the command `compare`.
 "use strict";
 
-const byId = (id) => document.getElementById(id);
 /// Six digits, without trailing zeros.
 const rounded = (value) => Number(value.toPrecision(6));
 

@@ -6,7 +6,8 @@ use super::{
     lines::Line,
     panel::{INK, Panel, Stroke, line, text},
     sheet::{
-        ALERT, EFFECTS, LEGEND, MODEL, PANELS, legend, legend_row, legend_sample, placed, upright,
+        ALERT, LEGEND, MODEL, PANELS, effect_line, legend, legend_row, legend_sample, placed,
+        upright,
     },
 };
 use crate::unit::Unit;
@@ -148,10 +149,26 @@ impl Pair<'_> {
         placed(&self.frame.x, self.frame.across())
     }
 
+    /// The name of an effect; its frequency tells it from another one of the same name.
+    fn name(&self, share: &Share) -> String {
+        let name = share.effect.replace('_', " ");
+        let alike = self.figure.shares.iter();
+        let alike = alike.filter(|other| other.effect == share.effect).count();
+        match share.frequency_hz {
+            Some(frequency_hz) if alike > 1 => {
+                let digits: f32 = format!("{frequency_hz:.2e}")
+                    .parse()
+                    .unwrap_or(frequency_hz);
+                format!("{name}, {digits} Hz")
+            }
+            _ => name,
+        }
+    }
+
     fn legend(&self) -> Group {
         let mut lines = vec![(MODEL, "model".to_owned())];
         let effects = self.figure.shares.iter();
-        lines.extend(effects.map(|share| (effect(share), share.effect.replace('_', " "))));
+        lines.extend(effects.map(|share| (effect(share), self.name(share))));
         let band = Rectangle::new()
             .set("x", LEGEND)
             .set("y", RESIDUAL.top + 4.0)
@@ -184,7 +201,7 @@ fn ring(panel: &Panel, across: f64, up: f64) -> Circle {
 }
 
 fn effect(share: &Share) -> Stroke {
-    let (colour, dashes) = EFFECTS[share.colour % EFFECTS.len()];
+    let (colour, dashes) = effect_line(share.colour, share.twin);
     Stroke {
         colour,
         width: 1.6,

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::log::{BINS, OCTAVES};
 use allanite::{
-    Comparison, Model,
+    Comparison, Model, Term,
     effect::{CATALOGUE, Distribution, Effect},
     fit::Fit,
     spectrum::{Bin, Spectrum},
@@ -43,6 +43,8 @@ pub struct Figure {
     pub measured: Measured,
     /// Residuals, in standard errors.
     pub z: Vec<f32>,
+    /// What the model predicts at each of the points.
+    pub expected: Vec<f32>,
     /// The line of the model.
     pub model: Line,
     /// The effects that are large enough to be shown.
@@ -69,6 +71,10 @@ pub struct Share {
     pub effect: &'static str,
     /// Index of its colour. Effects that replace each other share a colour.
     pub colour: usize,
+    /// 0 for the first line of a colour, or the number among the other ones, which have colours of their own.
+    pub twin: usize,
+    /// The frequency of an effect that has one, in Hz.
+    pub frequency_hz: Option<f32>,
     /// Deviations, or roots of densities, of the effect.
     pub line: Line,
 }
@@ -105,14 +111,24 @@ impl Figure {
             let mut pieces = pieces.iter();
             pieces.any(|piece| piece.shows(*at, LEAST_SHARE, frame.y.low))
         });
+        // The twins are those of the whole model, so that a line keeps its colour where another one is too small.
+        let terms_of_model = view.model.terms().iter();
+        let colours: Vec<usize> = terms_of_model.map(|term| colour(term.effect)).collect();
+        let twins = twins(&colours);
         let shares = shown.map(|(at, term)| Share {
             effect: term.effect.name(),
-            colour: colour(term.effect),
+            colour: colours[at],
+            twin: twins[at],
+            frequency_hz: frequency_hz(term).map(short),
             line: lines::effect(&pieces, at),
         });
         Self {
             measured: Measured::new(&rows, &errors),
             z: rows.iter().map(|row| short(row.z)).collect(),
+            expected: rows
+                .iter()
+                .map(|row| short(row.model.max(0.0).sqrt()))
+                .collect(),
             shares: shares.collect(),
             model: lines::model(&pieces),
         }
@@ -161,6 +177,26 @@ fn short(value: f64) -> f32 {
     format!("{value:.5e}").parse().unwrap_or(f32::NAN)
 }
 
+/// For each line of these colours, 0 if it is the first of its colour, or else its number among all that are not, from 1.
+fn twins(colours: &[usize]) -> Vec<usize> {
+    let mut count = 0;
+    let number = |(at, colour): (usize, &usize)| {
+        if !colours[..at].contains(colour) {
+            return 0;
+        }
+        count += 1;
+        count
+    };
+    colours.iter().enumerate().map(number).collect()
+}
+
+/// The frequency of a line or a resonance.
+fn frequency_hz(term: &Term) -> Option<f64> {
+    let mut parameters = term.effect.parameters().iter().zip(term.parameters);
+    let (_, value) = parameters.find(|(parameter, _)| parameter.name == "frequency_hz")?;
+    Some(value)
+}
+
 /// Index of an effect's colour: its place among those effects of the catalogue that neither mirror nor
 /// replace another one, and do not drift. An effect that does so has the colour of the other effect, or of the one that
 /// does not drift.
@@ -180,6 +216,11 @@ fn colour(effect: &dyn Effect) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_of_one_colour_are_told_apart() {
+        assert_eq!(twins(&[1, 2, 1, 3, 2, 1]), [0, 0, 1, 0, 2, 3]);
+    }
 
     #[test]
     fn the_error_of_a_density_is_that_of_the_mean_of_its_segments() {

@@ -44,6 +44,23 @@ pub(super) const EFFECTS: [(&str, &str); 8] = [
     ("#9a6700", "4 3"),
 ];
 
+/// Lines of further effects of a colour that is taken, such as a second resonance.
+pub(super) const TWINS: [(&str, &str); 5] = [
+    ("#005f73", "12 3"),
+    ("#9d174d", "6 2 2 2"),
+    ("#4338ca", "3 2"),
+    ("#5d6b00", "9 2 2 2 2 2"),
+    ("#57311a", "14 4"),
+];
+
+/// The colour and the dashes of an effect's line.
+pub(super) const fn effect_line(colour: usize, twin: usize) -> (&'static str, &'static str) {
+    match twin.checked_sub(1) {
+        None => EFFECTS[colour % EFFECTS.len()],
+        Some(twin) => TWINS[twin % TWINS.len()],
+    }
+}
+
 /// The text of an SVG file with groups of these heights, one below the other.
 pub(super) fn document(groups: Vec<(Group, f64)>) -> String {
     let height: f64 = groups.iter().map(|(_, height)| height).sum();
@@ -136,10 +153,16 @@ pub(super) fn shown(words: &str, longest: usize) -> String {
     words.chars().take(longest).chain(['…']).collect()
 }
 
-/// The lines of effects for a page: a CSS class for each, named `effect-` and the index of the colour.
+/// The lines of effects for a page: a CSS class for each, named `effect-` and the index of the colour, and for each
+/// line of a colour that is taken, named `twin-` and its number.
 pub fn effect_styles() -> String {
-    let rule = |(place, (colour, dashes)): (usize, (&str, &str))| {
-        format!(".effect-{place}{{stroke:{colour};stroke-dasharray:{dashes}}}\n")
+    let rule = |name: &str, place: usize, (colour, dashes): (&str, &str)| {
+        format!(".{name}-{place}{{stroke:{colour};stroke-dasharray:{dashes}}}\n")
     };
-    EFFECTS.into_iter().enumerate().map(rule).collect()
+    let effects = EFFECTS.into_iter().enumerate();
+    let effects = effects.map(|(place, line)| rule("effect", place, line));
+    // These come last, so that they prevail.
+    let twins = TWINS.into_iter().enumerate();
+    let twins = twins.map(|(place, line)| rule("twin", place + 1, line));
+    effects.chain(twins).collect()
 }

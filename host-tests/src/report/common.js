@@ -3,6 +3,7 @@
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const html = (name, attributes, ...children) => make(null, name, attributes, children);
+const byId = (id) => document.getElementById(id);
 const plain = (name) => name.replaceAll("_", " ");
 const tenth = (value) => (value === null ? "unknown" : value.toFixed(1));
 

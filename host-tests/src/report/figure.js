@@ -1,148 +1,61 @@
-// Draws a model beside a record: a curve, and below it the residual over the same axis. The data contain the
-// spans, the ticks and the positions of the residuals.
+// Draws a model beside one record or several: the curve, and below it the residuals over the same axis. The data have the
+// spans, the ticks and the positions of the residuals; a part of an axis has its own spans and ticks.
 "use strict";
 
-const SVG = "http://www.w3.org/2000/svg";
-
-/// An element of a drawing, or of the page, with attributes and children; text is never markup.
-function make(namespace, name, attributes, children) {
-  const element = namespace ? document.createElementNS(namespace, name) : document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) {
-    if (value !== null && value !== false) element.setAttribute(key, value === true ? "" : value);
-  }
-  element.append(...children.filter((child) => child !== null));
-  return element;
-}
-
-const draw = (name, attributes, ...children) => make(SVG, name, attributes, children);
-const clamp = (share) => Math.min(1, Math.max(0, Number.isNaN(share) ? 0 : share));
-
-/// A drawing of some width, with panels whose positions are shares of their width and height. The margins inside the
-/// frame are larger than a mark, so that none reaches over it.
-class Sheet {
-  constructor(name, label, width, height) {
-    const narrow = width < 560;
-    Object.assign(this, { width, height, narrow, left: narrow ? 62 : 84, right: width - 8, size: narrow ? 11.5 : 12.5 });
-    this.svg = draw("svg", { class: `figure ${name}`, viewBox: `0 0 ${width} ${height}`, role: "img",
-      "font-size": this.size, "aria-label": label });
+/// A scale: positions from 0 to 1 of the values of a span, logarithmic or linear.
+class Scale {
+  constructor(span, isLinear) {
+    Object.assign(this, { span, isLinear });
   }
 
-  x(across) {
-    const inset = this.narrow ? 10 : 14;
-    return this.left + inset + across * (this.right - this.left - 2 * inset);
+  at(value) {
+    const [low, high] = this.span;
+    return this.isLinear ? (value - low) / (high - low) : Math.log(value / low) / Math.log(high / low);
   }
 
-  y(panel, up) {
-    return panel.top + 9 + (1 - up) * (panel.height - 18);
-  }
-
-  add(name, attributes, ...children) {
-    this.svg.append(draw(name, attributes, ...children));
-  }
-
-  line(x1, y1, x2, y2, name) {
-    this.add("line", { x1, y1, x2, y2, class: name });
-  }
-
-  text([x, y], attributes, words) {
-    this.add("text", { x, y, ...attributes }, words);
-  }
-
-  /// A dot, which shows these words while the pointer is on it.
-  dot(panel, across, up, name, words = null) {
-    const r = { worst: 8, dot: 3.5, small: 2.3 }[name];
-    const tooltip = words === null ? null : draw("title", {}, words);
-    this.add("circle", { cx: this.x(across), cy: this.y(panel, clamp(up)), r, class: name === "small" ? "dot" : name }, tooltip);
-  }
-
-  /// A vertical line, clipped to the panel.
-  stem(panel, across, from, to) {
-    const x = this.x(across);
-    this.line(x, this.y(panel, clamp(from)), x, this.y(panel, clamp(to)), "bar");
-  }
-
-  /// Vertical rules through panels, with the labels for which there is room below the last one.
-  ticks(panels, ticks, title) {
-    const last = panels[panels.length - 1];
-    const bottom = last.top + last.height;
-    let free = 0;
-    for (const [across, label] of ticks) {
-      const place = this.x(across);
-      for (const { top, height } of panels) this.line(place, top, place, top + height, "rule");
-      const half = 0.3 * this.size * label.length;
-      if (place - half < free || place + half > this.width) continue;
-      free = place + half + this.size;
-      this.line(place, bottom, place, bottom + 5, "tick");
-      this.text([place, bottom + 19], { "text-anchor": "middle", class: "pale across" }, label);
-    }
-    this.text([(this.left + this.right) / 2, bottom + 41], { "text-anchor": "middle" }, title);
-  }
-
-  /// The frame of a panel with labelled ticks on its left and an upright title.
-  frame(panel, ticks, title) {
-    let free = Infinity;
-    for (const [up, label] of [...ticks].sort((one, other) => one[0] - other[0])) {
-      const place = this.y(panel, up);
-      this.line(this.left, place, this.right, place, "rule");
-      if (place > free) continue;
-      free = place - 1.1 * this.size;
-      this.line(this.left - 5, place, this.left, place, "tick");
-      this.text([this.left - 9, place + 4], { "text-anchor": "end", class: "pale up" }, label);
-    }
-    this.add("rect", { x: this.left, y: panel.top, width: this.right - this.left, height: panel.height, class: "frame" });
-    const middle = panel.top + panel.height / 2;
-    this.text([0, 0], { transform: `translate(${this.size} ${middle}) rotate(-90)`, "text-anchor": "middle" }, title);
-  }
-
-  /// A line in pieces, clipped to the panel.
-  path(panel, pieces, place, name) {
-    let data = "";
-    for (const piece of pieces) {
-      let end = null;
-      for (let k = 1; k < piece.length; k += 1) {
-        const part = inside(place(piece[k - 1]), place(piece[k]));
-        if (!part) {
-          end = null;
-          continue;
-        }
-        const [from, to] = part.map(([a, b]) => `${this.x(a).toFixed(2)} ${this.y(panel, b).toFixed(2)}`);
-        data += from === end ? `L${to}` : `M${from}L${to}`;
-        end = to;
-      }
-    }
-    this.add("path", { d: data, class: name });
+  value(share) {
+    const [low, high] = this.span;
+    return this.isLinear ? low + share * (high - low) : low * (high / low) ** share;
   }
 }
 
-/// The part of a line that lies between the heights 0 and 1, or nothing.
-function inside([x0, y0], [x1, y1]) {
-  if (!Number.isFinite(y0) || !Number.isFinite(y1)) return null;
-  if (Math.max(y0, y1) < 0 || Math.min(y0, y1) > 1) return null;
-  const at = (x, y) => {
-    const up = Math.min(1, Math.max(0, y));
-    return [up === y ? x : x0 + ((up - y0) / (y1 - y0)) * (x1 - x0), up];
+/// What is seen of a figure: all of its horizontal axis or a part `x`, and whether the axes are linear.
+const wholeView = () => ({ x: null, linearAcross: false, linearUp: false });
+
+/// The horizontal scale of a view.
+const scaleAcross = (frame, view) => new Scale(view.x ?? frame.x, view.linearAcross);
+
+/// The vertical scale of a view. The heights follow the part that is seen.
+function scaleUp(frame, view, scene) {
+  if (!view.x) return new Scale(view.linearUp ? [0, frame.y[1]] : frame.y, view.linearUp);
+  const [from, to] = view.x;
+  const seen = (x) => x >= from && x <= to;
+  const values = [];
+  for (const { points, expected } of scene.records) {
+    points.x.forEach((x, k) => {
+      if (seen(x)) values.push(points.measured[k], points.upper[k], expected[k]);
+    });
+  }
+  for (const piece of scene.model) values.push(...piece.filter(([x]) => seen(x)).map(([, value]) => value));
+  const positive = values.filter((value) => value > 0);
+  if (positive.length === 0) return new Scale(frame.y, view.linearUp);
+  const [low, high] = [Math.min(...positive), Math.max(...positive)];
+  if (view.linearUp) {
+    const margin = 0.08 * (high - low || high);
+    return new Scale([Math.max(0, low - margin), high + margin], true);
+  }
+  const [middle, half] = [Math.sqrt(low * high), Math.max(1.15, 1.05 * Math.sqrt(high / low))];
+  return new Scale([middle / half, middle * half], false);
+}
+
+/// The labelled ticks of a figure under a view: [value, label], the heights in the unit of the record.
+function figureTicks(frame, unit, across, up) {
+  const isWhole = (scale, span) => !scale.isLinear && scale.span === span;
+  const heights = isWhole(up, frame.y) ? unit.ticks : labelledTicks(up.span.map((end) => unit.factor * end), up.isLinear, false);
+  return {
+    across: isWhole(across, frame.x) ? frame.ticks : labelledTicks(across.span, across.isLinear, frame.coordinate[1] === "s"),
+    up: heights.map(([value, label]) => [value / unit.factor, label]),
   };
-  return [at(x0, y0), at(x1, y1)];
-}
-
-/// Draws the empty panels of a figure, the curve and below it the residuals, with these heights. Returns them with the
-/// functions that place a value in them.
-function drawPanels(frame, unit, title, [curveHeight, residualHeight], width) {
-  const curve = { top: 10, height: curveHeight };
-  const residual = { top: curve.top + curve.height + 18, height: residualHeight };
-  const sheet = new Sheet(frame.quantity, title, width, residual.top + residual.height + 48);
-  const log = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
-  const across = (x) => log(x, frame.x);
-  const up = (value) => log(value, frame.y);
-  const place = ([at, value]) => [across(at), up(value)];
-
-  const [low, high] = frame.band.map((share) => sheet.y(residual, share));
-  sheet.add("rect", { x: sheet.left, y: high, width: sheet.right - sheet.left, height: low - high, class: "band" });
-  sheet.ticks([curve, residual], frame.ticks.map(([value, label]) => [across(value), label]), frame.across);
-  sheet.frame(curve, unit.ticks.map(([value, label]) => [up(value / unit.factor), label]), `${frame.up}, ${unit.name}`);
-  sheet.frame(residual, frame.residuals, "residual, std. errors");
-  sheet.line(sheet.left, sheet.y(residual, 0.5), sheet.right, sheet.y(residual, 0.5), "zero");
-  return { sheet, curve, residual, across, up, place };
 }
 
 /// A residual in words: `+5.3 std. errors`.
@@ -150,40 +63,101 @@ function standardErrors(z, digits) {
   return `${z < 0 ? "−" : "+"}${Math.abs(z).toFixed(digits)} std. errors`;
 }
 
-/// Draws a figure of a view in its frame. `unit` is one of the frame's units, and `width` is in pixels. The point with
-/// the largest residual is marked if that exceeds two standard errors.
-function drawFigure(frame, view, figure, unit, width) {
-  const heights = width < 560 ? [260, 140] : [340, 160];
-  const title = `${frame.up} and residual, ${view.model}: ${view.words}`;
-  const { sheet, curve, residual, across, up, place } = drawPanels(frame, unit, title, heights, width);
-  const { x, measured, lower, upper } = figure.measured ?? frame.measured;
-  // More dots than there is room for are smaller.
-  const dot = 8 * x.length > sheet.right - sheet.left ? "small" : "dot";
-  for (const share of figure.shares) sheet.path(curve, share.line, place, `line effect-${share.colour}`);
-  sheet.path(curve, figure.model, place, "line model");
-  x.forEach((at, k) => {
-    const [value, low, high] = [measured, lower, upper].map((values) => number(unit.factor * values[k]));
-    const [name, of] = frame.coordinate;
-    const words = `${name}: ${number(at)} ${of}\n${frame.up}: ${value} ${unit.name} (${low} … ${high})\n` +
-      `residual: ${standardErrors(figure.z[k], 1)}`;
-    sheet.stem(curve, across(at), up(lower[k]), up(upper[k]));
-    sheet.dot(curve, across(at), up(measured[k]), dot, words);
-    sheet.stem(residual, across(at), 0.5, figure.up[k]);
-    sheet.dot(residual, across(at), figure.up[k], dot, words);
-  });
-  const z = figure.z[figure.worst];
-  if (Math.abs(z) > 2) {
-    const at = across(x[figure.worst]);
-    sheet.dot(curve, at, up(measured[figure.worst]), "worst");
-    sheet.dot(residual, at, figure.up[figure.worst], "worst");
-    const words = `worst ${frame.point}: ${standardErrors(z, 0)}`;
-    // The label is at the edge of the panel that is farther from the ring, where few dots are, and inside the frame.
-    const half = 0.31 * sheet.size * words.length;
-    const middle = Math.min(sheet.right - half - 4, Math.max(sheet.left + half + 4, sheet.x(at)));
-    const edge = figure.up[figure.worst] > 0.6 ? residual.top + residual.height - 7 : residual.top + 15;
-    sheet.text([middle, edge], { "text-anchor": "middle", class: "worst-label" }, words);
+/// Index of the largest residual of a record.
+const worstOf = (record) => record.z.reduce((worst, z, k) => (Math.abs(z) > Math.abs(record.z[worst]) ? k : worst), 0);
+
+/// The line of an effect in CSS.
+const effectLine = (share) => `line effect-${share.colour}${share.twin > 0 ? ` twin-${share.twin}` : ""}`;
+
+/// The name of an effect's line. Lines and resonances are told apart by their frequency.
+const effectName = (share) => `${plain(share.effect)}${share.frequency_hz === null ? "" : ` at ${number(share.frequency_hz)} Hz`}`;
+
+/// Draws a scene in its frame, and returns the drawing with the places in it. `scene` has a title, the lines of the
+/// model, of an earlier one and of the effects, and the records, of which the first is the fitted one. `unit` is one of the
+/// frame's units, and `width` is in pixels. A brief drawing has the curve alone, of a given height. The point with the
+/// largest residual is marked if that exceeds two standard errors.
+function drawFigure(frame, scene, unit, width, { view = wholeView(), brief = 0, heights = width < 560 ? [240, 130] : [320, 150] } = {}) {
+  const [curveHeight, residualHeight] = brief ? [brief, 0] : heights;
+  // The words about the worst point of a brief drawing are above it.
+  const curve = { top: brief ? 24 : 10, height: curveHeight };
+  const residual = brief ? null : { top: curve.top + curve.height + 18, height: residualHeight };
+  const panels = residual ? [curve, residual] : [curve];
+  const last = panels[panels.length - 1];
+  const sheet = new Sheet(frame.quantity, scene.title, width, last.top + last.height + 48);
+  const [across, up] = [scaleAcross(frame, view), scaleUp(frame, view, scene)];
+  const place = ([x, value]) => [across.at(x), up.at(value)];
+  const ticks = figureTicks(frame, unit, across, up);
+  if (residual) {
+    const [low, high] = frame.band.map((share) => sheet.y(residual, share));
+    sheet.add("rect", { x: sheet.left, y: high, width: sheet.right - sheet.left, height: low - high, class: "band" });
   }
-  return sheet.svg;
+  sheet.ticks(panels, ticks.across.map(([value, label]) => [across.at(value), label]), frame.across);
+  sheet.frame(curve, ticks.up.map(([value, label]) => [up.at(value), label]), `${frame.up}, ${unit.name}`);
+  if (residual) {
+    sheet.frame(residual, frame.residuals, "residual, std. errors");
+    sheet.line(sheet.left, sheet.y(residual, 0.5), sheet.right, sheet.y(residual, 0.5), "zero");
+  }
+  // A straight line between logarithms is curved on a linear scale.
+  const bent = view.linearAcross || view.linearUp ? (pieces) => pieces.map(refined) : (pieces) => pieces;
+  for (const share of scene.shares) sheet.path(curve, bent(share.line), place, effectLine(share));
+  if (scene.before) sheet.path(curve, bent(scene.before), place, "line before");
+  sheet.path(curve, bent(scene.model), place, "line model");
+  const positions = { sheet, curve, residual, across, up };
+  // The fitted record comes last, so that it lies on top.
+  for (const record of [...scene.records].reverse()) drawRecord(positions, record);
+  markWorst(positions, frame, scene.records[0]);
+  return { svg: sheet.svg, ...positions };
+}
+
+/// A line with points in between, which are on the straight lines between the logarithms.
+function refined(piece) {
+  const parts = 12;
+  return piece.flatMap(([x, value], k) => {
+    const next = piece[k + 1];
+    if (!next) return [[x, value]];
+    return Array.from({ length: parts }, (_, part) => [x * (next[0] / x) ** (part / parts), value * (next[1] / value) ** (part / parts)]);
+  });
+}
+
+/// Draws the dots of a record with their bars. The fitted record has filled dots, the others have rings.
+function drawRecord({ sheet, curve, residual, across, up }, { points, up: heights, colour }) {
+  const { x, measured, lower, upper } = points;
+  const shown = x.map((value) => across.at(value)).map((at) => at > -0.001 && at < 1.001);
+  // More dots than there is room for are smaller.
+  const small = 8 * shown.filter((one) => one).length > sheet.right - sheet.left;
+  const mark = (panel, at, height) => {
+    if (colour === 0) return sheet.dot(panel, at, height, small ? "small" : "dot");
+    return sheet.add("circle", { cx: sheet.x(at), cy: sheet.y(panel, clamp(height)), r: small ? 2.2 : 3.6, class: `other record-${colour}` });
+  };
+  x.forEach((value, k) => {
+    if (!shown[k]) return;
+    const at = across.at(value);
+    sheet.stem(curve, at, up.at(lower[k]), up.at(upper[k]), colour === 0 ? "bar" : `other-bar record-${colour}`);
+    mark(curve, at, up.at(measured[k]));
+    if (!residual) return;
+    if (colour === 0) sheet.stem(residual, at, 0.5, heights[k], "bar");
+    mark(residual, at, heights[k]);
+  });
+}
+
+/// Marks the largest residual of a record with rings and in words, if it exceeds two standard errors.
+function markWorst({ sheet, curve, residual, across, up }, frame, record) {
+  const worst = worstOf(record);
+  const z = record.z[worst];
+  if (!(Math.abs(z) > 2)) return;
+  const at = across.at(record.points.x[worst]);
+  if (at < -0.001 || at > 1.001) return;
+  const height = up.at(record.points.measured[worst]);
+  sheet.dot(curve, at, height, "worst");
+  const x = record.points.x[worst];
+  const where = frame.coordinate[1] === "s" ? timeInWords(Number(x.toPrecision(3))) : `${Number(x.toPrecision(3))} ${frame.coordinate[1]}`;
+  const words = `worst ${frame.point}, ${where}: ${standardErrors(z, 0)}`;
+  const half = 0.31 * sheet.size * words.length;
+  const middle = Math.min(sheet.right - half - 4, Math.max(sheet.left + half + 4, sheet.x(at)));
+  // The label is at the edge of the panel that is farther from the ring, where few dots are, and inside the frame.
+  const edge = !residual ? curve.top - 8 : record.up[worst] > 0.6 ? residual.top + residual.height - 7 : residual.top + 15;
+  if (residual) sheet.dot(residual, at, record.up[worst], "worst");
+  sheet.text([middle, edge], { "text-anchor": "middle", class: "worst-label" }, words);
 }
 
 /// Draws the record over time: the rate, the noise and the recorded columns, with numbered events.
@@ -206,7 +180,7 @@ function drawCourse(course, width) {
     sheet.frame(panel, strip.ticks.map(([value, label]) => [up(value), label]), strip.title);
     strip.values.forEach((value, k) => {
       const at = linear(course.at_s[k], course.span);
-      if (strip.errors.length > 0) sheet.stem(panel, at, up(value - strip.errors[k]), up(value + strip.errors[k]));
+      if (strip.errors.length > 0) sheet.stem(panel, at, up(value - strip.errors[k]), up(value + strip.errors[k]), "bar");
       sheet.dot(panel, at, up(value), "dot");
     });
   });

@@ -82,8 +82,8 @@ fn a_line_that_the_allan_curve_hides_brings_the_spectrum_to_the_front() {
         let top = format!("document.querySelector('{figure}').getBoundingClientRect().top");
         number(&browser.value(&top))
     };
-    let [spectrum, deviation, rate] = [".figure.spectrum", ".figure.deviation", ".figure.rate"]
-        .map(|figure| top(&mut browser, figure));
+    let [spectrum, deviation, rate] = ["spectrum", "deviation", "rate"]
+        .map(|figure| top(&mut browser, &format!("#axis-0 .figure.{figure}")));
     assert!(spectrum < deviation && deviation < rate);
     // The rate and the noise over time have a dot for each of the blocks.
     let dots = browser.value("document.querySelectorAll('.figure.rate .dot').length");

@@ -99,35 +99,149 @@ impl Browser {
         text.as_str().unwrap().to_owned()
     }
 
-    /// Clicks the middle of an element with the mouse.
-    pub(crate) fn click(&mut self, selector: &str) {
-        let middle = self.value(&format!(
+    /// The box of an element, which is scrolled into the middle of the window: left, top, width and height.
+    pub(crate) fn sight(&mut self, selector: &str) -> [f64; 4] {
+        let found = self.value(&format!(
             "(() => {{ const element = document.querySelector({selector:?}); \
              element.scrollIntoView({{ block: 'center' }}); \
              const box = element.getBoundingClientRect(); \
-             return [box.x + box.width / 2, box.y + box.height / 2]; }})()"
+             return [box.x, box.y, box.width, box.height]; }})()"
         ));
-        for kind in ["mousePressed", "mouseReleased"] {
-            let event = json!({ "type": kind, "x": middle[0], "y": middle[1], "button": "left", "clickCount": 1 });
+        [0, 1, 2, 3].map(|at| found[at].as_f64().unwrap_or_else(|| panic!("{selector}")))
+    }
+
+    /// Clicks the middle of an element with the mouse.
+    pub(crate) fn click(&mut self, selector: &str) {
+        let [x, y, width, height] = self.sight(selector);
+        let middle = [x + width / 2.0, y + height / 2.0];
+        self.mouse("mousePressed", middle);
+        self.mouse("mouseReleased", middle);
+    }
+
+    /// An event of the mouse at a place of the window. While the mouse moves, no button is pressed.
+    pub(crate) fn mouse(&mut self, kind: &str, [x, y]: [f64; 2]) {
+        let mut event = json!({ "type": kind, "x": x, "y": y });
+        if kind != "mouseMoved" {
+            event["button"] = "left".into();
+            event["clickCount"] = 1.into();
+        }
+        self.call("Input.dispatchMouseEvent", event);
+    }
+
+    /// Presses the mouse, moves it to another place and releases it.
+    pub(crate) fn drag(&mut self, from: [f64; 2], to: [f64; 2]) {
+        self.mouse("mousePressed", from);
+        for step in 1..=4 {
+            let share = f64::from(step) / 4.0;
+            let [x, y] = [0, 1].map(|at| from[at] + share * (to[at] - from[at]));
+            let event =
+                json!({ "type": "mouseMoved", "x": x, "y": y, "button": "left", "buttons": 1 });
             self.call("Input.dispatchMouseEvent", event);
+        }
+        self.mouse("mouseReleased", to);
+    }
+
+    /// Turns the wheel at a place, upwards if it is negative.
+    pub(crate) fn wheel(&mut self, [x, y]: [f64; 2], turn: f64) {
+        let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": turn });
+        self.call("Input.dispatchMouseEvent", event);
+    }
+
+    /// Puts fingers on these places, moves them along and lifts them.
+    pub(crate) fn touch(&mut self, path: &[&[[f64; 2]]]) {
+        let enabled = json!({ "enabled": true, "maxTouchPoints": 5 });
+        self.call("Emulation.setTouchEmulationEnabled", enabled);
+        for (at, fingers) in path.iter().enumerate() {
+            let points = fingers.iter().enumerate();
+            let points: Vec<Value> = points
+                .map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id }))
+                .collect();
+            let kind = if at == 0 { "touchStart" } else { "touchMove" };
+            self.call(
+                "Input.dispatchTouchEvent",
+                json!({ "type": kind, "touchPoints": points }),
+            );
+        }
+        self.call(
+            "Input.dispatchTouchEvent",
+            json!({ "type": "touchEnd", "touchPoints": [] }),
+        );
+    }
+
+    /// Presses a key, such as `ArrowDown` or `+`, on the element with the focus.
+    pub(crate) fn press(&mut self, key: &str) {
+        let (code, text) = match key {
+            "ArrowLeft" => (37, ""),
+            "ArrowUp" => (38, ""),
+            "ArrowRight" => (39, ""),
+            "ArrowDown" => (40, ""),
+            "Home" => (36, ""),
+            "End" => (35, ""),
+            "Tab" => (9, ""),
+            "Enter" => (13, "\r"),
+            "+" => (187, "+"),
+            "-" => (189, "-"),
+            "0" => (48, "0"),
+            _ => panic!("{key}"),
+        };
+        let down = if text.is_empty() {
+            "rawKeyDown"
+        } else {
+            "keyDown"
+        };
+        for kind in [down, "keyUp"] {
+            let mut event = json!({ "type": kind, "key": key, "windowsVirtualKeyCode": code });
+            if kind == "keyDown" {
+                event["text"] = text.into();
+            }
+            self.call("Input.dispatchKeyEvent", event);
         }
     }
 
-    /// Presses a key, such as `ArrowDown`, on the element with the focus.
-    pub(crate) fn press(&mut self, key: &str) {
-        let code = match key {
-            "ArrowLeft" => 37,
-            "ArrowUp" => 38,
-            "ArrowRight" => 39,
-            "ArrowDown" => 40,
-            "Tab" => 9,
-            _ => panic!("{key}"),
+    /// The elements with a role of a control to which assistive technology can give no name.
+    pub(crate) fn nameless(&mut self) -> Vec<String> {
+        let tree = self.call("Accessibility.getFullAXTree", json!({}));
+        const CONTROLS: [&str; 11] = [
+            "button",
+            "link",
+            "slider",
+            "checkbox",
+            "radio",
+            "combobox",
+            "textbox",
+            "searchbox",
+            "spinbutton",
+            "tab",
+            "DisclosureTriangle",
+        ];
+        let nodes = tree["nodes"].as_array().unwrap().iter();
+        let controls = nodes.filter(|node| {
+            let role = node["role"]["value"].as_str().unwrap_or_default();
+            node["ignored"] == false && CONTROLS.contains(&role)
+        });
+        let controls: Vec<&Value> = controls.collect();
+        assert!(controls.len() > 10, "{} controls", controls.len());
+        let is_nameless = |node: &&&Value| {
+            node["name"]["value"]
+                .as_str()
+                .unwrap_or_default()
+                .trim()
+                .is_empty()
         };
-        for kind in ["rawKeyDown", "keyUp"] {
-            let event =
-                json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code });
-            self.call("Input.dispatchKeyEvent", event);
-        }
+        controls
+            .iter()
+            .filter(is_nameless)
+            .map(ToString::to_string)
+            .collect()
+    }
+
+    /// The controls in the page that are smaller than 24 pixels one way or the other (WCAG 2.2, criterion 2.5.8).
+    pub(crate) fn small_targets(&mut self) -> Value {
+        self.value(
+            "[...document.querySelectorAll('a, button, input, select, summary, [tabindex]')].filter((one) => { \
+             const box = one.getBoundingClientRect(); \
+             return one.checkVisibility() && box.width > 1 && (box.width < 23.9 || box.height < 23.9); }).map((one) => one.outerHTML.slice(0, 200))",
+        )
     }
 
     /// Resizes the window to the given number of CSS pixels.

@@ -8,6 +8,8 @@ use serde::Serialize;
 pub(super) struct DrawnRecord {
     measured: Measured,
     z: Vec<f32>,
+    /// What the model predicts at each of the points.
+    expected: Vec<f32>,
     /// The positions of the residuals in their panel.
     up: Vec<f64>,
 }
@@ -29,6 +31,7 @@ pub(super) fn drawn(figure: Figure, frame: &Frame) -> (DrawnRecord, DrawnModel) 
         up: up.collect(),
         measured: figure.measured,
         z: figure.z,
+        expected: figure.expected,
     };
     let model = DrawnModel {
         model: figure.model,

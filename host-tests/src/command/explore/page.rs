@@ -13,12 +13,18 @@ const STYLES: [&str; 2] = [
     include_str!("../../report/page.css"),
     include_str!("../../explore/page.css"),
 ];
-/// The scripts: the first one draws, the second one draws records over each other, the others are the page.
-const SCRIPTS: [&str; 7] = [
+/// The scripts: the first ones are those of the page of `report` and draw figures, the others are this page.
+const SCRIPTS: [&str; 13] = [
     include_str!("../../report/common.js"),
+    include_str!("../../report/ticks.js"),
+    include_str!("../../report/sheet.js"),
     include_str!("../../report/figure.js"),
-    include_str!("../../explore/figure.js"),
+    include_str!("../../report/legend.js"),
+    include_str!("../../report/bars.js"),
+    include_str!("../../report/plot.js"),
+    include_str!("../../report/table.js"),
     include_str!("../../explore/state.js"),
+    include_str!("../../explore/records.js"),
     include_str!("../../explore/controls.js"),
     include_str!("../../explore/answer.js"),
     include_str!("../../explore/page.js"),
@@ -73,7 +79,7 @@ pub(super) fn page(records: &[LoadedRecord], nonce: &str) -> String {
             body {
                 header {
                     h1 { "Effects by hand" }
-                    p.introduction { (INTRODUCTION) }
+                    details.introduction { summary { "How this page works" } p { (INTRODUCTION) } }
                     noscript { p { "This page needs JavaScript, which comes from this computer only." } }
                 }
                 main.walk { (controls()) (panel()) }
@@ -87,7 +93,9 @@ pub(super) fn page(records: &[LoadedRecord], nonce: &str) -> String {
 
 const INTRODUCTION: &str = "Add an effect and move its sliders: the model is fitted anew at every change, by the \
     functions of the command compare, and curve, χ² and coefficients follow. Where the dots leave the model’s line, \
-    something is missing; χ² of an adequate model is about as large as the number of degrees of freedom.";
+    something is missing; χ² of an adequate model is about as large as the number of degrees of freedom. A click on a peak of \
+    the spectrum adds a line there. Move over a figure, tap it or use the arrow keys to read the values of a point; zoom by the \
+    wheel, by two fingers or by the keys + and −, and show all by 0.";
 
 /// What changes the model.
 fn controls() -> Markup {
@@ -104,6 +112,7 @@ fn controls() -> Markup {
                     button.turn type="button" #redo { "Redo" }
                     button.turn type="button" #reset { "Reset" }
                 }
+                div #history {}
                 div #terms {}
                 div #effects {}
             }

@@ -83,6 +83,8 @@ struct StepFigure {
     /// What is measured, if it differs from the first step.
     measured: Option<Measured>,
     z: Vec<f32>,
+    /// What the model predicts at each of the points.
+    expected: Vec<f32>,
     /// The positions of the residuals in their panel.
     up: Vec<f32>,
     /// Index of the largest residual.
@@ -236,6 +238,7 @@ impl Shared<'_> {
                 up: figure.z.iter().map(|z| place(frame, *z)).collect(),
                 measured: (figure.measured != *first).then_some(figure.measured),
                 z: figure.z,
+                expected: figure.expected,
                 lines: Lines {
                     model: figure.model,
                     shares: figure.shares,

@@ -19,14 +19,25 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::{collections::BTreeSet, path::Path};
 
 const STYLE: &str = include_str!("../../report/page.css");
-/// The scripts: the first two have what every page needs and draw a figure, the last one walks through the steps.
-const SCRIPTS: [&str; 3] = [
+/// The scripts: the first ones have what every page needs and draw its figures, the others show an axis step by step.
+const SCRIPTS: [&str; 13] = [
     include_str!("../../report/common.js"),
+    include_str!("../../report/ticks.js"),
+    include_str!("../../report/sheet.js"),
     include_str!("../../report/figure.js"),
+    include_str!("../../report/legend.js"),
+    include_str!("../../report/bars.js"),
+    include_str!("../../report/plot.js"),
+    include_str!("../../report/table.js"),
+    include_str!("../../report/coefficients.js"),
+    include_str!("../../report/walk.js"),
+    include_str!("../../report/paper.js"),
+    include_str!("../../report/address.js"),
     include_str!("../../report/page.js"),
 ];
 /// The policy with which a browser loads nothing from elsewhere.
-const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
+    base-uri 'none'; form-action 'none'";
 
 /// The content of the page.
 pub(super) struct Content<'a> {
@@ -90,9 +101,13 @@ fn summary(diagnosed: &[Diagnosed]) -> Markup {
             @for (number, diagnosed) in diagnosed.iter().enumerate() {
                 @let (class, verdict) = badge(diagnosed);
                 li class=(class) {
-                    a href={ "#axis-" (number) } { (diagnosed.axis.axis) }
-                    " " span.badge { (verdict) }
-                    p { (lead(diagnosed)) }
+                    // The script draws the figure in which the five terms fail most.
+                    div.picture data-axis=(number) {}
+                    div {
+                        a href={ "#axis-" (number) } data-axis=(number) { (diagnosed.axis.axis) }
+                        " " span.badge { (verdict) }
+                        p { (lead(diagnosed)) }
+                    }
                 }
             }
         }
@@ -116,6 +131,13 @@ fn badge(diagnosed: &Diagnosed) -> (&'static str, &'static str) {
 fn introduction() -> Markup {
     html! {
         section.introduction aria-label="How to read this page" {
+            details {
+                summary { "How to read this page" }
+                p {
+                    "Move over a figure, tap it or use the arrow keys to read the values of a point. Zoom by the wheel, by two "
+                    "fingers or by the keys + and −, show all by 0, and move by dragging or by shift and the arrow keys. The "
+                    "address keeps what is seen."
+                }
             p {
                 "The Allan deviation σ(τ) is how much the rate, averaged over a time τ, typically "
                 "changes from one average to the next. The spectrum is the root of the one-sided power "
@@ -127,6 +149,7 @@ fn introduction() -> Markup {
                 "number of degrees of freedom. All steps share one scale of residuals, linear near zero "
                 "and logarithmic beyond, so that the error is seen to fall. χ² is the one number that falls from step to step; what "
                 "follows a recorded temperature counts for it until it is subtracted. Each step adds the effect that explains most."
+                }
             }
             fieldset #units hidden {
                 legend { "Units" }

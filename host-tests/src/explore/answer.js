@@ -20,7 +20,6 @@ function show() {
   byId("error").replaceChildren(...[
     html("span", { class: "figures chi2" }, "χ² ", strong(tenth(answer.chi2)), was(tenth(before?.chi2 ?? null)), ` for ${answer.dof} degrees of freedom`),
     html("span", { class: "figures" }, "p ", strong(answer.p)),
-    html("span", { class: "figures" }, "misfit ", strong(tenth(answer.rms_percent)), " % rms", was(tenth(before?.rms_percent ?? null))),
   ]);
   byId("words").textContent = `${answer.words[0].toUpperCase()}${answer.words.slice(1)}.`;
   byId("widened").textContent = answer.widened ?? "";
@@ -39,7 +38,7 @@ function say(before) {
   clearTimeout(saying);
   saying = setTimeout(() => {
     const was = before && before !== answer ? `, was ${tenth(before.chi2)}` : "";
-    byId("said").textContent = `χ² ${tenth(answer.chi2)}${was}, ${answer.dof} degrees of freedom, p ${answer.p}, misfit ${tenth(answer.rms_percent)} %`;
+    byId("said").textContent = `χ² ${tenth(answer.chi2)}${was}, ${answer.dof} degrees of freedom, p ${answer.p}`;
   }, 400);
 }
 
@@ -114,10 +113,10 @@ function showJudged(before) {
     html("th", { scope: "row" }, sample(record), data.records[record].name, html("span", { class: "unit" }, role)),
     html("td", { class: "number" }, tenth(one.chi2),
       earlier && earlier !== one ? html("span", { class: "unit" }, `was ${tenth(earlier.chi2)}`) : null),
-    ...[`${one.dof}`, one.p, tenth(one.rms_percent)].map((words) => html("td", { class: "number" }, words)));
+    ...[`${one.dof}`, one.p].map((words) => html("td", { class: "number" }, words)));
   const others = answer.judged.map((one) =>
     row(one.record, "judges", one, before?.judged.find((other) => other.record === one.record)));
-  const head = ["record", "χ²", "dof", "p", "misfit %"];
+  const head = ["record", "χ²", "dof", "p"];
   const table = html("table", {},
     html("thead", {}, html("tr", {}, ...head.map((words, at) => html("th", { scope: "col", class: at > 0 ? "number" : null }, words)))),
     html("tbody", {}, row(state.record, "fitted", answer, before), ...others));

@@ -10,6 +10,9 @@ function decadesOf(fits) {
   return Math.max(1, Math.ceil(Math.log10(Math.max(...values, 1)) - 1e-9));
 }
 
+/// What falls from step to step of a diagnosis: χ², with what a later step subtracts.
+const errorsOf = (steps) => steps.map(({ error, dof }) => ({ chi2: error, dof }));
+
 /// The decades that are labelled: all of them, or every second one, third one, ….
 const labelledDecades = (decades) => Array.from({ length: decades + 1 }, (_, decade) => decade).filter((decade) => decade % Math.ceil(decades / 6) === 0);
 

@@ -18,7 +18,7 @@ class Paper {
     const models = last > 0 ? [0, last] : [0];
     const column = (at) => html("div", { class: "model-on-paper" },
       html("h3", {}, `${at === 0 ? "First" : "Last"} model: ${axis.steps[at].model}`),
-      html("p", { class: "words" }, `χ² ${tenth(steps[at].chi2)} for ${steps[at].dof} degrees of freedom, p ${axis.steps[at].p}, misfit ${tenth(steps[at].rms_percent)} % rms`),
+      html("p", { class: "words" }, `χ² ${tenth(steps[at].chi2)} for ${steps[at].dof} degrees of freedom, p ${axis.steps[at].p}`),
       ...axis.frames.map((frame, figure) =>
         drawFigure(frame, this.walk.scene(axis.steps[at], figure), this.walk.unit(frame), PAPER_FIGURE, { heights: [200, 90] }).svg));
     const shares = models.flatMap((at) => axis.steps[at].figures.flatMap((figure) => figure.shares));
@@ -32,9 +32,9 @@ class Paper {
   /// χ² from step to step.
   course() {
     const { steps, axis } = this.walk;
-    const scale = logarithmicBars(steps);
-    const row = ({ chi2, dof }, at) => html("tr", {}, html("th", { scope: "row" }, at === 0 ? "five terms" : `+ ${axis.steps[at].found?.name ?? ""}`),
-      html("td", { class: "number" }, tenth(chi2)), html("td", { class: "number" }, at > 0 ? fallInWords(steps[at - 1].chi2, chi2) : ""),
+    const scale = logarithmicBars(errorsOf(steps));
+    const row = ({ error: chi2, dof }, at) => html("tr", {}, html("th", { scope: "row" }, at === 0 ? "five terms" : `+ ${axis.steps[at].found?.name ?? ""}`),
+      html("td", { class: "number" }, tenth(chi2)), html("td", { class: "number" }, at > 0 ? fallInWords(steps[at - 1].error, chi2) : ""),
       html("td", { class: "bars" }, scale.bar(chi2, dof)));
     return html("table", { class: "course-on-paper" },
       html("thead", {}, html("tr", {}, html("th", {}, "model"), html("th", { class: "number" }, "χ²"), html("th", {}), html("th", { class: "bars" }, scale.axis()))),

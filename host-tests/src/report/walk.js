@@ -42,7 +42,7 @@ class Walk {
     };
     this.previous = button("← Previous", "Previous step", -1);
     this.next = button("Next →", "Next step", 1);
-    const scale = logarithmicBars(this.steps);
+    const scale = logarithmicBars(errorsOf(this.steps));
     this.tabs = this.steps.map((_, at) => this.tab(at, id, scale));
     const list = html("div", { role: "tablist", "aria-orientation": "vertical", class: "steps",
       "aria-label": "Steps of the diagnosis" }, ...this.tabs);
@@ -75,7 +75,7 @@ class Walk {
 
   /// The tab of a step, with its χ² as a number and as a bar, and by how much it fell.
   tab(at, id, scale) {
-    const { chi2, dof } = this.steps[at];
+    const { error: chi2, dof } = this.steps[at];
     const view = this.axis.steps[at];
     const name = at === 0 ? "five terms" : `+ ${view.found?.name ?? ""}`;
     const tab = html("button", { type: "button", role: "tab", id: id(`step-${at}`), class: "step",
@@ -83,7 +83,7 @@ class Walk {
       html("span", { class: "name" }, name),
       html("span", { class: "chi2" }, `χ² ${tenth(chi2)}`),
       scale.bar(chi2, dof),
-      at > 0 ? html("span", { class: "fell" }, fallInWords(this.steps[at - 1].chi2, chi2)) : null);
+      at > 0 ? html("span", { class: "fell" }, fallInWords(this.steps[at - 1].error, chi2)) : null);
     tab.addEventListener("click", () => this.go(at));
     return tab;
   }
@@ -134,7 +134,7 @@ class Walk {
     this.heading.textContent = `${this.candidate === null ? "Model" : "With this candidate"}: ${view.model}`;
     this.error.replaceChildren(
       html("span", { class: "figures chi2" }, "χ² ", strong(tenth(fit.chi2)), ` for ${fit.dof} degrees of freedom`),
-      html("span", { class: "figures" }, "misfit ", strong(tenth(fit.rms_percent)), " % rms"),
+      ...(fit.error > fit.chi2 ? [html("span", { class: "figures" }, "and ", strong(tenth(fit.error - fit.chi2)), " of what a later step subtracts")] : []),
       html("span", { class: "figures" }, "p ", strong(view.p)));
     this.words.textContent = `${view.words[0].toUpperCase()}${view.words.slice(1)}.`;
     this.showCoefficients(fit, view);

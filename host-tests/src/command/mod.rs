@@ -1,9 +1,13 @@
 //! The commands of `allanite`.
 
+#[cfg(not(target_family = "wasm"))]
 mod certified;
+#[cfg(not(target_family = "wasm"))]
 mod certify;
 mod compare;
+#[cfg(not(target_family = "wasm"))]
 mod completions;
+#[cfg(not(target_family = "wasm"))]
 mod decode;
 pub(crate) mod diagnose;
 mod effect_argument;
@@ -14,19 +18,23 @@ mod fit;
 mod input;
 mod known_filter;
 mod limit;
+#[cfg(not(target_family = "wasm"))]
 mod lot;
 mod measure;
 mod merge;
 mod output;
 mod plot;
 mod report;
+#[cfg(not(target_family = "wasm"))]
 mod simulate;
 mod tried;
 pub mod usage;
 mod watch;
+#[cfg(not(target_family = "wasm"))]
+mod workstation;
 
 use crate::failure::Failure;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 use input::standard_input;
 use output::{progress, temporary, wrapped::Wrapped};
 use std::io::{self, BufWriter, Write};
@@ -51,7 +59,6 @@ pub struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Simulate(simulate::Arguments),
     Measure(measure::Arguments),
     Merge(merge::Arguments),
     Fit(fit::Arguments),
@@ -62,10 +69,10 @@ enum Command {
     Watch(watch::Arguments),
     Report(report::Arguments),
     Plot(plot::Arguments),
-    Certify(certify::Arguments),
-    Decode(decode::Arguments),
-    Lot(lot::Arguments),
-    Completions(completions::Arguments),
+    /// What a page has no use for.
+    #[cfg(not(target_family = "wasm"))]
+    #[command(flatten)]
+    Workstation(workstation::Command),
 }
 
 impl CommandLine {
@@ -89,7 +96,6 @@ impl CommandLine {
     fn run_command(&self) -> Result<(), Failure> {
         let mut output = Wrapped::new(BufWriter::new(io::stdout().lock()));
         match &self.command {
-            Command::Simulate(arguments) => simulate::run(arguments, &mut output),
             Command::Measure(arguments) => measure::run(arguments, &mut output),
             Command::Merge(arguments) => merge::run(arguments, &mut output),
             Command::Fit(arguments) => fit::run(arguments, &mut output),
@@ -100,12 +106,8 @@ impl CommandLine {
             Command::Watch(arguments) => watch::run(arguments, &mut output),
             Command::Report(arguments) => report::run(arguments, &mut output),
             Command::Plot(arguments) => plot::run(arguments, &mut output),
-            Command::Certify(arguments) => certify::run(arguments, &mut output),
-            Command::Decode(arguments) => decode::run(arguments, &mut output),
-            Command::Lot(arguments) => lot::run(arguments, &mut output),
-            Command::Completions(arguments) => {
-                completions::run(arguments, Self::command(), &mut output)
-            }
+            #[cfg(not(target_family = "wasm"))]
+            Command::Workstation(command) => command.run(&mut output),
         }?;
         output
             .flush()

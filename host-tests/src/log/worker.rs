@@ -1,5 +1,5 @@
-//! Accumulates counts on threads of their own, while the caller cuts and parses text: one for what is kept of each
-//! axis, and one for spectra and courses. A sum over all samples of an axis stays on one thread, because parts of a
+//! Accumulates counts on threads of their own, where there are threads, while the caller cuts and parses text: one for what is
+//! kept of each axis, and one for spectra and courses. A sum over all samples of an axis stays on one thread, because parts of a
 //! record that are accumulated apart and merged lack the differences across the cuts.
 
 use super::{
@@ -14,6 +14,7 @@ use crate::dependence::block_means::BlockSums;
 use allanite::course::Course;
 use std::{
     collections::VecDeque,
+    io,
     mem::replace,
     panic::resume_unwind,
     sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
@@ -90,16 +91,105 @@ enum Work {
     },
 }
 
-/// Sends the counts of every column to the thread with the accumulators, which passes those of watched axes on to the
-/// thread with their spectra and courses. Either takes about as long as cutting and parsing text.
+/// Hands the counts of every column to the accumulators, and what they leave of watched axes to their spectra and courses.
+/// Either takes about as long as cutting and parsing text.
 pub(super) struct Batches {
     /// The batch of each column that is being filled.
     open: Vec<Vec<i32>>,
+    hands: Hands,
+}
+
+/// Who accumulates.
+enum Hands {
+    Threads(Threads),
+    /// The caller itself, where no thread can be started, as in a page.
+    Caller {
+        worker: Box<Worker>,
+        beside: Beside,
+        /// Batches that can be filled again.
+        empty: Vec<Vec<i32>>,
+    },
+}
+
+/// Two threads: the first one has the accumulators and passes the counts of watched axes on to the second one.
+struct Threads {
     full: SyncSender<Work>,
     /// Batches that have been accumulated and can be filled again.
     empty: Receiver<Vec<i32>>,
     thread: JoinHandle<Worker>,
-    beside: JoinHandle<Vec<OwnSums>>,
+    beside: JoinHandle<Beside>,
+}
+
+/// The spectra and courses of the watched axes.
+struct Beside(Vec<OwnSums>);
+
+impl Beside {
+    fn new(plan: &Plan) -> Self {
+        let axes = plan.watch.as_ref().map_or(0, |_| plan.axes);
+        Self((0..axes).map(|_| OwnSums::new()).collect())
+    }
+
+    /// Takes what the accumulators pass on, and gives the batch back.
+    fn take(&mut self, work: Work) -> Option<Vec<i32>> {
+        match work {
+            Work::Batch(axis, batch) => {
+                self.0[axis].push(&batch);
+                Some(batch)
+            }
+            Work::Gap { missing, filled } => {
+                for (axis, filled) in self.0.iter_mut().zip(&filled) {
+                    axis.gap(missing, filled);
+                }
+                None
+            }
+        }
+    }
+}
+
+impl Threads {
+    /// Starts the threads.
+    ///
+    /// # Errors
+    /// When the system starts no thread.
+    fn start(plan: Plan) -> io::Result<Self> {
+        let columns = plan.columns();
+        let (full, incoming) = sync_channel(ROOM * columns);
+        let (outgoing, empty) = channel();
+        let mut kept_beside = Beside::new(&plan);
+        let watched = kept_beside.0.len();
+        let (accumulated, incoming_beside) = sync_channel(ROOM * columns);
+        let recycled = outgoing.clone();
+        // The receiver of an empty batch is gone once the last batches are on their way.
+        let recycle = |to: &Sender<Vec<i32>>, mut batch: Vec<i32>| {
+            batch.clear();
+            let _ = to.send(batch);
+        };
+        let thread = thread::Builder::new().spawn(move || {
+            let mut worker = Worker::new(plan);
+            for work in incoming {
+                worker.work(work, watched, |work| match work {
+                    // This fails only if the other thread has panicked, which `finish` passes on.
+                    Done::Passed(work) => drop(accumulated.send(work)),
+                    Done::Free(batch) => recycle(&recycled, batch),
+                });
+            }
+            worker
+        })?;
+        let beside = thread::Builder::new().spawn(move || {
+            for work in incoming_beside {
+                if let Some(batch) = kept_beside.take(work) {
+                    recycle(&outgoing, batch);
+                }
+            }
+            kept_beside
+        })?;
+        Ok(Self {
+            full,
+            empty,
+            thread,
+            beside,
+        })
+    }
 }
 
 /// What the thread has accumulated.
@@ -122,59 +212,17 @@ pub(super) struct Totals {
 impl Batches {
     pub(super) fn new(plan: Plan) -> Self {
         let columns = plan.columns();
-        let (full, incoming) = sync_channel(ROOM * columns);
-        let (outgoing, empty) = channel();
-        let beside = plan.watch.as_ref().map_or(0, |_| plan.axes);
-        let (accumulated, incoming_beside) = sync_channel(ROOM * columns);
-        let recycled = outgoing.clone();
-        // The receiver of an empty batch is gone once the last batches are on their way.
-        let recycle = |to: &Sender<Vec<i32>>, mut batch: Vec<i32>| {
-            batch.clear();
-            let _ = to.send(batch);
+        let hands = match Threads::start(plan.clone()) {
+            Ok(threads) => Hands::Threads(threads),
+            Err(_) => Hands::Caller {
+                beside: Beside::new(&plan),
+                worker: Box::new(Worker::new(plan)),
+                empty: Vec::new(),
+            },
         };
-        let thread = thread::spawn(move || {
-            let mut worker = Worker::new(plan);
-            for work in incoming {
-                match work {
-                    Work::Batch(column, batch) => worker.take(column, batch, |column, batch| {
-                        if column < beside {
-                            // This fails only if the other thread has panicked, which `finish` passes on.
-                            let _ = accumulated.send(Work::Batch(column, batch));
-                        } else {
-                            recycle(&recycled, batch);
-                        }
-                    }),
-                    Work::Gap { missing, .. } => {
-                        let filled = worker.gap(missing);
-                        let _ = accumulated.send(Work::Gap { missing, filled });
-                    }
-                }
-            }
-            worker
-        });
-        let beside = thread::spawn(move || {
-            let mut axes: Vec<_> = (0..beside).map(|_| OwnSums::new()).collect();
-            for work in incoming_beside {
-                match work {
-                    Work::Batch(axis, batch) => {
-                        axes[axis].push(&batch);
-                        recycle(&outgoing, batch);
-                    }
-                    Work::Gap { missing, filled } => {
-                        for (axis, filled) in axes.iter_mut().zip(&filled) {
-                            axis.gap(missing, filled);
-                        }
-                    }
-                }
-            }
-            axes
-        });
         Self {
             open: vec![Vec::with_capacity(BATCH); columns],
-            full,
-            empty,
-            thread,
-            beside,
+            hands,
         }
     }
 
@@ -216,20 +264,20 @@ impl Batches {
 
     #[cold]
     fn send(&mut self, column: usize) {
-        let next = self
-            .empty
-            .try_recv()
-            .unwrap_or_else(|_| Vec::with_capacity(BATCH));
+        let next = match &mut self.hands {
+            Hands::Threads(threads) => threads.empty.try_recv().ok(),
+            Hands::Caller { empty, .. } => empty.pop(),
+        };
+        let next = next.unwrap_or_else(|| Vec::with_capacity(BATCH));
         let batch = replace(&mut self.open[column], next);
-        // This fails only if the thread has panicked. `finish` passes the panic on.
-        let _ = self.full.send(Work::Batch(column, batch));
+        self.hands.take(Work::Batch(column, batch));
     }
 
     /// Tells that so many samples are missing here, between two rows.
     #[cold]
     pub(super) fn gap(&mut self, missing: u64) {
         self.send_all();
-        let _ = self.full.send(Work::Gap {
+        self.hands.take(Work::Gap {
             missing,
             filled: Vec::new(),
         });
@@ -243,13 +291,8 @@ impl Batches {
 
     pub(super) fn finish(mut self) -> Totals {
         self.send_all();
-        drop(self.full);
-        let worker = self.thread.join();
-        let worker = worker.unwrap_or_else(|panic| resume_unwind(panic));
-        let beside = self.beside.join();
-        let mut beside = beside
-            .unwrap_or_else(|panic| resume_unwind(panic))
-            .into_iter();
+        let (worker, beside) = self.hands.finish();
+        let mut beside = beside.0.into_iter();
         let axes = worker.axes.into_iter().map(|kept| match kept {
             AxisState::InTwo { first, rest } => Sums::InTwo { first, rest },
             AxisState::Watched(axis) => {
@@ -266,6 +309,58 @@ impl Batches {
             unrest: worker.unrest,
         }
     }
+}
+
+impl Hands {
+    fn take(&mut self, work: Work) {
+        match self {
+            // This fails only if the thread has panicked. `finish` passes the panic on.
+            Self::Threads(threads) => drop(threads.full.send(work)),
+            Self::Caller {
+                worker,
+                beside,
+                empty,
+            } => {
+                let watched = beside.0.len();
+                worker.work(work, watched, |work| {
+                    let batch = match work {
+                        Done::Passed(work) => beside.take(work),
+                        Done::Free(batch) => Some(batch),
+                    };
+                    empty.extend(batch.map(|mut batch| {
+                        batch.clear();
+                        batch
+                    }));
+                });
+            }
+        }
+    }
+
+    fn finish(self) -> (Worker, Beside) {
+        match self {
+            Self::Caller { worker, beside, .. } => (*worker, beside),
+            Self::Threads(Threads {
+                full,
+                thread,
+                beside,
+                ..
+            }) => {
+                drop(full);
+                let worker = thread.join();
+                let worker = worker.unwrap_or_else(|panic| resume_unwind(panic));
+                let beside = beside.join();
+                (worker, beside.unwrap_or_else(|panic| resume_unwind(panic)))
+            }
+        }
+    }
+}
+
+/// What becomes of a batch that was accumulated.
+enum Done {
+    /// It goes on to the spectra and courses, as gaps do.
+    Passed(Work),
+    /// It can be filled again.
+    Free(Vec<i32>),
 }
 
 /// What the first thread keeps of one axis.
@@ -302,6 +397,22 @@ impl Worker {
             unrest: vec![Unrest::new(); plan.sensors()],
             waiting: vec![VecDeque::new(); plan.columns()],
             plan,
+        }
+    }
+
+    /// Does what is asked. The first columns are watched axes, whose batches go on.
+    fn work(&mut self, work: Work, watched: usize, mut done: impl FnMut(Done)) {
+        match work {
+            Work::Batch(column, batch) => self.take(column, batch, |column, batch| {
+                done(match column < watched {
+                    true => Done::Passed(Work::Batch(column, batch)),
+                    false => Done::Free(batch),
+                });
+            }),
+            Work::Gap { missing, .. } => {
+                let filled = self.gap(missing);
+                done(Done::Passed(Work::Gap { missing, filled }));
+            }
         }
     }
 

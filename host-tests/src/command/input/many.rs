@@ -207,7 +207,7 @@ pub(crate) fn each<'a, T: Send>(
     let (results, incoming) = sync_channel(ON_THE_WAY);
     let work = &work;
     let outcome = thread::scope(|scope| {
-        scope.spawn(move || {
+        let started = thread::Builder::new().spawn_scoped(scope, move || {
             // Files are begun in order as cores become free, so that early files are done early. Once
             // the receiver is gone, no further file is begun.
             let _ = files
@@ -216,6 +216,10 @@ pub(crate) fn each<'a, T: Send>(
                 .par_bridge()
                 .try_for_each_with(results, |results, (i, file)| results.send((i, work(file))));
         });
+        if started.is_err() {
+            // Where no thread can be started, as in a page, the files follow each other.
+            return files.iter().try_for_each(|file| done(file, work(file)));
+        }
         let mut waiting = BTreeMap::new();
         let mut next = 0;
         // An early return drops the receiver, which ends the workers.

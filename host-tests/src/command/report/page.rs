@@ -71,10 +71,12 @@ pub(super) fn page(content: &Content) -> String {
             body {
                 header {
                     h1 { "Gyro noise of " span.name { (name) } }
-                    div.conclusion {
+                    (summary(content.diagnosed))
+                    // The findings stand beside their places below: this is the same in sentences, to be copied.
+                    details.conclusion {
+                        summary { "The conclusion in sentences" }
                         @for line in conclusion::lines(&content.diagnosed.iter().collect::<Vec<_>>()) { p { (line) } }
                     }
-                    (summary(content.diagnosed))
                 }
                 main {
                     (introduction())

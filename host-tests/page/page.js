@@ -67,6 +67,8 @@ async function go() {
   const seconds = ((performance.now() - begun) / 1000).toFixed(1);
   byId("progress").hidden = true;
   byId("status").textContent = done.status === 0 ? `done in ${seconds} s` : `ended with status ${done.status}, after ${seconds} s`;
+  // What a report prints is sentences; the others print tables.
+  byId("output").classList.toggle("words", command === "report");
   show("output", done.output);
   show("errors", done.errors);
   const links = done.files.map(([name, bytes]) => {

@@ -22,6 +22,7 @@ mod cuts;
 mod decode;
 mod diagnose;
 mod drawings;
+mod dropped;
 mod evidence;
 mod explore;
 mod explore_figures;

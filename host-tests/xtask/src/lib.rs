@@ -109,8 +109,12 @@ enum Task {
         #[arg(long, value_name = "FOLDER", default_value = "target/c")]
         output: PathBuf,
     },
-    /// Build the page that reads logs without a server: target/page/allanite.html. This needs rustup.
-    Page,
+    /// Build the page that reads logs without a server: one file, which any browser opens. This needs rustup.
+    Page {
+        /// The file to write.
+        #[arg(long, value_name = "FILE", default_value = "target/allanite.html")]
+        output: PathBuf,
+    },
     /// Ask the command line everything about some 70 records, and compare the answers with those of an earlier run: for
     /// changes that should change no result.
     Results {
@@ -178,7 +182,7 @@ impl CommandLine {
                 let octaves = octaves.parse().unwrap_or(20);
                 c::run(Contents { octaves, one_axis }, &targets, &output)
             }
-            Task::Page => page::page().map(drop),
+            Task::Page { output } => page::page(&output),
             Task::Results {
                 folder,
                 against,

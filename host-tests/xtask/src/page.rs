@@ -8,21 +8,16 @@ use crate::{
 use anyhow::{Context as _, Result};
 use base64::{Engine as _, prelude::BASE64_STANDARD};
 use flate2::{Compression, write::GzEncoder};
-use std::{
-    fs,
-    io::Write as _,
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::{fs, io::Write as _, path::Path, process::Command};
 
 /// A program that reads and writes files, for a system that a page can be.
 const TARGET: &str = "wasm32-wasip1";
 
-/// Builds the page, and returns its path.
+/// Builds the page.
 ///
 /// # Errors
 /// When rustup cannot add the target, a file cannot be read or written, or the program does not build.
-pub fn page() -> Result<PathBuf> {
+pub fn page(output: &Path) -> Result<()> {
     step(
         "the compiler for pages",
         Command::new("rustup").args(["target", "add", TARGET]),
@@ -51,15 +46,17 @@ pub fn page() -> Result<PathBuf> {
         .replace("{{worker}}", worker.trim())
         .replace("{{script}}", text("page.js")?.trim())
         .replace("{{program}}", &BASE64_STANDARD.encode(&packed));
-    let output = built.join("allanite.html");
-    fs::write(&output, &page).with_context(|| output.display().to_string())?;
+    if let Some(folder) = output.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    fs::write(output, &page).with_context(|| output.display().to_string())?;
     println!(
         "{}: {:.2} MB, of which the program is {:.2} MB, packed",
         output.display(),
         page.len() as f64 / 1e6,
         packed.len() as f64 / 1e6
     );
-    Ok(output)
+    Ok(())
 }
 
 fn read(path: &Path) -> Result<String> {

@@ -49,8 +49,15 @@ struct Value {
 }
 
 /// What to do after a diagnosis.
-pub(crate) const NEXT: &str =
-    "next: `report` shows every step on a page, and `export` writes the model for a filter";
+pub(crate) fn next(diagnosed: &[Diagnosed]) -> &'static str {
+    let mut axes = diagnosed.iter();
+    match axes.all(|one| matches!(one.verdict, Verdict::Invalid(_))) {
+        true => "next: leave out what disturbed the record, or record again",
+        false => {
+            "next: `report` shows every step on a page, and `export` writes the model for a filter"
+        }
+    }
+}
 
 /// The conclusion: the verdicts, and the findings beginning with what explains most.
 pub(crate) fn lines(diagnosed: &[&Diagnosed]) -> Vec<String> {

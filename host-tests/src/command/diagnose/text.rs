@@ -26,7 +26,7 @@ pub(crate) fn print(diagnosed: &[Diagnosed], output: &mut impl Write) -> io::Res
     for line in conclusion::lines(&diagnosed.iter().collect::<Vec<_>>()) {
         writeln!(output, "{line}")?;
     }
-    writeln!(output, "{}", conclusion::NEXT)?;
+    writeln!(output, "{}", conclusion::next(diagnosed))?;
     for diagnosed in diagnosed {
         writeln!(output)?;
         print_axis(diagnosed, output)?;

@@ -107,7 +107,9 @@ impl CommandLine {
             Command::Report(arguments) => report::run(arguments, &mut output),
             Command::Plot(arguments) => plot::run(arguments, &mut output),
             #[cfg(not(target_family = "wasm"))]
-            Command::Workstation(command) => command.run(&mut output),
+            Command::Workstation(command) => {
+                command.run(<Self as clap::CommandFactory>::command, &mut output)
+            }
         }?;
         output
             .flush()

@@ -1,8 +1,8 @@
 //! The commands of a workstation, for which a page has no use: it would only become larger.
 
-use super::{CommandLine, certify, completions, decode, lot, simulate};
+use super::{certify, completions, decode, lot, simulate};
 use crate::failure::Failure;
-use clap::{CommandFactory as _, Subcommand};
+use clap::Subcommand;
 use std::io::Write;
 
 #[derive(Debug, Subcommand)]
@@ -15,19 +15,21 @@ pub(super) enum Command {
 }
 
 impl Command {
-    /// Runs the command.
+    /// Runs the command. `line` is the whole command line, for its completions.
     ///
     /// # Errors
     /// For bad input of any kind, and when standard output cannot be written.
-    pub(super) fn run(&self, output: &mut impl Write) -> Result<(), Failure> {
+    pub(super) fn run(
+        &self,
+        line: impl FnOnce() -> clap::Command,
+        output: &mut impl Write,
+    ) -> Result<(), Failure> {
         match self {
             Self::Simulate(arguments) => simulate::run(arguments, output),
             Self::Certify(arguments) => certify::run(arguments, output),
             Self::Decode(arguments) => decode::run(arguments, output),
             Self::Lot(arguments) => lot::run(arguments, output),
-            Self::Completions(arguments) => {
-                completions::run(arguments, CommandLine::command(), output)
-            }
+            Self::Completions(arguments) => completions::run(arguments, line(), output),
         }
     }
 }

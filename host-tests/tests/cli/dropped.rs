@@ -17,17 +17,15 @@ const MOST: u64 = 1_500_000;
 /// How long a command may take in the page, on a machine that is busy with other tests.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Builds the page into a folder; `None` where the other way to compile is asked for, which has no library for pages.
+/// Builds the page into a folder; `None` where rustup cannot add the compiler for pages, and Debian's builds the images.
 fn page(folder: &Path) -> Option<PathBuf> {
-    let page = folder.join("allanite.html");
-    match xtask::page::page(&page) {
-        Ok(()) => Some(page),
-        Err(error) if std::env::var_os("ALLANITE_TOOLCHAIN").is_some_and(|way| way == "debian") => {
-            eprintln!("left out, because rustup cannot add the compiler for pages: {error:#}");
-            None
-        }
-        Err(error) => panic!("{error:#}"),
+    if let Err(error) = xtask::page::compiler() {
+        eprintln!("left out, because there is no compiler for pages: {error:#}");
+        return None;
     }
+    let page = folder.join("allanite.html");
+    xtask::page::page(&page).unwrap();
+    Some(page)
 }
 
 /// Chooses files as a user does in a dialogue, or as a drop does.

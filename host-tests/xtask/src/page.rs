@@ -13,15 +13,23 @@ use std::{fs, io::Write as _, path::Path, process::Command};
 /// A program that reads and writes files, for a system that a page can be.
 const TARGET: &str = "wasm32-wasip1";
 
+/// Installs the compiler for pages, which rustup alone has.
+///
+/// # Errors
+/// When rustup is missing, or cannot add the target.
+pub fn compiler() -> Result<()> {
+    step(
+        "the compiler for pages",
+        Command::new("rustup").args(["target", "add", TARGET]),
+    )
+}
+
 /// Builds the page.
 ///
 /// # Errors
 /// When rustup cannot add the target, a file cannot be read or written, or the program does not build.
 pub fn page(output: &Path) -> Result<()> {
-    step(
-        "the compiler for pages",
-        Command::new("rustup").args(["target", "add", TARGET]),
-    )?;
+    compiler()?;
     let built = target_directory().join("page");
     step(
         "the program for the page",

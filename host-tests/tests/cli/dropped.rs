@@ -2,7 +2,7 @@
 
 use crate::browser::Browser;
 use host_tests::program::{command, output};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -118,7 +118,7 @@ fn a_dropped_log_gives_what_the_command_line_gives_and_nothing_leaves_the_page()
         let shown = browser.value("byId('report').srcdoc");
         output(folder, &["report", input, "--output", "report.html"]);
         let expected = fs::read_to_string(folder.join("report.html")).unwrap();
-        assert!(shown == Value::from(expected), "{input}");
+        assert!(shown == expected, "{input}");
         let framed = browser.value("byId('report').hidden");
         assert_eq!(framed, false);
     }

@@ -5,7 +5,10 @@ use host_tests::{
     command::{CommandLine, usage},
     failure::{self, Failure},
 };
-use std::process::ExitCode;
+use std::{
+    io::{self, Write as _},
+    process::ExitCode,
+};
 
 fn main() -> ExitCode {
     let line = match CommandLine::try_parse() {
@@ -14,8 +17,17 @@ fn main() -> ExitCode {
             failure::report(usage::failure(&error));
             return ExitCode::from(2);
         }
-        // This prints the help or the version.
-        Err(error) => error.exit(),
+        // This is the help or the version.
+        Err(error) => {
+            let printed = error.print().and_then(|()| io::stdout().flush());
+            return match printed.map_err(|error| Failure::standard_output(&error)) {
+                Ok(()) | Err(Failure::Closed) => ExitCode::SUCCESS,
+                Err(failure) => {
+                    failure::report(failure);
+                    ExitCode::from(2)
+                }
+            };
+        }
     };
     match line.run() {
         Ok(()) | Err(Failure::Closed) => ExitCode::SUCCESS,

@@ -51,6 +51,15 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     printed.map_err(|error| Failure::standard_output(&error))
 }
 
+/// Whether two files have the same record: the same sums in every octave of every axis. No two records of noise do.
+fn is_same(file: &CurveFile, other: &CurveFile) -> bool {
+    let is_in = |axis: &AxisCurve| {
+        let mut axes = other.axes.iter().filter(|one| one.axis == axis.axis);
+        axes.any(|one| one.samples == axis.samples && one.octaves == axis.octaves)
+    };
+    file.axes.iter().all(is_in)
+}
+
 /// The merged curve of every axis of the first file. Every file has the same axes.
 fn merged(files: &[(&Path, CurveFile)]) -> Result<Vec<AxisCurve>, Failure> {
     let Some((_, first)) = files.first() else {
@@ -66,6 +75,15 @@ fn merged(files: &[(&Path, CurveFile)]) -> Result<Vec<AxisCurve>, Failure> {
                     "merge curves of the same axes",
                 ));
             }
+        }
+    }
+    for (at, (path, file)) in files.iter().enumerate() {
+        if let Some((other, _)) = files[..at].iter().find(|(_, other)| is_same(file, other)) {
+            let other = quoted(other.as_os_str().as_encoded_bytes());
+            return Err(Place::file(path).failure(
+                format!("it has the same record as {other}"),
+                "leave one of them out: a record counts once",
+            ));
         }
     }
     let of_axis = |axis: &AxisCurve| {

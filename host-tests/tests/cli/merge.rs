@@ -208,6 +208,7 @@ fn curves_that_do_not_belong_together_are_refused() {
         .concat(),
     );
     fs::write(here.join("broken.json"), "{").unwrap();
+    fs::copy(here.join("part0.json"), here.join("copy.json")).unwrap();
     for (other, what) in [
         (
             "fast.json",
@@ -226,6 +227,7 @@ fn curves_that_do_not_belong_together_are_refused() {
             "other-sensor.json",
             "times that of the first file, as of another sensor, range or filter",
         ),
+        ("copy.json", "it has the same record as \"part0.json\""),
         ("broken.json", "not a curve file"),
         ("absent.json", "no such file"),
     ] {

@@ -103,6 +103,19 @@ fn temporary_files_vanish_on_an_interruption() {
 }
 
 #[test]
+fn help_that_cannot_be_printed_says_so() {
+    let folder = folder();
+    for asked in ["--help", "--version", "fit --help"] {
+        let ended = shell(folder.path(), &format!("\"$0\" {asked} >/dev/full"));
+        assert_eq!(ended.status.code(), Some(2), "{asked}");
+        let line = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert!(line.contains("standard output: "), "{asked}: {line}");
+        let closed = shell(folder.path(), &format!("\"$0\" {asked} | true"));
+        assert!(closed.stderr.is_empty(), "{asked}");
+    }
+}
+
+#[test]
 fn standard_error_that_is_closed_or_full_changes_nothing() {
     let folder = folder();
     let path = folder.path();

@@ -48,6 +48,24 @@ class Dropped {
   }
 }
 
+/** Bytes that the page gave. */
+class Held {
+  constructor(bytes) {
+    this.bytes = bytes;
+    this.size = bytes.length;
+  }
+
+  read(at, into) {
+    const part = this.bytes.subarray(Math.min(at, this.size), Math.min(at + into.length, this.size));
+    into.set(part);
+    return part.length;
+  }
+
+  write() {
+    return false;
+  }
+}
+
 /** A file that the program writes. */
 class Written {
   constructor() {
@@ -79,12 +97,13 @@ class Written {
 }
 
 /**
- * Runs a module with arguments and files by name. Returns its exit status, what it printed, and the files that it wrote.
+ * Runs a module with arguments and files by name, each a File or bytes. Returns its exit status, what it printed, and the files that it wrote.
  * `told` is called with the share of a file that has been read.
  */
 function runProgram(module, args, files, told) {
   const text = new TextEncoder();
-  const entries = new Map(Array.from(files, ([name, blob]) => [name, new Dropped(blob, told)]));
+  const given = (one) => (one instanceof Uint8Array ? new Held(one) : new Dropped(one, told));
+  const entries = new Map(Array.from(files, ([name, one]) => [name, given(one)]));
   const printed = [new Written(), new Written()];
   const opened = new Map();
   // No colours, and no terminal.

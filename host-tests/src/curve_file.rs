@@ -317,7 +317,8 @@ impl AxisCurve {
         )
     }
 
-    fn check(&self) -> Result<(), String> {
+    /// Whether every number is possible, and follows from the others where it has to.
+    pub(crate) fn check(&self) -> Result<(), String> {
         let positive = |name: &str, value: f64| {
             let valid = value.is_finite() && value > 0.0;
             valid

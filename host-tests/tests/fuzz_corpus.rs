@@ -11,7 +11,6 @@ mod axis;
 mod comparison;
 #[path = "../fuzz/src/diagnosis.rs"]
 mod diagnosis;
-#[cfg(feature = "explore")]
 #[path = "../fuzz/src/explore.rs"]
 mod explore;
 #[path = "../fuzz/src/file.rs"]
@@ -94,7 +93,6 @@ fn diagnoses_of_any_curve_end_with_finite_numbers() {
     replay("diagnosis", 10, diagnosis::check);
 }
 
-#[cfg(feature = "explore")]
 #[test]
 fn questions_of_any_contents_are_answered_or_refused_in_a_line() {
     replay("explore", 20, explore::check);

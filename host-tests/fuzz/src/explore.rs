@@ -1,62 +1,88 @@
-//! Questions of the explore page, of any contents: each is answered, or refused in a line.
+//! Questions of the explore page, of any contents, and its records, of any contents: each question is answered, or refused in a
+//! line.
 
 use allanite::effect::CATALOGUE;
 use host_tests::{
-    command::explore::{Answered, Questions},
+    command::explore::{Session, What},
     program::ADIS16405,
 };
 use serde_json::{Value, json};
 use std::{path::Path, sync::OnceLock};
 
-const NAMES: [&str; 5] = ["fit", "drawing", "table", "diagnose", "page"];
+const ASKED: [What; 3] = [What::Fit, What::Drawing, What::Table];
 
 /// The records are read once.
-static QUESTIONS: OnceLock<Questions> = OnceLock::new();
+static SESSION: OnceLock<(String, Session)> = OnceLock::new();
 
-/// Asks what the first byte selects: with the other bytes as they are, or with effects and shapes that they encode.
+fn session() -> &'static (String, Session) {
+    SESSION.get_or_init(|| {
+        let text = Session::about(Path::new(ADIS16405)).unwrap();
+        let session = Session::parse(text.as_bytes()).unwrap();
+        (text, session)
+    })
+}
+
+/// Asks what the first byte selects: with the other bytes as they are, with effects and shapes that they encode, or about
+/// records that they damage.
 pub fn check(bytes: &[u8]) {
-    let Some((&first, body)) = bytes.split_first() else {
+    let Some((&first, rest)) = bytes.split_first() else {
         return;
     };
-    let name = NAMES[usize::from(first) % NAMES.len()];
-    let questions = QUESTIONS.get_or_init(|| Questions::about(Path::new(ADIS16405)).unwrap());
-    let body = match first {
-        0..100 => body.to_vec(),
-        _ => question(body),
-    };
-    let Some(answered) = questions.ask(name, &body) else {
-        assert_eq!(name, "page");
-        return;
-    };
-    judge(name, &answered);
+    let what = ASKED[usize::from(first) % ASKED.len()];
+    let (text, session) = session();
+    match first {
+        0..80 => judge(what, session.ask(what, rest)),
+        80..200 => judge(what, session.ask(what, &question(rest))),
+        _ => {
+            let damaged = damaged(text, rest);
+            let asked =
+                Session::parse(&damaged).and_then(|session| session.ask(what, br#"{"record":0}"#));
+            judge(what, asked);
+        }
+    }
+}
+
+/// The text of a session, in which pairs of a place and a byte overwrite digits and signs.
+fn damaged(text: &str, bytes: &[u8]) -> Vec<u8> {
+    let mut damaged = text.as_bytes().to_vec();
+    for change in bytes.as_chunks::<4>().0 {
+        let place = u32::from_le_bytes([change[0], change[1], change[2], 0]) as usize;
+        let at = place % damaged.len();
+        damaged[at] = match change[3] {
+            byte @ 128.. => byte & 127,
+            byte => b"0123456789-.eE,:[]{}nulltrue\""[usize::from(byte) % 30],
+        };
+    }
+    damaged
 }
 
 /// An answer has the form of its kind, and a refusal is one line of text.
-fn judge(name: &str, answered: &Answered) {
-    let text = std::str::from_utf8(&answered.body).expect("text");
-    let json = || serde_json::from_str::<Value>(text).expect("JSON");
-    match (answered.status, name) {
-        (200, "drawing") => assert!(text.contains("<svg") && text.trim_end().ends_with("</svg>")),
-        (200, "table") => {
-            let mut lines = text.lines().skip(1);
+fn judge(what: What, answered: Result<Vec<u8>, host_tests::failure::Failure>) {
+    let answer = match answered {
+        Ok(answer) => String::from_utf8(answer).expect("text"),
+        Err(failure) => {
+            let error = failure.to_string();
+            assert!(!error.trim().is_empty());
+            assert!(!error.contains(|c: char| c.is_control()), "{error:?}");
+            return;
+        }
+    };
+    match what {
+        What::Drawing => {
+            assert!(answer.contains("<svg") && answer.trim_end().ends_with("</svg>"));
+        }
+        What::Table => {
+            let mut lines = answer.lines().skip(1);
             let columns = lines.next().expect("a head").split(',').count();
             // Names of files and axes may have a comma, numbers have none.
-            assert!(lines.count() > 10 && columns == 8, "{text}");
+            assert!(lines.count() > 1 && columns == 8, "{answer}");
         }
-        (200, "diagnose") => drop(json()),
-        (200, _) => {
-            let answer = json();
+        What::Fit => {
+            let answer: Value = serde_json::from_str(&answer).expect("JSON");
             let share = answer["p_value"].as_f64();
             assert!(share.is_none_or(|p| (0.0..=1.0).contains(&p)), "{share:?}");
             assert!(answer["models"].is_array() && answer["command"].is_string());
         }
-        (400, _) => {
-            let answer = json();
-            let error = answer["error"].as_str().expect("an error");
-            assert!(!error.trim().is_empty());
-            assert!(!error.contains(|c: char| c.is_control()), "{error:?}");
-        }
-        (status, _) => panic!("status {status}"),
     }
 }
 

@@ -73,7 +73,6 @@ impl<'a> EffectArgument<'a> {
     }
 
     /// The name of the effect in the text of an option.
-    #[cfg(feature = "explore")]
     pub(super) fn name_in(text: &str) -> &str {
         text.split(':').next().unwrap_or_default().trim()
     }

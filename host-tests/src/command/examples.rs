@@ -49,8 +49,8 @@ pub(super) const COMPARE: &str = examples! {
 };
 
 pub(super) const EXPLORE: &str = examples! {
-    "allanite explore curve.json --open"
-    "allanite explore before.csv after.csv --rate 100 --scale 0.05 --unit deg/s"
+    "allanite explore curve.json"
+    "allanite explore before.csv after.csv --rate 100 --scale 0.05 --unit deg/s --output effects.html"
 };
 
 pub(super) const DIAGNOSE: &str = examples! {

@@ -66,6 +66,8 @@ enum Command {
     Compare(compare::Arguments),
     Diagnose(diagnose::Arguments),
     Explore(explore::Arguments),
+    #[command(hide = true)]
+    Ask(explore::ask::Arguments),
     Watch(watch::Arguments),
     Report(report::Arguments),
     Plot(plot::Arguments),
@@ -103,6 +105,7 @@ impl CommandLine {
             Command::Compare(arguments) => compare::run(arguments, &mut output),
             Command::Diagnose(arguments) => diagnose::run(arguments, &mut output),
             Command::Explore(arguments) => explore::run(arguments, &mut output),
+            Command::Ask(arguments) => explore::ask::run(arguments, &mut output),
             Command::Watch(arguments) => watch::run(arguments, &mut output),
             Command::Report(arguments) => report::run(arguments, &mut output),
             Command::Plot(arguments) => plot::run(arguments, &mut output),

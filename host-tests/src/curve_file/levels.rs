@@ -49,7 +49,7 @@ impl SpectrumLevel {
 }
 
 impl SpectrumLevels {
-    pub(super) fn of(spectrum: &Spectrum<BINS>) -> Self {
+    pub(crate) fn of(spectrum: &Spectrum<BINS>) -> Self {
         let levels = spectrum.all().chunk_by(|one, next| one.block == next.block);
         let levels = levels.map(|level| SpectrumLevel {
             block: level.first().map_or(0, |bin| bin.block),
@@ -69,7 +69,7 @@ impl SpectrumLevels {
         }
     }
 
-    pub(super) fn spectrum(&self, rate_hz: f64) -> Result<Spectrum<BINS>, allanite::Error> {
+    pub(crate) fn spectrum(&self, rate_hz: f64) -> Result<Spectrum<BINS>, allanite::Error> {
         let bins = self.levels.iter().flat_map(|level| {
             let measured = level.density.iter().zip(&level.kurtosis);
             let indices = self.segment / 16..;

@@ -7,6 +7,7 @@ use super::{
     cuts::{Cuts, Dropped},
     faults::Faults,
     field::{Exact, Field},
+    hands::{Batches, Totals},
     quantum::{Quantum, Range},
     rounding::{Steps, range_of},
     rows::{Rows, Tally},
@@ -16,7 +17,7 @@ use super::{
     tried::TriedColumns,
     unrest::Unrest,
     watched::SharedSums,
-    worker::{Batches, Plan, Totals},
+    worker::Plan,
 };
 use crate::{
     dependence::block_means::BlockSums,

@@ -98,6 +98,7 @@ impl Recorded {
             columns: self.columns.clone(),
             means: None,
             disturbance: None,
+            spectrogram: None,
         })
     }
 

@@ -39,6 +39,26 @@ pub fn read_with_evidence(
     let watch = Watched {
         covariates,
         moments: true,
+        spectrogram: false,
+    };
+    let (log, _) = read_parts(path, options, None, Some(watch), progress)?;
+    Ok(log)
+}
+
+/// As [`read_with_evidence`], together with the spectrogram, which only a page shows.
+///
+/// # Errors
+/// The errors are those of [`read_with_evidence`].
+pub fn read_for_page(
+    path: &Path,
+    options: &Options,
+    covariates: &Covariates,
+    progress: &ProgressBar,
+) -> Result<Log, Failure> {
+    let watch = Watched {
+        covariates,
+        moments: true,
+        spectrogram: true,
     };
     let (log, _) = read_parts(path, options, None, Some(watch), progress)?;
     Ok(log)
@@ -57,6 +77,7 @@ pub fn read_for_fit(
     let watch = Watched {
         covariates,
         moments: false,
+        spectrogram: false,
     };
     let (log, _) = read_parts(path, options, None, Some(watch), progress)?;
     Ok(log)

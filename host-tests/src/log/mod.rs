@@ -110,6 +110,7 @@ mod faults;
 mod field;
 mod file;
 mod foreign;
+mod hands;
 #[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
@@ -132,6 +133,7 @@ mod rounding;
 mod rows;
 mod scaling;
 mod source;
+mod spectrogram;
 mod sums;
 mod table;
 #[cfg(feature = "tables")]
@@ -162,10 +164,11 @@ use allanite::{
 pub use covariate::{CovariateChoice, Covariates};
 pub use cuts::{Cuts, Moment, TimeRange};
 pub(crate) use faults::{rate_of, said as repeats_said};
-pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
+pub use file::{read, read_for_fit, read_for_page, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
 pub(crate) use places::Places;
+pub use spectrogram::Spectrogram;
 
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
 /// records of years.
@@ -297,6 +300,8 @@ pub struct Evidence {
     pub means: Option<BlockMeans>,
     /// The motion or the spikes that make the record not valid, if there are any.
     pub disturbance: Option<Disturbance>,
+    /// The spectrogram, for a page that shows it.
+    pub spectrogram: Option<Spectrogram>,
 }
 
 /// Motion during a record, or its spikes. A gyro that turns about one axis is not at rest about the others.

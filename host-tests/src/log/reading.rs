@@ -29,6 +29,8 @@ pub(super) struct Watched<'a> {
     pub(super) covariates: &'a Covariates,
     /// Whether the kurtosis is needed.
     pub(super) moments: bool,
+    /// Whether the spectrogram is needed.
+    pub(super) spectrogram: bool,
 }
 
 /// Reads the first rows of a table, and the axes of the remaining rows if a number of first rows is
@@ -111,6 +113,7 @@ pub(super) fn read_table(
         watch: watch.map(|watch| worker::Watch {
             covariates: covariates.clone(),
             moments: watch.moments,
+            spectrogram: watch.spectrogram,
         }),
         faults: faults::Plan {
             by_rows: table.by_rows() || columns.len() == 1,
@@ -225,6 +228,7 @@ pub(super) fn read_table(
                 ),
                 course: Some(*beside.course.clone()),
                 means: recorded.means(&measured.blocks, place, axis.rate_per_count),
+                spectrogram: beside.spectrogram(rate_hz, axis.rate_per_count),
                 ..evidence
             });
         }

@@ -1,6 +1,9 @@
 //! What is kept of an axis while a log is read.
 
-use super::{OCTAVES, SpectrumSums, disturbed::Extremes, watched::WatchedAxis};
+use super::{
+    OCTAVES, Spectrogram, SpectrumSums, disturbed::Extremes, spectrogram::SpectrogramSums,
+    watched::WatchedAxis,
+};
 use allanite::{Accumulator, course::Course};
 
 /// What is kept of one axis.
@@ -23,14 +26,16 @@ pub(super) struct OwnSums {
     pub(super) spectrum: Box<SpectrumSums>,
     pub(super) course: Box<Course>,
     pub(super) extremes: Extremes,
+    spectrogram: Option<Box<SpectrogramSums>>,
 }
 
 impl OwnSums {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(has_spectrogram: bool) -> Self {
         Self {
             spectrum: Box::new(SpectrumSums::new()),
             course: Box::new(Course::new()),
             extremes: Extremes::new(),
+            spectrogram: has_spectrogram.then(|| Box::new(SpectrogramSums::new())),
         }
     }
 
@@ -38,6 +43,9 @@ impl OwnSums {
         self.spectrum.push_slice(counts);
         self.course.push_slice(counts);
         self.extremes.push(counts);
+        if let Some(spectrogram) = &mut self.spectrogram {
+            spectrogram.push(counts);
+        }
     }
 
     /// Tells that so many samples are missing here. `filled` are the values that fill their places, or none.
@@ -45,6 +53,15 @@ impl OwnSums {
         go_on(&mut self.spectrum, filled);
         self.course.lost(missing);
         self.extremes.lost(missing);
+        if let Some(spectrogram) = &mut self.spectrogram {
+            spectrogram.gap(missing);
+        }
+    }
+
+    /// The spectrogram, if it was asked for and the record is long enough.
+    pub(super) fn spectrogram(&self, rate_hz: f64, rate_per_count: f64) -> Option<Spectrogram> {
+        let sums = self.spectrogram.as_ref()?;
+        sums.spectrogram(rate_hz, rate_per_count)
     }
 }
 

@@ -6,18 +6,35 @@
 
 const FIGURES = ["deviation", "spectrum"];
 
+/// What is seen of the figures, as parts of an address: what differs from the first view.
+function viewParts(views) {
+  const parts = [];
+  for (const [name, { x, linearAcross, linearUp }] of Object.entries(views)) {
+    if (x) parts.push(`${name}=${x.map((end) => Number(end.toPrecision(5))).join("~")}`);
+    if (linearAcross) parts.push(`${name}.across=linear`);
+    if (linearUp) parts.push(`${name}.up=linear`);
+  }
+  return parts;
+}
+
+/// Takes what a part of an address says about the views, if it is about one of them.
+function takeViewPart(views, key, value) {
+  const [figure, scale] = key.split(".");
+  if (!FIGURES.includes(figure)) return;
+  const ends = value.split("~").map(Number);
+  if (scale === "across" && value === "linear") views[figure].linearAcross = true;
+  if (scale === "up" && value === "linear") views[figure].linearUp = true;
+  if (scale === undefined && ends.length === 2 && ends[0] > 0 && ends[1] > ends[0] && Number.isFinite(ends[1])) views[figure].x = ends;
+}
+
+const freshViews = () => Object.fromEntries(FIGURES.map((name) => [name, wholeView()]));
+
 /// The text of a state: the number of the unit, the axis in sight, and the walks with what differs from the first view.
 function addressOf({ unit, inSight, walks }) {
   const parts = unit > 0 ? [`unit=${unit}`] : [];
   const others = walks.filter(({ index }) => index !== inSight);
   for (const walk of [...others, ...walks.filter(({ index }) => index === inSight)]) {
-    const own = [];
-    if (walk.step > 0) own.push(`step=${walk.step}`);
-    for (const [name, { x, linearAcross, linearUp }] of Object.entries(walk.views)) {
-      if (x) own.push(`${name}=${x.map((end) => Number(end.toPrecision(5))).join("~")}`);
-      if (linearAcross) own.push(`${name}.across=linear`);
-      if (linearUp) own.push(`${name}.up=linear`);
-    }
+    const own = [...(walk.step > 0 ? [`step=${walk.step}`] : []), ...viewParts(walk.views)];
     if (own.length > 0 || walk.index === inSight) parts.push(`axis=${walk.index}`, ...own);
   }
   return parts.length > 0 ? `#${parts.join("&")}` : "";
@@ -25,7 +42,7 @@ function addressOf({ unit, inSight, walks }) {
 
 /// The state of an address with so many axes. What it does not understand is left out.
 function stateOfAddress(hash, axes) {
-  const fresh = () => ({ step: 0, views: Object.fromEntries(FIGURES.map((name) => [name, wholeView()])) });
+  const fresh = () => ({ step: 0, views: freshViews() });
   const state = { unit: 0, inSight: null, walks: Array.from({ length: axes }, fresh) };
   let about = state.walks;
   for (const part of hash.replace(/^#/, "").split("&")) {
@@ -37,14 +54,7 @@ function stateOfAddress(hash, axes) {
       state.inSight = Number(value);
       about = [state.walks[state.inSight]];
     }
-    const [figure, scale] = (key ?? "").split(".");
-    if (!FIGURES.includes(figure)) continue;
-    const ends = value.split("~").map(Number);
-    for (const { views } of about) {
-      if (scale === "across" && value === "linear") views[figure].linearAcross = true;
-      if (scale === "up" && value === "linear") views[figure].linearUp = true;
-      if (scale === undefined && ends.length === 2 && ends[0] > 0 && ends[1] > ends[0] && Number.isFinite(ends[1])) views[figure].x = ends;
-    }
+    for (const { views } of about) takeViewPart(views, key ?? "", value);
   }
   return state;
 }

@@ -24,7 +24,7 @@ function coefficientTable(walk, fit, view, isWalked) {
     return at < 0 ? none.cloneNode(true) : cell(before[at], walk.axis.steps[0].states[at]);
   };
   const row = (one, at) => html("tr", {},
-    html("th", { scope: "row" }, plain(one.effect), " ", html("i", {}, one.symbol),
+    html("th", { scope: "row" }, gloss(plain(one.effect)), " ", html("i", {}, one.symbol),
       html("span", { class: "unit" }, custom(one)?.unit ?? one.unit)),
     isWalked ? earlier(one) : null, cell(one, view.states[at]));
   const head = ["coefficient", "five terms", isWalked ? "now" : null];

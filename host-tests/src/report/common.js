@@ -1,7 +1,6 @@
-// What every page needs: its data, elements, and numbers in words.
+// What every page needs: elements, and numbers in words.
 "use strict";
 
-const data = JSON.parse(document.getElementById("data").textContent);
 const html = (name, attributes, ...children) => make(null, name, attributes, children);
 const byId = (id) => document.getElementById(id);
 const plain = (name) => name.replaceAll("_", " ");

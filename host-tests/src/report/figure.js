@@ -73,7 +73,8 @@ const effectLine = (share) => `line effect-${share.colour}${share.twin > 0 ? ` t
 const effectName = (share) => `${plain(share.effect)}${share.frequency_hz === null ? "" : ` at ${number(share.frequency_hz)} Hz`}`;
 
 /// Draws a scene in its frame, and returns the drawing with the places in it. `scene` has a title, the lines of the
-/// model, of an earlier one and of the effects, and the records, of which the first is the fitted one. `unit` is one of the
+/// model, of an earlier one and of the effects, a finer measurement if there is one, and the records, of which the first is the
+/// fitted one. `unit` is one of the
 /// frame's units, and `width` is in pixels. A brief drawing has the curve alone, of a given height. The point with the
 /// largest residual is marked if that exceeds two standard errors.
 function drawFigure(frame, scene, unit, width, { view = wholeView(), brief = 0, heights = width < 560 ? [240, 130] : [320, 150] } = {}) {
@@ -99,6 +100,7 @@ function drawFigure(frame, scene, unit, width, { view = wholeView(), brief = 0, 
   }
   // A straight line between logarithms is curved on a linear scale.
   const bent = view.linearAcross || view.linearUp ? (pieces) => pieces.map(refined) : (pieces) => pieces;
+  if (scene.fine) sheet.path(curve, [scene.fine], place, "line fine");
   for (const share of scene.shares) sheet.path(curve, bent(share.line), place, effectLine(share));
   if (scene.before) sheet.path(curve, bent(scene.before), place, "line before");
   sheet.path(curve, bent(scene.model), place, "line model");
@@ -193,5 +195,5 @@ function drawCourse(course, width) {
     free = above + 14;
     sheet.text([above, 17], { "text-anchor": "middle", class: "event-number" }, `${number + 1}`);
   });
-  return sheet.svg;
+  return sheet;
 }

@@ -1,6 +1,9 @@
 // One axis of a report: its diagnosis step by step, with its candidates, in either unit.
 "use strict";
 
+/// What the program wrote into the page.
+const data = JSON.parse(byId("data").textContent);
+takeGlossary(JSON.parse(byId("glossary").textContent));
 let unitIndex = 0;
 
 /// One axis: its diagnosis, its figures, and the step and candidate that are shown.
@@ -133,9 +136,9 @@ class Walk {
     const strong = (words) => html("strong", {}, words);
     this.heading.textContent = `${this.candidate === null ? "Model" : "With this candidate"}: ${view.model}`;
     this.error.replaceChildren(
-      html("span", { class: "figures chi2" }, "χ² ", strong(tenth(fit.chi2)), ` for ${fit.dof} degrees of freedom`),
+      html("span", { class: "figures chi2" }, gloss("χ²"), " ", strong(tenth(fit.chi2)), ` for ${fit.dof} `, gloss("degrees of freedom")),
       ...(fit.error > fit.chi2 ? [html("span", { class: "figures" }, "and ", strong(tenth(fit.error - fit.chi2)), " of what a later step subtracts")] : []),
-      html("span", { class: "figures" }, "p ", strong(view.p)));
+      html("span", { class: "figures" }, gloss("p"), " ", strong(view.p)));
     this.words.textContent = `${view.words[0].toUpperCase()}${view.words.slice(1)}.`;
     this.showCoefficients(fit, view);
     this.showLegend(view);
@@ -165,7 +168,7 @@ class Walk {
       this.tables[at].set(...shown);
     });
     const width = this.course?.clientWidth ?? 0;
-    if (width >= 100) this.course.replaceChildren(drawCourse(this.axis.course, Math.round(width)));
+    if (width >= 100) this.course.replaceChildren(drawCourse(this.axis.course, Math.round(width)).svg);
   }
 
   showLegend(view) {
@@ -210,13 +213,13 @@ class Walk {
         "Best first. χ² is a quick estimate; select a candidate to refit it in full."),
       html("table", {},
         html("thead", {}, html("tr", {}, html("th", {}, "candidate"), html("th", { class: "number" }, "χ²"),
-          html("th", { class: "number" }, "improvement"))),
+          html("th", { class: "number" }, gloss("improvement")))),
         html("tbody", {}, row(null, "none: the model of this step", tenth(this.steps[this.step].chi2), "0"), ...rows)));
   }
 
   /// The coefficients of the five terms beside those of the model that is shown.
   showCoefficients(fit, view) {
     const isWalked = this.step > 0 || this.candidate !== null;
-    this.coefficients.replaceChildren(html("h3", {}, "Coefficients, with 95 % intervals"), coefficientTable(this, fit, view, isWalked));
+    this.coefficients.replaceChildren(html("h3", {}, "Coefficients, with ", gloss("95 % interval", "95 % intervals")), coefficientTable(this, fit, view, isWalked));
   }
 }

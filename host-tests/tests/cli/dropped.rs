@@ -1,12 +1,11 @@
 //! The page without a server: a log that is dropped on it gives what the command line gives, byte by byte.
 
 use crate::browser::Browser;
+use crate::whole_page::{choose, empty};
 use host_tests::program::{command, output};
 use serde_json::json;
 use std::{
-    fs,
-    path::{Path, PathBuf},
-    thread,
+    fs, thread,
     time::{Duration, Instant},
 };
 use tempfile::TempDir;
@@ -16,28 +15,6 @@ const MOST: u64 = 1_500_000;
 
 /// How long a command may take in the page, on a machine that is busy with other tests.
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// Builds the page into a folder; `None` where rustup cannot add the compiler for pages, and Debian's builds the images.
-fn page(folder: &Path) -> Option<PathBuf> {
-    if let Err(error) = xtask::page::compiler() {
-        eprintln!("left out, because there is no compiler for pages: {error:#}");
-        return None;
-    }
-    let page = folder.join("allanite.html");
-    xtask::page::page(&page).unwrap();
-    Some(page)
-}
-
-/// Chooses files as a user does in a dialogue, or as a drop does.
-fn choose(browser: &mut Browser, files: &[&Path]) {
-    let document = browser.call("DOM.getDocument", json!({}));
-    let found = json!({ "nodeId": document["root"]["nodeId"], "selector": "#logs" });
-    let input = browser.call("DOM.querySelector", found);
-    browser.call(
-        "DOM.setFileInputFiles",
-        json!({ "nodeId": input["nodeId"], "files": files }),
-    );
-}
 
 /// Asks for a command with options, as the form does, and waits for its end. Returns the state, what it printed, and its notes.
 fn ask(browser: &mut Browser, command: &str, options: &str) -> [String; 3] {
@@ -71,7 +48,7 @@ fn ended(browser: &mut Browser) -> [String; 3] {
 fn a_dropped_log_gives_what_the_command_line_gives_and_nothing_leaves_the_page() {
     let folder = TempDir::new().unwrap();
     let folder = folder.path();
-    let Some(page) = page(folder) else { return };
+    let Some(page) = empty(folder) else { return };
     assert!(page.metadata().unwrap().len() <= MOST);
     let simulate = [
         "simulate",

@@ -1,7 +1,7 @@
 //! The figures of `explore`: a peak becomes a line, χ² falls in stairs, and many records are at hand on any screen.
 
 use crate::browser::Browser;
-use crate::served::Served;
+use crate::whole_page::{self, explored};
 use host_tests::program::{ADIS16405, output};
 use serde_json::{Value, json};
 use std::{
@@ -17,13 +17,9 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-/// Waits until the page shows the answer to its last question.
+/// Waits until the page shows the answer to its last question, which it was not refused.
 fn settle(browser: &mut Browser) {
-    let begin = Instant::now();
-    while browser.value("!fits.busy && answer !== null") != true {
-        assert!(begin.elapsed() < Duration::from_secs(60), "no answer");
-        thread::sleep(Duration::from_millis(5));
-    }
+    whole_page::settle(browser);
     assert_eq!(browser.text("#problem"), "");
 }
 
@@ -60,10 +56,13 @@ fn records(folder: &Path, count: usize) -> Vec<String> {
 
 #[test]
 fn a_peak_becomes_a_line_by_mouse_keys_and_finger_and_the_history_falls() {
-    let served = Served::start(&[ADIS16405]);
+    let folder = TempDir::new().unwrap();
+    let Some(url) = explored(folder.path(), &[ADIS16405]) else {
+        return;
+    };
     let mut browser = Browser::start();
     browser.resize(1280, 900);
-    browser.open(&served.url);
+    browser.open(&url);
     settle(&mut browser);
     browser.value("change(null, (of) => { of.record = 2; })");
     let five = chi2(&mut browser);
@@ -145,10 +144,12 @@ fn sixty_records_are_found_judged_and_seen_on_a_desk_and_on_a_phone() {
     let folder = TempDir::new().unwrap();
     let paths = records(folder.path(), 60);
     let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
-    let served = Served::start(&paths);
+    let Some(url) = explored(folder.path(), &paths) else {
+        return;
+    };
     let mut browser = Browser::start();
     browser.resize(1280, 900);
-    browser.open(&served.url);
+    browser.open(&url);
     settle(&mut browser);
     browser.click("#find-record");
     browser.call("Input.insertText", json!({ "text": "unit-4" }));

@@ -10,8 +10,8 @@ mod factory;
 mod page;
 #[path = "../../library/common/sealed.rs"]
 mod sealed;
-#[path = "../common/served.rs"]
-mod served;
+#[path = "../common/whole_page.rs"]
+mod whole_page;
 
 mod bad_input;
 mod certify;
@@ -26,7 +26,7 @@ mod dropped;
 mod evidence;
 mod explore;
 mod explore_figures;
-mod explore_server;
+mod explore_time;
 mod export;
 mod export_model;
 mod export_tables;

@@ -7,11 +7,42 @@ use crate::{
 };
 use anyhow::{Context as _, Result};
 use base64::{Engine as _, prelude::BASE64_STANDARD};
-use flate2::{Compression, write::GzEncoder};
-use std::{fs, io::Write as _, path::Path, process::Command};
+use std::{fs, io::Write as _, num::NonZeroU64, path::Path, process::Command};
 
 /// A program that reads and writes files, for a system that a page can be.
 const TARGET: &str = "wasm32-wasip1";
+
+/// The styles: those of a report, and what the page adds to them.
+const STYLES: [&str; 3] = ["src/report/page.css", "page/explore.css", "page/drop.css"];
+
+/// The scripts: the first ones are those of a report and draw figures; then the program, the records and their effects, and
+/// what is dropped.
+const SCRIPTS: [&str; 18] = [
+    "src/report/common.js",
+    "src/report/ticks.js",
+    "src/report/sheet.js",
+    "src/report/gloss.js",
+    "src/report/figure.js",
+    "src/report/legend.js",
+    "src/report/bars.js",
+    "src/report/plot.js",
+    "src/report/table.js",
+    "src/report/address.js",
+    "page/program.js",
+    "page/explore/state.js",
+    "page/explore/records.js",
+    "page/explore/controls.js",
+    "page/explore/answer.js",
+    "page/explore/time.js",
+    "page/explore/explore.js",
+    "page/drop.js",
+];
+
+/// How often the packer tries. Chosen by hand: more takes longer and hardly makes the program smaller.
+const ITERATIONS: NonZeroU64 = NonZeroU64::new(3).unwrap();
+
+/// What runs in a worker.
+const WORKER: [&str; 2] = ["page/wasi.js", "page/worker.js"];
 
 /// Installs the compiler for pages, which rustup alone has.
 ///
@@ -42,17 +73,17 @@ pub fn page(output: &Path) -> Result<()> {
             .env("RUSTFLAGS", "-A dead_code"),
     )?;
     let program = built.join(TARGET).join("page/allanite.wasm");
-    let program = fs::read(&program).with_context(|| program.display().to_string())?;
-    let mut packed = GzEncoder::new(Vec::new(), Compression::best());
-    packed.write_all(&program)?;
-    let packed = packed.finish()?;
-    let folder = workspace().join("host-tests/page");
-    let text = |name: &str| read(&folder.join(name));
-    let worker = text("wasi.js")? + &text("worker.js")?;
-    let page = text("page.html")?
-        .replace("{{style}}", text("page.css")?.trim())
-        .replace("{{worker}}", worker.trim())
-        .replace("{{script}}", text("page.js")?.trim())
+    let packed = packed(&program)?;
+    let folder = workspace().join("host-tests");
+    let joined = |names: &[&str]| {
+        let texts = names.iter().map(|name| read(&folder.join(name)));
+        anyhow::Ok(texts.collect::<Result<Vec<_>>>()?.join("\n"))
+    };
+    let page = joined(&["page/page.html"])?
+        .replace("{{version}}", env!("CARGO_PKG_VERSION"))
+        .replace("{{style}}", joined(&STYLES)?.trim())
+        .replace("{{worker}}", joined(&WORKER)?.trim())
+        .replace("{{script}}", joined(&SCRIPTS)?.trim())
         .replace("{{program}}", &BASE64_STANDARD.encode(&packed));
     if let Some(folder) = output.parent() {
         fs::create_dir_all(folder)?;
@@ -67,6 +98,42 @@ pub fn page(output: &Path) -> Result<()> {
     Ok(())
 }
 
+/// A program in the form that every browser unpacks, by the packer that makes it smallest. What was packed before is kept beside
+/// the program, because packing takes some seconds.
+fn packed(program: &Path) -> Result<Vec<u8>> {
+    let place = program.with_extension("wasm.gz");
+    let changed = |path: &Path| path.metadata().and_then(|there| there.modified());
+    if let (Ok(packed), Ok(built)) = (changed(&place), changed(program))
+        && packed > built
+    {
+        return fs::read(&place).with_context(|| place.display().to_string());
+    }
+    let text = fs::read(program).with_context(|| program.display().to_string())?;
+    let mut packed = Vec::new();
+    let packer = zopfli::Options {
+        iteration_count: ITERATIONS,
+        ..zopfli::Options::default()
+    };
+    zopfli::compress(packer, zopfli::Format::Gzip, &*text, &mut packed)?;
+    // Another process may pack the same: each writes a file of its own, and the last one stays.
+    let folder = place.parent().unwrap_or(Path::new("."));
+    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    file.write_all(&packed)?;
+    file.persist(&place)?;
+    Ok(packed)
+}
+
+/// Reads a file without the lines that are comments alone and without the blanks at the begin of lines.
 fn read(path: &Path) -> Result<String> {
-    fs::read_to_string(path).with_context(|| path.display().to_string())
+    let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    let lines = text.lines().map(str::trim);
+    let is_comment = |line: &str| {
+        ["//", "/*", "*"]
+            .iter()
+            .any(|begin| line.starts_with(begin))
+    };
+    let kept: Vec<&str> = lines
+        .filter(|line| !line.is_empty() && !(is_comment(line) && !line.starts_with("* {")))
+        .collect();
+    Ok(kept.join("\n"))
 }

@@ -21,7 +21,7 @@ const PACKAGES: [&str; 6] = [
 
 /// The optional parts of the program, to be built without the others, after none of them. `cargo allanite` builds none, so that
 /// code which needs one by mistake would show in the first command of the README only. Two that share no code are built together.
-const OPTIONAL_PARTS: [&str; 5] = ["", "bags,pictures", "tables,explore", "study", "watch"];
+const OPTIONAL_PARTS: [&str; 5] = ["", "bags,pictures", "tables", "study", "watch"];
 
 /// Every feature except double precision.
 const SINGLE: [&str; 2] = ["--features", "async,defmt,storage,flash,overlap"];

@@ -40,31 +40,43 @@ impl Compared {
     ) -> Result<Self, Error> {
         let options = Options::default();
         let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
-        let observed = Record::new(&curve, &spectrum);
-        let model = &fit_shapes(observed, model, options.tolerance)?;
-        let fit = fit(observed, model, options)?;
-        let fitted = Comparison::new(observed, model, &fit)?;
+        let (model, fit, own) = fitted(Record::new(&curve, &spectrum), model)?;
         let (comparison, spectrum, held_out) = match held_out {
-            None => (fitted, spectrum, None),
+            None => (own, spectrum, None),
             Some(axis) => {
                 let tolerance = options.tolerance;
                 let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
                 let observed = Record::new(&curve, &spectrum);
-                let comparison = Comparison::held_out(observed, model, &fit, tolerance)?;
+                let comparison = Comparison::held_out(observed, &model, &fit, tolerance)?;
                 let held_out = HeldOut {
                     axis,
-                    fitted_rms_percent: fitted.rms_percent,
+                    fitted_rms_percent: own.rms_percent,
                 };
                 (comparison, spectrum, Some(held_out))
             }
         };
         Ok(Self {
             axis,
-            model: model.clone(),
+            model,
             fit,
             comparison,
             spectrum,
             held_out,
         })
     }
+}
+
+/// Fits a model to a record, shapes included, and compares it with the same record. Returns the model with its shapes.
+///
+/// # Errors
+/// Those of the fits.
+pub(in crate::command) fn fitted(
+    record: Record<'_, OCTAVES, BINS>,
+    model: &Model,
+) -> Result<(Model, Fit, Comparison<OCTAVES, BINS>), Error> {
+    let options = Options::default();
+    let model = fit_shapes(record, model, options.tolerance)?;
+    let fit = fit(record, &model, options)?;
+    let comparison = Comparison::new(record, &model, &fit)?;
+    Ok((model, fit, comparison))
 }

@@ -28,7 +28,6 @@ pub(in crate::command) struct ModelArguments {
 
 impl ModelArguments {
     /// The options with these values, for a caller without a command line.
-    #[cfg(feature = "explore")]
     pub(in crate::command) fn new(with: Vec<String>, without: Vec<String>) -> Self {
         Self {
             with,

@@ -61,19 +61,24 @@ impl<'a> Pictures<'a> {
 
     /// The record over time, if it is known.
     pub(crate) fn course(&self) -> Option<CourseFigure> {
-        let axis = &self.diagnosed.axis;
-        let course = self.diagnosed.course.as_ref()?;
-        let scale = Scale::new(axis.rate_per_count, axis.rate_hz).ok()?;
-        // A record with motion is not valid, and has no other events.
-        let motion = self.diagnosed.motion().map(|motion| Mark {
-            at_s: motion.at_s,
-            words: "motion".into(),
-        });
-        let events = motion.chain(self.diagnosed.stationarity.events.iter().map(|event| Mark {
-            at_s: event.at_s,
-            words: words::brief_event(event, axis.unit),
-        }));
-        let columns = &self.diagnosed.columns;
-        CourseFigure::new(course, scale, axis.unit, columns, events.collect())
+        course(self.diagnosed)
     }
+}
+
+/// The record of a diagnosis over time, if it is known.
+pub(crate) fn course(diagnosed: &Diagnosed) -> Option<CourseFigure> {
+    let axis = &diagnosed.axis;
+    let course = diagnosed.course.as_ref()?;
+    let scale = Scale::new(axis.rate_per_count, axis.rate_hz).ok()?;
+    // A record with motion is not valid, and has no other events.
+    let motion = diagnosed.motion().map(|motion| Mark {
+        at_s: motion.at_s,
+        words: "motion".into(),
+    });
+    let events = motion.chain(diagnosed.stationarity.events.iter().map(|event| Mark {
+        at_s: event.at_s,
+        words: words::brief_event(event, axis.unit),
+    }));
+    let columns = &diagnosed.columns;
+    CourseFigure::new(course, scale, axis.unit, columns, events.collect())
 }

@@ -98,21 +98,27 @@ pub(super) fn answer(fitted: &Fitted, question: &Question, about_log: &[String])
     let options: Vec<String> = added.iter().map(|added| added.with.clone()).collect();
     let about_log = if record.is_curve() { &[] } else { about_log };
     let judged = fitted.judged.iter().enumerate();
-    let judged = judged.map(|(at, (number, _, comparison))| {
+    let judged = judged.map(|(at, one)| {
         let drawn = drawn(fitted.judged_figures(at, &frames), &frames);
         Judged {
-            record: *number,
-            verdict: verdict(comparison),
+            record: one.number,
+            verdict: verdict(&one.comparison),
             records: drawn.into_iter().map(|(record, _)| record).collect(),
         }
     });
     Answer {
-        verdict: verdict(&fitted.compared.comparison),
-        adequate: fitted.fit().is_adequate(),
-        command: shell::compare(&record.path, about_log, &options, &question.without),
+        verdict: verdict(&fitted.comparison),
+        adequate: fitted.fit.is_adequate(),
+        command: shell::command(
+            record.path(),
+            about_log,
+            &options,
+            &question.without,
+            fitted.taken_out().is_some(),
+        ),
         added,
         coefficients: coefficients(fitted, unit),
-        widened: words::widened(fitted.fit()),
+        widened: words::widened(&fitted.fit),
         judged: judged.collect(),
         frames: frames
             .iter()
@@ -142,8 +148,8 @@ fn verdict(comparison: &Comparison<OCTAVES, BINS>) -> Verdict {
 }
 
 fn added(fitted: &Fitted, question: &Question) -> Vec<Added> {
-    let fit = fitted.fit();
-    let added = question.added(&fitted.compared.model).into_iter();
+    let fit = &fitted.fit;
+    let added = question.added(&fitted.model).into_iter();
     added
         .map(|(place, term)| {
             let parameters = term.effect.parameters().iter();
@@ -167,9 +173,9 @@ fn added(fitted: &Fitted, question: &Question) -> Vec<Added> {
 }
 
 fn coefficients(fitted: &Fitted, unit: Unit) -> Vec<Shown> {
-    let terms = fitted.compared.model.terms().iter();
+    let terms = fitted.model.terms().iter();
     terms
-        .zip(&fitted.fit().coefficients)
+        .zip(&fitted.fit.coefficients)
         .map(|(term, one)| {
             let half = one.half_seconds;
             let customary = units::customary(unit, half);

@@ -1,6 +1,6 @@
 //! The catalogue of effects, as the page lists it.
 
-use super::record::LoadedRecord;
+use super::record::SessionRecord;
 use crate::command::output::words;
 use allanite::effect::{EXPLAINED, IEEE_952};
 use serde::Serialize;
@@ -32,7 +32,7 @@ struct ListedParameter {
 }
 
 /// Every effect that is known, with the ranges of its parameters in each of the records.
-pub(super) fn catalogue(records: &[LoadedRecord]) -> Vec<Listed> {
+pub(super) fn catalogue(records: &[SessionRecord]) -> Vec<Listed> {
     let listed = EXPLAINED.into_iter().map(|effect| {
         let explanation = effect.explanation();
         let name = effect.description().name;

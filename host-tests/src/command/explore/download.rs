@@ -1,6 +1,6 @@
 //! What the page shows as files: a drawing and a table.
 
-use super::{fitted::Fitted, question::Question, record::LoadedRecord};
+use super::{fitted::Fitted, question::Question, record::SessionRecord};
 use crate::{
     command::{diagnose::words::shown_p, output::words},
     confidence::relative_errors,
@@ -12,7 +12,7 @@ use allanite::Comparison;
 /// A drawing of the record, and of each record that judges the model, in the form of `plot`.
 pub(super) fn drawing(fitted: &Fitted, question: &Question) -> String {
     let frames = fitted.frames();
-    let draw = |record: &LoadedRecord,
+    let draw = |record: &SessionRecord,
                 comparison: &Comparison<OCTAVES, BINS>,
                 figures: Vec<Figure>,
                 role: &str| {
@@ -37,23 +37,19 @@ pub(super) fn drawing(fitted: &Fitted, question: &Question) -> String {
     };
     let own = draw(
         fitted.record,
-        &fitted.compared.comparison,
+        &fitted.comparison,
         fitted.figures(&frames),
         "",
     );
-    let judged = fitted
-        .judged
-        .iter()
-        .enumerate()
-        .map(|(at, (_, record, comparison))| {
-            let role = format!("fitted to {}; ", fitted.record.name());
-            draw(
-                record,
-                comparison,
-                fitted.judged_figures(at, &frames),
-                &role,
-            )
-        });
+    let judged = fitted.judged.iter().enumerate().map(|(at, one)| {
+        let role = format!("fitted to {}; ", fitted.record.name());
+        draw(
+            one.record,
+            &one.comparison,
+            fitted.judged_figures(at, &frames),
+            &role,
+        )
+    });
     svg(&std::iter::once(own).chain(judged).collect::<Vec<_>>())
 }
 
@@ -63,9 +59,14 @@ fn model(fitted: &Fitted, question: &Question) -> String {
         [] => String::new(),
         names => format!(" without {}", words::list(names.iter().map(String::as_str))),
     };
-    let added = question.added(&fitted.compared.model).into_iter();
+    let added = question.added(&fitted.model).into_iter();
     let added = added.map(|(_, term)| format!(" + {}", words::plain(term.effect.name())));
-    format!("five terms{without}{}", added.collect::<String>())
+    let taken_out = fitted.taken_out();
+    let taken_out = taken_out.map_or(String::new(), |words| format!(" + {words}, taken out"));
+    format!(
+        "five terms{without}{taken_out}{}",
+        added.collect::<String>()
+    )
 }
 
 /// A table of every octave and every bin of every record, beside the model. Deviations and roots of densities are in
@@ -84,14 +85,14 @@ pub(super) fn table(fitted: &Fitted, question: &Question) -> Result<Vec<u8>, csv
     table.write_record([
         "record", "figure", "x", "measured", "lower", "upper", "model", "z",
     ])?;
-    let own = (fitted.record, &fitted.compared.comparison);
+    let own = (fitted.record, &fitted.curve, &fitted.comparison);
     let judged = fitted
         .judged
         .iter()
-        .map(|(_, record, comparison)| (*record, comparison));
-    for (record, comparison) in std::iter::once(own).chain(judged) {
-        let (model, fit) = (&fitted.compared.model, fitted.fit());
-        let errors = relative_errors(&record.curve, model, fit);
+        .map(|one| (one.record, &one.curve, &one.comparison));
+    for (record, curve, comparison) in std::iter::once(own).chain(judged) {
+        let (model, fit) = (&fitted.model, &fitted.fit);
+        let errors = relative_errors(curve, model, fit);
         let octaves = comparison.octaves.iter().zip(errors);
         let octaves = octaves.map(|(one, error)| {
             (

@@ -1,44 +1,40 @@
-//! `explore`: a page in the browser on which effects are tried by hand.
+//! `explore`: a page on which effects are tried by hand. The page carries this program and its records, and asks the
+//! program by the hidden command `ask`; so it needs no server.
 
-#[cfg(feature = "explore")]
 mod answer;
 mod arguments;
-#[cfg(feature = "explore")]
+pub(super) mod ask;
 mod catalogue;
-#[cfg(feature = "explore")]
-mod diagnosis;
-#[cfg(feature = "explore")]
 mod download;
-#[cfg(feature = "explore")]
 mod figure;
-#[cfg(feature = "explore")]
 mod fitted;
-#[cfg(feature = "explore")]
+#[cfg(not(target_family = "wasm"))]
 mod page;
-#[cfg(feature = "explore")]
 mod question;
-#[cfg(feature = "explore")]
-mod questions;
-#[cfg(feature = "explore")]
 mod record;
-#[cfg(feature = "explore")]
-mod server;
-#[cfg(feature = "explore")]
 mod session;
-#[cfg(feature = "explore")]
 mod shell;
+mod taken_out;
+mod thought;
 
 pub(super) use arguments::Arguments;
-#[cfg(feature = "explore")]
-pub use questions::{Answered, Questions};
-#[cfg(feature = "explore")]
-pub(super) use server::run;
+pub use ask::What;
+pub use session::Session;
 
-/// Refuses the command with a message that tells how to get it.
-#[cfg(not(feature = "explore"))]
-pub(super) fn run(
-    _: &Arguments,
-    _: &mut impl std::io::Write,
-) -> Result<(), crate::failure::Failure> {
-    Err(crate::failure::Failure::not_built_in("`explore`"))
+use crate::failure::Failure;
+use std::io::Write;
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
+    let document = session::document(arguments)?;
+    if arguments.session {
+        return writeln!(output, "{document}").map_err(|error| Failure::standard_output(&error));
+    }
+    #[cfg(not(target_family = "wasm"))]
+    return page::write(arguments, &document, output);
+    #[cfg(target_family = "wasm")]
+    Err(Failure::option(
+        "a page cannot write another page",
+        "give --session",
+    ))
 }

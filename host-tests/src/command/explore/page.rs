@@ -1,177 +1,117 @@
-//! The page: its static content, and the data for its script.
+//! The page as a file: the empty page, which carries the program, with the records in it.
 
-use super::{
-    catalogue::{Listed, catalogue},
-    record::LoadedRecord,
+use super::arguments::Arguments;
+use crate::{
+    command::output::{file::OutputFile, progress},
+    failure::{Failure, Place, report},
+    regular_file,
 };
-use crate::plot;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-use serde::Serialize;
+use std::{
+    fs,
+    io::{self, Read, Write},
+    path::{Path, PathBuf},
+};
 
-/// The style of the page of `report`, and what this page adds to it.
-const STYLES: [&str; 2] = [
-    include_str!("../../report/page.css"),
-    include_str!("../../explore/page.css"),
-];
-/// The scripts: the first ones are those of the page of `report` and draw figures, the others are this page.
-const SCRIPTS: [&str; 13] = [
-    include_str!("../../report/common.js"),
-    include_str!("../../report/ticks.js"),
-    include_str!("../../report/sheet.js"),
-    include_str!("../../report/figure.js"),
-    include_str!("../../report/legend.js"),
-    include_str!("../../report/bars.js"),
-    include_str!("../../report/plot.js"),
-    include_str!("../../report/table.js"),
-    include_str!("../../explore/state.js"),
-    include_str!("../../explore/records.js"),
-    include_str!("../../explore/controls.js"),
-    include_str!("../../explore/answer.js"),
-    include_str!("../../explore/page.js"),
-];
+/// The name of the empty page.
+const NAME: &str = "allanite.html";
 
-/// The data for the script.
-#[derive(Serialize)]
-struct Data<'a> {
-    catalogue: Vec<Listed>,
-    records: Vec<ListedRecord<'a>>,
-}
+/// The place of the records in the empty page.
+const PLACE: &str = r#"<script type="application/json" id="session">"#;
 
-#[derive(Serialize)]
-struct ListedRecord<'a> {
-    name: String,
-    axis: &'a str,
-    size: String,
-    unit: String,
-}
+/// The largest empty page, in bytes. Chosen by hand.
+const LARGEST: u64 = 1 << 24;
 
-/// The page as HTML. Its scripts and styles have this nonce, so that a browser runs no others.
-pub(super) fn page(records: &[LoadedRecord], nonce: &str) -> String {
-    let data = Data {
-        catalogue: catalogue(records),
-        records: records
-            .iter()
-            .map(|record| ListedRecord {
-                name: record.name(),
-                axis: &record.axis.axis,
-                size: record.size(),
-                unit: record.axis.unit.to_string(),
-            })
-            .collect(),
+/// Writes the page, and opens it unless it was to be written only.
+pub(super) fn write(
+    arguments: &Arguments,
+    document: &str,
+    output: &mut impl Write,
+) -> Result<(), Failure> {
+    let empty = arguments.page.clone().map_or_else(beside, Ok)?;
+    let page = filled(&empty, document)?;
+    let path = match &arguments.output {
+        Some(path) => {
+            let inputs = arguments.inputs.iter().map(PathBuf::as_path);
+            let mut file = OutputFile::create(path, inputs)?;
+            file.write_all(page.as_bytes())
+                .map_err(|error| Place::file(path).io(&error))?;
+            file.commit()?;
+            path.clone()
+        }
+        None => temporary(&page)?,
     };
-    // Without `<`, no text in the data can end the script element.
-    let json = serde_json::to_string(&data)
-        .unwrap_or_default()
-        .replace('<', "\\u003c");
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Effects by hand" }
-                link rel="icon" href="data:,";
-                style nonce=(nonce) {
-                    @for style in STYLES { (PreEscaped(style)) }
-                    (PreEscaped(plot::effect_styles()))
-                }
-            }
-            body {
-                header {
-                    h1 { "Effects by hand" }
-                    details.introduction { summary { "How this page works" } p { (INTRODUCTION) } }
-                    noscript { p { "This page needs JavaScript, which comes from this computer only." } }
-                }
-                main.walk { (controls()) (panel()) }
-                script type="application/json" id="data" nonce=(nonce) { (PreEscaped(json)) }
-                @for script in SCRIPTS { script nonce=(nonce) { (PreEscaped(script)) } }
-            }
+    let shown = crate::failure::one_line(&path.to_string_lossy());
+    writeln!(output, "{shown}")
+        .and_then(|()| output.flush())
+        .map_err(|error| Failure::standard_output(&error))?;
+    if arguments.open || arguments.output.is_none() {
+        if let Err(error) = open::that_detached(&path) {
+            report(format_args!(
+                "no browser could be opened ({error}); open the file above"
+            ));
         }
+    } else if !progress::is_quiet() {
+        report("open this file in a browser");
+    }
+    Ok(())
+}
+
+/// The empty page that was built or installed with the program.
+fn beside() -> Result<PathBuf, Failure> {
+    let program = std::env::current_exe().ok();
+    let folder = program.as_deref().and_then(Path::parent);
+    let places = ["", "..", "../share/allanite"];
+    let mut places = places
+        .iter()
+        .filter_map(|place| Some(folder?.join(place).join(NAME)));
+    places.find(|path| path.is_file()).ok_or_else(|| {
+        Failure::option(
+            "the page that carries the program is not built yet",
+            "`cargo xtask page` builds it in two minutes; or name it with --page",
+        )
+    })
+}
+
+/// The empty page with the records in it.
+fn filled(empty: &Path, document: &str) -> Result<String, Failure> {
+    let (file, _) = regular_file::open(empty)?;
+    let mut page = String::new();
+    file.take(LARGEST)
+        .read_to_string(&mut page)
+        .map_err(|error| Place::file(empty).io(&error))?;
+    let wrong = |what: &str| {
+        Place::file(empty).failure(
+            what,
+            "build the page of this version with `cargo xtask page`",
+        )
     };
-    page.into_string()
+    let version = concat!("content=\"allanite ", env!("CARGO_PKG_VERSION"), "\"");
+    if !page.contains(version) {
+        return Err(wrong("is not the page of this version"));
+    }
+    let (before, behind) = page
+        .split_once(PLACE)
+        .ok_or_else(|| wrong("has no place for records"))?;
+    // Without `<`, no text in the records can end the script element.
+    let document = document.replace('<', "\\u003c");
+    Ok([before, PLACE, &document, behind].concat())
 }
 
-const INTRODUCTION: &str = "Add an effect and move its sliders: the model is fitted anew at every change, by the \
-    functions of the command compare, and curve, χ² and coefficients follow. Where the dots leave the model’s line, \
-    something is missing; χ² of an adequate model is about as large as the number of degrees of freedom. A click on a peak of \
-    the spectrum adds a line there. Move over a figure, tap it or use the arrow keys to read the values of a point; zoom by the \
-    wheel, by two fingers or by the keys + and −, and show all by 0.";
-
-/// What changes the model.
-fn controls() -> Markup {
-    html! {
-        div.control {
-            section aria-labelledby="records-heading" {
-                h2 #records-heading { "Records" }
-                div #records {}
-            }
-            section aria-labelledby="model-heading" {
-                h2 #model-heading { "Model" }
-                div.turns {
-                    button.turn type="button" #undo { "Undo" }
-                    button.turn type="button" #redo { "Redo" }
-                    button.turn type="button" #reset { "Reset" }
-                }
-                div #history {}
-                div #terms {}
-                div #effects {}
-            }
-            section aria-labelledby="catalogue-heading" {
-                h2 #catalogue-heading { "Add an effect" }
-                ul #catalogue {}
-            }
-        }
-    }
-}
-
-/// What the model does.
-fn panel() -> Markup {
-    html! {
-        div.panel {
-            h2.model #model {}
-            p.error #error {}
-            // A screen reader is told the result when it rests.
-            p.spoken #said aria-live="polite" aria-atomic="true" {}
-            p #problem role="alert" {}
-            p.words #words {}
-            div.places #places {}
-            ul.legend #legend aria-label="Legend" {}
-            section #judged aria-label="Records that judge the model" {}
-            section.coefficients aria-labelledby="coefficients-heading" {
-                h2 #coefficients-heading { "Coefficients" }
-                div.options {
-                    label { "Compared with " select #reference {
-                        option value="before" { "the model before the last change" }
-                        option value="five" { "the five terms" }
-                    } }
-                    label { "Units " select #unit {
-                        option value="0" { "as in the log" }
-                        option value="1" { "customary (°/h, °/√h)" }
-                    } }
-                }
-                div #coefficients {}
-                p.hint #widened {}
-            }
-            section aria-labelledby="diagnosis-heading" {
-                h2 #diagnosis-heading { "What does diagnose think?" }
-                div.options {
-                    button.turn type="button" #diagnose { "Diagnose this record" }
-                    button.turn type="button" #adopt hidden { "Take its model" }
-                }
-                div #diagnosis aria-live="polite" {}
-            }
-            section aria-labelledby="keep-heading" {
-                h2 #keep-heading { "Keep it" }
-                div.options {
-                    button.turn type="button" #drawing { "Download SVG" }
-                    button.turn type="button" #table { "Download CSV" }
-                    button.turn type="button" #link { "Copy link" }
-                    button.turn type="button" #copy { "Copy command" }
-                }
-                p.hint #kept role="status" {}
-                p.hint { "The same fit on the command line; the address of this page has the model too." }
-                pre { code #command {} }
-            }
-        }
-    }
+/// Writes a page among the temporary files, for this user alone.
+fn temporary(page: &str) -> Result<PathBuf, Failure> {
+    let write = || -> io::Result<PathBuf> {
+        let mut file = tempfile::Builder::new()
+            .prefix("allanite-")
+            .suffix(".html")
+            .tempfile()?;
+        file.write_all(page.as_bytes())?;
+        let (_, path) = file.keep()?;
+        fs::canonicalize(path)
+    };
+    write().map_err(|error| {
+        Failure::option(
+            format!("no temporary page can be written: {error}"),
+            "name a file with --output",
+        )
+    })
 }

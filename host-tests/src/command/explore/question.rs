@@ -22,6 +22,9 @@ pub(super) struct Question {
     /// The values of `--without`.
     #[serde(default)]
     pub(super) without: Vec<String>,
+    /// Whether what follows the covariates is taken out of the record.
+    #[serde(default)]
+    pub(super) taken_out: bool,
 }
 
 impl Question {

@@ -1,74 +1,130 @@
 //! The records that are explored: the axes of all inputs.
 
-use super::arguments::Arguments;
+use super::{
+    arguments::Arguments,
+    taken_out::TakenOut,
+    thought::{Thought, think},
+};
 use crate::{
     command::{
-        compare::compared::Compared,
-        input::many::shown,
-        input::record::{self, is_curve, library_failure},
+        diagnose::{diagnosed::Diagnosed, pictures},
+        input::{
+            many::shown,
+            record::{self, is_curve, library_failure},
+        },
         output::words,
     },
     curve_file::AxisCurve,
     failure::Failure,
-    log::{BINS, Evidence, OCTAVES},
+    log::{BINS, Evidence, OCTAVES, Spectrogram},
+    plot::CourseFigure,
 };
-use allanite::{Comparison, Curve, Model, effect::Span, spectrum::Spectrum};
-use serde_json::Value;
-use std::{
-    path::{Path, PathBuf},
-    sync::OnceLock,
-};
+use allanite::{Curve, Model, effect::Span, spectrum::Spectrum};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 
-/// An axis of an input.
-pub(super) struct LoadedRecord {
-    pub(super) path: PathBuf,
+/// An axis of an input, as a session keeps it.
+#[derive(Serialize, Deserialize)]
+pub(super) struct SessionRecord {
+    /// The input.
+    input: String,
     pub(super) axis: AxisCurve,
-    pub(super) curve: Curve<OCTAVES>,
-    pub(super) spectrum: Spectrum<BINS>,
-    /// What the input tells beside the curve.
-    pub(super) evidence: Evidence,
-    /// The record beside the five terms. The frames of all figures have room for it, so that they rest while the model
-    /// changes.
-    pub(super) five: Comparison<OCTAVES, BINS>,
-    /// What the diagnosis thinks of the record, once it was asked.
-    pub(super) diagnosed: OnceLock<Result<Value, String>>,
+    /// The curve and the spectrum without what follows the covariates; `None` if the rate follows none.
+    pub(super) taken_out: Option<TakenOut>,
 }
 
-impl LoadedRecord {
-    /// Reads the axes of all inputs.
-    ///
-    /// # Errors
-    /// When an input cannot be read, or an axis cannot be fitted.
-    pub(super) fn read(arguments: &Arguments) -> Result<Vec<Self>, Failure> {
-        let mut records = Vec::new();
-        for path in &arguments.inputs {
-            let covariates = &arguments.covariates;
-            let axes = record::read_with_evidence(path, &arguments.about_log, covariates)?;
-            for (axis, evidence) in axes {
-                let name = axis.axis.clone();
-                let record = Self::new(path, axis, evidence);
-                records.push(record.map_err(|error| library_failure(path, &name, error))?);
-            }
-        }
-        Ok(records)
+/// What the page shows of a record without a question.
+#[derive(Serialize)]
+pub(super) struct ListedRecord {
+    name: String,
+    input: String,
+    axis: String,
+    size: String,
+    unit: String,
+    /// What can be taken out, in words.
+    covariate: Option<String>,
+    thought: Thought,
+    course: Option<CourseFigure>,
+    spectrogram: Option<Spectrogram>,
+}
+
+/// Reads and diagnoses the axes of all inputs.
+///
+/// # Errors
+/// When an input cannot be read, or an axis cannot be fitted.
+pub(super) fn read(arguments: &Arguments) -> Result<Vec<(SessionRecord, ListedRecord)>, Failure> {
+    let mut all = Vec::new();
+    for path in &arguments.inputs {
+        let axes = record::read_for_page(path, &arguments.about_log, &arguments.covariates)?;
+        all.extend(axes.into_iter().map(|axis| (path, axis)));
+    }
+    let diagnose = |(path, (axis, mut evidence)): (&PathBuf, (AxisCurve, Evidence))| {
+        let spectrogram = evidence.spectrogram.take();
+        let name = axis.axis.clone();
+        let diagnosed = Diagnosed::new(axis, evidence, &Model::ieee_952(), None);
+        diagnosed
+            .and_then(|diagnosed| explored(path, diagnosed, spectrogram))
+            .map_err(|error| library_failure(path, &name, error))
+    };
+    all.into_par_iter().map(diagnose).collect()
+}
+
+fn explored(
+    path: &Path,
+    diagnosed: Diagnosed,
+    spectrogram: Option<Spectrogram>,
+) -> Result<(SessionRecord, ListedRecord), allanite::Error> {
+    let taken_out = TakenOut::of(&diagnosed)?;
+    let (thought, course) = (think(&diagnosed), pictures::course(&diagnosed));
+    let record = SessionRecord {
+        input: path.to_string_lossy().into_owned(),
+        axis: diagnosed.axis,
+        taken_out,
+    };
+    let listed = ListedRecord {
+        name: record.name(),
+        input: record.input.clone(),
+        axis: record.axis.axis.clone(),
+        size: record.size(),
+        unit: record.axis.unit.to_string(),
+        covariate: record.taken_out.as_ref().map(|taken| taken.words.clone()),
+        thought,
+        course,
+        spectrogram,
+    };
+    Ok((record, listed))
+}
+
+impl SessionRecord {
+    /// The input that the record is from.
+    pub(super) fn path(&self) -> &Path {
+        Path::new(&self.input)
     }
 
-    fn new(path: &Path, axis: AxisCurve, evidence: Evidence) -> Result<Self, allanite::Error> {
-        let five = Compared::new(axis.clone(), &Model::ieee_952(), None)?;
-        Ok(Self {
-            path: path.to_owned(),
-            curve: axis.curve()?,
-            spectrum: five.spectrum,
-            five: five.comparison,
-            axis,
-            evidence,
-            diagnosed: OnceLock::new(),
-        })
+    /// Whether every number of the record is possible.
+    pub(super) fn check(&self) -> Result<(), String> {
+        self.axis.check()?;
+        let taken_out = self.taken_out.as_ref();
+        let observed = taken_out.map(|taken| taken.observed(self.axis.rate_hz));
+        observed.transpose().map_err(|error| error.to_string())?;
+        Ok(())
+    }
+
+    /// The curve and the spectrum, with or without what follows the covariates.
+    pub(super) fn observed(
+        &self,
+        taken_out: bool,
+    ) -> Result<(Curve<OCTAVES>, Spectrum<BINS>), allanite::Error> {
+        match self.taken_out.as_ref().filter(|_| taken_out) {
+            Some(taken) => taken.observed(self.axis.rate_hz),
+            None => Ok((self.axis.curve()?, self.axis.spectrum()?)),
+        }
     }
 
     /// The name of the record beside those of other inputs.
     pub(super) fn name(&self) -> String {
-        let file = self.path.file_name().unwrap_or(self.path.as_os_str());
+        let file = self.path().file_name().unwrap_or(self.input.as_ref());
         format!("{} of {}", self.axis.axis, shown(Path::new(file)))
     }
 
@@ -80,14 +136,14 @@ impl LoadedRecord {
 
     /// Whether the input is a curve file, which has neither covariates nor a course.
     pub(super) fn is_curve(&self) -> bool {
-        is_curve(&self.path)
+        is_curve(self.path())
     }
 
     /// The times that the record covers.
     pub(super) fn span(&self) -> Span {
         Span {
-            interval_s: self.curve.interval_s(),
-            longest_tau_s: self.curve.points().last().map_or(0.0, |point| point.tau_s),
+            interval_s: 1.0 / self.axis.rate_hz,
+            longest_tau_s: self.axis.octaves.last().map_or(0.0, |octave| octave.tau_s),
         }
     }
 }

@@ -1,99 +1,139 @@
-//! What the server answers: the page, and questions about the records that were read.
+//! A session: the records that are explored, as the page keeps them, and the questions about them.
 
 use super::{
-    answer::answer, arguments::Arguments, diagnosis::diagnosis, download, fitted::Fitted, page,
-    question::Question, record::LoadedRecord, shell,
+    answer::answer,
+    arguments::Arguments,
+    ask::What,
+    catalogue::{Listed, catalogue},
+    download,
+    fitted::Fitted,
+    question::Question,
+    record::{self, ListedRecord, SessionRecord},
+    shell,
 };
-use crate::failure::Failure;
-use serde::Serialize;
+use crate::{
+    command::output::glossary::{self, Word},
+    failure::Failure,
+    plot,
+};
+use clap::Parser;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// The version of the format. A page carries the program of its own version, so that no other is read.
+const VERSION: u32 = 1;
 
 /// The records, and the options with which they were read.
-pub(super) struct Session {
-    records: Vec<LoadedRecord>,
+#[derive(Serialize, Deserialize)]
+pub struct Session {
+    version: u32,
     about_log: Vec<String>,
+    records: Vec<SessionRecord>,
 }
 
-/// A reply to a request.
-pub(super) struct Reply {
-    pub(super) status: u16,
-    /// The type of the body, as in the header `Content-Type`.
-    pub(super) kind: &'static str,
-    pub(super) body: Vec<u8>,
-}
-
+/// A session with what the page alone needs.
 #[derive(Serialize)]
-struct Refused {
-    error: String,
+struct Document<'a> {
+    session: &'a Session,
+    page: Page,
 }
 
-const HTML: &str = "text/html; charset=utf-8";
-const JSON: &str = "application/json";
-const SVG: &str = "image/svg+xml";
-const CSV: &str = "text/csv; charset=utf-8";
+/// What the page shows before its first question.
+#[derive(Serialize)]
+struct Page {
+    styles: String,
+    catalogue: Vec<Listed>,
+    glossary: Vec<Word>,
+    records: Vec<ListedRecord>,
+}
+
+/// What is read of a document.
+#[derive(Deserialize)]
+struct Read {
+    session: Session,
+}
+
+/// Reads and diagnoses the inputs, and writes them as the document that a page keeps.
+///
+/// # Errors
+/// When an input cannot be read, or an axis cannot be fitted.
+pub(super) fn document(arguments: &Arguments) -> Result<String, Failure> {
+    let (records, listed) = record::read(arguments)?.into_iter().unzip();
+    let session = Session {
+        version: VERSION,
+        about_log: shell::about_log(std::env::args_os(), &arguments.inputs),
+        records,
+    };
+    let page = Page {
+        styles: plot::effect_styles(),
+        catalogue: catalogue(&session.records),
+        glossary: glossary::words(),
+        records: listed,
+    };
+    let document = Document {
+        session: &session,
+        page,
+    };
+    serde_json::to_string(&document).map_err(|error| damaged(&error.to_string()))
+}
+
+fn damaged(what: &str) -> Failure {
+    Failure::option(
+        format!("the page's records are damaged: {what}"),
+        "make the page again with `explore`",
+    )
+}
+
+/// The options as on a command line.
+#[derive(Parser)]
+struct Options {
+    #[command(flatten)]
+    arguments: Arguments,
+}
 
 impl Session {
-    /// Reads the inputs.
+    /// Reads and diagnoses an input, and returns its document.
     ///
     /// # Errors
-    /// When one of them cannot be read or fitted.
-    pub(super) fn read(arguments: &Arguments) -> Result<Self, Failure> {
-        Ok(Self {
-            records: LoadedRecord::read(arguments)?,
-            about_log: shell::about_log(std::env::args_os(), &arguments.inputs),
-        })
+    /// When it cannot be read or fitted.
+    pub fn about(input: &Path) -> Result<String, Failure> {
+        let options = Options::try_parse_from([Path::new("explore"), input]);
+        let Options { arguments } = options
+            .map_err(|error| Failure::option(error.to_string(), "give the path of a file"))?;
+        document(&arguments)
     }
 
-    /// The page, whose scripts and styles have this nonce.
-    pub(super) fn page(&self, nonce: &str) -> Reply {
-        Reply {
-            status: 200,
-            kind: HTML,
-            body: page::page(&self.records, nonce).into_bytes(),
+    /// Reads the document of a session, and checks every number in it.
+    ///
+    /// # Errors
+    /// When it is not the document of a session of this version.
+    pub fn parse(text: &[u8]) -> Result<Self, Failure> {
+        let Read { session } =
+            serde_json::from_slice(text).map_err(|error| damaged(&error.to_string()))?;
+        if session.version != VERSION {
+            return Err(damaged(&format!("they have version {}", session.version)));
         }
-    }
-
-    /// Whether there is something to ask under this name.
-    pub(super) fn knows(name: &str) -> bool {
-        ["fit", "diagnose", "drawing", "table"].contains(&name)
-    }
-
-    /// Answers the question `name` with this body.
-    pub(super) fn ask(&self, name: &str, body: &[u8]) -> Reply {
-        self.answered(name, body).unwrap_or_else(|error| Reply {
-            status: 400,
-            kind: JSON,
-            body: json(&Refused { error }),
-        })
-    }
-
-    fn answered(&self, name: &str, body: &[u8]) -> Result<Reply, String> {
-        let words = |failure: Failure| failure.to_string();
-        let question = Question::parse(body, self.records.len()).map_err(words)?;
-        if name == "diagnose" {
-            let thought = diagnosis(&self.records[question.record])?;
-            return Ok(reply(JSON, json(thought)));
+        for record in &session.records {
+            record.check().map_err(|what| damaged(&what))?;
         }
-        let fitted = Fitted::of(&self.records, &question).map_err(words)?;
-        Ok(match name {
-            "drawing" => reply(SVG, download::drawing(&fitted, &question).into_bytes()),
-            "table" => {
+        Ok(session)
+    }
+
+    /// Answers a question about some of the records.
+    ///
+    /// # Errors
+    /// When the question is not understood, or the model cannot be fitted.
+    pub fn ask(&self, what: What, question: &[u8]) -> Result<Vec<u8>, Failure> {
+        let question = Question::parse(question, self.records.len())?;
+        let fitted = Fitted::of(&self.records, &question)?;
+        Ok(match what {
+            What::Fit => serde_json::to_vec(&answer(&fitted, &question, &self.about_log))
+                .map_err(|error| damaged(&error.to_string()))?,
+            What::Drawing => download::drawing(&fitted, &question).into_bytes(),
+            What::Table => {
                 let table = download::table(&fitted, &question);
-                reply(CSV, table.map_err(|error| error.to_string())?)
+                table.map_err(|error| damaged(&error.to_string()))?
             }
-            _ => reply(JSON, json(&answer(&fitted, &question, &self.about_log))),
         })
     }
-}
-
-fn reply(kind: &'static str, body: Vec<u8>) -> Reply {
-    Reply {
-        status: 200,
-        kind,
-        body,
-    }
-}
-
-/// A document as JSON. Numbers that are not finite are `null`.
-fn json(document: &impl Serialize) -> Vec<u8> {
-    serde_json::to_vec(document).unwrap_or_default()
 }

@@ -3,16 +3,22 @@
 use crate::command::output::shell::quoted;
 use std::{ffi::OsString, path::Path};
 
-/// The command line of `compare` with the same effects and the same options about the log.
-pub(super) fn compare(
+/// The command line of `compare` with the same effects and the same options about the log. What follows a covariate is
+/// taken out by `diagnose` alone, which looks for the effects itself.
+pub(super) fn command(
     input: &Path,
     about_log: &[String],
     with: &[String],
     without: &[String],
+    taken_out: bool,
 ) -> String {
+    let (name, with, without) = match taken_out {
+        true => ("diagnose", &[][..], &[][..]),
+        false => ("compare", with, without),
+    };
     let words = [
         "allanite".into(),
-        "compare".into(),
+        name.into(),
         input.to_string_lossy().into_owned(),
     ];
     let option = |name: &str, values: &[String]| {
@@ -40,11 +46,20 @@ pub(super) fn about_log(
     let mut has_command = false;
     while let Some(word) = words.next() {
         let text = word.to_string_lossy().into_owned();
-        let is_own = ["--open", "--quiet", "-q", "--no-covariates", "--"].contains(&text.as_str());
-        if is_own || text.starts_with("--covariates=") {
+        let is_own = [
+            "--open",
+            "--session",
+            "--quiet",
+            "-q",
+            "--no-covariates",
+            "--",
+        ]
+        .contains(&text.as_str());
+        let begins = ["--covariates=", "--output=", "--page="];
+        if is_own || begins.iter().any(|begin| text.starts_with(begin)) {
             continue;
         }
-        if text == "--covariates" {
+        if ["--covariates", "--output", "-o", "--page"].contains(&text.as_str()) {
             words.next();
             continue;
         }
@@ -75,7 +90,7 @@ mod tests {
 
     #[test]
     fn a_command_line_keeps_options_about_the_log_and_quotes_what_a_shell_would_change() {
-        let words = "allanite explore a.csv --rate 100 b.csv --open --unit=deg/s --covariates t -q --columns gx,gy";
+        let words = "allanite explore a.csv --rate 100 b.csv --open -o page.html --unit=deg/s --covariates t -q --columns gx,gy";
         let inputs = ["a.csv", "b.csv"].map(Into::into);
         let about = about_log(words.split(' ').map(Into::into), &inputs);
         assert_eq!(
@@ -83,11 +98,12 @@ mod tests {
             ["--rate", "100", "--unit=deg/s", "--columns", "gx,gy"]
         );
         let with = ["sinusoid:frequency_hz~0.3".to_owned()];
-        let line = compare(
+        let line = command(
             Path::new("my log.csv"),
             &about,
             &with,
             &["rate_ramp".to_owned()],
+            false,
         );
         assert_eq!(
             line,

@@ -127,6 +127,15 @@ pub(crate) fn read_with_evidence(
     read_beside(path, arguments, covariates, log::read_with_evidence)
 }
 
+/// As [`read_with_evidence`], together with the spectrogram of a log, which only a page shows.
+pub(crate) fn read_for_page(
+    path: &Path,
+    arguments: &LogArguments,
+    covariates: &CovariateArguments,
+) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
+    read_beside(path, arguments, covariates, log::read_for_page)
+}
+
 /// As [`read_with_evidence`], without the kurtosis of a log, which takes time and only a diagnosis needs.
 pub(crate) fn read_for_fit(
     path: &Path,

@@ -5,6 +5,7 @@ pub(super) mod disturbance;
 pub(super) mod drawn_frame;
 pub(super) mod event_json;
 pub(super) mod file;
+pub(super) mod glossary;
 pub(super) mod model_json;
 pub(super) mod number;
 pub(super) mod places;

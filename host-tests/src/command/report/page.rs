@@ -7,7 +7,7 @@ use crate::{
             diagnosed::Diagnosed,
             words::{lead, limits},
         },
-        output::{shell::quoted, words},
+        output::{glossary, shell::quoted, words},
     },
     plot,
 };
@@ -20,10 +20,11 @@ use std::{collections::BTreeSet, path::Path};
 
 const STYLE: &str = include_str!("../../report/page.css");
 /// The scripts: the first ones have what every page needs and draw its figures, the others show an axis step by step.
-const SCRIPTS: [&str; 13] = [
+const SCRIPTS: [&str; 14] = [
     include_str!("../../report/common.js"),
     include_str!("../../report/ticks.js"),
     include_str!("../../report/sheet.js"),
+    include_str!("../../report/gloss.js"),
     include_str!("../../report/figure.js"),
     include_str!("../../report/legend.js"),
     include_str!("../../report/bars.js"),
@@ -58,6 +59,8 @@ pub(super) fn page(content: &Content) -> String {
     let name = name.to_string_lossy();
     // Without `<`, no text in the data can end the script element.
     let json = content.json.replace('<', "\\u003c");
+    let glossary = serde_json::to_string(&glossary::words()).unwrap_or_default();
+    let glossary = glossary.replace('<', "\\u003c");
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -89,6 +92,7 @@ pub(super) fn page(content: &Content) -> String {
                     (settings(content))
                 }
                 script type="application/json" id="data" { (PreEscaped(json)) }
+                script type="application/json" id="glossary" { (PreEscaped(glossary)) }
                 @for script in SCRIPTS { script { (PreEscaped(script)) } }
             }
         }

@@ -10,14 +10,14 @@ function fill(place, shown, children) {
   if (place.dataset.shown === key) return;
   place.dataset.shown = key;
   const focused = place.contains(document.activeElement) ? document.activeElement.id : "";
-  place.replaceChildren(...children());
+  place.replaceChildren(...children().filter((one) => one !== null));
   if (focused) byId(focused)?.focus();
 }
 
 // The model.
 
 function showTerms() {
-  fill(byId("terms"), [state.without, state.added.map(({ effect }) => effect)], termRows);
+  fill(byId("terms"), [sessions, state.record, state.without, state.takenOut, state.added.map(({ effect }) => effect)], termRows);
 }
 
 function termRows() {
@@ -36,7 +36,16 @@ function termRows() {
     return html("li", {}, box, " ", html("label", { for: box.id, title: effect.what }, effect.plain, " ", html("i", {}, effect.symbol)),
       by ? html("small", {}, ` – replaced by ${by}`) : null);
   });
-  return [html("ul", { class: "terms", "aria-label": "The five terms" }, ...rows)];
+  return [html("ul", { class: "terms", "aria-label": "The five terms" }, ...rows), covariateRow()];
+}
+
+/// What can be taken out of the record, such as what follows the temperature.
+function covariateRow() {
+  const { covariate } = data.records[state.record];
+  if (covariate === null) return null;
+  const box = html("input", { type: "checkbox", id: "covariate", checked: state.takenOut });
+  box.addEventListener("change", () => change(null, (of) => { of.takenOut = box.checked; }));
+  return html("p", { class: "covariate" }, box, " ", html("label", { for: box.id }, `Take out what follows ${covariate}`));
 }
 
 /// A slider position of a value in a range, and back.
@@ -48,7 +57,7 @@ let effectControls = [];
 let effectsShown = "";
 
 function showEffects() {
-  const structure = JSON.stringify([state.record, state.added.map(({ effect }) => effect)]);
+  const structure = JSON.stringify([sessions, state.record, state.added.map(({ effect }) => effect)]);
   if (structure !== effectsShown) {
     effectsShown = structure;
     effectControls = state.added.map((_, at) => effectControl(at));
@@ -162,5 +171,5 @@ function showControls() {
   showEffects();
   byId("undo").disabled = undone.past.length === 0;
   byId("redo").disabled = undone.future.length === 0;
-  byId("reset").disabled = state.added.length === 0 && state.without.length === 0;
+  byId("reset").disabled = state.added.length === 0 && state.without.length === 0 && !state.takenOut;
 }

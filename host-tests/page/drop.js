@@ -1,44 +1,16 @@
-// The page: it takes files, runs the program on them in a worker, and shows what the program printed and wrote.
+// Files that are dropped on the page, the command that is run on them, and what it printed and wrote.
 "use strict";
 
-const byId = (id) => document.getElementById(id);
+/// The worker that reads logs.
+const reading = new Runner();
 
-/** The program, which is compiled once. */
-const program = (async () => {
-  const packed = Uint8Array.from(atob(byId("program").textContent.trim()), (one) => one.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(stream).arrayBuffer());
-})();
-const worker = URL.createObjectURL(new Blob([byId("worker").textContent], { type: "text/javascript" }));
-let running = null;
-
-/** The words of a line, in which quotation marks keep blanks together. */
-function words(line) {
+/// The words of a line, in which quotation marks keep blanks together.
+function wordsOf(line) {
   const found = line.match(/"[^"]*"|'[^']*'|[^\s"']+/g) ?? [];
   return found.map((word) => word.replace(/^(["'])(.*)\1$/, "$2"));
 }
 
-/** Runs one command. A later call ends an earlier one. */
-async function run(args, files) {
-  const module = await program;
-  running?.terminate();
-  const mine = new Worker(worker);
-  running = mine;
-  return new Promise((resolve) => {
-    mine.onmessage = ({ data }) => {
-      if ("share" in data) {
-        byId("progress").value = data.share;
-        return;
-      }
-      mine.terminate();
-      resolve(data);
-    };
-    mine.onerror = (event) => resolve({ status: 2, output: "", errors: event.message, files: [] });
-    mine.postMessage({ module, args, files });
-  });
-}
-
-function show(id, text) {
+function showText(id, text) {
   byId(id).textContent = text;
   byId(id).hidden = text === "";
 }
@@ -49,28 +21,39 @@ async function go() {
   const files = chosen.map((file) => [file.name, file]);
   const names = files.map(([name]) => name);
   const command = byId("command").value;
-  const options = words(byId("options").value);
+  const options = wordsOf(byId("options").value);
   const forms = {
+    explore: ["--session"],
     report: ["--output", "report.html"],
     export: options.includes("--format") ? [] : ["--format", "json"],
   };
   // A page and an export are of one file; the others take all.
-  const inputs = command in forms ? names.slice(0, 1) : names;
+  const inputs = ["report", "export"].includes(command) ? names.slice(0, 1) : names;
   const args = ["allanite", command, ...inputs, ...options, ...(forms[command] ?? [])];
-  byId("line").textContent = args.map((word) => (/^[\w.,:=/+-]+$/.test(word) ? word : `"${word}"`)).join(" ");
+  const line = args.filter((word) => word !== "--session");
+  byId("line").textContent = line.map((word) => (/^[\w.,:=/+-]+$/.test(word) ? word : `"${word}"`)).join(" ");
   for (const id of ["output", "errors", "files", "report"]) byId(id).hidden = true;
   byId("progress").hidden = false;
   byId("progress").removeAttribute("value");
   byId("status").textContent = `reading ${inputs.join(", ")} …`;
   const begun = performance.now();
-  const done = await run(args, files);
+  // A later command ends an earlier one.
+  reading.end();
+  const done = await reading.run(args, files, (share) => { byId("progress").value = share; });
   const seconds = ((performance.now() - begun) / 1000).toFixed(1);
   byId("progress").hidden = true;
   byId("status").textContent = done.status === 0 ? `done in ${seconds} s` : `ended with status ${done.status}, after ${seconds} s`;
+  showText("errors", done.errors);
+  if (command === "explore" && done.status === 0) {
+    byId("take").open = false;
+    openSession(done.output);
+    return;
+  }
+  byId("explore").hidden = true;
+  document.body.classList.remove("exploring");
   // What a report prints is sentences; the others print tables.
   byId("output").classList.toggle("words", command === "report");
-  show("output", done.output);
-  show("errors", done.errors);
+  showText("output", done.output);
   const links = done.files.map(([name, bytes]) => {
     const link = document.createElement("a");
     const isPage = name.endsWith(".html");
@@ -93,6 +76,8 @@ byId("logs").addEventListener("change", () => {
   const names = Array.from(byId("logs").files, (file) => file.name);
   byId("names").textContent = names.join(", ");
   byId("go").disabled = names.length === 0;
+  // A model in the address is that of an earlier log, and so are its cuts.
+  history.replaceState(null, "", location.pathname + location.search);
   go();
 });
 byId("ask").addEventListener("submit", (event) => {
@@ -113,3 +98,9 @@ addEventListener("drop", (event) => {
   byId("logs").files = event.dataTransfer.files;
   byId("logs").dispatchEvent(new Event("change"));
 });
+
+// A page that `explore` wrote has its records already.
+if (byId("session").textContent !== "") {
+  byId("take").open = false;
+  openSession(byId("session").textContent);
+}

@@ -4,7 +4,12 @@
 /// Six digits, without trailing zeros.
 const rounded = (value) => Number(value.toPrecision(6));
 
-const effectNamed = new Map(data.catalogue.map((effect) => [effect.name, effect]));
+/// What the program wrote for the page about its records, and all of what it wrote, which it is asked about.
+let data = null;
+let session = null;
+/// The number of sessions so far.
+let sessions = 0;
+let effectNamed = new Map();
 
 /// The value of the option --with for an added effect. A shape that is fitted has `~`; one without values is looked for.
 function withText({ effect, values, fitted, text }) {
@@ -16,21 +21,21 @@ function withText({ effect, values, fitted, text }) {
   return given.length > 0 ? `${effect}:${given.join(",")}` : effect;
 }
 
-/// What is asked of the server about a state.
-const question = (state) => ({ record: state.record, judged: state.judged, with: state.added.map(withText), without: state.without });
+/// What is asked of the program about a state.
+const question = (state) => ({ record: state.record, judged: state.judged, with: state.added.map(withText), without: state.without, taken_out: state.takenOut });
 
-const emptyState = (record = 0) => ({ record, judged: [], added: [], without: [] });
+const emptyState = (record = 0) => ({ record, judged: [], added: [], without: [], takenOut: false });
 
 /// The state as the fragment of the address.
 function fragment(state) {
   const readable = (text) => encodeURIComponent(text).replace(/%(3A|2C|3D|7E|2F)/g, decodeURIComponent);
   const parts = [`record=${state.record}`, ...state.judged.map((record) => `judged=${record}`),
     ...state.added.map((added) => `with=${readable(withText(added))}`),
-    ...state.without.map((name) => `without=${readable(name)}`)];
+    ...state.without.map((name) => `without=${readable(name)}`), ...(state.takenOut ? ["covariate=out"] : []), ...viewParts(viewsSeen())];
   return `#${parts.join("&")}`;
 }
 
-/// The state of a fragment. The server refuses what it does not know.
+/// The state of a fragment. The program refuses what it does not know.
 function stateOf(hash) {
   const state = emptyState();
   const isRecord = (value) => /^\d+$/.test(value) && Number(value) < data.records.length;
@@ -45,26 +50,25 @@ function stateOf(hash) {
     }
     if (name === "record" && isRecord(value)) state.record = Number(value);
     if (name === "judged" && isRecord(value)) state.judged.push(Number(value));
-    // The values follow from the answer of the server.
+    // The values follow from the answer of the program.
     if (name === "with") state.added.push({ effect: value.split(":")[0].trim(), values: [], fitted: false, text: value });
     if (name === "without") state.without.push(value);
+    if (name === "covariate" && value === "out") state.takenOut = true;
   }
   state.judged = [...new Set(state.judged)].filter((record) => record !== state.record).sort((a, b) => a - b);
   state.added = state.added.filter(({ effect }) => effectNamed.has(effect));
   return state;
 }
 
-/// Asks the server, and gives the response or throws what it says.
-async function post(name, asked) {
-  let response;
-  try {
-    response = await fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(asked) });
-  } catch {
-    throw new Error("the program does not answer; start `allanite explore` again");
-  }
-  if (response.ok) return response;
-  const refused = await response.json().catch(() => ({}));
-  throw new Error(refused.error ?? `the program refused the question (${response.status})`);
+/// The worker that answers questions. The one that reads logs is another, so that it can be ended.
+const questions = new Runner();
+
+/// Asks the program about a model, and gives what it prints or throws what it says.
+async function ask(what, asked) {
+  const args = ["allanite", "ask", what, JSON.stringify(asked), "session.json"];
+  const { status, output, errors } = await questions.run(args, [["session.json", session]]);
+  if (status === 0) return output;
+  throw new Error(errors.trim().replace(/^allanite: /, "") || `the program ended with status ${status}`);
 }
 
 /// Asks for fits, one after the other: while one is on its way, only the newest question waits.
@@ -96,7 +100,7 @@ class Fits {
   async answer(asked) {
     const key = JSON.stringify(asked);
     if (!this.known.has(key)) {
-      const answer = await (await post("fit", asked)).json();
+      const answer = JSON.parse(await ask("fit", asked));
       if (this.known.size > 200) this.known.clear();
       this.known.set(key, answer);
     }

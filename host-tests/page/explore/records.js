@@ -17,7 +17,7 @@ function foundRecords() {
 }
 
 function showRecords() {
-  fill(byId("records"), [state.record, state.judged, wanted], recordRows);
+  fill(byId("records"), [sessions, state.record, state.judged, wanted], recordRows);
 }
 
 function recordRows() {

@@ -1,11 +1,11 @@
-// What the server answers: the figures, the judgement and the coefficients.
+// What the program answers: the figures, the judgement and the coefficients.
 "use strict";
 
 /// The answer to compare with, and its name: that before the last change, or that of the five terms if there was none.
 function reference() {
   const earlier = undone.past.findLast((one) => one.state.record === state.record && one.answer);
   if (byId("reference").value === "before" && earlier) return { before: earlier.answer, named: "before" };
-  const five = { record: state.record, judged: state.judged, with: [], without: [] };
+  const five = { record: state.record, judged: state.judged, with: [], without: [], taken_out: false };
   const known = fits.known.get(JSON.stringify(five));
   if (!known) fits.answer(five).then(show, () => {});
   return { before: known ?? null, named: "five terms" };
@@ -18,12 +18,12 @@ function show() {
   const strong = (words) => html("strong", {}, words);
   const was = (words) => (before && before !== answer ? html("span", { class: "was" }, ` (was ${words})`) : null);
   byId("error").replaceChildren(...[
-    html("span", { class: "figures chi2" }, "χ² ", strong(tenth(answer.chi2)), was(tenth(before?.chi2 ?? null)), ` for ${answer.dof} degrees of freedom`),
-    html("span", { class: "figures" }, "p ", strong(answer.p)),
+    html("span", { class: "figures chi2" }, gloss("χ²"), " ", strong(tenth(answer.chi2)), was(tenth(before?.chi2 ?? null)), ` for ${answer.dof} `, gloss("degrees of freedom")),
+    html("span", { class: "figures" }, gloss("p"), " ", strong(answer.p)),
   ]);
   byId("words").textContent = `${answer.words[0].toUpperCase()}${answer.words.slice(1)}.`;
   byId("widened").textContent = answer.widened ?? "";
-  byId("command").textContent = answer.command;
+  byId("command-line").textContent = answer.command;
   showEffects();
   say(before);
   showCoefficients(before, named);
@@ -31,6 +31,7 @@ function show() {
   showLegend(before, named);
   drawPlaces();
   drawHistory();
+  drawTime();
 }
 
 /// Says the result to a screen reader, once the changes rest.
@@ -42,9 +43,13 @@ function say(before) {
   }, 400);
 }
 
+/// Whether what follows the covariates is taken out of the record that is fitted.
+const isTakenOut = () => state.takenOut && data.records[state.record].covariate !== null;
+
 const modelName = () => {
   const without = state.without.length > 0 ? ` without ${state.without.map(plain).join(", ")}` : "";
-  return `five terms${without}${state.added.map(({ effect }) => ` + ${plain(effect)}`).join("")}`;
+  const out = isTakenOut() ? ` + ${data.records[state.record].covariate}, taken out` : "";
+  return `five terms${without}${out}${state.added.map(({ effect }) => ` + ${plain(effect)}`).join("")}`;
 };
 
 /// The figures with their tables, by what they show. Each keeps its cursor and what is seen of it.
@@ -53,7 +58,7 @@ const figures = new Map();
 function figureOf(quantity) {
   if (!figures.has(quantity)) {
     const pick = quantity === "spectrum" ? { words: (x) => `Add a line at ${number(x)} Hz`, act: addLine } : null;
-    const [plot, table] = [new Plot({ pick }), new PointTable(fileName)];
+    const [plot, table] = [new Plot({ pick, changed: keepAddress }), new PointTable(fileName)];
     plot.root.append(table.root);
     figures.set(quantity, { plot, table });
   }
@@ -79,11 +84,20 @@ function drawPlaces() {
     const judged = answer.judged.map((one) => record(one.records[at], colour(one.record), data.records[one.record]?.name ?? ""));
     const scene = { title: `${frame.up} and residual, ${modelName()}: ${answer.words}`, model_name: modelName(), model: answer.models[at].model,
       shares: answer.models[at].shares, before: before && before !== answer ? before.models[at]?.model ?? null : null,
+      fine: frame.quantity === "spectrum" ? fineSpectrum(frame) : null,
       records: [record(answer.records[at], 0, data.records[state.record].name), ...judged] };
     const unit = frame.units[Math.min(unitIndex(), frame.units.length - 1)];
     plot.set(frame, scene, unit);
     table.set(frame, scene, unit);
   });
+}
+
+/// The fine spectrum of the record that is fitted, as far as it is in a frame.
+function fineSpectrum({ x: [low, high] }) {
+  const { spectrogram } = data.records[state.record];
+  if (!spectrogram) return null;
+  const points = spectrogram.fine.map((density, at) => [(at + 1) * spectrogram.bin_hz, density]);
+  return points.filter(([frequency, density]) => frequency >= low && frequency <= high && density > 0);
 }
 
 /// Draws χ² of the models so far of this record, the newest ones if they are many.
@@ -103,6 +117,7 @@ function showLegend(before, named) {
     ? [legendEntry(`${answer.judged.length} records that judge`, draw("circle", { cx: 17, cy: 7, r: 4, class: "other record-1" }))]
     : answer.judged.map(({ record }) => legendEntry(data.records[record]?.name ?? "", draw("circle", { cx: 17, cy: 7, r: 4, class: `other record-${colour(record)}` })));
   const earlier = before && before !== answer ? [legendEntry(named === "before" ? "model before" : "five terms", legendLine("line before"))] : [];
+  if (data.records[state.record].spectrogram) earlier.push(legendEntry("fine spectrum, not fitted", legendLine("line fine")));
   const measured = answer.judged.length > 0 ? `${data.records[state.record].name}, fitted` : "measured ± standard error";
   byId("legend").replaceChildren(...legendEntries(answer.models.flatMap((model) => model.shares), measured, ...judged, ...earlier));
 }
@@ -144,7 +159,7 @@ function showCoefficients(before, named) {
     : html("td", {}, "–"));
   const row = ([key, one]) => {
     const known = now.get(key) ?? one;
-    return html("tr", { "data-effect": known.effect }, html("th", { scope: "row" }, known.name, " ", html("i", {}, known.symbol),
+    return html("tr", { "data-effect": known.effect }, html("th", { scope: "row" }, gloss(known.name), " ", html("i", {}, known.symbol),
       html("span", { class: "unit" }, shown(known)[2])),
       then.size > 0 ? cell(then.get(key)) : null, cell(now.get(key)),
       then.size > 0 ? html("td", { class: "change" }, changed(then.get(key), now.get(key))) : null);

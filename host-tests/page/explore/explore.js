@@ -4,21 +4,39 @@
 /// Changes of one control within this time are undone together, in milliseconds. Chosen by hand.
 const TOGETHER = 1000;
 
-let state = stateOf(location.hash);
+let state = emptyState();
 let answer = null;
 /// Earlier and later states, each with its answer.
-const undone = { past: [], future: [] };
+let undone = { past: [], future: [] };
 let last = { control: null, at: 0 };
 let saying = 0;
+let fits = null;
 
-const fits = new Fits((of, given) => {
-  byId("problem").textContent = "";
-  answer = given;
-  if (JSON.stringify(question(of)) === JSON.stringify(question(state))) adopt(given);
-  show();
-}, (words) => {
-  byId("problem").textContent = words;
-});
+/// Opens what `explore --session` printed: the records, and what the page shows of them.
+function openSession(text) {
+  data = JSON.parse(text).page;
+  session = new TextEncoder().encode(text);
+  sessions += 1;
+  effectNamed = new Map(data.catalogue.map((effect) => [effect.name, effect]));
+  state = stateOf(location.hash);
+  answer = null;
+  undone = { past: [], future: [] };
+  fits = new Fits((of, given) => {
+    byId("problem").textContent = "";
+    answer = given;
+    if (JSON.stringify(question(of)) === JSON.stringify(question(state))) adopt(given);
+    show();
+  }, (words) => {
+    byId("problem").textContent = words;
+  });
+  takeGlossary(data.glossary);
+  takeViews(location.hash);
+  byId("styles").textContent = data.styles;
+  byId("explore").hidden = false;
+  document.body.classList.add("exploring");
+  showCatalogue();
+  refresh();
+}
 
 /// Takes the values of the answer: those that were fitted, and those that the address gave as text.
 function adopt(given) {
@@ -26,6 +44,27 @@ function adopt(given) {
     state.added[at] = { effect: added.effect, values: added.parameters, fitted: added.fitted };
   });
   history.replaceState(null, "", fragment(state));
+}
+
+let keeping = 0;
+
+/// Writes what is seen into the address, once it rests: browsers refuse to do so at every move.
+function keepAddress() {
+  clearTimeout(keeping);
+  keeping = setTimeout(() => history.replaceState(null, "", fragment(state)), 120);
+}
+
+/// What is seen of the figures.
+const viewsSeen = () => Object.fromEntries([...figures].map(([quantity, { plot }]) => [quantity, plot.view]));
+
+/// Shows of the figures what an address says.
+function takeViews(hash) {
+  const views = freshViews();
+  for (const part of hash.replace(/^#/, "").split("&")) {
+    const [, key, value] = /^([a-z.]+)=(.*)$/.exec(part) ?? [];
+    if (key) takeViewPart(views, key, value);
+  }
+  for (const [quantity, view] of Object.entries(views)) figureOf(quantity).plot.adopt(view);
 }
 
 /// Changes the state by a function. Changes of the same control that follow each other are undone together.
@@ -42,6 +81,7 @@ function change(control, by) {
 
 function refresh() {
   showControls();
+  showThought();
   fits.ask(state);
 }
 
@@ -61,45 +101,33 @@ byId("reset").addEventListener("click", () => change(null, (of) => Object.assign
 
 // What the diagnosis thinks.
 
-let thought = null;
-byId("diagnose").addEventListener("click", async () => {
-  const { record } = state;
-  const place = byId("diagnosis");
-  byId("diagnose").disabled = true;
-  byId("adopt").hidden = true;
-  place.replaceChildren(html("p", {}, "Diagnosing …"));
-  try {
-    thought = { record, ...(await (await post("diagnose", { record })).json()) };
+function showThought() {
+  fill(byId("diagnosis"), [sessions, state.record], () => {
+    const { name, thought } = data.records[state.record];
     const finding = (one) => {
       const rows = [...one.lines];
       if (one.ambiguous) rows.push(["ambiguous", one.ambiguous]);
       return html("div", { class: "finding" }, html("h3", {}, one.name), one.found ? html("p", {}, one.found) : null,
         html("dl", {}, ...rows.flatMap(([label, words]) => [html("dt", {}, label), html("dd", {}, words)])));
     };
-    const notes = [...(thought.beyond ? [thought.beyond] : []), ...thought.notes];
-    place.replaceChildren(html("p", {}, `${data.records[record].name}: ${thought.lead}`), ...thought.findings.map(finding),
-      html("ul", {}, ...notes.map((note) => html("li", {}, note))));
-    byId("adopt").hidden = thought.with.length === 0 && thought.without.length === 0;
-  } catch (error) {
-    place.replaceChildren(html("p", {}, error.message));
-  }
-  byId("diagnose").disabled = false;
-});
+    byId("adopt").hidden = thought.with.length === 0 && thought.without.length === 0 && !thought.taken_out;
+    return [html("p", {}, `${name}: ${thought.lead}`), ...thought.findings.map(finding),
+      html("ul", {}, ...thought.notes.map((note) => html("li", {}, note)))];
+  });
+}
+
 byId("adopt").addEventListener("click", () => change(null, (of) => {
-  of.record = thought.record;
-  of.judged = of.judged.filter((record) => record !== thought.record);
+  const { thought } = data.records[of.record];
   of.added = thought.with.map((text) => ({ effect: text.split(":")[0], values: [], fitted: text.includes("~"), text }));
   of.without = [...thought.without];
+  of.takenOut = thought.taken_out;
 }));
 
 // What is kept.
 
-async function download(name, file) {
+async function download(name, file, type) {
   try {
-    const blob = await (await post(name, question(state))).blob();
-    const link = html("a", { href: URL.createObjectURL(blob), download: file });
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    keep(await ask(name, question(state)), file, type);
     byId("kept").textContent = `${file} was downloaded.`;
   } catch (error) {
     byId("kept").textContent = error.message;
@@ -115,19 +143,21 @@ async function copy(text, what) {
   }
 }
 
-const fileName = () => data.records[state.record].axis.replace(/[^A-Za-z0-9_.-]+/g, "-");
-byId("drawing").addEventListener("click", () => download("drawing", `${fileName()}.svg`));
-byId("table").addEventListener("click", () => download("table", `${fileName()}.csv`));
+const fileName = () => fileNameOf(data.records[state.record].axis);
+byId("drawing").addEventListener("click", () => download("drawing", `${fileName()}.svg`, "image/svg+xml"));
+byId("table").addEventListener("click", () => download("table", `${fileName()}.csv`, "text/csv"));
 byId("link").addEventListener("click", () => copy(location.href, "address"));
 byId("copy").addEventListener("click", () => copy(answer?.command ?? "", "command"));
 window.addEventListener("hashchange", () => {
-  if (location.hash !== fragment(state)) change(null, (of) => Object.assign(of, stateOf(location.hash)));
+  if (!data || location.hash === fragment(state)) return;
+  takeViews(location.hash);
+  change(null, (of) => Object.assign(of, stateOf(location.hash)));
 });
 
 for (const id of ["reference", "unit"]) byId(id).addEventListener("change", show);
 new ResizeObserver(() => {
+  if (!answer) return;
   drawPlaces();
   drawHistory();
+  drawTime();
 }).observe(byId("places"));
-showCatalogue();
-refresh();

@@ -1,0 +1,51 @@
+//! `ask`: the questions of the page of `explore`, which runs this program for each of them.
+
+use super::session::Session;
+use crate::failure::{Failure, Place};
+use clap::{Args, ValueEnum};
+use std::{
+    io::{Read, Write},
+    path::PathBuf,
+};
+
+/// The largest session, in bytes. Chosen by hand: a record takes 40 kB.
+const LARGEST: u64 = 1 << 28;
+
+/// Answer a question of the page of explore
+#[derive(Debug, Args)]
+pub(in crate::command) struct Arguments {
+    /// What is asked for
+    what: What,
+    /// The model and the records, in JSON
+    question: String,
+    /// What `explore --session` printed
+    session: PathBuf,
+}
+
+/// What can be asked for about a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum What {
+    /// The fit with its figures, in JSON.
+    Fit,
+    /// The figures, as SVG.
+    Drawing,
+    /// The points of the figures, as CSV.
+    Table,
+}
+
+/// Runs the command.
+pub(in crate::command) fn run(
+    arguments: &Arguments,
+    output: &mut impl Write,
+) -> Result<(), Failure> {
+    let path = &arguments.session;
+    let (file, _) = crate::regular_file::open(path)?;
+    let mut text = Vec::new();
+    file.take(LARGEST)
+        .read_to_end(&mut text)
+        .map_err(|error| Place::file(path).io(&error))?;
+    let answer = Session::parse(&text)?.ask(arguments.what, arguments.question.as_bytes())?;
+    output
+        .write_all(&answer)
+        .map_err(|error| Failure::standard_output(&error))
+}

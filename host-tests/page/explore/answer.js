@@ -19,8 +19,9 @@ function show() {
   const was = (words) => (before && before !== answer ? html("span", { class: "was" }, ` (was ${words})`) : null);
   byId("error").replaceChildren(...[
     html("span", { class: "figures chi2" }, gloss("χ²"), " ", strong(tenth(answer.chi2)), was(tenth(before?.chi2 ?? null)), ` for ${answer.dof} `, gloss("degrees of freedom")),
+    answer.error > answer.chi2 ? html("span", { class: "figures" }, "and ", strong(tenth(answer.error - answer.chi2)), ` of what follows ${data.records[state.record].covariate}`) : null,
     html("span", { class: "figures" }, gloss("p"), " ", strong(answer.p)),
-  ]);
+  ].filter((one) => one !== null));
   byId("words").textContent = `${answer.words[0].toUpperCase()}${answer.words.slice(1)}.`;
   byId("widened").textContent = answer.widened ?? "";
   byId("command-line").textContent = answer.command;
@@ -107,7 +108,7 @@ function drawHistory() {
   if (!answer || width < 100) return;
   const earlier = undone.past.filter((one) => one.state.record === state.record && one.answer).map((one) => one.answer);
   const all = [...earlier, answer].filter((one, at, list) => one !== list[at - 1]).slice(-24);
-  place.replaceChildren(drawStairs(all, width));
+  place.replaceChildren(drawStairs(errorsOf(all), width));
 }
 
 const unitIndex = () => Number(byId("unit").value);

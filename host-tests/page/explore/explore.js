@@ -111,7 +111,8 @@ function showThought() {
         html("dl", {}, ...rows.flatMap(([label, words]) => [html("dt", {}, label), html("dd", {}, words)])));
     };
     byId("adopt").hidden = thought.with.length === 0 && thought.without.length === 0 && !thought.taken_out;
-    return [html("p", {}, `${name}: ${thought.lead}`), ...thought.findings.map(finding),
+    byId("lead-words").textContent = `${name}: ${thought.lead}`;
+    return [...thought.findings.map(finding),
       html("ul", {}, ...thought.notes.map((note) => html("li", {}, note)))];
   });
 }

@@ -254,7 +254,7 @@ fn one_record_is_fitted_and_another_judges_and_the_diagnosis_is_asked() {
     assert!(judged > 200.0, "{judged}");
     assert!(number(&browser.value("document.querySelectorAll('.deviation .other').length")) > 10.0);
 
-    let lead = browser.text("#diagnosis p");
+    let lead = browser.text("#lead-words");
     assert!(lead.contains("missing effect: sinusoid"), "{lead}");
     let diagnosis = json(Path::new("."), &["diagnose", before]);
     let steps = diagnosis["axes"][0]["steps"].as_array().unwrap();

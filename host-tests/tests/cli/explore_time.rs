@@ -56,9 +56,18 @@ fn what_follows_the_temperature_is_taken_out_and_the_last_model_is_that_of_the_d
     browser.resize(1280, 900);
     browser.open(&url);
     let five = chi2(&mut browser);
+    // The error of the five terms is that of the diagnosis: χ², and what follows the temperature.
+    let error = number(&browser.value("answer.error"));
+    assert!(
+        (error / number(&steps[0]["error"]) - 1.0).abs() < 1e-6,
+        "{error}"
+    );
+    assert!(browser.text("#error").contains("of what follows temp_C"));
     browser.click("#covariate");
-    let cool = chi2(&mut browser);
-    assert!(cool < five, "{cool} {five}");
+    settle(&mut browser);
+    let cool = number(&browser.value("answer.error"));
+    assert!(cool < error, "{cool} {error}");
+    assert_eq!(chi2(&mut browser), cool);
     let model = browser.text("#model");
     assert!(
         model.contains("temp") && model.ends_with("taken out"),

@@ -28,6 +28,8 @@ use serde::Serialize;
 pub(super) struct Answer {
     #[serde(flatten)]
     verdict: Verdict,
+    /// The error, which falls from model to model: χ², and what follows the covariates as long as it is not taken out.
+    error: f64,
     adequate: Option<bool>,
     /// The added effects with their shapes, in the order of the question.
     added: Vec<Added>,
@@ -108,6 +110,7 @@ pub(super) fn answer(fitted: &Fitted, question: &Question, about_log: &[String])
     });
     Answer {
         verdict: verdict(&fitted.comparison),
+        error: fitted.error(),
         adequate: fitted.fit.is_adequate(),
         command: shell::command(
             record.path(),

@@ -116,6 +116,12 @@ impl<'a> Fitted<'a> {
         taken_out.map(|taken_out| taken_out.words.as_str())
     }
 
+    /// χ² of the record, and what follows its covariates as long as it is not taken out.
+    pub(super) fn error(&self) -> f64 {
+        let left = self.record.taken_out.as_ref().filter(|_| !self.taken_out);
+        self.comparison.chi_squared + left.map_or(0.0, |left| left.chi2)
+    }
+
     /// The frames of what the records have. They have room for the five terms too, so that they rest while one drags.
     pub(super) fn frames(&self) -> Vec<Frame> {
         let others = self.judged.iter().map(|one| &one.comparison);

@@ -8,11 +8,13 @@ use crate::{
 use allanite::{Curve, spectrum::Spectrum};
 use serde::{Deserialize, Serialize};
 
-/// The curve and the spectrum without what follows the covariates, and the covariates in words.
+/// The curve and the spectrum without what follows the covariates, and what explains them.
 #[derive(Serialize, Deserialize)]
 pub(super) struct TakenOut {
-    /// The covariates, with their slopes.
+    /// The covariates in words.
     pub(super) words: String,
+    /// How much of χ² it explains: the sum of the squares of the slopes in standard errors.
+    pub(super) chi2: f64,
     /// Averaging factor, number of differences and variance of every octave.
     octaves: Vec<(u32, u64, f64)>,
     spectrum: SpectrumLevels,
@@ -27,14 +29,14 @@ impl TakenOut {
         let Some(last) = diagnosed.steps.last() else {
             return Ok(None);
         };
-        let Some(followed) = &last.covariate else {
+        let Some((words, chi2)) = diagnosed.dependence() else {
             return Ok(None);
         };
-        let names = diagnosed.covariate(followed).join(" and ");
         let (curve, spectrum) = diagnosed.observed_in(last)?;
         let octaves = curve.points().iter();
         Ok(Some(Self {
-            words: names,
+            words,
+            chi2,
             octaves: octaves
                 .map(|point| (point.m, point.differences, point.variance))
                 .collect(),

@@ -10,11 +10,12 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// The names of all commands.
+/// The names of all commands that users are told of.
 fn commands() -> Vec<String> {
     let line = CommandLine::command();
     let names = line
         .get_subcommands()
+        .filter(|command| !command.is_hide_set())
         .map(|command| command.get_name().to_owned());
     names.filter(|name| name != "help").collect()
 }

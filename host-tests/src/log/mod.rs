@@ -80,6 +80,7 @@
 //! the other.
 
 mod accumulate;
+mod arrays;
 mod axes;
 mod axis_names;
 #[cfg(feature = "bags")]
@@ -120,6 +121,7 @@ mod names;
 mod npy;
 mod npy_block;
 pub mod npy_header;
+mod octaves;
 mod pace;
 mod part_names;
 mod parts;
@@ -159,13 +161,16 @@ use allanite::{
     kurtosis::Kurtosis,
     spectrum::SpectrumAccumulator,
 };
+pub use arrays::{Arrays, Column, Copy, Numbers, read_arrays};
 pub use covariate::{CovariateChoice, Covariates};
 pub use cuts::{Cuts, Moment, TimeRange};
 pub(crate) use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
+pub use octaves::accumulate;
 pub(crate) use names::is_degrees_column;
 pub(crate) use places::Places;
+use serde::{Deserialize, Serialize};
 
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
 /// records of years.
@@ -279,7 +284,7 @@ pub struct Axis {
 }
 
 /// What a log shows of an axis beside its Allan variance.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Evidence {
     /// The kurtosis of the differences, which shows whether they are Gaussian.
     pub kurtosis: Kurtosis<OCTAVES>,
@@ -300,7 +305,7 @@ pub struct Evidence {
 }
 
 /// Motion during a record, or its spikes. A gyro that turns about one axis is not at rest about the others.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Disturbance {
     /// The axis that shows it.
     pub axis: String,

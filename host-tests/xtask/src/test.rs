@@ -3,7 +3,7 @@
 use crate::{
     bench,
     firmware::{BOARDS, CORTEX_M4F, RISCV, Toolchain, cargo, target_directory, workspace},
-    setup,
+    python, setup,
     step::step,
 };
 use anyhow::{Context as _, Result};
@@ -105,6 +105,7 @@ pub(crate) fn run() -> Result<()> {
             .args(["test", "--workspace", "--exclude", "allanite"])
             .args(["--", "--skip", "every_core::"]),
     )?;
+    python::run(&[])?;
     println!("\nall passed");
     Ok(())
 }

@@ -1,0 +1,107 @@
+//! A model beside a record, in memory.
+
+use super::{options::parse, record::json};
+use crate::{
+    command::{
+        compare::{check_visible, compared::Compared, json::document, model::ModelArguments},
+        diagnose::words::shown_p,
+        effect_argument,
+        input::record::library_failure,
+        output::words,
+    },
+    confidence::relative_errors,
+    curve_file::AxisCurve,
+    failure::Failure,
+    log::{BINS, OCTAVES},
+    plot::{Drawing, Figure, Frame, Quantity, View, svg},
+};
+use allanite::{Curve, Model, spectrum::Spectrum};
+use std::path::Path;
+
+/// A model that was fitted to an axis, and its comparison with the record.
+pub struct Comparison {
+    compared: Compared,
+    curve: Curve<OCTAVES>,
+    /// The comparison with the five terms, which needs as much room in a picture.
+    five: Compared,
+}
+
+impl Comparison {
+    /// Fits the model that the options describe to this curve and this spectrum of an axis.
+    pub(super) fn of(
+        path: &Path,
+        axis: &AxisCurve,
+        (curve, spectrum): (Curve<OCTAVES>, Spectrum<BINS>),
+        options: &[String],
+    ) -> Result<Self, Failure> {
+        let model = parse::<ModelArguments>(options)?.model()?;
+        check_visible(&model, &curve)?;
+        let fail = |error| library_failure(path, &axis.axis, error);
+        let compared = |model: &Model| {
+            let observed = (curve.clone(), spectrum.clone());
+            Compared::beside(axis.clone(), observed, model).map_err(fail)
+        };
+        Ok(Self {
+            compared: compared(&model)?,
+            five: compared(&Model::ieee_952())?,
+            curve,
+        })
+    }
+
+    /// The document of the axis that `compare --json` prints.
+    ///
+    /// # Errors
+    /// None occurs, because all numbers can be written.
+    pub fn json(&self) -> Result<String, Failure> {
+        json(&document(std::slice::from_ref(&self.compared)))
+    }
+
+    /// The effects of the model with their fitted shapes, in the options of `compare`.
+    pub fn effects(&self) -> Vec<String> {
+        let terms = self.compared.model.terms().iter();
+        terms.map(effect_argument::written).collect()
+    }
+
+    /// The picture of the record beside the model, as the text of an SVG file.
+    pub fn svg(&self) -> String {
+        let Compared {
+            axis,
+            model,
+            fit,
+            comparison,
+            spectrum,
+            ..
+        } = &self.compared;
+        let view = View {
+            model,
+            fit,
+            comparison,
+            spectrum,
+            errors: &relative_errors(&self.curve, model, fit),
+            interval_s: self.curve.interval_s(),
+        };
+        let both = [&self.five.comparison, comparison];
+        let frames = Quantity::ALL
+            .into_iter()
+            .filter(|quantity| *quantity == Quantity::Deviation || !comparison.bins.is_empty())
+            .map(|quantity| Frame::of(quantity, both));
+        let names = model.terms().iter().map(|term| term.effect.name());
+        let names: Vec<String> = names.map(words::plain).collect();
+        svg(&[Drawing {
+            title: format!("{}: {}", axis.axis, names.join(" + ")),
+            subtitle: format!(
+                "χ² {:.1}, {} degrees of freedom, p {}; {}",
+                comparison.chi_squared,
+                comparison.degrees_of_freedom,
+                shown_p(comparison.p_value),
+                words::record(axis.samples, axis.rate_hz, axis.octaves.len()),
+            ),
+            warning: None,
+            unit: axis.unit,
+            figures: frames
+                .map(|frame| (Figure::new(&view, &frame), frame))
+                .collect(),
+            course: None,
+        }])
+    }
+}

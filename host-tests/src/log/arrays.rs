@@ -16,18 +16,18 @@ use std::path::{Path, PathBuf};
 const LOOKS: usize = 100;
 
 /// Copies the elements of a column from a row on, as many as there is room for.
-pub type Copy<'a, T> = Box<dyn Fn(usize, &mut [T]) + Send + Sync + 'a>;
+pub type Fill<'a, T> = Box<dyn Fn(usize, &mut [T]) + Send + Sync + 'a>;
 
 /// The numbers of a column. A type with fewer bits is copied as one with more.
 pub enum Numbers<'a> {
     /// Integers of 32 bits or fewer, except `u32`.
-    Int32(Copy<'a, i32>),
+    Int32(Fill<'a, i32>),
     /// Integers of 64 bits, and `u32`.
-    Int64(Copy<'a, i64>),
+    Int64(Fill<'a, i64>),
     /// Unsigned integers of 64 bits.
-    Uint64(Copy<'a, u64>),
+    Uint64(Fill<'a, u64>),
     /// Floats. A value that is missing is not a number.
-    Float(Copy<'a, f64>),
+    Float(Fill<'a, f64>),
 }
 
 /// A column and its name; an empty name is none.

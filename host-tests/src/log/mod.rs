@@ -161,7 +161,7 @@ use allanite::{
     kurtosis::Kurtosis,
     spectrum::SpectrumAccumulator,
 };
-pub use arrays::{Arrays, Column, Copy, Numbers, read_arrays};
+pub use arrays::{Arrays, Column, Fill, Numbers, read_arrays};
 pub use covariate::{CovariateChoice, Covariates};
 pub use cuts::{Cuts, Moment, TimeRange};
 pub(crate) use faults::{rate_of, said as repeats_said};

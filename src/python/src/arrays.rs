@@ -1,6 +1,6 @@
 //! Arrays of NumPy as columns of the host library.
 
-use host_tests::log::{Column, Copy, Numbers};
+use host_tests::log::{Column, Fill, Numbers};
 use numpy::{
     PyReadonlyArray1,
     ndarray::{ArrayView1, s},
@@ -60,9 +60,9 @@ arrays! {
 }
 
 /// Copies a run of a column as numbers of another type, whatever the layout of the array.
-fn copy<'a, T, U>(view: ArrayView1<'a, T>, convert: impl Fn(T) -> U + Send + Sync + 'a) -> Copy<'a, U>
+fn copy<'a, T, U>(view: ArrayView1<'a, T>, convert: impl Fn(T) -> U + Send + Sync + 'a) -> Fill<'a, U>
 where
-    T: std::marker::Copy + Send + Sync + 'a,
+    T: Copy + Send + Sync + 'a,
 {
     match view.to_slice() {
         Some(slice) => Box::new(move |first, to| {

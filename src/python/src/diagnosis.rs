@@ -1,6 +1,11 @@
 //! Diagnoses.
 
-use crate::{comparison::Comparison, error::raised, watched::left};
+use crate::{
+    comparison::Comparison,
+    error::raised,
+    own::{self, OwnEffect},
+    watched::left,
+};
 use host_tests::command::interface;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -43,8 +48,15 @@ impl Diagnosis {
     }
 
     /// Fits another model to an axis.
-    fn compare(&self, py: Python<'_>, axis: String, options: Vec<String>) -> PyResult<Comparison> {
-        let diagnosis = self.0.clone();
-        left(py, None, move |_| diagnosis.compare(&axis, &options)).map(Comparison::new)
+    fn compare(
+        &self,
+        py: Python<'_>,
+        axis: String,
+        options: Vec<String>,
+        own: Vec<Py<OwnEffect>>,
+    ) -> PyResult<Comparison> {
+        let (diagnosis, effects) = (self.0.clone(), own::effects(&own));
+        let compared = left(py, None, move |_| diagnosis.compare(&axis, &options, &effects));
+        own::checked(&own, compared.map(Comparison::new))
     }
 }

@@ -9,6 +9,7 @@ mod arrays;
 mod comparison;
 mod diagnosis;
 mod error;
+mod own;
 mod record;
 mod table;
 mod watched;
@@ -24,6 +25,8 @@ mod _native {
     use super::comparison::Comparison;
     #[pymodule_export]
     use super::diagnosis::Diagnosis;
+    #[pymodule_export]
+    use super::own::OwnEffect;
     #[pymodule_export]
     use super::record::{Record, deviations};
 }

@@ -5,6 +5,7 @@ use crate::{
     comparison::Comparison,
     diagnosis::Diagnosis,
     error::raised,
+    own::{self, OwnEffect},
     table::Batches,
     watched::{left, watched},
 };
@@ -104,9 +105,16 @@ impl Record {
     }
 
     /// Fits a model to an axis.
-    fn compare(&self, py: Python<'_>, axis: String, options: Vec<String>) -> PyResult<Comparison> {
-        let record = self.0.clone();
-        left(py, None, move |_| record.compare(&axis, &options)).map(Comparison::new)
+    fn compare(
+        &self,
+        py: Python<'_>,
+        axis: String,
+        options: Vec<String>,
+        own: Vec<Py<OwnEffect>>,
+    ) -> PyResult<Comparison> {
+        let (record, effects) = (self.0.clone(), own::effects(&own));
+        let compared = left(py, None, move |_| record.compare(&axis, &options, &effects));
+        own::checked(&own, compared.map(Comparison::new))
     }
 
     /// The record as bytes, for pickle.

@@ -10,7 +10,7 @@ use arrow::{
     ffi_stream::ArrowArrayStreamReader,
 };
 use arrow_pyarrow::FromPyArrow;
-use host_tests::log::{Column, Copy, Numbers};
+use host_tests::log::{Column, Fill, Numbers};
 use pyo3::prelude::*;
 
 /// The record batches that an object exports through `__arrow_c_stream__`.
@@ -105,7 +105,7 @@ fn numbers(kind: &DataType, chunks: &[ArrayRef]) -> Option<Numbers<'static>> {
 fn copy<T, U>(
     chunks: &[ArrayRef],
     convert: impl Fn(Option<T::Native>) -> U + Send + Sync + 'static,
-) -> Copy<'static, U>
+) -> Fill<'static, U>
 where
     T: ArrowPrimitiveType,
 {

@@ -1,6 +1,6 @@
 //! A model beside a record, in memory.
 
-use super::{options::parse, record::json};
+use super::{options::parse, own::Own, record::json};
 use crate::{
     command::{
         compare::{check_visible, compared::Compared, json::document, model::ModelArguments},
@@ -15,7 +15,7 @@ use crate::{
     log::{BINS, OCTAVES},
     plot::{Drawing, Figure, Frame, Quantity, View, svg},
 };
-use allanite::{Curve, Model, spectrum::Spectrum};
+use allanite::{Curve, Model, Term, spectrum::Spectrum};
 use std::path::Path;
 
 /// A model that was fitted to an axis, and its comparison with the record.
@@ -32,9 +32,14 @@ impl Comparison {
         path: &Path,
         axis: &AxisCurve,
         (curve, spectrum): (Curve<OCTAVES>, Spectrum<BINS>),
-        options: &[String],
+        (options, own): (&[String], &[&'static Own]),
     ) -> Result<Self, Failure> {
-        let model = parse::<ModelArguments>(options)?.model()?;
+        let mut model = parse::<ModelArguments>(options)?.model()?;
+        for &effect in own {
+            model.put(Term::new(effect)).map_err(|error| {
+                Failure::option(format!("{}: {error:#}", effect.name()), error.remedy())
+            })?;
+        }
         check_visible(&model, &curve)?;
         let fail = |error| library_failure(path, &axis.axis, error);
         let compared = |model: &Model| {

@@ -3,6 +3,7 @@
 use super::{
     comparison::Comparison,
     options::parse,
+    own::Own,
     record::{json, no_axis, text},
 };
 use crate::{
@@ -10,7 +11,7 @@ use crate::{
         diagnose::{conclusion, diagnosed::Diagnosed},
         effect_argument,
         input::{many::Findings, record::library_failure},
-        known_filter::KnownFilter,
+        known_filter::{self, KnownFilter},
         plot::{self, Shown},
     },
     curve_file::AxisCurve,
@@ -115,7 +116,12 @@ impl Diagnosis {
     ///
     /// # Errors
     /// As of [`Record::compare`](super::Record::compare).
-    pub fn compare(&self, axis: &str, options: &[String]) -> Result<Comparison, Failure> {
+    pub fn compare(
+        &self,
+        axis: &str,
+        options: &[String],
+        own: &[&'static Own],
+    ) -> Result<Comparison, Failure> {
         let mut all = self.diagnosed.iter();
         let found = all.find(|one| one.axis.axis == axis);
         let diagnosed = found.ok_or_else(|| {
@@ -130,7 +136,7 @@ impl Diagnosis {
             }),
         };
         let observed = observed.map_err(|error| library_failure(&self.path, axis, error))?;
-        Comparison::of(&self.path, &diagnosed.axis, observed, options)
+        Comparison::of(&self.path, &diagnosed.axis, observed, (options, own))
     }
 }
 
@@ -140,6 +146,8 @@ fn last(diagnosed: &Diagnosed) -> Last {
     let terms = model.terms().iter();
     let added = terms
         .clone()
+        // A filter that was given is an option of its own.
+        .filter(|term| term.fitted || !known_filter::is_filter(term.effect))
         .filter(|term| five.position(term.effect.name()).is_none());
     let is_replaced = |name: &str| {
         let mut replaced = terms.clone().filter_map(|term| term.effect.replaces());

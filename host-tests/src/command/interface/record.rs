@@ -4,6 +4,7 @@ use super::{
     comparison::Comparison,
     diagnosis::{Diagnosis, Search},
     options::parse,
+    own::Own,
     stored,
 };
 use crate::{
@@ -196,14 +197,19 @@ impl Record {
     ///
     /// # Errors
     /// When an option is not valid, there is no such axis, or the model cannot be fitted.
-    pub fn compare(&self, axis: &str, options: &[String]) -> Result<Comparison, Failure> {
+    pub fn compare(
+        &self,
+        axis: &str,
+        options: &[String],
+        own: &[&'static Own],
+    ) -> Result<Comparison, Failure> {
         let (curve, _) = self.axis(axis)?;
         let fail = |error| record::library_failure(&self.path, axis, error);
         let observed = (
             curve.curve().map_err(fail)?,
             curve.spectrum().map_err(fail)?,
         );
-        Comparison::of(&self.path, curve, observed, options)
+        Comparison::of(&self.path, curve, observed, (options, own))
     }
 
     fn axis(&self, name: &str) -> Result<&(AxisCurve, Evidence), Failure> {

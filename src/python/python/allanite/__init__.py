@@ -13,6 +13,7 @@ from ._diagnosis import AxisDiagnosis, Diagnosis
 from ._error import AllaniteError
 from ._fit import AxisFit, Fit
 from ._model import Model
+from ._own import OwnEffect
 from ._page import Picture
 from ._parts import (
     Bin,
@@ -56,6 +57,7 @@ __all__ = [
     "Model",
     "ModelEffect",
     "Octave",
+    "OwnEffect",
     "Picture",
     "Record",
     "SpectralLine",

@@ -114,10 +114,12 @@ class Diagnosis(Axes[AxisDiagnosis]):
 
     def _native_handle(self) -> _native.Diagnosis:
         """The native diagnosis. After pickling it is made again, which gives the same bits."""
-        if "native" not in self._kept:
+        native: _native.Diagnosis | None = self._kept.get("native")
+        if native is None:
             record = self.record._native_handle()
-            self._kept["native"] = record.diagnose(list(self._search), len(self.record.axes), None)
-        return self._kept["native"]
+            native = record.diagnose(list(self._search), len(self.record.axes), None)
+            self._kept["native"] = native
+        return native
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_kept": {}}
@@ -201,4 +203,5 @@ class Diagnosis(Axes[AxisDiagnosis]):
 
     def _repr_html_(self) -> str:
         columns = ("axis", "step", "added", "error", "dof", "p_value", "rms_percent")
-        return paragraphs(self._conclusion) + html_table(self._rows(), columns) + self.plot().svg
+        picture: Picture = self.plot()
+        return paragraphs(self._conclusion) + html_table(self._rows(), columns) + picture.svg

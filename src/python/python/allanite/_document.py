@@ -12,13 +12,13 @@ T = TypeVar("T")
 
 
 @functools.cache
-def _hints(kind: type) -> dict[str, Any]:
+def _hints(kind: Any) -> dict[str, Any]:
     return typing.get_type_hints(kind)
 
 
 def build(kind: type[T], document: dict[str, Any], **more: Any) -> T:
     """The dataclass that has these numbers. What a document leaves out is the default of its field."""
-    hints = _hints(kind)
+    hints = _hints(kind)  # type: ignore[arg-type]
     fields = {}
     for field in dataclasses.fields(kind):  # type: ignore[arg-type]
         if field.name in more:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 
-_OPTION = re.compile(r"--([a-z][a-z-]*)(?: (?=[A-Z_]+\b))?")
+_OPTION = re.compile(r"--([a-z][a-z-]*)(?: <[^>]*>| (?=[A-Z_]+\b|-?\d))?")
+
+_ARGUMENTS = {"from": "from_", "with": "effect", "limit": "limits", "no-covariates": "covariates"}
 
 
 def _in_python(text: str) -> str:
     """The words of the command line in those of Python: ``--time-unit`` is the argument ``time_unit=``."""
-    return _OPTION.sub(lambda found: found[1].replace("-", "_").replace("with", "effect") + "=", text)
+    return _OPTION.sub(lambda found: _ARGUMENTS.get(found[1], found[1].replace("-", "_")) + "=", text)
 
 
 class AllaniteError(ValueError):

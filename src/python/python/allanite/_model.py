@@ -6,7 +6,8 @@ import json
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from . import _document, _options
+from . import _document, _native, _options
+from ._own import OwnEffect
 from ._page import Picture, html_table, paragraphs
 from ._parts import ComparedOctave, Coefficient, ModelEffect, Stretch, Worst
 from .effects import Effect
@@ -57,10 +58,11 @@ class Model:
     stretches: tuple[Stretch, ...]
     words: str
     before: Model | None = field(default=None, repr=False, compare=False)
-    _of: Record | Diagnosis = field(default=None, repr=False, compare=False)  # type: ignore[assignment]
+    _of: Any = field(default=None, repr=False, compare=False)
     _with: tuple[str, ...] = field(default=(), repr=False, compare=False)
     _without: tuple[str, ...] = field(default=(), repr=False, compare=False)
     _filter: str | None = field(default=None, repr=False, compare=False)
+    _own: tuple[OwnEffect, ...] = field(default=(), repr=False, compare=False)
     _document: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
@@ -71,9 +73,10 @@ class Model:
         with_: tuple[str, ...] = (),
         without: tuple[str, ...] = (),
         filter: str | None = None,
+        own: tuple[OwnEffect, ...] = (),
         before: Model | None = None,
     ) -> Model:
-        compared = of._native_handle().compare(axis, _model_options(with_, without, filter))
+        compared = _compared(of, axis, with_, without, filter, own)
         document = json.loads(compared.json())
         return _document.build(
             cls,
@@ -83,6 +86,7 @@ class Model:
             _with=with_,
             _without=without,
             _filter=filter,
+            _own=own,
             _document=document,
         )
 
@@ -91,26 +95,44 @@ class Model:
         """χ², which falls when an effect is added that the record has."""
         return self.chi2
 
-    def __add__(self, effect: Effect | str) -> Model:
+    def __add__(self, effect: Effect | OwnEffect | str) -> Model:
         """The model with one effect more, fitted to the same axis."""
+        if isinstance(effect, OwnEffect):
+            return self._changed(own=(*self._own, effect))
         if not isinstance(effect, (Effect, str)):
             return NotImplemented
         text = effect.written() if isinstance(effect, Effect) else effect
         name = text.split(":")[0]
         if name in self._without:
-            without = tuple(one for one in self._without if one != name)
-            return self._fit(self._of, self.axis, self._with, without, self._filter, self)
-        return self._fit(self._of, self.axis, (*self._with, text), self._without, self._filter, self)
+            return self._changed(without=tuple(one for one in self._without if one != name))
+        return self._changed(with_=(*self._with, text))
 
-    def __sub__(self, effect: Effect | str | type[Effect]) -> Model:
+    def __sub__(self, effect: Effect | OwnEffect | str | type[Effect]) -> Model:
         """The model without an effect, which is given by its name, its class, or one like it."""
         name = effect if isinstance(effect, str) else effect.NAME
-        added = [text for text in self._with if text.split(":")[0] == name]
+        own = tuple(one for one in self._own if one.NAME != name)
+        if len(own) < len(self._own):
+            return self._changed(own=own)
+        added = [at for at, text in enumerate(self._with) if text.split(":")[0] == name]
         if added:
-            kept = tuple(text for text in self._with if text != added[-1])
-            return self._fit(self._of, self.axis, kept, self._without, self._filter, self)
-        without = (*self._without, name)
-        return self._fit(self._of, self.axis, self._with, without, self._filter, self)
+            return self._changed(with_=self._with[: added[-1]] + self._with[added[-1] + 1 :])
+        return self._changed(without=(*self._without, name))
+
+    def _changed(
+        self,
+        with_: tuple[str, ...] | None = None,
+        without: tuple[str, ...] | None = None,
+        own: tuple[OwnEffect, ...] | None = None,
+    ) -> Model:
+        return self._fit(
+            self._of,
+            self.axis,
+            self._with if with_ is None else with_,
+            self._without if without is None else without,
+            self._filter,
+            self._own if own is None else own,
+            self,
+        )
 
     def __getitem__(self, symbol: str) -> Coefficient:
         """The coefficient of an effect, by its name or by its symbol."""
@@ -133,8 +155,8 @@ class Model:
         With ``ax``, an ``Axes`` of matplotlib, the Allan deviation is drawn into that instead, and returned.
         """
         if ax is None:
-            options = _model_options(self._with, self._without, self._filter)
-            return Picture(self._of._native_handle().compare(self.axis, options).svg())
+            compared = _compared(self._of, self.axis, self._with, self._without, self._filter, self._own)
+            return Picture(compared.svg())
         taus = [octave.tau_s for octave in self.octaves]
         ax.loglog(taus, [octave.measured for octave in self.octaves], "o", label=f"{self.axis}, measured")
         ax.loglog(taus, [octave.model for octave in self.octaves], "-", label=self.name)
@@ -149,6 +171,7 @@ class Model:
         without = f" without {' and '.join(self._without)}" if self._without else ""
         behind = f" behind the given {self._filter.split(':')[0]}" if self._filter else ""
         added = "".join(f" + {text.split(':')[0]}" for text in self._with)
+        added += "".join(f" + {effect.NAME}" for effect in self._own)
         return (f"five terms{without}{behind}{added}").replace("_", " ")
 
     def __str__(self) -> str:
@@ -164,15 +187,28 @@ class Model:
     def _repr_html_(self) -> str:
         rows = _document.rows(self.coefficients)
         columns = ("effect", "symbol", "value", "lower", "upper", "unit", "state")
-        return paragraphs([str(self)]) + html_table(rows, columns) + self.plot().svg
+        picture: Picture = self.plot()
+        return paragraphs([str(self)]) + html_table(rows, columns) + picture.svg
 
     def __reduce__(self) -> Any:
-        return (_again, (self._of, self.axis, self._with, self._without, self._filter, self.before))
+        return (_again, (self._of, self.axis, self._with, self._without, self._filter, self._own, self.before))
 
 
-def _again(of: Any, axis: str, with_: Any, without: Any, filter: Any, before: Any) -> Model:
+def _again(of: Any, axis: str, with_: Any, without: Any, filter: Any, own: Any, before: Any) -> Model:
     """A model that was pickled. It is fitted again, which gives the same bits."""
-    return Model._fit(of, axis, with_, without, filter, before)
+    return Model._fit(of, axis, with_, without, filter, own, before)
+
+
+def _compared(
+    of: Record | Diagnosis,
+    axis: str,
+    with_: tuple[str, ...],
+    without: tuple[str, ...],
+    filter: str | None,
+    own: tuple[OwnEffect, ...],
+) -> _native.Comparison:
+    options = _model_options(with_, without, filter)
+    return of._native_handle().compare(axis, options, [effect._native for effect in own])
 
 
 def _model_options(with_: tuple[str, ...], without: tuple[str, ...], filter: str | None) -> list[str]:

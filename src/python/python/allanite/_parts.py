@@ -6,6 +6,7 @@ an interval that the record does not bound, is ``None``.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 
@@ -33,7 +34,7 @@ class Octave:
     @property
     def deviation(self) -> float:
         """Allan deviation, in the rate unit."""
-        return self.variance**0.5
+        return math.sqrt(self.variance)
 
 
 @dataclass(frozen=True)

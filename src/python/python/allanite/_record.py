@@ -43,7 +43,7 @@ class Record(Axes[Curve]):
 
     def __init__(self, native: _native.Record) -> None:
         self._native = native
-        self._document = json.loads(native.describe())
+        self._document: dict[str, Any] = json.loads(native.describe())
         self.axes = tuple(_document.build(Curve, axis) for axis in self._document["axes"])
         self.notes: tuple[str, ...] = tuple(self._document["notes"])
         self.path: str = self._document["path"]

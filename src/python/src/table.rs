@@ -7,7 +7,7 @@ use arrow::{
         TimeUnit, TimestampMicrosecondType, TimestampMillisecondType, TimestampNanosecondType,
         TimestampSecondType, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
     },
-    ffi_stream::ArrowArrayStreamReader,
+    ffi_stream::RecordBatchStreamReader,
 };
 use arrow_pyarrow::FromPyArrow;
 use host_tests::log::{Column, Fill, Numbers};
@@ -22,7 +22,7 @@ pub(crate) struct Batches {
 impl Batches {
     /// Takes all batches. Their buffers stay those of the producer.
     pub(crate) fn of(object: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let reader = ArrowArrayStreamReader::from_pyarrow_bound(object)?;
+        let reader = RecordBatchStreamReader::from_pyarrow_bound(object)?;
         let schema = arrow::array::RecordBatchReader::schema(&reader);
         let batches = reader.collect::<Result<Vec<_>, _>>();
         let wrong = |error: arrow::error::ArrowError| {

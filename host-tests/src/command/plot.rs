@@ -127,11 +127,7 @@ fn png(_: &str, _: Place) -> Result<Vec<u8>, Failure> {
 ///
 /// # Errors
 /// When an axis has nothing of what is to be drawn.
-pub(super) fn drawn(
-    chosen: &[&Diagnosed],
-    input: &Path,
-    shown: &Shown,
-) -> Result<String, Failure> {
+pub(super) fn drawn(chosen: &[&Diagnosed], input: &Path, shown: &Shown) -> Result<String, Failure> {
     let drawings = chosen.iter();
     let drawings = drawings.map(|diagnosed| drawing(diagnosed, input, shown));
     Ok(svg(&drawings.collect::<Result<Vec<_>, _>>()?))

@@ -167,8 +167,8 @@ pub use cuts::{Cuts, Moment, TimeRange};
 pub(crate) use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
-pub use octaves::accumulate;
 pub(crate) use names::is_degrees_column;
+pub use octaves::accumulate;
 pub(crate) use places::Places;
 use serde::{Deserialize, Serialize};
 

@@ -36,7 +36,10 @@ pub fn accumulate(
     arrays.pass(&columns, &mut ranges, progress)?;
     let quanta = columns.iter().zip(ranges.0).map(|(column, range)| {
         Quantum::of(range).ok_or_else(|| {
-            let what = format!("axis {}: the range of its values is impossible", column.axis);
+            let what = format!(
+                "axis {}: the range of its values is impossible",
+                column.axis
+            );
             Place::file(arrays.path()).failure(what, "scale the values or remove the outliers")
         })
     });

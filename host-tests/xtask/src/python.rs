@@ -48,7 +48,13 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let installed = step(
         "Python: maturin and what the tests need",
         program("python")
-            .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
+            .args([
+                "-m",
+                "pip",
+                "install",
+                "--quiet",
+                "--disable-pip-version-check",
+            ])
             .args(["--requirement", REQUIREMENTS])
             .current_dir(workspace()),
     );
@@ -86,7 +92,13 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     step(
         "Python: installing the wheel",
         program("python")
-            .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
+            .args([
+                "-m",
+                "pip",
+                "install",
+                "--quiet",
+                "--disable-pip-version-check",
+            ])
             .args(["--force-reinstall", "--no-deps"])
             .arg(&wheel),
     )?;

@@ -60,7 +60,10 @@ arrays! {
 }
 
 /// Copies a run of a column as numbers of another type, whatever the layout of the array.
-fn copy<'a, T, U>(view: ArrayView1<'a, T>, convert: impl Fn(T) -> U + Send + Sync + 'a) -> Fill<'a, U>
+fn copy<'a, T, U>(
+    view: ArrayView1<'a, T>,
+    convert: impl Fn(T) -> U + Send + Sync + 'a,
+) -> Fill<'a, U>
 where
     T: Copy + Send + Sync + 'a,
 {

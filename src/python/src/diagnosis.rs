@@ -56,7 +56,9 @@ impl Diagnosis {
         own: Vec<Py<OwnEffect>>,
     ) -> PyResult<Comparison> {
         let (diagnosis, effects) = (self.0.clone(), own::effects(&own));
-        let compared = left(py, None, move |_| diagnosis.compare(&axis, &options, &effects));
+        let compared = left(py, None, move |_| {
+            diagnosis.compare(&axis, &options, &effects)
+        });
         own::checked(&own, compared.map(Comparison::new))
     }
 }

@@ -26,9 +26,7 @@ fn refused(error: &Error) -> Failure {
         let values = line.strip_prefix("[possible values: ");
         let values = values.and_then(|line| line.strip_suffix(']'));
         let tip = line.strip_prefix("tip: ").map(str::to_owned);
-        values
-            .map(|values| format!("choose from {values}"))
-            .or(tip)
+        values.map(|values| format!("choose from {values}")).or(tip)
     });
     let remedy = remedies.next();
     // A value that its type refuses says why behind a colon.
@@ -67,7 +65,10 @@ mod tests {
             let refusal = refusal(option);
             assert!(!refusal.contains('\n'), "{refusal}");
             let (found, advised) = refusal.rsplit_once("; ").expect("a remedy");
-            assert!(found.contains(what) && advised.contains(remedy), "{refusal}");
+            assert!(
+                found.contains(what) && advised.contains(remedy),
+                "{refusal}"
+            );
         }
     }
 }

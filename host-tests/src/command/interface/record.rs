@@ -158,7 +158,9 @@ impl Record {
     /// None occurs, because all numbers can be written.
     pub fn curve_file(&self) -> Result<String, Failure> {
         let axes = self.axes.iter().map(|(curve, _)| curve.clone()).collect();
-        CurveFile::new(axes).to_json().map_err(|error| unwritten(&error))
+        CurveFile::new(axes)
+            .to_json()
+            .map_err(|error| unwritten(&error))
     }
 
     /// Fits all axes: the document and the text that `fit` prints.

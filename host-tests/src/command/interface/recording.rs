@@ -95,7 +95,9 @@ impl Recording {
 
     /// Samples of each axis so far.
     pub fn samples(&self) -> u64 {
-        self.axes.first().map_or(0, |axis| axis.accumulator.samples())
+        self.axes
+            .first()
+            .map_or(0, |axis| axis.accumulator.samples())
     }
 
     /// Adds counts of an axis. All axes have to get equally many before anything else is done.

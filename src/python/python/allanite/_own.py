@@ -30,7 +30,8 @@ class OwnEffect:
 
     Notes
     -----
-    The function is kept until the program ends.
+    The function is kept until the program ends. Where an effect of the catalogue has a closed form for the weights of the octaves,
+    one's own is interpolated, so that coefficients agree within a standard error.
     """
 
     def __init__(

@@ -26,6 +26,11 @@ impl Comparison {
         self.0.effects()
     }
 
+    /// The model in words.
+    fn name(&self) -> String {
+        self.0.name()
+    }
+
     /// The picture of the record beside the model.
     fn svg(&self) -> String {
         self.0.svg()

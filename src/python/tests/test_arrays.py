@@ -94,6 +94,18 @@ def test_a_row_that_is_no_number_is_lost():
     record = allanite.Record.from_numpy(array, rate=100, unit="deg/s")
     assert record.samples == whole.samples - 1
     assert any("row" in note for note in record.notes)
+    masked = np.ma.masked_array(counts(), mask=np.zeros_like(counts(), bool))
+    masked.mask[5000, 1] = True
+    assert allanite.Record.from_numpy(masked, **OPTIONS).samples == whole.samples - 1
+
+
+def test_a_structured_array_is_a_table():
+    array = np.zeros(20_000, [("gx", "i2"), ("temp_C", "f4"), ("gy", "i4")])
+    array["gx"], array["gy"] = counts().T[:2]
+    record = allanite.Record.from_numpy(array, **OPTIONS)
+    assert [axis.axis for axis in record] == ["gx", "gy"]
+    columns = {name: array[name].copy() for name in array.dtype.names}
+    assert record == allanite.Record.from_numpy(columns, **OPTIONS)
 
 
 def test_covariates(tmp_path):

@@ -213,6 +213,21 @@ def test_ctrl_c_ends_the_reading(source, tmp_path):
     assert allanite.Record.from_numpy(array[:1000], rate=100, unit="deg/s").samples == 1000
 
 
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_ends_a_diagnosis():
+    record = allanite.read(DATA / "adis16405.json")
+    begun = time.perf_counter()
+    diagnosis = record.diagnose()
+    took = time.perf_counter() - begun
+    threading.Timer(0.1 * took, os.kill, (os.getpid(), signal.SIGINT)).start()
+    begun = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        record.diagnose()
+        time.sleep(took)
+    assert time.perf_counter() - begun < 0.6 * took + 0.1
+    assert record.diagnose() == diagnosis
+
+
 def test_types_are_strict(tmp_path):
     pytest.importorskip("mypy")
     user = tmp_path / "user.py"

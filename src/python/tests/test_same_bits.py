@@ -1,9 +1,10 @@
 """Python tells the same as the command line, to the bit."""
 
 import json
+import subprocess
 
 import pytest
-from conftest import DATA, FIXTURES, allanite, document
+from conftest import DATA, FIXTURES, allanite, document, program
 
 import allanite as package
 
@@ -51,7 +52,7 @@ def test_there_are_forty_logs():
         ("two-gyros.ulg", {"topic": "sensor_gyro:1"}),
         ("imu-zstd.mcap", {}),
         ("ros1.mcap", {}),
-        ("two-imus.mcap", {"topic": "/board/imu"}),
+        ("two-imus.mcap", {"topic": "/imu/left"}),
         ("euroc.csv", {}),
         ("euroc.csv", {"sensor": "accel", "from_": "10ms"}),
         ("counts.npy", {"rate": 100, "scale": 0.05, "unit": "rad/s", "columns": {"x": 1}}),
@@ -64,15 +65,17 @@ def test_every_reader_and_its_options(file, options):
         if isinstance(value, dict):
             value = ",".join(f"{axis}={column}" for axis, column in value.items())
         words += [f"--{name.rstrip('_')}", value]
-    try:
-        expected = document("fit", path, *words)
-    except AssertionError as refused:
-        # Where the command line refuses a fixture, so does Python, with the same line.
-        with pytest.raises(package.AllaniteError) as error:
-            package.read(path, **options).fit()
-        assert error.value.what in str(refused)
-        return
-    assert package.read(path, **options).fit().to_dict() == expected
+    record = package.read(path, **options)
+    assert record.fit().to_dict() == document("fit", path, *words)
+    assert record.diagnose().to_dict() == document("diagnose", path, *words)
+
+
+def test_what_the_command_line_refuses_is_refused_in_its_words():
+    path = FIXTURES / "two-imus.mcap"
+    with pytest.raises(package.AllaniteError) as refused:
+        package.read(path, topic="/board/imu")
+    done = subprocess.run([program(), "fit", str(path), "--topic", "/board/imu"], capture_output=True, text=True, check=False)
+    assert done.stderr == f"allanite: {str(refused.value).replace('topic=', '--topic')}\n"
 
 
 def test_curve_files_and_texts():
@@ -92,10 +95,6 @@ def test_options_of_fits_and_diagnoses(three):
     assert fit.to_dict()["axes"][0]["limits"][0]["verdict"]
     command = [three, "--method", "ordinary", "--limit", "N=0.01", "--limit", "B=9°/h", "--json"]
     # Limits end the command with another status, which says what they say.
-    import subprocess
-
-    from conftest import program
-
     done = subprocess.run([program(), "--quiet", "fit", *map(str, command)], capture_output=True, text=True, check=False)
     assert done.returncode in (0, 1, 3)
     assert fit.to_dict() == json.loads(done.stdout)

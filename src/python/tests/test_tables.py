@@ -65,6 +65,8 @@ def test_frames_of_pandas(frame, expected):
     assert record.fit().to_dict() == expected
     by_index = allanite.Record.from_pandas(frame.set_index("stamp"), unit="deg/s", scale=0.5)
     assert by_index.rate_hz == pytest.approx(100, rel=1e-9)
+    zoned = frame.set_index(frame["stamp"].dt.tz_localize("Europe/Berlin")).drop(columns="stamp")
+    assert allanite.Record.from_pandas(zoned, unit="deg/s", scale=0.5).fit().to_dict() == by_index.fit().to_dict()
     by_column = allanite.Record.from_pandas(frame, time="stamp", unit="deg/s", scale=0.5)
     assert by_column.fit().to_dict() == by_index.fit().to_dict()
     series = allanite.Record.from_pandas(frame["gy"], rate=100, unit="deg/s")

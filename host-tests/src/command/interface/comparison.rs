@@ -7,6 +7,7 @@ use crate::{
         diagnose::words::shown_p,
         effect_argument,
         input::record::library_failure,
+        known_filter::{self, known_filter},
         output::words,
     },
     confidence::relative_errors,
@@ -67,6 +68,33 @@ impl Comparison {
         terms.map(effect_argument::written).collect()
     }
 
+    /// The model in words: `five terms without rate ramp + sinusoid`.
+    pub fn name(&self) -> String {
+        let model = &self.compared.model;
+        let five = Model::ieee_952();
+        let terms = model.terms().iter();
+        let is_replaced = |name: &str| {
+            let mut replaced = terms.clone().filter_map(|term| term.effect.replaces());
+            replaced.any(|replaced| replaced.name() == name)
+        };
+        let names = five.terms().iter().map(|term| term.effect.name());
+        let gone = names.filter(|name| model.position(name).is_none() && !is_replaced(name));
+        let gone: Vec<String> = gone.map(words::plain).collect();
+        let without = match gone.as_slice() {
+            [] => String::new(),
+            gone => format!(" without {}", words::list_of(gone.to_vec())),
+        };
+        let given = known_filter(model).map(|term| term.effect.name());
+        let added = terms
+            .clone()
+            .map(|term| term.effect.name())
+            .filter(|name| five.position(name).is_none() && given != Some(*name));
+        let added: String = added
+            .map(|name| format!(" + {}", words::plain(name)))
+            .collect();
+        format!("{}{without}{added}", known_filter::terms(model))
+    }
+
     /// The picture of the record beside the model, as the text of an SVG file.
     pub fn svg(&self) -> String {
         let Compared {
@@ -90,10 +118,8 @@ impl Comparison {
             .into_iter()
             .filter(|quantity| *quantity == Quantity::Deviation || !comparison.bins.is_empty())
             .map(|quantity| Frame::of(quantity, both));
-        let names = model.terms().iter().map(|term| term.effect.name());
-        let names: Vec<String> = names.map(words::plain).collect();
         svg(&[Drawing {
-            title: format!("{}: {}", axis.axis, names.join(" + ")),
+            title: format!("{}: {}", axis.axis, self.name()),
             subtitle: format!(
                 "χ² {:.1}, {} degrees of freedom, p {}; {}",
                 comparison.chi_squared,

@@ -17,10 +17,14 @@ _KINDS = "iuf"
 
 def of_arrays(samples: Any, names: Sequence[str] | None, time: Any) -> list[tuple[str, Any]]:
     """The columns of an array, or of a mapping from names to arrays."""
+    fields = getattr(getattr(samples, "dtype", None), "names", None)
+    if fields:
+        # A structured array is a table of its fields.
+        samples = {name: samples[name] for name in fields}
     if isinstance(samples, Mapping):
-        columns = [_plain(name, np.asarray(array)) for name, array in samples.items()]
+        columns = [_plain(name, _array(array)) for name, array in samples.items()]
     else:
-        array = np.asarray(samples)
+        array = _array(samples)
         if array.ndim not in (1, 2):
             raise AllaniteError(
                 "array", None, f"the array has {array.ndim} dimensions",
@@ -44,11 +48,18 @@ def of_arrays(samples: Any, names: Sequence[str] | None, time: Any) -> list[tupl
     if time is not None:
         # Without names, the columns have to be told from the time.
         columns = [(name or f"c{at}", array) for at, (name, array) in enumerate(columns, 1)]
-        columns.insert(0, _plain(TIME, np.asarray(time)))
+        columns.insert(0, _plain(TIME, _array(time)))
     lengths = {len(array) for _, array in columns}
     if len(lengths) > 1:
         raise AllaniteError("array", None, f"the columns have {sorted(lengths)} rows", "give columns of one length")
     return columns
+
+
+def _array(samples: Any) -> Any:
+    """An array. Values that are masked are missing."""
+    if isinstance(samples, np.ma.MaskedArray) and np.ma.is_masked(samples):
+        return samples.astype("f8").filled(np.nan)
+    return np.asarray(samples)
 
 
 def of_frame(frame: Any) -> tuple[list[tuple[str, Any]], str | None]:
@@ -62,6 +73,8 @@ def of_frame(frame: Any) -> tuple[list[tuple[str, Any]], str | None]:
             columns.append(_plain(str(label), array))
     index = frame.index
     if np.issubdtype(getattr(index, "dtype", object), np.datetime64) or hasattr(index, "tz") or hasattr(index, "total_seconds"):
+        if getattr(index, "tz", None) is not None:
+            index = index.tz_convert("UTC").tz_localize(None)
         name, array = _plain(str(index.name or TIME), index.to_numpy())
         columns.insert(0, (name, array))
         return columns, name

@@ -40,6 +40,8 @@ class Model:
         χ² of octaves and bins, its degrees of freedom, and the probability of a larger one.
     rms_percent : float
         Root mean square of the misfit of the octaves, in percent of the variance.
+    name : str
+        The model in words: ``five terms + sinusoid``.
     before : Model or None
         The model that this one was made of.
     """
@@ -57,6 +59,7 @@ class Model:
     worst: Worst | None
     stretches: tuple[Stretch, ...]
     words: str
+    name: str = ""
     before: Model | None = field(default=None, repr=False, compare=False)
     _of: Any = field(default=None, repr=False, compare=False)
     _with: tuple[str, ...] = field(default=(), repr=False, compare=False)
@@ -81,6 +84,7 @@ class Model:
         return _document.build(
             cls,
             document["axes"][0],
+            name=compared.name(),
             before=before,
             _of=of,
             _with=with_,
@@ -164,15 +168,6 @@ class Model:
         ax.set_ylabel(f"Allan deviation σ, {self.unit}")
         ax.legend()
         return ax
-
-    @property
-    def name(self) -> str:
-        """The model in words: ``five terms + sinusoid``."""
-        without = f" without {' and '.join(self._without)}" if self._without else ""
-        behind = f" behind the given {self._filter.split(':')[0]}" if self._filter else ""
-        added = "".join(f" + {text.split(':')[0]}" for text in self._with)
-        added += "".join(f" + {effect.NAME}" for effect in self._own)
-        return (f"five terms{without}{behind}{added}").replace("_", " ")
 
     def __str__(self) -> str:
         fall = "" if self.before is None else f"{_shown(self.before.chi2)} → "

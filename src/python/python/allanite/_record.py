@@ -84,7 +84,7 @@ class Record(Axes[Curve]):
 
         Parameters
         ----------
-        samples : array of shape (n,) or (n, axes), or mapping from names to arrays of shape (n,)
+        samples : array of shape (n,) or (n, axes), structured array, or mapping from names to arrays of shape (n,)
             Counts, or rates in ``unit``: integers of 1 to 8 bytes or floats of 4 or 8 bytes, in any memory order. A row with a
             value that is not finite is a lost sample.
         rate : float, optional

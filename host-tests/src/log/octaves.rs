@@ -6,7 +6,6 @@ use super::{
     columns::AxisColumn,
     field::Field,
     quantum::{Quantum, Range},
-    rounding::range_of,
     table::{Ended, RUN, Stop, Table, Visitor, visit_each},
 };
 use crate::failure::{Failure, Place};
@@ -58,14 +57,33 @@ impl Visitor for Ranges {
     }
 
     fn visit_run<F: Field>(&mut self, axis: usize, values: &[F]) -> Result<(), (usize, Stop)> {
-        match F::floats(values).and_then(range_of) {
-            Some(found) => {
-                self.0[axis].include_floats(&found);
+        match F::floats(values) {
+            Some(floats) => {
+                self.0[axis].include_floats(&range_of(floats));
                 Ok(())
             }
             None => visit_each(self, axis, values),
         }
     }
+}
+
+/// The range of finite floats, which are no counts. Eight lowest values side by side make it a loop over vectors.
+fn range_of(floats: &[f64]) -> Range {
+    const LANES: usize = 8;
+    let mut lowest = [f64::INFINITY; LANES];
+    let mut highest = [f64::NEG_INFINITY; LANES];
+    let mut include = |chunk: &[f64]| {
+        for ((low, high), &float) in lowest.iter_mut().zip(&mut highest).zip(chunk) {
+            *low = if float < *low { float } else { *low };
+            *high = if float > *high { float } else { *high };
+        }
+    };
+    let (chunks, rest) = floats.as_chunks::<LANES>();
+    chunks.iter().for_each(|chunk| include(chunk));
+    include(rest);
+    let low = lowest.into_iter().fold(f64::INFINITY, f64::min);
+    let high = highest.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    Range::of_floats(low, high, false)
 }
 
 /// Accumulates counts.
@@ -110,6 +128,7 @@ impl Visitor for Octaves {
     fn visit_run<F: Field>(&mut self, axis: usize, values: &[F]) -> Result<(), (usize, Stop)> {
         let mut counts = [0; RUN];
         let counts = &mut counts[..values.len()];
+        // Decimals end the first pass at once, and all others are rounded many at a time.
         let all = match F::floats(values).filter(|_| !self.only_counts) {
             Some(floats) => self.quanta[axis].count_all(floats, counts),
             None => false,

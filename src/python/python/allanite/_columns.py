@@ -58,7 +58,7 @@ def of_arrays(samples: Any, names: Sequence[str] | None, time: Any) -> list[tupl
 def _array(samples: Any) -> Any:
     """An array. Values that are masked are missing."""
     if isinstance(samples, np.ma.MaskedArray) and np.ma.is_masked(samples):
-        return samples.astype("f8").filled(np.nan)
+        return np.ma.filled(samples.astype("f8"), np.nan)
     return np.asarray(samples)
 
 
@@ -72,7 +72,8 @@ def of_frame(frame: Any) -> tuple[list[tuple[str, Any]], str | None]:
         if array is not None:
             columns.append(_plain(str(label), array))
     index = frame.index
-    if np.issubdtype(getattr(index, "dtype", object), np.datetime64) or hasattr(index, "tz") or hasattr(index, "total_seconds"):
+    # Only an index of dates and times has a time zone, and only one of time differences has their seconds.
+    if hasattr(index, "tz") or hasattr(index, "total_seconds"):
         if getattr(index, "tz", None) is not None:
             index = index.tz_convert("UTC").tz_localize(None)
         name, array = _plain(str(index.name or TIME), index.to_numpy())

@@ -59,13 +59,13 @@ impl Batches {
 fn numbers(kind: &DataType, chunks: &[ArrayRef]) -> Option<Numbers<'static>> {
     /// Integers are exact unless a value is missing, which only a float can say.
     macro_rules! integers {
-        ($type:ty, $numbers:ident($wide:ty)) => {
+        ($type:ty, $numbers:ident($wide:ty), $float:expr) => {
             match chunks.iter().all(|chunk| chunk.null_count() == 0) {
                 true => Numbers::$numbers(copy::<$type, $wide>(chunks, |value| {
                     value.map_or(0, <$wide>::from)
                 })),
                 false => Numbers::Float(copy::<$type, f64>(chunks, |value| {
-                    value.map_or(f64::NAN, |value| value as f64)
+                    value.map_or(f64::NAN, $float)
                 })),
             }
         };
@@ -79,14 +79,14 @@ fn numbers(kind: &DataType, chunks: &[ArrayRef]) -> Option<Numbers<'static>> {
     }
     let or_nothing = |value: Option<f64>| value.unwrap_or(f64::NAN);
     Some(match kind {
-        DataType::Int8 => integers!(Int8Type, Int32(i32)),
-        DataType::Int16 => integers!(Int16Type, Int32(i32)),
-        DataType::Int32 => integers!(Int32Type, Int32(i32)),
-        DataType::Int64 => integers!(Int64Type, Int64(i64)),
-        DataType::UInt8 => integers!(UInt8Type, Int32(i32)),
-        DataType::UInt16 => integers!(UInt16Type, Int32(i32)),
-        DataType::UInt32 => integers!(UInt32Type, Int64(i64)),
-        DataType::UInt64 => integers!(UInt64Type, Uint64(u64)),
+        DataType::Int8 => integers!(Int8Type, Int32(i32), f64::from),
+        DataType::Int16 => integers!(Int16Type, Int32(i32), f64::from),
+        DataType::Int32 => integers!(Int32Type, Int32(i32), f64::from),
+        DataType::Int64 => integers!(Int64Type, Int64(i64), |value| value as f64),
+        DataType::UInt8 => integers!(UInt8Type, Int32(i32), f64::from),
+        DataType::UInt16 => integers!(UInt16Type, Int32(i32), f64::from),
+        DataType::UInt32 => integers!(UInt32Type, Int64(i64), f64::from),
+        DataType::UInt64 => integers!(UInt64Type, Uint64(u64), |value| value as f64),
         DataType::Float32 => Numbers::Float(copy::<Float32Type, f64>(chunks, move |value| {
             or_nothing(value.map(f64::from))
         })),

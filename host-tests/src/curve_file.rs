@@ -156,7 +156,11 @@ impl CurveFile {
         Self::parse(path, &text)
     }
 
-    fn parse(path: &Path, text: &[u8]) -> Result<Self, Failure> {
+    /// Reads the text of a file as [`read`](Self::read) does. `path` stands for the file in messages.
+    ///
+    /// # Errors
+    /// As of [`read`](Self::read), except those of the file itself.
+    pub fn parse(path: &Path, text: &[u8]) -> Result<Self, Failure> {
         /// The fields that every version of the format has.
         #[derive(Deserialize)]
         struct Head {

@@ -54,6 +54,16 @@ impl Place {
         }
     }
 
+    /// The file, if there is one.
+    pub fn path(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    /// The row of the file, counted from 1, if there is one.
+    pub fn at_row(&self) -> Option<u64> {
+        self.row
+    }
+
     /// The failure at this place.
     pub fn failure(self, what: impl fmt::Display, remedy: impl fmt::Display) -> Failure {
         Failure::Input {
@@ -149,6 +159,11 @@ impl Failure {
             format!("{part} is not part of this build"),
             "run `cargo allanite-full` instead of `cargo allanite`; its first build takes minutes longer",
         )
+    }
+
+    /// The failure of work that its caller has ended, who knows why.
+    pub fn interrupted() -> Self {
+        Self::option("interrupted", "start again")
     }
 
     /// A failure to print results.

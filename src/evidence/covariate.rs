@@ -59,6 +59,7 @@ pub const EXPLANATION: Explanation = Explanation {
 /// One octave of a gyro and a covariate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub struct CrossPoint {
     /// Averaging factor.
     pub m: u32,
@@ -72,6 +73,7 @@ pub struct CrossPoint {
 /// covariate.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub struct CrossCurve<const K: usize> {
     points: Vec<CrossPoint, K>,
 }

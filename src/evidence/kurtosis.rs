@@ -40,6 +40,7 @@ impl<const OCTAVES: usize> FourthMoments<OCTAVES> {
 /// Excess kurtosis of one octave's differences.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub struct KurtosisPoint {
     /// Averaging factor.
     pub m: u32,
@@ -71,6 +72,7 @@ impl KurtosisPoint {
 /// Excess kurtosis by octave, shortest averaging time first.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub struct Kurtosis<const K: usize> {
     /// The octaves whose excess is known.
     pub points: Vec<KurtosisPoint, K>,

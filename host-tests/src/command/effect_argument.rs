@@ -1,7 +1,10 @@
 //! Effects as options of the command line: `EFFECT[:parameter=value,…]`.
 
 use crate::failure::{Failure, did_you_mean, quoted};
-use allanite::effect::{CATALOGUE, Effect, MAX_PARAMETERS, Parameter, Span};
+use allanite::{
+    Term,
+    effect::{CATALOGUE, Effect, MAX_PARAMETERS, Parameter, Span},
+};
 
 /// The effect that an option names, with the values that have not been taken from it yet.
 #[derive(Clone, Debug)]
@@ -291,6 +294,24 @@ impl<'a> EffectArgument<'a> {
             }
             None => Ok(()),
         }
+    }
+}
+
+/// The text of an option that gives a term: its shape, with `~` if it is fitted.
+pub(super) fn written(term: &Term) -> String {
+    let parameters = term.effect.parameters().iter().zip(term.parameters);
+    let pairs = parameters.map(|(parameter, value)| {
+        let sign = if term.fitted && !parameter.is_whole {
+            '~'
+        } else {
+            '='
+        };
+        format!("{}{sign}{value}", parameter.name)
+    });
+    let pairs: Vec<String> = pairs.collect();
+    match pairs.is_empty() {
+        true => term.effect.name().to_owned(),
+        false => format!("{}:{}", term.effect.name(), pairs.join(",")),
     }
 }
 

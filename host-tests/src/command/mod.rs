@@ -16,6 +16,7 @@ pub mod explore;
 mod export;
 mod fit;
 mod input;
+pub mod interface;
 mod known_filter;
 mod limit;
 #[cfg(not(target_family = "wasm"))]

@@ -27,6 +27,13 @@ pub(super) struct Arguments {
     /// The picture to write: .svg or .png
     #[arg(long, short, value_name = "CURVE.svg|CURVE.png")]
     output: PathBuf,
+    #[command(flatten)]
+    shown: Shown,
+}
+
+/// What is drawn of a diagnosis.
+#[derive(Debug, Args)]
+pub(super) struct Shown {
     /// The axis to draw [default: all axes, one below the other]
     #[arg(long, value_name = "NAME")]
     axis: Option<String>,
@@ -81,7 +88,8 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     // The file comes first, so that an output that cannot be written is refused before the diagnosis.
     let mut file = OutputFile::create(&arguments.output, [&*arguments.diagnosis.input])?;
     let diagnosed = arguments.diagnosis.diagnosed()?;
-    let chosen = chosen(&diagnosed, arguments)?;
+    let (input, shown) = (&arguments.diagnosis.input, &arguments.shown);
+    let chosen = chosen(&diagnosed, input, shown)?;
     if matches!(format, Format::Png) && chosen.len() > MOST_AXES {
         return Err(Place::file(&arguments.output).failure(
             format!(
@@ -91,11 +99,7 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
             "draw one axis with --axis, or an .svg",
         ));
     }
-    let drawings: Vec<Drawing> = chosen
-        .iter()
-        .map(|diagnosed| drawing(diagnosed, arguments))
-        .collect::<Result<_, _>>()?;
-    let drawing = svg(&drawings);
+    let drawing = drawn(&chosen, input, shown)?;
     let place = || Place::file(&arguments.output);
     let bytes = match format {
         Format::Svg => drawing.into_bytes(),
@@ -119,12 +123,26 @@ fn png(_: &str, _: Place) -> Result<Vec<u8>, Failure> {
     Err(Failure::not_built_in(PNG))
 }
 
+/// The drawing of these axes, as the text of an SVG file.
+///
+/// # Errors
+/// When an axis has nothing of what is to be drawn.
+pub(super) fn drawn(chosen: &[&Diagnosed], input: &Path, shown: &Shown) -> Result<String, Failure> {
+    let drawings = chosen.iter();
+    let drawings = drawings.map(|diagnosed| drawing(diagnosed, input, shown));
+    Ok(svg(&drawings.collect::<Result<Vec<_>, _>>()?))
+}
+
 /// The axis that the option names, or all axes.
-fn chosen<'a>(
+///
+/// # Errors
+/// When there is no such axis.
+pub(super) fn chosen<'a>(
     diagnosed: &'a [Diagnosed],
-    arguments: &Arguments,
+    input: &Path,
+    shown: &Shown,
 ) -> Result<Vec<&'a Diagnosed>, Failure> {
-    let Some(name) = &arguments.axis else {
+    let Some(name) = &shown.axis else {
         return Ok(diagnosed.iter().collect());
     };
     let chosen = diagnosed.iter().find(|one| one.axis.axis == *name);
@@ -133,7 +151,7 @@ fn chosen<'a>(
         names.collect::<Vec<_>>().join(", ")
     };
     let chosen = chosen.ok_or_else(|| {
-        Place::file(&arguments.diagnosis.input).failure(
+        Place::file(input).failure(
             format!("there is no axis {}", quoted(name.as_bytes())),
             format!("choose from {}", names()),
         )
@@ -142,14 +160,14 @@ fn chosen<'a>(
 }
 
 /// The drawing of a step, or of the last step if the diagnosis has fewer.
-fn drawing(diagnosed: &Diagnosed, arguments: &Arguments) -> Result<Drawing, Failure> {
+fn drawing(diagnosed: &Diagnosed, input: &Path, shown: &Shown) -> Result<Drawing, Failure> {
     let last = diagnosed.steps.len() - 1;
-    let at = arguments.step.map_or(last, |step| step.min(last));
+    let at = shown.step.map_or(last, |step| step.min(last));
     let step = &diagnosed.steps[at];
     let axis = &diagnosed.axis;
     let record = words::record(axis.samples, axis.rate_hz, axis.octaves.len());
     let pictures = Pictures::of(diagnosed);
-    let wanted = |what: What| arguments.what.is_empty() || arguments.what.contains(&what);
+    let wanted = |what: What| shown.what.is_empty() || shown.what.contains(&what);
     let frames = pictures.frames().into_iter();
     let frames = frames.filter(|frame| {
         wanted(match frame.quantity {
@@ -176,7 +194,7 @@ fn drawing(diagnosed: &Diagnosed, arguments: &Arguments) -> Result<Drawing, Fail
     if drawing.figures.is_empty() && drawing.course.is_none() {
         let what = format!("axis {} has nothing of what is to be drawn", axis.axis);
         let remedy = "give the log instead of a curve file, record longer, or leave out --what";
-        return Err(Place::file(&arguments.diagnosis.input).failure(what, remedy));
+        return Err(Place::file(input).failure(what, remedy));
     }
     Ok(drawing)
 }

@@ -1,5 +1,6 @@
 //! Means of an axis and of the columns beside it, in blocks of equal duration.
 
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The number of blocks that are kept at most. A record of eight hours at 100 Hz then has blocks of 2.6 s. Chosen by
@@ -25,7 +26,8 @@ pub struct BlockSums {
 }
 
 /// The means of an axis and of the columns beside it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(from = "Stored", into = "Stored")]
 pub struct BlockMeans {
     /// Samples of a block: a power of two.
     pub samples: u32,
@@ -37,6 +39,44 @@ pub struct BlockMeans {
     pub rate: Arc<[f64]>,
     /// The columns with their means.
     pub columns: Arc<[(String, Arc<[f64]>)]>,
+}
+
+/// The same without what axes share.
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    samples: u32,
+    block_s: f64,
+    broken: Vec<bool>,
+    rate: Vec<f64>,
+    columns: Vec<(String, Vec<f64>)>,
+}
+
+impl From<BlockMeans> for Stored {
+    fn from(means: BlockMeans) -> Self {
+        let columns = means.columns.iter();
+        Self {
+            samples: means.samples,
+            block_s: means.block_s,
+            broken: means.broken.to_vec(),
+            rate: means.rate.to_vec(),
+            columns: columns
+                .map(|(name, means)| (name.clone(), means.to_vec()))
+                .collect(),
+        }
+    }
+}
+
+impl From<Stored> for BlockMeans {
+    fn from(stored: Stored) -> Self {
+        let columns = stored.columns.into_iter();
+        Self {
+            samples: stored.samples,
+            block_s: stored.block_s,
+            broken: stored.broken.into(),
+            rate: stored.rate.into(),
+            columns: columns.map(|(name, means)| (name, means.into())).collect(),
+        }
+    }
 }
 
 impl BlockMeans {

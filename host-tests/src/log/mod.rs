@@ -80,6 +80,7 @@
 //! the other.
 
 mod accumulate;
+mod arrays;
 mod axes;
 mod axis_names;
 #[cfg(feature = "bags")]
@@ -121,6 +122,7 @@ mod names;
 mod npy;
 mod npy_block;
 pub mod npy_header;
+mod octaves;
 mod pace;
 mod part_names;
 mod parts;
@@ -161,13 +163,16 @@ use allanite::{
     kurtosis::Kurtosis,
     spectrum::SpectrumAccumulator,
 };
+pub use arrays::{Arrays, Column, Fill, Numbers, read_arrays};
 pub use covariate::{CovariateChoice, Covariates};
 pub use cuts::{Cuts, Moment, TimeRange};
 pub(crate) use faults::{rate_of, said as repeats_said};
 pub use file::{read, read_for_fit, read_for_page, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
+pub use octaves::accumulate;
 pub(crate) use places::Places;
+use serde::{Deserialize, Serialize};
 pub use spectrogram::Spectrogram;
 
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
@@ -282,7 +287,7 @@ pub struct Axis {
 }
 
 /// What a log shows of an axis beside its Allan variance.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Evidence {
     /// The kurtosis of the differences, which shows whether they are Gaussian.
     pub kurtosis: Kurtosis<OCTAVES>,
@@ -300,12 +305,13 @@ pub struct Evidence {
     pub means: Option<BlockMeans>,
     /// The motion or the spikes that make the record not valid, if there are any.
     pub disturbance: Option<Disturbance>,
-    /// The spectrogram, for a page that shows it.
+    /// The spectrogram, for a page that shows it, and nobody else keeps.
+    #[serde(skip)]
     pub spectrogram: Option<Spectrogram>,
 }
 
 /// Motion during a record, or its spikes. A gyro that turns about one axis is not at rest about the others.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Disturbance {
     /// The axis that shows it.
     pub axis: String,

@@ -156,7 +156,25 @@ pub(super) fn open_unbuffered(
     let (file, length) = regular_file::open(path)?;
     progress.set_length(length);
     progress.set_position(0);
-    Ok(progress.wrap_read(file))
+    Ok(Interruptible {
+        file: progress.wrap_read(file),
+        progress: progress.clone(),
+    })
+}
+
+/// A file that fails once the bar that follows it has been ended, by a caller who wants no more of it.
+struct Interruptible<R> {
+    file: R,
+    progress: ProgressBar,
+}
+
+impl<R: Read> Read for Interruptible<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        match self.progress.is_finished() {
+            true => Err(std::io::Error::other("interrupted")),
+            false => self.file.read(buffer),
+        }
+    }
 }
 
 /// Opens the text of a file at its beginning, unpacked and without a byte order mark.

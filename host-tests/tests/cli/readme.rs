@@ -145,6 +145,7 @@ fn pages() -> Vec<String> {
         PUBLISHED.to_owned(),
         "host-tests/README.md".to_owned(),
         "host-tests/CONTRIBUTING.md".to_owned(),
+        "src/python/README.md".to_owned(),
     ];
     for folder in ["host-tests/doc", "host-tests/doc/studies"] {
         let files = fs::read_dir(Path::new(ROOT).join(folder)).expect("a folder");

@@ -8,6 +8,7 @@ pub mod cost;
 mod fuzz;
 mod miri;
 pub mod page;
+mod python;
 mod results;
 mod setup;
 mod soak;
@@ -115,6 +116,13 @@ enum Task {
         #[arg(long, value_name = "FILE", default_value = "target/allanite.html")]
         output: PathBuf,
     },
+    /// Build the package for Python as a wheel in target/wheels, and test it in a virtual environment in target/python. This
+    /// needs Python from 3.10 on and the network.
+    Python {
+        /// Arguments for pytest, such as `-k arrow`.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Ask the command line everything about some 70 records, and compare the answers with those of an earlier run: for
     /// changes that should change no result.
     Results {
@@ -183,6 +191,7 @@ impl CommandLine {
                 c::run(Contents { octaves, one_axis }, &targets, &output)
             }
             Task::Page { output } => page::page(&output),
+            Task::Python { arguments } => python::run(&arguments),
             Task::Results {
                 folder,
                 against,

@@ -3,7 +3,7 @@
 use crate::{
     bench,
     firmware::{BOARDS, CORTEX_M4F, RISCV, Toolchain, cargo, target_directory, workspace},
-    setup,
+    python, setup,
     step::step,
 };
 use anyhow::{Context as _, Result};
@@ -103,8 +103,11 @@ pub(crate) fn run() -> Result<()> {
         // The library's own tests have run, in both precisions, and so have the images.
         cargo()
             .args(["test", "--workspace", "--exclude", "allanite"])
+            // It has none in Rust, and those in Python follow.
+            .args(["--exclude", "allanite-python"])
             .args(["--", "--skip", "every_core::"]),
     )?;
+    python::run(&[])?;
     println!("\nall passed");
     Ok(())
 }

@@ -22,6 +22,7 @@ use crate::{
 /// where both factors are equal, as for white noise.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pair<const K: usize> {
     /// The covariates' places among [`Record::covariates`](crate::Record::covariates).
     pub covariates: [usize; 2],

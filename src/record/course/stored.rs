@@ -60,3 +60,24 @@ impl<const COVARIATES: usize> Course<COVARIATES> {
         Some(bytes)
     }
 }
+
+/// The bytes of [`write`](Course::write), for a program that keeps a course with what it has computed from it.
+impl serde::Serialize for Course {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut buffer = [0; Self::LONGEST_STORED];
+        // The buffer has room for every course.
+        let length = self.write(&mut buffer).unwrap_or(0);
+        serializer.serialize_bytes(buffer.get(..length).unwrap_or(&[]))
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for Course {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let bytes: &[u8] = serde::Deserialize::deserialize(deserializer)?;
+        let mut course = Self::new();
+        match course.read(bytes) {
+            Some([]) => Ok(course),
+            _ => Err(serde::de::Error::custom("no record has this course")),
+        }
+    }
+}

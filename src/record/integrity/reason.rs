@@ -3,6 +3,7 @@
 /// Why the Allan curve of a record is not valid. `Display` writes the finding, its numbers and a remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "storage", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Reason {
     /// The values change too seldom: the sensor or its reader hung, or the quanta are too coarse for the

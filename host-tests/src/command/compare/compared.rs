@@ -5,7 +5,7 @@ use crate::{
     log::{BINS, OCTAVES},
 };
 use allanite::{
-    Comparison, Error, Model, Record,
+    Comparison, Curve, Error, Model, Record,
     diagnosis::fit_shapes,
     fit::{Fit, Options, fit},
     spectrum::Spectrum,
@@ -38,8 +38,27 @@ impl Compared {
         model: &Model,
         held_out: Option<AxisCurve>,
     ) -> Result<Self, Error> {
+        let observed = (axis.curve()?, axis.spectrum()?);
+        Self::with_part(axis, observed, model, held_out)
+    }
+
+    /// Fits a model to a curve and a spectrum of an axis, from which something may have been subtracted, and compares it
+    /// with both.
+    pub(in crate::command) fn beside(
+        axis: AxisCurve,
+        observed: (Curve<OCTAVES>, Spectrum<BINS>),
+        model: &Model,
+    ) -> Result<Self, Error> {
+        Self::with_part(axis, observed, model, None)
+    }
+
+    fn with_part(
+        axis: AxisCurve,
+        (curve, spectrum): (Curve<OCTAVES>, Spectrum<BINS>),
+        model: &Model,
+        held_out: Option<AxisCurve>,
+    ) -> Result<Self, Error> {
         let options = Options::default();
-        let (curve, spectrum) = (axis.curve()?, axis.spectrum()?);
         let (model, fit, own) = fitted(Record::new(&curve, &spectrum), model)?;
         let (comparison, spectrum, held_out) = match held_out {
             None => (own, spectrum, None),

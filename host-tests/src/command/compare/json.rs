@@ -75,7 +75,7 @@ struct Fitted {
 }
 
 /// The document of the axes of one file.
-pub(super) fn document(compared: &[Compared]) -> Document<'_> {
+pub(in crate::command) fn document(compared: &[Compared]) -> Document<'_> {
     Document {
         axes: compared.iter().map(axis).collect(),
     }

@@ -1,7 +1,7 @@
 //! `compare`: shows octave by octave where a model fails.
 
 pub(super) mod compared;
-mod json;
+pub(super) mod json;
 pub(super) mod model;
 mod text;
 

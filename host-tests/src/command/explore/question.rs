@@ -7,6 +7,8 @@ use crate::{
 use allanite::{Model, Term};
 use serde::Deserialize;
 
+pub(super) use crate::command::effect_argument::written as with;
+
 /// A model and the records beside which it is to be seen.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -72,24 +74,6 @@ impl Question {
             taken.extend(added);
         }
         taken
-    }
-}
-
-/// The value of `--with` that gives a term: its shape, with `~` if it is fitted.
-pub(super) fn with(term: &Term) -> String {
-    let parameters = term.effect.parameters().iter().zip(term.parameters);
-    let pairs = parameters.map(|(parameter, value)| {
-        let sign = if term.fitted && !parameter.is_whole {
-            '~'
-        } else {
-            '='
-        };
-        format!("{}{sign}{value}", parameter.name)
-    });
-    let pairs: Vec<String> = pairs.collect();
-    match pairs.is_empty() {
-        true => term.effect.name().to_owned(),
-        false => format!("{}:{}", term.effect.name(), pairs.join(",")),
     }
 }
 

@@ -16,8 +16,11 @@ use crate::{
         known_filter::KnownFilter,
         limit::LimitArgument,
     },
+    curve_file::AxisCurve,
     failure::Failure,
+    log::Evidence,
 };
+use allanite::Model;
 use clap::Args;
 use fitted::{Fitted, MethodName};
 use judged::{Judged, Worst};
@@ -64,6 +67,34 @@ impl Findings for Vec<Fitted> {
     }
 }
 
+/// How axes are fitted.
+pub(super) struct Settings<'a> {
+    /// The five terms, behind a known filter if there is one.
+    pub(crate) model: &'a Model,
+    pub(crate) method: MethodName,
+    /// The largest values that coefficients may have.
+    pub(crate) limits: &'a [LimitArgument],
+}
+
+/// Fits all axes of a file.
+///
+/// # Errors
+/// When an axis cannot be fitted, or a limit is of another model or unit.
+pub(super) fn fitted(
+    path: &Path,
+    axes: Vec<(AxisCurve, Evidence)>,
+    settings: &Settings<'_>,
+) -> Result<Vec<Fitted>, Failure> {
+    let fit = |(axis, evidence)| {
+        let (model, method) = (settings.model, settings.method);
+        let mut fitted = Fitted::with_evidence(path, axis, model, method, evidence)?;
+        let fit = (&fitted.fit, fitted.is_valid());
+        fitted.limits = Judged::all(fit, fitted.axis.unit, settings.limits)?;
+        Ok(fitted)
+    };
+    axes.into_iter().map(fit).collect()
+}
+
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), Failure> {
     let model = arguments.filter.model()?;
@@ -71,16 +102,15 @@ pub(super) fn run(arguments: &Arguments, output: &mut impl Write) -> Result<(), 
     let worst = Worst::default();
     let work = |path: &Path| {
         let (about_log, covariates) = (&arguments.about_log, &arguments.covariates);
-        let axes = record::read_for_fit(path, about_log, covariates)?.into_iter();
-        let method = arguments.method;
-        axes.map(|(axis, evidence)| {
-            let mut fitted = Fitted::with_evidence(path, axis, &model, method, evidence)?;
-            let fit = (&fitted.fit, fitted.is_valid());
-            fitted.limits = Judged::all(fit, fitted.axis.unit, &limits)?;
-            worst.note(&fitted.limits);
-            Ok(fitted)
-        })
-        .collect::<Result<Vec<_>, _>>()
+        let axes = record::read_for_fit(path, about_log, covariates)?;
+        let settings = Settings {
+            model: &model,
+            method: arguments.method,
+            limits: &limits,
+        };
+        let fitted = fitted(path, axes, &settings)?;
+        fitted.iter().for_each(|one| worst.note(&one.limits));
+        Ok(fitted)
     };
     many::run(&arguments.files, work, output)?;
     worst.end()

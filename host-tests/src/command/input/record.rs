@@ -62,7 +62,8 @@ pub(crate) struct LogArguments {
 }
 
 impl LogArguments {
-    fn options(&self) -> log::Options {
+    /// The options of the reader of logs.
+    pub(crate) fn options(&self) -> log::Options {
         log::Options {
             rate_hz: self.rate,
             scale: self.scale,
@@ -101,7 +102,8 @@ impl CovariateArguments {
         no_covariates: true,
     };
 
-    fn tried(&self) -> Covariates {
+    /// The covariates that are tried.
+    pub(crate) fn tried(&self) -> Covariates {
         if self.covariates.is_empty() && !self.no_covariates {
             Covariates::Found
         } else {
@@ -157,22 +159,42 @@ fn read_beside(
     ) -> Result<Log, Failure>,
 ) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
     if is_curve(path) {
-        if !covariates.covariates.is_empty() {
-            return Err(Place::file(path).failure(
-                "a curve file has no covariates",
-                "give the log, or drop --covariates",
-            ));
-        }
-        let axes = read(path, arguments)?.into_iter();
-        return Ok(axes.map(|axis| (axis, Evidence::default())).collect());
+        return curves_without_evidence(path, arguments, covariates);
     }
     let covariates = covariates.tried();
     let options = arguments.options();
     let log = reading(path, |file, bar| read_log(file, &options, &covariates, bar))?;
     note(path, &log);
+    with_evidence(&log)
+}
+
+/// The curves of a curve file, whose evidence is empty.
+///
+/// # Errors
+/// When the file is not valid, or an option is about logs.
+pub(crate) fn curves_without_evidence(
+    path: &Path,
+    arguments: &LogArguments,
+    covariates: &CovariateArguments,
+) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
+    if !covariates.covariates.is_empty() {
+        return Err(Place::file(path).failure(
+            "a curve file has no covariates",
+            "give the log, or drop --covariates",
+        ));
+    }
+    let axes = read(path, arguments)?.into_iter();
+    Ok(axes.map(|axis| (axis, Evidence::default())).collect())
+}
+
+/// The curves of a log that was read, with the evidence beside each.
+///
+/// # Errors
+/// When the sums of an axis are too large for a curve.
+pub(crate) fn with_evidence(log: &Log) -> Result<Vec<(AxisCurve, Evidence)>, Failure> {
     let evidence = log.axes.iter().map(|axis| axis.evidence.clone());
     let evidence = evidence.map(Option::unwrap_or_default).collect::<Vec<_>>();
-    Ok(curves(&log)?.into_iter().zip(evidence).collect())
+    Ok(curves(log)?.into_iter().zip(evidence).collect())
 }
 
 /// Measures the curves of a log's first part and those of its last part, which is this share of the log.

@@ -3,6 +3,7 @@
 
 #[path = "../common/seeded.rs"]
 mod seeded;
+mod histories;
 mod stored;
 
 use allanite::{

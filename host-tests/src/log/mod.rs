@@ -85,6 +85,8 @@ mod axis_names;
 #[cfg(feature = "bags")]
 mod bag;
 #[cfg(feature = "bags")]
+mod bag_database;
+#[cfg(feature = "bags")]
 mod bag_folder;
 #[cfg(feature = "bags")]
 mod bag_mcap;
@@ -113,6 +115,8 @@ mod foreign;
 #[cfg(feature = "bags")]
 mod imu_message;
 mod lines;
+#[cfg(feature = "bags")]
+mod message_definition;
 #[cfg(feature = "bags")]
 mod message_layout;
 mod metadata;

@@ -19,6 +19,7 @@ mod command_line;
 mod compare;
 mod curve_file;
 mod cuts;
+mod databases;
 mod decode;
 mod diagnose;
 mod drawings;
@@ -52,3 +53,5 @@ mod schema;
 mod simulate;
 mod views;
 mod watch;
+#[cfg(unix)]
+mod watch_ends;

@@ -201,7 +201,10 @@ impl Definition {
             return self.end();
         }
         let end = begin / 8 * 8;
-        let sum: i64 = self.running[end - 32..end].iter().map(|&n| i64::from(n)).sum();
+        let sum: i64 = self.running[end - 32..end]
+            .iter()
+            .map(|&n| i64::from(n))
+            .sum();
         for _ in 0..samples {
             let all = sum + self.rest;
             self.rest = all.rem_euclid(32);
@@ -383,7 +386,13 @@ fn check_all<R: Recorder>(empty: &R, is_gated: bool) -> u64 {
     let mut other = Both::new(empty.clone(), is_gated);
     // Other counts than those of the record.
     other.pushed = 1000;
-    for event in [Event::Push, Event::Gap, Event::Push, Event::Lost, Event::Push] {
+    for event in [
+        Event::Push,
+        Event::Gap,
+        Event::Push,
+        Event::Lost,
+        Event::Push,
+    ] {
         other.happen(event, 0, &Both::new(empty.clone(), is_gated));
     }
     Both::new(empty.clone(), is_gated).check_all(&other, &mut Vec::new())

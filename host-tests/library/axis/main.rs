@@ -1,9 +1,9 @@
 //! Axes keep one record of samples and gaps for all their parts, whatever was left out, lost,
 //! merged or restored.
 
+mod histories;
 #[path = "../common/seeded.rs"]
 mod seeded;
-mod histories;
 mod stored;
 
 use allanite::{

@@ -59,7 +59,8 @@ impl Bag {
                 return Ok(ControlFlow::Continue(()));
             }
             if let Some(encoding) = channel.imu() {
-                let (topic, first) = first.get_or_insert_with(|| (channel.topic.clone(), Vec::new()));
+                let (topic, first) =
+                    first.get_or_insert_with(|| (channel.topic.clone(), Vec::new()));
                 if *topic == channel.topic && first.len() < LOOKS {
                     first.extend(ImuMessage::read(bytes, encoding));
                 }
@@ -189,10 +190,17 @@ fn choose(path: &Path, channels: &[Channel], wanted: Option<&str>) -> Result<Str
         }
         (Some(wanted), imus) => fail(
             format!("no IMU topic is named {}", quoted(wanted.as_bytes())),
-            &format!("choose with --topic from {}", listed(imus.iter().map(|topic| brief(topic)))),
+            &format!(
+                "choose with --topic from {}",
+                listed(imus.iter().map(|topic| brief(topic)))
+            ),
         ),
         (None, imus) => fail(
-            format!("there are {} IMU topics: {}", imus.len(), listed(imus.iter().map(|topic| brief(topic)))),
+            format!(
+                "there are {} IMU topics: {}",
+                imus.len(),
+                listed(imus.iter().map(|topic| brief(topic)))
+            ),
             "choose one with --topic",
         ),
     }
@@ -272,7 +280,7 @@ pub(super) fn other_messages(
     let (Some((topic, (layout, encoding))), None) = (found.next(), found.next()) else {
         return Ok(None);
     };
-    let mut text = Text::new(path, length(files))?;
+    let (mut text, file) = Text::new(path, length(files))?;
     text.names(layout.columns())
         .map_err(|error| text.failure(&error))?;
     each_message(container, files, progress, &mut |channel, bytes| {
@@ -294,8 +302,11 @@ pub(super) fn other_messages(
         }
         Ok(ControlFlow::Continue(()))
     })?;
-    let note = format!("topic {topic}");
-    text.finish(Some(note)).map(Some)
+    text.finish()?;
+    Ok(Some(Converted {
+        text: file,
+        note: Some(format!("topic {topic}")),
+    }))
 }
 
 /// The bytes that files have together.

@@ -68,7 +68,11 @@ impl Database {
             copy = Some(copied(path, &log).map_err(io)?);
         }
         let read = copy.as_ref().map(|copy| copy.path().join(COPY));
-        let connection = connected(read.as_deref().unwrap_or(path), read.is_some(), length + log_length);
+        let connection = connected(
+            read.as_deref().unwrap_or(path),
+            read.is_some(),
+            length + log_length,
+        );
         let connection = connection.map_err(|error| {
             damaged(path, &error.to_string(), "check the file, or copy it again")
         })?;
@@ -99,7 +103,9 @@ impl Database {
 
     /// Checks that nobody has written to the file since it was opened: without a lock, what was read would be a mixture.
     pub(super) fn check_unchanged(&self, path: &Path) -> Result<(), Failure> {
-        let file = path.metadata().map_err(|error| Place::file(path).io(&error))?;
+        let file = path
+            .metadata()
+            .map_err(|error| Place::file(path).io(&error))?;
         if state(&file) == self.opened {
             return Ok(());
         }

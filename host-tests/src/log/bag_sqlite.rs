@@ -147,9 +147,11 @@ fn failure(path: &Path, error: &Error) -> Failure {
             format!("SQLite cannot open it: {error}"),
             "check the file's permissions, and that it was closed after the recording",
         ),
-        Some(ErrorCode::OperationInterrupted) => {
-            damaged(path, "it takes more steps to read than it has bytes", RECOVER)
-        }
+        Some(ErrorCode::OperationInterrupted) => damaged(
+            path,
+            "it takes more steps to read than it has bytes",
+            RECOVER,
+        ),
         _ => damaged(path, &error.to_string(), RECOVER),
     }
 }

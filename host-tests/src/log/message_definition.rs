@@ -172,7 +172,9 @@ impl Columns {
             return Some(());
         }
         match kind {
-            Kind::Signed(_) | Kind::Unsigned(_) | Kind::Float(_) => self.names.push(with_unit(name)),
+            Kind::Signed(_) | Kind::Unsigned(_) | Kind::Float(_) => {
+                self.names.push(with_unit(name))
+            }
             Kind::Time => self.names.push(format!("{name} [ns]")),
             Kind::Message(fields) => {
                 for (field, kind) in fields {

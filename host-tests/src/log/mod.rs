@@ -170,6 +170,8 @@ pub use file::{read, read_for_fit, read_in_two, read_with_evidence};
 pub use names::TimeUnit;
 pub(crate) use names::is_degrees_column;
 pub(crate) use places::Places;
+#[cfg(feature = "tables")]
+pub use tables::apart::answer as answer_about_table;
 
 /// The number of octaves that the host accumulates. They cannot overflow, and they suffice for
 /// records of years.

@@ -61,6 +61,33 @@ pub(super) enum TableKind {
     Workbook,
 }
 
+impl TableKind {
+    #[cfg(feature = "tables")]
+    pub(super) const ALL: [Self; 7] = [
+        Self::Ardupilot,
+        Self::Arrow,
+        Self::Betaflight,
+        Self::Hdf5,
+        Self::Matlab,
+        Self::Parquet,
+        Self::Workbook,
+    ];
+
+    /// Its name, by which programs know it.
+    #[cfg(feature = "tables")]
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Ardupilot => "ardupilot",
+            Self::Arrow => "arrow",
+            Self::Betaflight => "betaflight",
+            Self::Hdf5 => "hdf5",
+            Self::Matlab => "matlab",
+            Self::Parquet => "parquet",
+            Self::Workbook => "workbook",
+        }
+    }
+}
+
 impl Format {
     /// The format of a file: the one that its first bytes tell, or else its extension, or else text.
     ///

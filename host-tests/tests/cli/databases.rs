@@ -42,7 +42,9 @@ fn grow(database: &Connection, more: u32) {
         .query_row("SELECT max(id) FROM messages", [], |row| row.get(0))
         .unwrap();
     let mut message: Vec<u8> = database
-        .query_row("SELECT data FROM messages WHERE id = ?", [last], |row| row.get(0))
+        .query_row("SELECT data FROM messages WHERE id = ?", [last], |row| {
+            row.get(0)
+        })
         .unwrap();
     for i in 1..=more {
         let nanoseconds = u32::from_le_bytes(message[8..12].try_into().unwrap()) + 5_000_000;
@@ -75,7 +77,9 @@ fn a_bag_that_was_not_closed_is_read_with_its_log() {
     let (folder, bag) = copied();
     let database = Connection::open(&bag).unwrap();
     database.pragma_update(None, "journal_mode", "wal").unwrap();
-    database.pragma_update(None, "wal_autocheckpoint", 0).unwrap();
+    database
+        .pragma_update(None, "wal_autocheckpoint", 0)
+        .unwrap();
     grow(&database, 16);
     let live = files(folder.path());
     assert_eq!(live.len(), 3);

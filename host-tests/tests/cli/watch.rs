@@ -245,7 +245,10 @@ fn input_that_ends_is_saved_to_its_last_line_even_without_a_line_end() {
         .iter()
         .filter(|line| matches!(line, Sent::Sample(_)))
         .count();
-    assert_eq!(check_prefix(&folder.path().join("curve.json"), &sent), samples as u64);
+    assert_eq!(
+        check_prefix(&folder.path().join("curve.json"), &sent),
+        samples as u64
+    );
     let garbled = sent.len() - samples;
     let errors = String::from_utf8(ended.stderr).unwrap();
     assert!(garbled > 0 && errors.starts_with(&format!("allanite: invalid lines: {garbled}, ")));

@@ -95,7 +95,9 @@ impl Watching {
             let entries = fs::read_dir(self.folder.path().join(folder)).ok()?;
             let files = entries.flatten().map(|entry| entry.path());
             let mut curves = files.filter(|file| {
-                let is_curve = file.extension().is_some_and(|extension| extension == "json");
+                let is_curve = file
+                    .extension()
+                    .is_some_and(|extension| extension == "json");
                 is_curve && file.metadata().is_ok_and(|file| file.is_file())
             });
             curves.next()
@@ -119,8 +121,15 @@ impl Watching {
 fn send(
     mut pipe: ChildStdin,
     sent: Vec<Sent>,
-) -> (Arc<Mutex<Vec<(Instant, u64)>>>, Arc<AtomicBool>, thread::JoinHandle<()>) {
-    let (noted, over) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
+) -> (
+    Arc<Mutex<Vec<(Instant, u64)>>>,
+    Arc<AtomicBool>,
+    thread::JoinHandle<()>,
+) {
+    let (noted, over) = (
+        Arc::new(Mutex::new(Vec::new())),
+        Arc::new(AtomicBool::new(false)),
+    );
     let (note, is_over) = (noted.clone(), over.clone());
     let sender = thread::spawn(move || {
         let mut samples = 0;
@@ -226,10 +235,17 @@ fn end_many(many: u64) {
     };
     let wrong: Vec<String> = thread::scope(|scope| {
         let workers: Vec<_> = (0..3).map(|_| scope.spawn(work)).collect();
-        let found = workers.into_iter().flat_map(|worker| worker.join().unwrap());
+        let found = workers
+            .into_iter()
+            .flat_map(|worker| worker.join().unwrap());
         found.collect()
     });
-    assert!(wrong.is_empty(), "{} of {many}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} of {many}:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
 }
 
 #[test]
@@ -249,7 +265,15 @@ fn a_record_of_which_the_folder_is_gone_tells_where_it_is() {
     let [out, tmp] = ["out", "tmp"].map(|name| folder.path().join(name));
     fs::create_dir(&out).unwrap();
     fs::create_dir(&tmp).unwrap();
-    let arguments = ["watch", "--rate", "100", "--scale", "0.01", "--output", "out/curve.json"];
+    let arguments = [
+        "watch",
+        "--rate",
+        "100",
+        "--scale",
+        "0.01",
+        "--output",
+        "out/curve.json",
+    ];
     let mut command = program::command(folder.path(), &arguments);
     let mut child = program::piped(command.args(["--axes", "left,right"]).env("TMPDIR", &tmp));
     let mut pipe = child.stdin.take().unwrap();
@@ -264,7 +288,9 @@ fn a_record_of_which_the_folder_is_gone_tells_where_it_is() {
     let errors = String::from_utf8(ended.stderr).unwrap();
     let last = errors.lines().last().unwrap();
     let start = "allanite: out/curve.json: its folder does not exist, and the record is in ";
-    let place = last.strip_prefix(start).and_then(|rest| rest.split_once("; "));
+    let place = last
+        .strip_prefix(start)
+        .and_then(|rest| rest.split_once("; "));
     let (place, _) = place.unwrap_or_else(|| panic!("{errors}"));
     assert_eq!(ended.status.code(), Some(2));
     check_prefix(Path::new(place), &sent);

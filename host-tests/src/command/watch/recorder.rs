@@ -144,11 +144,7 @@ impl Shared {
         Ended { received, saved }
     }
 
-    fn receive(
-        &self,
-        received: &Receiver<Received>,
-        save_every: Duration,
-    ) -> Result<(), Failure> {
+    fn receive(&self, received: &Receiver<Received>, save_every: Duration) -> Result<(), Failure> {
         let (mut saved, mut pause) = (Instant::now(), save_every);
         while !self.flags.interrupted.load(SeqCst) {
             let wait = pause.saturating_sub(saved.elapsed()).min(MOMENT);

@@ -168,7 +168,10 @@ pub(super) fn waiting(coefficient: &Coefficient, length_s: f64) -> String {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::{super::recording::{Numbers, Recording}, *};
+    use super::{
+        super::recording::{Numbers, Recording},
+        *,
+    };
     use crate::unit::Unit;
     use std::time::Duration;
 

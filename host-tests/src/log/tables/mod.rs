@@ -1,6 +1,7 @@
 //! Tables of other programs in binary. Each is rewritten as the text that logs are read from, in a temporary file, so that
 //! names, units, stamps and values are judged in one place.
 
+pub mod apart;
 mod ardupilot;
 mod arrays;
 mod arrow;
@@ -19,9 +20,12 @@ use super::{
 use crate::failure::{Failure, Place, one_line};
 use indicatif::ProgressBar;
 use std::{
+    fs::File,
+    io,
     panic::{self, AssertUnwindSafe},
     path::Path,
 };
+use tempfile::NamedTempFile;
 use wrong::Wrong;
 
 /// The remedy of a damaged file.
@@ -37,11 +41,26 @@ pub(in crate::log) fn convert(
     options: &Options,
     progress: &ProgressBar,
 ) -> Result<Converted, Failure> {
+    let io = |error: io::Error| Place::file(path).io(&error);
+    progress.set_length(path.metadata().map_or(0, |file| file.len()));
+    let text = NamedTempFile::new().map_err(io)?.into_temp_path();
+    let topic = options.topic.as_deref();
+    let note = apart::ask(path, kind, topic, &text);
+    let note = note.unwrap_or_else(|| rewrite(path, kind, topic, &text))?;
+    Ok(Converted { text, note })
+}
+
+/// Writes the text of a table to a file, and returns a note about the table.
+fn rewrite(
+    path: &Path,
+    kind: Kind,
+    topic: Option<&str>,
+    text: &Path,
+) -> Result<Option<String>, Failure> {
     let here = || Place::file(path);
     let size = path.metadata().map_or(0, |file| file.len());
-    progress.set_length(size);
-    let mut text = Text::new(path, size)?;
-    let topic = options.topic.as_deref();
+    let file = File::create(text).map_err(|error| here().io(&error))?;
+    let mut text = Text::to(path, size, file);
     let convert = || match kind {
         Kind::Ardupilot => ardupilot::convert(path, topic, &mut text),
         Kind::Arrow | Kind::Parquet => arrow::convert(path, kind, topic, &mut text),
@@ -56,7 +75,8 @@ pub(in crate::log) fn convert(
         Wrong::Damaged(what) => here().failure(format!("damaged: {}", one_line(&what)), COPY),
         Wrong::Unfit(what, remedy) => here().failure(what, remedy),
     })?;
-    text.finish(note)
+    text.finish()?;
+    Ok(note)
 }
 
 /// Runs a reader of another project. Some of them panic at damaged files, which is reported like any other damage.

@@ -24,7 +24,10 @@ fn schema(id: u16, name: &str, definition: &str) -> Vec<u8> {
 
 fn channel(id: u16, schema: u16, topic: &str) -> Vec<u8> {
     let ids = [id.to_le_bytes(), schema.to_le_bytes()].concat();
-    record(4, &[&ids[..], &text(topic), &text("cdr"), &text("")].concat())
+    record(
+        4,
+        &[&ids[..], &text(topic), &text("cdr"), &text("")].concat(),
+    )
 }
 
 /// A definition whose types lie in each other, each with this line for the next one.
@@ -40,7 +43,10 @@ fn nested(line: &str, times: usize, deepest: &str) -> String {
 
 /// A bag of a definition, with messages of nothing.
 fn defined(definition: &str) -> Vec<u8> {
-    let message = record(5, &[&[1, 0][..], &[0; 20], &[0, 1, 0, 0], &[1; 40]].concat());
+    let message = record(
+        5,
+        &[&[1, 0][..], &[0; 20], &[0, 1, 0, 0], &[1; 40]].concat(),
+    );
     let records = [
         schema(1, "a/msg/B", definition),
         channel(1, 1, "/a"),
@@ -57,32 +63,70 @@ fn mcaps() -> Vec<(Vec<u8>, &'static str)> {
     vec![
         // As many schemas as there are identifiers, each with other text.
         (
-            bag(&[header(), packed(&many(&|id| schema(id, "", &format!("{id:0>120}"))))]),
+            bag(&[
+                header(),
+                packed(&many(&|id| schema(id, "", &format!("{id:0>120}")))),
+            ]),
             "a.mcap: ",
         ),
-        (bag(&[header(), packed(&(0..4000).flat_map(definitions).collect::<Vec<u8>>())]), "a.mcap: "),
+        (
+            bag(&[
+                header(),
+                packed(&(0..4000).flat_map(definitions).collect::<Vec<u8>>()),
+            ]),
+            "a.mcap: ",
+        ),
         (
             bag(&[header(), packed(&schema(1, &longest.repeat(1000), ""))]),
             "damaged: the names of its channels are too long or too many",
         ),
         (
-            bag(&[header(), packed(&(0..4000).flat_map(|id| channel(id, 1, &format!("{longest}{id}"))).collect::<Vec<u8>>())]),
+            bag(&[
+                header(),
+                packed(
+                    &(0..4000)
+                        .flat_map(|id| channel(id, 1, &format!("{longest}{id}")))
+                        .collect::<Vec<u8>>(),
+                ),
+            ]),
             "damaged: the names of its channels are too long or too many",
         ),
         (
             bag(&[
                 header(),
-                packed(&[schema(1, "a/msg/B", &long), many(&|id| channel(id, 1, &format!("{id}")))].concat()),
+                packed(
+                    &[
+                        schema(1, "a/msg/B", &long),
+                        many(&|id| channel(id, 1, &format!("{id}"))),
+                    ]
+                    .concat(),
+                ),
             ]),
             "a.mcap: ",
         ),
         (defined(&nested("TYPE x\n", 30, "float64 gyr")), "a.mcap: "),
-        (defined(&nested("TYPE[16] x\n", 1, "string gyr")), "a.mcap: "),
-        (defined(&nested("TYPE[16] gyr\n", 1, "float64 gyr")), "a.mcap: "),
-        (defined(&nested("TYPE[4000000000] gyr\n", 1, "float64 gyr")), "a.mcap: "),
-        (defined(&format!("float64 {}", "gyr".repeat(60_000))), "a.mcap: "),
         (
-            defined(&(0..20_000).map(|i| format!("a/T{i} x\n===\nMSG: a/T{i}\n")).collect::<String>()),
+            defined(&nested("TYPE[16] x\n", 1, "string gyr")),
+            "a.mcap: ",
+        ),
+        (
+            defined(&nested("TYPE[16] gyr\n", 1, "float64 gyr")),
+            "a.mcap: ",
+        ),
+        (
+            defined(&nested("TYPE[4000000000] gyr\n", 1, "float64 gyr")),
+            "a.mcap: ",
+        ),
+        (
+            defined(&format!("float64 {}", "gyr".repeat(60_000))),
+            "a.mcap: ",
+        ),
+        (
+            defined(
+                &(0..20_000)
+                    .map(|i| format!("a/T{i} x\n===\nMSG: a/T{i}\n"))
+                    .collect::<String>(),
+            ),
             "a.mcap: ",
         ),
     ]
@@ -93,7 +137,8 @@ fn database(topics: &str, messages: &str, more: &str) -> Vec<u8> {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("a.db3");
     let database = Connection::open(&path).unwrap();
-    let statements = format!("CREATE TABLE topics({topics}); CREATE TABLE messages({messages}); {more}");
+    let statements =
+        format!("CREATE TABLE topics({topics}); CREATE TABLE messages({messages}); {more}");
     database.execute_batch(&statements).unwrap();
     drop(database);
     fs::read(path).unwrap()
@@ -137,20 +182,35 @@ fn databases() -> Vec<(Vec<u8>, &'static str)> {
             database(
                 TOPICS,
                 "id, topic_id, data",
-                &format!("{imu}{}", rows("messages SELECT -i, 1, zeroblob(300)", 2000)),
+                &format!(
+                    "{imu}{}",
+                    rows("messages SELECT -i, 1, zeroblob(300)", 2000)
+                ),
             ),
             no_tables,
         ),
         (
-            database(TOPICS, MESSAGES, &rows("topics SELECT i, hex(zeroblob(2000)) || i, 'a', 'b'", 200)),
+            database(
+                TOPICS,
+                MESSAGES,
+                &rows("topics SELECT i, hex(zeroblob(2000)) || i, 'a', 'b'", 200),
+            ),
             "no topic of sensor_msgs/msg/Imu: only ",
         ),
         (
-            database(TOPICS, MESSAGES, "INSERT INTO topics VALUES(1, hex(zeroblob(400000)), 'a', 'b');"),
+            database(
+                TOPICS,
+                MESSAGES,
+                "INSERT INTO topics VALUES(1, hex(zeroblob(400000)), 'a', 'b');",
+            ),
             "damaged: the names of its channels are too long or too many",
         ),
         (
-            database(TOPICS, MESSAGES, &rows("topics SELECT i, i, 'a', 'b'", 9000)),
+            database(
+                TOPICS,
+                MESSAGES,
+                &rows("topics SELECT i, i, 'a', 'b'", 9000),
+            ),
             "damaged: the bag has too many topics",
         ),
         // Thirty thousand rows of one byte, and the table's statement has a default of a megabyte for their data.
@@ -182,7 +242,10 @@ fn ros1_bags() -> Vec<(Vec<u8>, &'static str)> {
         .map(|id| connection(id, &format!("{id}{}", "t".repeat(4000))))
         .collect();
     vec![
-        (ros1_bag(13, &long), "no topic of sensor_msgs/msg/Imu: only "),
+        (
+            ros1_bag(13, &long),
+            "no topic of sensor_msgs/msg/Imu: only ",
+        ),
         (
             ros1_bag(13, &[connection(1, &"t".repeat(9000))]),
             "damaged: the names of its channels are too long or too many",
@@ -213,17 +276,30 @@ pub(super) fn cases() -> Vec<Case> {
         let topic = |id: u16| channel(id, 1, &format!("{file}-{id}{}", "t".repeat(4000)));
         (0..20).flat_map(topic).collect()
     };
-    cases.push(folder(&names, "the names of its channels are too long or too many"));
+    cases.push(folder(
+        &names,
+        "the names of its channels are too long or too many",
+    ));
     cases.push(folder(&|_| vec![0; 8_000_000], "too many times their size"));
     // Names and neighbours of databases that mean something to SQLite.
     let good = || fixture("origins/humble.db3");
     let reads = |name: &str, prepare: &str| {
-        refused(name, good(), &format!("fit {name}"), "").status(0).prepared(prepare)
+        refused(name, good(), &format!("fit {name}"), "")
+            .status(0)
+            .prepared(prepare)
     };
     cases.push(reads("a.db3", "mkfifo a.db3-journal a.db3-wal a.db3-shm"));
     cases.push(reads("a.db3", "mkdir a.db3-journal a.db3-wal"));
-    cases.push(reads("a.db3", "ln -s /dev/zero a.db3-wal; ln -s /dev/zero a.db3-journal"));
-    for name in ["file:a.db3", "file:a.db3?mode=memory", "file:%00.db3", "a#b%41.db3"] {
+    cases.push(reads(
+        "a.db3",
+        "ln -s /dev/zero a.db3-wal; ln -s /dev/zero a.db3-journal",
+    ));
+    for name in [
+        "file:a.db3",
+        "file:a.db3?mode=memory",
+        "file:%00.db3",
+        "a#b%41.db3",
+    ] {
         cases.push(reads(name, "true"));
     }
     cases

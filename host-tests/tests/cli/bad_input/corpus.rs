@@ -53,7 +53,9 @@ fn good_files() -> Vec<Good> {
     let unchecked = plain.map(|file| Good {
         name: format!("unchecked-{}", file.name),
         bytes: without_checksums(&file.bytes),
-        command: file.command.replacen(&file.name, &format!("unchecked-{}", file.name), 1),
+        command: file
+            .command
+            .replacen(&file.name, &format!("unchecked-{}", file.name), 1),
     });
     let unchecked: Vec<Good> = unchecked.collect();
     good.extend(unchecked);
@@ -134,7 +136,10 @@ fn corpus() -> Vec<Case> {
             cases.push(refused("a.bin", changed, "decode a.bin", "").ambiguous());
         }
     }
-    for (name, command) in [("imu_9.csv", "diagnose parts"), ("rosbag2_1.mcap", "diagnose parts")] {
+    for (name, command) in [
+        ("imu_9.csv", "diagnose parts"),
+        ("rosbag2_1.mcap", "diagnose parts"),
+    ] {
         let file = good.iter().find(|file| file.name == name).unwrap();
         for copy in 0..40 {
             let mut random = Xoshiro256PlusPlus::seed_from_u64(copy);

@@ -78,9 +78,16 @@ fn workbook(rows: &str, shared: &str) -> Vec<u8> {
          <Relationship Id=\"r2\" Type=\"{name}/officeDocument/2006/relationships/sharedStrings\" Target=\"sharedStrings.xml\"/>\
          </Relationships>"
     );
-    let strings =
-        format!("<?xml version=\"1.0\"?><sst xmlns=\"{name}/spreadsheetml/2006/main\">{shared}</sst>");
+    let strings = format!(
+        "<?xml version=\"1.0\"?><sst xmlns=\"{name}/spreadsheetml/2006/main\">{shared}</sst>"
+    );
+    let root = format!(
+        "<?xml version=\"1.0\"?><Relationships xmlns=\"{name}/package/2006/relationships\">\
+         <Relationship Id=\"r1\" Type=\"{name}/officeDocument/2006/relationships/officeDocument\" Target=\"xl/workbook.xml\"/>\
+         </Relationships>"
+    );
     archive(&[
+        ("_rels/.rels", root.into_bytes()),
         ("xl/workbook.xml", book.into_bytes()),
         ("xl/_rels/workbook.xml.rels", relations.into_bytes()),
         ("xl/sharedStrings.xml", strings.into_bytes()),
@@ -95,12 +102,29 @@ fn workbooks() -> Vec<Vec<u8>> {
     vec![
         workbook(&few, ""),
         // Two cells in the opposite corners of a sheet.
-        workbook(&format!("{}{}", row(1, &cell("A1")), row(1_048_576, &cell("XFD1048576"))), ""),
-        workbook(&format!("{}{}", row(1, &cell("A1")), row(1_048_576, &cell("C1048576"))), ""),
+        workbook(
+            &format!(
+                "{}{}",
+                row(1, &cell("A1")),
+                row(1_048_576, &cell("XFD1048576"))
+            ),
+            "",
+        ),
+        workbook(
+            &format!(
+                "{}{}",
+                row(1, &cell("A1")),
+                row(1_048_576, &cell("C1048576"))
+            ),
+            "",
+        ),
         // A sheet and texts of some hundred megabytes.
         workbook(&row(1, &cell("A1")).repeat(3_000_000), ""),
         workbook(&few, &"<si><t>aaaaaaaaaa</t></si>".repeat(4_000_000)),
-        workbook(&few, &format!("<si><t>{}</t></si>", "a".repeat(100_000_000))),
+        workbook(
+            &few,
+            &format!("<si><t>{}</t></si>", "a".repeat(100_000_000)),
+        ),
         workbook(&(few.clone() + &" ".repeat(200_000_000)), ""),
     ]
 }
@@ -178,7 +202,12 @@ pub(super) fn cases() -> Vec<Case> {
     for rows in [1_000_000, 30_000_000] {
         add("a.arrow", arrow_file(rows));
     }
-    for (rows, claimed) in [(1000, 1000), (30_000_000, 30_000_000), (1000, u32::MAX), (1000, 0)] {
+    for (rows, claimed) in [
+        (1000, 1000),
+        (30_000_000, 30_000_000),
+        (1000, u32::MAX),
+        (1000, 0),
+    ] {
         add("a.mat", matlab(rows, claimed));
     }
     let megabyte = 1 << 20;
@@ -195,8 +224,12 @@ pub(super) fn cases() -> Vec<Case> {
         "1,2,3\n\n".repeat(megabyte / 7),
         "1;2,3 4\t5\n".repeat(megabyte / 10),
         "2026-01-01T00:00:00Z,1\n".repeat(megabyte / 23),
-        (0..90_000).map(|i| format!("{i},{}\n", i * 7 % 11)).collect::<String>(),
-        (0..4000).map(|i| format!("{i}{}\n", ",1".repeat(120))).collect::<String>(),
+        (0..90_000)
+            .map(|i| format!("{i},{}\n", i * 7 % 11))
+            .collect::<String>(),
+        (0..4000)
+            .map(|i| format!("{i}{}\n", ",1".repeat(120)))
+            .collect::<String>(),
         "x,".repeat(255) + "x\n" + &("1,".repeat(255) + "1\n").repeat(2000),
         "time,".to_owned() + &"t".repeat(megabyte - 100) + "\n1,2\n",
     ] {
@@ -210,6 +243,9 @@ pub(super) fn cases() -> Vec<Case> {
     add("a.csv.gz", gzip(&vec![b'1'; 300_000_000]));
     add("a.csv.gz", gzip(b"1,2,3\n").repeat(40_000));
     add("a.json", "[".repeat(megabyte).into_bytes());
-    add("a.json", format!("{{\"format\":\"{}\"}}", "x".repeat(megabyte - 20)).into_bytes());
+    add(
+        "a.json",
+        format!("{{\"format\":\"{}\"}}", "x".repeat(megabyte - 20)).into_bytes(),
+    );
     cases
 }

@@ -121,10 +121,32 @@ pub(super) fn text_mutated(good: &[u8], random: &mut Random) -> Vec<u8> {
     let text = String::from_utf8_lossy(good).into_owned();
     let mut lines: Vec<String> = text.lines().map(String::from).collect();
     let words = [
-        "1e999", "nan", "-", "", "\"", "=1+1", "18446744073709551615", "-9223372036854775809",
-        "0x10", "1,5", "#", "\t", "\u{202e}", "\u{0}", "1969-12-31T23:59:59Z", "24:61:99", "é",
-        "99999999999999999999999999", "true", "1e-320", "# lost 99999999999999999999 samples",
-        "rate_hz=1e9", "unit=parsec", "[[[[[[", "}", "null",
+        "1e999",
+        "nan",
+        "-",
+        "",
+        "\"",
+        "=1+1",
+        "18446744073709551615",
+        "-9223372036854775809",
+        "0x10",
+        "1,5",
+        "#",
+        "\t",
+        "\u{202e}",
+        "\u{0}",
+        "1969-12-31T23:59:59Z",
+        "24:61:99",
+        "é",
+        "99999999999999999999999999",
+        "true",
+        "1e-320",
+        "# lost 99999999999999999999 samples",
+        "rate_hz=1e9",
+        "unit=parsec",
+        "[[[[[[",
+        "}",
+        "null",
     ];
     for _ in 0..random.random_range(1..12) {
         if lines.is_empty() {
@@ -145,7 +167,9 @@ pub(super) fn text_mutated(good: &[u8], random: &mut Random) -> Vec<u8> {
             }
             3 => {
                 let line = lines[at].clone();
-                let times = random.random_range(1..2000).min((1 << 19) / (line.len() + 1));
+                let times = random
+                    .random_range(1..2000)
+                    .min((1 << 19) / (line.len() + 1));
                 lines.splice(at..at, vec![line; times]);
             }
             4 => {
@@ -162,7 +186,9 @@ pub(super) fn text_mutated(good: &[u8], random: &mut Random) -> Vec<u8> {
             }
         }
     }
-    let mut bytes = lines.join(["\n", "\r\n", "\r"][random.random_range(0..3)]).into_bytes();
+    let mut bytes = lines
+        .join(["\n", "\r\n", "\r"][random.random_range(0..3)])
+        .into_bytes();
     bytes.truncate(LONGEST);
     bytes
 }

@@ -230,6 +230,10 @@ impl Definition {
         let mut other = other.clone();
         self.release();
         other.release();
+        // An accumulator goes on where an empty one is added to it.
+        if !self.is_gated && other.samples == 0 {
+            return;
+        }
         self.end();
         other.end();
         for (own, other) in self.ended.iter_mut().zip(other.ended) {
@@ -400,10 +404,10 @@ fn check_all<R: Recorder>(empty: &R, is_gated: bool) -> u64 {
 
 #[test]
 fn every_history_of_an_accumulator_gives_the_sums_of_the_definition() {
-    assert_eq!(check_all(&Accumulator::new(), false), 607_061);
+    assert_eq!(check_all(&Accumulator::new(), false), 529_228);
 }
 
 #[test]
 fn every_history_of_an_axis_behind_a_gate_gives_the_sums_of_the_definition() {
-    assert_eq!(check_all(&Gyro::new(), true), 1_708_113);
+    assert_eq!(check_all(&Gyro::new(), true), 1_366_334);
 }

@@ -51,6 +51,7 @@ mod report_layout;
 mod report_view;
 mod schema;
 mod simulate;
+mod untrusted;
 mod views;
 mod watch;
 #[cfg(unix)]

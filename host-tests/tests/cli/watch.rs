@@ -262,7 +262,8 @@ fn fit_is_printed_and_failed_saves_are_announced_if_the_curve_cannot_be_saved() 
     std::fs::create_dir(&inner).unwrap();
     let more = ["--save-every", "0.05", "--output", "../inner/curve.json"];
     let arguments = ["watch", "--rate", "100", "--scale", "0.01"];
-    let mut child = piped(&mut command(&inner, &[&arguments[..], &more].concat()));
+    let mut command = command(&inner, &[&arguments[..], &more].concat());
+    let mut child = piped(command.env("TMPDIR", folder.path()));
     let mut pipe = child.stdin.take().unwrap();
     for line in lines(3000, 11) {
         pipe.write_all(line.line().as_bytes()).unwrap();

@@ -28,6 +28,9 @@ pub(crate) fn remove_when_interrupted() {}
 /// program. Where interruptions cannot be caught, they end the program as usual.
 #[cfg(not(target_family = "wasm"))]
 pub(crate) fn remove_when_interrupted() {
+    // A file beyond the limit of its size is an error of writing it, and no end of the program.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
     let _ = ctrlc::set_handler(|| {
         // The lock is held until the program has ended, so that no further file is created.
         let existing = existing();

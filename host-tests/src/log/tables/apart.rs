@@ -3,6 +3,7 @@
 //! The formats of tables are read by crates of other projects, which allocate what a file claims, and a few hundred bytes
 //! can claim gigabytes. The end of such a process is a message about the file, and not the end of the program.
 
+use super::rewrite::rewrite;
 use crate::{
     failure::{Failure, Place},
     log::source::TableKind as Kind,
@@ -63,7 +64,7 @@ pub fn answer() -> Option<ExitCode> {
     limit(size);
     // An empty topic is that of nobody, because no topic has an empty name.
     let topic = Some(&*topic).filter(|topic| !topic.is_empty());
-    let answer = match super::rewrite(path, kind, topic, text) {
+    let answer = match rewrite(path, kind, topic, text) {
         Ok(note) => Answer::Written(note),
         Err(Failure::Input { what, remedy, .. }) => Answer::Refused(what, remedy),
         Err(_) => return Some(ExitCode::from(2)),

@@ -22,6 +22,11 @@ use std::sync::{
 use std::thread;
 use tempfile::TempDir;
 
+/// A good log of three axes.
+pub(crate) fn good_text(rows: usize) -> String {
+    text::good(rows)
+}
+
 /// Two programs run at a time.
 const AT_ONCE: usize = 2;
 

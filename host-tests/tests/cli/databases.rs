@@ -1,6 +1,6 @@
 //! Reads bags that are databases without a trace beside them, whatever state they are in.
 
-use host_tests::program::{json, output, refusal};
+use host_tests::program::{output, refusal};
 use rusqlite::Connection;
 use std::{
     fs,
@@ -31,9 +31,11 @@ fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     files
 }
 
+/// The number of samples that are read of each axis.
 fn samples(folder: &Path) -> u64 {
-    let fit = json(folder, &["fit", "a.db3"]);
-    fit["axes"][0]["samples"].as_u64().unwrap()
+    let fit = output(folder, &["fit", "a.db3", "--repeats", "keep"]);
+    let (before, _) = fit.split_once(" samples at ").unwrap();
+    before.rsplit(' ').next().unwrap().parse().unwrap()
 }
 
 /// Repeats the messages of the bag with later stamps, as long as `more` of them.

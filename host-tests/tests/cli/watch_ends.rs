@@ -195,7 +195,7 @@ fn end(end: End, seed: u64) -> Result<(), String> {
         }
     }
     let mut problem = None;
-    if matches!(end, End::Stalled) {
+    if matches!(end, End::Stalled) && watching.child.try_wait().unwrap().is_none() {
         // It waits for its terminal, but its record is saved, so that the next signal ends it at once.
         program::signal(&watching.child, "TERM");
     }

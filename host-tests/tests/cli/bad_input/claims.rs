@@ -221,7 +221,7 @@ fn databases() -> Vec<(Vec<u8>, &'static str)> {
                 &format!(
                     "{imu}{}ALTER TABLE messages ADD COLUMN data DEFAULT x'{}';",
                     rows("messages SELECT i, 1", 30_000),
-                    "00".repeat(400_000)
+                    "00".repeat(200_000)
                 ),
             ),
             "damaged: the chunks unpack to too many times their size",

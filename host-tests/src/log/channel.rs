@@ -54,9 +54,12 @@ impl Channel {
     }
 }
 
+/// A message type and its definition.
+type Defined = (Rc<str>, Rc<str>);
+
 /// The layouts of channels, each of which is made once.
 pub(super) struct Layouts {
-    made: BTreeMap<(Rc<str>, Rc<str>), Option<Rc<Layout>>>,
+    made: BTreeMap<Defined, Option<Rc<Layout>>>,
     left: usize,
 }
 

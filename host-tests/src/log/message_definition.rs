@@ -173,7 +173,7 @@ impl Columns {
         }
         match kind {
             Kind::Signed(_) | Kind::Unsigned(_) | Kind::Float(_) => {
-                self.names.push(with_unit(name))
+                self.names.push(with_unit(name));
             }
             Kind::Time => self.names.push(format!("{name} [ns]")),
             Kind::Message(fields) => {

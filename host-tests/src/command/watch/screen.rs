@@ -90,10 +90,10 @@ impl Screen {
 impl Drop for Screen {
     fn drop(&mut self) {
         // An error is ignored, because nothing can be done about a terminal that is gone.
-        let restored = execute!(io::stdout(), LeaveAlternateScreen, Show);
-        if restored.is_err() {
-            // It would report the error on standard error, and panic if that is the same terminal.
-            self.terminal.take().map(std::mem::forget);
+        let _ = execute!(io::stdout(), LeaveAlternateScreen, Show);
+        // Its own end would show the cursor once more, and panic where standard error is the terminal that is gone.
+        if let Some(terminal) = self.terminal.take() {
+            std::mem::forget(terminal);
         }
     }
 }

@@ -280,7 +280,10 @@ pub(super) fn cases() -> Vec<Case> {
         &names,
         "the names of its channels are too long or too many",
     ));
-    cases.push(folder(&|_| vec![0; 8_000_000], "too many times their size"));
+    cases.push(folder(
+        &|_| vec![0; 9 * 880_000],
+        "too many times their size",
+    ));
     // Names and neighbours of databases that mean something to SQLite.
     let good = || fixture("origins/humble.db3");
     let reads = |name: &str, prepare: &str| {

@@ -119,15 +119,11 @@ impl Watching {
     }
 }
 
+/// When how many samples had been sent.
+type Noted = Arc<Mutex<Vec<(Instant, u64)>>>;
+
 /// Sends lines at the rate of a sensor, and notes when how many samples were sent.
-fn send(
-    mut pipe: ChildStdin,
-    sent: Vec<Sent>,
-) -> (
-    Arc<Mutex<Vec<(Instant, u64)>>>,
-    Arc<AtomicBool>,
-    thread::JoinHandle<()>,
-) {
+fn send(mut pipe: ChildStdin, sent: Vec<Sent>) -> (Noted, Arc<AtomicBool>, thread::JoinHandle<()>) {
     let (noted, over) = (
         Arc::new(Mutex::new(Vec::new())),
         Arc::new(AtomicBool::new(false)),
